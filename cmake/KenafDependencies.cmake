@@ -1,0 +1,15 @@
+# Every library the project uses, all from Debian 12. docs/dependencies.md says what each is for.
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt 9 REQUIRED)
+find_package(spdlog 1.10 REQUIRED)
+find_package(CLI11 2 REQUIRED)
+find_package(Boost 1.74 REQUIRED COMPONENTS system)
+find_package(sdformat12 REQUIRED)
+pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
+pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
+
+# The double precision flavour of Bullet. Mixing its headers with the single precision libraries is an error that no
+# linker reports, so headers, definition and libraries come from this one place.
+pkg_check_modules(bullet REQUIRED IMPORTED_TARGET bullet-float64)

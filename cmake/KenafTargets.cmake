@@ -1,0 +1,66 @@
+# The settings that every target of the project shares, and the functions that declare targets.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_C_STANDARD 11)
+set(CMAKE_C_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_C_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
+
+# Contracted multiply-adds would let the same run differ between compilers and processors.
+add_compile_options(-ffp-contract=off)
+
+if(KENAF_SANITIZE)
+  add_compile_options(-fsanitize=${KENAF_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${KENAF_SANITIZE})
+endif()
+if(KENAF_BUILD_FUZZERS)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
+
+add_library(kenaf_warnings INTERFACE)
+target_compile_options(kenaf_warnings INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror)
+
+# kenaf_room(NAME sources...): the static library of one room. Includes are written from the root: "protocol/frames.hpp".
+function(kenaf_room name)
+  add_library(${name} STATIC ${ARGN})
+  target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/include")
+  target_link_libraries(${name} PRIVATE kenaf_warnings)
+endfunction()
+
+# kenaf_program(NAME sources...): an installed program.
+function(kenaf_program name)
+  add_executable(${name} ${ARGN})
+  target_link_libraries(${name} PRIVATE kenaf_warnings)
+  install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT programs)
+endfunction()
+
+# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l...): one Catch2 program; ctest sees each of its test cases.
+function(kenaf_test name)
+  cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  if(NOT TEST_TIMEOUT)
+    set(TEST_TIMEOUT 120)
+  endif()
+  add_executable(${name} ${TEST_SOURCES})
+  target_link_libraries(${name} PRIVATE kenaf_test_main ${TEST_LIBRARIES} kenaf_warnings)
+  target_compile_definitions(${name} PRIVATE KENAF_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  catch_discover_tests(${name}
+    TEST_PREFIX "${name}: "
+    PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT})
+endfunction()
+
+# kenaf_fuzzer(NAME SOURCE s LIBRARIES l...): one libFuzzer target, seeded from fuzz/corpus/NAME.
+function(kenaf_fuzzer name)
+  cmake_parse_arguments(FUZZ "" "SOURCE" "LIBRARIES" ${ARGN})
+  add_executable(${name} ${FUZZ_SOURCE})
+  target_link_libraries(${name} PRIVATE ${FUZZ_LIBRARIES} kenaf_warnings)
+  target_link_options(${name} PRIVATE -fsanitize=fuzzer)
+  set_property(GLOBAL APPEND PROPERTY KENAF_FUZZERS ${name})
+endfunction()

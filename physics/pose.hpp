@@ -1,0 +1,22 @@
+// A rigid pose and its roll, pitch, yaw. World and body frames: x forward, y left, z up (REP 103).
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace kenaf::physics {
+
+// X_AB: where frame B is in frame A.
+struct Pose {
+  Eigen::Vector3d p{Eigen::Vector3d::Zero()};
+  Eigen::Quaterniond q{Eigen::Quaterniond::Identity()};
+};
+
+// Intrinsic z-y-x angles (roll, pitch, yaw); pitch positive nose down; each in (-pi, pi].
+Eigen::Vector3d roll_pitch_yaw(const Eigen::Quaterniond& q_WB);
+Eigen::Quaterniond rotation_from(const Eigen::Vector3d& roll_pitch_yaw);
+
+// X_AC = compose(X_AB, X_BC)
+Pose compose(const Pose& X_AB, const Pose& X_BC);
+Pose inverse(const Pose& X_AB);
+
+}  // namespace kenaf::physics

@@ -1,0 +1,30 @@
+// What a robot in the world can be told to do. SI units, frames of REP 103.
+#pragma once
+
+#include <array>
+
+#include "protocol/relay_datagram.hpp"
+
+namespace kenaf::physics {
+
+using relay::Flipper;
+using relay::kFlipperCount;
+using relay::kLeft;
+using relay::kRight;
+using relay::kTrackCount;
+
+// A flipper servo's mode, after USARSim's joint orders 0 to 3.
+enum class JointMode { angle, speed, torque, brake };
+
+struct JointCommand {
+  JointMode mode = JointMode::angle;
+  double value = 0;  // rad (0 = straight out along the body, positive tip up), rad/s, N m; unused for brake
+};
+
+// Complete and absolute: it holds until the next one.
+struct RobotCommand {
+  std::array<double, kTrackCount> track_speed_mps{};  // surface speed of each track relative to the body, + = forward
+  std::array<JointCommand, kFlipperCount> flipper{};
+};
+
+}  // namespace kenaf::physics

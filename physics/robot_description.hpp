@@ -1,0 +1,135 @@
+// What a robot is: a plain value, read from a TOML file in robots/. docs/robot-description.md lists every key.
+//
+// Body frame B: origin at the body's geometric centre, x forward, y left, z up. SI units, radians.
+// Thread safety: a value.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "physics/pose.hpp"
+#include "physics/robot_command.hpp"
+
+namespace kenaf::physics {
+
+// What is wrong with a description, with file, line and column in its text.
+class DescriptionError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct BodyDescription {
+  double mass_kg;                  // of the body with its main tracks, without flippers
+  Eigen::Vector3d size_m;          // collision box of the hull between the tracks
+  Eigen::Vector3d p_BBcm_m;        // centre of mass
+  Eigen::Vector3d inertia_kgm2;    // about the centre of mass, along x, y, z
+  double friction;                 // of the hull against ground of friction 1
+};
+
+// A track is a stadium: a rectangle with a half circle at each end, swept across its width.
+struct TrackDescription {
+  double length_m;                 // over both end arcs
+  double end_radius_m;
+  double width_m;
+  Eigen::Vector3d p_BT_m;          // centre of the LEFT track; the right one is its mirror image
+  double friction_along;           // rolling direction
+  double friction_across;
+  int pieces;                      // convex pieces along the length; they spread the load over the belly
+};
+
+struct TrackDriveDescription {
+  double sprocket_radius_m;        // turns spin into surface speed
+  double max_speed_mps;
+  double max_force_n;              // at the belt, at standstill
+  double time_constant_s;          // of the closed speed loop
+  double encoder_counts_per_radian;// of the sprocket
+  double amperes_per_newton;       // motor current for a belt force
+  double idle_amperes;
+};
+
+// An arm with a track of its own: a large drum at its pivot, a small one at its tip, a belt around both.
+struct FlipperDescription {
+  double mass_kg;
+  double length_m;                 // pivot to the centre of the tip drum
+  double pivot_radius_m;
+  double tip_radius_m;
+  double width_m;
+  Eigen::Vector3d p_BPivot_m;      // of the FRONT LEFT flipper; the others are mirror images
+  double friction_along;
+  double friction_across;
+  double min_angle_rad;            // positive tip up
+  double max_angle_rad;
+  double start_angle_rad;
+  bool belt_driven;                // its belt runs with the main track of its side
+};
+
+struct FlipperServoDescription {
+  double max_speed_radps;
+  double max_torque_nm;
+  double amperes_per_nm;
+};
+
+struct BatteryDescription {
+  double open_circuit_v;
+  double internal_resistance_ohm;
+  double capacity_s;               // what USARSim reports as {Battery}: seconds left, counted down
+};
+
+enum class SensorType {
+  ground_truth, ins, imu, encoder, odometry, tachometer, sonar, range_scanner, gps, touch, drives
+};
+// USARSim's name of a sensor type: "GroundTruth", "INS", "IMU", "Encoder", "Odometry", "Tachometer", "Sonar",
+// "RangeScanner", "GPS", "Touch", and "Drives" for the one that USARSim does not have (motor currents, battery).
+std::string_view usarsim_type_name(SensorType type);
+
+struct SensorDescription {
+  SensorType type;
+  std::string name;                // unique on the robot
+  Pose X_BS;                       // where it is mounted
+  double period_s;                 // 0: at every output of its connection
+  double delay_s;                  // age of what it reports
+  // 1-sigma, white, per sample, and a constant bias drawn once for each robot. In the reading's own units.
+  double noise_m = 0, noise_rad = 0, noise_radps = 0, noise_mps2 = 0;
+  double bias_rad = 0, bias_radps = 0;
+  // Ray sensors only.
+  double min_range_m = 0, max_range_m = 0, field_of_view_rad = 0, resolution_rad = 0;
+};
+
+// A camera mount with links that turn, driven by MISPKG. Massless: it moves no body.
+struct MissionPackageDescription {
+  struct Link { double min_rad, max_rad, max_speed_radps; };
+  std::string name;
+  Pose X_BM;
+  std::vector<Link> links;         // link 1 first
+};
+
+struct RobotDescription {
+  std::string name;                // as its file is called
+  std::string usarsim_class;       // "USARBot.Kenaf"
+  BodyDescription body;
+  TrackDescription track;
+  TrackDriveDescription drive;
+  std::vector<FlipperDescription> flipper;   // empty, or one that stands for all four
+  FlipperServoDescription servo{};
+  BatteryDescription battery{};
+  std::vector<SensorDescription> sensors;
+  std::vector<MissionPackageDescription> mission_packages;
+
+  bool has_flippers() const { return !flipper.empty(); }
+  double total_mass_kg() const;
+  double track_gauge_m() const;    // between the tracks' centre planes
+};
+
+// A shipped name ("kenaf") or a path of a TOML file. Throws DescriptionError.
+RobotDescription load_robot(const std::string& name_or_path);
+RobotDescription parse_robot(std::string_view toml_text, const std::string& name_for_errors);
+
+// The shipped description for a USARSim class name such as "USARBot.P2DX" or "usarbot.kenaf"; empty: there is none.
+std::string robot_name_for_class(std::string_view usarsim_class);
+
+}  // namespace kenaf::physics

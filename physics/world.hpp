@@ -1,0 +1,98 @@
+// The simulated world: ground, boxes and any number of tracked robots, stepped with a fixed time step.
+//
+// Deterministic: the same descriptions, settings, seed and calls give the same bits. Knows nothing of sockets, of
+// wall-clock time or of USARSim. Frame W: x forward, y left, z up; SI units.
+// Thread safety: none; one thread owns a World. Two Worlds share nothing and may run on two threads.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "physics/pose.hpp"
+#include "physics/readings.hpp"
+#include "physics/robot_command.hpp"
+#include "physics/robot_description.hpp"
+#include "physics/world_description.hpp"
+
+namespace kenaf::physics {
+
+struct PhysicsSettings {
+  double time_step_s = 0.001;
+  int solver_iterations = 30;
+};
+
+// Never used twice in one World.
+enum class RobotId : std::uint32_t {};
+enum class BoxId : std::uint32_t {};
+
+// The exact state of a robot, without sensors in between.
+struct RobotTruth {
+  Pose X_WB;
+  Eigen::Vector3d v_WB_mps, w_WB_radps;            // of the body frame's origin, in W
+  std::array<double, kTrackCount> track_mps, track_m;
+  std::array<double, kTrackCount> track_force_n;   // belt force, + pushes the robot forward
+  std::array<double, kFlipperCount> flipper_rad, flipper_radps, flipper_nm;
+  double battery_v, battery_left_s;
+};
+
+struct RayHit { double distance_m; Eigen::Vector3d normal_W; };
+
+class World {
+ public:
+  World(const WorldDescription& description, const PhysicsSettings& settings, std::uint64_t seed);
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  const WorldDescription& description() const;
+  const PhysicsSettings& settings() const;
+  double time_s() const;          // step_count() times the time step
+  std::uint64_t step_count() const;
+
+  // Places a robot with all joints at their start angles and at rest. A pose in which it would touch ground or box is
+  // lifted straight up until it is free. `name` seeds its sensors' noise: a robot of the same name that is placed
+  // again behaves the same again.
+  RobotId add_robot(const RobotDescription& description, const std::string& name, const Pose& X_WB);
+  void remove_robot(RobotId id);
+  std::vector<RobotId> robots() const;
+  const RobotDescription& robot_description(RobotId id) const;
+
+  void set_command(RobotId id, const RobotCommand& command);
+  // Turns a link (from 0) of a mission package; clamped to its limits, moves with its speed limit.
+  void set_mission_link(RobotId id, std::size_t package, std::size_t link, double angle_rad);
+  double mission_link_rad(RobotId id, std::size_t package, std::size_t link) const;
+  // Moves a robot and puts it at rest. Lifted as by add_robot.
+  void teleport(RobotId id, const Pose& X_WB);
+  // Starts a sensor's integration anew: encoder counts, odometry, tachometer angle from 0; INS from its argument.
+  void reset_sensor(RobotId id, std::size_t sensor, std::optional<GroundTruthReading> pose = std::nullopt);
+
+  // One time step for everything.
+  void step();
+
+  RobotTruth truth(RobotId id) const;
+  // What the sensors have to report now, in the order of the description: each sensor whose period has passed since
+  // its last report by this call. Two calls without a step between give nothing the second time.
+  void read_sensors(RobotId id, std::vector<SensorSample>& out);
+
+  BoxId add_box(const Box& box);
+  void move_box(BoxId id, const Pose& X_WBox);
+  void remove_box(BoxId id);
+  Pose box_pose(BoxId id) const;
+
+  // The first surface along a ray; `ignore` is a robot that the ray passes through.
+  std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,
+                                 std::optional<RobotId> ignore = std::nullopt) const;
+
+  // Back to time 0: every robot at the pose of its add_robot, every box at its first pose, noise from the seed again.
+  void reset();
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> impl_;
+};
+
+}  // namespace kenaf::physics

@@ -1,0 +1,47 @@
+// What a world is: ground, boxes and start poses, read from an SDF file in worlds/ through libsdformat.
+// World frame W: x forward, y left, z up. SI units. Thread safety: a value.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "physics/pose.hpp"
+#include "physics/robot_description.hpp"
+
+namespace kenaf::physics {
+
+struct GroundPlane {
+  Pose X_WP;              // the plane's own z axis is its normal
+  double friction = 1;    // multiplies the robot's own friction coefficients
+};
+
+struct Box {
+  std::string name;
+  Eigen::Vector3d size_m;
+  Pose X_WBox;            // centre
+  double friction = 1;
+  double mass_kg = 0;     // 0: fixed in the world
+};
+
+struct StartPose {
+  std::string name;       // "PlayerStart_0" where the file names none
+  Pose X_WB;
+};
+
+struct WorldDescription {
+  std::string name;
+  double gravity_mps2 = 9.80665;
+  std::vector<GroundPlane> planes;
+  std::vector<Box> boxes;
+  std::vector<StartPose> start_poses;   // SDF frames attached to the world whose name begins with "start"; at least one
+};
+
+// A shipped name ("flat") or the path of an SDF file. Throws DescriptionError; what SDF has and this simulator does
+// not is listed in `unsupported`, an element a line, rather than dropped in silence.
+WorldDescription load_world(const std::string& name_or_path, std::vector<std::string>& unsupported);
+WorldDescription parse_world(std::string_view sdf_text, const std::string& name_for_errors,
+                             std::vector<std::string>& unsupported);
+
+}  // namespace kenaf::physics

@@ -1,0 +1,60 @@
+// One run of a `kenaf-runs/1` dataset: a CSV file with named columns in SI units, one row per sample time.
+// docs/run-format.md describes the format. Real logs and simulated logs share it.
+//
+// Frames: world x forward at the start, y left, z up; body x forward, y left, z up; pitch positive nose down.
+// Thread safety: values and pure functions; a RunWriter belongs to one thread.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kenaf::runs {
+
+// What is wrong with a file, with file, line and column (both from 1) in its text.
+class RunFileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A run in memory, column by column. A cell that was not measured is NaN.
+struct Run {
+  std::vector<std::string> columns;          // "t_s" is always among them
+  std::vector<std::vector<double>> values;   // values[column][row]
+
+  std::size_t row_count() const { return values.empty() ? 0 : values.front().size(); }
+  // The values of a column, or an empty span where the run does not have it.
+  std::span<const double> column(std::string_view name) const;
+};
+
+// Reads a run. Throws RunFileError: no such file, no t_s, times not strictly increasing, a cell that is no number, a
+// row with another count of cells, a column named twice. Unknown columns are kept.
+Run read_run(const std::filesystem::path& file);
+Run parse_run(std::string_view text, std::string_view name_for_errors);
+
+// Writes a run row by row, aside in `<file>.part`; finish() renames it, so that `file` is whole or absent.
+// All numbers are written with enough digits to read back the same double.
+class RunWriter {
+ public:
+  // Throws RunFileError where the file cannot be made.
+  RunWriter(std::filesystem::path file, std::vector<std::string> columns);
+  ~RunWriter();  // without finish(): the part file stays for inspection
+  RunWriter(const RunWriter&) = delete;
+  RunWriter& operator=(const RunWriter&) = delete;
+
+  // One value for each column; NaN writes an empty cell.
+  void add_row(std::span<const double> row);
+  void finish();
+
+ private:
+  std::filesystem::path file_;
+  std::size_t column_count_;
+  std::string line_;
+  int descriptor_ = -1;
+};
+
+}  // namespace kenaf::runs
