@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Installs what is missing of the Debian 12 packages that build, test and demo need. docs/dependencies.md says what
+# each is for. Usage: scripts/install-dependencies.sh
+set -euo pipefail
+
+packages=(
+  # build
+  cmake g++ ninja-build pkg-config
+  libboost-dev libboost-system-dev libbullet-dev libcairo2-dev libcli11-dev libeigen3-dev libfmt-dev
+  libsdformat-dev libspdlog-dev libtomlplusplus-dev
+  # tests
+  abigail-tools binutils catch2 clang iproute2 libclang-rt-14-dev lld
+  # the package
+  dpkg-dev file
+)
+
+missing=()
+for package in "${packages[@]}"; do
+  status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$status" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+as_root=()
+if [ "$(id -u)" != 0 ]; then
+  command -v sudo >/dev/null || {
+    echo "install-dependencies: these packages are missing and there is no sudo to install them; run as root:" >&2
+    echo "  apt-get install --no-install-recommends ${missing[*]}" >&2
+    exit 1
+  }
+  as_root=(sudo)
+fi
+echo "install-dependencies: installing ${missing[*]}"
+log=$(mktemp)
+if ! { "${as_root[@]}" apt-get update &&
+       "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+         apt-get install --yes --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+  cat "$log" >&2
+  echo "install-dependencies: apt-get failed, its output is above" >&2
+  exit 1
+fi
+rm -f "$log"
