@@ -62,7 +62,8 @@ bool equal_ignoring_case(std::string_view a, std::string_view b);
 std::optional<double> parse_number(std::string_view text);
 // "true", "True", "1", "yes" and their opposites.
 std::optional<bool> parse_bool(std::string_view text);
-// Exactly `out.size()` numbers, separated by commas or blanks. False leaves `out` unspecified.
+// Exactly `out.size()` numbers, separated by commas or blanks. Where that does not give the count, commas are taken for
+// decimal signs: "4,5 1,9 1,8" and "4,5,1,9,1,8" read as three numbers. False leaves `out` unspecified.
 bool parse_numbers(std::string_view text, std::span<double> out);
 // Any count up to `out.size()`, further ones are counted but not stored; nullopt if one of them is no number.
 std::optional<std::size_t> parse_number_list(std::string_view text, std::span<double> out);
@@ -70,7 +71,8 @@ std::optional<std::size_t> parse_number_list(std::string_view text, std::span<do
 // The next white-space separated word of `rest`, which is shortened by it; "" at the end.
 std::string_view next_word(std::string_view& rest);
 
-// Cuts a TCP byte stream into lines. One for each connection.
+// Cuts a TCP byte stream into lines. One for each connection. Holds an unfinished line and the lines not yet taken:
+// take all of them after each push(), and it never holds more than kMaxLineBytes beside the bytes of that push.
 class LineSplitter {
  public:
   // Appends received bytes. False: a line grew beyond kMaxLineBytes; it is dropped up to its end, later lines survive.
@@ -82,7 +84,8 @@ class LineSplitter {
 
  private:
   std::string buffer_;
-  std::size_t read_ = 0;
+  std::size_t read_ = 0;        // before it: taken
+  std::size_t line_start_ = 0;  // from it on: the unfinished line
   bool dropping_ = false;
   std::uint64_t dropped_lines_ = 0;
 };
