@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# A stranger's project uses the installed package: by find_package, by pkg-config, and from the Debian package.
+#
+#   consume.sh BUILD_DIR SOURCE_DIR
+set -euo pipefail
+build=$1 source=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() { echo "consume: $*" >&2; exit 1; }
+
+# One program, built against one library; it must start, and fail for the right reason: nothing is there to drive.
+expect_error() {
+  local program=$1 words=$2 output status=0
+  output=$(cd "$work" && KENAF_RELAY=127.0.0.1:9 "$program" 2>&1) || status=$?
+  [ "$status" -gt 0 ] && [ "$status" -lt 126 ] || fail "$program ended with status $status: $output"
+  grep -qi "$words" <<<"$output" || fail "$program did not say '$words': $output"
+}
+
+cmake --install "$build" --prefix "$work/prefix" >"$work/install.log"
+
+mkdir "$work/project"
+cp "$source/examples/square.c" "$work/project/square.c"
+cat >"$work/project/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.20)
+project(stranger C)
+find_package(kenaf 0.1 REQUIRED)
+add_library(square OBJECT square.c)
+target_include_directories(square PRIVATE $<TARGET_PROPERTY:kenaf::sim,INTERFACE_INCLUDE_DIRECTORIES>)
+foreach(library sim real)
+  add_executable(square_${library} $<TARGET_OBJECTS:square>)
+  target_link_libraries(square_${library} PRIVATE kenaf::${library})
+endforeach()
+END
+cmake -S "$work/project" -B "$work/project/build" -DCMAKE_PREFIX_PATH="$work/prefix" >"$work/cmake.log" 2>&1 || { cat "$work/cmake.log"; fail "find_package"; }
+cmake --build "$work/project/build" >"$work/build.log" 2>&1 || { cat "$work/build.log"; fail "the stranger's build"; }
+expect_error "$work/project/build/square_sim" relay
+expect_error "$work/project/build/square_real" can
+
+pkgconfig=$(dirname "$(find "$work/prefix" -name kenaf-sim.pc)")
+for library in sim real; do
+  read -ra flags <<<"$(PKG_CONFIG_PATH=$pkgconfig pkg-config --cflags --libs "kenaf-$library")"
+  cc -Wall -Werror "$source/examples/square.c" -o "$work/pc_$library" "${flags[@]}" -Wl,-rpath,"$(dirname "$pkgconfig")"
+done
+expect_error "$work/pc_sim" relay
+expect_error "$work/pc_real" can
+
+# The installed world server finds its robots and worlds without the source tree.
+"$work/prefix/bin/kenaf-world" --help >/dev/null
+
+(cd "$work" && cpack --config "$build/CPackConfig.cmake" -B "$work" >"$work/cpack.log" 2>&1) || { cat "$work/cpack.log"; fail "cpack"; }
+package=$(ls "$work"/kenaf_*.deb)
+dpkg-deb --contents "$package" >"$work/contents"
+for file in usr/bin/kenaf-world usr/bin/kenaf-relayd usr/bin/kenaf-draw usr/include/kenaf/hrt.h \
+            usr/share/kenaf/robots/kenaf.toml usr/share/kenaf/worlds/flat.sdf \
+            lib/systemd/system/kenaf-relayd.service lib/systemd/system/kenaf-world.service \
+            libkenaf_sim.so.0 libkenaf_real.so.0 kenafConfig.cmake kenaf-sim.pc; do
+  grep -q "$file" "$work/contents" || { cat "$work/contents"; fail "$file is not in the package"; }
+done
+dpkg-deb --field "$package" Depends | grep -q libbullet || fail "the package does not depend on Bullet"
+echo "consume: find_package, pkg-config and $(basename "$package") work"

@@ -1,0 +1,133 @@
+// What happens to the chain when a part of it dies. Claims:
+//   F1 World server killed during a run: the program gets an error within 1 s and ends by itself.
+//   F2 World server started again: the relay reconnects and a new run succeeds, nothing else restarted.
+//   F3 User program killed: the robot stands within 0.5 s of robot time.
+//   F4 A second commander is refused, with words that say why; the first one is not disturbed.
+//   F5 The relay killed: the program gets an error and ends by itself.
+#include <signal.h>
+
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "tests/support/usarsim_client.hpp"
+#include "tests/system/chain.hpp"
+
+using namespace kenaf;
+using namespace kenaf::system_test;
+using namespace std::chrono_literals;
+using support::number_in;
+
+namespace {
+
+// Watches the relay's robot over a connection of its own, as a world controller does.
+class Observer {
+ public:
+  explicit Observer(std::uint16_t port) : client_(port) {
+    client_.send("INIT {ClassName USARBotAPI.WorldController} {Name Observer}\r\n");
+  }
+  struct Sighting {
+    double time_s, x_m, y_m;
+  };
+  Sighting look() {
+    client_.send("PING {Id 1}\r\nCONTROL {Type GetSTA} {Name Kenaf}\r\n");
+    const std::string time = client_.line_that_begins("PONG");
+    const std::string status = client_.line_that_begins("STA");
+    return {number_in(time, "Time"), number_in(status, "Location", 0), number_in(status, "Location", 1)};
+  }
+
+ private:
+  support::UsarsimClient client_;
+};
+
+// Waits until the robot has moved 20 mm from where it stood.
+Observer::Sighting wait_for_motion(Observer& observer) {
+  const Observer::Sighting start = observer.look();
+  while (true) {
+    const Observer::Sighting now = observer.look();
+    if (std::hypot(now.x_m - start.x_m, now.y_m - start.y_m) > 0.02) return now;
+    std::this_thread::sleep_for(5ms);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("F1 F2 the world server dies and comes back") {
+  Chain chain("1");
+  support::Process program = chain.start_program("square_sim");
+  Observer observer(chain.world_port());
+  wait_for_motion(observer);
+
+  chain.world().signal(SIGKILL);
+  const auto killed = std::chrono::steady_clock::now();
+  const auto status = program.wait_for(20s);
+  const auto took = std::chrono::steady_clock::now() - killed;
+  INFO(chain.log("square_sim"));
+  REQUIRE(status.has_value());
+  CHECK(*status > 0);  // an error of the program's own, not a signal
+  CHECK(took < 1s);
+  CHECK(chain.log("square_sim").find("world server") != std::string::npos);
+
+  chain.start_world();
+  // The relay retries at least once a second, and refuses commanders until it has a robot again.
+  std::optional<int> again;
+  for (int tries = 0; tries < 10 && again != 0; ++tries) {
+    support::Process retry = chain.start_program("square_sim");
+    again = retry.wait_for(120s);
+    if (again != 0) std::this_thread::sleep_for(500ms);
+  }
+  INFO(chain.log("square_sim") << chain.log("relay"));
+  CHECK(again == 0);
+}
+
+TEST_CASE("F3 the robot stands within 0.5 s of robot time after its program was killed") {
+  Chain chain("1");
+  support::Process program = chain.start_program("square_sim");
+  Observer observer(chain.world_port());
+  wait_for_motion(observer);
+
+  program.signal(SIGKILL);
+  const Observer::Sighting killed = observer.look();
+  // Standing: less than 1 mm/s over the last 0.1 s of robot time.
+  Observer::Sighting before = killed, now = killed;
+  double standing_since_s = -1;
+  while (now.time_s < killed.time_s + 2 && standing_since_s < 0) {
+    std::this_thread::sleep_for(2ms);
+    now = observer.look();
+    if (now.time_s < before.time_s + 0.1) continue;
+    if (std::hypot(now.x_m - before.x_m, now.y_m - before.y_m) < 1e-3 * (now.time_s - before.time_s)) {
+      standing_since_s = before.time_s;
+    }
+    before = now;
+  }
+  INFO("killed at " << killed.time_s << " s, standing since " << standing_since_s << " s");
+  REQUIRE(standing_since_s >= 0);
+  CHECK(standing_since_s - killed.time_s < 0.5);
+}
+
+TEST_CASE("F4 a second commander is refused with a reason") {
+  Chain chain("1");
+  const auto record = chain.folder() / "first.csv";
+  support::Process first = chain.start_program("square_sim", {{"KENAF_RECORD", record.string()}});
+  Observer observer(chain.world_port());
+  wait_for_motion(observer);
+
+  support::Process second = chain.start_program("status_monitor_sim");
+  const auto refused = second.wait_for(30s);
+  REQUIRE(refused.has_value());
+  CHECK(*refused > 0);
+  CHECK(chain.log("status_monitor_sim").find("another commander") != std::string::npos);
+  CHECK(first.wait_for(120s) == 0);
+}
+
+TEST_CASE("F5 the relay dies") {
+  Chain chain("1");
+  support::Process program = chain.start_program("square_sim");
+  Observer observer(chain.world_port());
+  wait_for_motion(observer);
+  chain.relay().signal(SIGKILL);
+  const auto status = program.wait_for(20s);
+  REQUIRE(status.has_value());
+  CHECK(*status > 0);
+}
