@@ -47,6 +47,7 @@ struct TrackDriveDescription {
   double max_speed_mps;
   double max_force_n;              // at the belt, at standstill
   double time_constant_s;          // of the closed speed loop
+  double moving_mass_kg;           // belt, sprocket, gear and rotor, as felt at the belt
   double encoder_counts_per_radian;// of the sprocket
   double amperes_per_newton;       // motor current for a belt force
   double idle_amperes;

@@ -1,0 +1,246 @@
+#include "physics/robot_description.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <numbers>
+#include <set>
+#include <sstream>
+
+#include "physics/toml_reader.hpp"
+#include "protocol/data_files.hpp"
+
+namespace kenaf::physics {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr Range kFriction{.min = 0, .max = 10};
+constexpr Range kMaxDelay{.min = 0, .max = 10};
+constexpr std::size_t kMaxSensors = 64;
+constexpr std::size_t kMaxRays = 4096;
+
+constexpr std::array<std::string_view, 11> kTypeNames{"GroundTruth", "INS",        "IMU",   "Encoder",
+                                                      "Odometry",    "Tachometer", "Sonar", "RangeScanner",
+                                                      "GPS",         "Touch",      "Drives"};
+
+BodyDescription read_body(TomlReader table) {
+  BodyDescription body{
+      .mass_kg = table.number("mass_kg", kPositive),
+      .size_m = table.vector3("size_m", kPositive),
+      .p_BBcm_m = table.vector3("center_of_mass_m"),
+      .inertia_kgm2 = table.vector3("inertia_kgm2", kPositive),
+      .friction = table.number("friction", kFriction),
+  };
+  // no rigid body has a moment larger than the sum of the two others
+  const Eigen::Vector3d& I = body.inertia_kgm2;
+  if (2 * I.maxCoeff() > I.sum() * (1 + 1e-9))
+    table.fail("inertia_kgm2", "belongs to no rigid body: one moment is larger than the sum of the two others");
+  table.finish();
+  return body;
+}
+
+TrackDescription read_track(TomlReader table) {
+  const TrackDescription track{
+      .length_m = table.number("length_m", kPositive),
+      .end_radius_m = table.number("end_radius_m", kPositive),
+      .width_m = table.number("width_m", kPositive),
+      .p_BT_m = table.vector3("left_center_m"),
+      .friction_along = table.number("friction_along", kFriction),
+      .friction_across = table.number("friction_across", kFriction),
+      .pieces = table.integer("pieces", 1, 32),
+  };
+  if (track.length_m <= 2 * track.end_radius_m) table.fail("length_m", "must be more than twice end_radius_m");
+  if (track.p_BT_m.y() <= track.width_m / 2) table.fail("left_center_m", "must have a y of more than half of width_m");
+  table.finish();
+  return track;
+}
+
+TrackDriveDescription read_drive(TomlReader table) {
+  const TrackDriveDescription drive{
+      .sprocket_radius_m = table.number("sprocket_radius_m", kPositive),
+      .max_speed_mps = table.number("max_speed_mps", kPositive),
+      .max_force_n = table.number("max_force_n", kPositive),
+      .time_constant_s = table.number("time_constant_s", kNotNegative),
+      .moving_mass_kg = table.number("moving_mass_kg", kPositive),
+      .encoder_counts_per_radian = table.number("encoder_counts_per_radian", kPositive),
+      .amperes_per_newton = table.number("amperes_per_newton", kNotNegative),
+      .idle_amperes = table.number("idle_amperes", kNotNegative),
+  };
+  table.finish();
+  return drive;
+}
+
+FlipperDescription read_flipper(TomlReader table) {
+  const FlipperDescription flipper{
+      .mass_kg = table.number("mass_kg", kPositive),
+      .length_m = table.number("length_m", kPositive),
+      .pivot_radius_m = table.number("pivot_radius_m", kPositive),
+      .tip_radius_m = table.number("tip_radius_m", kPositive),
+      .width_m = table.number("width_m", kPositive),
+      .p_BPivot_m = table.vector3("front_left_pivot_m"),
+      .friction_along = table.number("friction_along", kFriction),
+      .friction_across = table.number("friction_across", kFriction),
+      .min_angle_rad = table.number("min_angle_rad", {.min = -2 * kPi, .max = 0}),
+      .max_angle_rad = table.number("max_angle_rad", {.min = 0, .max = 2 * kPi}),
+      .start_angle_rad = table.number("start_angle_rad"),
+      .belt_driven = table.boolean("belt_driven"),
+  };
+  if (flipper.start_angle_rad < flipper.min_angle_rad || flipper.start_angle_rad > flipper.max_angle_rad)
+    table.fail("start_angle_rad", "must be between min_angle_rad and max_angle_rad");
+  if (flipper.p_BPivot_m.x() <= 0 || flipper.p_BPivot_m.y() <= 0)
+    table.fail("front_left_pivot_m", "must have x and y of more than 0: it is the front left one");
+  table.finish();
+  return flipper;
+}
+
+FlipperServoDescription read_servo(TomlReader table) {
+  const FlipperServoDescription servo{
+      .max_speed_radps = table.number("max_speed_radps", kPositive),
+      .max_torque_nm = table.number("max_torque_nm", kPositive),
+      .amperes_per_nm = table.number("amperes_per_nm", kNotNegative),
+  };
+  table.finish();
+  return servo;
+}
+
+BatteryDescription read_battery(TomlReader table) {
+  const BatteryDescription battery{
+      .open_circuit_v = table.number("open_circuit_v", kPositive),
+      .internal_resistance_ohm = table.number("internal_resistance_ohm", kNotNegative),
+      .capacity_s = table.number("capacity_s", kPositive),
+  };
+  table.finish();
+  return battery;
+}
+
+Pose read_mount(TomlReader& table) {
+  return {table.vector3_or("mount_m", Eigen::Vector3d::Zero()),
+          rotation_from(table.vector3_or("mount_rpy_rad", Eigen::Vector3d::Zero()))};
+}
+
+SensorDescription read_sensor(TomlReader& table) {
+  SensorDescription sensor{};
+  const std::string type = table.text("type");
+  const auto found = std::find(kTypeNames.begin(), kTypeNames.end(), type);
+  if (found == kTypeNames.end())
+    table.fail("type", fmt::format("is \"{}\", but must be one of {}", type, fmt::join(kTypeNames, ", ")));
+  sensor.type = static_cast<SensorType>(found - kTypeNames.begin());
+  sensor.name = table.text("name");
+  if (sensor.name.empty() || sensor.name.find_first_of("{} \t\r\n") != std::string::npos)
+    table.fail("name", "must not be empty nor hold blanks or braces");
+  sensor.X_BS = read_mount(table);
+  sensor.period_s = table.number_or("period_s", 0, {.min = 0, .max = 3600});
+  sensor.delay_s = table.number_or("delay_s", 0, kMaxDelay);
+  sensor.noise_m = table.number_or("noise_m", 0, kNotNegative);
+  sensor.noise_rad = table.number_or("noise_rad", 0, kNotNegative);
+  sensor.noise_radps = table.number_or("noise_radps", 0, kNotNegative);
+  sensor.noise_mps2 = table.number_or("noise_mps2", 0, kNotNegative);
+  sensor.bias_rad = table.number_or("bias_rad", 0, kNotNegative);
+  sensor.bias_radps = table.number_or("bias_radps", 0, kNotNegative);
+  if (sensor.type == SensorType::sonar || sensor.type == SensorType::range_scanner) {
+    sensor.min_range_m = table.number("min_range_m", kNotNegative);
+    sensor.max_range_m = table.number("max_range_m", kPositive);
+    if (sensor.max_range_m <= sensor.min_range_m) table.fail("max_range_m", "must be more than min_range_m");
+    sensor.field_of_view_rad = table.number("field_of_view_rad", {.min = 0, .max = 2 * kPi});
+  }
+  if (sensor.type == SensorType::range_scanner) {
+    sensor.resolution_rad = table.number("resolution_rad", kPositive);
+    if (sensor.field_of_view_rad / sensor.resolution_rad > static_cast<double>(kMaxRays))
+      table.fail("resolution_rad", fmt::format("makes more than {} rays in a scan", kMaxRays));
+  }
+  table.finish();
+  return sensor;
+}
+
+MissionPackageDescription read_mission_package(TomlReader& table) {
+  MissionPackageDescription package{.name = table.text("name"), .X_BM = read_mount(table), .links = {}};
+  for (TomlReader& link : table.tables("link")) {
+    package.links.push_back({.min_rad = link.number("min_rad"),
+                             .max_rad = link.number("max_rad"),
+                             .max_speed_radps = link.number("max_speed_radps", kPositive)});
+    if (package.links.back().max_rad < package.links.back().min_rad) link.fail("max_rad", "must not be below min_rad");
+    link.finish();
+  }
+  if (package.links.empty())
+    table.fail("link", "is missing: a mission package has at least one [[mission_package.link]]");
+  table.finish();
+  return package;
+}
+
+}  // namespace
+
+std::string_view usarsim_type_name(SensorType type) {
+  return kTypeNames[static_cast<std::size_t>(type)];
+}
+
+double RobotDescription::total_mass_kg() const {
+  return body.mass_kg + (has_flippers() ? static_cast<double>(kFlipperCount) * flipper.front().mass_kg : 0.0);
+}
+
+double RobotDescription::track_gauge_m() const {
+  return 2 * track.p_BT_m.y();
+}
+
+RobotDescription parse_robot(std::string_view toml_text, const std::string& name_for_errors) {
+  toml::table root;
+  try {
+    root = toml::parse(toml_text);
+  } catch (const toml::parse_error& error) {
+    throw DescriptionError(fmt::format("{}:{}:{}: {}", name_for_errors, error.source().begin.line,
+                                       error.source().begin.column, error.description()));
+  }
+  TomlReader file(root, "", name_for_errors);
+  RobotDescription robot{};
+  robot.name = std::filesystem::path(name_for_errors).stem().string();
+  robot.usarsim_class = file.text("usarsim_class");
+  robot.body = read_body(file.table("body"));
+  robot.track = read_track(file.table("track"));
+  robot.drive = read_drive(file.table("drive"));
+  if (file.has("flipper")) {
+    robot.flipper.push_back(read_flipper(file.table("flipper")));
+    robot.servo = read_servo(file.table("servo"));
+  }
+  robot.battery = read_battery(file.table("battery"));
+
+  std::set<std::string> names;
+  for (TomlReader& table : file.tables("sensor")) {
+    robot.sensors.push_back(read_sensor(table));
+    if (!names.insert(robot.sensors.back().name).second) table.fail("name", "is the name of another sensor too");
+    if (robot.sensors.size() > kMaxSensors)
+      table.fail("name", fmt::format("is one sensor too many: at most {}", kMaxSensors));
+  }
+  for (TomlReader& table : file.tables("mission_package"))
+    robot.mission_packages.push_back(read_mission_package(table));
+  file.finish();
+  return robot;
+}
+
+RobotDescription load_robot(const std::string& name_or_path) {
+  const std::filesystem::path path = find_data_file("robots", name_or_path, ".toml");
+  if (path.empty())
+    throw DescriptionError(
+        fmt::format("robot \"{}\": no such description; give the name of a file in robots/ without "
+                    "its ending, or the path of a .toml file",
+                    name_or_path));
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in || text.fail())
+    throw DescriptionError(
+        fmt::format("{}: cannot be read; check that the file exists and its permissions", path.string()));
+  return parse_robot(text.str(), path.string());
+}
+
+std::string robot_name_for_class(std::string_view usarsim_class) {
+  std::string name(usarsim_class.substr(usarsim_class.rfind('.') + 1));  // npos + 1 is 0
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  // a name, not a path: what a stranger sends never leaves robots/
+  const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) || c == '_' || c == '-';
+  });
+  return plain && !find_data_file("robots", name, ".toml").empty() ? name : std::string();
+}
+
+}  // namespace kenaf::physics
