@@ -23,16 +23,16 @@ class RunFileError : public std::runtime_error {
 
 // A run in memory, column by column. A cell that was not measured is NaN.
 struct Run {
-  std::vector<std::string> columns;          // "t_s" is always among them
-  std::vector<std::vector<double>> values;   // values[column][row]
+  std::vector<std::string> columns;         // "t_s" is always among them
+  std::vector<std::vector<double>> values;  // values[column][row]
 
   std::size_t row_count() const { return values.empty() ? 0 : values.front().size(); }
   // The values of a column, or an empty span where the run does not have it.
   std::span<const double> column(std::string_view name) const;
 };
 
-// Reads a run. Throws RunFileError: no such file, no t_s, times not strictly increasing, a cell that is no number, a
-// row with another count of cells, a column named twice. Unknown columns are kept.
+// Reads a run. Throws RunFileError: no such file, no t_s, times not strictly increasing, a cell that is no finite
+// number, a row with another count of cells, a column named twice or not at all. Unknown columns are kept.
 Run read_run(const std::filesystem::path& file);
 Run parse_run(std::string_view text, std::string_view name_for_errors);
 
@@ -40,20 +40,26 @@ Run parse_run(std::string_view text, std::string_view name_for_errors);
 // All numbers are written with enough digits to read back the same double.
 class RunWriter {
  public:
-  // Throws RunFileError where the file cannot be made.
+  // Throws RunFileError where the file cannot be made, or read_run() would refuse its columns.
   RunWriter(std::filesystem::path file, std::vector<std::string> columns);
   ~RunWriter();  // without finish(): the part file stays for inspection
   RunWriter(const RunWriter&) = delete;
   RunWriter& operator=(const RunWriter&) = delete;
 
-  // One value for each column; NaN writes an empty cell.
+  // One value for each column; NaN writes an empty cell. Throws RunFileError where the file cannot be written, or
+  // read_run() would refuse the row: another count of values, infinity, a time not after the row before; a refused row
+  // is left out and the next may follow. A row is with the operating system when this returns.
   void add_row(std::span<const double> row);
+  // Throws RunFileError where the file is not whole or cannot be renamed. Doing it again does nothing.
   void finish();
 
  private:
   std::filesystem::path file_;
-  std::size_t column_count_;
+  std::size_t column_count_ = 0;
+  std::size_t time_column_ = 0;
+  double last_time_s_;
   std::string line_;
+  bool broken_ = false;
   int descriptor_ = -1;
 };
 
