@@ -1,0 +1,36 @@
+// What the relay writes to the world server: commands in USARSim's units and frames, and session settings.
+// Each function appends whole lines to `out`, which keeps its capacity. Thread safety: pure functions.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "protocol/relay_datagram.hpp"
+
+namespace kenaf::relayd {
+
+// Where the settings of a commander, or those of a relay without one, go to the world server.
+struct WorldSession {
+  double period_s = 0.2;  // what USARSim servers do when nobody asks
+  bool lockstep = false;
+  double command_timeout_s = 0.5;
+};
+
+// MULTIDRIVE with the flippers named by the mask, then DRIVE, which ends the answer. Surface speeds become spins of a
+// wheel of `wheel_radius_m`, flipper angles USARSim's joint angles. Without `world_frame` it takes effect at once.
+void write_command(std::string& out, const relay::Command& command, double wheel_radius_m,
+                   std::optional<std::int64_t> world_frame);
+
+void write_stop(std::string& out);  // both tracks 0, at once
+
+void write_world_session(std::string& out, const WorldSession& session);
+
+void write_ping(std::string& out, std::int64_t id);
+
+// In words what no Kenaf can do, or nullptr: more than 10 m/s, more than 100 rad.
+const char* out_of_range(const relay::Command& command);
+// The same of a Hello, by the ranges of docs/relay-protocol.md.
+const char* out_of_range(const relay::Hello& hello);
+
+}  // namespace kenaf::relayd

@@ -1,0 +1,120 @@
+// Who commands the robot: opens and closes sessions, numbers States, drops what is old, and stops the robot when its
+// commander falls silent. docs/relay-protocol.md has the rules. No sockets, no clock of its own.
+//
+// Thread safety: one object, one thread. Nothing allocates but the words of a refusal.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "protocol/relay_datagram.hpp"
+#include "relayd/log_limiter.hpp"
+#include "relayd/sensor_transform.hpp"
+#include "relayd/sockets.hpp"
+
+namespace kenaf::relayd {
+
+// What a session asks of the relay around it.
+class SessionPort {
+ public:
+  virtual void send(const Address& to, const relay::Datagram& datagram) = 0;
+  // Starts a session with the world, which CommanderSession::on_world_ready() or on_world_lost() answers, at once or
+  // later.
+  virtual void open_world(const relay::Hello& hello) = 0;
+  virtual void close_world() = 0;  // stops the robot and lets robot time run
+  virtual void drive(const relay::Command& command, std::optional<std::int64_t> world_frame) = 0;
+  virtual void stop_robot() = 0;
+  // False where the world server cannot answer; otherwise CommanderSession::on_pong() follows.
+  virtual bool ping_world(std::uint32_t id) = 0;
+
+ protected:
+  ~SessionPort() = default;
+};
+
+// The settings of a world session as they are in force.
+struct WorldReady {
+  double robot_time_s = 0;
+  double period_s = 0.2;
+  bool lockstep = false;
+};
+
+class CommanderSession {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+  using Duration = std::chrono::steady_clock::duration;
+
+  // Wall-clock times.
+  static constexpr Duration kSilenceEndsSession = std::chrono::seconds(1);
+  static constexpr Duration kWorldMustOpenIn = std::chrono::seconds(5);
+  static constexpr Duration kHeartbeat = std::chrono::milliseconds(100);  // a State at least that often
+  static constexpr Duration kLostResend = std::chrono::milliseconds(50);
+  static constexpr Duration kForgetEnded = std::chrono::seconds(1);  // a Hello of it until then is a late copy
+
+  explicit CommanderSession(SessionPort& port) : port_(port) {}
+
+  void on_datagram(const relay::Datagram& datagram, const Address& from, TimePoint now);
+  void on_world_ready(const WorldReady& ready, TimePoint now);
+  void on_frame(const WorldFrame& frame, TimePoint now);
+  void on_pong(std::uint32_t id, TimePoint now);
+  void on_world_lost(std::string_view why, TimePoint now);
+  // Time went by. While the world gives no sign of life there are no heartbeats: its silence is the commander's to see.
+  void on_time(TimePoint now, bool world_is_alive);
+  // The relay ends: tells the commander and stops the robot.
+  void shut_down(TimePoint now);
+
+  // When on_time() has something to do next.
+  std::optional<TimePoint> next_deadline() const;
+  // The session that commands the robot or is about to, 0 = none.
+  std::uint64_t session() const { return is_open() ? hello_.session : 0; }
+  bool is_opening() const { return phase_ == Phase::opening; }
+  const Address& commander() const { return commander_; }
+
+ private:
+  enum class Phase {
+    none,
+    opening,  // the world server is being asked
+    active,
+    lost,  // the world server is gone; the commander is being told
+  };
+
+  bool is_open() const { return phase_ == Phase::opening || phase_ == Phase::active; }
+  bool is_commander(std::uint64_t session, const Address& from);
+  void take(const relay::Hello& hello, const Address& from, TimePoint now);
+  void take(const relay::Command& command, const Address& from, TimePoint now);
+  void take(const relay::Ping& ping, const Address& from, TimePoint now);
+  void take(const relay::Bye& bye, const Address& from, TimePoint now);
+  void accept(const relay::Command& command);
+  void refuse(std::uint64_t session, const Address& to, relay::RefusedReason reason, std::string_view text);
+  void send_welcome();
+  void send_state(TimePoint now);
+  void end(std::string_view why, TimePoint now);
+
+  SessionPort& port_;
+  Phase phase_ = Phase::none;
+  relay::Hello hello_{};
+  relay::Welcome welcome_{};
+  Address commander_;
+  TimePoint opened_, heard_, sent_;
+
+  relay::State state_{};                 // as it was sent last
+  std::int64_t frame_offset_ = 0;        // State.frame = the world's frame + this
+  std::uint32_t late_before_ = 0;        // what the world counted before the session
+  std::uint32_t late_counted_here_ = 0;  // for a world server that does not count
+  bool world_counts_late_ = false;
+  double commanded_s_ = 0;  // robot time of the newest Command
+  bool stopped_by_silence_ = false;
+
+  struct Ended {
+    std::uint64_t session = 0;
+    TimePoint when;
+  };
+  std::array<Ended, 8> ended_{};
+  std::size_t next_ended_ = 0;
+  LogLimiter log_stranger_, log_range_, log_future_;
+};
+
+}  // namespace kenaf::relayd

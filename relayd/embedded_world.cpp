@@ -1,0 +1,27 @@
+#include "relayd/embedded_world.hpp"
+
+namespace kenaf::relayd {
+
+namespace {
+
+server::ServerOptions server_options(const EmbeddedWorld& options) {
+  server::ServerOptions out;
+  out.world = options.world;
+  out.robot = options.robot;
+  out.speed = options.speed;
+  out.listen_address = "127.0.0.1";
+  out.port = 0;
+  return out;
+}
+
+}  // namespace
+
+EmbeddedWorldServer::EmbeddedWorldServer(const EmbeddedWorld& options)
+    : server_(server_options(options)), thread_([this] { server_.run(); }) {}
+
+EmbeddedWorldServer::~EmbeddedWorldServer() {
+  server_.stop();
+  thread_.join();
+}
+
+}  // namespace kenaf::relayd

@@ -1,0 +1,24 @@
+// The world server in this process: --embedded.
+#pragma once
+
+#include <cstdint>
+#include <thread>
+
+#include "physics/server/world_server.hpp"
+#include "relayd/options.hpp"
+
+namespace kenaf::relayd {
+
+// Runs from construction to destruction, on a free loopback port. The constructor throws std::runtime_error in words.
+class EmbeddedWorldServer {
+ public:
+  explicit EmbeddedWorldServer(const EmbeddedWorld& options);
+  ~EmbeddedWorldServer();
+  std::uint16_t port() const { return server_.port(); }
+
+ private:
+  server::WorldServer server_;
+  std::thread thread_;
+};
+
+}  // namespace kenaf::relayd

@@ -1,0 +1,66 @@
+// kenaf-relayd: between a program on libkenaf_sim and a world server.
+#include <signal.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+
+#include "relayd/embedded_world.hpp"
+#include "relayd/options.hpp"
+#include "relayd/relay.hpp"
+
+namespace {
+
+kenaf::relayd::Relay* relay_to_stop = nullptr;
+
+void on_signal(int) {
+  relay_to_stop->stop();
+}
+
+void stop_on_signals(kenaf::relayd::Relay& relay) {
+  relay_to_stop = &relay;
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGINT, &action, nullptr);
+}
+
+// Written aside and renamed, so that who waits for the file never reads half of it.
+void write_port_file(const std::string& path, std::uint16_t port) {
+  const std::string aside = path + ".new";
+  if (!(std::ofstream(aside) << port << '\n' << std::flush)) {
+    throw std::runtime_error("cannot write the port file " + aside);
+  }
+  std::filesystem::rename(aside, path);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int exit_status = 0;
+  auto options = kenaf::relayd::read_options(argc, argv, exit_status);
+  if (!options) return exit_status;
+  spdlog::set_default_logger(spdlog::stderr_color_mt("kenaf-relayd"));
+  spdlog::set_level(spdlog::level::from_str(options->log_level));
+
+  try {
+    std::unique_ptr<kenaf::relayd::EmbeddedWorldServer> world;
+    if (options->embedded) {
+      world = std::make_unique<kenaf::relayd::EmbeddedWorldServer>(*options->embedded);
+      options->relay.world_server = {"127.0.0.1", world->port()};
+    }
+    kenaf::relayd::Relay relay(options->relay);
+    stop_on_signals(relay);
+    spdlog::info("listening on {}", to_text(relay.address()));
+    if (!options->port_file.empty()) write_port_file(options->port_file, relay.address().port);
+    relay.run();
+    spdlog::info("ended");
+    return 0;
+  } catch (const std::exception& error) {
+    spdlog::critical("{}", error.what());
+    return 1;
+  }
+}

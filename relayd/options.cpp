@@ -1,0 +1,87 @@
+#include "relayd/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+namespace kenaf::relayd {
+
+namespace {
+
+// CLI11 takes a returned text as what is wrong.
+template <class Parse>
+std::string words_of(Parse parse, const std::string& text) {
+  try {
+    parse(text);
+    return {};
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+}
+
+// A name becomes part of a message of blank separated words within braces.
+std::string check_name(const std::string& text) {
+  const bool plain = !text.empty() && text.find_first_of("{} \t\r\n") == std::string::npos;
+  return plain ? "" : "'" + text + "' is empty or holds blanks or braces";
+}
+
+}  // namespace
+
+std::optional<Options> read_options(int argc, const char* const* argv, int& exit_status) {
+  Options options;
+  EmbeddedWorld embedded;
+  std::string world_server = "127.0.0.1:3000", listen = "127.0.0.1:45454";
+  std::vector<double> pose;
+  RobotPlacement& placement = options.relay.placement;
+
+  CLI::App app("Relays between a program on libkenaf_sim (UDP) and a USARSim world server (TCP).", "kenaf-relayd");
+  app.set_version_flag("--version", KENAF_VERSION);
+  auto* server_option = app.add_option("--world-server", world_server, "the world server, HOST:PORT")
+                            ->check([](const std::string& text) { return words_of(parse_host_port, text); })
+                            ->capture_default_str();
+  app.add_option("--listen", listen, "where programs find the relay, ADDR:PORT; port 0 takes a free one")
+      ->check([](const std::string& text) { return words_of(parse_address, text); })
+      ->capture_default_str();
+  app.add_option("--port-file", options.port_file, "writes the port it listens on into this file");
+  app.add_option("--class", placement.class_name, "the robot's USARSim class")
+      ->check(check_name)
+      ->capture_default_str();
+  app.add_option("--name", placement.name, "the robot's name in the world")->check(check_name)->capture_default_str();
+  auto* start_option =
+      app.add_option("--start", placement.start, "the start pose of the world to use (default: the first it names)");
+  start_option->check(check_name);
+  app.add_option("--pose", pose, "where to start instead: x,y,z,roll,pitch,yaw; metres and radians, z up")
+      ->delimiter(',')
+      ->expected(6)
+      ->excludes(start_option);
+  app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
+      ->capture_default_str();
+  bool is_embedded = false;
+  auto* embedded_flag =
+      app.add_flag("--embedded", is_embedded, "runs the world server inside this process")->excludes(server_option);
+  app.add_option("--world", embedded.world, "world of --embedded")->needs(embedded_flag)->capture_default_str();
+  app.add_option("--robot", embedded.robot, "robot of --embedded")->needs(embedded_flag)->capture_default_str();
+  app.add_option("--speed", embedded.speed, "speed of --embedded in times real time, 0 = as fast as it goes")
+      ->needs(embedded_flag)
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    exit_status = app.exit(error) == 0 ? 0 : 2;
+    return std::nullopt;
+  }
+  options.relay.world_server = parse_host_port(world_server);
+  options.relay.listen = parse_address(listen);
+  if (!pose.empty()) {
+    placement.pose.emplace();
+    std::copy_n(pose.begin(), 6, placement.pose->begin());
+  }
+  if (is_embedded) options.embedded = embedded;
+  return options;
+}
+
+}  // namespace kenaf::relayd

@@ -1,0 +1,27 @@
+// The command line of kenaf-relayd.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "relayd/relay.hpp"
+
+namespace kenaf::relayd {
+
+struct EmbeddedWorld {
+  std::string world = "flat";
+  std::string robot = "kenaf";
+  double speed = 1;
+};
+
+struct Options {
+  RelayOptions relay;
+  std::string port_file;  // empty: none
+  std::string log_level = "info";
+  std::optional<EmbeddedWorld> embedded;
+};
+
+// Prints help, version or what was wrong and sets `exit_status`; then there are no options.
+std::optional<Options> read_options(int argc, const char* const* argv, int& exit_status);
+
+}  // namespace kenaf::relayd

@@ -1,0 +1,291 @@
+#include "relayd/relay.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <spdlog/spdlog.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <thread>
+#include <type_traits>
+#include <variant>
+
+#include "relayd/command_transform.hpp"
+
+namespace kenaf::relayd {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kPingWorldEvery = 250ms;  // when it tells nothing by itself
+constexpr auto kWorldIsAlive = 600ms;    // after a sign of life: two pings and some
+constexpr auto kWorldIsLost = 2s;        // extended: not even a ping was answered
+constexpr auto kPlainWorldIsLost = 5s;   // plain: it may be paused, but cannot say so
+constexpr std::size_t kMostPending = 1 << 18;
+constexpr std::int64_t kOwnPing = -1;  // the id of the relay's own pings; a commander's are not negative
+
+}  // namespace
+
+Relay::Relay(const RelayOptions& options)
+    : options_(options),
+      udp_(open_udp(options.listen, address_)),
+      link_(options.world_server, options.placement, events_) {
+  out_.reserve(4096);
+  if (!is_loopback(address_)) {
+    spdlog::warn("listening on {}: whoever reaches this address can drive the robot", to_text(address_));
+  }
+}
+
+void Relay::run() {
+  std::thread receiver(&Relay::receive_commands, this);
+  std::thread link(&WorldLink::run, &link_, std::cref(threads_end_));
+  while (!stopping_) {
+    sender_waker_.clear();
+    take_mail();
+    const TimePoint now = Clock::now();
+    watch_world(now);
+    session_.on_time(now, world_ && now - world_heard_ < kWorldIsAlive);
+    flush();
+    wait_for_mail();
+  }
+  shut_down();
+  receiver.join();
+  link.join();
+  world_.reset();
+}
+
+void Relay::stop() {
+  stopping_ = true;
+  sender_waker_.wake();
+}
+
+void Relay::shut_down() {
+  session_.shut_down(Clock::now());
+  if (world_) write_stop(out_);
+  flush();
+  if (world_ && !out_.empty()) {
+    pollfd writable{world_->socket->get(), POLLOUT, 0};
+    ::poll(&writable, 1, 200);
+    flush();
+  }
+  threads_end_ = true;
+  receiver_waker_.wake();
+  link_.waker().wake();
+}
+
+// --- receiver
+
+void Relay::receive_commands() {
+  std::array<pollfd, 2> watched{{{udp_.get(), POLLIN, 0}, {receiver_waker_.fd(), POLLIN, 0}}};
+  while (!threads_end_) {
+    sockaddr_in from{};
+    socklen_t size = sizeof from;
+    const ssize_t got =
+        ::recvfrom(udp_.get(), received_.data(), received_.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
+    if (got < 0) {
+      ::poll(watched.data(), watched.size(), -1);
+    } else {
+      take_datagram(static_cast<std::size_t>(got), {ntohl(from.sin_addr.s_addr), ntohs(from.sin_port)});
+    }
+  }
+}
+
+void Relay::take_datagram(std::size_t bytes, const Address& from) {
+  const relay::DecodeError error = relay::decode({received_.data(), bytes}, arrival_.datagram);
+  const bool for_the_relay = std::visit(
+      [](const auto& datagram) {
+        using Kind = std::decay_t<decltype(datagram)>;
+        return std::is_same_v<Kind, relay::Hello> || std::is_same_v<Kind, relay::Command> ||
+               std::is_same_v<Kind, relay::Ping> || std::is_same_v<Kind, relay::Bye>;
+      },
+      arrival_.datagram);
+  if (error != relay::DecodeError::none || !for_the_relay) {
+    if (const auto held_back = log_malformed_.allow()) {
+      spdlog::warn("{} bytes from {} ignored: {} ({} more before)", bytes, to_text(from),
+                   error == relay::DecodeError::none ? "only a relay sends this kind" : relay::describe(error),
+                   *held_back);
+    }
+    return;
+  }
+  arrival_.from = from;
+  if (!arrivals_.put(arrival_)) {
+    if (const auto held_back = log_overflow_.allow()) {
+      spdlog::warn("datagrams arrive faster than they can be handled: one dropped ({} more before)", *held_back);
+    }
+  }
+}
+
+// --- sender
+
+void Relay::take_mail() {
+  events_.take_all([this](WorldEvent& event) {
+    std::visit([this](const auto& kind) { take(kind); }, event);
+    event = WorldPong{};  // lets go of a socket now, not when its place in the queue is used again
+  });
+  arrivals_.take_all([this](Arrival& arrival) { session_.on_datagram(arrival.datagram, arrival.from, Clock::now()); });
+}
+
+void Relay::take(const WorldFrame& frame) {
+  if (!world_) return;
+  world_heard_ = Clock::now();
+  newest_.robot_time_s = frame.state.robot_time_s;
+  if (frame.interval_s > 0) newest_.period_s = frame.interval_s;
+  session_.on_frame(frame, world_heard_);
+}
+
+void Relay::take(const WorldPong& pong) {
+  if (!world_) return;
+  world_heard_ = Clock::now();
+  if (pong.id >= 0) session_.on_pong(static_cast<std::uint32_t>(pong.id), world_heard_);
+}
+
+void Relay::take(const SessionAnswer& answer) {
+  if (!world_) return;
+  world_heard_ = Clock::now();
+  if (unanswered_sessions_ == 0 || --unanswered_sessions_ > 0) return;
+  if (answer.refusal.empty()) {
+    session_.on_world_ready(answer.ready, world_heard_);
+  } else {
+    spdlog::warn("the world server refused the session: {}", answer.refusal);
+    session_.on_world_lost("the world server refused the session: " + answer.refusal, world_heard_);
+  }
+}
+
+void Relay::take(const LinkUp& up) {
+  if (up.request != wanted_link_) return;
+  world_ = up;
+  world_heard_ = world_pinged_ = Clock::now();
+  spdlog::info("connected to the world server at {}:{}{}", options_.world_server.host, options_.world_server.port,
+               up.extended ? "" : ", a plain USARSim server: no lock step, its own rate");
+  if (session_.is_opening()) {
+    session_.on_world_ready(up.ready, world_heard_);
+  } else {
+    close_world();  // what was asked for is no longer wanted
+  }
+}
+
+void Relay::take(const LinkDown& down) {
+  if (down.request != wanted_link_) return;
+  world_.reset();
+  out_.clear();
+  session_.on_world_lost(down.why, Clock::now());
+}
+
+// A connection that breaks shows itself; one that only falls silent has to be asked.
+void Relay::watch_world(TimePoint now) {
+  if (!world_) return;
+  const auto silence = now - world_heard_;
+  if (silence > (world_->extended ? kWorldIsLost : kPlainWorldIsLost)) {
+    leave_world("it gives no answer", now);
+  } else if (out_.size() > kMostPending) {
+    leave_world("it takes no more data", now);
+  } else if (world_->extended && silence >= kPingWorldEvery && now - world_pinged_ >= kPingWorldEvery) {
+    world_pinged_ = now;
+    write_ping(out_, kOwnPing);
+  }
+}
+
+void Relay::leave_world(std::string_view why, TimePoint now) {
+  const std::string words =
+      fmt::format("lost the world server at {}:{}: {}", options_.world_server.host, options_.world_server.port, why);
+  spdlog::warn("{}; connecting anew", words);
+  request_link({});
+  session_.on_world_lost(words, now);
+}
+
+void Relay::wait_for_mail() {
+  std::array<pollfd, 2> watched{{{sender_waker_.fd(), POLLIN, 0}, {-1, POLLOUT, 0}}};
+  if (world_ && !out_.empty()) watched[1].fd = world_->socket->get();
+  std::optional<TimePoint> deadline = session_.next_deadline();
+  const TimePoint now = Clock::now();
+  if (world_) deadline = std::min(deadline.value_or(now + kPingWorldEvery), now + kPingWorldEvery);
+  timespec timeout{};
+  if (deadline) {
+    const auto left = std::max(*deadline - now, Clock::duration::zero());
+    timeout.tv_sec = std::chrono::duration_cast<std::chrono::seconds>(left).count();
+    timeout.tv_nsec = std::chrono::nanoseconds(left % 1s).count();
+  }
+  ::ppoll(watched.data(), watched.size(), deadline ? &timeout : nullptr, nullptr);
+}
+
+void Relay::flush() {
+  if (!world_) out_.clear();
+  if (out_.empty()) return;
+  const ssize_t sent = ::send(world_->socket->get(), out_.data(), out_.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  if (sent >= 0) {
+    out_.erase(0, static_cast<std::size_t>(sent));
+  } else if (errno != EAGAIN && errno != EINTR) {
+    out_.clear();  // broken; the link's thread sees it too and says why
+  }
+}
+
+void Relay::request_link(const WorldSession& session) {
+  world_.reset();
+  out_.clear();
+  unanswered_sessions_ = 0;
+  if (link_.requests().put({wanted_link_ + 1, session})) ++wanted_link_;
+}
+
+// --- what the session asks for
+
+void Relay::send(const Address& to, const relay::Datagram& datagram) {
+  std::array<std::byte, relay::kMaxDatagramBytes> bytes;
+  const std::size_t size = relay::encode(datagram, bytes);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(to.ipv4);
+  address.sin_port = htons(to.port);
+  // One that cannot be sent is a lost one, which the protocol bears.
+  ::sendto(udp_.get(), bytes.data(), size, MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+}
+
+void Relay::open_world(const relay::Hello& hello) {
+  const WorldSession wanted{hello.period_s, hello.lockstep, hello.command_timeout_s};
+  if (!world_ || hello.reset_robot) {
+    request_link(wanted);  // a robot is put back by leaving the world and entering it again
+  } else if (world_->extended) {
+    write_world_session(out_, wanted);
+    ++unanswered_sessions_;
+    flush();
+  } else {
+    newest_.lockstep = false;
+    session_.on_world_ready(newest_, Clock::now());
+  }
+}
+
+void Relay::close_world() {
+  if (!world_) return;
+  write_stop(out_);
+  if (world_->extended) {
+    write_world_session(out_, {});
+    ++unanswered_sessions_;
+  }
+  flush();
+}
+
+void Relay::drive(const relay::Command& command, std::optional<std::int64_t> world_frame) {
+  if (!world_) return;
+  write_command(out_, command, world_->wheel_radius_m, world_->extended ? world_frame : std::nullopt);
+  flush();
+}
+
+void Relay::stop_robot() {
+  write_stop(out_);
+  flush();
+}
+
+bool Relay::ping_world(std::uint32_t id) {
+  if (!world_ || !world_->extended) return false;
+  write_ping(out_, id);
+  flush();
+  return true;
+}
+
+}  // namespace kenaf::relayd

@@ -1,0 +1,106 @@
+// The relay: three threads and what they hand each other.
+//
+//   commands (UDP) -> receiver --Arrivals--> sender --> world server (TCP), States (UDP)
+//   sensors (TCP) --> world link --WorldEvents--> sender
+//
+// The receiver reads and checks datagrams as they come. The world link reads the sensor stream and makes States of it.
+// The sender, woken by either or by its next deadline, decides and writes: everything that is sent to anybody goes
+// through it, so nothing needs a lock. run() is the sender's thread.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "protocol/relay_datagram.hpp"
+#include "relayd/commander_session.hpp"
+#include "relayd/mailbox.hpp"
+#include "relayd/sockets.hpp"
+#include "relayd/world_link.hpp"
+
+namespace kenaf::relayd {
+
+struct RelayOptions {
+  HostPort world_server{"127.0.0.1", 3000};
+  Address listen{0x7f000001, 45454};  // port 0: any free one
+  RobotPlacement placement;
+};
+
+class Relay : private SessionPort {
+ public:
+  // Binds. Throws std::runtime_error in words.
+  explicit Relay(const RelayOptions& options);
+
+  // Where it listens.
+  const Address& address() const { return address_; }
+
+  // Relays until stop(); then tells the commander, stops the robot, and returns with all threads ended.
+  void run();
+  // From any thread or a signal handler.
+  void stop();
+
+ private:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  struct Arrival {
+    relay::Datagram datagram;
+    Address from;
+  };
+
+  // The receiver's thread.
+  void receive_commands();
+  void take_datagram(std::size_t bytes, const Address& from);
+
+  // The sender's thread.
+  void take_mail();
+  void take(const WorldFrame& frame);
+  void take(const WorldPong& pong);
+  void take(const SessionAnswer& answer);
+  void take(const LinkUp& up);
+  void take(const LinkDown& down);
+  void watch_world(TimePoint now);
+  void leave_world(std::string_view why, TimePoint now);
+  void wait_for_mail();
+  void flush();
+  void request_link(const WorldSession& session);
+  void shut_down();
+
+  void send(const Address& to, const relay::Datagram& datagram) override;
+  void open_world(const relay::Hello& hello) override;
+  void close_world() override;
+  void drive(const relay::Command& command, std::optional<std::int64_t> world_frame) override;
+  void stop_robot() override;
+  bool ping_world(std::uint32_t id) override;
+
+  const RelayOptions options_;
+  Address address_;
+  Descriptor udp_;
+  std::atomic<bool> stopping_{false};     // asked to end
+  std::atomic<bool> threads_end_{false};  // the other two may end: the robot has been stopped
+
+  Waker sender_waker_;
+  Mailbox<Arrival, 1024> arrivals_{sender_waker_};
+  WorldEvents events_{sender_waker_};
+  WorldLink link_;
+
+  // The receiver's.
+  Waker receiver_waker_;
+  std::array<std::byte, relay::kMaxDatagramBytes + 1> received_;  // one more, so that a longer one shows
+  Arrival arrival_;
+  LogLimiter log_malformed_, log_overflow_;
+
+  // The sender's.
+  CommanderSession session_{*this};
+  std::optional<LinkUp> world_;
+  std::uint64_t wanted_link_ = 0;
+  int unanswered_sessions_ = 0;  // CONTROL {Type Session} sent; only the answer to the newest counts
+  WorldReady newest_;            // time and interval of the newest frame, for a server that announces neither
+  TimePoint world_heard_, world_pinged_;
+  std::string out_;  // to the world server, not yet taken by its socket
+};
+
+}  // namespace kenaf::relayd

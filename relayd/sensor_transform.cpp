@@ -1,0 +1,177 @@
+#include "relayd/sensor_transform.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "protocol/frames.hpp"
+
+namespace kenaf::relayd {
+
+namespace {
+
+using frames::Vector3;
+using usarsim::MessageView;
+
+// No sensor of this robot comes near; a line beyond it is garbage, and products of what is below it stay finite.
+constexpr double kMostOfAnything = 1e12;
+
+bool read(const MessageView& message, std::string_view key, std::span<double> out) {
+  const auto text = message.find(key);
+  return text && usarsim::parse_numbers(*text, out) &&
+         std::ranges::all_of(out, [](double value) { return std::abs(value) < kMostOfAnything; });
+}
+
+std::optional<double> read(const MessageView& message, std::string_view key) {
+  double value = 0;
+  return read(message, key, {&value, 1}) ? std::optional(value) : std::nullopt;
+}
+
+bool contains_ignoring_case(std::string_view text, std::string_view part) {
+  for (std::size_t i = 0; i + part.size() <= text.size(); ++i) {
+    if (usarsim::equal_ignoring_case(text.substr(i, part.size()), part)) return true;
+  }
+  return false;
+}
+
+bool is_type(const MessageView& message, std::string_view type) {
+  const auto found = message.find("Type");
+  return found && usarsim::equal_ignoring_case(*found, type);
+}
+
+bool is_true(const MessageView& message, std::string_view key) {
+  const auto text = message.find(key);
+  return text && usarsim::parse_bool(*text).value_or(false);
+}
+
+}  // namespace
+
+bool SensorTransform::take(const MessageView& message) {
+  if (message.is("SEN")) {
+    take_sensor(message);
+  } else if (message.is("STA")) {
+    return take_status(message);
+  } else if (message.is("GEO")) {
+    // Of the robot: no other GEO has a wheel.
+    const auto radius = read(message, "WheelRadius");
+    if (radius && *radius > 1e-3 && *radius < 10) wheel_radius_m_ = radius;
+  } else if (message.is("CONF") && is_type(message, "Encoder")) {
+    const auto resolution = read(message, "Resolution");
+    if (resolution && *resolution > 0 && *resolution < 10) resolution_rad_ = *resolution;
+  }
+  return false;
+}
+
+void SensorTransform::take_sensor(const MessageView& message) {
+  relay::State& state = frame_.state;
+  Vector3 v;
+  if (is_type(message, "Encoder")) {
+    take_ticks(message);
+  } else if (is_type(message, "INS")) {
+    if (!read(message, "Orientation", v)) return;
+    state.posture_rad = frames::rep103_angles_from_usarsim(v);
+    state.fields |= relay::kHasPosture;
+    has_ins_ = true;
+  } else if (is_type(message, "IMU")) {
+    if (!has_ins_ && read(message, "Rotation", v)) {
+      state.posture_rad = frames::rep103_angles_from_usarsim(v);
+      state.fields |= relay::kHasPosture;
+    }
+    Vector3 acceleration;
+    if (!read(message, "AngularVel", v) || !read(message, "XYZAcceleration", acceleration)) return;
+    state.gyro_radps = frames::rep103_vector_from_usarsim(v);
+    state.acceleration_mps2 = frames::rep103_vector_from_usarsim(acceleration);
+    state.fields |= relay::kHasInertial;
+  } else if (is_type(message, "Tachometer")) {
+    // A robot with more wheels lists them in an order only it knows.
+    std::array<double, relay::kTrackCount> spin_radps;
+    if (read(message, "Vel", spin_radps)) spin_radps_ = spin_radps;
+  } else if (is_type(message, "Drives")) {
+    std::array<double, relay::kTrackCount> track_a;
+    std::array<double, relay::kFlipperCount> flipper_a;
+    if (read(message, "TrackCurrent", track_a) && read(message, "FlipperCurrent", flipper_a)) {
+      state.track_a = track_a;
+      state.flipper_a = flipper_a;
+      state.fields |= relay::kHasCurrents;
+    }
+    if (const auto voltage = read(message, "BatteryVoltage")) {
+      state.battery_v = *voltage;
+      state.fields |= relay::kHasBattery;
+    }
+  } else if (is_type(message, "GroundTruth")) {
+    Vector3 angles;
+    if (!read(message, "Location", v) || !read(message, "Orientation", angles)) return;
+    state.p_WB_m = frames::rep103_vector_from_usarsim(v);
+    state.orientation_rad = frames::rep103_angles_from_usarsim(angles);
+    state.fields |= relay::kHasGroundTruth;
+  }
+}
+
+// UT2004 writes {Name ECLeft Tick 0} {Name ECRight Tick 0}, UDK a line {Name ECLeft} {Tick 0} for each.
+void SensorTransform::take_ticks(const MessageView& message) {
+  for (const usarsim::Group& group : message.all()) {
+    if (!usarsim::equal_ignoring_case(group.key, "Name")) continue;
+    std::string_view rest = group.value;
+    const std::string_view name = usarsim::next_word(rest);
+    if (usarsim::equal_ignoring_case(usarsim::next_word(rest), "Tick")) {
+      take_tick(name, rest);
+    } else if (const auto ticks = message.find("Tick")) {
+      take_tick(name, *ticks);
+    }
+  }
+}
+
+void SensorTransform::take_tick(std::string_view name, std::string_view ticks) {
+  const auto count = usarsim::parse_number(ticks);
+  if (!count || std::abs(*count) > kMostOfAnything) return;
+  if (contains_ignoring_case(name, "left")) ticks_[relay::kLeft] = count;
+  if (contains_ignoring_case(name, "right")) ticks_[relay::kRight] = count;
+}
+
+bool SensorTransform::take_status(const MessageView& message) {
+  const auto time = read(message, "Time");
+  if (!time) return false;
+  relay::State& state = frame_.state;
+  frame_.interval_s = frame_.number == 0 ? 0 : *time - state.robot_time_s;
+  state.robot_time_s = *time;
+  const auto number = read(message, "Frame");
+  frame_.numbered = number.has_value();
+  frame_.number = number ? std::llround(*number) : frame_.number + 1;
+  state.late_commands = static_cast<std::uint32_t>(std::clamp(read(message, "Late").value_or(0), 0.0, 4e9));
+  state.events = (is_true(message, "Silent") ? relay::kStoppedBySilence : 0u) |
+                 (is_true(message, "Paused") ? relay::kWorldPaused : 0u);
+
+  std::array<double, relay::kFlipperCount> joint_rad;
+  bool all_flippers = true;
+  for (std::size_t i = 0; i < relay::kFlipperCount; ++i) {
+    all_flippers &= read(message, frames::usarsim_flipper_name(static_cast<relay::Flipper>(i)), {&joint_rad[i], 1});
+  }
+  if (all_flippers) {
+    for (std::size_t i = 0; i < relay::kFlipperCount; ++i) {
+      state.flipper_rad[i] = frames::tip_up_from_usarsim_flipper(static_cast<relay::Flipper>(i), joint_rad[i]);
+    }
+    state.fields |= relay::kHasFlippers;
+  }
+  finish_tracks();
+  return true;
+}
+
+// Here and not where the ticks are read: the wheel radius may come after them, and only STA has a time.
+void SensorTransform::finish_tracks() {
+  if (!ticks_[relay::kLeft] || !ticks_[relay::kRight]) return;
+  relay::State& state = frame_.state;
+  const double wheel_radius_m = wheel_radius_m_.value_or(kDefaultWheelRadius_m);
+  for (std::size_t i = 0; i < relay::kTrackCount; ++i) {
+    state.track_m[i] = *ticks_[i] * resolution_rad_ * wheel_radius_m;
+    if (spin_radps_) {
+      state.track_mps[i] = frames::surface_speed_from_spin((*spin_radps_)[i], wheel_radius_m);
+    } else if (frame_.interval_s > 1e-6) {
+      const bool first = (state.fields & relay::kHasEncoders) == 0;
+      state.track_mps[i] = first ? 0 : (state.track_m[i] - earlier_track_m_[i]) / frame_.interval_s;
+    }
+  }
+  earlier_track_m_ = state.track_m;
+  state.fields |= relay::kHasEncoders;
+}
+
+}  // namespace kenaf::relayd

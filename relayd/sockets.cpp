@@ -1,0 +1,122 @@
+#include "relayd/sockets.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <memory>
+#include <stdexcept>
+
+namespace kenaf::relayd {
+
+namespace {
+
+// Room for the commands of a second at 1 kHz, should the relay be held up. The kernel may grant less.
+constexpr int kReceiveBufferBytes = 1 << 20;
+
+sockaddr_in to_sockaddr(const Address& address) {
+  sockaddr_in out{};
+  out.sin_family = AF_INET;
+  out.sin_addr.s_addr = htonl(address.ipv4);
+  out.sin_port = htons(address.port);
+  return out;
+}
+
+// 0, or the errno with which the connection failed.
+int finish_connect(int fd, std::chrono::milliseconds limit, int cancel_fd) {
+  std::array<pollfd, 2> watched{{{fd, POLLOUT, 0}, {cancel_fd, POLLIN, 0}}};
+  const int ready = ::poll(watched.data(), watched.size(), static_cast<int>(limit.count()));
+  if (ready < 0) return errno;
+  if (watched[0].revents == 0) return ready == 0 ? ETIMEDOUT : ECANCELED;
+  int error = 0;
+  socklen_t size = sizeof error;
+  ::getsockopt(fd, SOL_SOCKET, SO_ERROR, &error, &size);
+  return error;
+}
+
+}  // namespace
+
+Descriptor::~Descriptor() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+std::string to_text(const Address& address) {
+  return fmt::format("{}.{}.{}.{}:{}", address.ipv4 >> 24, (address.ipv4 >> 16) & 0xff, (address.ipv4 >> 8) & 0xff,
+                     address.ipv4 & 0xff, address.port);
+}
+
+bool is_loopback(const Address& address) {
+  return (address.ipv4 >> 24) == 127;
+}
+
+HostPort parse_host_port(std::string_view text) {
+  const std::size_t colon = text.rfind(':');
+  std::string_view host = text.substr(0, colon);
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  const std::string_view digits = colon == std::string_view::npos ? "" : text.substr(colon + 1);
+  std::uint16_t port = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
+  if (host.empty() || error != std::errc{} || end != digits.data() + digits.size()) {
+    throw std::runtime_error(fmt::format("'{}' is not HOST:PORT with a port from 0 to 65535", text));
+  }
+  return {std::string(host), port};
+}
+
+Address parse_address(std::string_view text) {
+  const HostPort parsed = parse_host_port(text);
+  in_addr ipv4{};
+  if (::inet_pton(AF_INET, parsed.host == "localhost" ? "127.0.0.1" : parsed.host.c_str(), &ipv4) != 1) {
+    throw std::runtime_error(fmt::format("'{}' is not an IPv4 address such as 127.0.0.1", parsed.host));
+  }
+  return {ntohl(ipv4.s_addr), parsed.port};
+}
+
+Descriptor open_udp(const Address& address, Address& bound) {
+  Descriptor fd(::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  const sockaddr_in wanted = to_sockaddr(address);
+  if (fd.get() < 0 || ::bind(fd.get(), reinterpret_cast<const sockaddr*>(&wanted), sizeof wanted) != 0) {
+    throw std::runtime_error(fmt::format("cannot listen on UDP {}: {}; choose another address with --listen",
+                                         to_text(address), std::strerror(errno)));
+  }
+  ::setsockopt(fd.get(), SOL_SOCKET, SO_RCVBUF, &kReceiveBufferBytes, sizeof kReceiveBufferBytes);
+  sockaddr_in got{};
+  socklen_t size = sizeof got;
+  ::getsockname(fd.get(), reinterpret_cast<sockaddr*>(&got), &size);
+  bound = {ntohl(got.sin_addr.s_addr), ntohs(got.sin_port)};
+  return fd;
+}
+
+Descriptor connect_tcp(const HostPort& server, std::chrono::milliseconds limit, int cancel_fd) {
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  const int lookup = ::getaddrinfo(server.host.c_str(), std::to_string(server.port).c_str(), &hints, &found);
+  if (lookup != 0) throw std::runtime_error(::gai_strerror(lookup));
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
+
+  int error = EADDRNOTAVAIL;
+  for (const addrinfo* at = found; at != nullptr; at = at->ai_next) {
+    Descriptor fd(::socket(at->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    error = fd.get() < 0 ? errno : 0;
+    if (error == 0 && ::connect(fd.get(), at->ai_addr, at->ai_addrlen) != 0) {
+      error = errno == EINPROGRESS ? finish_connect(fd.get(), limit, cancel_fd) : errno;
+    }
+    if (error != 0) continue;
+    const int on = 1;
+    ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    return fd;
+  }
+  throw std::runtime_error(std::strerror(error));
+}
+
+}  // namespace kenaf::relayd

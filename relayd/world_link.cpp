@@ -1,0 +1,184 @@
+#include "relayd/world_link.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <spdlog/spdlog.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <thread>
+
+namespace kenaf::relayd {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kConnectWithin = 2s;
+constexpr std::chrono::milliseconds kFirstPause = 50ms;
+constexpr std::chrono::milliseconds kLongestPause = 1s;
+
+// Milliseconds for poll(), rounded up so that it does not return just before the time.
+int poll_timeout(Clock::time_point until) {
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+  return static_cast<int>(std::clamp<std::int64_t>(left, 0, 60000));
+}
+
+// The few lines of a handshake always fit a fresh socket's buffer.
+void send_whole(int fd, const std::string& text) {
+  if (text.empty()) return;
+  const ssize_t sent = ::send(fd, text.data(), text.size(), MSG_NOSIGNAL);
+  if (sent != static_cast<ssize_t>(text.size())) {
+    throw std::runtime_error(sent < 0 ? std::strerror(errno) : "it takes no more data");
+  }
+}
+
+}  // namespace
+
+struct WorldLink::Connection {
+  std::shared_ptr<Descriptor> socket;
+  WorldHandshake handshake;
+  bool handed_over = false;
+  SensorTransform transform{};
+  usarsim::LineSplitter lines{};
+  std::string out{};
+};
+
+WorldLink::WorldLink(const HostPort& server, const RobotPlacement& placement, WorldEvents& events)
+    : server_(server), placement_(placement), events_(events) {}
+
+void WorldLink::run(const std::atomic<bool>& stopping) {
+  stopping_ = &stopping;
+  std::string reported;
+  std::chrono::milliseconds pause = kFirstPause;
+  while (!stopping) {
+    was_up_ = false;
+    std::string why;
+    try {
+      why = serve(stopping);
+    } catch (const std::exception& error) {
+      why = error.what();
+    }
+    if (was_up_ || take_requests()) pause = kFirstPause;
+    if (stopping) return;
+    if (why.empty()) continue;  // asked to connect anew
+    why = fmt::format("no world server at {}:{}: {}", server_.host, server_.port, why);
+    if (was_up_ || why != reported) spdlog::warn("{}; trying again", why);
+    reported = why;
+    put(LinkDown{request_.number, why});
+
+    pollfd woken{waker_.fd(), POLLIN, 0};
+    const auto until = Clock::now() + pause;
+    while (!take_requests() && !stopping && Clock::now() < until) ::poll(&woken, 1, poll_timeout(until));
+    pause = std::min(2 * pause, kLongestPause);
+  }
+}
+
+// One connection from its beginning to its end. Returns or throws why it ended; empty: a new one was asked for, or the
+// relay stops.
+std::string WorldLink::serve(const std::atomic<bool>& stopping) {
+  take_requests();
+  if (stopping) return {};
+  Connection connection{std::make_shared<Descriptor>(connect_tcp(server_, kConnectWithin, waker_.fd())),
+                        WorldHandshake(placement_, request_.session, Clock::now())};
+  std::array<char, 65536> bytes;
+  std::array<pollfd, 2> watched{{{connection.socket->get(), POLLIN, 0}, {waker_.fd(), POLLIN, 0}}};
+  while (true) {
+    const bool shaking = !connection.handed_over;
+    if (::poll(watched.data(), watched.size(), shaking ? poll_timeout(connection.handshake.deadline()) : -1) < 0 &&
+        errno != EINTR) {
+      return std::strerror(errno);
+    }
+    if (watched[1].revents != 0 && (take_requests() || stopping)) {
+      ::shutdown(connection.socket->get(), SHUT_RDWR);
+      return {};
+    }
+    if (watched[0].revents != 0) {
+      const ssize_t got = ::recv(connection.socket->get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
+      if (got == 0) return "it closed the connection";
+      if (got < 0 && errno != EAGAIN && errno != EINTR) return std::strerror(errno);
+      if (got > 0 && !connection.lines.push({bytes.data(), static_cast<std::size_t>(got)})) {
+        note_malformed("an oversized line", usarsim::kMaxLineBytes);
+      }
+      while (const auto line = connection.lines.next()) read_line(*line, connection);
+    }
+    if (!connection.handed_over) finish_handshake(connection);
+    if (connection.handshake.result() == WorldHandshake::Result::failed) return connection.handshake.failure();
+  }
+}
+
+void WorldLink::read_line(std::string_view line, Connection& connection) {
+  const usarsim::ParseError error = usarsim::parse_message(line, message_);
+  if (error != usarsim::ParseError::none) {
+    note_malformed(usarsim::describe(error), line.size());
+    return;
+  }
+  const bool is_frame = connection.transform.take(message_);
+  if (!connection.handed_over) {
+    connection.handshake.on_message(message_, Clock::now(), connection.out);
+    finish_handshake(connection);
+    if (is_frame && connection.handed_over) put(connection.transform.frame());
+  } else if (is_frame) {
+    put(connection.transform.frame());
+  } else if (message_.is("PONG")) {
+    const auto id = message_.find("Id");
+    const auto number = id ? usarsim::parse_number(*id) : std::nullopt;
+    if (number && std::abs(*number) < 1e12) put(WorldPong{static_cast<std::int64_t>(*number)});
+  } else if (auto answer = read_session_answer(message_)) {
+    put(std::move(*answer));
+  }
+}
+
+// Sends what the handshake wants sent; where it is complete, hands the connection to the sender.
+void WorldLink::finish_handshake(Connection& connection) {
+  connection.handshake.on_time(Clock::now(), connection.out);
+  send_whole(connection.socket->get(), connection.out);
+  connection.out.clear();
+  const auto result = connection.handshake.result();
+  if (result != WorldHandshake::Result::extended && result != WorldHandshake::Result::plain) return;
+
+  connection.handed_over = was_up_ = true;
+  const auto radius = connection.transform.wheel_radius_m();
+  if (!radius) {
+    spdlog::warn("the world server told no wheel radius (GEO): taking USARSim's own default of {} m",
+                 SensorTransform::kDefaultWheelRadius_m);
+  }
+  const bool extended = result == WorldHandshake::Result::extended;
+  WorldReady ready = connection.handshake.ready();
+  const WorldFrame& frame = connection.transform.frame();
+  if (!extended) {
+    ready.robot_time_s = frame.state.robot_time_s;
+    if (frame.interval_s > 0) ready.period_s = frame.interval_s;
+  }
+  put(LinkUp{request_.number, connection.socket, radius.value_or(SensorTransform::kDefaultWheelRadius_m), extended,
+             ready});
+}
+
+// A sender that is held up holds up the world, through TCP, rather than losing what it told.
+void WorldLink::put(WorldEvent event) {
+  while (!events_.put(event) && !*stopping_) std::this_thread::sleep_for(100us);
+}
+
+bool WorldLink::take_requests() {
+  waker_.clear();
+  bool any = false;
+  requests_.take_all([&](const LinkRequest& request) {
+    request_ = request;
+    any = true;
+  });
+  return any;
+}
+
+void WorldLink::note_malformed(std::string_view what, std::size_t bytes) {
+  if (const auto held_back = log_malformed_.allow()) {
+    spdlog::warn("the world server sent {} ({} bytes): ignored ({} more before)", what, bytes, *held_back);
+  }
+}
+
+}  // namespace kenaf::relayd

@@ -1,0 +1,76 @@
+// The relay's second thread: keeps a connection to the world server, and turns what comes over it into WorldEvents.
+// Once it has handed a connection over with LinkUp it only reads; all later writing is the sender's.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "protocol/usarsim_message.hpp"
+#include "relayd/mailbox.hpp"
+#include "relayd/sensor_transform.hpp"
+#include "relayd/sockets.hpp"
+#include "relayd/world_handshake.hpp"
+
+namespace kenaf::relayd {
+
+// Asks for a fresh connection with these settings; a connection of an earlier request is closed.
+struct LinkRequest {
+  std::uint64_t number = 0;
+  WorldSession session;
+};
+
+struct LinkUp {
+  std::uint64_t request = 0;           // the one it fulfils
+  std::shared_ptr<Descriptor> socket;  // closed when its last owner lets go
+  double wheel_radius_m = 0;
+  bool extended = false;
+  WorldReady ready;
+};
+struct LinkDown {
+  std::uint64_t request = 0;
+  std::string why;
+};
+struct WorldPong {
+  std::int64_t id = 0;
+};
+using WorldEvent = std::variant<WorldFrame, WorldPong, SessionAnswer, LinkUp, LinkDown>;
+
+using WorldEvents = Mailbox<WorldEvent, 256>;
+using LinkRequests = Mailbox<LinkRequest, 16>;
+
+class WorldLink {
+ public:
+  WorldLink(const HostPort& server, const RobotPlacement& placement, WorldEvents& events);
+
+  // Connects, with patience, until `stopping` is set and waker() woken.
+  void run(const std::atomic<bool>& stopping);
+
+  Waker& waker() { return waker_; }
+  LinkRequests& requests() { return requests_; }  // the sender puts
+
+ private:
+  struct Connection;
+
+  std::string serve(const std::atomic<bool>& stopping);
+  void read_line(std::string_view line, Connection& connection);
+  void finish_handshake(Connection& connection);
+  void put(WorldEvent event);
+  bool take_requests();
+  void note_malformed(std::string_view what, std::size_t bytes);
+
+  const HostPort server_;
+  const RobotPlacement placement_;
+  WorldEvents& events_;
+  Waker waker_;
+  LinkRequests requests_{waker_};
+  LinkRequest request_;
+  const std::atomic<bool>* stopping_ = nullptr;
+  usarsim::MessageView message_;
+  LogLimiter log_malformed_;
+  bool was_up_ = false;
+};
+
+}  // namespace kenaf::relayd

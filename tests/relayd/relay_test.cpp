@@ -1,0 +1,461 @@
+// The whole relay in process, between a fake world server and fake commanders, over real sockets.
+#include "relayd/relay.hpp"
+
+#include <spdlog/sinks/ringbuffer_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <thread>
+
+#include "tests/relayd/allocations.hpp"
+#include "tests/relayd/fake_commander.hpp"
+#include "tests/relayd/fake_world.hpp"
+#include "tests/relayd/lossy_proxy.hpp"
+
+using namespace kenaf;
+using namespace kenaf::test;
+using namespace std::chrono_literals;
+
+namespace {
+
+template <class Condition>
+bool eventually(Condition condition) {
+  const auto end = std::chrono::steady_clock::now() + 20s;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(2ms);
+  }
+  return true;
+}
+
+// What the relay logs, instead of printing it.
+class LogCapture {
+ public:
+  LogCapture() : sink_(std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(200)), before_(spdlog::default_logger()) {
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", sink_));
+  }
+  ~LogCapture() { spdlog::set_default_logger(before_); }
+  int count(const std::string& part) const {
+    const auto lines = sink_->last_formatted();
+    return static_cast<int>(std::count_if(
+        lines.begin(), lines.end(), [&](const std::string& line) { return line.find(part) != std::string::npos; }));
+  }
+
+ private:
+  std::shared_ptr<spdlog::sinks::ringbuffer_sink_mt> sink_;
+  std::shared_ptr<spdlog::logger> before_;
+};
+
+class RunningRelay {
+ public:
+  explicit RunningRelay(std::uint16_t world_port) : relay_(options(world_port)), thread_([this] { relay_.run(); }) {}
+  ~RunningRelay() { stop(); }
+  std::uint16_t port() const { return relay_.address().port; }
+  void stop() {
+    if (!thread_.joinable()) return;
+    relay_.stop();
+    thread_.join();
+  }
+
+ private:
+  static relayd::RelayOptions options(std::uint16_t world_port) {
+    relayd::RelayOptions out;
+    out.world_server = {"127.0.0.1", world_port};
+    out.listen = {0x7f000001, 0};
+    return out;
+  }
+  LogCapture log_;  // before the relay, so that it lives longer
+
+ public:
+  const LogCapture& log() const { return log_; }
+
+ private:
+  relayd::Relay relay_;
+  std::thread thread_;
+};
+
+bool is_welcome(const relay::Datagram& datagram) {
+  return std::holds_alternative<relay::Welcome>(datagram);
+}
+relay::Refused refusal(const relay::Datagram& datagram) {
+  REQUIRE(std::holds_alternative<relay::Refused>(datagram));
+  return std::get<relay::Refused>(datagram);
+}
+
+// Drives to x = 0.5 m by what it measures, so that each lost or stale State would show in all later ones.
+void approach(const relay::State& state, relay::Command& command) {
+  const double speed_mps = 2 * (0.5 - state.track_m[relay::kLeft]) + 0.01 * std::sin(state.frame);
+  command.track_speed_mps = {speed_mps, speed_mps};
+  command.flipper_mask = 0b0101;
+  command.flipper_rad = {0.1 * speed_mps, 0, -0.1 * speed_mps, 0};
+}
+
+std::vector<std::string> commands_only(const FakeWorld& world) {
+  std::vector<std::string> out;
+  for (const std::string& line : world.lines()) {
+    if (line.starts_with("DRIVE") && line.find("Frame") != std::string::npos) out.push_back(line);
+    if (line.starts_with("MULTIDRIVE")) out.push_back(line);
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("the relay places a robot, opens a session in lock step and carries commands and States") {
+  FakeWorld world;
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 7);
+  const auto answer = commander.hello(true, true);
+  REQUIRE(is_welcome(answer));
+  CHECK(std::get<relay::Welcome>(answer).lockstep);
+  CHECK(std::get<relay::Welcome>(answer).period_s == Approx(0.01));
+  CHECK(world.last("INIT") == "INIT {ClassName USARBot.Kenaf} {Name Kenaf} {Start PlayerStart_0}");
+
+  // 0.2 m/s for 50 periods of 0.01 s: 0.1 m.
+  const auto states = commander.drive(50, [](const relay::State&, relay::Command& command) {
+    command.track_speed_mps = {0.2, 0.2};
+  });
+  CHECK(world.x_m() == Approx(0.1).margin(1e-9));
+  CHECK(world.last("DRIVE") == "DRIVE {Left 4.000000000000} {Right 4.000000000000} {Frame 50}");
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    CHECK(states[i].frame == i + 1);
+    CHECK(states[i].acknowledged == i);
+    CHECK(states[i].late_commands == 0);
+  }
+  CHECK(states[49].track_m[relay::kLeft] == Approx(49 * 0.002).margin(1e-9));
+  CHECK(states[49].p_WB_m[2] == Approx(0.1));  // z down on the wire
+  CHECK(states[49].posture_rad[1] == Approx(-0.2));
+}
+
+TEST_CASE("loss, reordering and duplicates change nothing but latency") {
+  std::vector<std::string> clean;
+  std::vector<relay::State> clean_states;
+  {
+    FakeWorld world;
+    RunningRelay relay(world.port());
+    FakeCommander commander(relay.port(), 1);
+    REQUIRE(is_welcome(commander.hello(true, true)));
+    clean_states = commander.drive(150, approach);
+    clean = commands_only(world);
+  }
+  REQUIRE(clean.size() == 300);
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    FakeWorld world;
+    RunningRelay relay(world.port());
+    LossyProxy proxy(relay.port(), seed);
+    FakeCommander commander(proxy.port(), 1);
+    REQUIRE(is_welcome(commander.hello(true, true)));
+    const auto states = commander.drive(150, approach);
+    CHECK(commands_only(world) == clean);  // to the last digit
+    REQUIRE(states.size() == clean_states.size());
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      CHECK(states[i].frame == clean_states[i].frame);
+      CHECK(states[i].robot_time_s == clean_states[i].robot_time_s);
+      CHECK(states[i].track_m == clean_states[i].track_m);
+    }
+  }
+}
+
+TEST_CASE("one commander at a time; the next one is served after Bye or silence") {
+  FakeWorld world;
+  RunningRelay relay(world.port());
+  FakeCommander first(relay.port(), 1), second(relay.port(), 2);
+  REQUIRE(is_welcome(first.hello(false)));
+  const auto busy = refusal(second.hello(false));
+  CHECK(busy.reason == relay::RefusedReason::busy);
+  CHECK(text_of(busy).find("127.0.0.1:") != std::string::npos);
+
+  second.send(second.command(1, 1, 1, 1));
+  CHECK(refusal(*second.receive(5000)).reason == relay::RefusedReason::unknown_session);
+  CHECK(is_welcome(first.hello(false)));  // the Welcome may have been lost
+
+  first.send(relay::Bye{1});
+  REQUIRE(eventually([&] { return is_welcome(second.hello(false)); }));
+  // The second falls silent.
+  FakeCommander third(relay.port(), 3);
+  REQUIRE(eventually([&] { return is_welcome(third.hello(false)); }));
+  CHECK(relay.log().count("fell silent") == 1);
+}
+
+TEST_CASE("a silent commander's robot is stopped by robot time, and the commander may go on") {
+  FakeWorld world;
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 9);
+  REQUIRE(is_welcome(commander.hello(false, false, 0.01, 0.5)));
+  const auto first = commander.next_state(0, relay::Ping{9, 1});
+  REQUIRE(first);
+  commander.send(commander.command(1, first->frame, 0.3, 0.3));
+  REQUIRE(eventually([&] { return world.speed_mps() > 0.29; }));
+  const auto stopped = commander.wait_for([](const auto& s) { return (s.events & relay::kStoppedBySilence) != 0; });
+  REQUIRE(stopped);
+  CHECK(stopped->acknowledged == 1);
+  REQUIRE(eventually([&] { return world.speed_mps() == 0; }));
+  // 0.5 s of silence, and the frame of 0.01 s that showed it.
+  CHECK(world.x_m() < 0.3 * 0.5 + 0.3 * 0.5);
+
+  commander.send(commander.command(2, stopped->frame, 0.1, 0.1));
+  const auto going = commander.wait_for([](const auto& s) { return s.acknowledged == 2 && s.events == 0; });
+  CHECK(going);
+  CHECK(eventually([&] { return world.speed_mps() > 0.09; }));
+}
+
+TEST_CASE("the world server is lost and comes back") {
+  auto world = std::make_unique<FakeWorld>();
+  const std::uint16_t port = world->port();
+  RunningRelay relay(port);
+  FakeCommander commander(relay.port(), 5);
+  REQUIRE(is_welcome(commander.hello(true)));
+  REQUIRE(commander.drive(5, approach).size() == 5);
+
+  const auto killed = std::chrono::steady_clock::now();
+  world.reset();
+  REQUIRE(commander.wait_for([](const auto& s) { return (s.events & relay::kWorldServerLost) != 0; }));
+  CHECK(std::chrono::steady_clock::now() - killed < 5s);
+  // Again, in case it was lost.
+  REQUIRE(commander.wait_for([](const auto& s) { return (s.events & relay::kWorldServerLost) != 0; }));
+
+  FakeCommander next(relay.port(), 6);
+  const auto none = refusal(next.hello(true));
+  CHECK(none.reason == relay::RefusedReason::no_world_server);
+  CHECK(text_of(none).find("refused") != std::string::npos);
+
+  FakeWorldOptions same;
+  same.port = port;
+  world = std::make_unique<FakeWorld>(same);
+  FakeCommander after(relay.port(), 8);
+  REQUIRE(eventually([&] { return is_welcome(after.hello(true)); }));
+  CHECK(after.drive(5, approach).size() == 5);
+}
+
+TEST_CASE("a world server that hangs is left") {
+  FakeWorld world;
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 5);
+  REQUIRE(is_welcome(commander.hello(true)));
+  commander.drive(3, approach);
+  world.mute(true);
+  // The commander keeps the session alive, as it must.
+  relay::State lost{};
+  REQUIRE(eventually([&] {
+    commander.send(relay::Ping{5, 1});
+    const auto datagram = commander.receive(50);
+    if (!datagram || !std::holds_alternative<relay::State>(*datagram)) return false;
+    lost = std::get<relay::State>(*datagram);
+    return (lost.events & relay::kWorldServerLost) != 0;
+  }));
+  world.mute(false);
+  FakeCommander next(relay.port(), 6);
+  CHECK(eventually([&] { return is_welcome(next.hello(true)); }));
+}
+
+TEST_CASE("reset_robot enters the world anew, in lock step from the first frame") {
+  FakeWorld world;
+  RunningRelay relay(world.port());
+  FakeCommander first(relay.port(), 1);
+  REQUIRE(is_welcome(first.hello(true)));
+  first.drive(20, approach);
+  CHECK(world.x_m() > 0.01);
+  first.send(relay::Bye{1});
+
+  const int before = world.connections();
+  FakeCommander second(relay.port(), 2);
+  REQUIRE(is_welcome(second.hello(true, true)));
+  const auto states = second.drive(3, approach);
+  CHECK(world.connections() == before + 1);
+  CHECK(states[0].frame == 1);
+  CHECK(states[0].robot_time_s == 0);
+  CHECK(states[0].track_m[relay::kLeft] == 0);
+}
+
+TEST_CASE("without a commander there is no lock step and the robot stands") {
+  FakeWorld world;
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 1);
+  REQUIRE(is_welcome(commander.hello(true)));
+  commander.drive(5, approach);
+  CHECK(world.speed_mps() > 0);
+  for (int i = 0; i < 3; ++i) commander.send(relay::Bye{1});
+  REQUIRE(eventually([&] { return world.last("CONTROL").find("{Lockstep False}") != std::string::npos; }));
+  CHECK(world.speed_mps() == 0);
+  CHECK(world.last("DRIVE") == "DRIVE {Left 0.000000000000} {Right 0.000000000000}");
+}
+
+TEST_CASE("a ping goes to the world server and back") {
+  FakeWorld world;
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 4);
+  REQUIRE(is_welcome(commander.hello(true)));
+  bool answered = false;
+  REQUIRE(eventually([&] {
+    commander.send(relay::Ping{4, 4000000000u});
+    const auto datagram = commander.receive(100);
+    const auto* pong = datagram ? std::get_if<relay::Pong>(&*datagram) : nullptr;
+    answered = pong != nullptr && pong->id == 4000000000u && pong->session == 4;
+    return answered;
+  }));
+  CHECK(world.count("PING {Id 4000000000}") >= 1);
+}
+
+TEST_CASE("a plain USARSim server works without the extensions") {
+  FakeWorldOptions plain;
+  plain.extended = false;
+  FakeWorld world(plain);
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 4);
+  relay::Datagram answer = commander.hello(true);
+  REQUIRE(is_welcome(answer));
+  CHECK_FALSE(std::get<relay::Welcome>(answer).lockstep);
+  CHECK(std::get<relay::Welcome>(answer).period_s == Approx(0.2));
+
+  const auto first = commander.next_state(0, relay::Ping{4, 1});
+  REQUIRE(first);
+  relay::Command command = commander.command(1, first->frame, 0.1, -0.2);
+  command.flipper_mask = 0b1111;
+  command.flipper_rad = {0.5, 0.5, 0.25, 0.25};
+  commander.send(command);
+  const auto later = commander.wait_for([](const auto& s) { return s.acknowledged == 1 && s.flipper_rad[0] != 0; });
+  REQUIRE(later);
+  CHECK(later->frame > first->frame);
+  CHECK(later->flipper_rad == command.flipper_rad);
+  CHECK(world.last("DRIVE") == "DRIVE {Left 2.000000000000} {Right -4.000000000000}");
+  CHECK(world.last("MULTIDRIVE") ==
+        "MULTIDRIVE {FLFlipper -0.500000000000} {FRFlipper -0.500000000000} {RLFlipper 0.250000000000} "
+        "{RRFlipper 0.250000000000}");
+  commander.send(relay::Ping{4, 77});
+  CHECK(eventually([&] {
+    const auto datagram = commander.receive(100);
+    return datagram && std::holds_alternative<relay::Pong>(*datagram);
+  }));
+}
+
+TEST_CASE("a world server that accepts no robot is named with a reason") {
+  FakeWorldOptions options;
+  options.accepts_robot = false;
+  FakeWorld world(options);
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 4);
+  const auto refused = refusal(commander.hello(true));
+  CHECK(refused.reason == relay::RefusedReason::no_world_server);
+  CHECK(text_of(refused).find("USARBot.Kenaf") != std::string::npos);
+}
+
+TEST_CASE("hostile datagrams: a log line, nothing dead, nothing lost") {
+  FakeWorld world;
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 4), attacker(relay.port(), 666);
+  REQUIRE(is_welcome(commander.hello(true)));
+  std::mt19937 random(1);
+  std::array<std::byte, 600> bytes;
+  const auto attack = [&] {
+    for (int i = 0; i < 50; ++i) {
+      for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
+      const std::size_t size = relay::encode(attacker.command(1 + i % 3, 0, 5, 5), bytes);
+      const std::size_t cut = i % 2 == 0 ? size : random() % bytes.size();
+      bytes[random() % size] ^= static_cast<std::byte>(1 << random() % 8);
+      attacker.send_bytes({bytes.data(), cut});
+    }
+    attacker.send(relay::Bye{4});                     // of another's session
+    attacker.send(commander.command(1000, 0, 9, 9));  // likewise
+    relay::State not_for_a_relay{};
+    not_for_a_relay.session = 4;
+    attacker.send(not_for_a_relay);
+  };
+  std::uint32_t frames = 0;
+  const auto states = commander.drive(40, [&](const relay::State& state, relay::Command& command) {
+    if (state.frame % 4 == 0) attack();
+    command.track_speed_mps = {0.2, 0.2};
+    ++frames;
+  });
+  CHECK(frames == 40);
+  CHECK(world.x_m() == Approx(40 * 0.002).margin(1e-9));
+  CHECK(relay.log().count("ignored") >= 1);
+  CHECK(relay.log().count("") < 40);  // and not one a datagram
+
+  // Out of range: refused, and the robot keeps its last command.
+  commander.send(commander.command(100, 41, 11, 0));
+  const auto refused = [&] {
+    const auto datagram = commander.receive(100);
+    return datagram && std::holds_alternative<relay::Refused>(*datagram);
+  };
+  CHECK(eventually(refused));
+}
+
+TEST_CASE("hostile lines from the world server: a log line, nothing dead, nothing lost") {
+  FakeWorldOptions options;
+  options.garbage = "}{ \x01\x02\r\nSEN {Type GroundTruth} {Location nan,inf,1e999} {Orientation a,b}\r\n" +
+                    std::string(200, '{') +
+                    "\r\nSTA\r\nSTA {Time}\r\nRES {Type Control} {Name Session}\r\nPONG {Id x}\r\n" +
+                    "GEO {WheelRadius -1}\r\nCONF {Type Encoder} {Resolution 0}\r\n" + std::string(70000, 'x') + "\r\n";
+  FakeWorld world(options);
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 4);
+  REQUIRE(is_welcome(commander.hello(true)));
+  const auto states = commander.drive(10, [](const relay::State&, relay::Command& command) {
+    command.track_speed_mps = {0.2, 0.2};
+  });
+  CHECK(world.x_m() == Approx(10 * 0.002).margin(1e-9));
+  CHECK(states[9].track_m[relay::kLeft] == Approx(9 * 0.002).margin(1e-9));
+  CHECK(relay.log().count("the world server sent") >= 1);
+}
+
+TEST_CASE("lines that arrive in pieces are put together") {
+  FakeWorldOptions options;
+  options.piece = 7;
+  FakeWorld world(options);
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 4);
+  REQUIRE(is_welcome(commander.hello(true)));
+  const auto states = commander.drive(10, approach);
+  CHECK(states[9].frame == 10);
+}
+
+TEST_CASE("the relay ends cleanly: the commander is told and the robot stands") {
+  FakeWorld world;
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 4);
+  REQUIRE(is_welcome(commander.hello(true)));
+  commander.drive(10, approach);
+  CHECK(world.speed_mps() > 0);
+  relay.stop();
+  CHECK(eventually([&] { return world.speed_mps() == 0; }));
+  bool told = false;
+  while (const auto datagram = commander.receive(200)) told |= std::holds_alternative<relay::Refused>(*datagram);
+  CHECK(told);
+}
+
+TEST_CASE("the relay ends cleanly before it ever found a world server") {
+  std::uint16_t nobody = 0;
+  {
+    FakeWorld gone;
+    nobody = gone.port();
+  }
+  RunningRelay relay(nobody);
+  FakeCommander commander(relay.port(), 4);
+  CHECK(refusal(commander.hello(true)).reason == relay::RefusedReason::no_world_server);
+  CHECK(eventually([&] { return relay.log().count("no world server at") >= 1; }));
+  std::this_thread::sleep_for(300ms);
+  CHECK(relay.log().count("no world server at") == 1);  // once a change of state
+}
+
+TEST_CASE("the steady path allocates nothing") {
+  allocations_of_this_thread_count = false;
+  FakeWorld world;
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 4);
+  REQUIRE(is_welcome(commander.hello(true)));
+  std::uint64_t before = 0, after = 0;
+  commander.drive(600, [&](const relay::State& state, relay::Command& command) {
+    approach(state, command);
+    commander.send(relay::Ping{4, 1});
+    if (state.frame == 200) before = allocations();
+    if (state.frame == 600) after = allocations();
+  });
+  CHECK(before > 0);  // the counter works
+  CHECK(after == before);
+  allocations_of_this_thread_count = true;
+}
