@@ -139,8 +139,8 @@ std::string_view describe(ParseError error) {
 ParseError parse_message(std::string_view line, MessageView& out) {
   out.type = {};
   out.group_count = 0;
-  if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
   line = trim(line);
+  while (line.starts_with(kByteOrderMark)) line = trim(line.substr(kByteOrderMark.size()));
   if (line.empty()) return ParseError::empty;
   if (line.starts_with('{')) return ParseError::no_type;
 

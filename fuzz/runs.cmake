@@ -1,0 +1,1 @@
+kenaf_fuzzer(run_file_fuzz SOURCE run_file_fuzz.cpp LIBRARIES kenaf_runs)
