@@ -1,0 +1,88 @@
+// kenaf-world: the simulated world behind the USARSim protocol.
+#include <pthread.h>
+#include <signal.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "physics/server/world_server.hpp"
+
+namespace {
+
+// Written aside and renamed: who finds the file finds the whole number in it.
+void write_port_file(const std::filesystem::path& path, std::uint16_t port) {
+  std::filesystem::path aside = path;
+  aside += ".new";
+  std::ofstream file(aside);
+  file << port << '\n';
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(aside, path, error);
+  if (!file || error) throw std::runtime_error("cannot write the port file " + path.string());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  kenaf::server::ServerOptions options;
+  std::string dialect = "ut2004", log_level = "info", port_file;
+  CLI::App app{"The Kenaf world server: simulated robots behind the USARSim protocol, a TCP connection for each."};
+  app.add_option("--world", options.world, "World: a shipped name or an SDF file")->capture_default_str();
+  app.add_option("--robot", options.robot,
+                 "What USARBot.Kenaf is: a shipped name or a TOML file. Other classes, such as USARBot.P2AT, keep "
+                 "their shipped descriptions")
+      ->capture_default_str();
+  app.add_option("--port", options.port, "TCP port; 0: any free one, which is printed")->capture_default_str();
+  app.add_option("--listen", options.listen_address, "Address to listen on")->capture_default_str();
+  app.add_option("--speed", options.speed, "Times real time; 0: as fast as it goes")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--dialect", dialect, "How messages are written; reading understands both")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"ut2004", "udk"}));
+  app.add_option("--seed", options.seed, "Seed of the sensors' noise")->capture_default_str();
+  app.add_option("--time-step", options.time_step_s, "Physics time step in seconds")->capture_default_str();
+  app.add_option("--port-file", port_file, "Write the port into this file once the server listens");
+  app.add_option("--log-level", log_level, "What is logged")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}));
+  CLI11_PARSE(app, argc, argv);
+  options.udk_dialect = dialect == "udk";
+  spdlog::set_level(spdlog::level::from_str(log_level));
+  spdlog::flush_on(spdlog::level::info);
+
+  // Blocked in every thread, so that only the one that waits for them gets them.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+  try {
+    kenaf::server::WorldServer server(options);
+    std::thread stopper([&] {
+      int signal = 0;
+      sigwait(&signals, &signal);
+      server.stop();
+    });
+    int status = 0;
+    try {
+      spdlog::info("world {} on {}:{}", options.world, options.listen_address, server.port());
+      if (!port_file.empty()) write_port_file(port_file, server.port());
+      server.run();
+      spdlog::info("stopped");
+    } catch (const std::exception& error) {
+      spdlog::critical("{}", error.what());
+      status = 1;
+    }
+    pthread_kill(stopper.native_handle(), SIGTERM);  // where it was not a signal that ended it
+    stopper.join();
+    return status;
+  } catch (const std::exception& error) {
+    spdlog::critical("{}", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,63 @@
+// One connection, without its socket: what the client asked for and what it shall be sent.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "physics/server/dialect.hpp"
+#include "physics/server/frame_schedule.hpp"
+#include "physics/server/log_limiter.hpp"
+#include "physics/world.hpp"
+#include "protocol/usarsim_message.hpp"
+
+namespace kenaf::server {
+
+// The robot of a connection.
+struct SessionRobot {
+  physics::RobotId id;
+  std::string name;
+  const physics::RobotDescription* description;
+  physics::RobotCommand command;  // in force
+  bool normalized = false;        // the client's speeds are per cent of the fastest; sticky
+  bool light = false;
+  struct {
+    double speed = 0, front_rad = 0, rear_rad = 0;
+  } ackermann;  // as the client sent them last
+  struct {
+    double linear_mps = 0, clockwise_radps = 0;
+  } body_velocity;
+};
+
+struct Session {
+  std::uint32_t id = 0;
+  std::string peer;  // for log lines
+  usarsim::LineSplitter lines;
+  std::string out;     // not yet handed to the socket
+  bool close = false;  // the client is beyond hope
+
+  Formats formats{};
+  bool extended = false;  // asked for CONTROL {Type Session}
+  bool world_controller = false;
+  std::optional<SessionRobot> robot;
+  FrameSchedule schedule;
+  std::string deferred;  // lines that take effect when the next frame begins
+
+  std::uint64_t command_timeout_steps = 0;  // 0: the robot keeps its command
+  std::uint64_t last_command_step = 0;
+  bool silent = false;
+
+  struct Camera {
+    std::string name;
+    double field_of_view_rad;
+  };
+  std::vector<Camera> cameras;  // state that SET {Type Camera} keeps
+
+  std::uint64_t bad_lines = 0;
+  LogLimiter bad_line_log{1, 5};
+  LogLimiter lockstep_log{1, 5};
+};
+
+}  // namespace kenaf::server

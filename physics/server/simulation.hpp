@@ -1,0 +1,96 @@
+// A world with its clients: everything the world server does, without sockets and without a clock of its own.
+//
+// Thread safety: none; one thread owns a Simulation. Wall-clock time comes in as an argument: seconds of a steady
+// clock.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "physics/server/clock.hpp"
+#include "physics/server/options.hpp"
+#include "physics/server/session.hpp"
+#include "physics/world.hpp"
+
+namespace kenaf::server {
+
+inline constexpr std::size_t kMostRobots = 64;
+inline constexpr std::uint64_t kMostBadLines = 1000;  // then the connection is closed
+
+// What CONTROL {Type Create} made.
+struct WorldObject {
+  physics::BoxId box;
+  std::string name, class_name;
+  Eigen::Vector3d size_m;
+  bool permanent;  // KillAll leaves it
+};
+
+struct Simulation {
+  // Throws std::runtime_error (physics::DescriptionError) in words.
+  explicit Simulation(const ServerOptions& options);
+
+  // A client came; it is greeted. The session lives until disconnect().
+  Session& connect(std::string peer);
+  // It left, and its robot with it.
+  void disconnect(const Session& session);
+  // Bytes from a client: its whole lines are obeyed at once, or kept for the frame they are meant for.
+  void receive(Session& session, std::string_view bytes, double wall_s);
+
+  struct Progress {
+    bool stepped = false;          // call again at once
+    std::optional<double> wake_s;  // otherwise: at this wall-clock time, or when something is received
+  };
+  // Sends what is due, and runs one step of the world where it may run.
+  Progress advance(double wall_s);
+
+  // The description that a class name stands for; nullptr: there is none (said in the log).
+  const physics::RobotDescription* description_for_class(std::string_view class_name);
+  // The command that a robot of this description has when it is placed: at rest, flippers where they start.
+  static physics::RobotCommand resting_command(const physics::RobotDescription& description);
+  std::size_t robot_count() const;
+  std::uint64_t steps_for(double robot_time_s) const;
+
+  // CONTROL {Type Step}: runs on for so many steps, then stands still and answers.
+  void begin_steps(const Session& session, std::uint64_t steps);
+  // CONTROL {Type Reset}
+  void reset();
+  // Pauses or resumes, and says so to every client that understands it.
+  void set_paused(bool paused);
+
+  const ServerOptions options;
+  const Dialect dialect;
+  physics::World world;
+  Clock clock;
+  std::vector<std::unique_ptr<Session>> sessions;  // in the order of their coming
+  std::vector<WorldObject> objects;
+  std::vector<physics::SensorSample> samples;  // reused by every output
+  double wall_s = 0;                           // of the call that is being worked on
+
+ private:
+  struct StepRequest {
+    std::uint32_t session;
+    std::uint64_t until_step;
+  };
+
+  void handle_line(Session& session, std::string_view line);
+  void send_due(Session& session);
+  void watch_silence(Session& session);
+  void answer_steps();
+  bool held_by_lockstep(std::optional<double>& until_wall_s);
+  Session* find_session(std::uint32_t id);
+
+  std::map<std::string, physics::RobotDescription, std::less<>> descriptions_;  // by shipped name or file
+  std::vector<StepRequest> step_requests_;
+  std::uint32_t last_session_ = 0;
+  std::string due_lines_;  // scratch of send_due()
+  LogLimiter connection_log_{20, 0.5};
+  LogLimiter behind_log_{1, 10};
+  double dropped_s_ = 0;  // robot time that this machine is behind
+  bool idle_ = true;      // time stood still at the last call
+};
+
+}  // namespace kenaf::server

@@ -1,0 +1,26 @@
+#include "physics/server/start_poses.hpp"
+
+#include <algorithm>
+
+#include "protocol/usarsim_message.hpp"
+
+namespace kenaf::server {
+
+const physics::StartPose* find_start_pose(const physics::WorldDescription& world, std::string_view name) {
+  const auto found = std::ranges::find_if(world.start_poses, [name](const physics::StartPose& start) {
+    return usarsim::equal_ignoring_case(start.name, name);
+  });
+  return found == world.start_poses.end() ? nullptr : &*found;
+}
+
+const physics::StartPose& free_start_pose(const physics::World& world, double clear_m) {
+  const auto& starts = world.description().start_poses;
+  const auto robots = world.robots();
+  const auto found = std::ranges::find_if(starts, [&](const physics::StartPose& start) {
+    return std::ranges::none_of(
+        robots, [&](physics::RobotId id) { return (world.truth(id).X_WB.p - start.X_WB.p).norm() < clear_m; });
+  });
+  return found == starts.end() ? starts.front() : *found;
+}
+
+}  // namespace kenaf::server

@@ -1,0 +1,54 @@
+// What a client can ask for, one function for each verb. Each obeys `message` for `session`, and writes its answer,
+// where the protocol has one, to session.out. What cannot be obeyed is ignored, as USARSim does, with a debug line in
+// the log.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "physics/server/simulation.hpp"
+#include "protocol/usarsim_message.hpp"
+
+namespace kenaf::server {
+
+using usarsim::MessageView;
+
+using Verb = void (*)(Simulation&, Session&, const MessageView&);
+struct VerbEntry {
+  std::string_view name;
+  Verb verb;
+  bool takes_frame;  // may carry {Frame n}
+};
+// nullptr: no such verb.
+const VerbEntry* find_verb(const MessageView& message);
+
+// verbs_session.cpp
+void init(Simulation&, Session&, const MessageView&);
+void get_start_poses(Simulation&, Session&, const MessageView&);
+// verbs_drive.cpp
+void drive(Simulation&, Session&, const MessageView&);
+void multi_drive(Simulation&, Session&, const MessageView&);
+// verbs_set.cpp
+void set(Simulation&, Session&, const MessageView&);
+void move_mission_package(Simulation&, Session&, const MessageView&);  // MISPKG, ACT
+// verbs_control.cpp
+void control(Simulation&, Session&, const MessageView&);
+void ping(Simulation&, Session&, const MessageView&);
+// verbs_world.cpp: CONTROL's requests about objects; false: `type` is none of them
+bool control_world(Simulation&, Session&, const MessageView&, std::string_view type);
+// report_geometry.cpp
+void get_geometry(Simulation&, Session&, const MessageView&);
+void get_configuration(Simulation&, Session&, const MessageView&);
+
+// The value of `key`, "" where it is missing.
+std::string_view text_of(const MessageView& message, std::string_view key);
+std::optional<double> number_of(const MessageView& message, std::string_view key);
+std::optional<bool> bool_of(const MessageView& message, std::string_view key);
+bool is_any_of(std::string_view text, std::initializer_list<std::string_view> words);  // without case
+// What a client sent, fit for a log line or an answer: printable, and not longer than 64 characters.
+std::string printable(std::string_view text);
+
+// RES {Time t} {Type type} {Name name} {Status OK}, or {Status Failed} {Reason reason} where a reason is given.
+void answer(const Simulation&, Session&, std::string_view type, std::string_view name, std::string_view reason = {});
+
+}  // namespace kenaf::server

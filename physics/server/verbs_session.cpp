@@ -1,0 +1,116 @@
+// INIT and what may come before it.
+#include <spdlog/spdlog.h>
+
+#include "physics/server/start_poses.hpp"
+#include "physics/server/verbs.hpp"
+#include "physics/server/wire_frames.hpp"
+
+namespace kenaf::server {
+
+namespace {
+
+// What the servers' timers were: UT2004's msgTimer, measured 0.2 s; UDK's StatusTimer 0.1 s.
+double default_period_s(Dialect dialect) {
+  return dialect == Dialect::ut2004 ? 0.2 : 0.1;
+}
+
+// nullopt: a start pose was asked for that the world does not have.
+std::optional<physics::Pose> wanted_pose(const Simulation& simulation, const Session& session,
+                                         const MessageView& message) {
+  if (const auto start = message.find("Start")) {
+    const physics::StartPose* pose = find_start_pose(simulation.world.description(), *start);
+    if (pose != nullptr) return pose->X_WB;
+    spdlog::warn("{}: INIT refused: the world {} has no start pose \"{}\"; GETSTARTPOSES lists them", session.peer,
+                 simulation.world.description().name, printable(*start));
+    return std::nullopt;
+  }
+  physics::Pose X_WB = free_start_pose(simulation.world).X_WB;
+  if (const auto location = read_location(message, "Location")) {
+    X_WB = {*location, Eigen::Quaterniond::Identity()};
+  } else if (message.find("Location")) {
+    spdlog::warn("{}: INIT: {{Location {}}} is not a place; the robot starts at a start pose", session.peer,
+                 printable(text_of(message, "Location")));
+  }
+  if (const auto rotation = read_rotation(message, "Rotation")) X_WB.q = *rotation;
+  return X_WB;
+}
+
+}  // namespace
+
+void init(Simulation& simulation, Session& session, const MessageView& message) {
+  const std::string_view class_name = text_of(message, "ClassName");
+  if (session.robot || session.world_controller) {
+    spdlog::warn("{}: a second INIT on one connection is ignored", session.peer);
+    return;
+  }
+  if (is_any_of(class_name, {"USARBotAPI.WorldController", "WorldController"})) {
+    session.world_controller = true;
+    return;
+  }
+  if (simulation.robot_count() >= kMostRobots) {
+    spdlog::warn("{}: INIT refused: {} robots are in the world already", session.peer, kMostRobots);
+    return;
+  }
+  const physics::RobotDescription* description = simulation.description_for_class(class_name);
+  if (description == nullptr) {
+    spdlog::warn("{}: INIT refused: no robot description for class \"{}\"", session.peer, printable(class_name));
+    return;
+  }
+  const auto X_WB = wanted_pose(simulation, session, message);
+  if (!X_WB) return;
+
+  std::string name = printable(text_of(message, "Name"));
+  if (name.empty()) name = fmt::format("Robot{}", session.id);
+  const physics::RobotId id = simulation.world.add_robot(*description, name, *X_WB);
+  const std::uint64_t step = simulation.world.step_count();
+  SessionRobot& robot = session.robot.emplace();
+  robot.id = id;
+  robot.name = name;
+  robot.description = description;
+  robot.command = Simulation::resting_command(*description);
+  simulation.world.set_command(id, robot.command);
+  session.last_command_step = step;
+  // A Session that was asked for before INIT keeps its period.
+  const bool numbered = session.schedule.numbered();
+  session.schedule.start(
+      step, numbered ? session.schedule.period_steps() : simulation.steps_for(default_period_s(simulation.dialect)),
+      numbered);
+  const Eigen::Vector3d p_WB = simulation.world.truth(id).X_WB.p;
+  spdlog::info("{}: robot {} ({}) at {:.3f}, {:.3f}, {:.3f} m", session.peer, name, description->usarsim_class,
+               p_WB.x(), p_WB.y(), p_WB.z());
+}
+
+void get_start_poses(Simulation& simulation, Session& session, const MessageView&) {
+  const auto& starts = simulation.world.description().start_poses;
+  const usarsim::NumberFormat format = session.formats.value;
+  usarsim::MessageWriter writer(session.out);
+  writer.begin("NFO").integer("StartPoses", static_cast<std::int64_t>(starts.size()));
+  std::string triplets;  // UDK: every pose in one group, name location rotation
+  for (const physics::StartPose& start : starts) {
+    const frames::Vector3 location = wire_vector(start.X_WB.p), rotation = wire_angles(start.X_WB.q);
+    if (simulation.dialect == Dialect::ut2004) {
+      writer.open_group("Name", start.name)
+          .add_numbers("Location", location, format)
+          .add_numbers("Orientation", rotation, format)
+          .close_group();
+      continue;
+    }
+    triplets += start.name;
+    for (const frames::Vector3& vector : {location, rotation}) {
+      for (std::size_t i = 0; i < vector.size(); ++i) {
+        triplets += i == 0 ? ' ' : ',';
+        usarsim::append_number(triplets, vector[i], format);
+      }
+    }
+    triplets += ' ';
+  }
+  if (!triplets.empty()) {
+    triplets.pop_back();
+    writer.open_group(std::string_view(triplets).substr(0, triplets.find(' ')),
+                      std::string_view(triplets).substr(triplets.find(' ') + 1));
+    writer.close_group();
+  }
+  writer.end();
+}
+
+}  // namespace kenaf::server

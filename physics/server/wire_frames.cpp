@@ -1,0 +1,44 @@
+#include "physics/server/wire_frames.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace kenaf::server {
+
+namespace {
+
+constexpr double kFarthest = 1e5;
+
+std::optional<frames::Vector3> read_three(const usarsim::MessageView& message, std::string_view key) {
+  const auto text = message.find(key);
+  frames::Vector3 v;
+  if (!text || !usarsim::parse_numbers(*text, v)) return std::nullopt;
+  for (const double value : v) {
+    if (std::abs(value) > kFarthest) return std::nullopt;
+  }
+  return v;
+}
+
+}  // namespace
+
+frames::Vector3 wire_positive_angles(const Eigen::Vector3d& roll_pitch_yaw) {
+  frames::Vector3 angles = wire_angles(roll_pitch_yaw);
+  for (double& angle : angles) {
+    if (angle < 0) angle += 2 * std::numbers::pi;
+  }
+  return angles;
+}
+
+std::optional<Eigen::Vector3d> read_location(const usarsim::MessageView& message, std::string_view key) {
+  const auto v = read_three(message, key);
+  if (!v) return std::nullopt;
+  return vector_from(frames::rep103_vector_from_usarsim(*v));
+}
+
+std::optional<Eigen::Quaterniond> read_rotation(const usarsim::MessageView& message, std::string_view key) {
+  const auto v = read_three(message, key);
+  if (!v) return std::nullopt;
+  return physics::rotation_from(vector_from(frames::rep103_angles_from_usarsim(*v)));
+}
+
+}  // namespace kenaf::server

@@ -1,0 +1,36 @@
+// Eigen and physics values across the border to USARSim's z-down frames; the signs are protocol/frames.hpp's.
+#pragma once
+
+#include <optional>
+
+#include "physics/pose.hpp"
+#include "protocol/frames.hpp"
+#include "protocol/usarsim_message.hpp"
+
+namespace kenaf::server {
+
+inline frames::Vector3 array_from(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline Eigen::Vector3d vector_from(const frames::Vector3& v) {
+  return {v[0], v[1], v[2]};
+}
+
+inline frames::Vector3 wire_vector(const Eigen::Vector3d& v) {
+  return frames::usarsim_vector_from_rep103(array_from(v));
+}
+inline frames::Vector3 wire_angles(const Eigen::Vector3d& roll_pitch_yaw) {
+  return frames::usarsim_angles_from_rep103(array_from(roll_pitch_yaw));
+}
+// Each in [0, 2 pi), as the UT2004 server and UDK's INS have them.
+frames::Vector3 wire_positive_angles(const Eigen::Vector3d& roll_pitch_yaw);
+inline frames::Vector3 wire_angles(const Eigen::Quaterniond& q) {
+  return wire_angles(physics::roll_pitch_yaw(q));
+}
+
+// A vector or a rotation that a client sent; nullopt where the group is missing, not three numbers, or out of all
+// reason (beyond 100 km), where physics would lose its precision.
+std::optional<Eigen::Vector3d> read_location(const usarsim::MessageView& message, std::string_view key);
+std::optional<Eigen::Quaterniond> read_rotation(const usarsim::MessageView& message, std::string_view key);
+
+}  // namespace kenaf::server
