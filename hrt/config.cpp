@@ -1,0 +1,271 @@
+#include "hrt/config.hpp"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <span>
+#include <vector>
+
+#include "hrt/error.hpp"
+
+namespace kenaf::hrt {
+namespace {
+
+constexpr std::uint32_t kCookie = 0x48'52'54'31;  // "HRT1"
+
+struct NumberKey {
+  const char* name;
+  double hrt_config::*member;
+  double minimum, maximum, standard;
+};
+constexpr NumberKey kNumberKeys[] = {
+    {"period_s", &hrt_config::period_s, 0.001, 1, 0.01},
+    {"command_timeout_s", &hrt_config::command_timeout_s, 0.01, 10, 0.3},
+    {"link_timeout_s", &hrt_config::link_timeout_s, 0.05, 10, 0.5},
+    {"connect_timeout_s", &hrt_config::connect_timeout_s, 0.05, 60, 3},
+    {"max_speed_mmps", &hrt_config::max_speed_mmps, 1, 2000, 200},
+    {"acceleration_mmps2", &hrt_config::acceleration_mmps2, 10, 10000, 400},
+    {"max_turn_degps", &hrt_config::max_turn_degps, 1, 360, 45},
+    {"turn_acceleration_degps2", &hrt_config::turn_acceleration_degps2, 10, 3600, 120},
+    {"distance_tolerance_mm", &hrt_config::distance_tolerance_mm, 0.1, 100, 1},
+    {"angle_tolerance_deg", &hrt_config::angle_tolerance_deg, 0.05, 10, 0.3},
+    {"stuck_time_s", &hrt_config::stuck_time_s, 0.1, 60, 1},
+    {"stuck_current_a", &hrt_config::stuck_current_a, 0, 1000, 0},
+    {"track_gauge_mm", &hrt_config::track_gauge_mm, 50, 5000, 200},
+    {"turn_efficiency", &hrt_config::turn_efficiency, 0.1, 2, 1},
+    {"hold_s", &hrt_config::hold_s, 0, 0.2, 0.05},
+    {"can_timeout_s", &hrt_config::can_timeout_s, 0.05, 60, 2},
+};
+
+struct FlagKey {
+  const char* name;
+  std::int32_t hrt_config::*member;
+};
+constexpr FlagKey kFlagKeys[] = {{"lockstep", &hrt_config::lockstep}, {"reset_robot", &hrt_config::reset_robot}};
+
+// Members that are arrays of char, each with its size.
+struct TextKey {
+  const char* name;
+  std::span<char> (*member)(hrt_config&);
+  bool may_be_empty;
+};
+constexpr TextKey kTextKeys[] = {
+    {"relay", [](hrt_config& c) { return std::span<char>(c.relay); }, false},
+    {"can_interface", [](hrt_config& c) { return std::span<char>(c.can_interface); }, false},
+    {"record", [](hrt_config& c) { return std::span<char>(c.record); }, true},
+};
+
+constexpr const char* kNodesKey = "can_nodes";
+constexpr std::size_t kNodeCount = std::size(hrt_config{}.can_nodes);
+
+// Each set_... returns what is wrong with the value, or an empty string once it is set.
+
+std::string set_number(const NumberKey& key, double value, hrt_config& config) {
+  if (!(value >= key.minimum && value <= key.maximum)) {
+    return fmt::format("{} must be from {} to {}, not {}", key.name, key.minimum, key.maximum, value);
+  }
+  config.*key.member = value;
+  return {};
+}
+
+std::string set_text(const TextKey& key, std::string_view value, hrt_config& config) {
+  const std::span<char> target = key.member(config);
+  if (value.empty() && !key.may_be_empty) return fmt::format("{} must not be empty", key.name);
+  if (value.size() >= target.size()) {
+    return fmt::format("{} must have at most {} bytes, not {}", key.name, target.size() - 1, value.size());
+  }
+  if (value.find('\0') != std::string_view::npos) return fmt::format("{} must not contain a zero byte", key.name);
+  std::ranges::fill(target, '\0');
+  std::ranges::copy(value, target.begin());
+  return {};
+}
+
+std::string set_nodes(std::span<const std::int64_t> nodes, hrt_config& config) {
+  const bool in_range = std::ranges::all_of(nodes, [](std::int64_t node) { return node >= 1 && node <= 127; });
+  const std::set<std::int64_t> different(nodes.begin(), nodes.end());
+  if (nodes.size() != kNodeCount || !in_range || different.size() != kNodeCount) {
+    return fmt::format("{} must be {} different node ids from 1 to 127", kNodesKey, kNodeCount);
+  }
+  std::ranges::transform(nodes, config.can_nodes, [](std::int64_t node) { return static_cast<std::uint8_t>(node); });
+  return {};
+}
+
+// One key of the file. Returns what is wrong with it, or an empty string.
+std::string set_from_toml(std::string_view name, const toml::node& node, hrt_config& config) {
+  for (const NumberKey& key : kNumberKeys) {
+    if (name != key.name) continue;
+    if (!node.is_number()) return fmt::format("{} must be a number", name);
+    return set_number(key, *node.value<double>(), config);
+  }
+  for (const FlagKey& key : kFlagKeys) {
+    if (name != key.name) continue;
+    if (!node.is_boolean()) return fmt::format("{} must be true or false", name);
+    config.*key.member = *node.value<bool>() ? 1 : 0;
+    return {};
+  }
+  for (const TextKey& key : kTextKeys) {
+    if (name != key.name) continue;
+    if (!node.is_string()) return fmt::format("{} must be a string in quotes", name);
+    return set_text(key, *node.value<std::string_view>(), config);
+  }
+  if (name == kNodesKey) {
+    std::vector<std::int64_t> nodes;
+    if (const toml::array* array = node.as_array()) {
+      for (const toml::node& element : *array)
+        nodes.push_back(element.is_integer() ? *element.value<std::int64_t>() : 0);
+    }
+    return set_nodes(nodes, config);
+  }
+  return fmt::format("unknown key '{}'; the keys are the members of hrt_config in hrt.h", name);
+}
+
+template <typename Number>
+std::optional<Number> number_from(std::string_view text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<bool> flag_from(std::string_view text) {
+  if (text == "true" || text == "1") return true;
+  if (text == "false" || text == "0") return false;
+  return std::nullopt;
+}
+
+std::vector<std::int64_t> nodes_from(std::string_view text) {
+  std::vector<std::int64_t> nodes;
+  while (!text.empty()) {
+    const std::size_t comma = std::min(text.find(','), text.size());
+    nodes.push_back(number_from<std::int64_t>(text.substr(0, comma)).value_or(0));
+    text.remove_prefix(std::min(comma + 1, text.size()));
+  }
+  return nodes;
+}
+
+std::string variable_name(const char* key) {
+  std::string name = "KENAF_";
+  for (const char* c = key; *c != '\0'; ++c) name += static_cast<char>(std::toupper(static_cast<unsigned char>(*c)));
+  return name;
+}
+
+std::filesystem::path file_that_applies(const Environment& environment) {
+  if (const char* named = environment("KENAF_CONFIG"); named != nullptr && *named != '\0') return named;
+  std::error_code ignored;
+  if (std::filesystem::exists("kenaf.toml", ignored)) return "kenaf.toml";
+  if (const char* home = environment("HOME"); home != nullptr && *home != '\0') {
+    std::filesystem::path personal = std::filesystem::path(home) / ".config/kenaf/kenaf.toml";
+    if (std::filesystem::exists(personal, ignored)) return personal;
+  }
+  return {};
+}
+
+}  // namespace
+
+hrt_config default_config() {
+  hrt_config config{};
+  config.size = sizeof config;
+  config.cookie = kCookie;
+  for (const NumberKey& key : kNumberKeys) config.*key.member = key.standard;
+  for (const FlagKey& key : kFlagKeys) config.*key.member = 1;
+  std::strcpy(config.relay, "127.0.0.1:45454");
+  std::strcpy(config.can_interface, "can0");
+  for (std::size_t i = 0; i < kNodeCount; ++i) config.can_nodes[i] = static_cast<std::uint8_t>(i + 1);
+  return config;
+}
+
+void apply_toml(std::string_view text, const std::string& name_for_errors, hrt_config& config) {
+  const auto fail = [&](const toml::source_position& where, std::string_view what) {
+    throw Error(HRT_E_CONFIG, fmt::format("{}:{}:{}: {}", name_for_errors, where.line, where.column, what));
+  };
+  toml::table table;
+  try {
+    table = toml::parse(text, name_for_errors);
+  } catch (const toml::parse_error& error) {
+    fail(error.source().begin, error.description());
+  }
+  hrt_config changed = config;
+  for (const auto& [key, node] : table) {
+    // A value's own place says where it is wrong; an unknown key is wrong at its name.
+    const std::string wrong = set_from_toml(key.str(), node, changed);
+    if (!wrong.empty()) fail(wrong.starts_with("unknown") ? key.source().begin : node.source().begin, wrong);
+  }
+  config = changed;
+}
+
+void apply_environment(const Environment& environment, hrt_config& config) {
+  hrt_config changed = config;
+  const auto value_of = [&](const char* key) -> std::optional<std::string_view> {
+    const char* value = environment(variable_name(key).c_str());
+    return value == nullptr ? std::nullopt : std::optional<std::string_view>(value);
+  };
+  const auto check = [](const char* key, const std::string& wrong) {
+    if (!wrong.empty())
+      throw Error(HRT_E_CONFIG, fmt::format("environment variable {}: {}", variable_name(key), wrong));
+  };
+  for (const NumberKey& key : kNumberKeys) {
+    if (const auto text = value_of(key.name)) {
+      const std::optional<double> value = number_from<double>(*text);
+      check(key.name, value ? set_number(key, *value, changed) : fmt::format("'{}' is not a number", *text));
+    }
+  }
+  for (const FlagKey& key : kFlagKeys) {
+    if (const auto text = value_of(key.name)) {
+      const std::optional<bool> value = flag_from(*text);
+      check(key.name, value ? "" : fmt::format("'{}' is neither true nor false", *text));
+      changed.*key.member = *value ? 1 : 0;
+    }
+  }
+  for (const TextKey& key : kTextKeys) {
+    if (const auto text = value_of(key.name)) check(key.name, set_text(key, *text, changed));
+  }
+  if (const auto text = value_of(kNodesKey)) check(kNodesKey, set_nodes(nodes_from(*text), changed));
+  config = changed;
+}
+
+void load_config(const Environment& environment, hrt_config& config) {
+  hrt_config changed = config;
+  if (const std::filesystem::path path = file_that_applies(environment); !path.empty()) {
+    std::ifstream file(path);
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    if (!file) {
+      throw Error(HRT_E_CONFIG, fmt::format("{}: cannot be read: {}; KENAF_CONFIG names the configuration file",
+                                            path.string(), std::strerror(errno)));
+    }
+    apply_toml(text, path.string(), changed);
+  }
+  apply_environment(environment, changed);
+  config = changed;
+}
+
+void check_config(const hrt_config& config) {
+  const auto check = [](const std::string& wrong) {
+    if (!wrong.empty()) throw Error(HRT_E_ARGUMENT, "hrt_config: " + wrong);
+  };
+  if (config.size != sizeof(hrt_config) || config.cookie != kCookie) {
+    check("it was not made by hrt_config_default()");
+  }
+  hrt_config copy = config;
+  for (const NumberKey& key : kNumberKeys) check(set_number(key, config.*key.member, copy));
+  for (const TextKey& key : kTextKeys) {
+    const std::span<char> text = key.member(copy);
+    const auto end = std::ranges::find(text, '\0');
+    if (end == text.end()) check(fmt::format("{} has no terminating zero", key.name));
+    check(end == text.begin() && !key.may_be_empty ? fmt::format("{} must not be empty", key.name) : "");
+  }
+  const std::vector<std::int64_t> nodes(std::begin(config.can_nodes), std::end(config.can_nodes));
+  check(set_nodes(nodes, copy));
+}
+
+}  // namespace kenaf::hrt

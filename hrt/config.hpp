@@ -1,0 +1,33 @@
+// The configuration: hrt.h's hrt_config, its defaults, its TOML file, its environment variables, its ranges.
+//
+// Thread safety: pure functions, but for load_config, which reads the environment and files.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "kenaf/hrt.h"
+
+namespace kenaf::hrt {
+
+hrt_config default_config();
+
+// The value of an environment variable, or nullptr.
+using Environment = std::function<const char*(const char* name)>;
+
+// Overrides `config` by a TOML text. Throws Error(HRT_E_CONFIG) with "name:line:column: what is wrong"; `config` is
+// then unchanged.
+void apply_toml(std::string_view text, const std::string& name_for_errors, hrt_config& config);
+
+// Overrides `config` by KENAF_<KEY> variables. Throws Error(HRT_E_CONFIG) naming the variable.
+void apply_environment(const Environment& environment, hrt_config& config);
+
+// The file that applies ($KENAF_CONFIG, ./kenaf.toml, ~/.config/kenaf/kenaf.toml; none of them is no error), then the
+// environment.
+void load_config(const Environment& environment, hrt_config& config);
+
+// Throws Error(HRT_E_ARGUMENT) naming the member that is out of its range.
+void check_config(const hrt_config& config);
+
+}  // namespace kenaf::hrt

@@ -1,0 +1,82 @@
+#include "hrt/estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/frames.hpp"
+
+namespace kenaf::hrt {
+namespace {
+
+// Time constant that takes a posture sensor's white noise of 0.1 degrees in 10 ms cycles down to 0.03, while the lag
+// stays far below what the last, slow part of a turn can notice.
+constexpr double kHeadingSmoothing_s = 0.05;
+
+// Travel below this is the encoder's resolution, not motion.
+constexpr double kStillTravel_m = 0.00025;
+
+}  // namespace
+
+const Estimate& Estimator::update(const relay::State& state) {
+  Estimate& now = estimate_;
+  const bool first = !started_;
+  now.frame = state.frame;
+  now.dt_s = first ? 0 : std::max(0.0, state.robot_time_s - now.t_s);
+  now.t_s = state.robot_time_s;
+  now.has_encoders = (state.fields & relay::kHasEncoders) != 0;
+  now.has_currents = (state.fields & relay::kHasCurrents) != 0;
+  if (now.has_currents) {
+    now.max_track_a = std::max(std::abs(state.track_a[relay::kLeft]), std::abs(state.track_a[relay::kRight]));
+  }
+
+  // A track's travel since the cycle before; nothing where it was not measured.
+  std::array<double, relay::kTrackCount> moved_m{};
+  if (now.has_encoders) {
+    for (std::size_t i = 0; i < relay::kTrackCount; ++i) {
+      moved_m[i] = has_travel_ ? state.track_m[i] - track_m_[i] : 0;
+      track_m_[i] = state.track_m[i];
+    }
+    has_travel_ = true;
+    now.travel_m = 0.5 * (track_m_[relay::kLeft] + track_m_[relay::kRight]);
+  }
+
+  // Heading: the posture sensor's, unwrapped step by step and smoothed, else the encoders'.
+  const double before_rad = now.heading_rad;
+  if ((state.fields & relay::kHasPosture) != 0) {
+    const double yaw_rad = state.posture_rad[2];
+    if (!has_posture_) {
+      has_posture_ = true;
+      raw_heading_rad_ = yaw_rad;
+      now.heading_rad = yaw_rad;
+      start_heading_rad_ += yaw_rad - before_rad;  // odometry does not jump where the sensor begins late
+    } else {
+      raw_heading_rad_ += frames::wrap_angle(yaw_rad - raw_heading_rad_);
+      now.heading_rad += (raw_heading_rad_ - now.heading_rad) * -std::expm1(-now.dt_s / kHeadingSmoothing_s);
+    }
+  } else if (!has_posture_) {
+    now.heading_rad +=
+        (moved_m[relay::kRight] - moved_m[relay::kLeft]) / settings_.track_gauge_m * settings_.turn_efficiency;
+  }
+
+  // Odometry along the mean heading of the step and, with a posture sensor, up and down the slope.
+  const double yaw_rad = now.heading_rad - start_heading_rad_;
+  const double mean_rad = first ? yaw_rad : 0.5 * (yaw_rad + now.odometry_yaw_rad);
+  const double slope_rad = (state.fields & relay::kHasPosture) != 0 ? state.posture_rad[1] : 0;
+  const double advance_m = 0.5 * (moved_m[relay::kLeft] + moved_m[relay::kRight]) * std::cos(slope_rad);
+  now.odometry_x_m += advance_m * std::cos(mean_rad);
+  now.odometry_y_m += advance_m * std::sin(mean_rad);
+  now.odometry_yaw_rad = yaw_rad;
+
+  const bool moved = std::abs(track_m_[relay::kLeft] - still_track_m_[relay::kLeft]) > kStillTravel_m ||
+                     std::abs(track_m_[relay::kRight] - still_track_m_[relay::kRight]) > kStillTravel_m;
+  if (first || moved) {
+    still_track_m_ = track_m_;
+    now.still_s = 0;
+  } else {
+    now.still_s += now.dt_s;
+  }
+  started_ = true;
+  return now;
+}
+
+}  // namespace kenaf::hrt

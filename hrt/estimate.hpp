@@ -1,0 +1,46 @@
+// What the motions know of the robot in a cycle, from what was measured. SI units, REP 103.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "protocol/relay_datagram.hpp"
+
+namespace kenaf::hrt {
+
+struct Estimate {
+  std::uint32_t frame = 0;
+  double t_s = 0;
+  double dt_s = 0;  // since the cycle before; 0 in the first one
+  bool has_encoders = false;
+  bool has_currents = false;
+  double heading_rad = 0;  // unwrapped: counts full turns; smoothed where it comes from the posture sensor
+  double travel_m = 0;     // mean of both tracks
+  double still_s = 0;      // how long both tracks have stood
+  double max_track_a = 0;  // the larger of both currents' magnitudes
+  double odometry_x_m = 0, odometry_y_m = 0, odometry_yaw_rad = 0;  // since the first cycle
+};
+
+struct EstimatorSettings {
+  double track_gauge_m;
+  double turn_efficiency;  // used where there is no posture sensor
+};
+
+class Estimator {
+ public:
+  explicit Estimator(const EstimatorSettings& settings) : settings_(settings) {}
+  const Estimate& update(const relay::State& state);
+
+ private:
+  EstimatorSettings settings_;
+  Estimate estimate_;
+  bool started_ = false;
+  bool has_posture_ = false;  // once seen, the heading is never the encoders' again
+  bool has_travel_ = false;
+  double raw_heading_rad_ = 0;  // unwrapped, not smoothed
+  double start_heading_rad_ = 0;
+  std::array<double, relay::kTrackCount> track_m_{};
+  std::array<double, relay::kTrackCount> still_track_m_{};  // where the tracks were when still_s began
+};
+
+}  // namespace kenaf::hrt

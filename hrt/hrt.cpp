@@ -1,0 +1,359 @@
+// The C border: arguments are checked, units become SI, exceptions become return codes. Behaviour is in robot.cpp.
+#include "kenaf/hrt.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <new>
+
+#include "hrt/config.hpp"
+#include "hrt/error.hpp"
+#include "hrt/presentation.hpp"
+#include "hrt/robot.hpp"
+#include "hrt/transport.hpp"
+
+using kenaf::hrt::Error;
+using kenaf::hrt::kDegrees;
+using kenaf::hrt::kMillimetres;
+using kenaf::hrt::Robot;
+using kenaf::hrt::Snapshot;
+
+namespace {
+
+// The first published sizes: a program compiled then may pass a struct that ends there.
+constexpr std::size_t kFirstStateSize = sizeof(hrt_state);
+constexpr std::size_t kFirstConfigSize = sizeof(hrt_config);
+
+thread_local char last_error[600];
+
+// The one robot of the process. Never destroyed: threads of the user may outlive main().
+struct Holder {
+  std::mutex mutex;
+  std::shared_ptr<Robot> robot;
+  bool opening = false;
+};
+Holder& holder() {
+  static Holder* const the_holder = new Holder;
+  return *the_holder;
+}
+
+void remember(const char* text) {
+  const std::size_t length = std::min(std::strlen(text), sizeof last_error - 1);
+  std::memcpy(last_error, text, length);
+  last_error[length] = '\0';
+  std::replace(last_error, last_error + length, '\n', ' ');
+}
+
+template <typename Body>
+int guarded(Body&& body) noexcept {
+  try {
+    body();
+    return HRT_OK;
+  } catch (const Error& error) {
+    remember(error.what());
+    return error.code();
+  } catch (const std::bad_alloc&) {
+    remember("out of memory");
+  } catch (const std::exception& error) {
+    remember(error.what());
+  } catch (...) {
+    remember("unknown failure inside of the library");
+  }
+  return HRT_E_INTERNAL;
+}
+
+std::shared_ptr<Robot> open_robot() {
+  Holder& h = holder();
+  const std::lock_guard lock(h.mutex);
+  if (!h.robot)
+    throw Error(HRT_E_NOT_INITIALISED, "no robot is open: call hrt_kenaf_init() first and look at what it returns");
+  return h.robot;
+}
+
+void require(bool fine, const std::string& what) {
+  if (!fine) throw Error(HRT_E_ARGUMENT, what);
+}
+
+// Throws unless `value` is a number from `minimum` to `maximum`.
+void require_range(double value, double minimum, double maximum, const char* what) {
+  require(value >= minimum && value <= maximum,
+          fmt::format("{} must be from {} to {}, not {}", what, minimum, maximum, value));
+}
+
+void require_state(const hrt_state* state) {
+  require(state != nullptr, "state is a null pointer");
+  require(state->size >= kFirstStateSize && state->size <= sizeof(hrt_state),
+          "state.size is wrong: begin with `hrt_state state = hrt_state_init();`");
+}
+
+// Copies as much as the program's version of the struct has.
+void copy_state(const Snapshot& snapshot, hrt_state& out) {
+  hrt_state full = kenaf::hrt::state_from(snapshot);
+  full.size = out.size;
+  std::memcpy(&out, &full, out.size);
+}
+
+void open_with(const hrt_config& config) {
+  Holder& h = holder();
+  std::shared_ptr<Robot> lost;
+  {
+    const std::lock_guard lock(h.mutex);
+    if (h.opening || (h.robot && !h.robot->is_lost())) {
+      throw Error(HRT_E_BUSY, h.opening ? "the robot is being opened by another thread" : "the robot is open already");
+    }
+    lost = std::move(h.robot);
+    h.opening = true;
+  }
+  lost.reset();
+  std::shared_ptr<Robot> robot;
+  try {
+    robot = std::make_shared<Robot>(kenaf::hrt::make_transport(), config);
+  } catch (...) {
+    const std::lock_guard lock(h.mutex);
+    h.opening = false;
+    throw;
+  }
+  static std::once_flag registered;
+  std::call_once(registered, [] { std::atexit([] { (void)hrt_close(); }); });
+  const std::lock_guard lock(h.mutex);
+  h.robot = std::move(robot);
+  h.opening = false;
+}
+
+constexpr double kMaxDistance_mm = 1e6, kMaxAngle_deg = 36000, kMaxTrack_mmps = 2000, kMaxFlipper_deg = 360;
+constexpr double kMaxWait_s = 3600, kMaxSleep_s = 86400;
+constexpr double kMinTolerance_deg = 0.1, kMaxTolerance_deg = 90;
+
+}  // namespace
+
+extern "C" {
+
+int hrt_config_fill(hrt_config* config) {
+  return guarded([&] {
+    require(config != nullptr, "config is a null pointer");
+    require(config->size >= kFirstConfigSize && config->size <= sizeof(hrt_config),
+            "config.size is wrong: begin with `hrt_config config = hrt_config_default();`");
+    hrt_config full = kenaf::hrt::default_config();
+    full.size = config->size;
+    std::memcpy(config, &full, config->size);
+  });
+}
+
+int hrt_config_load(hrt_config* config) {
+  return guarded([&] {
+    require(config != nullptr, "config is a null pointer");
+    kenaf::hrt::check_config(*config);
+    kenaf::hrt::load_config([](const char* name) { return std::getenv(name); }, *config);
+  });
+}
+
+int hrt_kenaf_init(void) {
+  return guarded([] {
+    hrt_config config = kenaf::hrt::default_config();
+    kenaf::hrt::load_config([](const char* name) { return std::getenv(name); }, config);
+    open_with(config);
+  });
+}
+
+int hrt_kenaf_init_with(const hrt_config* config) {
+  return guarded([&] {
+    require(config != nullptr, "config is a null pointer");
+    kenaf::hrt::check_config(*config);
+    open_with(*config);
+  });
+}
+
+int hrt_close(void) {
+  return guarded([] {
+    std::shared_ptr<Robot> robot;
+    {
+      Holder& h = holder();
+      const std::lock_guard lock(h.mutex);
+      robot = std::move(h.robot);
+    }
+    if (robot) robot->close();
+  });
+}
+
+int hrt_go_forward(double mm) {
+  return guarded([&] {
+    require_range(mm, -kMaxDistance_mm, kMaxDistance_mm, "hrt_go_forward: mm");
+    open_robot()->go_forward(mm / kMillimetres);
+  });
+}
+
+int hrt_turning(double deg) {
+  return guarded([&] {
+    require_range(deg, -kMaxAngle_deg, kMaxAngle_deg, "hrt_turning: deg");
+    open_robot()->turn(deg / kDegrees);
+  });
+}
+
+int hrt_set_tracks(double left_mmps, double right_mmps) {
+  return guarded([&] {
+    require_range(left_mmps, -kMaxTrack_mmps, kMaxTrack_mmps, "hrt_set_tracks: left_mmps");
+    require_range(right_mmps, -kMaxTrack_mmps, kMaxTrack_mmps, "hrt_set_tracks: right_mmps");
+    open_robot()->set_tracks(left_mmps / kMillimetres, right_mmps / kMillimetres);
+  });
+}
+
+int hrt_set_flipper(hrt_flipper flipper, double deg) {
+  return guarded([&] {
+    // An enumeration from C may hold any number.
+    const int which = static_cast<int>(flipper);
+    require(which >= HRT_FRONT_LEFT && which <= HRT_ALL_FLIPPERS,
+            fmt::format("hrt_set_flipper: there is no flipper {}", which));
+    require_range(deg, -kMaxFlipper_deg, kMaxFlipper_deg, "hrt_set_flipper: deg");
+    const unsigned mask = which == HRT_ALL_FLIPPERS ? 0xfu : 1u << which;
+    const double rad = deg / kDegrees;
+    open_robot()->set_flippers(static_cast<std::uint8_t>(mask), {rad, rad, rad, rad});
+  });
+}
+
+int hrt_set_flippers(double front_left_deg, double front_right_deg, double rear_left_deg, double rear_right_deg) {
+  return guarded([&] {
+    std::array<double, kenaf::hrt::kFlipperCount> angles = {front_left_deg, front_right_deg, rear_left_deg,
+                                                            rear_right_deg};
+    for (double& angle : angles) {
+      require_range(angle, -kMaxFlipper_deg, kMaxFlipper_deg, "hrt_set_flippers: an angle");
+      angle /= kDegrees;
+    }
+    open_robot()->set_flippers(0xf, angles);
+  });
+}
+
+int hrt_stop(void) {
+  return guarded([] { open_robot()->stop(); });
+}
+
+int hrt_wait_flippers(double tolerance_deg, double timeout_s) {
+  return guarded([&] {
+    require_range(tolerance_deg, kMinTolerance_deg, kMaxTolerance_deg, "hrt_wait_flippers: tolerance_deg");
+    require_range(timeout_s, 0, kMaxWait_s, "hrt_wait_flippers: timeout_s");
+    open_robot()->wait_flippers(tolerance_deg / kDegrees, timeout_s);
+  });
+}
+
+int hrt_sleep(double seconds) {
+  return guarded([&] {
+    require_range(seconds, 0, kMaxSleep_s, "hrt_sleep: seconds");
+    const std::shared_ptr<Robot> robot = open_robot();
+    if (seconds > 0) robot->sleep(seconds);
+  });
+}
+
+double hrt_time(void) {
+  double time_s = -1;
+  (void)guarded([&] {
+    Snapshot snapshot;
+    const std::shared_ptr<Robot> robot = open_robot();
+    try {
+      robot->snapshot(snapshot);
+    } catch (const Error&) {
+      // the time of the last state that arrived
+    }
+    time_s = snapshot.measured.robot_time_s;
+  });
+  return time_s;
+}
+
+int hrt_get_state(hrt_state* state) {
+  return guarded([&] {
+    require_state(state);
+    const std::shared_ptr<Robot> robot = open_robot();
+    Snapshot snapshot;
+    const int code = guarded([&] { robot->snapshot(snapshot); });
+    copy_state(snapshot, *state);
+    if (code != HRT_OK) throw Error(code, std::string(last_error));
+  });
+}
+
+int hrt_wait_cycle(hrt_state* state) {
+  return guarded([&] {
+    if (state != nullptr) require_state(state);
+    const std::shared_ptr<Robot> robot = open_robot();
+    robot->wait_cycle();
+    if (state == nullptr) return;
+    Snapshot snapshot;
+    robot->snapshot(snapshot);
+    copy_state(snapshot, *state);
+  });
+}
+
+int hrt_show_status(void) {
+  return guarded([] {
+    const std::shared_ptr<Robot> robot = open_robot();
+    Snapshot snapshot;
+    const int code = guarded([&] { robot->snapshot(snapshot); });
+    const std::string text = kenaf::hrt::status_text(kenaf::hrt::state_from(snapshot), kenaf::hrt::kLibraryName);
+    std::fputs(text.c_str(), stdout);
+    std::fflush(stdout);
+    if (code != HRT_OK) throw Error(code, std::string(last_error));
+  });
+}
+
+int hrt_record_start(const char* path) {
+  return guarded([&] {
+    require(path != nullptr && *path != '\0', "hrt_record_start: path is null or empty");
+    open_robot()->record_start(path);
+  });
+}
+
+int hrt_record_stop(void) {
+  return guarded([] { open_robot()->record_stop(); });
+}
+
+const char* hrt_last_error(void) {
+  return last_error;
+}
+
+const char* hrt_error_name(int error) {
+  switch (error) {
+    case HRT_OK:
+      return "HRT_OK";
+    case HRT_E_NOT_INITIALISED:
+      return "HRT_E_NOT_INITIALISED";
+    case HRT_E_BUSY:
+      return "HRT_E_BUSY";
+    case HRT_E_ARGUMENT:
+      return "HRT_E_ARGUMENT";
+    case HRT_E_CONFIG:
+      return "HRT_E_CONFIG";
+    case HRT_E_LINK:
+      return "HRT_E_LINK";
+    case HRT_E_REFUSED:
+      return "HRT_E_REFUSED";
+    case HRT_E_TIMEOUT:
+      return "HRT_E_TIMEOUT";
+    case HRT_E_STUCK:
+      return "HRT_E_STUCK";
+    case HRT_E_STOPPED:
+      return "HRT_E_STOPPED";
+    case HRT_E_CLOSED:
+      return "HRT_E_CLOSED";
+    case HRT_E_DEVICE:
+      return "HRT_E_DEVICE";
+    case HRT_E_RECORD:
+      return "HRT_E_RECORD";
+    case HRT_E_INTERNAL:
+      return "HRT_E_INTERNAL";
+    default:
+      return "unknown error";
+  }
+}
+
+const char* hrt_version(void) {
+  return KENAF_VERSION;
+}
+
+const char* hrt_library(void) {
+  return kenaf::hrt::kLibraryName;
+}
+
+}  // extern "C"

@@ -1,0 +1,59 @@
+#include "hrt/motion.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace kenaf::hrt {
+
+MotionLimits motion_limits_from(const hrt_config& config) {
+  constexpr double kMetres = 1e-3;
+  constexpr double kRadians = std::numbers::pi / 180;
+  return {
+      .max_speed_mps = config.max_speed_mmps * kMetres,
+      .acceleration_mps2 = config.acceleration_mmps2 * kMetres,
+      .distance_tolerance_m = config.distance_tolerance_mm * kMetres,
+      .max_turn_radps = config.max_turn_degps * kRadians,
+      .turn_acceleration_radps2 = config.turn_acceleration_degps2 * kRadians,
+      .angle_tolerance_rad = config.angle_tolerance_deg * kRadians,
+      .stuck_time_s = config.stuck_time_s,
+      .stuck_current_a = config.stuck_current_a,
+      .track_gauge_m = config.track_gauge_mm * kMetres,
+  };
+}
+
+double Approach::speed(double error, double before, double dt_s) const {
+  const double remaining = std::abs(error);
+  const double wanted =
+      std::max(min_speed, std::min({max_speed, std::sqrt(2 * acceleration * remaining), gain * remaining}));
+  // Speeding up is limited; slowing down follows the goal, whose square root is the deceleration.
+  const double reached = std::abs(before) + acceleration * dt_s;
+  const bool turned_round = before * error < 0;
+  return std::copysign(std::min(wanted, turned_round ? min_speed : std::max(reached, min_speed)), error);
+}
+
+double Approach::duration_s(double distance) const {
+  const double ramp = max_speed * max_speed / acceleration;  // length of both ramps together
+  const double profile = distance > ramp ? (distance - ramp) / max_speed + 2 * max_speed / acceleration
+                                         : 2 * std::sqrt(distance / acceleration);
+  // The exponential part takes longer than the ramp it stands for: a few of its time constants.
+  return profile + 5 / gain;
+}
+
+ProgressWatch::Finding ProgressWatch::look(double remaining, const Estimate& now) {
+  if (remaining <= best_ - step_) {
+    best_ = remaining;
+    progress_t_s_ = now.t_s;
+  }
+  if (stuck_current_a_ <= 0 || !now.has_currents || now.max_track_a <= stuck_current_a_) low_current_t_s_ = now.t_s;
+  if (now.t_s - low_current_t_s_ >= stuck_time_s_) return Finding::overcurrent;
+  if (now.t_s - progress_t_s_ >= stuck_time_s_) return Finding::no_progress;
+  return Finding::fine;
+}
+
+void ProgressWatch::rest(const Estimate& now) {
+  best_ = HUGE_VAL;
+  progress_t_s_ = now.t_s;
+  low_current_t_s_ = now.t_s;
+}
+
+}  // namespace kenaf::hrt

@@ -1,0 +1,343 @@
+#include "hrt/robot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "hrt/motion_forward.hpp"
+#include "hrt/motion_turn.hpp"
+#include "hrt/quiet_thread.hpp"
+
+namespace kenaf::hrt {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A held answer never reaches the 0.25 s after which a world server stops waiting in lock step.
+constexpr auto kLongestHold = std::chrono::milliseconds(200);
+// A motion takes the goal heading of the one before it where the robot is no farther from it.
+constexpr double kSameHeading_rad = 2 * std::numbers::pi / 180;
+// hrt_stop leaves a flipper's command as it is where it has arrived: its servo then does not creep.
+constexpr double kFlipperArrived_rad = 2 * std::numbers::pi / 180;
+// Times of cycles are sums of periods: a wait for ten of them must not miss the tenth by a rounding.
+constexpr double kCycleRounding = 1e-3;
+
+constexpr const char* kFlipperNames[] = {"front left", "front right", "rear left", "rear right"};
+
+}  // namespace
+
+Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
+    : config_(config),
+      limits_(motion_limits_from(config)),
+      transport_(std::move(transport)),
+      estimator_({limits_.track_gauge_m, config.turn_efficiency}) {
+  try {
+    connection_ = transport_->open(config_);
+    const std::optional<relay::State> first = transport_->wait_state();
+    if (!first) throw Error(HRT_E_INTERNAL, "the transport was interrupted while it was being opened");
+    // The first cycle is known before the caller goes on.
+    measured_ = *first;
+    estimate_ = estimator_.update(*first);
+    last_call_t_s_ = estimate_.t_s;
+    due_.push_back(std::this_thread::get_id());
+    if (config_.record[0] != '\0') recorder_ = std::make_unique<Recorder>(config_.record, connection_.lockstep);
+    if (recorder_) recorder_->add(*first, command_);
+    thread_ = start_quiet_thread([this, state = *first] { run(state); });
+  } catch (...) {
+    transport_->close();
+    throw;
+  }
+}
+
+Robot::~Robot() {
+  try {
+    close();
+  } catch (const std::exception&) {
+    // whoever wants to know calls close()
+  }
+}
+
+// ---- Calls that block ----
+
+void Robot::go_forward(double distance_m) {
+  std::unique_lock lock = lock_open();
+  begin_motion();
+  const double heading_rad = motion_heading();
+  run_motion(GoForward(limits_, distance_m, heading_rad, estimate_), heading_rad, lock);
+}
+
+void Robot::turn(double angle_rad) {
+  std::unique_lock lock = lock_open();
+  begin_motion();
+  const double goal_rad = motion_heading() + angle_rad;
+  run_motion(TurnInPlace(limits_, goal_rad, estimate_), goal_rad, lock);
+}
+
+void Robot::wait_flippers(double tolerance_rad, double timeout_s) {
+  std::unique_lock lock = lock_open();
+  if ((measured_.fields & relay::kHasFlippers) == 0) {
+    throw Error(HRT_E_DEVICE, "hrt_wait_flippers: this robot does not measure its flippers");
+  }
+  const double deadline_s = estimate_.t_s + timeout_s;
+  Call call{
+      .kind = Kind::flippers, .step = [&]() -> std::optional<Verdict> {
+        std::string late;
+        for (std::size_t i = 0; i < kFlipperCount; ++i) {
+          if (flipper_is_off(i, tolerance_rad)) late += std::string(late.empty() ? "" : ", ") + kFlipperNames[i];
+        }
+        if (late.empty()) return Verdict{HRT_OK, {}};
+        if (estimate_.t_s < deadline_s) return std::nullopt;
+        return Verdict{HRT_E_TIMEOUT, fmt::format("hrt_wait_flippers: not reached within {} s: {}", timeout_s, late)};
+      }};
+  run_call(call, lock);
+}
+
+void Robot::sleep(double seconds) {
+  std::unique_lock lock = lock_open();
+  const double until_s = estimate_.t_s + seconds - kCycleRounding * connection_.period_s;
+  Call call{.kind = Kind::time, .step = [&]() -> std::optional<Verdict> {
+              return estimate_.t_s >= until_s ? std::optional(Verdict{HRT_OK, {}}) : std::nullopt;
+            }};
+  run_call(call, lock);
+}
+
+void Robot::wait_cycle() {
+  std::unique_lock lock = lock_open();
+  Call call{.kind = Kind::time, .step = [] { return Verdict{HRT_OK, {}}; }};
+  run_call(call, lock);
+}
+
+bool Robot::motion_active() const {
+  return std::ranges::any_of(calls_, [](const Call* call) { return call->kind == Kind::motion; });
+}
+
+void Robot::begin_motion() {
+  if (motion_active()) throw Error(HRT_E_BUSY, "a motion is under way in another thread; hrt_stop() ends it");
+  if (!estimate_.has_encoders) throw Error(HRT_E_DEVICE, "this robot reports no track encoders");
+  user_track_mps_ = {};
+  motion_track_mps_ = {};
+}
+
+double Robot::motion_heading() const {
+  const double near_rad = std::max(kSameHeading_rad, limits_.angle_tolerance_rad);
+  const bool is_near = goal_heading_rad_ && std::abs(*goal_heading_rad_ - estimate_.heading_rad) <= near_rad;
+  return is_near ? *goal_heading_rad_ : estimate_.heading_rad;
+}
+
+template <typename Motion>
+void Robot::run_motion(Motion motion, double heading_rad, std::unique_lock<std::mutex>& lock) {
+  goal_heading_rad_.reset();
+  Call call{.kind = Kind::motion, .step = [&]() -> std::optional<Verdict> {
+              const MotionStep step = motion.step(estimate_);
+              motion_track_mps_ = step.track_speed_mps;
+              if (!step.finished) return std::nullopt;
+              if (step.code == HRT_OK) goal_heading_rad_ = heading_rad;
+              return Verdict{step.code, step.text};
+            }};
+  run_call(call, lock);
+}
+
+void Robot::run_call(Call& call, std::unique_lock<std::mutex>& lock) {
+  call.start_frame = estimate_.frame;
+  calls_.push_back(&call);
+  std::erase(due_, call.owner);
+  program_acted_.notify_one();
+  call_ended_.wait(lock, [&] { return call.verdict.has_value(); });
+  if (call.verdict->code != HRT_OK) throw Error(call.verdict->code, call.verdict->text);
+}
+
+void Robot::end_calls(const std::function<bool(const Call&)>& which, int code, const std::string& text) {
+  std::erase_if(calls_, [&](Call* call) {
+    if (!which(*call)) return false;
+    call->verdict = Verdict{code, text};
+    return true;
+  });
+  call_ended_.notify_all();
+}
+
+// ---- Calls that do not block ----
+
+std::unique_lock<std::mutex> Robot::lock_open() {
+  std::unique_lock lock(mutex_);
+  if (failure_) throw *failure_;
+  last_call_t_s_ = estimate_.t_s;
+  return lock;
+}
+
+void Robot::note_setting() {
+  hold_until_ =
+      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(config_.hold_s));
+  program_acted_.notify_one();
+}
+
+void Robot::set_tracks(double left_mps, double right_mps) {
+  const std::unique_lock lock = lock_open();
+  end_calls([](const Call& call) { return call.kind == Kind::motion; }, HRT_E_STOPPED,
+            "hrt_set_tracks() of another thread ended this motion");
+  goal_heading_rad_.reset();
+  user_track_mps_ = {left_mps, right_mps};
+  note_setting();
+}
+
+void Robot::set_flippers(std::uint8_t mask, const std::array<double, kFlipperCount>& angle_rad) {
+  const std::unique_lock lock = lock_open();
+  for (std::size_t i = 0; i < kFlipperCount; ++i) {
+    if ((mask >> i & 1) != 0) flipper_rad_[i] = angle_rad[i];
+  }
+  flipper_mask_ |= mask;
+  note_setting();
+}
+
+void Robot::stop() {
+  const std::unique_lock lock = lock_open();
+  end_calls([](const Call& call) { return call.kind != Kind::time; }, HRT_E_STOPPED, "hrt_stop() ended this call");
+  goal_heading_rad_.reset();
+  user_track_mps_ = {};
+  for (std::size_t i = 0; i < kFlipperCount; ++i) {
+    if (flipper_is_off(i, kFlipperArrived_rad)) flipper_rad_[i] = measured_.flipper_rad[i];
+  }
+  note_setting();
+}
+
+bool Robot::flipper_is_off(std::size_t flipper, double tolerance_rad) const {
+  const bool known = (flipper_mask_ >> flipper & 1) != 0 && (measured_.fields & relay::kHasFlippers) != 0;
+  return known && std::abs(measured_.flipper_rad[flipper] - flipper_rad_[flipper]) > tolerance_rad;
+}
+
+void Robot::snapshot(Snapshot& out) {
+  const std::lock_guard lock(mutex_);
+  out.measured = measured_;
+  out.estimate = estimate_;
+  out.commanded = command_;
+  out.lost_cycles = lost_cycles_;
+  out.round_trip_s = transport_->round_trip_s();
+  out.motion_active = motion_active();
+  out.paused = transport_->is_paused();
+  out.recording = recorder_ != nullptr;
+  out.lockstep = connection_.lockstep;
+  if (failure_) throw *failure_;
+  last_call_t_s_ = estimate_.t_s;
+}
+
+bool Robot::is_lost() const {
+  const std::lock_guard lock(mutex_);
+  return failure_.has_value();
+}
+
+void Robot::record_start(const std::string& path) {
+  const std::unique_lock lock = lock_open();
+  if (recorder_) throw Error(HRT_E_BUSY, "a recording is under way; hrt_record_stop() ends it");
+  recorder_ = std::make_unique<Recorder>(path, connection_.lockstep);
+  recorder_->add(measured_, command_);
+  note_setting();
+}
+
+void Robot::record_stop() {
+  std::unique_ptr<Recorder> recorder;
+  {
+    const std::lock_guard lock(mutex_);  // also where the link is lost: what came before it is worth keeping
+    recorder = std::move(recorder_);
+    last_call_t_s_ = estimate_.t_s;
+    note_setting();
+  }
+  if (!recorder) throw Error(HRT_E_RECORD, "no recording is under way");
+  recorder->finish();
+}
+
+void Robot::close() {
+  const std::lock_guard one(close_mutex_);
+  {
+    const std::lock_guard lock(mutex_);
+    closing_ = true;
+    failure_ = Error(HRT_E_CLOSED, "hrt_close() was called");
+    end_calls([](const Call&) { return true; }, HRT_E_CLOSED, failure_->what());
+    program_acted_.notify_one();
+  }
+  if (thread_.joinable()) {
+    transport_->interrupt();
+    thread_.join();
+    transport_->close();
+  }
+  std::unique_ptr<Recorder> recorder;
+  {
+    const std::lock_guard lock(mutex_);
+    recorder = std::move(recorder_);
+  }
+  if (recorder) recorder->finish();
+}
+
+// ---- The cycle thread ----
+
+void Robot::run(relay::State state) {
+  try {
+    for (std::optional<relay::State> next = state; next; next = transport_->wait_state()) {
+      transport_->send(answer(*next));
+    }
+  } catch (const Error& error) {
+    fail(error.code(), error.what());
+  } catch (const std::exception& error) {
+    fail(HRT_E_INTERNAL, fmt::format("the library's cycle thread failed: {}", error.what()));
+  }
+}
+
+void Robot::fail(int code, const std::string& text) {
+  const std::lock_guard lock(mutex_);
+  if (!failure_) failure_ = Error(code, text);
+  end_calls([](const Call&) { return true; }, code, text);
+}
+
+DriveCommand Robot::answer(const relay::State& state) {
+  std::unique_lock lock(mutex_);
+  if (state.frame != estimate_.frame) {  // the first one was taken by the constructor
+    lost_cycles_ += state.frame - estimate_.frame - 1;
+    measured_ = state;
+    estimate_ = estimator_.update(state);
+    if (recorder_) recorder_->add(state, command_);
+  }
+  step_calls();
+  if (connection_.lockstep) {
+    hold(lock);
+    step_calls();  // those that began during the hold
+  }
+  compose_command();
+  return command_;
+}
+
+void Robot::step_calls() {
+  bool ended = false;
+  std::erase_if(calls_, [&](Call* call) {
+    if (call->stepped_frame == estimate_.frame) return false;
+    call->stepped_frame = estimate_.frame;
+    std::optional<Verdict> verdict = call->step();
+    if (!verdict || estimate_.frame == call->start_frame) return false;
+    call->verdict = std::move(verdict);
+    due_.push_back(call->owner);
+    ended = true;
+    return true;
+  });
+  if (ended) call_ended_.notify_all();
+}
+
+void Robot::hold(std::unique_lock<std::mutex>& lock) {
+  const Clock::time_point latest = Clock::now() + kLongestHold;
+  note_setting();
+  while (!due_.empty() && !closing_) {
+    const Clock::time_point until = std::min(hold_until_, latest);
+    if (Clock::now() >= until) break;
+    program_acted_.wait_until(lock, until);
+  }
+  due_.clear();
+}
+
+void Robot::compose_command() {
+  if (!calls_.empty()) last_call_t_s_ = estimate_.t_s;
+  if (estimate_.t_s - last_call_t_s_ > config_.command_timeout_s) user_track_mps_ = {};
+  command_.track_speed_mps = motion_active() ? motion_track_mps_ : user_track_mps_;
+  if (closing_) command_.track_speed_mps = {};
+  command_.flipper_mask = flipper_mask_;
+  command_.flipper_rad = flipper_rad_;
+}
+
+}  // namespace kenaf::hrt

@@ -1,0 +1,132 @@
+// An open robot: the cycle thread that answers every state of the transport, and the calls that users' threads wait in.
+// SI units; hrt.cpp is the border to hrt.h's.
+//
+// One cycle: take the state, step the motion and whatever is waited for, hold the answer back while a program whose
+// call has just ended is due to make its next one (lock step only), send the answer.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "hrt/error.hpp"
+#include "hrt/estimate.hpp"
+#include "hrt/motion.hpp"
+#include "hrt/recorder.hpp"
+#include "hrt/transport.hpp"
+#include "kenaf/hrt.h"
+
+namespace kenaf::hrt {
+
+// Everything that is known, as of one cycle.
+struct Snapshot {
+  relay::State measured{};
+  Estimate estimate;
+  DriveCommand commanded;
+  std::uint64_t lost_cycles = 0;
+  double round_trip_s = 0;
+  bool motion_active = false, paused = false, recording = false, lockstep = false;
+};
+
+// Thread safety: every function may be called from any thread. All of them throw Error with the codes that hrt.h names.
+class Robot {
+ public:
+  // Opens the transport, waits for the first state and, where the configuration asks for it, begins a recording.
+  Robot(std::unique_ptr<Transport> transport, const hrt_config& config);
+  ~Robot();
+  Robot(const Robot&) = delete;
+  Robot& operator=(const Robot&) = delete;
+
+  // These block.
+  void go_forward(double distance_m);
+  void turn(double angle_rad);
+  void wait_flippers(double tolerance_rad, double timeout_s);
+  void sleep(double seconds);
+  void wait_cycle();
+
+  void set_tracks(double left_mps, double right_mps);
+  void set_flippers(std::uint8_t mask, const std::array<double, kFlipperCount>& angle_rad);
+  void stop();
+
+  void record_start(const std::string& path);
+  void record_stop();
+
+  // Fills `out` also where the link is lost; throws afterwards then.
+  void snapshot(Snapshot& out);
+  bool is_lost() const;
+
+  // Stops the robot and ends every call with HRT_E_CLOSED. Throws where the recording is not whole.
+  void close();
+
+ private:
+  // What ends a call: a code, and words where it failed.
+  struct Verdict {
+    int code;
+    std::string text;
+  };
+  enum class Kind { motion, flippers, time };
+  // A blocking call; it lives on the stack of the thread that waits in it.
+  struct Call {
+    Kind kind;
+    std::function<std::optional<Verdict>()> step;  // looks at the newest cycle; called under the lock
+    std::thread::id owner = std::this_thread::get_id();
+    std::uint32_t start_frame = 0;  // it ends in a later cycle than this one
+    std::uint32_t stepped_frame = 0;
+    std::optional<Verdict> verdict{};
+  };
+  template <typename Motion>
+  void run_motion(Motion motion, double heading_rad, std::unique_lock<std::mutex>& lock);
+  void run_call(Call& call, std::unique_lock<std::mutex>& lock);
+  void end_calls(const std::function<bool(const Call&)>& which, int code, const std::string& text);
+
+  void run(relay::State state);
+  DriveCommand answer(const relay::State& state);
+  void step_calls();
+  void hold(std::unique_lock<std::mutex>& lock);
+  void compose_command();
+  void fail(int code, const std::string& text);
+
+  std::unique_lock<std::mutex> lock_open();  // throws where the link is lost or the robot closed
+  void note_setting();                       // the program has set something: it is at work
+  double motion_heading() const;
+  bool motion_active() const;
+  void begin_motion();
+  bool flipper_is_off(std::size_t flipper, double tolerance_rad) const;
+
+  const hrt_config config_;
+  const MotionLimits limits_;
+  std::unique_ptr<Transport> transport_;
+  Connection connection_{};
+
+  mutable std::mutex mutex_;  // guards all below
+  std::condition_variable call_ended_, program_acted_;
+  std::optional<Error> failure_;  // link lost or closed: set once
+  bool closing_ = false;
+  relay::State measured_{};
+  Estimator estimator_;
+  Estimate estimate_;
+  std::uint64_t lost_cycles_ = 0;
+  DriveCommand command_;  // the newest answer, in force from the next cycle on
+  std::array<double, kTrackCount> user_track_mps_{};
+  std::array<double, kTrackCount> motion_track_mps_{};
+  std::uint8_t flipper_mask_ = 0;  // what the program wants, as DriveCommand has it
+  std::array<double, kFlipperCount> flipper_rad_{};
+  std::optional<double> goal_heading_rad_;  // of the motion before, while nothing else has moved the robot
+  double last_call_t_s_ = 0;
+  std::vector<Call*> calls_;          // those that wait
+  std::vector<std::thread::id> due_;  // threads whose call has just ended: the answer is held for them
+  std::chrono::steady_clock::time_point hold_until_;
+  std::unique_ptr<Recorder> recorder_;
+
+  std::mutex close_mutex_;  // one close at a time
+  std::thread thread_;
+};
+
+}  // namespace kenaf::hrt

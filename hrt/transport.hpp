@@ -1,0 +1,60 @@
+// What lies between the shared behaviour and a robot: one transport in libkenaf_sim (UDP to the relay), one in
+// libkenaf_real (SocketCAN). SI units and the frames of protocol/relay_datagram.hpp.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "kenaf/hrt.h"
+#include "protocol/relay_datagram.hpp"
+
+namespace kenaf::hrt {
+
+using relay::kFlipperCount;
+using relay::kTrackCount;
+
+// What the robot shall do from the next cycle on. Complete and absolute.
+struct DriveCommand {
+  std::array<double, kTrackCount> track_speed_mps{};
+  std::uint8_t flipper_mask = 0;  // bit i: flipper_rad[i] was ever commanded
+  std::array<double, kFlipperCount> flipper_rad{};
+};
+
+struct Connection {
+  double period_s;  // in force
+  bool lockstep;    // in force
+};
+
+// Thread safety: open, wait_state, send and close belong to one thread at a time; interrupt and the link health may be
+// called from any thread while it is open.
+class Transport {
+ public:
+  virtual ~Transport() = default;
+
+  // Throws Error in words that say what to start or to connect.
+  virtual Connection open(const hrt_config& config) = 0;
+
+  // Waits for the next cycle's state, whose frame is greater than all before; nullopt after interrupt(). Throws
+  // Error(HRT_E_LINK) once the link is known to be lost, Error(HRT_E_DEVICE) where a device failed.
+  virtual std::optional<relay::State> wait_state() = 0;
+
+  // Answers the state that wait_state returned last. Delivers it even where packets get lost.
+  virtual void send(const DriveCommand& command) = 0;
+
+  // Makes wait_state return, now or at its next call.
+  virtual void interrupt() = 0;
+
+  // Stops the robot and gives it back. Does not throw.
+  virtual void close() = 0;
+
+  virtual double round_trip_s() const = 0;  // newest, wall clock; 0: not known yet
+  virtual bool is_paused() const = 0;       // somebody has stopped robot time
+};
+
+// The library's own transport and name: each of the two libraries defines these.
+std::unique_ptr<Transport> make_transport();
+extern const char* const kLibraryName;  // "sim" or "real"
+
+}  // namespace kenaf::hrt

@@ -1,0 +1,368 @@
+/* hrt.h - control of the Kenaf robot: two main tracks under its body, four tracked flipper arms.
+ *
+ * One program, two libraries. A program written against this header is linked either with libkenaf_real, which drives
+ * the robot, or with libkenaf_sim, which drives its simulation. Nothing else changes: both export the same functions
+ * with the same types, and everything above the transport is one implementation.
+ *
+ *     #include <kenaf/hrt.h>
+ *
+ *     int main(void) {
+ *       if (hrt_kenaf_init() != HRT_OK) return 1;      // hrt_last_error() says why
+ *       for (int side = 0; side < 4; ++side)
+ *         if (hrt_go_forward(100) != HRT_OK || hrt_turning(90) != HRT_OK) return 1;
+ *       return hrt_close() == HRT_OK ? 0 : 1;
+ *     }
+ *
+ * Robot time
+ *   Every time here is the robot's: seconds on the robot's clock, which a simulator may run slower or faster than the
+ *   wall clock, or stop. Sleeping, waiting, time limits and command_timeout_s all count robot time, so that the
+ *   speed of a simulation changes no result. The few times that cannot (how long a silent link is waited for) are said
+ *   to be wall-clock time where they stand. The clock advances in cycles of a fixed period (default 10 ms): once a
+ *   cycle the library receives what was measured and answers with what the robot shall do in the next cycle.
+ *
+ * Lock step
+ *   A simulator in lock step (the default) does not begin the next cycle before this one was answered. While a blocking
+ *   call of this header has just returned, the library keeps the answer back until the program's next blocking call,
+ *   at most hold_s of wall-clock time after the last call that set something. So a program made of blocking calls,
+ *   with any calls that set something between them, gives the same run every time and at every speed of the
+ *   simulator. A program that works or sleeps longer than hold_s on the wall clock sees robot time run on meanwhile.
+ *   The real robot does not wait for anybody.
+ *
+ * Units and frames
+ *   Millimetres, degrees, seconds, amperes, volts. The body frame is x forward, y left, z up (REP 103); angles of a
+ *   pose are intrinsic z-y-x angles. Yaw and turning are positive to the left (counter-clockwise seen from above),
+ *   pitch is positive nose down, roll is positive right side down. A flipper's angle is 0 straight out along the body
+ *   and positive with its tip up, for all four flippers. Speeds and travel of a track are those of its surface,
+ *   positive where they drive the robot forward.
+ *
+ * Threads
+ *   There is one robot per process. After hrt_kenaf_init every function may be called from any thread at any time,
+ *   but not from a signal handler. hrt_go_forward and hrt_turning are motions: one at a time, a second one is told
+ *   HRT_E_BUSY. Sleeping and waiting may go on in any number of threads beside it. hrt_stop and hrt_get_state never
+ *   wait for the robot. The library runs threads of its own, with all signals blocked. A child of fork() must
+ *   not use the robot of its parent.
+ *
+ * Errors
+ *   A function returns HRT_OK (0) or one of the negative HRT_E... values, and explains in hrt_last_error(). No function
+ *   ends the process, throws through this border, or crashes on a null pointer: that is HRT_E_ARGUMENT. A function
+ *   that fails on its arguments or its state has changed nothing.
+ *
+ * Safety
+ *   - A motion ends with an error, not with a hang: stuck, link lost, or its time is up. After any of them the tracks
+ *     are commanded to stand.
+ *   - Track speeds hold until changed, but no longer than command_timeout_s after the last call of any hrt_ function;
+ *     a blocking call counts as calling all the while.
+ *   - Where the whole program falls silent (killed, hung, network cut), the robot stops command_timeout_s after its
+ *     last command. This does not depend on the program.
+ *   - The simulation is not the robot. A program that is safe in it is not for that reason safe.
+ */
+#ifndef KENAF_HRT_H
+#define KENAF_HRT_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+#if defined(__GNUC__)
+#pragma GCC visibility push(default) /* the libraries hide everything else */
+#endif
+
+/* The binary interface this header describes. The functions that every program calls first carry its number in their
+ * linked name, so that a program compiled with the header of another interface fails to link or to load, instead
+ * of misreading structs. In source they are hrt_kenaf_init and hrt_kenaf_init_with; bindings of other languages, which
+ * do not read this header, call hrt_kenaf_init_abi1 and hrt_kenaf_init_with_abi1. */
+#define HRT_ABI 1
+#define hrt_kenaf_init hrt_kenaf_init_abi1
+#define hrt_kenaf_init_with hrt_kenaf_init_with_abi1
+
+/* What a function returns. */
+enum {
+  HRT_OK = 0,
+  HRT_E_NOT_INITIALISED = -1, /* hrt_kenaf_init was not called, or did not succeed, or hrt_close was called */
+  HRT_E_BUSY = -2,            /* another motion is under way; the robot or a recording is already open */
+  HRT_E_ARGUMENT = -3,        /* a null pointer, a number that is not finite or out of its range */
+  HRT_E_CONFIG = -4,          /* the configuration file or an environment variable is wrong: file, line, column named */
+  HRT_E_LINK = -5,            /* no answer from the robot or its simulation; only hrt_close and a new init help */
+  HRT_E_REFUSED = -6,         /* the relay answered, but gives no robot; its reason is in hrt_last_error() */
+  HRT_E_TIMEOUT = -7,         /* the goal was not reached within its time limit (robot time) */
+  HRT_E_STUCK = -8,           /* the sensors show no progress, or a track's current stayed above stuck_current_a */
+  HRT_E_STOPPED = -9,         /* hrt_stop or hrt_set_tracks of another thread ended this motion */
+  HRT_E_CLOSED = -10,         /* hrt_close of another thread ended this call */
+  HRT_E_DEVICE = -11,         /* no such device, it does not answer, or it cannot do what was asked */
+  HRT_E_RECORD = -12,         /* the recording could not be written, or is incomplete */
+  HRT_E_INTERNAL = -13        /* out of memory or threads, or a defect of the library */
+};
+
+/* The order of the elements of every array of flippers and tracks. */
+typedef enum hrt_flipper {
+  HRT_FRONT_LEFT = 0,
+  HRT_FRONT_RIGHT = 1,
+  HRT_REAR_LEFT = 2,
+  HRT_REAR_RIGHT = 3,
+  HRT_ALL_FLIPPERS = 4 /* only as the argument of hrt_set_flipper */
+} hrt_flipper;
+enum { HRT_LEFT = 0, HRT_RIGHT = 1 };
+
+/* ---- Configuration ----
+ *
+ * Three ways lead to it, each overriding the one before:
+ *   1. the defaults built into the library,
+ *   2. a TOML file: the one that the environment variable KENAF_CONFIG names, else ./kenaf.toml, else
+ *      ~/.config/kenaf/kenaf.toml; its keys are the member names below; one that does not exist there is an error,
+ *   3. environment variables: KENAF_ and the member's name in capitals, such as KENAF_RELAY=127.0.0.1:45454 or
+ *      KENAF_PERIOD_S=0.02; true and false, or 1 and 0; can_nodes as 1,2,3,4,5,6.
+ * Both libraries read all keys, so that one file serves both; each uses its own. */
+typedef struct hrt_config {
+  uint32_t size;   /* sizeof(hrt_config) of the program, so that the struct can grow */
+  uint32_t cookie; /* set by hrt_config_default, checked by hrt_kenaf_init_with */
+
+  /* Cycle and link. */
+  double period_s;          /* one cycle, robot time: 0.001 to 1, default 0.01 */
+  double command_timeout_s; /* silence after which the tracks stop, robot time: 0.01 to 10, default 0.3 */
+  double link_timeout_s;    /* silence of the link that is an error, wall clock: 0.05 to 10, default 0.5 */
+  double connect_timeout_s; /* how long init waits for the robot, wall clock: 0.05 to 60, default 3 */
+
+  /* Motions: hrt_go_forward and hrt_turning. */
+  double max_speed_mmps;            /* 1 to 2000, default 200 */
+  double acceleration_mmps2;        /* 10 to 10000, default 400; also the deceleration */
+  double max_turn_degps;            /* 1 to 360, default 45 */
+  double turn_acceleration_degps2;  /* 10 to 3600, default 120 */
+  double distance_tolerance_mm;     /* 0.1 to 100, default 1 */
+  double angle_tolerance_deg;       /* 0.05 to 10, default 0.3 */
+  double stuck_time_s;              /* without progress, robot time: 0.1 to 60, default 1 */
+  double stuck_current_a;           /* a track's current that counts as stuck after stuck_time_s; 0 to 1000, 0 = off */
+  double track_gauge_mm;            /* between the tracks' centre lines: 50 to 5000, default 200 */
+  double turn_efficiency;           /* turn of the body for a turn of 1 by the tracks, which slip when they turn:
+                                       0.1 to 2, default 1. Used only where there is no posture sensor. */
+
+  /* libkenaf_sim. */
+  double hold_s;          /* longest hold of a cycle in lock step, wall clock: 0 to 0.2, default 0.05 */
+  int32_t lockstep;       /* 1: robot time waits for this program (default); 0: it does not */
+  int32_t reset_robot;    /* 1: init puts the robot back to its start pose (default); 0: it stays where it is */
+  char relay[128];        /* HOST:PORT of kenaf-relayd, default 127.0.0.1:45454 */
+
+  /* libkenaf_real. */
+  double can_timeout_s;   /* how long init waits for the drives' heartbeats, wall clock: 0.05 to 60, default 2 */
+  char can_interface[16]; /* default can0 */
+  uint8_t can_nodes[6];   /* CANopen node ids, 1 to 127, all different, default 1 to 6: track left, track right,
+                             flippers front left, front right, rear left, rear right */
+  char reserved[2];       /* 0 */
+
+  /* Recording. */
+  char record[1024];      /* a file: hrt_kenaf_init starts a recording into it, see hrt_record_start; "" = none */
+} hrt_config;
+
+/* Fills *config with the defaults. config->size must be set; hrt_config_default() does both.
+ * HRT_E_ARGUMENT: null, or a size that no version of this header had. Any thread, before or after init. */
+int hrt_config_fill(hrt_config* config);
+
+/* Overrides *config by file and environment as above; members named in neither keep their value.
+ * HRT_E_ARGUMENT: null or not from hrt_config_default(); HRT_E_CONFIG: *config is unchanged, hrt_last_error() names
+ * file, line and column, or the variable. Reads the environment: not while another thread changes it. */
+int hrt_config_load(hrt_config* config);
+
+/* The built-in defaults, ready to be changed and given to hrt_kenaf_init_with. */
+static inline hrt_config hrt_config_default(void) {
+  hrt_config config;
+  memset(&config, 0, sizeof config);
+  config.size = (uint32_t)sizeof config;
+  (void)hrt_config_fill(&config);
+  return config;
+}
+
+/* ---- Beginning and end ---- */
+
+/* Opens the robot, with the configuration of file and environment, and waits until its first state arrived. The robot
+ * does not move; with reset_robot a simulated one is back at its start pose. Odometry begins at 0.
+ * Blocks up to connect_timeout_s (can_timeout_s) of wall-clock time.
+ * HRT_E_BUSY: the robot is open already (one whose link was lost is closed and opened anew), or is being opened;
+ * HRT_E_CONFIG; HRT_E_LINK: nobody answers, hrt_last_error() says what to start; HRT_E_REFUSED: another program has
+ * the robot, or the relay has no world server; HRT_E_DEVICE: (libkenaf_real) no SocketCAN in the kernel, no such
+ * interface, interface down, or drives that do not answer, by name; HRT_E_RECORD: the recording asked for by the
+ * configuration cannot be begun.
+ * In this release libkenaf_real ends with HRT_E_DEVICE even where all drives answer: it opens the bus and looks for
+ * the drives' heartbeats, but does not drive them yet. It sends nothing; nothing moves. */
+int hrt_kenaf_init(void);
+
+/* The same with *config alone; file and environment are not read (hrt_config_load does that).
+ * Also HRT_E_ARGUMENT: null, not from hrt_config_default(), or a member out of its range; hrt_last_error() names it. */
+int hrt_kenaf_init_with(const hrt_config* config);
+
+/* Stops the tracks, ends a recording and gives the robot back. Calls that wait in other threads return HRT_E_CLOSED.
+ * Also called when the process ends by exit() or by returning from main(). Without an open robot: HRT_OK.
+ * HRT_E_RECORD: closed, but the recording is incomplete. */
+int hrt_close(void);
+
+/* ---- Motions: blocking, closed-loop, one at a time ----
+ *
+ * Both follow a trapezoid speed profile by the sensors and return once the goal is reached within its tolerance and
+ * the robot stands, with the tracks commanded to 0. A motion begins from the goal heading of the one before it where
+ * the robot still stands near it (2 degrees), so that the errors of a chain of motions do not add up.
+ *
+ * HRT_E_NOT_INITIALISED; HRT_E_BUSY: another thread's motion is under way; HRT_E_ARGUMENT; HRT_E_LINK;
+ * HRT_E_STUCK: no progress by the sensors for stuck_time_s - travel is measured at the tracks, so that tracks which
+ * spin in front of a wall are not seen as stuck, unless stuck_current_a is set; HRT_E_TIMEOUT: three times the time
+ * that the profile takes (five times for a turn) plus 5 s are up; HRT_E_STOPPED; HRT_E_CLOSED; HRT_E_DEVICE: the robot
+ * has no track encoders. */
+
+/* Drives `mm` straight forward (negative: backward), -1000000 to 1000000, and holds the heading by the posture sensor
+ * or, without one, by the track encoders. */
+int hrt_go_forward(double mm);
+
+/* Turns in place by `deg` to the left (negative: to the right), -36000 to 36000; 720 are two full turns. Measured by
+ * the posture sensor or, without one, by the track encoders and turn_efficiency. */
+int hrt_turning(double deg);
+
+/* ---- Direct control: does not block ---- */
+
+/* Commands both track speeds, -2000 to 2000 mm/s, from the next cycle on, until changed or until command_timeout_s
+ * after the last hrt_ call. The drives limit their acceleration. Ends a motion under way (HRT_E_STOPPED there).
+ * HRT_E_NOT_INITIALISED, HRT_E_ARGUMENT, HRT_E_LINK. */
+int hrt_set_tracks(double left_mmps, double right_mmps);
+
+/* Commands one flipper, or HRT_ALL_FLIPPERS, to an angle, -360 to 360 degrees: 0 straight out, positive tip up. The
+ * flipper moves at its own speed, within the limits of its drive, and holds the angle; see hrt_wait_flippers.
+ * HRT_E_NOT_INITIALISED, HRT_E_ARGUMENT, HRT_E_LINK. */
+int hrt_set_flipper(hrt_flipper flipper, double deg);
+
+/* Commands all four at once. */
+int hrt_set_flippers(double front_left_deg, double front_right_deg, double rear_left_deg, double rear_right_deg);
+
+/* Stops: tracks to 0 at once, flippers that are still moving stay where they are. A motion or hrt_wait_flippers in
+ * another thread returns HRT_E_STOPPED. Does not block. HRT_E_NOT_INITIALISED, HRT_E_LINK. */
+int hrt_stop(void);
+
+/* ---- Waiting: blocking, robot time ---- */
+
+/* Waits until every flipper that was ever commanded is within `tolerance_deg` (0.1 to 90) of its angle, at most
+ * `timeout_s` (0 to 3600). HRT_E_TIMEOUT: hrt_last_error() names those that are not; they go on moving.
+ * HRT_E_DEVICE: the robot does not measure its flippers; HRT_E_STOPPED; and as hrt_sleep. */
+int hrt_wait_flippers(double tolerance_deg, double timeout_s);
+
+/* Waits `seconds` of robot time, 0 to 86400, rounded up to whole cycles; 0 returns at once.
+ * HRT_E_NOT_INITIALISED, HRT_E_ARGUMENT, HRT_E_LINK, HRT_E_CLOSED. */
+int hrt_sleep(double seconds);
+
+/* Robot time in seconds, as of the newest cycle; -1 where no robot is open. */
+double hrt_time(void);
+
+/* ---- State ---- */
+
+/* Bits of hrt_state.valid: which members were measured. Members whose bit is missing are 0. */
+enum {
+  HRT_HAS_POSTURE = 1 << 0,  /* roll, pitch, yaw by the robot's posture sensor */
+  HRT_HAS_ENCODERS = 1 << 1, /* track_mm, track_mmps, odometry */
+  HRT_HAS_FLIPPERS = 1 << 2, /* flipper_deg */
+  HRT_HAS_CURRENTS = 1 << 3, /* track_a, flipper_a */
+  HRT_HAS_BATTERY = 1 << 4,  /* battery_v */
+  HRT_HAS_INERTIAL = 1 << 5, /* gyro, acceleration */
+  HRT_HAS_POSE = 1 << 6      /* pose_*: known from outside of the robot */
+};
+
+/* Bits of hrt_state.activity. */
+enum {
+  HRT_MOTION_ACTIVE = 1 << 0,      /* a motion is under way */
+  HRT_PAUSED = 1 << 1,             /* somebody has stopped the simulation's clock */
+  HRT_STOPPED_BY_SILENCE = 1 << 2, /* the tracks were stopped because commands were too late */
+  HRT_RECORDING = 1 << 3,          /* a recording is under way */
+  HRT_IN_LOCKSTEP = 1 << 4         /* robot time waits for this program */
+};
+
+/* What is known of the robot as of one cycle. */
+typedef struct hrt_state {
+  uint32_t size;     /* sizeof(hrt_state) of the program, so that the struct can grow: see hrt_state_init() */
+  uint32_t valid;    /* HRT_HAS_... */
+  uint32_t activity; /* HRT_MOTION_ACTIVE ... */
+  uint32_t flippers_commanded; /* bit i: commanded_flipper_deg[i] was commanded since init */
+  uint64_t cycle;    /* number of the cycle, 1 = the first one after init */
+  double time_s;     /* robot time at which it was measured */
+
+  double roll_deg, pitch_deg, yaw_deg; /* body in world, each in (-180, 180]; yaw is 0 where the sensor has its zero */
+  double gyro_degps[3];                /* turn rate about x, y, z of the body */
+  double acceleration_mmps2[3];        /* along x, y, z of the body; at rest on level ground 0, 0, +9807 */
+
+  double track_mm[2];   /* travel of each track's surface since the robot was placed or switched on */
+  double track_mmps[2]; /* and its speed */
+  double track_a[2];    /* motor currents */
+  double flipper_deg[4];
+  double flipper_a[4];
+  double battery_v;
+
+  /* Dead reckoning by the library since init: the tracks' mean travel along the posture sensor's heading and slope, or
+   * along the encoders' heading where there is no such sensor. Start: 0, 0, 0; x is forward at the start, y left.
+   * Yaw is not wrapped: it counts full turns. Tracks slip; this drifts. */
+  double odometry_x_mm, odometry_y_mm, odometry_yaw_deg;
+
+  /* Pose of the body's centre in the world, from outside of the robot: a simulator's ground truth. The real robot
+   * does not know it: a control program must not need it. */
+  double pose_x_mm, pose_y_mm, pose_z_mm, pose_roll_deg, pose_pitch_deg, pose_yaw_deg;
+
+  /* What the newest answer to the robot commands. */
+  double commanded_track_mmps[2];
+  double commanded_flipper_deg[4];
+
+  /* The link. */
+  double round_trip_ms; /* to the world server and back (real: to the drives), wall clock, newest; 0 = not known yet */
+  uint64_t late_cycles; /* answers that came after the cycle they were for, since init */
+  uint64_t lost_cycles; /* cycles whose state never arrived, since init */
+} hrt_state;
+
+/* An empty state that is ready for hrt_get_state. */
+static inline hrt_state hrt_state_init(void) {
+  hrt_state state;
+  memset(&state, 0, sizeof state);
+  state.size = (uint32_t)sizeof state;
+  return state;
+}
+
+/* Copies the newest state, all of it from one cycle. Does not block. state->size must be set.
+ * HRT_E_NOT_INITIALISED; HRT_E_ARGUMENT: null or a size that no version of this header had; HRT_E_LINK: the link is
+ * lost, *state holds the last one that arrived. */
+int hrt_get_state(hrt_state* state);
+
+/* Waits for the next cycle and copies its state: the beat of a control loop. `state` may be null.
+ * Returns as hrt_sleep and hrt_get_state do. */
+int hrt_wait_cycle(hrt_state* state);
+
+/* Prints the newest state to standard output, for people, in a few lines. HRT_E_NOT_INITIALISED; HRT_E_LINK: printed
+ * all the same, with the last state that arrived. */
+int hrt_show_status(void);
+
+/* ---- Recording ---- */
+
+/* Records every cycle from the newest one on into a CSV file of the format kenaf-runs/1 (SI units): what was commanded,
+ * what was measured, the pose where it is known. A row's command is the one in force from that row's time on. A
+ * thread of its own writes to <path>.part, which hrt_record_stop renames to `path`: it is whole or absent. No cycle
+ * waits for the disk. A file of that name is replaced.
+ * HRT_E_NOT_INITIALISED; HRT_E_BUSY: a recording is under way; HRT_E_ARGUMENT: null or empty; HRT_E_RECORD: the file
+ * cannot be made; HRT_E_LINK. */
+int hrt_record_start(const char* path);
+
+/* Ends the recording and waits until the file is complete. HRT_E_NOT_INITIALISED; HRT_E_RECORD: none was under way, or
+ * it could not be written, or rows were lost because the disk was too slow: hrt_last_error() says how many. */
+int hrt_record_stop(void);
+
+/* ---- Words ---- */
+
+/* Why the last call in this thread failed, one line of English without a line end; "" after none has. Never null.
+ * Valid until this thread's next hrt_ call fails. */
+const char* hrt_last_error(void);
+
+/* "HRT_E_STUCK" for HRT_E_STUCK, "HRT_OK" for HRT_OK, "unknown error" for what is none. Never null; lives for ever. */
+const char* hrt_error_name(int error);
+
+/* The library's version, "MAJOR.MINOR.PATCH", and which library this is: "real" or "sim". Never null; live for ever. */
+const char* hrt_version(void);
+const char* hrt_library(void);
+
+#if defined(__GNUC__)
+#pragma GCC visibility pop
+#endif
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* KENAF_HRT_H */

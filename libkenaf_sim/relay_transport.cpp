@@ -1,0 +1,290 @@
+#include "libkenaf_sim/relay_transport.hpp"
+
+#include <fmt/format.h>
+#include <netdb.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/random.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+
+#include "hrt/error.hpp"
+
+namespace kenaf::sim {
+namespace {
+
+using hrt::Error;
+using namespace std::chrono_literals;
+
+constexpr auto kHelloEvery = 100ms;
+// A commander that was killed keeps the robot until the relay has missed it for a second.
+constexpr auto kBusyPatience = 1500ms;
+// Commands are sent again after 4 ms, then 8, 16, 32, 32 ...: quick to mend a loss, quiet where the world is slow.
+constexpr auto kFirstResend = 4ms;
+constexpr auto kSlowestResend = 32ms;
+// A first State that has not come so long after Welcome was lost.
+constexpr auto kFirstStateResend = 20ms;
+constexpr auto kPingEvery = 1000ms;
+// A world server that answers pings but counts no frame for this many link time-outs will not count any more.
+constexpr double kFrozenLinkTimeouts = 20;
+constexpr int kByeCount = 3;
+
+template <typename Duration>
+auto seconds(double value) {
+  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(value));
+}
+
+std::string words(const relay::Refused& refused) {
+  return {refused.text.data(), std::min(refused.text_length, refused.text.size())};
+}
+
+}  // namespace
+
+RelayTransport::RelayTransport() : interrupt_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (interrupt_ < 0) throw Error(HRT_E_INTERNAL, fmt::format("eventfd: {}", std::strerror(errno)));
+}
+
+RelayTransport::~RelayTransport() {
+  close();
+  ::close(interrupt_);
+}
+
+hrt::Connection RelayTransport::open(const hrt_config& config) {
+  relay_ = config.relay;
+  link_timeout_s_ = config.link_timeout_s;
+  connect_timeout_s_ = config.connect_timeout_s;
+  connect_socket();
+  while (session_ == 0) {
+    if (getrandom(&session_, sizeof session_, 0) < 0) {
+      throw Error(HRT_E_INTERNAL, fmt::format("getrandom: {}", std::strerror(errno)));
+    }
+  }
+  const hrt::Connection connection = greet({.session = session_,
+                                            .period_s = config.period_s,
+                                            .command_timeout_s = config.command_timeout_s,
+                                            .lockstep = config.lockstep != 0,
+                                            .reset_robot = config.reset_robot != 0});
+  // Until the first State is here, this stands in for its answer: the relay answers a Command with the newest State.
+  command_ = {};
+  command_.session = session_;
+  command_.sequence = 1;
+  const Clock::time_point now = Clock::now();
+  resend_after_ = kFirstStateResend;
+  resend_at_ = now + resend_after_;
+  state_at_ = life_at_ = ping_at_ = now;
+  return connection;
+}
+
+void RelayTransport::connect_socket() {
+  const std::size_t colon = relay_.rfind(':');
+  if (colon == std::string::npos) {
+    throw Error(HRT_E_CONFIG, fmt::format("relay must be HOST:PORT, not '{}'", relay_));
+  }
+  std::string host = relay_.substr(0, colon);
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);  // [::1]:45454
+  const addrinfo hints{.ai_flags = AI_NUMERICSERV,
+                       .ai_family = AF_UNSPEC,
+                       .ai_socktype = SOCK_DGRAM,
+                       .ai_protocol = 0,
+                       .ai_addrlen = 0,
+                       .ai_addr = nullptr,
+                       .ai_canonname = nullptr,
+                       .ai_next = nullptr};
+  addrinfo* found = nullptr;
+  if (const int wrong = getaddrinfo(host.c_str(), relay_.c_str() + colon + 1, &hints, &found); wrong != 0) {
+    throw Error(HRT_E_CONFIG, fmt::format("relay '{}': {}", relay_, gai_strerror(wrong)));
+  }
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> addresses(found, &freeaddrinfo);
+  socket_ = socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (socket_ < 0 || connect(socket_, found->ai_addr, found->ai_addrlen) < 0) {
+    throw Error(HRT_E_LINK, fmt::format("no way to the relay at {}: {}", relay_, std::strerror(errno)));
+  }
+}
+
+hrt::Connection RelayTransport::greet(const relay::Hello& hello) {
+  const Clock::time_point start = Clock::now();
+  const Clock::time_point deadline = start + seconds<Clock::duration>(connect_timeout_s_);
+  Clock::time_point hello_at = start;
+  std::optional<relay::Refused> refused;
+  for (;;) {
+    const Clock::time_point now = Clock::now();
+    if (refused && refused->reason == relay::RefusedReason::busy && now - start >= kBusyPatience) break;
+    if (now >= deadline) break;
+    if (now >= hello_at) {
+      transmit(hello);
+      hello_at = now + kHelloEvery;
+    }
+    while (const std::optional<relay::Datagram> datagram = receive()) {
+      if (const auto* welcome = std::get_if<relay::Welcome>(&*datagram); welcome && welcome->session == session_) {
+        return {welcome->period_s, welcome->lockstep};
+      }
+      if (const auto* answer = std::get_if<relay::Refused>(&*datagram); answer && answer->session == session_) {
+        refused = *answer;
+        // These do not change by asking again.
+        if (answer->reason == relay::RefusedReason::bad_request) {
+          throw Error(HRT_E_REFUSED, fmt::format("the relay at {} refused: {}", relay_, words(*answer)));
+        }
+      }
+    }
+    if (!wait_readable(std::min(hello_at, deadline)))
+      throw Error(HRT_E_CLOSED, "closed while the robot was being opened");
+  }
+  if (!refused) {
+    throw Error(HRT_E_LINK,
+                fmt::format("no relay at {}{}; start kenaf-relayd, or set relay in kenaf.toml or KENAF_RELAY", relay_,
+                            port_closed_ ? ": nobody listens there" : " answered"));
+  }
+  const bool no_world = refused->reason == relay::RefusedReason::no_world_server;
+  throw Error(HRT_E_REFUSED, fmt::format("the relay at {} refused: {}{}", relay_, words(*refused),
+                                         no_world ? "; start kenaf-world" : ""));
+}
+
+std::optional<relay::State> RelayTransport::wait_state() {
+  for (;;) {
+    while (const std::optional<relay::Datagram> datagram = receive()) {
+      if (std::optional<relay::State> state = take(*datagram)) return state;
+    }
+    const Clock::time_point now = Clock::now();
+    check_life(now);
+    send_what_is_due(now);
+    if (!wait_readable(std::min(resend_at_, ping_at_))) return std::nullopt;
+  }
+}
+
+std::optional<relay::State> RelayTransport::take(const relay::Datagram& datagram) {
+  const Clock::time_point now = Clock::now();
+  if (const auto* pong = std::get_if<relay::Pong>(&datagram)) {
+    if (pong->session == session_ && pong->id == ping_id_) {
+      round_trip_s_ = std::chrono::duration<double>(now - pinged_at_).count();
+      life_at_ = now;
+    }
+    return std::nullopt;
+  }
+  if (const auto* refused = std::get_if<relay::Refused>(&datagram)) {
+    if (refused->session != session_) return std::nullopt;
+    throw Error(HRT_E_LINK, fmt::format("the relay at {} ended the session: {}; hrt_close() and hrt_kenaf_init() again",
+                                        relay_, words(*refused)));
+  }
+  const auto* state = std::get_if<relay::State>(&datagram);
+  if (state == nullptr || state->session != session_) return std::nullopt;
+  if ((state->events & relay::kWorldServerLost) != 0) {
+    throw Error(HRT_E_LINK, fmt::format("the relay at {} lost its world server; once it is back, hrt_close() and "
+                                        "hrt_kenaf_init() again",
+                                        relay_));
+  }
+  is_paused_ = (state->events & relay::kWorldPaused) != 0;
+  if (is_paused_) state_at_ = life_at_ = now;
+  if (state->frame <= frame_) return std::nullopt;
+  frame_ = state->frame;
+  state_at_ = life_at_ = now;
+  return *state;
+}
+
+void RelayTransport::check_life(Clock::time_point now) const {
+  if (port_closed_) {
+    throw Error(HRT_E_LINK, fmt::format("the relay at {} is gone: nobody listens there any more", relay_));
+  }
+  const double patience_s = frame_ == 0 ? connect_timeout_s_ : link_timeout_s_;
+  const auto silent_s = [&](Clock::time_point since) { return std::chrono::duration<double>(now - since).count(); };
+  if (silent_s(life_at_) > patience_s) {
+    throw Error(HRT_E_LINK, fmt::format("no state from the relay at {} for {:.2f} s; is the network, the relay or the "
+                                        "world server down?",
+                                        relay_, silent_s(life_at_)));
+  }
+  if (silent_s(state_at_) > kFrozenLinkTimeouts * patience_s) {
+    throw Error(HRT_E_LINK, fmt::format("the world server behind the relay at {} answers, but its time has stood still "
+                                        "for {:.1f} s",
+                                        relay_, silent_s(state_at_)));
+  }
+}
+
+void RelayTransport::send(const hrt::DriveCommand& command) {
+  command_ = {.session = session_,
+              .sequence = command_.sequence + 1,
+              .frame = frame_,
+              .track_speed_mps = command.track_speed_mps,
+              .flipper_mask = command.flipper_mask,
+              .flipper_rad = command.flipper_rad};
+  transmit(command_);
+  resend_after_ = kFirstResend;
+  const Clock::time_point now = Clock::now();
+  resend_at_ = now + resend_after_;
+  // The time the program took is not the link's.
+  state_at_ = life_at_ = now;
+}
+
+void RelayTransport::send_what_is_due(Clock::time_point now) {
+  if (now >= resend_at_) {
+    transmit(command_);
+    resend_after_ = std::min<Clock::duration>(2 * resend_after_, kSlowestResend);
+    resend_at_ = now + resend_after_;
+  }
+  // A state that is overdue: does the world server still live? It answers a ping also where its time stands still.
+  const Clock::duration overdue = seconds<Clock::duration>(link_timeout_s_ / 4);
+  const bool is_overdue = now - state_at_ >= overdue;
+  if (now >= ping_at_ || (is_overdue && now - pinged_at_ >= overdue)) {
+    ++ping_id_;
+    pinged_at_ = now;
+    ping_at_ = now + kPingEvery;
+    transmit(relay::Ping{.session = session_, .id = ping_id_});
+  }
+}
+
+void RelayTransport::close() {
+  if (socket_ < 0) return;
+  // Not answered, so one is not enough where packets get lost.
+  for (int i = 0; session_ != 0 && i < kByeCount; ++i) transmit(relay::Bye{.session = session_});
+  ::close(socket_);
+  socket_ = -1;
+  session_ = 0;
+}
+
+void RelayTransport::interrupt() {
+  const std::uint64_t one = 1;
+  // An eventfd takes it unless its count overflows, and then it is readable already.
+  [[maybe_unused]] const ssize_t written = write(interrupt_, &one, sizeof one);
+}
+
+void RelayTransport::transmit(const relay::Datagram& datagram) {
+  std::array<std::byte, relay::kMaxDatagramBytes> bytes;
+  const std::size_t size = relay::encode(datagram, bytes);
+  // A datagram that cannot be sent is as good as lost: whatever matters is sent again. A closed port is reported to
+  // the next call on the socket, which may be this one.
+  if (::send(socket_, bytes.data(), size, MSG_NOSIGNAL) < 0 && errno == ECONNREFUSED) port_closed_ = true;
+}
+
+std::optional<relay::Datagram> RelayTransport::receive() {
+  for (;;) {
+    const ssize_t size = recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
+    if (size < 0) {
+      if (errno == EINTR) continue;
+      if (errno == ECONNREFUSED) {
+        port_closed_ = true;
+        continue;
+      }
+      return std::nullopt;
+    }
+    port_closed_ = false;
+    relay::Datagram datagram;
+    if (relay::decode(std::span(buffer_).first(static_cast<std::size_t>(size)), datagram) == relay::DecodeError::none) {
+      return datagram;
+    }
+  }
+}
+
+bool RelayTransport::wait_readable(Clock::time_point until) {
+  const auto left = std::max<Clock::duration>(until - Clock::now(), Clock::duration::zero());
+  const auto whole = std::chrono::duration_cast<std::chrono::seconds>(left);
+  const timespec timeout{.tv_sec = static_cast<time_t>(whole.count()),
+                         .tv_nsec = static_cast<long>(std::chrono::nanoseconds(left - whole).count())};
+  std::array<pollfd, 2> watched{{{socket_, POLLIN, 0}, {interrupt_, POLLIN, 0}}};
+  ppoll(watched.data(), watched.size(), &timeout, nullptr);
+  return (watched[1].revents & POLLIN) == 0;
+}
+
+}  // namespace kenaf::sim

@@ -1,0 +1,65 @@
+// The simulated robot: UDP datagrams to kenaf-relayd and back. docs/relay-protocol.md has the protocol.
+//
+// A Command is sent again until the State of the next frame arrives, so that loss costs milliseconds and nothing else;
+// a State that is not newer than all before is a duplicate or came late, and says nothing new.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "hrt/transport.hpp"
+#include "protocol/relay_datagram.hpp"
+
+namespace kenaf::sim {
+
+class RelayTransport final : public hrt::Transport {
+ public:
+  RelayTransport();
+  ~RelayTransport() override;
+  RelayTransport(const RelayTransport&) = delete;
+  RelayTransport& operator=(const RelayTransport&) = delete;
+
+  hrt::Connection open(const hrt_config& config) override;
+  std::optional<relay::State> wait_state() override;
+  void send(const hrt::DriveCommand& command) override;
+  void interrupt() override;
+  void close() override;
+  double round_trip_s() const override { return round_trip_s_; }
+  bool is_paused() const override { return is_paused_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void connect_socket();
+  hrt::Connection greet(const relay::Hello& hello);
+  // The next well-formed datagram that waits in the socket.
+  std::optional<relay::Datagram> receive();
+  // A state that begins a new cycle. Throws where the datagram ends the session.
+  std::optional<relay::State> take(const relay::Datagram& datagram);
+  void transmit(const relay::Datagram& datagram);
+  void send_what_is_due(Clock::time_point now);
+  void check_life(Clock::time_point now) const;
+  // Sleeps until a datagram, an interrupt or `until`. False: interrupted.
+  bool wait_readable(Clock::time_point until);
+
+  std::string relay_;
+  double link_timeout_s_ = 0, connect_timeout_s_ = 0;
+  int socket_ = -1, interrupt_ = -1;
+  bool port_closed_ = false;  // the last answer was that nobody listens there
+  std::array<std::byte, relay::kMaxDatagramBytes + 1> buffer_{};
+
+  std::uint64_t session_ = 0;  // 0: none
+  std::uint32_t frame_ = 0;    // newest State
+  relay::Command command_{};   // sequence 0: none yet
+  Clock::time_point resend_at_, state_at_, life_at_, ping_at_, pinged_at_;
+  Clock::duration resend_after_{};
+  std::uint32_t ping_id_ = 0;
+  std::atomic<double> round_trip_s_ = 0;
+  std::atomic<bool> is_paused_ = false;
+};
+
+}  // namespace kenaf::sim
