@@ -9,9 +9,14 @@ namespace kenaf::physics {
 
 using relay::Flipper;
 using relay::kFlipperCount;
+using relay::kFrontLeft;
+using relay::kFrontRight;
 using relay::kLeft;
+using relay::kRearLeft;
+using relay::kRearRight;
 using relay::kRight;
 using relay::kTrackCount;
+using relay::Track;
 
 // A flipper servo's mode, after USARSim's joint orders 0 to 3.
 enum class JointMode { angle, speed, torque, brake };

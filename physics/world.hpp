@@ -22,7 +22,10 @@ namespace kenaf::physics {
 
 struct PhysicsSettings {
   double time_step_s = 0.001;
-  int solver_iterations = 30;
+  int solver_iterations = 10;
+  // Of one contact point: the give of rubber and ground, which shares a load between the points of a track.
+  double contact_stiffness_npm = 2e5;
+  double contact_damping_nspm = 1000;
 };
 
 // Never used twice in one World.
@@ -34,7 +37,7 @@ struct RobotTruth {
   Pose X_WB;
   Eigen::Vector3d v_WB_mps, w_WB_radps;            // of the body frame's origin, in W
   std::array<double, kTrackCount> track_mps, track_m;
-  std::array<double, kTrackCount> track_force_n;   // belt force, + pushes the robot forward
+  std::array<double, kTrackCount> track_force_n;   // motor's at the belt, + pushes the robot forward
   std::array<double, kFlipperCount> flipper_rad, flipper_radps, flipper_nm;
   double battery_v, battery_left_s;
 };
@@ -72,6 +75,7 @@ class World {
 
   // One time step for everything.
   void step();
+  std::size_t contact_count() const;   // contact points of the last step
 
   RobotTruth truth(RobotId id) const;
   // What the sensors have to report now, in the order of the description: each sensor whose period has passed since

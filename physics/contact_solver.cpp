@@ -1,0 +1,296 @@
+#include "physics/contact_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/flipper_joint.hpp"
+
+namespace kenaf::physics {
+namespace {
+
+// Share of the last step's friction that a step starts from. A belt that rolls brings unloaded rubber into contact, so
+// tracks that pull against each other must not keep doing so for ever.
+constexpr btScalar kFrictionKept = 0.95;
+constexpr btScalar kSideFace = 0.1;  // |normal x belt axis| below which a surface is a side face without direction
+
+const Surface& surface_of(const Collider& collider, int child) {
+  const auto i = static_cast<std::size_t>(child);
+  return collider.surfaces[i < collider.surfaces.size() ? i : 0];
+}
+
+// Where a point of the belt moves, for a belt speed of -1: along the belt, shorter towards the side faces. Drake's
+// multibody plant defines a surface velocity so (speed * axis x normal).
+btVector3 belt_direction(const Surface& surface, const btCollisionObject& body, const btVector3& outward_W) {
+  if (!surface.belt) return {0, 0, 0};
+  return outward_W.cross(body.getWorldTransform().getBasis().getColumn(1) * surface.axis_y);
+}
+
+}  // namespace
+
+btScalar ContactSolver::solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
+                                   int manifold_count, btTypedConstraint** constraints, int constraint_count,
+                                   const btContactSolverInfo& info, btIDebugDraw* debug, btDispatcher* dispatcher) {
+  // a step's second call is for what the islands left over, which is nothing; belts must not be solved twice
+  if (body_count == 0) return 0;
+  return btSequentialImpulseConstraintSolver::solveGroup(bodies, body_count, manifolds, manifold_count, constraints,
+                                                         constraint_count, info, debug, dispatcher);
+}
+
+void ContactSolver::convertContacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) {
+  contacts_.clear();
+  for (int m = 0; m < count; ++m) {
+    btPersistentManifold& manifold = *manifolds[m];
+    auto* body0 = const_cast<btCollisionObject*>(manifold.getBody0());
+    auto* body1 = const_cast<btCollisionObject*>(manifold.getBody1());
+    if (manifold.getNumContacts() == 0) continue;
+    const int id0 = getOrInitSolverBody(*body0, info.m_timeStep);
+    const int id1 = getOrInitSolverBody(*body1, info.m_timeStep);
+    const bool moves0 = !body0->isStaticOrKinematicObject(), moves1 = !body1->isStaticOrKinematicObject();
+    if (!moves0 && !moves1) continue;
+    for (int p = 0; p < manifold.getNumContacts(); ++p) {
+      btManifoldPoint& point = manifold.getContactPoint(p);
+      if (moves0)
+        add_contact(point, *body0, *body1, id0, id1, false, info.m_timeStep);
+      else
+        add_contact(point, *body1, *body0, id1, id0, true, info.m_timeStep);
+    }
+  }
+  for (Belt* belt : belts_) {
+    belt->motor_impulse_ns =
+        std::clamp(kFrictionKept * belt->motor_impulse_ns, belt->min_impulse_ns, belt->max_impulse_ns);
+    belt->speed_mps += belt->motor_impulse_ns / belt->moving_mass_kg;
+  }
+  for (Contact& contact : contacts_) warm_start(contact);
+}
+
+void ContactSolver::add_contact(btManifoldPoint& point, const btCollisionObject& a, const btCollisionObject& b,
+                                int body_a, int body_b, bool swapped, btScalar time_step) {
+  Contact& c = contacts_.emplace_back();
+  c.point = &point;
+  c.collider_a = static_cast<const Collider*>(a.getUserPointer());
+  c.collider_b = static_cast<const Collider*>(b.getUserPointer());
+  c.body_a = body_a;
+  c.body_b = body_b;
+  c.b_moves = !b.isStaticOrKinematicObject();
+  // one point for both bodies, so that the two impulses cancel in moment too
+  c.p_W = (point.getPositionWorldOnA() + point.getPositionWorldOnB()) * 0.5;
+
+  const Surface& surface_a = surface_of(*c.collider_a, swapped ? point.m_index1 : point.m_index0);
+  const Surface& surface_b = surface_of(*c.collider_b, swapped ? point.m_index0 : point.m_index1);
+  c.belt_a = surface_a.belt;
+  c.belt_b = surface_b.belt;
+  const btVector3 normal = swapped ? -point.m_normalWorldOnB : point.m_normalWorldOnB;
+  const btVector3 belt_a = belt_direction(surface_a, a, -normal);
+  const btVector3 belt_b = belt_direction(surface_b, b, normal);
+
+  c.mu[0] = surface_a.friction_along * surface_b.friction_along;
+  c.mu[1] = surface_a.friction_across * surface_b.friction_across;
+  c.axis[0] = normal;
+  if (belt_a.length2() > kSideFace * kSideFace) {
+    c.axis[1] = belt_a.normalized();
+  } else if (belt_b.length2() > kSideFace * kSideFace) {
+    c.axis[1] = belt_b.normalized();
+  } else {
+    btVector3 unused;
+    btPlaneSpace1(normal, c.axis[1], unused);
+    c.mu[0] = c.mu[1];
+  }
+  c.axis[2] = normal.cross(c.axis[1]);
+  for (int k = 0; k < 2; ++k) {
+    c.belt_gain_a[k] = c.belt_a ? -belt_a.dot(c.axis[k + 1]) : 0;
+    c.belt_gain_b[k] = c.belt_b ? belt_b.dot(c.axis[k + 1]) : 0;
+  }
+
+  const btSolverBody& A = m_tmpSolverBodyPool[body_a];
+  const btSolverBody& B = m_tmpSolverBodyPool[body_b];
+  c.inverse_mass_a = A.m_originalBody->getInvMass();
+  c.inverse_mass_b = c.b_moves ? B.m_originalBody->getInvMass() : 0;
+  const btVector3 r_a = c.p_W - A.getWorldTransform().getOrigin();
+  const btVector3 r_b = c.b_moves ? c.p_W - B.getWorldTransform().getOrigin() : btVector3(0, 0, 0);
+  btVector3 velocity_a, velocity_b;
+  A.getVelocityInLocalPointNoDelta(r_a, velocity_a);
+  B.getVelocityInLocalPointNoDelta(r_b, velocity_b);
+  for (int k = 0; k < 3; ++k) {
+    c.arm_a[k] = r_a.cross(c.axis[k]);
+    c.turn_a[k] = A.m_originalBody->getInvInertiaTensorWorld() * c.arm_a[k];
+    if (c.b_moves) {
+      c.arm_b[k] = r_b.cross(c.axis[k]);
+      c.turn_b[k] = B.m_originalBody->getInvInertiaTensorWorld() * c.arm_b[k];
+    }
+    c.free_velocity[k] = c.axis[k].dot(velocity_a - velocity_b);
+  }
+  // velocity of row i for a unit impulse of row j; the axes are orthogonal
+  const auto response = [&c](int i, int j) {
+    btScalar k = c.arm_a[i].dot(c.turn_a[j]);
+    if (c.b_moves) k += c.arm_b[i].dot(c.turn_b[j]);
+    if (i == j) k += c.inverse_mass_a + c.inverse_mass_b;
+    if (i > 0 && j > 0) {
+      if (c.belt_a) k += c.belt_gain_a[i - 1] * c.belt_gain_a[j - 1] / c.belt_a->moving_mass_kg;
+      if (c.belt_b) k += c.belt_gain_b[i - 1] * c.belt_gain_b[j - 1] / c.belt_b->moving_mass_kg;
+    }
+    return k;
+  };
+
+  // spring and damper, implicit: impulse = -h (k (gap + h v) + d v), never negative
+  const btScalar step_stiffness = settings_.stiffness_npm * time_step + settings_.damping_nspm;
+  c.softness = 1 / (time_step * step_stiffness);
+  c.give_velocity = -settings_.stiffness_npm * point.getDistance() / step_stiffness;
+  c.normal_mass = 1 / (response(0, 0) + c.softness);
+
+  const btScalar k11 = response(1, 1), k12 = response(1, 2), k22 = response(2, 2);
+  const btScalar determinant = k11 * k22 - k12 * k12;
+  c.stick[0] = k22 / determinant;
+  c.stick[1] = -k12 / determinant;
+  c.stick[2] = k11 / determinant;
+  // largest eigenvalue, with both directions scaled by their friction
+  const btScalar s11 = k11 * c.mu[0] * c.mu[0], s12 = k12 * c.mu[0] * c.mu[1], s22 = k22 * c.mu[1] * c.mu[1];
+  const btScalar largest = (s11 + s22) / 2 + std::hypot((s11 - s22) / 2, s12);
+  c.slide_step = largest > 0 ? 1 / largest : 0;
+  c.normal_to_slip[0] = response(1, 0);
+  c.normal_to_slip[1] = response(2, 0);
+
+  c.impulse[0] = point.m_appliedImpulse;
+  const btVector3 friction = point.m_lateralFrictionDir1 * point.m_appliedImpulseLateral1 +
+                             point.m_lateralFrictionDir2 * point.m_appliedImpulseLateral2;
+  c.impulse[1] = (swapped ? -kFrictionKept : kFrictionKept) * friction.dot(c.axis[1]);
+  c.impulse[2] = (swapped ? -kFrictionKept : kFrictionKept) * friction.dot(c.axis[2]);
+}
+
+void ContactSolver::apply(Contact& c, const btScalar change[3]) {
+  const btVector3 impulse = c.axis[0] * change[0] + c.axis[1] * change[1] + c.axis[2] * change[2];
+  btSolverBody& A = m_tmpSolverBodyPool[c.body_a];
+  A.internalGetDeltaLinearVelocity() += impulse * c.inverse_mass_a;
+  A.internalGetDeltaAngularVelocity() += c.turn_a[0] * change[0] + c.turn_a[1] * change[1] + c.turn_a[2] * change[2];
+  if (c.b_moves) {
+    btSolverBody& B = m_tmpSolverBodyPool[c.body_b];
+    B.internalGetDeltaLinearVelocity() -= impulse * c.inverse_mass_b;
+    B.internalGetDeltaAngularVelocity() -= c.turn_b[0] * change[0] + c.turn_b[1] * change[1] + c.turn_b[2] * change[2];
+  }
+  if (c.belt_a)
+    c.belt_a->speed_mps += (c.belt_gain_a[0] * change[1] + c.belt_gain_a[1] * change[2]) / c.belt_a->moving_mass_kg;
+  if (c.belt_b)
+    c.belt_b->speed_mps += (c.belt_gain_b[0] * change[1] + c.belt_gain_b[1] * change[2]) / c.belt_b->moving_mass_kg;
+}
+
+void ContactSolver::warm_start(Contact& c) {
+  apply(c, c.impulse);
+}
+
+void ContactSolver::solve_contact(Contact& c) {
+  btSolverBody& A = m_tmpSolverBodyPool[c.body_a];
+  btVector3 linear = A.internalGetDeltaLinearVelocity();
+  const btVector3& angular_a = A.internalGetDeltaAngularVelocity();
+  btScalar v[3];
+  if (c.b_moves) {
+    btSolverBody& B = m_tmpSolverBodyPool[c.body_b];
+    linear -= B.internalGetDeltaLinearVelocity();
+    const btVector3& angular_b = B.internalGetDeltaAngularVelocity();
+    for (int k = 0; k < 3; ++k)
+      v[k] = c.free_velocity[k] + c.axis[k].dot(linear) + c.arm_a[k].dot(angular_a) - c.arm_b[k].dot(angular_b);
+  } else {
+    for (int k = 0; k < 3; ++k) v[k] = c.free_velocity[k] + c.axis[k].dot(linear) + c.arm_a[k].dot(angular_a);
+  }
+
+  btScalar change[3];
+  const btScalar normal =
+      std::max(c.impulse[0] - (v[0] - c.give_velocity + c.softness * c.impulse[0]) * c.normal_mass, btScalar(0));
+  change[0] = normal - c.impulse[0];
+  if (normal <= 0 && c.impulse[0] <= 0 && c.impulse[1] == 0 && c.impulse[2] == 0) return;
+
+  btScalar slip[2];
+  for (int k = 0; k < 2; ++k) {
+    slip[k] = v[k + 1] + c.normal_to_slip[k] * change[0];
+    if (c.belt_a) slip[k] += c.belt_gain_a[k] * c.belt_a->speed_mps;
+    if (c.belt_b) slip[k] += c.belt_gain_b[k] * c.belt_b->speed_mps;
+  }
+  btScalar p[2] = {0, 0};
+  if (c.mu[0] > 0 && c.mu[1] > 0) {
+    // sticking: the impulse that stops the slip, if friction can give it
+    p[0] = c.impulse[1] - c.stick[0] * slip[0] - c.stick[1] * slip[1];
+    p[1] = c.impulse[2] - c.stick[1] * slip[0] - c.stick[2] * slip[1];
+    const btScalar along = p[0] / c.mu[0], across = p[1] / c.mu[1];
+    if (along * along + across * across > normal * normal) {
+      // sliding: a step against the slip, then back onto the limit ellipse. In coordinates scaled by the friction
+      // the ellipse is a circle, and the point where this rests is the one that dissipates most: the impulse
+      // points against the slip (isotropic), or along the ellipse's normal there.
+      btScalar q0 = c.impulse[1] / c.mu[0] - c.slide_step * c.mu[0] * slip[0];
+      btScalar q1 = c.impulse[2] / c.mu[1] - c.slide_step * c.mu[1] * slip[1];
+      const btScalar length = std::sqrt(q0 * q0 + q1 * q1);
+      const btScalar scale = length > normal ? normal / length : 1;
+      p[0] = q0 * scale * c.mu[0];
+      p[1] = q1 * scale * c.mu[1];
+    }
+  }
+  change[1] = p[0] - c.impulse[1];
+  change[2] = p[1] - c.impulse[2];
+  c.impulse[0] = normal;
+  c.impulse[1] = p[0];
+  c.impulse[2] = p[1];
+  apply(c, change);
+}
+
+btScalar ContactSolver::solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
+                                             btPersistentManifold** manifolds, int manifold_count,
+                                             btTypedConstraint** constraints, int constraint_count,
+                                             const btContactSolverInfo& info, btIDebugDraw* debug) {
+  btSequentialImpulseConstraintSolver::solveSingleIteration(iteration, bodies, body_count, manifolds, manifold_count,
+                                                            constraints, constraint_count, info, debug);
+  for (Belt* belt : belts_) {
+    const double before = belt->motor_impulse_ns;
+    const double wanted = before + (belt->target_mps - belt->speed_mps) * belt->moving_mass_kg;
+    belt->motor_impulse_ns = std::clamp(wanted, belt->min_impulse_ns, belt->max_impulse_ns);
+    belt->speed_mps += (belt->motor_impulse_ns - before) / belt->moving_mass_kg;
+  }
+  for (Contact& contact : contacts_) solve_contact(contact);
+  return 1;  // a residual of 0 would end the iterations
+}
+
+btScalar ContactSolver::solveGroupCacheFriendlySetup(btCollisionObject** bodies, int body_count,
+                                                     btPersistentManifold** manifolds, int manifold_count,
+                                                     btTypedConstraint** constraints, int constraint_count,
+                                                     const btContactSolverInfo& info, btIDebugDraw* debug) {
+  const btScalar out = btSequentialImpulseConstraintSolver::solveGroupCacheFriendlySetup(
+      bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, debug);
+  // Bullet starts joints from zero in each step; with the last step's impulses a flipper holds its load in a few
+  // iterations. Flipper joints are the only constraints there are.
+  const FlipperJoint* joint = nullptr;
+  for (int i = 0, row = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i, ++row) {
+    btSolverConstraint& c = m_tmpSolverNonContactConstraintPool[i];
+    const auto* owner = static_cast<const FlipperJoint*>(c.m_originalContactPoint);
+    if (owner != joint) {
+      joint = owner;
+      row = 0;
+    }
+    c.m_appliedImpulse = btClamped(joint->row_impulse[static_cast<std::size_t>(row)], c.m_lowerLimit, c.m_upperLimit);
+    btSolverBody& A = m_tmpSolverBodyPool[c.m_solverBodyIdA];
+    btSolverBody& B = m_tmpSolverBodyPool[c.m_solverBodyIdB];
+    A.internalApplyImpulse(c.m_contactNormal1 * A.internalGetInvMass(), c.m_angularComponentA, c.m_appliedImpulse);
+    B.internalApplyImpulse(c.m_contactNormal2 * B.internalGetInvMass(), c.m_angularComponentB, c.m_appliedImpulse);
+  }
+  return out;
+}
+
+btScalar ContactSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
+                                                      const btContactSolverInfo& info) {
+  for (Contact& c : contacts_) {
+    c.point->m_appliedImpulse = c.impulse[0];
+    c.point->m_lateralFrictionDir1 = c.axis[1];
+    c.point->m_lateralFrictionDir2 = c.axis[2];
+    const bool swapped = c.axis[0].dot(c.point->m_normalWorldOnB) < 0;
+    c.point->m_appliedImpulseLateral1 = swapped ? -c.impulse[1] : c.impulse[1];
+    c.point->m_appliedImpulseLateral2 = swapped ? -c.impulse[2] : c.impulse[2];
+  }
+  FlipperJoint* joint = nullptr;
+  for (int i = 0, row = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i, ++row) {
+    const btSolverConstraint& c = m_tmpSolverNonContactConstraintPool[i];
+    auto* owner = static_cast<FlipperJoint*>(c.m_originalContactPoint);
+    if (owner != joint) {
+      joint = owner;
+      row = 0;
+    }
+    joint->row_impulse[static_cast<std::size_t>(row)] = c.m_appliedImpulse;
+  }
+  return btSequentialImpulseConstraintSolver::solveGroupCacheFriendlyFinish(bodies, body_count, info);
+}
+
+}  // namespace kenaf::physics

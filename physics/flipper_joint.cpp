@@ -1,0 +1,137 @@
+#include "physics/flipper_joint.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "protocol/frames.hpp"
+
+namespace kenaf::physics {
+namespace {
+
+constexpr double kServoGain_per_s = 30;     // of the position loop
+constexpr double kEndStopTorque_nm = 1000;  // what the mechanical stop can hold
+constexpr double kEndStopGain_per_s = 20;
+
+}  // namespace
+
+double reachable_angle(double wanted, double present, double min, double max) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  double best = 0, best_distance = std::numeric_limits<double>::infinity();
+  const double first = wanted + kTurn * std::ceil((min - wanted) / kTurn - 1e-9);
+  for (double angle = first; angle <= max + 1e-9; angle += kTurn) {
+    if (std::abs(angle - present) < best_distance) {
+      best = std::clamp(angle, min, max);
+      best_distance = std::abs(angle - present);
+    }
+  }
+  if (std::isfinite(best_distance)) return best;
+  const double to_min = std::abs(frames::wrap_angle(wanted - min)), to_max = std::abs(frames::wrap_angle(wanted - max));
+  return to_min < to_max ? min : max;
+}
+
+FlipperJoint::FlipperJoint(btRigidBody& a, btRigidBody& b, const btTransform& X_AJ, const btTransform& X_BJ)
+    : btTypedConstraint(HINGE_CONSTRAINT_TYPE, a, b), X_AJ_(X_AJ), X_BJ_(X_BJ) {}
+
+btVector3 FlipperJoint::axis_W() const {
+  return -(m_rbA.getCenterOfMassTransform().getBasis() * X_AJ_.getBasis().getColumn(1));
+}
+
+double FlipperJoint::raw_angle_rad() const {
+  const btMatrix3x3 R_WA = m_rbA.getCenterOfMassTransform().getBasis() * X_AJ_.getBasis();
+  const btVector3 out_W = m_rbB.getCenterOfMassTransform().getBasis() * X_BJ_.getBasis().getColumn(0);
+  return std::atan2(R_WA.getColumn(2).dot(out_W), R_WA.getColumn(0).dot(out_W));
+}
+
+void FlipperJoint::measure() {
+  angle_rad_ += frames::wrap_angle(raw_angle_rad() - angle_rad_);
+}
+
+void FlipperJoint::restart(double angle_rad) {
+  angle_rad_ = angle_rad;
+  row_impulse = {};
+}
+
+double FlipperJoint::speed_radps() const {
+  return axis_W().dot(m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity());
+}
+
+void FlipperJoint::drive(const JointCommand& command, const FlipperDescription& flipper,
+                         const FlipperServoDescription& servo, double time_step_s) {
+  double torque = servo.max_torque_nm;
+  double speed = 0;
+  switch (command.mode) {
+    case JointMode::angle: {
+      const double target = reachable_angle(command.value, angle_rad_, flipper.min_angle_rad, flipper.max_angle_rad);
+      speed = std::clamp(kServoGain_per_s * (target - angle_rad_), -servo.max_speed_radps, servo.max_speed_radps);
+      break;
+    }
+    case JointMode::speed:
+      speed = std::clamp(command.value, -servo.max_speed_radps, servo.max_speed_radps);
+      break;
+    case JointMode::torque:  // runs freely up to the servo's speed
+      torque = std::min(std::abs(command.value), servo.max_torque_nm);
+      speed = std::copysign(servo.max_speed_radps, command.value);
+      break;
+    case JointMode::brake:
+      break;
+  }
+  min_impulse_ = -torque * time_step_s;
+  max_impulse_ = torque * time_step_s;
+  // never past a limit within the next step; a load may press it past, then the stop pushes back
+  const double to_min = flipper.min_angle_rad - angle_rad_, to_max = flipper.max_angle_rad - angle_rad_;
+  speed = std::clamp(speed, std::min(to_min / time_step_s, 0.0), std::max(to_max / time_step_s, 0.0));
+  if (to_max < 0) {
+    speed = std::min(speed, kEndStopGain_per_s * to_max);
+    min_impulse_ = -kEndStopTorque_nm * time_step_s;
+  } else if (to_min > 0) {
+    speed = std::max(speed, kEndStopGain_per_s * to_min);
+    max_impulse_ = kEndStopTorque_nm * time_step_s;
+  }
+  target_radps_ = speed;
+}
+
+void FlipperJoint::getInfo1(btConstraintInfo1* info) {
+  info->m_numConstraintRows = 6;
+  info->nub = 0;
+}
+
+void FlipperJoint::getInfo2(btConstraintInfo2* info) {
+  const btTransform X_WJa = m_rbA.getCenterOfMassTransform() * X_AJ_;
+  const btTransform X_WJb = m_rbB.getCenterOfMassTransform() * X_BJ_;
+  const btVector3 r_a = X_WJa.getOrigin() - m_rbA.getCenterOfMassPosition();
+  const btVector3 r_b = X_WJb.getOrigin() - m_rbB.getCenterOfMassPosition();
+  const btVector3 apart = X_WJb.getOrigin() - X_WJa.getOrigin();
+  const btScalar correction = info->fps * info->erp;
+
+  const auto set = [info](btScalar* rows, int row, const btVector3& v) {
+    for (int k = 0; k < 3; ++k) rows[row * info->rowskip + k] = v[k];
+  };
+  // rows 0 to 2 hold the pivots together
+  for (int i = 0; i < 3; ++i) {
+    btVector3 axis(0, 0, 0);
+    axis[i] = 1;
+    set(info->m_J1linearAxis, i, axis);
+    set(info->m_J2linearAxis, i, -axis);
+    set(info->m_J1angularAxis, i, r_a.cross(axis));
+    set(info->m_J2angularAxis, i, -r_b.cross(axis));
+    info->m_constraintError[i * info->rowskip] = correction * apart[i];
+  }
+  // rows 3 and 4 keep the axes parallel
+  const btVector3 axis_a = X_WJa.getBasis().getColumn(1);
+  const btVector3 tilt = axis_a.cross(X_WJb.getBasis().getColumn(1));
+  for (int i = 3; i < 5; ++i) {
+    const btVector3 p = X_WJa.getBasis().getColumn(i == 3 ? 0 : 2);
+    set(info->m_J1angularAxis, i, p);
+    set(info->m_J2angularAxis, i, -p);
+    info->m_constraintError[i * info->rowskip] = correction * tilt.dot(p);
+  }
+  // row 5 is the servo: B turns relative to A about -y of the joint
+  set(info->m_J1angularAxis, 5, axis_a);
+  set(info->m_J2angularAxis, 5, -axis_a);
+  info->m_constraintError[5 * info->rowskip] = target_radps_;
+  info->m_lowerLimit[5 * info->rowskip] = min_impulse_;
+  info->m_upperLimit[5 * info->rowskip] = max_impulse_;
+}
+
+}  // namespace kenaf::physics

@@ -1,0 +1,194 @@
+#include "physics/robot_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/robot_shapes.hpp"
+
+namespace kenaf::physics {
+namespace {
+
+bool is_front(Flipper flipper) {
+  return flipper == kFrontLeft || flipper == kFrontRight;
+}
+Track side_of(Flipper flipper) {
+  return flipper == kFrontLeft || flipper == kRearLeft ? kLeft : kRight;
+}
+
+std::unique_ptr<btRigidBody> make_body(double mass_kg, btCollisionShape& shape, const btVector3& inertia,
+                                       Collider& collider) {
+  auto body =
+      std::make_unique<btRigidBody>(btRigidBody::btRigidBodyConstructionInfo(mass_kg, nullptr, &shape, inertia));
+  body->setActivationState(DISABLE_DEACTIVATION);  // a track at 3 mm/s must not fall asleep
+  body->setUserPointer(&collider);
+  return body;
+}
+
+}  // namespace
+
+RobotModel::RobotModel(const RobotDescription& robot, RobotId id, btDiscreteDynamicsWorld& world, ContactSolver& solver)
+    : description(robot), world_(world), solver_(solver), battery_left_s_(robot.battery.capacity_s) {
+  for (Belt& belt : belts_) {
+    belt.moving_mass_kg = description.drive.moving_mass_kg;
+    solver_.add_belt(&belt);
+  }
+  make_hull(id);
+  if (description.has_flippers())
+    for (const Flipper which : {kFrontLeft, kFrontRight, kRearLeft, kRearRight}) make_flipper(which, id);
+  for (FlipperBody& flipper : flippers_)
+    if (flipper.joint) world_.addConstraint(flipper.joint.get(), true);  // true: it does not collide with the hull
+}
+
+RobotModel::~RobotModel() {
+  for (FlipperBody& flipper : flippers_)
+    if (flipper.joint) world_.removeConstraint(flipper.joint.get());
+  for (btRigidBody* body : body_list_) world_.removeRigidBody(body);
+  for (Belt& belt : belts_) solver_.remove_belt(&belt);
+}
+
+void RobotModel::make_hull(RobotId id) {
+  const BodyDescription& body = description.body;
+  const TrackDescription& track = description.track;
+  X_BCom_ = btTransform(btQuaternion::getIdentity(), to_bullet(body.p_BBcm_m));
+  hull_collider_.robot = static_cast<std::uint32_t>(id);
+  hull_shape_ = std::make_unique<btCompoundShape>();
+  const auto add = [this](std::unique_ptr<btCollisionShape> shape, const Surface& surface) {
+    hull_shape_->addChildShape(X_BCom_.inverse(), shape.get());
+    hull_pieces_.push_back(std::move(shape));
+    hull_collider_.surfaces.push_back(surface);
+  };
+  const Eigen::Vector2d half(body.size_m.x() / 2, body.size_m.z() / 2);
+  // a hull, not a btBoxShape: all of a robot meets the ground through the same algorithm
+  add(make_prism({{half.x(), -half.y()}, half, {-half.x(), half.y()}, -half}, body.size_m.y(), {0, 0, 0}),
+      {.friction_along = body.friction, .friction_across = body.friction});
+  for (const Track side : {kLeft, kRight}) {
+    Eigen::Vector3d center = track.p_BT_m;
+    if (side == kRight) center.y() = -center.y();
+    for (const Outline& outline : track_outlines(track))
+      add(make_prism(outline, track.width_m, center),
+          {.friction_along = track.friction_along, .friction_across = track.friction_across, .belt = &belts_[side]});
+  }
+  hull_ = make_body(body.mass_kg, *hull_shape_, to_bullet(body.inertia_kgm2), hull_collider_);
+  world_.addRigidBody(hull_.get());
+  body_list_.push_back(hull_.get());
+}
+
+void RobotModel::make_flipper(Flipper which, RobotId id) {
+  const FlipperDescription& f = description.flipper.front();
+  FlipperBody& flipper = flippers_[which];
+  const Outline outline = flipper_outline(f);
+  const OutlineMoments m = moments(outline);
+  const Eigen::Vector3d com(m.centroid.x(), 0, m.centroid.y());
+  // a rear flipper is a front one that is turned half round: x out along the arm, tip up about -y for all four
+  const bool front = is_front(which);
+  const Eigen::Vector3d pivot(front ? f.p_BPivot_m.x() : -f.p_BPivot_m.x(),
+                              side_of(which) == kLeft ? f.p_BPivot_m.y() : -f.p_BPivot_m.y(), f.p_BPivot_m.z());
+  const btQuaternion turn = front ? btQuaternion::getIdentity() : btQuaternion(0, 0, 1, 0);
+  flipper.X_BodyPivot = btTransform(turn, to_bullet(pivot));
+  flipper.X_FlipperCom = btTransform(btQuaternion::getIdentity(), to_bullet(com));
+
+  flipper.shape = make_prism(outline, f.width_m, -com);
+  flipper.collider.robot = static_cast<std::uint32_t>(id);
+  flipper.collider.surfaces = {{.friction_along = f.friction_along,
+                                .friction_across = f.friction_across,
+                                .belt = f.belt_driven ? &belts_[side_of(which)] : nullptr,
+                                .axis_y = front ? 1.0 : -1.0}};
+  const double xx = m.Ixx / m.area, zz = m.Izz / m.area, yy = f.width_m * f.width_m / 12;
+  flipper.body =
+      make_body(f.mass_kg, *flipper.shape, f.mass_kg * btVector3(zz + yy, xx + zz, xx + yy), flipper.collider);
+  world_.addRigidBody(flipper.body.get());
+  body_list_.push_back(flipper.body.get());
+  flipper.joint = std::make_unique<FlipperJoint>(*hull_, *flipper.body, X_BCom_.inverse() * flipper.X_BodyPivot,
+                                                 flipper.X_FlipperCom.inverse());
+}
+
+void RobotModel::place(const Pose& X_WB, bool start_joints) {
+  const auto put = [this](btRigidBody& body, const btTransform& X) {
+    body.setWorldTransform(X);
+    body.setInterpolationWorldTransform(X);
+    body.setLinearVelocity({0, 0, 0});
+    body.setAngularVelocity({0, 0, 0});
+    body.setInterpolationLinearVelocity({0, 0, 0});
+    body.setInterpolationAngularVelocity({0, 0, 0});
+    body.clearForces();
+    body.updateInertiaTensor();
+    // contacts of the old place must not pull on it
+    world_.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(body.getBroadphaseHandle(),
+                                                                           world_.getDispatcher());
+    world_.updateSingleAabb(&body);
+  };
+  const btTransform X = to_bullet(X_WB);
+  put(*hull_, X * X_BCom_);
+  for (FlipperBody& flipper : flippers_) {
+    if (!flipper.body) continue;
+    const double angle = start_joints ? description.flipper.front().start_angle_rad : flipper.joint->angle_rad();
+    const btTransform tip_up(btQuaternion(btVector3(0, -1, 0), angle));
+    put(*flipper.body, X * flipper.X_BodyPivot * tip_up * flipper.X_FlipperCom);
+    flipper.joint->restart(angle);
+  }
+  for (const Track side : {kLeft, kRight}) {
+    belts_[side].speed_mps = 0;
+    belts_[side].motor_impulse_ns = 0;
+    drives_[side].reference_mps = 0;
+  }
+  if (start_joints)
+    for (JointCommand& joint : command.flipper)
+      joint = {JointMode::angle, description.has_flippers() ? description.flipper.front().start_angle_rad : 0.0};
+}
+
+void RobotModel::before_step(double time_step_s) {
+  for (const Track side : {kLeft, kRight})
+    drives_[side].before_step(belts_[side], description.drive, command.track_speed_mps[side], time_step_s);
+  for (std::size_t i = 0; i < kFlipperCount; ++i)
+    if (flippers_[i].joint)
+      flippers_[i].joint->drive(command.flipper[i], description.flipper.front(), description.servo, time_step_s);
+}
+
+void RobotModel::after_step(double time_step_s) {
+  for (const Track side : {kLeft, kRight}) drives_[side].after_step(belts_[side], time_step_s);
+  for (FlipperBody& flipper : flippers_)
+    if (flipper.joint) flipper.joint->measure();
+  battery_left_s_ = std::max(0.0, battery_left_s_ - time_step_s);
+}
+
+double RobotModel::track_current_a(Track track, double time_step_s) const {
+  return physics::track_current_a(description.drive, belts_[track], time_step_s);
+}
+
+double RobotModel::flipper_current_a(Flipper flipper, double time_step_s) const {
+  const auto& joint = flippers_[flipper].joint;
+  return joint ? description.servo.amperes_per_nm * std::abs(joint->torque_nm(time_step_s)) : 0;
+}
+
+double RobotModel::battery_v(double time_step_s) const {
+  double current = 0;
+  for (const Track side : {kLeft, kRight}) current += track_current_a(side, time_step_s);
+  for (const Flipper which : {kFrontLeft, kFrontRight, kRearLeft, kRearRight})
+    current += flipper_current_a(which, time_step_s);
+  return std::max(0.0, description.battery.open_circuit_v - description.battery.internal_resistance_ohm * current);
+}
+
+RobotTruth RobotModel::truth(double time_step_s) const {
+  RobotTruth truth{};
+  const btTransform X_WB = hull_->getWorldTransform() * X_BCom_.inverse();
+  truth.X_WB = from_bullet(X_WB);
+  truth.w_WB_radps = from_bullet(hull_->getAngularVelocity());
+  truth.v_WB_mps =
+      from_bullet(hull_->getVelocityInLocalPoint(X_WB.getOrigin() - hull_->getWorldTransform().getOrigin()));
+  for (const Track side : {kLeft, kRight}) {
+    truth.track_mps[side] = belts_[side].speed_mps;
+    truth.track_m[side] = drives_[side].travel_m;
+    truth.track_force_n[side] = belts_[side].motor_impulse_ns / time_step_s;
+  }
+  for (std::size_t i = 0; i < kFlipperCount; ++i) {
+    if (!flippers_[i].joint) continue;
+    truth.flipper_rad[i] = flippers_[i].joint->angle_rad();
+    truth.flipper_radps[i] = flippers_[i].joint->speed_radps();
+    truth.flipper_nm[i] = flippers_[i].joint->torque_nm(time_step_s);
+  }
+  truth.battery_v = battery_v(time_step_s);
+  truth.battery_left_s = battery_left_s_;
+  return truth;
+}
+
+}  // namespace kenaf::physics

@@ -1,0 +1,67 @@
+// One robot as Bullet bodies: hull with main tracks, four flippers on joints, and the belts' drives.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "physics/bullet.hpp"
+#include "physics/contact_solver.hpp"
+#include "physics/drive.hpp"
+#include "physics/flipper_joint.hpp"
+#include "physics/world.hpp"
+
+namespace kenaf::physics {
+
+class RobotModel {
+ public:
+  RobotModel(const RobotDescription& description, RobotId id, btDiscreteDynamicsWorld& world, ContactSolver& solver);
+  ~RobotModel();
+  RobotModel(const RobotModel&) = delete;
+  RobotModel& operator=(const RobotModel&) = delete;
+
+  // At rest, joints at their start angles when `start_joints`, else at their present ones.
+  void place(const Pose& X_WB, bool start_joints);
+
+  void before_step(double time_step_s);
+  void after_step(double time_step_s);
+
+  RobotTruth truth(double time_step_s) const;
+  double track_current_a(Track track, double time_step_s) const;
+  double flipper_current_a(Flipper flipper, double time_step_s) const;
+  double battery_v(double time_step_s) const;
+
+  const std::vector<btRigidBody*>& bodies() const { return body_list_; }
+
+  const RobotDescription description;
+  RobotCommand command;
+
+ private:
+  struct FlipperBody {
+    std::unique_ptr<btConvexHullShape> shape;
+    std::unique_ptr<btRigidBody> body;
+    std::unique_ptr<FlipperJoint> joint;
+    Collider collider;
+    btTransform X_FlipperCom;    // the flipper's frame (x out along the arm) to its centre of mass
+    btTransform X_BodyPivot;     // where that frame is in B at angle 0
+  };
+
+  void make_hull(RobotId id);
+  void make_flipper(Flipper which, RobotId id);
+
+  btDiscreteDynamicsWorld& world_;
+  ContactSolver& solver_;
+  std::vector<std::unique_ptr<btCollisionShape>> hull_pieces_;
+  std::unique_ptr<btCompoundShape> hull_shape_;
+  std::unique_ptr<btRigidBody> hull_;
+  Collider hull_collider_;
+  btTransform X_BCom_;
+  std::array<FlipperBody, kFlipperCount> flippers_;
+  std::array<Belt, kTrackCount> belts_;
+  std::array<TrackDrive, kTrackCount> drives_;
+  std::vector<btRigidBody*> body_list_;
+  double battery_left_s_;
+};
+
+}  // namespace kenaf::physics

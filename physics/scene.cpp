@@ -1,0 +1,158 @@
+#include "physics/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "physics/robot_shapes.hpp"
+
+namespace kenaf::physics {
+namespace {
+
+constexpr double kJointCorrection = 0.2;  // share of a joint's position error that is removed in a step
+constexpr double kFree_m = 1e-5;
+
+}  // namespace
+
+Scene::Scene(const WorldDescription& description, const PhysicsSettings& settings)
+    : dispatcher_(&configuration_),
+      hull_plane_(dispatcher_),
+      solver_({settings.contact_stiffness_npm, settings.contact_damping_nspm}),
+      world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
+  btContactSolverInfo& info = world_.getSolverInfo();
+  info.m_numIterations = settings.solver_iterations;
+  info.m_splitImpulse = 0;  // contacts give way instead, see ContactSolver
+  info.m_erp = kJointCorrection;
+  world_.getSimulationIslandManager()->setSplitIslands(false);  // belts belong to no island
+  world_.setForceUpdateAllAabbs(false);
+  world_.setGravity({0, 0, -description.gravity_mps2});
+  for (const GroundPlane& plane : description.planes) {
+    Fixture& fixture = planes_.emplace_back();
+    fixture.shape = std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
+    add_fixture(fixture, 0, plane.friction, plane.X_WP);
+  }
+}
+
+Scene::~Scene() {
+  for (auto& [id, box] : boxes_) world_.removeRigidBody(box.body.get());
+  for (Fixture& plane : planes_) world_.removeRigidBody(plane.body.get());
+}
+
+void Scene::add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W) {
+  fixture.collider = std::make_unique<Collider>();
+  fixture.collider->surfaces = {{.friction_along = friction, .friction_across = friction}};
+  btVector3 inertia(0, 0, 0);
+  if (mass_kg > 0) fixture.shape->calculateLocalInertia(mass_kg, inertia);
+  fixture.body = std::make_unique<btRigidBody>(
+      btRigidBody::btRigidBodyConstructionInfo(mass_kg, nullptr, fixture.shape.get(), inertia));
+  fixture.body->setActivationState(DISABLE_DEACTIVATION);
+  fixture.body->setUserPointer(fixture.collider.get());
+  fixture.body->setWorldTransform(to_bullet(X_W));
+  fixture.body->setInterpolationWorldTransform(to_bullet(X_W));
+  world_.addRigidBody(fixture.body.get());
+}
+
+void Scene::step(double time_step_s) {
+  world_.stepSimulation(time_step_s, 0);
+}
+
+void Scene::add_box(BoxId id, const Box& box) {
+  Fixture& fixture = boxes_[id];
+  // A loose box is a hull, so that it stands on planes as robots do.
+  const Eigen::Vector2d half(box.size_m.x() / 2, box.size_m.z() / 2);
+  if (box.mass_kg > 0)
+    fixture.shape = make_prism({{half.x(), -half.y()}, half, {-half.x(), half.y()}, -half}, box.size_m.y(), {0, 0, 0});
+  else
+    fixture.shape = make_box(box.size_m);
+  add_fixture(fixture, box.mass_kg, box.friction, box.X_WBox);
+}
+
+void Scene::remove_box(BoxId id) {
+  const auto found = boxes_.find(id);
+  if (found == boxes_.end()) throw std::out_of_range("no such box");
+  world_.removeRigidBody(found->second.body.get());
+  boxes_.erase(found);
+}
+
+void Scene::move_box(BoxId id, const Pose& X_WBox) {
+  btRigidBody& body = *boxes_.at(id).body;
+  body.setWorldTransform(to_bullet(X_WBox));
+  body.setInterpolationWorldTransform(to_bullet(X_WBox));
+  body.setLinearVelocity({0, 0, 0});
+  body.setAngularVelocity({0, 0, 0});
+  body.updateInertiaTensor();
+  broadphase_.getOverlappingPairCache()->cleanProxyFromPairs(body.getBroadphaseHandle(), &dispatcher_);
+  world_.updateSingleAabb(&body);
+}
+
+Pose Scene::box_pose(BoxId id) const {
+  return from_bullet(boxes_.at(id).body->getWorldTransform());
+}
+
+double Scene::lift_needed(RobotModel& robot) {
+  struct Deepest : btCollisionWorld::ContactResultCallback {
+    const btCollisionObject* self = nullptr;
+    const std::vector<btRigidBody*>* own = nullptr;
+    double lift_m = 0;
+    bool needsCollision(btBroadphaseProxy* proxy) const override {
+      return std::find(own->begin(), own->end(), proxy->m_clientObject) == own->end();
+    }
+    btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* object0, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+      const double depth = -point.getDistance();
+      if (depth <= 0) return 0;
+      const double up = (object0->getCollisionObject() == self ? 1 : -1) * point.m_normalWorldOnB.z();
+      // a wall beside it, or an obstacle's underside: on, in steps, until it is above
+      constexpr double kSearchStep_m = 0.02, kSteepest = 0.3;
+      lift_m = std::max(lift_m, up > kSteepest ? depth / up : kSearchStep_m);
+      return 0;
+    }
+  } deepest;
+  deepest.own = &robot.bodies();
+  for (btRigidBody* body : robot.bodies()) {
+    deepest.self = body;
+    world_.contactTest(body, deepest);
+  }
+  return deepest.lift_m;
+}
+
+void Scene::place_free(RobotModel& robot, Pose X_WB, bool start_joints) {
+  constexpr int kMaxLifts = 1000;
+  robot.place(X_WB, start_joints);
+  for (int i = 0; i < kMaxLifts; ++i) {
+    const double lift_m = lift_needed(robot);
+    if (lift_m <= 0) return;
+    X_WB.p.z() += lift_m + kFree_m;
+    robot.place(X_WB, start_joints);
+  }
+}
+
+std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,
+                                      std::uint32_t ignored_robot) const {
+  struct Closest : btCollisionWorld::ClosestRayResultCallback {
+    using ClosestRayResultCallback::ClosestRayResultCallback;
+    std::uint32_t ignored = 0;
+    bool needsCollision(btBroadphaseProxy* proxy) const override {
+      const auto* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
+      return !ignored || static_cast<const Collider*>(object->getUserPointer())->robot != ignored;
+    }
+  };
+  const double length = direction_W.norm();
+  if (!(length > 0) || !(max_m > 0) || !from_W.allFinite()) return std::nullopt;
+  const Eigen::Vector3d to_W = from_W + direction_W * (max_m / length);
+  Closest closest(to_bullet(from_W), to_bullet(to_W));
+  closest.ignored = ignored_robot;
+  world_.rayTest(to_bullet(from_W), to_bullet(to_W), closest);
+  if (!closest.hasHit()) return std::nullopt;
+  return RayHit{closest.m_closestHitFraction * max_m, from_bullet(closest.m_hitNormalWorld)};
+}
+
+void Scene::touches(RobotId robot, std::vector<Eigen::Vector3d>& out) const {
+  out.clear();
+  const auto id = static_cast<std::uint32_t>(robot);
+  for (const ContactSolver::Contact& contact : solver_.contacts())
+    if (contact.impulse[0] > 0 && (contact.collider_a->robot == id || contact.collider_b->robot == id))
+      out.push_back(from_bullet(contact.p_W));
+}
+
+}  // namespace kenaf::physics

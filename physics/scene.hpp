@@ -1,0 +1,61 @@
+// The Bullet side of a world: solver, ground and boxes, ray casts, and lifting a robot until it is free.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "physics/bullet.hpp"
+#include "physics/contact_solver.hpp"
+#include "physics/hull_plane.hpp"
+#include "physics/robot_model.hpp"
+#include "physics/world.hpp"
+
+namespace kenaf::physics {
+
+class Scene {
+ public:
+  Scene(const WorldDescription& description, const PhysicsSettings& settings);
+  ~Scene();
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+  void step(double time_step_s);
+
+  void add_box(BoxId id, const Box& box);
+  void remove_box(BoxId id);
+  void move_box(BoxId id, const Pose& X_WBox);
+  Pose box_pose(BoxId id) const;
+
+  // Places the robot at `X_WB`, moved straight up until nothing touches it.
+  void place_free(RobotModel& robot, Pose X_WB, bool start_joints);
+  std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,
+                                 std::uint32_t ignored_robot) const;
+  // Where a robot is pressed upon, in the world.
+  void touches(RobotId robot, std::vector<Eigen::Vector3d>& out) const;
+  std::size_t contact_count() const { return solver_.contacts().size(); }
+
+  btDiscreteDynamicsWorld& dynamics() { return world_; }
+  ContactSolver& solver() { return solver_; }
+
+ private:
+  struct Fixture {
+    std::unique_ptr<btCollisionShape> shape;
+    std::unique_ptr<btRigidBody> body;
+    std::unique_ptr<Collider> collider;
+  };
+  void add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W);
+  double lift_needed(RobotModel& robot);
+
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_;
+  HullPlaneContacts hull_plane_;
+  btDbvtBroadphase broadphase_;
+  ContactSolver solver_;
+  btDiscreteDynamicsWorld world_;
+  std::vector<Fixture> planes_;
+  std::map<BoxId, Fixture> boxes_;
+};
+
+}  // namespace kenaf::physics

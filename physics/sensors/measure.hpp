@@ -1,0 +1,50 @@
+// One function for each kind of sensor: from what the robot did to what the sensor reports. docs/physics.md says what
+// each one models.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "physics/readings.hpp"
+#include "physics/robot_description.hpp"
+#include "physics/sensors/motion_history.hpp"
+#include "physics/sensors/noise.hpp"
+
+namespace kenaf::physics {
+
+// What a sensor carries from one report to the next.
+struct SensorState {
+  explicit SensorState(const NoiseSource& source) : noise(source) {}
+  NoiseSource noise;
+  Eigen::Vector3d bias_rad{0, 0, 0}, bias_radps{0, 0, 0};
+  // where its integration started
+  std::array<double, kTrackCount> start_track_m{};
+  Eigen::Vector3d start_odometry{0, 0, 0};
+  Pose X_given_true;  // INS: turns the true pose into the one it was told to have
+};
+
+GroundTruthReading measure_ground_truth(const MotionSample& now);
+InsReading measure_ins(const SensorDescription& sensor, SensorState& state, const MotionSample& now);
+// `before` is one averaging time earlier: accelerations are the mean between the two.
+ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
+                       const MotionSample& before, double gravity_mps2);
+
+EncoderReading measure_encoder(const SensorState& state, const MotionSample& now, const TrackDriveDescription& drive);
+OdometryReading measure_odometry(const SensorState& state, const MotionSample& now);
+TachometerReading measure_tachometer(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
+                                     const TrackDriveDescription& drive);
+// Advances odometry by a step from the encoders' whole counts.
+Eigen::Vector3d advance_odometry(const Eigen::Vector3d& odometry, const std::array<double, kTrackCount>& old_track_m,
+                                 const std::array<double, kTrackCount>& new_track_m, const RobotDescription& robot);
+
+// The distance to the first surface along a ray from a point in W, if one is nearer than `max_m`.
+using RayCaster = std::function<std::optional<double>(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W,
+                                                      double max_m)>;
+SonarReading measure_sonar(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
+                           const RayCaster& cast);
+RangeScanReading measure_range_scanner(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
+                                       const RayCaster& cast);
+GpsReading measure_gps(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
+                       const RayCaster& cast);
+
+}  // namespace kenaf::physics

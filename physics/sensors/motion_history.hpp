@@ -1,0 +1,46 @@
+// What a robot did in its last steps: sensors measure the past, because they are late.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "physics/pose.hpp"
+#include "physics/robot_command.hpp"
+
+namespace kenaf::physics {
+
+struct MotionSample {
+  double t_s = 0;
+  Pose X_WB;
+  Eigen::Vector3d v_WB_mps{0, 0, 0}, w_WB_radps{0, 0, 0};
+  std::array<double, kTrackCount> track_mps{}, track_m{}, track_a{};
+  std::array<double, kFlipperCount> flipper_a{};
+  double battery_v = 0;
+  Eigen::Vector3d odometry{0, 0, 0};  // x, y, yaw from the encoders since placement
+  std::uint64_t touched = 0;          // bit i: sensor i is touched
+};
+
+// The last `length` samples, one a step. No allocation after construction.
+class MotionHistory {
+ public:
+  explicit MotionHistory(std::size_t length) : samples_(std::max<std::size_t>(length, 1)) {}
+
+  void clear() { count_ = 0; }
+  void push(const MotionSample& sample) { samples_[count_++ % samples_.size()] = sample; }
+  bool empty() const { return count_ == 0; }
+  // 0 = the newest; older than the oldest gives the oldest.
+  const MotionSample& back(std::size_t steps) const {
+    const std::size_t kept = std::min(count_, samples_.size());
+    return samples_[(count_ - 1 - std::min(steps, kept - 1)) % samples_.size()];
+  }
+  // How many steps lie between the newest and the one that back(steps) gives.
+  std::size_t reach(std::size_t steps) const { return std::min(steps, std::min(count_, samples_.size()) - 1); }
+
+ private:
+  std::vector<MotionSample> samples_;
+  std::size_t count_ = 0;
+};
+
+}  // namespace kenaf::physics

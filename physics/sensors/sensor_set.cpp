@@ -1,0 +1,114 @@
+#include "physics/sensors/sensor_set.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+namespace kenaf::physics {
+namespace {
+
+constexpr double kTouchRadius_m = 0.05;  // a touch sensor feels contacts this near to its mount
+
+std::size_t steps_in(double time_s, double time_step_s) {
+  return static_cast<std::size_t>(std::llround(time_s / time_step_s));
+}
+
+std::size_t history_length(const RobotDescription& robot, double time_step_s) {
+  std::size_t longest = 0;
+  for (const SensorDescription& sensor : robot.sensors) {
+    std::size_t steps = steps_in(sensor.delay_s, time_step_s);
+    if (sensor.type == SensorType::imu) steps += std::max<std::size_t>(1, steps_in(sensor.period_s, time_step_s));
+    longest = std::max(longest, steps);
+  }
+  return longest + 1;
+}
+
+}  // namespace
+
+SensorSet::SensorSet(const RobotDescription& robot, const std::string& robot_name, std::uint64_t world_seed,
+                     double time_step_s, double gravity_mps2)
+    : robot_(robot), gravity_mps2_(gravity_mps2), history_(history_length(robot, time_step_s)) {
+  for (const SensorDescription& sensor : robot.sensors) {
+    Entry& entry = entries_.emplace_back(SensorState(NoiseSource(world_seed, robot_name, sensor.name)),
+                                         steps_in(sensor.period_s, time_step_s), steps_in(sensor.delay_s, time_step_s));
+    entry.state.bias_rad = entry.state.noise.normal3(sensor.bias_rad);
+    entry.state.bias_radps = entry.state.noise.normal3(sensor.bias_radps);
+    has_touch_ = has_touch_ || sensor.type == SensorType::touch;
+    has_odometry_ = has_odometry_ || sensor.type == SensorType::odometry;
+  }
+}
+
+void SensorSet::record(const RobotTruth& truth, double t_s, const std::array<double, kTrackCount>& track_a,
+                       const std::array<double, kFlipperCount>& flipper_a, std::span<const Eigen::Vector3d> touches_B) {
+  if (has_odometry_) odometry_ = advance_odometry(odometry_, track_m_, truth.track_m, robot_);
+  track_m_ = truth.track_m;
+  MotionSample sample{.t_s = t_s,
+                      .X_WB = truth.X_WB,
+                      .v_WB_mps = truth.v_WB_mps,
+                      .w_WB_radps = truth.w_WB_radps,
+                      .track_mps = truth.track_mps,
+                      .track_m = truth.track_m,
+                      .track_a = track_a,
+                      .flipper_a = flipper_a,
+                      .battery_v = truth.battery_v,
+                      .odometry = odometry_};
+  for (std::size_t i = 0; has_touch_ && i < entries_.size(); ++i) {
+    if (robot_.sensors[i].type != SensorType::touch) continue;
+    for (const Eigen::Vector3d& p_BC : touches_B)
+      if ((p_BC - robot_.sensors[i].X_BS.p).norm() < kTouchRadius_m) sample.touched |= std::uint64_t{1} << i;
+  }
+  history_.push(sample);
+}
+
+Reading SensorSet::measure(std::size_t i, const RayCaster& cast) {
+  const SensorDescription& sensor = robot_.sensors[i];
+  Entry& entry = entries_[i];
+  const MotionSample& now = history_.back(entry.delay_steps);
+  switch (sensor.type) {
+    case SensorType::ground_truth:
+      return measure_ground_truth(now);
+    case SensorType::ins:
+      return measure_ins(sensor, entry.state, now);
+    case SensorType::imu: {
+      const std::size_t window = std::max<std::size_t>(1, entry.period_steps);
+      return measure_imu(sensor, entry.state, now, history_.back(entry.delay_steps + window), gravity_mps2_);
+    }
+    case SensorType::encoder:
+      return measure_encoder(entry.state, now, robot_.drive);
+    case SensorType::odometry:
+      return measure_odometry(entry.state, now);
+    case SensorType::tachometer:
+      return measure_tachometer(sensor, entry.state, now, robot_.drive);
+    case SensorType::sonar:
+      return measure_sonar(sensor, entry.state, now, cast);
+    case SensorType::range_scanner:
+      return measure_range_scanner(sensor, entry.state, now, cast);
+    case SensorType::gps:
+      return measure_gps(sensor, entry.state, now, cast);
+    case SensorType::touch:
+      return TouchReading{(now.touched >> i & 1) != 0};
+    case SensorType::drives:
+      return DrivesReading{now.track_a, now.flipper_a, now.battery_v};
+  }
+  throw std::logic_error("unknown sensor type");
+}
+
+void SensorSet::read(std::uint64_t step, const RayCaster& cast, std::vector<SensorSample>& out) {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    Entry& entry = entries_[i];
+    const std::size_t wait = std::max<std::size_t>(1, entry.period_steps);
+    if (entry.reported_step && step < *entry.reported_step + wait) continue;
+    entry.reported_step = step;
+    out.push_back({i, history_.back(entry.delay_steps).t_s, measure(i, cast)});
+  }
+}
+
+void SensorSet::reset(std::size_t sensor, const std::optional<GroundTruthReading>& pose) {
+  SensorState& state = entries_.at(sensor).state;
+  const MotionSample& now = history_.back(0);
+  state.start_track_m = now.track_m;
+  state.start_odometry = now.odometry;
+  state.X_given_true = {};
+  if (pose) state.X_given_true = compose({pose->p_WB_m, rotation_from(pose->roll_pitch_yaw_rad)}, inverse(now.X_WB));
+}
+
+}  // namespace kenaf::physics

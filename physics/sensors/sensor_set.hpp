@@ -1,0 +1,48 @@
+// All the sensors of one robot: when each is due, how late it is, and what it reports.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "physics/sensors/measure.hpp"
+#include "physics/world.hpp"
+
+namespace kenaf::physics {
+
+class SensorSet {
+ public:
+  SensorSet(const RobotDescription& robot, const std::string& robot_name, std::uint64_t world_seed, double time_step_s,
+            double gravity_mps2);
+
+  // Once after placement and after each step. `touches_B`: where the robot is touched, in B.
+  void record(const RobotTruth& truth, double t_s, const std::array<double, kTrackCount>& track_a,
+              const std::array<double, kFlipperCount>& flipper_a, std::span<const Eigen::Vector3d> touches_B);
+  // After a teleport: what was before is no motion.
+  void forget_motion() { history_.clear(); }
+
+  void read(std::uint64_t step, const RayCaster& cast, std::vector<SensorSample>& out);
+  void reset(std::size_t sensor, const std::optional<GroundTruthReading>& pose);
+  bool has_touch() const { return has_touch_; }
+
+ private:
+  struct Entry {
+    Entry(SensorState initial, std::size_t period, std::size_t delay)
+        : state(initial), period_steps(period), delay_steps(delay) {}
+    SensorState state;
+    std::size_t period_steps, delay_steps;
+    std::optional<std::uint64_t> reported_step;
+  };
+  Reading measure(std::size_t sensor, const RayCaster& cast);
+
+  const RobotDescription& robot_;
+  double gravity_mps2_;
+  std::vector<Entry> entries_;
+  MotionHistory history_;
+  bool has_touch_ = false, has_odometry_ = false;
+  Eigen::Vector3d odometry_{0, 0, 0};
+  std::array<double, kTrackCount> track_m_{};
+};
+
+}  // namespace kenaf::physics

@@ -1,0 +1,273 @@
+#include "physics/world.hpp"
+
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "physics/scene.hpp"
+#include "physics/sensors/sensor_set.hpp"
+
+namespace kenaf::physics {
+namespace {
+
+void check_pose(const Pose& X, const char* what) {
+  constexpr double kWorldEdge_m = 1e6;
+  if (!X.p.allFinite() || !X.q.coeffs().allFinite() || X.p.norm() > kWorldEdge_m || std::abs(X.q.norm() - 1) > 1e-3)
+    throw std::invalid_argument(std::string(what) +
+                                ": the pose is not finite, too far away, or its rotation is not one");
+}
+
+struct RobotEntry {
+  RobotDescription description;
+  std::string name;
+  Pose X_WB_first;
+  std::unique_ptr<RobotModel> model;
+  std::unique_ptr<SensorSet> sensors;
+  struct MissionLink {
+    double angle_rad = 0, target_rad = 0;
+  };
+  std::vector<std::vector<MissionLink>> mission;
+};
+
+}  // namespace
+
+struct World::Implementation {
+  WorldDescription description;
+  PhysicsSettings settings;
+  std::uint64_t seed;
+  std::uint64_t steps = 0;
+  std::uint32_t next_id = 1;  // robots and boxes share it, so that reset() can add them in their order again
+  std::unique_ptr<Scene> scene;
+  std::map<RobotId, RobotEntry> robots;  // after the scene: they leave it before it ends
+  std::map<BoxId, Box> boxes;
+  std::vector<Eigen::Vector3d> touches;
+
+  double time_s() const { return static_cast<double>(steps) * settings.time_step_s; }
+
+  RobotEntry& robot(RobotId id) {
+    const auto found = robots.find(id);
+    if (found == robots.end()) throw std::out_of_range("no such robot in this world");
+    return found->second;
+  }
+
+  void build_robot(RobotId id, RobotEntry& entry) {
+    entry.model = std::make_unique<RobotModel>(entry.description, id, scene->dynamics(), scene->solver());
+    entry.sensors = std::make_unique<SensorSet>(entry.model->description, entry.name, seed, settings.time_step_s,
+                                                description.gravity_mps2);
+    entry.mission.clear();
+    for (const MissionPackageDescription& package : entry.description.mission_packages) {
+      auto& links = entry.mission.emplace_back();
+      for (const auto& link : package.links) {
+        const double rest = std::clamp(0.0, link.min_rad, link.max_rad);
+        links.push_back({rest, rest});
+      }
+    }
+    scene->place_free(*entry.model, entry.X_WB_first, true);
+    touches.clear();
+    record(id, entry);
+  }
+
+  void record(RobotId id, RobotEntry& entry) {
+    const RobotModel& model = *entry.model;
+    const double dt = settings.time_step_s;
+    const RobotTruth truth = model.truth(dt);
+    if (entry.sensors->has_touch()) {
+      const Pose X_BW = inverse(truth.X_WB);
+      scene->touches(id, touches);
+      for (Eigen::Vector3d& p : touches) p = X_BW.p + X_BW.q * p;
+    }
+    entry.sensors->record(truth, time_s(), {model.track_current_a(kLeft, dt), model.track_current_a(kRight, dt)},
+                          {model.flipper_current_a(kFrontLeft, dt), model.flipper_current_a(kFrontRight, dt),
+                           model.flipper_current_a(kRearLeft, dt), model.flipper_current_a(kRearRight, dt)},
+                          touches);
+  }
+
+  void build() {
+    // robots let go of the old scene before it goes
+    for (auto& [id, entry] : robots) {
+      entry.sensors.reset();
+      entry.model.reset();
+    }
+    scene = std::make_unique<Scene>(description, settings);
+    steps = 0;
+    auto box = boxes.begin();
+    auto robot = robots.begin();
+    while (box != boxes.end() || robot != robots.end()) {
+      const bool box_first =
+          robot == robots.end() ||
+          (box != boxes.end() && static_cast<std::uint32_t>(box->first) < static_cast<std::uint32_t>(robot->first));
+      if (box_first) {
+        scene->add_box(box->first, box->second);
+        ++box;
+      } else {
+        build_robot(robot->first, robot->second);
+        ++robot;
+      }
+    }
+  }
+
+  void step() {
+    const double dt = settings.time_step_s;
+    for (auto& [id, entry] : robots) entry.model->before_step(dt);
+    scene->step(dt);
+    ++steps;
+    for (auto& [id, entry] : robots) {
+      entry.model->after_step(dt);
+      for (std::size_t p = 0; p < entry.mission.size(); ++p) {
+        for (std::size_t l = 0; l < entry.mission[p].size(); ++l) {
+          auto& link = entry.mission[p][l];
+          const double most = entry.description.mission_packages[p].links[l].max_speed_radps * dt;
+          link.angle_rad += std::clamp(link.target_rad - link.angle_rad, -most, most);
+        }
+      }
+      record(id, entry);
+    }
+  }
+};
+
+World::World(const WorldDescription& description, const PhysicsSettings& settings, std::uint64_t seed)
+    : impl_(std::make_unique<Implementation>()) {
+  if (!(settings.time_step_s > 0 && settings.time_step_s <= 0.1) || settings.solver_iterations < 1 ||
+      !(settings.contact_stiffness_npm > 0) || !(settings.contact_damping_nspm >= 0))
+    throw std::invalid_argument(
+        "physics settings: the time step must be above 0 and at most 0.1 s, the solver needs at "
+        "least one iteration, and contacts a stiffness above 0 and a damping of at least 0");
+  impl_->description = description;
+  impl_->settings = settings;
+  impl_->seed = seed;
+  for (const Box& box : description.boxes) impl_->boxes.emplace(BoxId{impl_->next_id++}, box);
+  impl_->build();
+}
+
+World::~World() = default;
+World::World(World&&) noexcept = default;
+World& World::operator=(World&&) noexcept = default;
+
+const WorldDescription& World::description() const {
+  return impl_->description;
+}
+const PhysicsSettings& World::settings() const {
+  return impl_->settings;
+}
+double World::time_s() const {
+  return impl_->time_s();
+}
+std::uint64_t World::step_count() const {
+  return impl_->steps;
+}
+
+RobotId World::add_robot(const RobotDescription& description, const std::string& name, const Pose& X_WB) {
+  check_pose(X_WB, "add_robot");
+  const RobotId id{impl_->next_id++};
+  RobotEntry& entry = impl_->robots[id];
+  entry.description = description;
+  entry.name = name;
+  entry.X_WB_first = {X_WB.p, X_WB.q.normalized()};
+  impl_->build_robot(id, entry);
+  return id;
+}
+
+void World::remove_robot(RobotId id) {
+  impl_->robot(id);
+  impl_->robots.erase(id);
+}
+
+std::vector<RobotId> World::robots() const {
+  std::vector<RobotId> out;
+  for (const auto& [id, entry] : impl_->robots) out.push_back(id);
+  return out;
+}
+
+const RobotDescription& World::robot_description(RobotId id) const {
+  return impl_->robot(id).description;
+}
+
+void World::set_command(RobotId id, const RobotCommand& command) {
+  RobotCommand& now = impl_->robot(id).model->command;
+  // what is no number changes nothing
+  for (std::size_t i = 0; i < kTrackCount; ++i)
+    if (std::isfinite(command.track_speed_mps[i])) now.track_speed_mps[i] = command.track_speed_mps[i];
+  for (std::size_t i = 0; i < kFlipperCount; ++i)
+    if (std::isfinite(command.flipper[i].value)) now.flipper[i] = command.flipper[i];
+}
+
+void World::set_mission_link(RobotId id, std::size_t package, std::size_t link, double angle_rad) {
+  RobotEntry& entry = impl_->robot(id);
+  auto& state = entry.mission.at(package).at(link);
+  const auto& limits = entry.description.mission_packages[package].links[link];
+  if (std::isfinite(angle_rad)) state.target_rad = std::clamp(angle_rad, limits.min_rad, limits.max_rad);
+}
+
+double World::mission_link_rad(RobotId id, std::size_t package, std::size_t link) const {
+  return impl_->robot(id).mission.at(package).at(link).angle_rad;
+}
+
+void World::teleport(RobotId id, const Pose& X_WB) {
+  check_pose(X_WB, "teleport");
+  RobotEntry& entry = impl_->robot(id);
+  impl_->scene->place_free(*entry.model, {X_WB.p, X_WB.q.normalized()}, false);
+  entry.sensors->forget_motion();
+  impl_->touches.clear();
+  impl_->record(id, entry);
+}
+
+void World::reset_sensor(RobotId id, std::size_t sensor, std::optional<GroundTruthReading> pose) {
+  impl_->robot(id).sensors->reset(sensor, pose);
+}
+
+void World::step() {
+  impl_->step();
+}
+std::size_t World::contact_count() const {
+  return impl_->scene->contact_count();
+}
+
+RobotTruth World::truth(RobotId id) const {
+  return impl_->robot(id).model->truth(impl_->settings.time_step_s);
+}
+
+void World::read_sensors(RobotId id, std::vector<SensorSample>& out) {
+  const auto own = static_cast<std::uint32_t>(id);
+  const RayCaster cast = [this, own](const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
+                                     double max_m) -> std::optional<double> {
+    const auto hit = impl_->scene->cast_ray(from, direction, max_m, own);
+    return hit ? std::optional(hit->distance_m) : std::nullopt;
+  };
+  impl_->robot(id).sensors->read(impl_->steps, cast, out);
+}
+
+BoxId World::add_box(const Box& box) {
+  check_pose(box.X_WBox, "add_box");
+  if (!(box.size_m.minCoeff() > 0) || !box.size_m.allFinite() || !(box.mass_kg >= 0) || !std::isfinite(box.mass_kg) ||
+      !(box.friction >= 0))
+    throw std::invalid_argument("add_box: size must be above 0, mass and friction at least 0");
+  const BoxId id{impl_->next_id++};
+  impl_->boxes.emplace(id, box);
+  impl_->scene->add_box(id, box);
+  return id;
+}
+
+void World::move_box(BoxId id, const Pose& X_WBox) {
+  check_pose(X_WBox, "move_box");
+  impl_->scene->move_box(id, X_WBox);
+}
+
+void World::remove_box(BoxId id) {
+  impl_->scene->remove_box(id);
+  impl_->boxes.erase(id);
+}
+
+Pose World::box_pose(BoxId id) const {
+  return impl_->scene->box_pose(id);
+}
+
+std::optional<RayHit> World::cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,
+                                      std::optional<RobotId> ignore) const {
+  return impl_->scene->cast_ray(from_W, direction_W, max_m, ignore ? static_cast<std::uint32_t>(*ignore) : 0);
+}
+
+void World::reset() {
+  impl_->build();
+}
+
+}  // namespace kenaf::physics
