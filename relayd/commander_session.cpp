@@ -86,8 +86,9 @@ void CommanderSession::on_frame(const WorldFrame& frame, TimePoint now) {
     late_before_ = frame.state.late_commands;
     commanded_s_ = frame.state.robot_time_s;
   }
-  // The first frame is 1, and a world that was reset counts from its beginning again: States go on counting.
-  if (first || frame.number + frame_offset_ <= state_.frame) frame_offset_ = state_.frame + 1 - frame.number;
+  // The first frame is 1; should the world count anew, States go on counting. A number that comes again is no new
+  // frame: the world tells that it was paused or goes on.
+  if (first || frame.number + frame_offset_ < state_.frame) frame_offset_ = state_.frame + 1 - frame.number;
 
   const std::uint32_t acknowledged = state_.acknowledged;
   state_ = frame.state;

@@ -1,12 +1,11 @@
 // From a fresh connection to a robot in the world: what is asked in which order, and when the answers suffice. Works
 // with servers that know the extensions and with those that do not. No sockets, no clock of its own.
 //
-//   server: NFO                      (or nothing for 1 s)
-//   relay:  GETSTARTPOSES            only where neither a start nor a pose was chosen
-//   server: NFO {StartPoses ...}     (or nothing for 0.5 s: the world's origin)
-//   relay:  INIT, GETCONF and GETGEO Robot, GETCONF Encoder, CONTROL Session, all in one piece, so that a server that
-//           reads whole pieces lets no robot time pass between the robot's placement and its lock step
-//   server: CONF, GEO, ..., RES Session OK, STA: extended. STA, but no RES within 0.5 s of it: plain.
+//   server: NFO                  (or nothing for 1 s)
+//   relay:  CONTROL Session, INIT, GETCONF and GETGEO Robot, GETCONF Encoder, in one piece. The session comes first, so
+//           that its precision holds for the geometry, and no robot time passes between placement and lock step.
+//   server: RES Session OK, GEO, ..., CONF Encoder, STA: it is extended
+//           STA, but within 0.5 s of it no RES: it is plain
 //
 // Thread safety: one object, one thread.
 #pragma once
@@ -43,8 +42,9 @@ class WorldHandshake {
 
   WorldHandshake(const RobotPlacement& placement, const WorldSession& session, TimePoint connected);
 
-  // Both append to `out` what is to be sent. on_message() gets every message of the server until result() tells.
-  void on_message(const usarsim::MessageView& message, TimePoint now, std::string& out);
+  // Both append to `out` what is to be sent. on_message() gets every message of the server until result() tells;
+  // `is_frame`: it was a STA that SensorTransform understood.
+  void on_message(const usarsim::MessageView& message, bool is_frame, TimePoint now, std::string& out);
   void on_time(TimePoint now, std::string& out);
 
   Result result() const { return result_; }
@@ -53,19 +53,17 @@ class WorldHandshake {
   const std::string& failure() const { return failure_; }
 
  private:
-  enum class Step { greeting, choosing_start, placing };
-
-  void after_greeting(TimePoint now, std::string& out);
-  void place(const std::string& start, TimePoint now, std::string& out);
+  void place(TimePoint now, std::string& out);
   void fail(std::string why);
 
-  RobotPlacement placement_;
-  WorldSession session_;
-  Step step_ = Step::greeting;
-  Result result_ = Result::pending;
+  const RobotPlacement placement_;
+  const WorldSession session_;
   TimePoint deadline_;
-  bool accepted_ = false;  // RES Session OK
-  bool has_robot_ = false;
+  Result result_ = Result::pending;
+  bool greeted_ = false;
+  bool accepted_ = false;         // RES Session OK
+  bool has_calibration_ = false;  // CONF Encoder, the last answer of an extended server
+  bool has_robot_ = false;        // STA
   WorldReady ready_;
   std::string failure_;
 };

@@ -21,6 +21,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kConnectWithin = 2s;
+constexpr auto kLeaveWithin = 500ms;
 constexpr std::chrono::milliseconds kFirstPause = 50ms;
 constexpr std::chrono::milliseconds kLongestPause = 1s;
 
@@ -36,6 +37,17 @@ void send_whole(int fd, const std::string& text) {
   const ssize_t sent = ::send(fd, text.data(), text.size(), MSG_NOSIGNAL);
   if (sent != static_cast<ssize_t>(text.size())) {
     throw std::runtime_error(sent < 0 ? std::strerror(errno) : "it takes no more data");
+  }
+}
+
+// Closes, and waits until the server has done so too: then the robot is out of the world and its place is free.
+void leave(int fd) {
+  ::shutdown(fd, SHUT_WR);
+  std::array<char, 4096> rest;
+  pollfd watched{fd, POLLIN, 0};
+  const auto until = Clock::now() + kLeaveWithin;
+  while (Clock::now() < until && ::poll(&watched, 1, poll_timeout(until)) > 0) {
+    if (::recv(fd, rest.data(), rest.size(), MSG_DONTWAIT) <= 0) return;
   }
 }
 
@@ -96,7 +108,7 @@ std::string WorldLink::serve(const std::atomic<bool>& stopping) {
       return std::strerror(errno);
     }
     if (watched[1].revents != 0 && (take_requests() || stopping)) {
-      ::shutdown(connection.socket->get(), SHUT_RDWR);
+      leave(connection.socket->get());
       return {};
     }
     if (watched[0].revents != 0) {
@@ -121,9 +133,8 @@ void WorldLink::read_line(std::string_view line, Connection& connection) {
   }
   const bool is_frame = connection.transform.take(message_);
   if (!connection.handed_over) {
-    connection.handshake.on_message(message_, Clock::now(), connection.out);
+    connection.handshake.on_message(message_, is_frame, Clock::now(), connection.out);
     finish_handshake(connection);
-    if (is_frame && connection.handed_over) put(connection.transform.frame());
   } else if (is_frame) {
     put(connection.transform.frame());
   } else if (message_.is("PONG")) {
@@ -158,6 +169,7 @@ void WorldLink::finish_handshake(Connection& connection) {
   }
   put(LinkUp{request_.number, connection.socket, radius.value_or(SensorTransform::kDefaultWheelRadius_m), extended,
              ready});
+  put(frame);
 }
 
 // A sender that is held up holds up the world, through TCP, rather than losing what it told.

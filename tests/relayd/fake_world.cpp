@@ -78,7 +78,7 @@ void FakeWorld::run() {
     const int on = 1;
     ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     ++connections_;
-    has_robot_ = lockstep_ = numbered_ = false;
+    has_robot_ = lockstep_ = numbered_ = owes_frame_ = false;
     period_s_ = 0.2;
     time_s_ = left_radps_ = right_radps_ = left_rad_ = right_rad_ = 0;
     frame_ = late_ = 0;
@@ -88,8 +88,8 @@ void FakeWorld::run() {
   }
 }
 
-// Without lock step a frame goes out every 2 ms of wall-clock time, whatever its robot time. In lock step, 0.25 s
-// without an answer set the robot time free, as docs/world-server-protocol.md has it.
+// Without lock step a frame goes out every 2 ms of wall-clock time, whatever its robot time. Lock step waits for ever,
+// so that no test depends on how fast the machine is.
 void FakeWorld::serve(int fd) {
   using Clock = std::chrono::steady_clock;
   usarsim::LineSplitter splitter;
@@ -102,13 +102,15 @@ void FakeWorld::serve(int fd) {
       const ssize_t got = ::recv(fd, bytes.data(), bytes.size(), 0);
       if (got <= 0) return;
       splitter.push({bytes.data(), static_cast<std::size_t>(got)});
-      const auto frame = frame_;
       while (const auto line = splitter.next()) handle(std::string(*line), fd);
-      if (frame_ != frame) sent = Clock::now();
+      if (has_robot_ && owes_frame_) {
+        owes_frame_ = false;
+        ++frame_;
+        send_frame(fd);
+      }
     }
-    const auto pause = lockstep_ ? std::chrono::milliseconds(250) : std::chrono::milliseconds(2);
-    if (!has_robot_ || Clock::now() - sent < pause) continue;
-    sent = lockstep_ ? sent + std::chrono::milliseconds(2) : Clock::now();
+    if (!has_robot_ || lockstep_ || Clock::now() - sent < std::chrono::milliseconds(2)) continue;
+    sent = Clock::now();
     step();
     send_frame(fd);
   }
@@ -122,10 +124,9 @@ void FakeWorld::handle(const std::string& line, int fd) {
   usarsim::MessageView message;
   usarsim::parse_message(line, message);
   const auto type = message.find("Type").value_or("");
-  if (message.is("GETSTARTPOSES")) {
-    send_text(fd, "NFO {StartPoses 2} {PlayerStart_0 1,2,-0.1 0,0,0 Other 3,4,-0.1 0,0,0}\r\n");
-  } else if (message.is("INIT")) {
+  if (message.is("INIT")) {
     has_robot_ = options_.accepts_robot;
+    owes_frame_ = true;
   } else if (message.is("GETGEO") && has_robot_) {
     send_text(fd, "GEO {Type GroundVehicle} {Name Kenaf} {WheelRadius 0.05} {WheelSeparation 0.4}\r\n");
   } else if (message.is("GETCONF") && type == "Encoder" && has_robot_) {
@@ -138,10 +139,7 @@ void FakeWorld::handle(const std::string& line, int fd) {
     send_text(fd, fmt::format("RES {{Time {}}} {{Type Control}} {{Name Session}} {{Status OK}} {{Period {}}} "
                               "{{Lockstep {}}}\r\n",
                               time_s_, period_s_, lockstep_ ? "True" : "False"));
-    if (has_robot_) {
-      ++frame_;
-      send_frame(fd);
-    }
+    owes_frame_ = true;
   } else if (message.is("PING") && options_.extended) {
     send_text(fd, fmt::format("PONG {{Id {}}} {{Time {}}}\r\n", message.find("Id").value_or("0"), time_s_));
   } else if (message.is("MULTIDRIVE")) {

@@ -55,7 +55,7 @@ class FakeWorld {
   std::vector<std::string> lines_;
 
   // Of the connection.
-  bool has_robot_ = false, lockstep_ = false, numbered_ = false;
+  bool has_robot_ = false, lockstep_ = false, numbered_ = false, owes_frame_ = false;
   double period_s_ = 0.2, time_s_ = 0;
   std::int64_t frame_ = 0, late_ = 0;
   double left_radps_ = 0, right_radps_ = 0, left_rad_ = 0, right_rad_ = 0;

@@ -114,7 +114,7 @@ TEST_CASE("the relay places a robot, opens a session in lock step and carries co
   REQUIRE(is_welcome(answer));
   CHECK(std::get<relay::Welcome>(answer).lockstep);
   CHECK(std::get<relay::Welcome>(answer).period_s == Approx(0.01));
-  CHECK(world.last("INIT") == "INIT {ClassName USARBot.Kenaf} {Name Kenaf} {Start PlayerStart_0}");
+  CHECK(world.last("INIT") == "INIT {ClassName USARBot.Kenaf} {Name Kenaf}");
 
   // 0.2 m/s for 50 periods of 0.01 s: 0.1 m.
   const auto states = commander.drive(50, [](const relay::State&, relay::Command& command) {
