@@ -49,7 +49,7 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
       ->capture_default_str();
   app.add_option("--name", placement.name, "the robot's name in the world")->check(check_name)->capture_default_str();
   auto* start_option =
-      app.add_option("--start", placement.start, "the start pose of the world to use (default: the first it names)");
+      app.add_option("--start", placement.start, "the start pose of the world to use (default: the server chooses)");
   start_option->check(check_name);
   app.add_option("--pose", pose, "where to start instead: x,y,z,roll,pitch,yaw; metres and radians, z up")
       ->delimiter(',')
@@ -65,7 +65,7 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
   app.add_option("--robot", embedded.robot, "robot of --embedded")->needs(embedded_flag)->capture_default_str();
   app.add_option("--speed", embedded.speed, "speed of --embedded in times real time, 0 = as fast as it goes")
       ->needs(embedded_flag)
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
 
   try {

@@ -1,0 +1,80 @@
+#include "relayd/options.hpp"
+
+#include <catch2/catch.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "relayd/sockets.hpp"
+
+using namespace kenaf::relayd;
+
+namespace {
+
+std::optional<Options> read(std::vector<const char*> arguments, int& status) {
+  arguments.insert(arguments.begin(), "kenaf-relayd");
+  return read_options(static_cast<int>(arguments.size()), arguments.data(), status);
+}
+
+}  // namespace
+
+TEST_CASE("without options: loopback only, the world server's usual port") {
+  int status = -1;
+  const auto options = read({}, status);
+  REQUIRE(options);
+  CHECK(options->relay.world_server.host == "127.0.0.1");
+  CHECK(options->relay.world_server.port == 3000);
+  CHECK(options->relay.listen == Address{0x7f000001, 45454});
+  CHECK(is_loopback(options->relay.listen));
+  CHECK(options->relay.placement.class_name == "USARBot.Kenaf");
+  CHECK_FALSE(options->relay.placement.pose);
+  CHECK_FALSE(options->embedded);
+}
+
+TEST_CASE("all options") {
+  int status = -1;
+  auto options = read({"--world-server", "[::1]:4000", "--listen", "0.0.0.0:0", "--class", "USARBot.P2AT", "--name",
+                       "R", "--pose", "1,2,3,-0.1,0.2,0.3", "--log-level", "warn"},
+                      status);
+  REQUIRE(options);
+  CHECK(options->relay.world_server.host == "::1");
+  CHECK(options->relay.world_server.port == 4000);
+  CHECK_FALSE(is_loopback(options->relay.listen));
+  CHECK(options->relay.placement.pose == std::array<double, 6>{1, 2, 3, -0.1, 0.2, 0.3});
+  options =
+      read({"--embedded", "--world", "step-100", "--robot", "kenaf", "--speed", "0", "--start", "start_1"}, status);
+  REQUIRE(options);
+  CHECK(options->embedded->world == "step-100");
+  CHECK(options->embedded->speed == 0);
+  CHECK(options->relay.placement.start == "start_1");
+}
+
+TEST_CASE("wrong options end with status 2, help with 0") {
+  int status = -1;
+  for (const std::vector<const char*>& wrong :
+       std::vector<std::vector<const char*>>{{"--listen", "nowhere"},
+                                             {"--listen", "127.0.0.1:70000"},
+                                             {"--listen", "some.host:1"},
+                                             {"--world-server", "host"},
+                                             {"--world-server", "host:"},
+                                             {"--name", "two words"},
+                                             {"--class", "a}b"},
+                                             {"--pose", "1,2,3"},
+                                             {"--pose", "1,2,3,4,5,6", "--start", "a"},
+                                             {"--world", "flat"},
+                                             {"--embedded", "--world-server", "a:1"},
+                                             {"--embedded", "--speed", "-1"},
+                                             {"--log-level", "loud"}}) {
+    CAPTURE(wrong.front(), wrong.back());
+    CHECK_FALSE(read(wrong, status));
+    CHECK(status == 2);
+  }
+  CHECK_FALSE(read({"--help"}, status));
+  CHECK(status == 0);
+}
+
+TEST_CASE("an address in use is named") {
+  Address bound, second;
+  const Descriptor first = open_udp({0x7f000001, 0}, bound);
+  CHECK(bound.port != 0);
+  CHECK_THROWS_WITH(open_udp(bound, second), Catch::Contains(to_text(bound)) && Catch::Contains("--listen"));
+}
