@@ -1,0 +1,204 @@
+#include "tools/draw/robot_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace kenaf::draw {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kCircleCorners = 36;
+constexpr double kLugSpacing_m = 0.03;
+
+std::vector<Vector3d> circle(const Vector3d& centre_B, double radius_m) {
+  std::vector<Vector3d> points;
+  for (int i = 0; i < kCircleCorners; ++i) {
+    const double angle_rad = 2 * std::numbers::pi * i / kCircleCorners;
+    points.push_back(centre_B + radius_m * Vector3d(std::cos(angle_rad), 0, std::sin(angle_rad)));
+  }
+  return points;
+}
+
+// A belt around two drums whose axes run along y: a main track or a flipper.
+struct Belt {
+  PartKind kind;
+  Vector3d first_B, second_B;  // centres of the drums, in the belt's middle plane
+  double first_radius_m, second_radius_m, width_m;
+};
+
+std::vector<Belt> belts_of(const physics::RobotDescription& robot, const Posture& posture) {
+  std::vector<Belt> belts;
+  const auto mirrored = [](Vector3d p, double front, double left) {
+    return Vector3d(p.x() * front, p.y() * left, p.z());
+  };
+  for (const double left : {1.0, -1.0}) {
+    const Vector3d centre_B = mirrored(robot.track.p_BT_m, 1, left);
+    const Vector3d half(robot.track.length_m / 2 - robot.track.end_radius_m, 0, 0);
+    const double radius_m = robot.track.end_radius_m;
+    belts.push_back({PartKind::track, centre_B + half, centre_B - half, radius_m, radius_m, robot.track.width_m});
+  }
+  if (!robot.has_flippers()) return belts;
+  const physics::FlipperDescription& flipper = robot.flipper.front();
+  for (std::size_t i = 0; i < physics::kFlipperCount; ++i) {
+    const double front = i == relay::kFrontLeft || i == relay::kFrontRight ? 1 : -1;
+    const double left = i == relay::kFrontLeft || i == relay::kRearLeft ? 1 : -1;
+    const Vector3d pivot_B = mirrored(flipper.p_BPivot_m, front, left);
+    const double angle_rad = posture.flipper_rad[i];
+    const Vector3d along_B(front * std::cos(angle_rad), 0, std::sin(angle_rad));
+    belts.push_back({PartKind::flipper, pivot_B, pivot_B + flipper.length_m * along_B, flipper.pivot_radius_m,
+                     flipper.tip_radius_m, flipper.width_m});
+  }
+  return belts;
+}
+
+std::vector<Point> projected(const std::vector<Vector3d>& points_B, const physics::Pose& X_WB,
+                             const Projection& projection) {
+  std::vector<Point> points;
+  for (const Vector3d& p_B : points_B) points.push_back(projection(X_WB.p + X_WB.q * p_B));
+  return points;
+}
+
+// Lines across the straight run of the belt that lies higher in the body.
+std::vector<std::vector<Vector3d>> lugs_of(const Belt& belt) {
+  std::vector<std::vector<Vector3d>> lugs;
+  const Vector3d along = belt.second_B - belt.first_B;
+  Vector3d normal = Vector3d(-along.z(), 0, along.x()).normalized();
+  if (normal.z() < 0) normal = -normal;
+  const Vector3d half_width(0, belt.width_m / 2, 0);
+  const int count = std::max(1, static_cast<int>(along.norm() / kLugSpacing_m));
+  for (int i = 0; i <= count; ++i) {
+    const double part = static_cast<double>(i) / count;
+    const double radius_m = belt.first_radius_m + part * (belt.second_radius_m - belt.first_radius_m);
+    const Vector3d middle = belt.first_B + part * along + radius_m * normal;
+    lugs.push_back({middle - half_width, middle + half_width});
+  }
+  return lugs;
+}
+
+Part belt_part(const Belt& belt, const physics::Pose& X_WB, const Projection& projection) {
+  const Vector3d toward_W = projection.toward_viewer_W();
+  const double face = toward_W.dot(X_WB.q * Vector3d::UnitY()) > 0 ? 0.5 : -0.5;  // the side the viewer sees
+  std::vector<Vector3d> surface_B;
+  for (const double side : {0.5, -0.5}) {
+    const Vector3d aside(0, side * belt.width_m, 0);
+    for (const Vector3d& p : circle(belt.first_B + aside, belt.first_radius_m)) surface_B.push_back(p);
+    for (const Vector3d& p : circle(belt.second_B + aside, belt.second_radius_m)) surface_B.push_back(p);
+  }
+  Part part{belt.kind, 0, convex_hull(projected(surface_B, X_WB, projection)), {}, {}};
+  part.nearness = toward_W.dot(X_WB.p + X_WB.q * ((belt.first_B + belt.second_B) / 2));
+  const Vector3d aside(0, face * belt.width_m, 0);
+  part.wheels = {projected(circle(belt.first_B + aside, 0.62 * belt.first_radius_m), X_WB, projection),
+                 projected(circle(belt.second_B + aside, 0.62 * belt.second_radius_m), X_WB, projection)};
+  for (const auto& lug : lugs_of(belt)) part.lugs.push_back(projected(lug, X_WB, projection));
+  return part;
+}
+
+std::vector<Vector3d> box_corners(const Vector3d& size_m) {
+  std::vector<Vector3d> corners;
+  for (const double x : {-0.5, 0.5}) {
+    for (const double y : {-0.5, 0.5}) {
+      for (const double z : {-0.5, 0.5}) corners.emplace_back(x * size_m.x(), y * size_m.y(), z * size_m.z());
+    }
+  }
+  return corners;
+}
+
+// Whether the wheels' faces are seen flat enough to be worth drawing: their ellipses are fatter than 1 : 4.
+bool shows_faces(const Part& part) {
+  const auto [low, high] = std::ranges::minmax_element(part.wheels.front(), {}, [](const Point& p) { return p.y(); });
+  const auto [left, right] = std::ranges::minmax_element(part.wheels.front(), {}, [](const Point& p) { return p.x(); });
+  const double height = high->y() - low->y(), width = right->x() - left->x();
+  return std::min(width, height) > 0.25 * std::max(width, height);
+}
+
+void draw_belt(const Canvas& canvas, const Mapping& map, const Part& part) {
+  const double pixels_per_metre = map.pixels_per_metre();
+  const bool track = part.kind == PartKind::track;
+  canvas.polygon(map(part.outline));
+  canvas.fill(track ? palette::kTrack : palette::kFlipper);
+  canvas.stroke(track ? palette::kTrackEdge : palette::kFlipperEdge, std::clamp(0.006 * pixels_per_metre, 0.8, 2.2));
+  if (shows_faces(part)) {
+    for (const auto& wheel : part.wheels) {
+      canvas.polygon(map(wheel));
+      canvas.fill(palette::kWheel);
+      canvas.stroke(palette::kTrackEdge, 0.8);
+    }
+    return;
+  }
+  if (kLugSpacing_m * pixels_per_metre < 3) return;
+  for (const auto& lug : part.lugs) {
+    canvas.polyline(map(lug));
+    canvas.stroke(palette::kTrackEdge, 0.9, 0.75);
+  }
+}
+
+}  // namespace
+
+std::vector<Point> convex_hull(std::vector<Point> points) {
+  // Andrew's monotone chain.
+  std::ranges::sort(points,
+                    [](const Point& a, const Point& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
+  const auto turns_left = [](const Point& a, const Point& b, const Point& c) {
+    return (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x() > 0;
+  };
+  std::vector<Point> hull;
+  for (int pass = 0; pass < 2; ++pass) {
+    const std::size_t base = hull.size();
+    for (const Point& p : points) {
+      while (hull.size() >= base + 2 && !turns_left(hull[hull.size() - 2], hull.back(), p)) hull.pop_back();
+      hull.push_back(p);
+    }
+    hull.pop_back();
+    std::ranges::reverse(points);
+  }
+  return hull;
+}
+
+std::vector<Part> robot_parts(const physics::RobotDescription& robot, const Posture& posture,
+                              const Projection& projection) {
+  std::vector<Part> parts;
+  for (const Belt& belt : belts_of(robot, posture)) parts.push_back(belt_part(belt, posture.X_WB, projection));
+  parts.push_back({PartKind::hull,
+                   projection.toward_viewer_W().dot(posture.X_WB.p),
+                   convex_hull(projected(box_corners(robot.body.size_m), posture.X_WB, projection)),
+                   {},
+                   {}});
+  std::ranges::stable_sort(parts, {}, &Part::nearness);
+  return parts;
+}
+
+std::vector<Point> box_outline(const physics::Box& box, const Projection& projection) {
+  return convex_hull(projected(box_corners(box.size_m), box.X_WBox, projection));
+}
+
+std::vector<Point> Mapping::operator()(const std::vector<Point>& points) const {
+  std::vector<Point> mapped;
+  for (const Point& p : points) mapped.push_back((*this)(p));
+  return mapped;
+}
+
+Mapping fit(const Rectangle& area, Point low, Point high) {
+  const double metres_per_pixel = std::max((high.x() - low.x()) / area.width, (high.y() - low.y()) / area.height);
+  const Point half = 0.5 * metres_per_pixel * Point(area.width, area.height);
+  const Point centre = 0.5 * (low + high);
+  return {area, centre - half, centre + half};
+}
+
+void draw_robot(const Canvas& canvas, const Mapping& map, const std::vector<Part>& parts, double alpha) {
+  canvas.begin_faded();
+  for (const Part& part : parts) {
+    if (part.kind != PartKind::hull) {
+      draw_belt(canvas, map, part);
+      continue;
+    }
+    canvas.polygon(map(part.outline));
+    canvas.fill(palette::kHull);
+    canvas.stroke(palette::kHullEdge, std::clamp(0.006 * map.pixels_per_metre(), 0.8, 2.0));
+  }
+  canvas.end_faded(alpha);
+}
+
+}  // namespace kenaf::draw
