@@ -27,6 +27,10 @@ endif()
 
 add_library(kenaf_warnings INTERFACE)
 target_compile_options(kenaf_warnings INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror)
+# g++ 12 warns wrongly of std::string's own operator+ in optimised builds (GCC bug 105651).
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(kenaf_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict>)
+endif()
 
 # kenaf_room(NAME sources...): the static library of one room. Includes are written from the root: "protocol/frames.hpp".
 function(kenaf_room name)
