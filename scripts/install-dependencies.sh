@@ -10,6 +10,8 @@ packages=(
   libsdformat-dev libspdlog-dev libtomlplusplus-dev
   # tests
   abigail-tools binutils catch2 clang iproute2 libclang-rt-14-dev lld
+  # the CAN tests
+  busybox-static can-utils cpio kmod qemu-system-x86 xz-utils
   # the package
   dpkg-dev file
 )
