@@ -47,17 +47,12 @@ bool FrameSchedule::holds(std::uint64_t step) const {
   return numbered_ && lockstep_ && !answered_ && !let_go_ && step >= next_step_;
 }
 
-bool FrameSchedule::let_go(double wall_s) {
+bool FrameSchedule::let_go(double wall_s, double longest_wait_s) {
   if (!holds_since_wall_s_) holds_since_wall_s_ = wall_s;
-  if (wall_s < *holds_since_wall_s_ + kLongestWait_s) return false;
+  if (wall_s < *holds_since_wall_s_ + longest_wait_s) return false;
   let_go_ = true;
   holds_since_wall_s_.reset();
   return true;
-}
-
-std::optional<double> FrameSchedule::holds_until_wall_s() const {
-  if (!holds_since_wall_s_) return std::nullopt;
-  return *holds_since_wall_s_ + kLongestWait_s;
 }
 
 }  // namespace kenaf::server

@@ -9,9 +9,6 @@ namespace kenaf::server {
 
 class FrameSchedule {
  public:
-  // Wall-clock time that lock step waits for an answer before it runs on without.
-  static constexpr double kLongestWait_s = 0.25;
-
   enum class Answer { in_time, late, ahead };  // ahead: of a frame that was not sent yet
 
   // An output at once, further ones `period_steps` apart; `numbered` ones are frames 1, 2, 3, ...
@@ -34,10 +31,10 @@ class FrameSchedule {
 
   // Lock step: the next frame may not begin yet, and with it the world may not pass `step`.
   bool holds(std::uint64_t step) const;
-  // For a schedule that holds a world that would go on: true once it waited long enough; then it lets go.
-  bool let_go(double wall_s);
-  // Until when let_go() is false.
-  std::optional<double> holds_until_wall_s() const;
+  // For a schedule that holds a world that would go on: true once it waited for `longest_wait_s`; then it lets go.
+  bool let_go(double wall_s, double longest_wait_s);
+  // Since when let_go() was false.
+  std::optional<double> holds_since_wall_s() const { return holds_since_wall_s_; }
 
  private:
   std::uint64_t period_steps_ = 1;

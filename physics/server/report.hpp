@@ -5,8 +5,11 @@
 
 namespace kenaf::server {
 
-// SEN: every sensor that has something to report, in the order of the UT2004 server.
+// SEN: every sensor that has something to report.
 void write_sensors(Simulation& simulation, Session& session);
+// The same of given samples, in the order of the UT2004 server. Range scans are left turned round.
+void write_samples(std::vector<physics::SensorSample>& samples, const std::vector<physics::SensorDescription>& sensors,
+                   Dialect dialect, const Formats& formats, bool extended, std::string& out);
 // MISSTA (UT2004) or ASTA (UDK): a line for each mission package.
 void write_mission_packages(const Simulation& simulation, Session& session);
 // STA

@@ -166,27 +166,31 @@ void write_sonars_together(MessageWriter& writer, const Formats& formats, const 
 
 }  // namespace
 
-void write_sensors(Simulation& simulation, Session& session) {
-  const SessionRobot& robot = *session.robot;
-  const std::vector<SensorDescription>& sensors = robot.description->sensors;
-  std::vector<SensorSample>& samples = simulation.samples;
-  samples.clear();
-  simulation.world.read_sensors(robot.id, samples);
-  MessageWriter writer(session.out);
+void write_samples(std::vector<SensorSample>& samples, const std::vector<SensorDescription>& sensors, Dialect dialect,
+                   const Formats& formats, bool extended, std::string& out) {
+  MessageWriter writer(out);
   for (const SensorType type : kOrder) {
-    if (type == SensorType::sonar && simulation.dialect == Dialect::ut2004) {
-      write_sonars_together(writer, session.formats, samples, sensors);
+    if (type == SensorType::sonar && dialect == Dialect::ut2004) {
+      write_sonars_together(writer, formats, samples, sensors);
       continue;
     }
     // USARSim had no such sensor, so only those hear of it who know this server.
-    if (type == SensorType::drives && !session.extended) continue;
+    if (type == SensorType::drives && !extended) continue;
     for (SensorSample& sample : samples) {
       const SensorDescription& sensor = sensors[sample.sensor];
       if (sensor.type != type) continue;
-      const Report report{writer, session.formats, simulation.dialect, sensor, sample.t_s};
+      const Report report{writer, formats, dialect, sensor, sample.t_s};
       std::visit([&](auto& reading) { write(report, reading); }, sample.reading);
     }
   }
+}
+
+void write_sensors(Simulation& simulation, Session& session) {
+  const SessionRobot& robot = *session.robot;
+  simulation.samples.clear();
+  simulation.world.read_sensors(robot.id, simulation.samples);
+  write_samples(simulation.samples, robot.description->sensors, simulation.dialect, session.formats, session.extended,
+                session.out);
 }
 
 }  // namespace kenaf::server

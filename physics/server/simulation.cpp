@@ -15,6 +15,11 @@ namespace {
 // Lines kept for the next frame; an honest client sends one or two.
 constexpr std::size_t kMostDeferredBytes = 65536;
 
+// What the servers' timers were: UT2004's msgTimer, measured 0.2 s; UDK's StatusTimer 0.1 s.
+double default_period_s(Dialect dialect) {
+  return dialect == Dialect::ut2004 ? 0.2 : 0.1;
+}
+
 physics::World make_world(const ServerOptions& options) {
   if (!(options.time_step_s > 0 && options.time_step_s <= 0.02)) {
     throw std::runtime_error(
@@ -60,6 +65,7 @@ Session& Simulation::connect(std::string peer) {
   session.id = ++last_session_;
   session.peer = std::move(peer);
   session.formats = formats_of(dialect);
+  session.schedule.start(0, steps_for(default_period_s(dialect)), false);
   usarsim::MessageWriter(session.out)
       .begin("NFO")
       .text("Gametype", "BotDeathMatch")
@@ -168,7 +174,7 @@ bool Simulation::held_by_lockstep(std::optional<double>& until_wall_s) {
   bool held = false;
   for (const auto& session : sessions) {
     if (!session->robot || !session->schedule.holds(world.step_count())) continue;
-    if (session->schedule.let_go(wall_s)) {
+    if (session->schedule.let_go(wall_s, options.lockstep_wait_s)) {
       if (session->lockstep_log.allow(wall_s)) {
         spdlog::warn("{}: frame {} is not answered; time runs on without waiting", session->peer,
                      session->schedule.frame());
@@ -177,8 +183,8 @@ bool Simulation::held_by_lockstep(std::optional<double>& until_wall_s) {
       continue;
     }
     held = true;
-    const auto until = session->schedule.holds_until_wall_s();
-    if (!until_wall_s || *until < *until_wall_s) until_wall_s = until;
+    const double until = session->schedule.holds_since_wall_s().value_or(wall_s) + options.lockstep_wait_s;
+    until_wall_s = std::min(until, until_wall_s.value_or(until));
   }
   return held;
 }

@@ -9,11 +9,6 @@ namespace kenaf::server {
 
 namespace {
 
-// What the servers' timers were: UT2004's msgTimer, measured 0.2 s; UDK's StatusTimer 0.1 s.
-double default_period_s(Dialect dialect) {
-  return dialect == Dialect::ut2004 ? 0.2 : 0.1;
-}
-
 // nullopt: a start pose was asked for that the world does not have.
 std::optional<physics::Pose> wanted_pose(const Simulation& simulation, const Session& session,
                                          const MessageView& message) {
@@ -70,11 +65,8 @@ void init(Simulation& simulation, Session& session, const MessageView& message) 
   robot.command = Simulation::resting_command(*description);
   simulation.world.set_command(id, robot.command);
   session.last_command_step = step;
-  // A Session that was asked for before INIT keeps its period.
-  const bool numbered = session.schedule.numbered();
-  session.schedule.start(
-      step, numbered ? session.schedule.period_steps() : simulation.steps_for(default_period_s(simulation.dialect)),
-      numbered);
+  // What a Session asked for before INIT holds.
+  session.schedule.start(step, session.schedule.period_steps(), session.schedule.numbered());
   const Eigen::Vector3d p_WB = simulation.world.truth(id).X_WB.p;
   spdlog::info("{}: robot {} ({}) at {:.3f}, {:.3f}, {:.3f} m", session.peer, name, description->usarsim_class,
                p_WB.x(), p_WB.y(), p_WB.z());

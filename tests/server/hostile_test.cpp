@@ -1,0 +1,73 @@
+#include <random>
+
+#include "tests/server/conversation.hpp"
+
+namespace kenaf::server {
+
+TEST_CASE("lines that are no messages are survived, and a client of nothing but them is let go") {
+  Conversation talk;
+  talk.send("INIT {ClassName USARBot.P2DX}\r\n");
+  for (const char* line : {"{", "}", "{}{}{}", "DRIVE {Left 1", "DRIVE }Left 1{", "GET / HTTP/1.1", "\x01\xff\xfe",
+                           "{Left 1}", "DRIVE {Left {Right 1}}", "XYZZY {Plugh 1}", "DRIVE {Left 1} stray"}) {
+    talk.send(std::string(line) + "\r\n");
+    CHECK_FALSE(talk.session->close);
+  }
+  CHECK(talk.session->bad_lines > 5);
+  talk.send("DRIVE {Left 1} {Right 1}\r\n");
+  CHECK(talk.command().track_speed_mps[physics::kLeft] > 0);
+  for (int i = 0; i < 1100; ++i) talk.send("{\r\n");
+  CHECK(talk.session->close);
+}
+
+TEST_CASE("a line without end is dropped, bounded in memory, and what follows it is understood") {
+  Conversation talk;
+  talk.send("INIT {ClassName USARBot.P2DX}\r\n");
+  const std::string much(100000, 'x');
+  for (int i = 0; i < 50; ++i) talk.send(much);
+  talk.send("\r\nDRIVE {Left 1} {Right 1}\r\n");
+  CHECK(talk.command().track_speed_mps[physics::kLeft] > 0);
+  CHECK(talk.session->bad_lines == 1);
+}
+
+TEST_CASE("commands for one frame are bounded") {
+  Conversation talk;
+  talk.send("INIT {ClassName USARBot.P2DX}\r\nCONTROL {Type Session} {Period 1}\r\n");
+  REQUIRE(talk.run(0.001));
+  for (int i = 0; i < 10000; ++i) talk.send("DRIVE {Left 1} {Right 1} {Frame 1}\r\n");
+  CHECK(talk.session->deferred.size() <= 65536);
+}
+
+TEST_CASE("a name from outside cannot break an answer's grammar, nor fill it") {
+  Conversation talk;
+  const std::string answer = talk.answer_to("SET {Type \x01\x02} {Name " + std::string(5000, 'n') + "}\r\n");
+  CHECK(answer.size() < 300);
+  CHECK(answer.find('\x01') == std::string::npos);
+}
+
+TEST_CASE("random verbs with random values neither stop the world nor make it anything but finite") {
+  std::mt19937 random(5);
+  const auto pick = [&](std::initializer_list<const char*> words) { return words.begin()[random() % words.size()]; };
+  Conversation talk;
+  talk.send("INIT {ClassName USARBot.Kenaf}\r\n");
+  for (int i = 0; i < 3000; ++i) {
+    std::string line = pick({"DRIVE", "MULTIDRIVE", "SET", "MISPKG", "CONTROL", "GETGEO", "GETCONF", "PING", "INIT"});
+    const int groups = static_cast<int>(random() % 6);
+    for (int g = 0; g < groups; ++g) {
+      line += std::string(" {") + pick({"Left",       "Right",  "Type",      "Name",      "Value",    "Order", "Link",
+                                        "Opcode",     "Params", "FRFlipper", "Location",  "Rotation", "Frame", "Speed",
+                                        "Normalized", "Flip",   "Scale",     "ClassName", "Time",     "Period"}) +
+              " " + pick({"1e308",         "-1e308", "0",   "-0.5", "1,2,3",   "Joint",      "FRFlipper",
+                          "AbsMove",       "Create", "Box", "R1",   "Session", "Angle",      "True",
+                          "CameraPanTilt", "1e-300", "0.5", "nan",  "Robot1",  "1e5,1e5,1e5"}) +
+              "}";
+    }
+    talk.send(line + "\r\n");
+    talk.simulation.advance(talk.wall_s);
+    talk.wall_s += 0.001;
+    talk.session->out.clear();
+  }
+  CHECK(talk.truth().X_WB.p.allFinite());
+  CHECK(talk.truth().X_WB.q.coeffs().allFinite());
+}
+
+}  // namespace kenaf::server

@@ -1,0 +1,117 @@
+#include "tests/server/conversation.hpp"
+
+namespace kenaf::server {
+
+namespace {
+
+Conversation with_robot(bool udk_dialect = false) {
+  Conversation talk(fast(udk_dialect));
+  talk.send("INIT {ClassName USARBot.Kenaf} {Name R1} {Location 0,0,0}\r\n");
+  return talk;
+}
+
+}  // namespace
+
+TEST_CASE("SET of a joint takes the opcode by name or number, and UT2004 answers") {
+  Conversation talk = with_robot();
+  CHECK(talk.answer_to("SET {Type Joint} {Name FRFlipper} {Opcode Angle} {Params -0.4}\r\n") ==
+        "RES {Time 0.0000} {Type Joint} {Name FRFlipper} {Status OK}");
+  CHECK(talk.command().flipper[relay::kFrontRight].value == 0.4);
+  talk.send("SET {Type Joint} {Name rrflipper} {Opcode 1} {Params 0.5,0}\r\n");  // the second number is a steer
+  CHECK(talk.command().flipper[relay::kRearRight].mode == physics::JointMode::speed);
+  CHECK(talk.command().flipper[relay::kRearRight].value == 0.5);
+  talk.send("SET {Type Joint} {Name RRFlipper} {Opcode Torque} {Params 2}\r\n");
+  CHECK(talk.command().flipper[relay::kRearRight].mode == physics::JointMode::torque);
+  talk.send("SET {Type Joint} {Name RRFlipper} {Opcode RelAngle} {Params 0.1}\r\n");
+  CHECK(talk.command().flipper[relay::kRearRight].value == Approx(talk.truth().flipper_rad[relay::kRearRight] + 0.1));
+}
+
+TEST_CASE("SET of all joints takes one angle for all, or one for each in the order of STA") {
+  Conversation talk = with_robot();
+  talk.send("SET {Type Joint} {Name AllJoints} {Opcode Angle} {Params 0.1}\r\n");
+  CHECK(talk.command().flipper[relay::kFrontLeft].value == -0.1);
+  CHECK(talk.command().flipper[relay::kRearLeft].value == 0.1);
+  talk.send("SET {Type Joint} {Name AllJoints} {Opcode Angle} {Params -0.1,-0.2,0.3,0.4}\r\n");
+  CHECK(talk.command().flipper[relay::kFrontRight].value == 0.1);
+  CHECK(talk.command().flipper[relay::kFrontLeft].value == 0.2);
+  CHECK(talk.command().flipper[relay::kRearRight].value == 0.3);
+  CHECK(talk.command().flipper[relay::kRearLeft].value == 0.4);
+}
+
+TEST_CASE("what cannot be set fails with a reason") {
+  Conversation talk = with_robot();
+  for (const char* line :
+       {"SET {Type Joint} {Name Tail} {Opcode Angle} {Params 1}\r\n",
+        "SET {Type Joint} {Name FRFlipper} {Opcode Stiffness} {Params 1}\r\n",
+        "SET {Type Joint} {Name FRFlipper} {Opcode Angle} {Params x}\r\n", "SET {Type Odometry} {Opcode DANCE}\r\n",
+        "SET {Type Odometry} {Name Other} {Opcode RESET}\r\n", "SET {Type INS} {Opcode POSE} {Params 1,2,3}\r\n",
+        "SET {Type Camera} {Opcode Zoom} {Params 99}\r\n", "SET {Type Viewports} {Opcode x}\r\n", "SET\r\n"}) {
+    INFO(line);
+    const std::string answer = talk.answer_to(line);
+    CHECK(answer.starts_with("RES {Time 0.0000} {Type"));
+    CHECK(answer.find("{Status Failed} {Reason ") != std::string::npos);
+  }
+}
+
+TEST_CASE("UDK answers no SET") {
+  Conversation talk = with_robot(true);
+  CHECK(talk.answer_to("SET {Type Joint} {Name FRFlipper} {Opcode Target} {Params -0.4}\r\n").empty());
+  CHECK(talk.command().flipper[relay::kFrontRight].value == 0.4);
+  CHECK(talk.answer_to("SET {Type Nothing}\r\n").empty());
+}
+
+TEST_CASE("encoders and odometry start anew, with or without their name") {
+  for (const char* reset :
+       {"SET {Type Encoder} {Opcode RESET}\r\n", "SET {Type Encoder} {Name ECLeft} {Opcode reset}\r\n"}) {
+    INFO(reset);
+    Conversation talk = with_robot();
+    talk.send("DRIVE {Left 2} {Right 2}\r\n");
+    REQUIRE(talk.run(1));
+    CHECK(talk.lines("SEN {Type Encoder} {Name ECLeft Tick 0}").size() <= 2);
+    talk.send("DRIVE {Left 0} {Right 0}\r\n");
+    REQUIRE(talk.run(0.6));
+    CHECK(talk.last("SEN {Type Encoder}").find("Tick 0}") == std::string::npos);
+    talk.send(reset);
+    REQUIRE(talk.run(0.2));
+    const std::string ticks = talk.last("SEN {Type Encoder}");
+    CHECK((ticks.find("{Name ECLeft Tick 0}") != std::string::npos ||
+           ticks.find("{Name ECLeft Tick -1}") != std::string::npos ||
+           ticks.find("{Name ECLeft Tick 1}") != std::string::npos));
+  }
+}
+
+TEST_CASE("INS takes a pose, scanners scan by themselves, cameras keep their zoom") {
+  Conversation talk = with_robot();
+  CHECK(talk.answer_to("SET {Type INS} {Name INS} {Opcode POSE} {Params 1,2,3,0,0,0.5}\r\n") ==
+        "RES {Time 0.0000} {Type INS} {Name INS} {Status OK}");
+  CHECK(talk.answer_to("SET {Type RangeScanner} {Name Scanner1} {Opcode SCAN}\r\n").ends_with("{Status OK}"));
+  CHECK(talk.answer_to("SET {Type Camera} {Name Camera} {Opcode Zoom} {Params 0.7}\r\n").ends_with("{Status OK}"));
+  CHECK(talk.answer_to("GETCONF {Type Camera}\r\n") == "CONF {Type Camera} {Name Camera} {CameraFov 0.7000}");
+}
+
+TEST_CASE("a camera mount turns by MISPKG and by ACT, and MISSTA tells how far") {
+  Conversation talk = with_robot();
+  talk.send("MISPKG {Name CameraPanTilt} {Link 1} {Value 0.5} {Order 0} {Link 2} {Value 0.25}\r\n");
+  REQUIRE(talk.run(1));
+  std::string status = talk.last("MISSTA");
+  CHECK(status ==
+        "MISSTA {Time 1.00} {Name CameraPanTilt} {Link 1} {Value 0.5000} {Torque 0.00} {Link 2} {Value 0.2500} "
+        "{Torque 0.00}");
+  talk.send("ACT {Name CameraPanTilt} {Link 1} {Value -0.25} {Order 10}\r\n");  // relative
+  REQUIRE(talk.run(1));
+  CHECK(talk.last("MISSTA").find("{Link 1} {Value 0.2500}") != std::string::npos);
+  talk.send("MISPKG {Name CameraPanTilt} {Link 7} {Value 1} {Link 0} {Value 1} {Link x} {Value 1}\r\n");
+  talk.send("MISPKG {Name Arm} {Link 1} {Value 1}\r\n");
+  REQUIRE(talk.run(1));
+  CHECK(talk.last("MISSTA").find("{Link 1} {Value 0.2500}") != std::string::npos);
+}
+
+TEST_CASE("UDK calls the mount's status ASTA") {
+  Conversation talk = with_robot(true);
+  REQUIRE(talk.run(0.001));
+  CHECK(talk.last("ASTA") ==
+        "ASTA {Time 0.0000} {Name CameraPanTilt} {Link 1} {Value 0.0000} {Torque 0.00} {Link 2} "
+        "{Value 0.0000} {Torque 0.00}");
+}
+
+}  // namespace kenaf::server
