@@ -29,6 +29,7 @@ cache=${XDG_CACHE_HOME:-$HOME/.cache}/kenaf/vcan
 mkdir -p "$cache"
 exec 9>"$cache/lock"
 flock 9
+rm -rf "$cache"/making.*   # of a run that was killed
 work=$(mktemp -d "$cache/making.XXXXXX")
 
 # Downloads the package into $work and names it. Without apt's lists, which containers often lack, it fetches lists of
@@ -66,7 +67,8 @@ unpack() {
   mkdir -p "$tree" "$work/kernel/modules"
   dpkg-deb --fsys-tarfile "$package" | tar -x -C "$tree" --wildcards './boot/vmlinuz-*' './lib/modules/*/modules.*' \
     './lib/modules/*/kernel/drivers/virtio/*' './lib/modules/*/kernel/drivers/net/can/*' \
-    './lib/modules/*/kernel/fs/*' './lib/modules/*/kernel/net/9p/*' './lib/modules/*/kernel/net/can/*'
+    './lib/modules/*/kernel/fs/*' './lib/modules/*/kernel/net/9p/*' './lib/modules/*/kernel/net/can/*' ||
+    fail "$package is not a package of Debian's kernel linux-image-amd64"
   release=$(basename "$tree"/lib/modules/*)
   depmod -b "$tree" "$release"
   for module in "${modules[@]}"; do
@@ -86,7 +88,7 @@ else
   package=''
   kernel=$(find "$cache" -maxdepth 1 -name 'linux-image-*' | sort -V | tail -n 1)
 fi
-if [ ! -e "$kernel/vmlinux" ]; then
+if [ -z "$kernel" ] || [ ! -e "$kernel/vmlinux" ]; then
   [ -n "$package" ] || { echo "with-vcan: downloading Debian's kernel into $cache, once" >&2; package=$(download) || exit 1; }
   kernel=$cache/$(basename "$package" .deb)
   unpack "$package"

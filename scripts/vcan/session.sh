@@ -13,21 +13,23 @@ rm "$vcan/control/environment"   # nothing of it shall stay on the host's disk
 
 # Pipes, so that a program may open /dev/stderr again as it may elsewhere; one cat each writes through to the host.
 mkfifo "$vcan/out" "$vcan/err"
-cat <"$vcan/out" >"$vcan/control/stdout" & copiers=$!
-cat <"$vcan/err" >"$vcan/control/stderr" & copiers+=" $!"
+cat <"$vcan/out" >"$vcan/control/stdout" & copiers=($!)
+cat <"$vcan/err" >"$vcan/control/stderr" & copiers+=($!)
 
-# The way is this machine's own choice again, not the one that led into it.
+# Not passed on: the way that led into this machine, which has ways of its own; a TMPDIR that is read-only here.
 (
-  cd "$directory" 2>/dev/null || { echo "with-vcan: the machine cannot see the working directory $directory"; exit 125; }
-  exec env -i "${environment[@]}" env -u KENAF_VCAN_WAY "$bus_up" "${arguments[@]}"
+  cd "$directory" 2>/dev/null || { echo "with-vcan: the machine cannot see the working directory $directory" >&2; exit 125; }
+  exec env -i "${environment[@]}" env -u KENAF_VCAN_WAY -u TMPDIR "$bus_up" "${arguments[@]}"
 ) </dev/null >"$vcan/out" 2>"$vcan/err"
 status=$?
 
-# What the command left running ends with it; it would keep the pipes open.
-for process in /proc/[0-9]*; do
-  case " 1 $copiers " in *" ${process#/proc/} "*) ;; *) kill -KILL "${process#/proc/}" ;; esac
+# What the command left running ends with it; it would keep the pipes open. Again and again, because it may fork.
+while kill -0 "${copiers[@]}"; do
+  for process in /proc/[0-9]*; do
+    case " 1 ${copiers[*]} " in *" ${process#/proc/} "*) ;; *) kill -KILL "${process#/proc/}" ;; esac
+  done
+  sleep 0.02
 done 2>/dev/null
-wait $copiers
 
 echo "$status" >"$vcan/control/status"
 "$vcan/busybox" reboot -f
