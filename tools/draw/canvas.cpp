@@ -120,15 +120,6 @@ void Canvas::text_with_halo(const Point& at, const std::string& words, double si
   text(at, words, size, colour, align, bold);
 }
 
-void Canvas::begin_faded() const {
-  cairo_push_group(cairo_);
-}
-
-void Canvas::end_faded(double alpha) const {
-  cairo_pop_group_to_source(cairo_);
-  cairo_paint_with_alpha(cairo_, alpha);
-}
-
 std::string Canvas::finish() {
   check(cairo_status(cairo_));
   cairo_surface_flush(surface_);

@@ -24,6 +24,11 @@ constexpr Colour rgb(unsigned hex) {
           static_cast<double>(hex & 255u) / 255};
 }
 
+// `share` of paper mixed into a colour.
+constexpr Colour paler(Colour colour, double share) {
+  return {colour.r + share * (1 - colour.r), colour.g + share * (1 - colour.g), colour.b + share * (1 - colour.b)};
+}
+
 namespace palette {
 inline constexpr Colour kPaper = rgb(0xffffff), kPanel = rgb(0xf8f9fb), kGrid = rgb(0xe4e8ed),
                         kGridStrong = rgb(0xc9d0d8);
@@ -31,8 +36,7 @@ inline constexpr Colour kInk = rgb(0x18222f), kGreyInk = rgb(0x5d6875), kFrame =
 inline constexpr Colour kGround = rgb(0xd9d3c7), kGroundEdge = rgb(0x8b8272);
 inline constexpr Colour kBox = rgb(0xcfc8bb), kBoxEdge = rgb(0x8b8272);
 inline constexpr Colour kHull = rgb(0xf2b12e), kHullEdge = rgb(0x7a5406);
-inline constexpr Colour kTrack = rgb(0x3a444f), kTrackEdge = rgb(0x12181f), kWheel = rgb(0x76828f);
-inline constexpr Colour kFlipper = rgb(0x566270), kFlipperEdge = rgb(0x12181f);
+inline constexpr Colour kBelt = rgb(0x1c242d), kTrack = rgb(0x47535f), kFlipper = rgb(0x74818f), kWheel = rgb(0xa9b4bf);
 inline constexpr Colour kRuns[] = {rgb(0x1565d8), rgb(0xd9480f), rgb(0x2b8a3e), rgb(0x9c36b5), rgb(0x0b7285)};
 }  // namespace palette
 
@@ -72,10 +76,6 @@ class Canvas {
   // The same with a halo of paper around the letters, so that it reads on anything.
   void text_with_halo(const Point& at, const std::string& words, double size, Colour colour, Align align,
                       bool bold = false) const;
-
-  // What is drawn between begin_faded() and end_faded() lies on the picture as one layer of that alpha.
-  void begin_faded() const;
-  void end_faded(double alpha) const;
 
   // The finished file's bytes. Nothing can be drawn after it.
   std::string finish();

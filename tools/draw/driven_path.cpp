@@ -97,11 +97,20 @@ std::vector<std::size_t> spaced_postures(const DrivenPath& path, double spacing_
     return (a.p - b.p).norm() + radius_m * a.q.angularDistance(b.q);
   };
   const std::size_t last = path.postures.size() - 1;
-  std::vector<std::size_t> chosen{0};
-  for (std::size_t i = 1; i < last; ++i) {
-    if (distance(chosen.back(), i) >= spacing_m) chosen.push_back(i);
-  }
-  if (chosen.size() > 1 && distance(chosen.back(), last) < 0.6 * spacing_m) chosen.pop_back();
+  const auto choose = [&](double spacing) {
+    std::vector<std::size_t> chosen{0};
+    for (std::size_t i = 1; i < last; ++i) {
+      if (distance(chosen.back(), i) >= spacing) chosen.push_back(i);
+    }
+    return chosen;
+  };
+  std::vector<std::size_t> chosen = choose(spacing_m);
+  // What is left before the end is shared out among the steps.
+  const double steps = static_cast<double>(chosen.size() - 1) + distance(chosen.back(), last) / spacing_m;
+  const double whole_steps = std::max(1.0, std::round(steps));
+  const double even_spacing_m = spacing_m * steps / whole_steps;
+  if (even_spacing_m > 0) chosen = choose(even_spacing_m);
+  while (chosen.size() > 1 && static_cast<double>(chosen.size()) > whole_steps) chosen.pop_back();
   if (last > 0) chosen.push_back(last);
   return chosen;
 }

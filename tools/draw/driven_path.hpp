@@ -33,8 +33,8 @@ struct DrivenPath {
 // RunFileError where no row has a position.
 DrivenPath driven_path(const runs::Run& run, const std::string& name, const physics::RobotDescription& robot);
 
-// Indices of postures about `spacing` apart, turning counted as driving with `radius_m`; the first and the last among
-// them, nothing close to the last.
+// Indices of postures evenly apart, about `spacing_m`, turning counted as driving along a circle of `radius_m`; the
+// first and the last are among them.
 std::vector<std::size_t> spaced_postures(const DrivenPath& path, double spacing_m, double radius_m);
 
 }  // namespace kenaf::draw

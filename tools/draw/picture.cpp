@@ -26,8 +26,11 @@ double draw_header(const Canvas& canvas, const Scene& scene, const std::string& 
     const Point sample[] = {{kMargin + 2, y - 4.5}, {kMargin + 26, y - 4.5}};
     canvas.polyline(sample);
     canvas.stroke(run_colour(i), 3.4);
-    const double name_width = canvas.text({kMargin + 38, y}, scene.paths[i].name, 13, palette::kInk, Align::left, true);
-    canvas.text({kMargin + 38 + name_width + 14, y}, summary(scene, i), 13, palette::kGreyInk);
+    double x = kMargin + 38;
+    if (scene.paths.size() > 1) {
+      x += canvas.text({x, y}, scene.paths[i].name, 13, palette::kInk, Align::left, true) + 12;
+    }
+    canvas.text({x, y}, summary(scene, i), 13, palette::kGreyInk);
   }
   return y + 18;
 }
@@ -54,21 +57,21 @@ void draw_legend(const Canvas& canvas, const Scene& scene) {
     canvas.stroke(colour, 3);
   });
   entry(19, "hull", [&](const Point& at) { swatch(at, palette::kHull, palette::kHullEdge); });
-  entry(19, "track", [&](const Point& at) { swatch(at, palette::kTrack, palette::kTrackEdge); });
+  entry(19, "track", [&](const Point& at) { swatch(at, palette::kTrack, palette::kBelt); });
   if (scene.robot.has_flippers()) {
-    entry(19, "flipper", [&](const Point& at) { swatch(at, palette::kFlipper, palette::kFlipperEdge); });
+    entry(19, "flipper", [&](const Point& at) { swatch(at, palette::kFlipper, palette::kBelt); });
   }
   if (!scene.world.boxes.empty()) {
     entry(19, "box", [&](const Point& at) { swatch(at, palette::kBox, palette::kBoxEdge); });
   }
-  canvas.text({x, y}, "pale: where it was before", 12, palette::kGreyInk);
+  canvas.text({x, y}, "pale: earlier", 12, palette::kGreyInk);
 }
 
 }  // namespace
 
 std::string summary(const Scene& scene, std::size_t index) {
   const DrivenPath& path = scene.paths[index];
-  std::string words = fmt::format("{} in {:.1f} s; end {} and {:.1f}° from the start", distance_text(path.length_m()),
+  std::string words = fmt::format("{} in {:.1f} s, end {} and {:.1f}° from the start", distance_text(path.length_m()),
                                   path.duration_s(), distance_text(path.start_to_end_m()),
                                   std::abs(path.turned_rad()) * 180 / std::numbers::pi);
   if (index > 0) {

@@ -9,7 +9,7 @@ enum class ViewChoice { top, side, automatic };  // automatic: from above, and f
 
 void draw_picture(const Canvas& canvas, const Scene& scene, const std::string& title, ViewChoice view);
 
-// "0.401 m in 23.4 s; end 3.1 mm and 0.4 degrees from the start"; for a run that is compared also its distance from
+// "0.401 m in 23.4 s, end 3.1 mm and 0.4 degrees from the start"; for a run that is compared also its distance from
 // the end of the first.
 std::string summary(const Scene& scene, std::size_t index);
 

@@ -12,6 +12,10 @@ using Eigen::Vector3d;
 
 constexpr int kCircleCorners = 36;
 constexpr double kLugSpacing_m = 0.03;
+// Details that only make the picture readable; no description has them.
+constexpr double kBeltThickness = 0.24;  // of the smaller drum's radius
+constexpr double kWheelShare = 0.6;      // of its drum's radius
+constexpr int kRoadWheels = 3;
 
 std::vector<Vector3d> circle(const Vector3d& centre_B, double radius_m) {
   std::vector<Vector3d> points;
@@ -78,20 +82,38 @@ std::vector<std::vector<Vector3d>> lugs_of(const Belt& belt) {
   return lugs;
 }
 
+// The wheels inside of the loop: one in each drum, under a main track also between them.
+std::vector<std::vector<Vector3d>> wheels_of(const Belt& belt, const Vector3d& aside) {
+  std::vector<std::vector<Vector3d>> wheels{circle(belt.first_B + aside, kWheelShare * belt.first_radius_m),
+                                            circle(belt.second_B + aside, kWheelShare * belt.second_radius_m)};
+  if (belt.kind != PartKind::track) return wheels;
+  const double radius_m = 0.4 * belt.first_radius_m;
+  for (int i = 1; i <= kRoadWheels; ++i) {
+    const double part = static_cast<double>(i) / (kRoadWheels + 1);
+    const Vector3d low(0, 0, -(1 - kBeltThickness) * belt.first_radius_m + radius_m);
+    wheels.push_back(circle(belt.first_B + part * (belt.second_B - belt.first_B) + low + aside, radius_m));
+  }
+  return wheels;
+}
+
 Part belt_part(const Belt& belt, const physics::Pose& X_WB, const Projection& projection) {
   const Vector3d toward_W = projection.toward_viewer_W();
-  const double face = toward_W.dot(X_WB.q * Vector3d::UnitY()) > 0 ? 0.5 : -0.5;  // the side the viewer sees
+  const double facing = toward_W.dot(X_WB.q * Vector3d::UnitY());
   std::vector<Vector3d> surface_B;
   for (const double side : {0.5, -0.5}) {
     const Vector3d aside(0, side * belt.width_m, 0);
     for (const Vector3d& p : circle(belt.first_B + aside, belt.first_radius_m)) surface_B.push_back(p);
     for (const Vector3d& p : circle(belt.second_B + aside, belt.second_radius_m)) surface_B.push_back(p);
   }
-  Part part{belt.kind, 0, convex_hull(projected(surface_B, X_WB, projection)), {}, {}};
+  Part part{belt.kind, 0, convex_hull(projected(surface_B, X_WB, projection)), std::abs(facing) > 0.3, {}, {}, {}};
   part.nearness = toward_W.dot(X_WB.p + X_WB.q * ((belt.first_B + belt.second_B) / 2));
-  const Vector3d aside(0, face * belt.width_m, 0);
-  part.wheels = {projected(circle(belt.first_B + aside, 0.62 * belt.first_radius_m), X_WB, projection),
-                 projected(circle(belt.second_B + aside, 0.62 * belt.second_radius_m), X_WB, projection)};
+
+  const Vector3d aside(0, (facing > 0 ? 0.5 : -0.5) * belt.width_m, 0);
+  const double thickness_m = kBeltThickness * std::min(belt.first_radius_m, belt.second_radius_m);
+  std::vector<Vector3d> inside_B = circle(belt.first_B + aside, belt.first_radius_m - thickness_m);
+  for (const Vector3d& p : circle(belt.second_B + aside, belt.second_radius_m - thickness_m)) inside_B.push_back(p);
+  part.inside = convex_hull(projected(inside_B, X_WB, projection));
+  for (const auto& wheel : wheels_of(belt, aside)) part.wheels.push_back(projected(wheel, X_WB, projection));
   for (const auto& lug : lugs_of(belt)) part.lugs.push_back(projected(lug, X_WB, projection));
   return part;
 }
@@ -106,32 +128,27 @@ std::vector<Vector3d> box_corners(const Vector3d& size_m) {
   return corners;
 }
 
-// Whether the wheels' faces are seen flat enough to be worth drawing: their ellipses are fatter than 1 : 4.
-bool shows_faces(const Part& part) {
-  const auto [low, high] = std::ranges::minmax_element(part.wheels.front(), {}, [](const Point& p) { return p.y(); });
-  const auto [left, right] = std::ranges::minmax_element(part.wheels.front(), {}, [](const Point& p) { return p.x(); });
-  const double height = high->y() - low->y(), width = right->x() - left->x();
-  return std::min(width, height) > 0.25 * std::max(width, height);
-}
-
-void draw_belt(const Canvas& canvas, const Mapping& map, const Part& part) {
+void draw_belt(const Canvas& canvas, const Mapping& map, const Part& part, double paleness) {
   const double pixels_per_metre = map.pixels_per_metre();
-  const bool track = part.kind == PartKind::track;
+  const Colour belt = paler(palette::kBelt, paleness);
+  const Colour body = paler(part.kind == PartKind::track ? palette::kTrack : palette::kFlipper, paleness);
+  const double line = std::clamp(0.004 * pixels_per_metre, 0.7, 1.6);
   canvas.polygon(map(part.outline));
-  canvas.fill(track ? palette::kTrack : palette::kFlipper);
-  canvas.stroke(track ? palette::kTrackEdge : palette::kFlipperEdge, std::clamp(0.006 * pixels_per_metre, 0.8, 2.2));
-  if (shows_faces(part)) {
+  canvas.fill(part.shows_face ? belt : body);
+  canvas.stroke(belt, line);
+  if (part.shows_face) {
+    canvas.polygon(map(part.inside));
+    canvas.fill(body);
     for (const auto& wheel : part.wheels) {
       canvas.polygon(map(wheel));
-      canvas.fill(palette::kWheel);
-      canvas.stroke(palette::kTrackEdge, 0.8);
+      canvas.fill(paler(palette::kWheel, paleness));
+      canvas.stroke(belt, 0.6 * line);
     }
-    return;
-  }
-  if (kLugSpacing_m * pixels_per_metre < 3) return;
-  for (const auto& lug : part.lugs) {
-    canvas.polyline(map(lug));
-    canvas.stroke(palette::kTrackEdge, 0.9, 0.75);
+  } else if (kLugSpacing_m * pixels_per_metre >= 3) {
+    for (const auto& lug : part.lugs) {
+      canvas.polyline(map(lug));
+      canvas.stroke(belt, 0.7 * line);
+    }
   }
 }
 
@@ -161,11 +178,9 @@ std::vector<Part> robot_parts(const physics::RobotDescription& robot, const Post
                               const Projection& projection) {
   std::vector<Part> parts;
   for (const Belt& belt : belts_of(robot, posture)) parts.push_back(belt_part(belt, posture.X_WB, projection));
-  parts.push_back({PartKind::hull,
-                   projection.toward_viewer_W().dot(posture.X_WB.p),
-                   convex_hull(projected(box_corners(robot.body.size_m), posture.X_WB, projection)),
-                   {},
-                   {}});
+  Part hull{PartKind::hull, projection.toward_viewer_W().dot(posture.X_WB.p), {}, false, {}, {}, {}};
+  hull.outline = convex_hull(projected(box_corners(robot.body.size_m), posture.X_WB, projection));
+  parts.push_back(std::move(hull));
   std::ranges::stable_sort(parts, {}, &Part::nearness);
   return parts;
 }
@@ -187,18 +202,16 @@ Mapping fit(const Rectangle& area, Point low, Point high) {
   return {area, centre - half, centre + half};
 }
 
-void draw_robot(const Canvas& canvas, const Mapping& map, const std::vector<Part>& parts, double alpha) {
-  canvas.begin_faded();
+void draw_robot(const Canvas& canvas, const Mapping& map, const std::vector<Part>& parts, double paleness) {
   for (const Part& part : parts) {
     if (part.kind != PartKind::hull) {
-      draw_belt(canvas, map, part);
+      draw_belt(canvas, map, part, paleness);
       continue;
     }
     canvas.polygon(map(part.outline));
-    canvas.fill(palette::kHull);
-    canvas.stroke(palette::kHullEdge, std::clamp(0.006 * map.pixels_per_metre(), 0.8, 2.0));
+    canvas.fill(paler(palette::kHull, paleness));
+    canvas.stroke(paler(palette::kHullEdge, paleness), std::clamp(0.004 * map.pixels_per_metre(), 0.7, 1.6));
   }
-  canvas.end_faded(alpha);
 }
 
 }  // namespace kenaf::draw

@@ -23,7 +23,9 @@ struct Part {
   PartKind kind;
   double nearness;                         // of its centre to the viewer, m
   std::vector<Point> outline;              // convex, in the picture plane, m
-  std::vector<std::vector<Point>> wheels;  // on the face that the viewer sees
+  bool shows_face = false;                 // whether the viewer looks at the wheels rather than at the belt
+  std::vector<Point> inside;               // of the belt's loop, on the face that the viewer sees
+  std::vector<std::vector<Point>> wheels;  // likewise
   std::vector<std::vector<Point>> lugs;    // lines across the belt, on its upper run
 };
 
@@ -50,7 +52,7 @@ struct Mapping {
 // The mapping that shows low..high in `area`, grown to the area's shape about its centre.
 Mapping fit(const Rectangle& area, Point low, Point high);
 
-// Draws a robot. `alpha` below 1: a ghost of an earlier time.
-void draw_robot(const Canvas& canvas, const Mapping& map, const std::vector<Part>& parts, double alpha);
+// Draws a robot. `paleness` from 0 to 1: how far back in time it stood there.
+void draw_robot(const Canvas& canvas, const Mapping& map, const std::vector<Part>& parts, double paleness);
 
 }  // namespace kenaf::draw

@@ -115,7 +115,7 @@ std::optional<Mapping> draw_side_view(const Canvas& canvas, const Rectangle& are
   const DrivenPath& first = scene.paths.front();
   const Projection projection{main_direction(first), Vector3d::UnitZ()};
   const double robot_m = scene.robot.track.length_m;
-  const std::vector<std::size_t> instants = spaced_postures(first, 0.85 * robot_m, robot_m / 2);
+  const std::vector<std::size_t> instants = spaced_postures(first, 0.9 * robot_m, robot_m / 2);
 
   Bounds bounds;
   for (const DrivenPath& path : scene.paths) bounds.add(centre_line(path, projection));
@@ -141,7 +141,7 @@ std::optional<Mapping> draw_side_view(const Canvas& canvas, const Rectangle& are
     draw_side_boxes(canvas, map, boxes, projection);
     draw_times(canvas, map, first, instants, projection);
     for (const std::size_t i : instants) {
-      draw_robot(canvas, map, robot_parts(scene.robot, first.postures[i], projection), i == instants.back() ? 1 : 0.5);
+      draw_robot(canvas, map, robot_parts(scene.robot, first.postures[i], projection), i == instants.back() ? 0 : 0.5);
     }
     for (std::size_t i = scene.paths.size(); i-- > 0;) {
       draw_centre_line(canvas, map, scene.paths[i], projection, run_colour(i), 2.4);

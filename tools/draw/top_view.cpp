@@ -80,7 +80,8 @@ void draw_top_view(const Canvas& canvas, const Rectangle& area, const Scene& sce
     const Clip clip(canvas, inner);
     draw_boxes(canvas, *map, scene);
     for (const std::size_t i : instants) {
-      draw_robot(canvas, *map, robot_parts(scene.robot, first.postures[i], kFromAbove), i == instants.back() ? 1 : 0.3);
+      draw_robot(canvas, *map, robot_parts(scene.robot, first.postures[i], kFromAbove),
+                 i == instants.back() ? 0 : 0.68);
     }
     draw_paths(canvas, *map, scene, crowded ? 1.8 : 2.6, crowded ? 3.6 : 6);
   }
