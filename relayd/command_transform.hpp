@@ -10,9 +10,9 @@
 
 namespace kenaf::relayd {
 
-// Where the settings of a commander, or those of a relay without one, go to the world server.
+// What the world server is asked for. The defaults are for a relay without a commander: a sign of life now and then.
 struct WorldSession {
-  double period_s = 0.2;  // what USARSim servers do when nobody asks
+  double period_s = 1;
   bool lockstep = false;
   double command_timeout_s = 0.5;
 };

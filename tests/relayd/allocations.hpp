@@ -5,7 +5,7 @@
 
 namespace kenaf::test {
 
-extern thread_local bool allocations_of_this_thread_count;  // true unless a thread says otherwise
-std::uint64_t allocations();                                // so far
+void leave_this_thread_out();  // from now on
+std::uint64_t allocations();   // so far
 
 }  // namespace kenaf::test

