@@ -21,8 +21,8 @@ static int exercise(void) {
   static const char* const names[] = {"front left", "front right", "rear left", "rear right"};
   if (failed("all up", hrt_set_flipper(HRT_ALL_FLIPPERS, 60))) return 1;
   for (int i = 0; i < 4; ++i) {
-    if (failed(names[i], hrt_set_flipper((hrt_flipper)i, 20))) return 1;
-    if (failed(names[i], hrt_set_flipper((hrt_flipper)i, 60))) return 1;
+    if (failed(names[i], hrt_set_flipper(i, 20))) return 1;
+    if (failed(names[i], hrt_set_flipper(i, 60))) return 1;
   }
   if (failed("front low, rear high", hrt_set_flippers(15, 15, 90, 90))) return 1;
   if (failed("front high, rear low", hrt_set_flippers(90, 90, 15, 15))) return 1;

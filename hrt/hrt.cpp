@@ -203,14 +203,12 @@ int hrt_set_tracks(double left_mmps, double right_mmps) {
   });
 }
 
-int hrt_set_flipper(hrt_flipper flipper, double deg) {
+int hrt_set_flipper(int flipper, double deg) {
   return guarded([&] {
-    // An enumeration from C may hold any number.
-    const int which = static_cast<int>(flipper);
-    require(which >= HRT_FRONT_LEFT && which <= HRT_ALL_FLIPPERS,
-            fmt::format("hrt_set_flipper: there is no flipper {}", which));
+    require(flipper >= HRT_FRONT_LEFT && flipper <= HRT_ALL_FLIPPERS,
+            fmt::format("hrt_set_flipper: there is no flipper {}", flipper));
     require_range(deg, -kMaxFlipper_deg, kMaxFlipper_deg, "hrt_set_flipper: deg");
-    const unsigned mask = which == HRT_ALL_FLIPPERS ? 0xfu : 1u << which;
+    const unsigned mask = flipper == HRT_ALL_FLIPPERS ? 0xfu : 1u << flipper;
     const double rad = deg / kDegrees;
     open_robot()->set_flippers(static_cast<std::uint8_t>(mask), {rad, rad, rad, rad});
   });

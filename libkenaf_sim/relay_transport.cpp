@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <memory>
 
@@ -82,10 +83,13 @@ hrt::Connection RelayTransport::open(const hrt_config& config) {
 
 void RelayTransport::connect_socket() {
   const std::size_t colon = relay_.rfind(':');
-  if (colon == std::string::npos) {
-    throw Error(HRT_E_CONFIG, fmt::format("relay must be HOST:PORT, not '{}'", relay_));
-  }
   std::string host = relay_.substr(0, colon);
+  const std::string port = colon == std::string::npos ? "" : relay_.substr(colon + 1);
+  unsigned number = 0;
+  const auto [end, wrong_digit] = std::from_chars(port.data(), port.data() + port.size(), number);
+  if (host.empty() || wrong_digit != std::errc{} || end != port.data() + port.size() || number < 1 || number > 65535) {
+    throw Error(HRT_E_CONFIG, fmt::format("relay must be HOST:PORT with a port from 1 to 65535, not '{}'", relay_));
+  }
   if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);  // [::1]:45454
   const addrinfo hints{.ai_flags = AI_NUMERICSERV,
                        .ai_family = AF_UNSPEC,
@@ -96,7 +100,7 @@ void RelayTransport::connect_socket() {
                        .ai_canonname = nullptr,
                        .ai_next = nullptr};
   addrinfo* found = nullptr;
-  if (const int wrong = getaddrinfo(host.c_str(), relay_.c_str() + colon + 1, &hints, &found); wrong != 0) {
+  if (const int wrong = getaddrinfo(host.c_str(), port.c_str(), &hints, &found); wrong != 0) {
     throw Error(HRT_E_CONFIG, fmt::format("relay '{}': {}", relay_, gai_strerror(wrong)));
   }
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> addresses(found, &freeaddrinfo);

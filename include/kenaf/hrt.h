@@ -97,13 +97,13 @@ enum {
 };
 
 /* The order of the elements of every array of flippers and tracks. */
-typedef enum hrt_flipper {
+enum {
   HRT_FRONT_LEFT = 0,
   HRT_FRONT_RIGHT = 1,
   HRT_REAR_LEFT = 2,
   HRT_REAR_RIGHT = 3,
   HRT_ALL_FLIPPERS = 4 /* only as the argument of hrt_set_flipper */
-} hrt_flipper;
+};
 enum { HRT_LEFT = 0, HRT_RIGHT = 1 };
 
 /* ---- Configuration ----
@@ -226,7 +226,7 @@ int hrt_set_tracks(double left_mmps, double right_mmps);
 /* Commands one flipper, or HRT_ALL_FLIPPERS, to an angle, -360 to 360 degrees: 0 straight out, positive tip up. The
  * flipper moves at its own speed, within the limits of its drive, and holds the angle; see hrt_wait_flippers.
  * HRT_E_NOT_INITIALISED, HRT_E_ARGUMENT, HRT_E_LINK. */
-int hrt_set_flipper(hrt_flipper flipper, double deg);
+int hrt_set_flipper(int flipper, double deg);
 
 /* Commands all four at once. */
 int hrt_set_flippers(double front_left_deg, double front_right_deg, double rear_left_deg, double rear_right_deg);

@@ -1,0 +1,164 @@
+// Configuration: defaults, TOML, environment, ranges, and where an error is said to be.
+#include <catch2/catch.hpp>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "hrt/config.hpp"
+#include "hrt/error.hpp"
+#include "tests/support/process.hpp"
+
+using namespace kenaf::hrt;
+
+namespace {
+
+std::string toml_error(std::string_view text) {
+  hrt_config config = default_config();
+  const hrt_config before = config;
+  try {
+    apply_toml(text, "kenaf.toml", config);
+  } catch (const Error& error) {
+    CHECK(error.code() == HRT_E_CONFIG);
+    CHECK(std::memcmp(&config, &before, sizeof config) == 0);
+    return error.what();
+  }
+  return "";
+}
+
+Environment environment_of(std::map<std::string, std::string> variables) {
+  return [variables = std::move(variables)](const char* name) -> const char* {
+    const auto found = variables.find(name);
+    return found == variables.end() ? nullptr : found->second.c_str();
+  };
+}
+
+std::string environment_error(std::map<std::string, std::string> variables) {
+  hrt_config config = default_config();
+  try {
+    apply_environment(environment_of(std::move(variables)), config);
+  } catch (const Error& error) {
+    CHECK(error.code() == HRT_E_CONFIG);
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("the defaults are the ones the header states, and valid") {
+  const hrt_config config = hrt_config_default();
+  CHECK_NOTHROW(check_config(config));
+  CHECK(config.period_s == 0.01);
+  CHECK(config.command_timeout_s == 0.3);
+  CHECK(config.lockstep == 1);
+  CHECK(std::string(config.relay) == "127.0.0.1:45454");
+  CHECK(std::string(config.can_interface) == "can0");
+  CHECK(config.can_nodes[5] == 6);
+  CHECK(config.record[0] == '\0');
+}
+
+TEST_CASE("a file sets every kind of key") {
+  hrt_config config = default_config();
+  apply_toml(R"(
+# a comment
+period_s = 0.02
+max_speed_mmps = 150          # an integer is a number
+lockstep = false
+relay = "10.0.0.2:5000"
+can_nodes = [11, 12, 13, 14, 15, 16]
+record = "/tmp/run.csv"
+)",
+             "kenaf.toml", config);
+  CHECK(config.period_s == 0.02);
+  CHECK(config.max_speed_mmps == 150);
+  CHECK(config.lockstep == 0);
+  CHECK(config.reset_robot == 1);
+  CHECK(std::string(config.relay) == "10.0.0.2:5000");
+  CHECK(config.can_nodes[0] == 11);
+  CHECK(std::string(config.record) == "/tmp/run.csv");
+}
+
+TEST_CASE("what is wrong in a file is named with line and column, and nothing is changed") {
+  CHECK_THAT(toml_error("\n\nperiode_s = 0.01\n"), Catch::StartsWith("kenaf.toml:3:1: unknown key 'periode_s'"));
+  CHECK_THAT(toml_error("period_s = 5\n"),
+             Catch::StartsWith("kenaf.toml:1:12: period_s must be from 0.001 to 1, not 5"));
+  CHECK_THAT(toml_error("link_timeout_s = 1\nperiod_s = \"fast\""),
+             Catch::StartsWith("kenaf.toml:2:12: period_s must be a number"));
+  CHECK_THAT(toml_error("lockstep = 1"), Catch::StartsWith("kenaf.toml:1:12: lockstep must be true or false"));
+  CHECK_THAT(toml_error("relay = 45454"), Catch::StartsWith("kenaf.toml:1:9: relay must be a string"));
+  CHECK_THAT(toml_error("relay = \"\""), Catch::Contains("relay must not be empty"));
+  CHECK_THAT(toml_error("can_interface = \"a-name-that-is-too-long\""), Catch::Contains("at most 15 bytes"));
+  CHECK_THAT(toml_error("can_nodes = [1, 2, 3, 4, 5]"), Catch::Contains("6 different node ids"));
+  CHECK_THAT(toml_error("can_nodes = [1, 2, 3, 4, 5, 128]"), Catch::Contains("6 different node ids"));
+  CHECK_THAT(toml_error("can_nodes = [1, 2, 3, 4, 5, 5]"), Catch::Contains("6 different node ids"));
+  CHECK_THAT(toml_error("[motion]\nmax_speed_mmps = 3"), Catch::Contains("unknown key 'motion'"));
+  CHECK_THAT(toml_error("period_s = nan"), Catch::Contains("period_s must be from"));
+  CHECK_THAT(toml_error("period_s = = 3"), Catch::StartsWith("kenaf.toml:1:12: "));
+}
+
+TEST_CASE("the environment overrides the file") {
+  const kenaf::support::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "mine.toml";
+  std::ofstream(file) << "period_s = 0.02\ncommand_timeout_s = 1\n";
+  hrt_config config = default_config();
+  load_config(environment_of({{"KENAF_CONFIG", file.string()},
+                              {"KENAF_PERIOD_S", "0.005"},
+                              {"KENAF_LOCKSTEP", "false"},
+                              {"KENAF_RESET_ROBOT", "0"},
+                              {"KENAF_RELAY", "127.0.0.1:1"},
+                              {"KENAF_CAN_NODES", "6,5,4,3,2,1"}}),
+              config);
+  CHECK(config.period_s == 0.005);
+  CHECK(config.command_timeout_s == 1);
+  CHECK(config.lockstep == 0);
+  CHECK(config.reset_robot == 0);
+  CHECK(std::string(config.relay) == "127.0.0.1:1");
+  CHECK(config.can_nodes[0] == 6);
+}
+
+TEST_CASE("a personal file applies where nothing else does, and a named file must be there") {
+  const kenaf::support::TemporaryFolder home;
+  std::filesystem::create_directories(home.path() / ".config/kenaf");
+  std::ofstream(home.path() / ".config/kenaf/kenaf.toml") << "period_s = 0.04\n";
+  hrt_config config = default_config();
+  load_config(environment_of({{"HOME", home.path().string()}}), config);
+  CHECK(config.period_s == 0.04);
+  const Environment missing = environment_of({{"KENAF_CONFIG", (home.path() / "none.toml").string()}});
+  CHECK_THROWS_WITH(load_config(missing, config), Catch::Contains("none.toml: cannot be read"));
+}
+
+TEST_CASE("what is wrong in the environment is named by its variable") {
+  CHECK(environment_error({{"KENAF_PERIOD_S", "1e9"}}) ==
+        "environment variable KENAF_PERIOD_S: period_s must be from 0.001 to 1, not 1000000000");
+  CHECK_THAT(environment_error({{"KENAF_PERIOD_S", "0.01s"}}), Catch::Contains("'0.01s' is not a number"));
+  CHECK_THAT(environment_error({{"KENAF_PERIOD_S", ""}}), Catch::Contains("'' is not a number"));
+  CHECK_THAT(environment_error({{"KENAF_LOCKSTEP", "maybe"}}), Catch::Contains("'maybe' is neither true nor false"));
+  CHECK_THAT(environment_error({{"KENAF_CAN_NODES", "1,2,3,4,5,"}}), Catch::Contains("KENAF_CAN_NODES"));
+  CHECK_THAT(environment_error({{"KENAF_RELAY", std::string(500, 'x')}}), Catch::Contains("at most 127 bytes"));
+}
+
+TEST_CASE("a config that a program made up is refused, member by member") {
+  hrt_config config = hrt_config_default();
+  config.stuck_time_s = 0;
+  CHECK(hrt_kenaf_init_with(&config) == HRT_E_ARGUMENT);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("stuck_time_s must be from 0.1 to 60"));
+  config = hrt_config_default();
+  std::memset(config.relay, 'x', sizeof config.relay);
+  CHECK(hrt_kenaf_init_with(&config) == HRT_E_ARGUMENT);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("relay has no terminating zero"));
+  config = hrt_config_default();
+  config.can_nodes[3] = 1;
+  CHECK(hrt_kenaf_init_with(&config) == HRT_E_ARGUMENT);
+  hrt_config zero;
+  std::memset(&zero, 0, sizeof zero);
+  CHECK(hrt_kenaf_init_with(&zero) == HRT_E_ARGUMENT);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("hrt_config_default()"));
+  CHECK(hrt_config_fill(&zero) == HRT_E_ARGUMENT);
+  CHECK(hrt_config_fill(nullptr) == HRT_E_ARGUMENT);
+  CHECK(hrt_config_load(nullptr) == HRT_E_ARGUMENT);
+  CHECK(hrt_config_load(&zero) == HRT_E_ARGUMENT);
+  CHECK(hrt_kenaf_init_with(nullptr) == HRT_E_ARGUMENT);
+}

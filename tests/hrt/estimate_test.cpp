@@ -1,0 +1,98 @@
+// What the estimator makes of measurements, against hand-computed arcs.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "hrt/estimate.hpp"
+#include "protocol/frames.hpp"
+
+using namespace kenaf;
+using hrt::Estimate;
+using hrt::Estimator;
+
+namespace {
+
+relay::State state_at(std::uint32_t frame, double left_m, double right_m) {
+  relay::State state{};
+  state.frame = frame;
+  state.robot_time_s = 0.01 * frame;
+  state.fields = relay::kHasEncoders;
+  state.track_m = {left_m, right_m};
+  return state;
+}
+
+}  // namespace
+
+TEST_CASE("a quarter circle by the encoders ends a radius ahead and a radius to the left") {
+  // Tracks 0.2 m apart on circles of 0.4 and 0.6 m: the centre drives a circle of 0.5 m.
+  Estimator estimator({0.2, 1});
+  const double quarter = std::numbers::pi / 2;
+  Estimate last = estimator.update(state_at(1, 7, 7));  // where the encoders begin does not matter
+  for (std::uint32_t i = 1; i <= 1000; ++i) {
+    const double angle = quarter * i / 1000;
+    last = estimator.update(state_at(1 + i, 7 + 0.4 * angle, 7 + 0.6 * angle));
+  }
+  CHECK(last.odometry_x_m == Approx(0.5).epsilon(1e-5));
+  CHECK(last.odometry_y_m == Approx(0.5).epsilon(1e-5));
+  CHECK(last.odometry_yaw_rad == Approx(quarter));
+  CHECK(last.travel_m == Approx(7 + 0.5 * quarter));
+}
+
+TEST_CASE("posture's yaw is unwrapped, and odometry begins at 0 whatever the yaw") {
+  Estimator estimator({0.2, 1});
+  Estimate last;
+  for (std::uint32_t i = 0; i <= 2000; ++i) {
+    relay::State state = state_at(1 + i, 0, 0);
+    state.fields |= relay::kHasPosture;
+    // 3 rad, then two and a half turns to the right at 0.9 degrees a cycle.
+    state.posture_rad[2] = frames::wrap_angle(3 - std::min(5 * std::numbers::pi, i * 0.0157));
+    last = estimator.update(state);
+  }
+  CHECK(last.heading_rad == Approx(3 - 5 * std::numbers::pi).margin(1e-6));
+  CHECK(last.odometry_yaw_rad == Approx(-5 * std::numbers::pi).margin(1e-6));
+}
+
+TEST_CASE("up a slope the odometry counts the ground plan") {
+  Estimator estimator({0.2, 1});
+  Estimate last;
+  for (std::uint32_t i = 0; i <= 100; ++i) {
+    relay::State state = state_at(1 + i, 0.01 * i, 0.01 * i);
+    state.fields |= relay::kHasPosture;
+    state.posture_rad[1] = -std::numbers::pi / 3;  // nose up by 60 degrees
+    last = estimator.update(state);
+  }
+  CHECK(last.odometry_x_m == Approx(0.5));
+}
+
+TEST_CASE("a sensor that begins late or pauses makes nothing jump") {
+  Estimator estimator({0.2, 1});
+  relay::State nothing{};
+  nothing.frame = 1;
+  nothing.robot_time_s = 0.01;
+  (void)estimator.update(nothing);
+  relay::State late = state_at(2, 5, 5);
+  late.fields |= relay::kHasPosture;
+  late.posture_rad[2] = 1;
+  Estimate now = estimator.update(late);
+  CHECK(now.odometry_x_m == 0);
+  CHECK(now.odometry_yaw_rad == 0);
+  now = estimator.update(state_at(3, 5.1, 5.3));  // no posture: the heading stays, it does not become the encoders'
+  CHECK(now.heading_rad == 1);
+}
+
+TEST_CASE("the tracks stand while they move less than the encoders resolve") {
+  Estimator estimator({0.2, 1});
+  (void)estimator.update(state_at(1, 0, 0));
+  CHECK(estimator.update(state_at(2, 0.0002, 0)).still_s == Approx(0.01));
+  CHECK(estimator.update(state_at(3, 0.0, 0.0002)).still_s == Approx(0.02));
+  CHECK(estimator.update(state_at(4, 0.0, 0.0003)).still_s == 0);
+  CHECK(estimator.update(state_at(5, 0.0, 0.0003)).still_s == Approx(0.01));
+  // Creeping adds up: 0.1 mm a cycle is motion.
+  Estimate now;
+  double longest = 0;
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    now = estimator.update(state_at(6 + i, 0.0001 * i, 0.0003));
+    longest = std::max(longest, now.still_s);
+  }
+  CHECK(longest < 0.045);
+}

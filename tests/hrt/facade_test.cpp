@@ -1,0 +1,484 @@
+// hrt.h from outside, on a robot whose physics is known.
+//   F1 units and signs at the border; F2 every error code where the header promises it; F3 nothing hangs, nothing
+//   crashes F4 lock step: a program's run does not depend on how long it thinks; F5 silence stops; F6 recordings are
+//   complete
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <random>
+#include <string>
+#include <thread>
+
+#include "kenaf/hrt.h"
+#include "runs/run_file.hpp"
+#include "tests/hrt/fake_transport.hpp"
+#include "tests/support/process.hpp"
+
+using namespace kenaf::hrt::test;
+using namespace std::chrono_literals;
+using kenaf::hrt::DriveCommand;
+
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Opens the fake robot for one test and closes it at the end.
+struct Open {
+  explicit Open(const hrt_config& config = hrt_config_default()) {
+    INFO(hrt_last_error());
+    REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  }
+  ~Open() { (void)hrt_close(); }
+};
+
+// Waits, in wall-clock time, until the robot is in a motion.
+void await_motion() {
+  hrt_state state = hrt_state_init();
+  do {
+    std::this_thread::sleep_for(1ms);
+    REQUIRE(hrt_get_state(&state) == HRT_OK);
+  } while ((state.activity & HRT_MOTION_ACTIVE) == 0);
+}
+
+// A robot on which a motion of 100 m lasts long enough to be interrupted.
+hrt_config unhurried() {
+  hrt_config config = hrt_config_default();
+  config.max_speed_mmps = 1;
+  return config;
+}
+
+}  // namespace
+
+TEST_CASE("F1 forward is x, left is y, a left turn raises yaw; millimetres and degrees") {
+  const auto robot = use_fake_robot();
+  const Open open;
+  REQUIRE(hrt_go_forward(200) == HRT_OK);
+  REQUIRE(hrt_turning(90) == HRT_OK);
+  REQUIRE(hrt_go_forward(100) == HRT_OK);
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_get_state(&state) == HRT_OK);
+  CHECK(state.pose_x_mm == Approx(200).margin(2));
+  CHECK(state.pose_y_mm == Approx(100).margin(2));
+  CHECK(state.pose_z_mm == Approx(90));
+  CHECK(state.pose_yaw_deg == Approx(90).margin(0.4));
+  CHECK(state.yaw_deg == Approx(90).margin(0.4));
+  CHECK(state.odometry_x_mm == Approx(state.pose_x_mm).margin(1));
+  CHECK(state.odometry_y_mm == Approx(state.pose_y_mm).margin(1));
+  CHECK(state.odometry_yaw_deg == Approx(90).margin(0.5));
+  CHECK(state.acceleration_mmps2[2] == Approx(9806.65));
+  CHECK(state.battery_v == Approx(25.9));
+  CHECK(state.round_trip_ms == Approx(2));
+  CHECK(state.valid == (HRT_HAS_POSTURE | HRT_HAS_ENCODERS | HRT_HAS_FLIPPERS | HRT_HAS_CURRENTS | HRT_HAS_BATTERY |
+                        HRT_HAS_INERTIAL | HRT_HAS_POSE));
+  CHECK((state.activity & HRT_IN_LOCKSTEP) != 0);
+  CHECK((state.activity & HRT_MOTION_ACTIVE) == 0);
+  CHECK(hrt_time() == state.time_s);
+  CHECK(hrt_show_status() == HRT_OK);
+}
+
+TEST_CASE("F1 track speeds and flipper angles reach the transport in metres and radians, in order") {
+  const auto robot = use_fake_robot();
+  const Open open;
+  REQUIRE(hrt_set_tracks(100, -50) == HRT_OK);
+  REQUIRE(hrt_set_flipper(HRT_REAR_LEFT, 30) == HRT_OK);
+  REQUIRE(hrt_wait_cycle(nullptr) == HRT_OK);
+  {
+    const std::lock_guard lock(robot->mutex);
+    const DriveCommand& command = robot->commands.front();  // all of it in the very first cycle
+    CHECK(command.track_speed_mps == std::array<double, 2>{0.1, -0.05});
+    CHECK(command.flipper_mask == 0b0100);
+    CHECK(command.flipper_rad[2] == Approx(30 * kDegree));
+  }
+  REQUIRE(hrt_set_flippers(10, 20, 30, 40) == HRT_OK);
+  REQUIRE(hrt_wait_flippers(0.5, 10) == HRT_OK);
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_get_state(&state) == HRT_OK);
+  CHECK(state.flippers_commanded == 0xf);
+  for (int i = 0; i < 4; ++i) {
+    CHECK(state.flipper_deg[i] == Approx(10.0 * (i + 1)).margin(0.5));
+    CHECK(state.commanded_flipper_deg[i] == Approx(10.0 * (i + 1)));
+  }
+}
+
+TEST_CASE("F1 sleeping counts robot time and takes whole cycles") {
+  const auto robot = use_fake_robot();
+  const Open open;
+  const double start_s = hrt_time();
+  REQUIRE(hrt_sleep(0.5) == HRT_OK);
+  CHECK(hrt_time() - start_s == Approx(0.5));
+  REQUIRE(hrt_sleep(0.011) == HRT_OK);
+  CHECK(hrt_time() - start_s == Approx(0.52));
+  REQUIRE(hrt_sleep(0) == HRT_OK);
+  CHECK(hrt_time() - start_s == Approx(0.52));
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_wait_cycle(&state) == HRT_OK);
+  CHECK(state.time_s - start_s == Approx(0.53));
+}
+
+TEST_CASE("F2 without a robot every call says so") {
+  hrt_state state = hrt_state_init();
+  CHECK(hrt_go_forward(1) == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_turning(1) == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_set_tracks(0, 0) == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_set_flipper(HRT_ALL_FLIPPERS, 0) == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_set_flippers(0, 0, 0, 0) == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_wait_flippers(1, 1) == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_stop() == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_sleep(1) == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_get_state(&state) == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_wait_cycle(&state) == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_show_status() == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_record_start("x.csv") == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_record_stop() == HRT_E_NOT_INITIALISED);
+  CHECK(hrt_time() == -1);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("hrt_kenaf_init()"));
+  CHECK(hrt_close() == HRT_OK);
+}
+
+TEST_CASE("F2 bad arguments are named and change nothing") {
+  const auto robot = use_fake_robot();
+  const Open open;
+  for (const double bad : {kNaN, kInfinity, -kInfinity, 1e7, -1e7}) {
+    CHECK(hrt_go_forward(bad) == HRT_E_ARGUMENT);
+    CHECK(hrt_turning(bad) == HRT_E_ARGUMENT);
+    CHECK(hrt_set_tracks(bad, 0) == HRT_E_ARGUMENT);
+    CHECK(hrt_set_tracks(0, bad) == HRT_E_ARGUMENT);
+    CHECK(hrt_set_flipper(HRT_FRONT_LEFT, bad) == HRT_E_ARGUMENT);
+    CHECK(hrt_set_flippers(0, 0, 0, bad) == HRT_E_ARGUMENT);
+    CHECK(hrt_sleep(bad) == HRT_E_ARGUMENT);
+    CHECK(hrt_wait_flippers(bad, 1) == HRT_E_ARGUMENT);
+    CHECK(hrt_wait_flippers(1, bad) == HRT_E_ARGUMENT);
+  }
+  CHECK_THAT(hrt_last_error(), Catch::StartsWith("hrt_wait_flippers: timeout_s must be from 0 to 3600"));
+  CHECK(hrt_sleep(-1) == HRT_E_ARGUMENT);
+  CHECK(hrt_set_flipper(HRT_ALL_FLIPPERS + 1, 0) == HRT_E_ARGUMENT);
+  CHECK(hrt_set_flipper(-1, 0) == HRT_E_ARGUMENT);
+  CHECK(hrt_get_state(nullptr) == HRT_E_ARGUMENT);
+  hrt_state state = hrt_state_init();
+  state.size = 0;
+  CHECK(hrt_get_state(&state) == HRT_E_ARGUMENT);
+  CHECK(hrt_wait_cycle(&state) == HRT_E_ARGUMENT);
+  state.size = sizeof state + 8;  // of a header newer than this library
+  CHECK(hrt_get_state(&state) == HRT_E_ARGUMENT);
+  CHECK(hrt_record_start(nullptr) == HRT_E_ARGUMENT);
+  CHECK(hrt_record_start("") == HRT_E_ARGUMENT);
+  CHECK(hrt_record_start("/nonexistent/folder/x.csv") == HRT_E_RECORD);
+  REQUIRE(hrt_wait_cycle(nullptr) == HRT_OK);
+  const std::lock_guard lock(robot->mutex);
+  CHECK(robot->commands.front().track_speed_mps == std::array<double, 2>{0, 0});
+  CHECK(robot->commands.front().flipper_mask == 0);
+}
+
+TEST_CASE("F2 every error has a name, and only those") {
+  CHECK(std::string(hrt_error_name(HRT_OK)) == "HRT_OK");
+  CHECK(std::string(hrt_error_name(HRT_E_STUCK)) == "HRT_E_STUCK");
+  for (int error = HRT_E_INTERNAL; error <= HRT_E_NOT_INITIALISED; ++error) {
+    CHECK_THAT(hrt_error_name(error), Catch::StartsWith("HRT_E_"));
+  }
+  CHECK(std::string(hrt_error_name(1)) == "unknown error");
+  CHECK(std::string(hrt_error_name(HRT_E_INTERNAL - 1)) == "unknown error");
+  CHECK(std::string(hrt_version()) == "0.1.0");
+}
+
+TEST_CASE("F2 a second init is busy, a closed robot can be opened again") {
+  use_fake_robot();
+  {
+    const Open open;
+    CHECK(hrt_kenaf_init() == HRT_E_BUSY);
+    CHECK_THAT(hrt_last_error(), Catch::Contains("open already"));
+  }
+  use_fake_robot();
+  const Open again;
+  CHECK(hrt_go_forward(10) == HRT_OK);
+}
+
+TEST_CASE("F2 F3 blocked tracks are stuck, and stand afterwards") {
+  PlantSettings settings;
+  settings.tracks_blocked = true;
+  const auto robot = use_fake_robot(settings);
+  const Open open;
+  CHECK(hrt_go_forward(100) == HRT_E_STUCK);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("no progress"));
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_wait_cycle(&state) == HRT_OK);
+  CHECK(state.commanded_track_mmps[0] == 0);
+  CHECK(state.commanded_track_mmps[1] == 0);
+  CHECK(hrt_turning(30) == HRT_E_STUCK);
+}
+
+TEST_CASE("F2 F3 a broken link ends every call, and a new init opens anew") {
+  const auto robot = use_fake_robot();
+  robot->lost_at_frame = 40;
+  {
+    const Open open;
+    CHECK(hrt_go_forward(1000) == HRT_E_LINK);
+    CHECK(std::string(hrt_last_error()) == "the fake link broke");
+    CHECK(hrt_set_tracks(1, 1) == HRT_E_LINK);
+    CHECK(hrt_sleep(1) == HRT_E_LINK);
+    CHECK(hrt_stop() == HRT_E_LINK);
+    hrt_state state = hrt_state_init();
+    CHECK(hrt_get_state(&state) == HRT_E_LINK);
+    CHECK(state.cycle == 39);  // the last that arrived
+    CHECK(hrt_show_status() == HRT_E_LINK);
+    use_fake_robot();
+    REQUIRE(hrt_kenaf_init() == HRT_OK);
+    CHECK(hrt_go_forward(10) == HRT_OK);
+  }
+  CHECK(robot->closed);
+}
+
+TEST_CASE("F3 another thread stops a motion, and a second motion is busy") {
+  const auto robot = use_fake_robot();
+  const Open open(unhurried());
+  int result = HRT_OK;
+  std::string words;
+  std::thread driver([&] {
+    result = hrt_go_forward(1e6);
+    words = hrt_last_error();
+  });
+  await_motion();
+  CHECK(hrt_go_forward(1) == HRT_E_BUSY);
+  CHECK(hrt_turning(1) == HRT_E_BUSY);
+  CHECK(hrt_sleep(0.05) == HRT_OK);  // sleeping beside a motion is fine
+  CHECK(hrt_stop() == HRT_OK);
+  driver.join();
+  CHECK(result == HRT_E_STOPPED);
+  CHECK(words == "hrt_stop() ended this call");
+  CHECK_THAT(hrt_last_error(), Catch::Contains("motion is under way"));  // each thread has its own
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_wait_cycle(&state) == HRT_OK);
+  CHECK(state.commanded_track_mmps[0] == 0);
+}
+
+TEST_CASE("F3 direct track speeds take over from a motion") {
+  const auto robot = use_fake_robot();
+  const Open open(unhurried());
+  int result = HRT_OK;
+  std::thread driver([&] { result = hrt_go_forward(1e6); });
+  await_motion();
+  CHECK(hrt_set_tracks(10, 20) == HRT_OK);
+  driver.join();
+  CHECK(result == HRT_E_STOPPED);
+}
+
+TEST_CASE("F3 closing ends the calls of other threads") {
+  const auto robot = use_fake_robot();
+  const hrt_config config = unhurried();
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  int moved = HRT_OK, slept = HRT_OK;
+  std::thread driver([&] { moved = hrt_go_forward(1e6); });
+  std::thread sleeper([&] { slept = hrt_sleep(86400); });
+  await_motion();
+  CHECK(hrt_close() == HRT_OK);
+  driver.join();
+  sleeper.join();
+  CHECK(moved == HRT_E_CLOSED);
+  CHECK((slept == HRT_E_CLOSED || slept == HRT_E_NOT_INITIALISED));
+  CHECK(robot->closed);
+}
+
+TEST_CASE("F3 flippers that do not arrive are named, and hrt_stop leaves them where they are") {
+  const auto robot = use_fake_robot();
+  const Open open;
+  CHECK(hrt_wait_flippers(1, 0) == HRT_OK);  // none was ever commanded
+  REQUIRE(hrt_set_flippers(0, 170, 0, 170) == HRT_OK);
+  CHECK(hrt_wait_flippers(1, 0.1) == HRT_E_TIMEOUT);
+  CHECK_THAT(hrt_last_error(), Catch::EndsWith("not reached within 0.1 s: front right, rear right"));
+  REQUIRE(hrt_stop() == HRT_OK);
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_wait_cycle(&state) == HRT_OK);
+  // 1.5 rad/s for the 0.1 s that the flippers moved, and for the cycle whose answer hrt_stop() came too late for.
+  CHECK(state.commanded_flipper_deg[1] == Approx(0.1 * 1.5 / kDegree).margin(1));
+  CHECK(state.commanded_flipper_deg[0] == 0);
+}
+
+TEST_CASE("F3 lost cycles are counted") {
+  const auto robot = use_fake_robot();
+  robot->skipped_frame = 5;
+  const Open open;
+  REQUIRE(hrt_sleep(0.1) == HRT_OK);
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_get_state(&state) == HRT_OK);
+  CHECK(state.lost_cycles == 1);
+}
+
+TEST_CASE("F4 in lock step the same program gives the same commands however long it thinks") {
+  const auto drive = [](int longest_thought_us) {
+    PlantSettings settings;
+    settings.turn_efficiency = 0.6;
+    settings.yaw_noise_rad = 0.1 * kDegree;
+    const auto robot = use_fake_robot(settings);
+    std::mt19937 generator(7);
+    const auto think = [&] {
+      const auto thought = std::chrono::microseconds(generator() % static_cast<unsigned>(longest_thought_us + 1));
+      std::this_thread::sleep_for(thought);
+    };
+    hrt_config config = hrt_config_default();
+    config.hold_s = 0.2;  // a busy machine must not fail the test
+    REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+    std::uint64_t last_cycle = 0;
+    for (int side = 0; side < 2; ++side) {
+      think();
+      REQUIRE(hrt_go_forward(50) == HRT_OK);
+      think();
+      REQUIRE(hrt_set_flipper(HRT_ALL_FLIPPERS, 20 + side) == HRT_OK);
+      think();
+      REQUIRE(hrt_turning(45) == HRT_OK);
+      think();
+      REQUIRE(hrt_set_tracks(30, 20) == HRT_OK);
+      think();
+      REQUIRE(hrt_sleep(0.2) == HRT_OK);
+      hrt_state state = hrt_state_init();
+      for (int i = 0; i < 20; ++i) {
+        REQUIRE(hrt_wait_cycle(&state) == HRT_OK);
+        if (i % 4 == 0) think();
+        REQUIRE(hrt_set_tracks(state.track_mm[0] / 10, state.track_mm[1] / 10) == HRT_OK);
+      }
+      last_cycle = state.cycle;
+    }
+    REQUIRE(hrt_close() == HRT_OK);
+    const std::lock_guard lock(robot->mutex);
+    REQUIRE(robot->commands.size() + 1 >= last_cycle);
+    robot->commands.resize(last_cycle - 1);
+    return robot->commands;
+  };
+  const std::vector<DriveCommand> quick = drive(0), slow = drive(5000);
+  REQUIRE(quick.size() == slow.size());
+  for (std::size_t i = 0; i < quick.size(); ++i) {
+    CAPTURE(i);
+    REQUIRE(quick[i].track_speed_mps == slow[i].track_speed_mps);  // to the last bit
+    REQUIRE(quick[i].flipper_rad == slow[i].flipper_rad);
+  }
+}
+
+TEST_CASE("F4 two threads that take turns give the same run as well") {
+  const auto drive = [](std::chrono::milliseconds thought) {
+    const auto robot = use_fake_robot();
+    hrt_config config = hrt_config_default();
+    config.hold_s = 0.2;
+    REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+    std::atomic<bool> fine = true;
+    std::thread flipper_thread([&] {
+      for (int i = 0; i < 5; ++i) {
+        fine = fine && hrt_sleep(0.1) == HRT_OK;
+        std::this_thread::sleep_for(thought);
+        fine = fine && hrt_set_flipper(HRT_FRONT_LEFT, 5 * i) == HRT_OK;
+      }
+    });
+    // The thread's first sleep begins in the first cycle: this thread's first call is made after it.
+    std::this_thread::sleep_for(20ms);
+    for (int i = 0; i < 4; ++i) fine = fine && hrt_go_forward(10) == HRT_OK;
+    flipper_thread.join();
+    REQUIRE(hrt_close() == HRT_OK);
+    REQUIRE(fine);
+    const std::lock_guard lock(robot->mutex);
+    robot->commands.resize(50);  // while both were at work
+    return robot->commands;
+  };
+  const auto quick = drive(0ms), slow = drive(5ms);
+  for (std::size_t i = 0; i < quick.size(); ++i) {
+    CAPTURE(i);
+    REQUIRE(quick[i].track_speed_mps == slow[i].track_speed_mps);
+    REQUIRE(quick[i].flipper_rad == slow[i].flipper_rad);
+  }
+}
+
+TEST_CASE("F4 a program that waits on the wall clock goes on after the hold") {
+  const auto robot = use_fake_robot();
+  const Open open;
+  const double before_s = hrt_time();
+  while (hrt_time() == before_s) std::this_thread::sleep_for(1ms);  // ends: robot time runs on by itself
+  CHECK(hrt_go_forward(10) == HRT_OK);
+}
+
+TEST_CASE("F5 track speeds hold while the program calls, and stop command_timeout_s after its last call") {
+  const auto robot = use_fake_robot();
+  const Open open;
+  REQUIRE(hrt_set_tracks(100, 100) == HRT_OK);
+  REQUIRE(hrt_sleep(2) == HRT_OK);  // calling all the while
+  const double last_call_s = hrt_time();
+  // Without calling: watch the robot, not the library.
+  double moving_until_s = 0;
+  for (bool stopped = false; !stopped; std::this_thread::sleep_for(1ms)) {
+    const std::lock_guard lock(robot->mutex);
+    const std::size_t count = robot->commands.size();
+    stopped = robot->commands.back().track_speed_mps[0] == 0;
+    for (std::size_t i = 0; stopped && i < count; ++i) {
+      if (robot->commands[i].track_speed_mps[0] != 0) moving_until_s = 0.01 * static_cast<double>(i + 1);
+    }
+  }
+  CHECK(moving_until_s - last_call_s == Approx(0.3).margin(0.011));
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_wait_cycle(&state) == HRT_OK);
+  REQUIRE(hrt_wait_cycle(&state) == HRT_OK);
+  CHECK(state.commanded_track_mmps[0] == 0);  // stopped for good, until commanded anew
+}
+
+TEST_CASE("F6 a recording has every cycle once, with what was commanded and measured") {
+  const kenaf::support::TemporaryFolder folder;
+  const std::string file = (folder.path() / "run.csv").string();
+  const auto robot = use_fake_robot();
+  hrt_config config = hrt_config_default();
+  file.copy(config.record, sizeof config.record - 1);
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  REQUIRE(hrt_set_flipper(HRT_FRONT_LEFT, 10) == HRT_OK);
+  REQUIRE(hrt_go_forward(100) == HRT_OK);
+  CHECK(hrt_record_start(file.c_str()) == HRT_E_BUSY);
+  CHECK_FALSE(std::filesystem::exists(file));
+  REQUIRE(hrt_close() == HRT_OK);
+
+  const kenaf::runs::Run run = kenaf::runs::read_run(file);
+  const std::size_t rows = run.row_count();
+  CHECK(rows == robot->plant.state.frame);
+  const auto t = run.column("t_s"), frame = run.column("frame"), x = run.column("x_m");
+  const auto command = run.column("cmd_track_left_mps"), track = run.column("track_left_m");
+  const auto flipper = run.column("cmd_flipper_fl_rad"), other = run.column("cmd_flipper_fr_rad");
+  CHECK(t[0] == 0);
+  CHECK(command[0] == 0);
+  CHECK(std::isnan(flipper[0]));
+  CHECK(std::isnan(other[rows - 1]));
+  double integral_m = 0, belt_mps = 0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    REQUIRE(frame[i] == static_cast<double>(i + 1));
+    REQUIRE(t[i] == Approx(0.01 * static_cast<double>(i)).margin(1e-12));
+    REQUIRE(x[i] == Approx(track[i]).margin(1e-9));
+    // A row's command is in force from its time on: the plant driven by it gives the next row.
+    REQUIRE(track[i] == Approx(integral_m).margin(1e-9));
+    if (i + 1 < rows) REQUIRE(command[i + 1] == robot->commands[i].track_speed_mps[0]);
+    belt_mps += (command[i] - belt_mps) * -std::expm1(-0.01 / 0.05);
+    integral_m += belt_mps * 0.01;
+  }
+  CHECK(flipper[1] == Approx(10 * kDegree));
+}
+
+TEST_CASE("F6 a recording of many cycles loses none, begins at the newest cycle and ends on request") {
+  const kenaf::support::TemporaryFolder folder;
+  const std::string file = (folder.path() / "run.csv").string();
+  use_fake_robot();
+  const Open open;
+  REQUIRE(hrt_sleep(0.1) == HRT_OK);
+  REQUIRE(hrt_record_start(file.c_str()) == HRT_OK);
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_get_state(&state) == HRT_OK);
+  CHECK((state.activity & HRT_RECORDING) != 0);
+  REQUIRE(hrt_sleep(120) == HRT_OK);  // 12000 cycles: more than the queue holds
+  REQUIRE(hrt_record_stop() == HRT_OK);
+  CHECK(hrt_record_stop() == HRT_E_RECORD);
+  const kenaf::runs::Run run = kenaf::runs::read_run(file);
+  CHECK(run.row_count() == 12001);
+  CHECK(run.column("frame")[0] == static_cast<double>(state.cycle));
+}
+
+TEST_CASE("F2 a recording that cannot be begun is an error of init") {
+  const auto robot = use_fake_robot();
+  hrt_config config = hrt_config_default();
+  std::string("/nonexistent/folder/run.csv").copy(config.record, sizeof config.record - 1);
+  CHECK(hrt_kenaf_init_with(&config) == HRT_E_RECORD);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("/nonexistent/folder/run.csv"));
+  CHECK(robot->closed);
+}

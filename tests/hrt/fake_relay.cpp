@@ -1,0 +1,232 @@
+#include "tests/hrt/fake_relay.hpp"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <map>
+#include <stdexcept>
+
+namespace kenaf::hrt::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+sockaddr_in loopback(std::uint16_t port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  return address;
+}
+
+// A bound UDP socket on a free port.
+int bound_socket(std::uint16_t& port) {
+  const int descriptor = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  sockaddr_in address = loopback(0);
+  socklen_t size = sizeof address;
+  if (descriptor < 0 || bind(descriptor, reinterpret_cast<sockaddr*>(&address), size) < 0 ||
+      getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) < 0) {
+    throw std::runtime_error("no UDP socket");
+  }
+  port = ntohs(address.sin_port);
+  return descriptor;
+}
+
+void signal_stop(int descriptor) {
+  const std::uint64_t one = 1;
+  if (write(descriptor, &one, sizeof one) < 0) throw std::runtime_error("eventfd");
+}
+
+using Bytes = std::vector<std::byte>;
+
+// Sender and contents of the next datagram that waits.
+bool receive(int descriptor, Bytes& bytes, sockaddr_in& from) {
+  bytes.resize(2048);
+  socklen_t size = sizeof from;
+  const ssize_t got = recvfrom(descriptor, bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
+  if (got < 0) return false;
+  bytes.resize(static_cast<std::size_t>(got));
+  return true;
+}
+
+void transmit(int descriptor, const Bytes& bytes, const sockaddr_in& to) {
+  (void)sendto(descriptor, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+}
+
+}  // namespace
+
+FakeRelay::FakeRelay(const Behaviour& behaviour) : behaviour_(behaviour), plant_(behaviour.plant) {
+  socket_ = bound_socket(port_);
+  stop_ = eventfd(0, EFD_CLOEXEC);
+  thread_ = std::thread([this] { run(); });
+}
+
+FakeRelay::~FakeRelay() {
+  signal_stop(stop_);
+  thread_.join();
+  close(socket_);
+  close(stop_);
+}
+
+std::string FakeRelay::address() const {
+  return fmt::format("127.0.0.1:{}", port_);
+}
+
+std::vector<relay::Command> FakeRelay::commands() const {
+  const std::lock_guard lock(mutex_);
+  return commands_;
+}
+
+std::optional<relay::Hello> FakeRelay::hello() const {
+  const std::lock_guard lock(mutex_);
+  return hello_;
+}
+
+void FakeRelay::run() {
+  for (;;) {
+    std::array<pollfd, 2> watched{{{socket_, POLLIN, 0}, {stop_, POLLIN, 0}}};
+    poll(watched.data(), watched.size(), -1);
+    if (watched[1].revents != 0) return;
+    Bytes bytes;
+    sockaddr_in from{};
+    while (receive(socket_, bytes, from)) {
+      relay::Datagram datagram;
+      if (relay::decode(bytes, datagram) != relay::DecodeError::none) continue;
+      const std::lock_guard lock(mutex_);
+      for (const relay::Datagram& answer : answers_to(datagram)) {
+        Bytes out(relay::kMaxDatagramBytes);
+        out.resize(relay::encode(answer, out));
+        transmit(socket_, out, from);
+      }
+    }
+  }
+}
+
+std::vector<relay::Datagram> FakeRelay::answers_to(const relay::Datagram& datagram) {
+  const auto refused = [&](std::uint64_t session, relay::RefusedReason reason) {
+    relay::Refused answer{};
+    answer.session = session;
+    answer.reason = reason;
+    answer.text_length = behaviour_.words.copy(answer.text.data(), answer.text.size());
+    return answer;
+  };
+  if (const auto* hello = std::get_if<relay::Hello>(&datagram)) {
+    ++hellos_;
+    hello_ = *hello;
+    if (behaviour_.refuse && behaviour_.refuse_times-- > 0) return {refused(hello->session, *behaviour_.refuse)};
+    session_ = hello->session;
+    plant_.state.session = session_;
+    const relay::Welcome welcome{session_, plant_.state.robot_time_s, behaviour_.plant.period_s, true};
+    if (behaviour_.first_state_lost) return {welcome};
+    return {welcome, plant_.state};
+  }
+  if (const auto* ping = std::get_if<relay::Ping>(&datagram)) {
+    ++pings_;
+    if (behaviour_.silent_from_frame != 0 && plant_.state.frame + 1 >= behaviour_.silent_from_frame) return {};
+    return {relay::Pong{ping->session, ping->id}};
+  }
+  if (std::get_if<relay::Bye>(&datagram) != nullptr) {
+    ++byes_;
+    return {};
+  }
+  const auto* command = std::get_if<relay::Command>(&datagram);
+  if (command == nullptr || command->session != session_) return {};
+  const std::uint32_t next = plant_.state.frame + 1;
+  const auto happens_at = [&](std::uint32_t frame) { return frame != 0 && next >= frame; };
+  if (happens_at(behaviour_.silent_from_frame)) return {};
+  if (command->frame != plant_.state.frame || happens_at(behaviour_.frozen_from_frame)) return {plant_.state};
+  if (happens_at(behaviour_.forgets_at_frame)) return {refused(session_, relay::RefusedReason::unknown_session)};
+  relay::State event = plant_.state;
+  if (happens_at(behaviour_.world_lost_at_frame)) {
+    event.events = relay::kWorldServerLost;
+    return {event};
+  }
+  if (happens_at(behaviour_.pause_at_frame) && behaviour_.pause_states-- > 0) {
+    event.events = relay::kWorldPaused;
+    return {event};
+  }
+  commands_.push_back(*command);
+  plant_.advance({command->track_speed_mps, command->flipper_mask, command->flipper_rad});
+  plant_.state.acknowledged = command->sequence;
+  return {plant_.state};
+}
+
+BadNetwork::BadNetwork(std::uint16_t relay_port, const Quality& quality) : quality_(quality) {
+  front_ = bound_socket(port_);
+  std::uint16_t unused = 0;
+  back_ = bound_socket(unused);
+  const sockaddr_in relay_address = loopback(relay_port);
+  if (connect(back_, reinterpret_cast<const sockaddr*>(&relay_address), sizeof relay_address) < 0) {
+    throw std::runtime_error("no way to the fake relay");
+  }
+  stop_ = eventfd(0, EFD_CLOEXEC);
+  thread_ = std::thread([this] { run(); });
+}
+
+BadNetwork::~BadNetwork() {
+  signal_stop(stop_);
+  thread_.join();
+  for (const int descriptor : {front_, back_, stop_}) close(descriptor);
+}
+
+std::string BadNetwork::address() const {
+  return fmt::format("127.0.0.1:{}", port_);
+}
+
+void BadNetwork::run() {
+  struct Parcel {
+    bool to_relay;
+    Bytes bytes;
+  };
+  std::mt19937 generator(quality_.seed);
+  std::uniform_real_distribution<double> chance(0, 1);
+  std::multimap<Clock::time_point, Parcel> waiting;
+  sockaddr_in commander{};
+  for (;;) {
+    int patience_ms = -1;
+    if (!waiting.empty()) {
+      const auto left = std::chrono::ceil<std::chrono::milliseconds>(waiting.begin()->first - Clock::now());
+      patience_ms = static_cast<int>(std::max<std::int64_t>(0, left.count()));
+    }
+    std::array<pollfd, 3> watched{{{front_, POLLIN, 0}, {back_, POLLIN, 0}, {stop_, POLLIN, 0}}};
+    poll(watched.data(), watched.size(), patience_ms);
+    if (watched[2].revents != 0) return;
+    for (const int descriptor : {front_, back_}) {
+      Bytes bytes;
+      sockaddr_in from{};
+      while (receive(descriptor, bytes, from)) {
+        const bool to_relay = descriptor == front_;
+        if (to_relay) commander = from;
+        if (chance(generator) < quality_.loss) {
+          ++dropped_;
+          continue;
+        }
+        const int copies = chance(generator) < quality_.doubling ? 2 : 1;
+        for (int i = 0; i < copies; ++i) {
+          auto delay = std::chrono::milliseconds(0);
+          if (chance(generator) < quality_.delay) {
+            delay = std::chrono::milliseconds(
+                1 + static_cast<int>(generator() % static_cast<unsigned>(quality_.longest_delay_ms)));
+          }
+          waiting.emplace(Clock::now() + delay, Parcel{to_relay, bytes});
+        }
+      }
+    }
+    while (!waiting.empty() && waiting.begin()->first <= Clock::now()) {
+      const Parcel parcel = std::move(waiting.begin()->second);
+      waiting.erase(waiting.begin());
+      if (parcel.to_relay)
+        (void)send(back_, parcel.bytes.data(), parcel.bytes.size(), 0);
+      else
+        transmit(front_, parcel.bytes, commander);
+    }
+  }
+}
+
+}  // namespace kenaf::hrt::test

@@ -1,0 +1,86 @@
+#include "tests/hrt/fake_transport.hpp"
+
+#include <chrono>
+#include <thread>
+
+#include "hrt/error.hpp"
+
+namespace kenaf::hrt {
+namespace {
+
+std::function<std::unique_ptr<Transport>()> maker;
+
+}  // namespace
+
+std::unique_ptr<Transport> make_transport() {
+  return maker();
+}
+extern const char* const kLibraryName = "sim";
+
+namespace test {
+
+void use_transport(std::function<std::unique_ptr<Transport>()> make) {
+  maker = std::move(make);
+}
+
+std::shared_ptr<FakeRobot> use_fake_robot(const PlantSettings& settings) {
+  auto robot = std::make_shared<FakeRobot>();
+  robot->plant = Plant(settings);
+  use_transport([robot] { return std::make_unique<FakeTransport>(robot); });
+  return robot;
+}
+
+Connection FakeTransport::open(const hrt_config&) {
+  const std::lock_guard lock(robot_->mutex);
+  robot_->interrupted = robot_->closed = false;
+  return {robot_->plant.settings.period_s, robot_->lockstep};
+}
+
+std::optional<relay::State> FakeTransport::wait_state() {
+  std::unique_lock lock(robot_->mutex);
+  if (!first_ && !answered_) {
+    const auto may_go_on = [&] { return robot_->interrupted || answered_; };
+    if (robot_->runs_alone)
+      robot_->changed.wait_for(lock, std::chrono::milliseconds(1), may_go_on);
+    else
+      robot_->changed.wait(lock, may_go_on);
+  }
+  if (robot_->interrupted) return std::nullopt;
+  if (first_) {
+    first_ = false;
+    return robot_->plant.state;
+  }
+  // A program that does not call lets time run on: not faster than a test can watch.
+  lock.unlock();
+  std::this_thread::sleep_for(std::chrono::microseconds(20));
+  lock.lock();
+  do {
+    robot_->plant.advance(command_);
+  } while (robot_->plant.state.frame == robot_->skipped_frame);
+  answered_ = false;
+  if (robot_->lost_at_frame != 0 && robot_->plant.state.frame >= robot_->lost_at_frame) {
+    throw Error(HRT_E_LINK, "the fake link broke");
+  }
+  return robot_->plant.state;
+}
+
+void FakeTransport::send(const DriveCommand& command) {
+  const std::lock_guard lock(robot_->mutex);
+  command_ = command;
+  answered_ = true;
+  robot_->commands.push_back(command);
+}
+
+void FakeTransport::interrupt() {
+  const std::lock_guard lock(robot_->mutex);
+  robot_->interrupted = true;
+  robot_->changed.notify_all();
+}
+
+void FakeTransport::close() {
+  const std::lock_guard lock(robot_->mutex);
+  robot_->closed = true;
+}
+
+}  // namespace test
+}  // namespace kenaf::hrt

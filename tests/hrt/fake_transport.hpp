@@ -1,0 +1,53 @@
+// A transport whose robot is a Plant in the same process. Test-only: in these tests it stands where each library has
+// its own transport.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "hrt/transport.hpp"
+#include "tests/hrt/plant.hpp"
+
+namespace kenaf::hrt::test {
+
+// What the next hrt_kenaf_init opens, and what happened to it.
+struct FakeRobot {
+  Plant plant;
+  bool lockstep = true;
+  std::uint32_t lost_at_frame = 0;  // the link breaks instead of this frame; 0: never
+  std::uint32_t skipped_frame = 0;  // this one never arrives; 0: none
+  bool runs_alone = false;          // not lock step: frames also come without answers, one each millisecond
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<DriveCommand> commands;  // commands[i] answers frame i + 1
+  bool interrupted = false, closed = false;
+};
+
+class FakeTransport final : public Transport {
+ public:
+  explicit FakeTransport(std::shared_ptr<FakeRobot> robot) : robot_(std::move(robot)) {}
+  Connection open(const hrt_config& config) override;
+  std::optional<relay::State> wait_state() override;
+  void send(const DriveCommand& command) override;
+  void interrupt() override;
+  void close() override;
+  double round_trip_s() const override { return 0.002; }
+  bool is_paused() const override { return false; }
+
+ private:
+  std::shared_ptr<FakeRobot> robot_;
+  bool first_ = true, answered_ = false;
+  DriveCommand command_;
+};
+
+// What make_transport() makes from now on.
+void use_transport(std::function<std::unique_ptr<Transport>()> make);
+// A fresh robot that the next hrt_kenaf_init opens.
+std::shared_ptr<FakeRobot> use_fake_robot(const PlantSettings& settings = {});
+
+}  // namespace kenaf::hrt::test

@@ -1,0 +1,262 @@
+// libkenaf_sim's transport below the whole library, against a fake relay.
+//   R1 loss, doubling and reordering change nothing but latency; R2 who is not there, or refuses, is named with what to
+//   do; R3 a link that breaks is known in time; R4 what looks like a break and is none goes on; R5 the session ends
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cstring>
+#include <string>
+#include <thread>
+
+#include "kenaf/hrt.h"
+#include "libkenaf_sim/relay_transport.hpp"
+#include "tests/hrt/fake_relay.hpp"
+#include "tests/hrt/fake_transport.hpp"
+
+using namespace kenaf;
+using namespace kenaf::hrt::test;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+hrt_config config_for(const std::string& address) {
+  hrt::test::use_transport([] { return std::make_unique<sim::RelayTransport>(); });
+  hrt_config config = hrt_config_default();
+  std::memset(config.relay, 0, sizeof config.relay);
+  address.copy(config.relay, sizeof config.relay - 1);
+  config.hold_s = 0.2;
+  return config;
+}
+
+// A short program: a corner of a square, flippers and track speeds.
+int drive_corner() {
+  for (const int result : {hrt_go_forward(50), hrt_set_flipper(HRT_ALL_FLIPPERS, 30), hrt_turning(30),
+                           hrt_set_tracks(50, 60), hrt_sleep(0.3), hrt_wait_flippers(2, 5)}) {
+    if (result != HRT_OK) return result;
+  }
+  return HRT_OK;
+}
+
+std::vector<relay::Command> run_corner(const BadNetwork::Quality& quality, int& dropped) {
+  FakeRelay::Behaviour behaviour;
+  behaviour.plant.yaw_noise_rad = 0.0017;
+  behaviour.plant.turn_efficiency = 0.6;
+  FakeRelay relay(behaviour);
+  BadNetwork network(relay.port(), quality);
+  hrt_config config = config_for(network.address());
+  config.link_timeout_s = 5;
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  const int result = drive_corner();
+  INFO(hrt_last_error());
+  CHECK(result == HRT_OK);
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_get_state(&state) == HRT_OK);
+  CHECK(state.lost_cycles == 0);
+  REQUIRE(hrt_close() == HRT_OK);
+  dropped = network.dropped();
+  std::vector<relay::Command> commands = relay.commands();
+  REQUIRE(commands.size() + 1 >= state.cycle);
+  commands.resize(state.cycle - 1);
+  return commands;
+}
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+TEST_CASE("R1 a bad network gives the same commands as a good one") {
+  int dropped = 0;
+  const std::vector<relay::Command> good = run_corner({}, dropped);
+  CHECK(dropped == 0);
+  for (const unsigned seed : {1u, 2u}) {
+    const std::vector<relay::Command> bad =
+        run_corner({.loss = 0.1, .doubling = 0.1, .delay = 0.1, .longest_delay_ms = 12, .seed = seed}, dropped);
+    CHECK(dropped > 20);
+    REQUIRE(bad.size() == good.size());
+    for (std::size_t i = 0; i < good.size(); ++i) {
+      CAPTURE(i);
+      REQUIRE(bad[i].frame == i + 1);
+      REQUIRE(bad[i].track_speed_mps == good[i].track_speed_mps);
+      REQUIRE(bad[i].flipper_mask == good[i].flipper_mask);
+      REQUIRE(bad[i].flipper_rad == good[i].flipper_rad);
+    }
+  }
+}
+
+TEST_CASE("R1 a first state that was lost is asked for") {
+  FakeRelay::Behaviour behaviour;
+  behaviour.first_state_lost = true;
+  FakeRelay relay(behaviour);
+  const hrt_config config = config_for(relay.address());
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  CHECK(hrt_sleep(0.1) == HRT_OK);
+  CHECK(hrt_close() == HRT_OK);
+}
+
+TEST_CASE("R2 what the configuration says is what Hello asks for") {
+  FakeRelay relay({});
+  hrt_config config = config_for(relay.address());
+  config.period_s = 0.02;
+  config.command_timeout_s = 0.4;
+  config.reset_robot = 0;
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  CHECK(hrt_close() == HRT_OK);
+  const relay::Hello hello = relay.hello().value();
+  CHECK(hello.period_s == 0.02);
+  CHECK(hello.command_timeout_s == 0.4);
+  CHECK(hello.lockstep);
+  CHECK_FALSE(hello.reset_robot);
+}
+
+TEST_CASE("R2 no relay: the error says what to start, after connect_timeout_s") {
+  std::string address;
+  {
+    const FakeRelay gone({});
+    address = gone.address();  // nobody listens there any more
+  }
+  hrt_config config = config_for(address);
+  config.connect_timeout_s = 0.3;
+  const Clock::time_point start = Clock::now();
+  CHECK(hrt_kenaf_init_with(&config) == HRT_E_LINK);
+  CHECK(seconds_since(start) >= 0.3);
+  CHECK_THAT(hrt_last_error(),
+             Catch::Contains(address) && Catch::Contains("start kenaf-relayd") && Catch::Contains("nobody listens"));
+}
+
+TEST_CASE("R2 an address that is none is an error of the configuration") {
+  for (const char* address :
+       {"127.0.0.1", "127.0.0.1:", "127.0.0.1:port", "127.0.0.1:0", "127.0.0.1:65536", "127.0.0.1:-1", ":1"}) {
+    const hrt_config config = config_for(address);
+    CHECK(hrt_kenaf_init_with(&config) == HRT_E_CONFIG);
+    CHECK_THAT(hrt_last_error(), Catch::Contains(address));
+  }
+}
+
+TEST_CASE("R2 a refusal carries the relay's words") {
+  FakeRelay::Behaviour behaviour;
+  behaviour.refuse = relay::RefusedReason::busy;
+  behaviour.words = "another commander has the robot";
+  FakeRelay relay(behaviour);
+  hrt_config config = config_for(relay.address());
+  CHECK(hrt_kenaf_init_with(&config) == HRT_E_REFUSED);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("another commander has the robot"));
+}
+
+TEST_CASE("R2 a relay that has no world server yet is asked again") {
+  FakeRelay::Behaviour behaviour;
+  behaviour.refuse = relay::RefusedReason::no_world_server;
+  behaviour.refuse_times = 3;
+  FakeRelay relay(behaviour);
+  hrt_config config = config_for(relay.address());
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  CHECK(relay.hellos() >= 4);
+  CHECK(hrt_close() == HRT_OK);
+
+  FakeRelay::Behaviour never;
+  never.refuse = relay::RefusedReason::no_world_server;
+  FakeRelay without(never);
+  config = config_for(without.address());
+  config.connect_timeout_s = 0.3;
+  CHECK(hrt_kenaf_init_with(&config) == HRT_E_REFUSED);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("start kenaf-world"));
+}
+
+TEST_CASE("R3 a link that falls silent is an error within a second") {
+  FakeRelay::Behaviour behaviour;
+  behaviour.silent_from_frame = 20;
+  FakeRelay relay(behaviour);
+  const hrt_config config = config_for(relay.address());
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  const Clock::time_point start = Clock::now();
+  CHECK(hrt_go_forward(1000) == HRT_E_LINK);
+  CHECK(seconds_since(start) >= 0.5);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("no state"));
+  CHECK(hrt_close() == HRT_OK);
+  for (int i = 0; i < 2000 && relay.byes() == 0; ++i) std::this_thread::sleep_for(1ms);
+  CHECK(relay.byes() > 0);
+}
+
+TEST_CASE("R3 a lost world server, a forgotten session and a vanished relay are told apart at once") {
+  SECTION("world server lost") {
+    FakeRelay::Behaviour behaviour;
+    behaviour.world_lost_at_frame = 20;
+    FakeRelay relay(behaviour);
+    hrt_config config = config_for(relay.address());
+    config.link_timeout_s = 10;
+    REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+    CHECK(hrt_go_forward(1000) == HRT_E_LINK);
+    CHECK_THAT(hrt_last_error(), Catch::Contains("lost its world server"));
+  }
+  SECTION("session forgotten") {
+    FakeRelay::Behaviour behaviour;
+    behaviour.forgets_at_frame = 20;
+    FakeRelay relay(behaviour);
+    hrt_config config = config_for(relay.address());
+    config.link_timeout_s = 10;
+    REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+    CHECK(hrt_go_forward(1000) == HRT_E_LINK);
+    CHECK_THAT(hrt_last_error(), Catch::Contains("ended the session: because of the test"));
+  }
+  SECTION("relay gone") {
+    auto relay = std::make_unique<FakeRelay>(FakeRelay::Behaviour{});
+    hrt_config config = config_for(relay->address());
+    config.link_timeout_s = 10;
+    REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+    relay.reset();
+    CHECK(hrt_go_forward(1000) == HRT_E_LINK);
+    CHECK_THAT(hrt_last_error(), Catch::Contains("is gone"));
+  }
+  (void)hrt_close();
+}
+
+TEST_CASE("R3 a world whose time stands still without being paused is an error, not a hang") {
+  FakeRelay::Behaviour behaviour;
+  behaviour.frozen_from_frame = 20;
+  FakeRelay relay(behaviour);
+  hrt_config config = config_for(relay.address());
+  config.link_timeout_s = 0.05;  // times 20: a second
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  CHECK(hrt_go_forward(1000) == HRT_E_LINK);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("time has stood still"));
+  (void)hrt_close();
+}
+
+TEST_CASE("R4 a paused world is waited for") {
+  FakeRelay::Behaviour behaviour;
+  behaviour.pause_at_frame = 20;
+  behaviour.pause_states = 30;  // at one for each resend, every 32 ms: about a second
+  FakeRelay relay(behaviour);
+  hrt_config config = config_for(relay.address());
+  config.link_timeout_s = 0.3;
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  const Clock::time_point start = Clock::now();
+  CHECK(hrt_sleep(1) == HRT_OK);
+  CHECK(seconds_since(start) > 0.5);
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_get_state(&state) == HRT_OK);
+  CHECK((state.activity & HRT_PAUSED) == 0);
+  CHECK(hrt_close() == HRT_OK);
+}
+
+TEST_CASE("R4 the round trip is measured") {
+  FakeRelay relay({});
+  const hrt_config config = config_for(relay.address());
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  CHECK(hrt_sleep(1) == HRT_OK);
+  hrt_state state = hrt_state_init();
+  REQUIRE(hrt_get_state(&state) == HRT_OK);
+  CHECK(state.round_trip_ms > 0);
+  CHECK(relay.pings() >= 1);
+  CHECK(hrt_close() == HRT_OK);
+}
+
+TEST_CASE("R5 closing says goodbye three times") {
+  FakeRelay relay({});
+  const hrt_config config = config_for(relay.address());
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  REQUIRE(hrt_close() == HRT_OK);
+  for (int i = 0; i < 2000 && relay.byes() < 3; ++i) std::this_thread::sleep_for(1ms);
+  CHECK(relay.byes() == 3);
+}
