@@ -1,20 +1,29 @@
 #!/usr/bin/env bash
-# Installs what is missing of the Debian 12 packages that build, test and demo need. docs/dependencies.md says what
-# each is for. Usage: scripts/install-dependencies.sh
+# Installs what is missing of the Debian 12 packages that Kenaf needs. docs/dependencies.md says what each is for.
+#
+#   scripts/install-dependencies.sh          to build, test and package
+#   scripts/install-dependencies.sh build    only to build and to run the demo
 set -euo pipefail
 
 packages=(
-  # build
   cmake g++ ninja-build pkg-config
   libboost-dev libboost-system-dev libbullet-dev libcairo2-dev libcli11-dev libeigen3-dev libfmt-dev
   libsdformat-dev libspdlog-dev libtomlplusplus-dev
-  # tests
-  abigail-tools binutils catch2 clang iproute2 libclang-rt-14-dev lld
-  # the CAN tests
-  busybox-static can-utils cpio kmod qemu-system-x86 xz-utils
-  # the package
-  dpkg-dev file
 )
+case ${1:-all} in
+  build) ;;
+  all)
+    packages+=(
+      # tests
+      abigail-tools binutils catch2 clang iproute2 libclang-rt-14-dev
+      # the CAN tests
+      busybox-static can-utils cpio kmod qemu-system-x86 xz-utils
+      # the package
+      dpkg-dev file
+    )
+    ;;
+  *) echo "install-dependencies: '$1' is neither 'build' nor nothing" >&2; exit 2 ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do
