@@ -8,9 +8,11 @@
 namespace kenaf::physics {
 namespace {
 
-// Share of the last step's friction that a step starts from. A belt that rolls brings unloaded rubber into contact, so
-// tracks that pull against each other must not keep doing so for ever.
-constexpr btScalar kFrictionKept = 0.95;
+// Tracks that once pulled against each other must not do so for ever: a belt that rolls brings unloaded rubber into
+// contact, and rubber creeps. After this way or time, 1/e of an old friction impulse is left to start from.
+constexpr double kRenewal_m = 0.02;
+constexpr double kCreep_s = 0.5;
+constexpr btScalar kLeastFriction = 1e-6;  // for the ellipse of a surface that slides freely in one direction
 constexpr btScalar kSideFace = 0.1;  // |normal x belt axis| below which a surface is a side face without direction
 
 const Surface& surface_of(const Collider& collider, int child) {
@@ -38,6 +40,8 @@ btScalar ContactSolver::solveGroup(btCollisionObject** bodies, int body_count, b
 
 void ContactSolver::convertContacts(btPersistentManifold** manifolds, int count, const btContactSolverInfo& info) {
   contacts_.clear();
+  for (Belt* belt : belts_)
+    belt->kept = std::exp(-info.m_timeStep * (std::abs(belt->speed_mps) / kRenewal_m + 1 / kCreep_s));
   for (int m = 0; m < count; ++m) {
     btPersistentManifold& manifold = *manifolds[m];
     auto* body0 = const_cast<btCollisionObject*>(manifold.getBody0());
@@ -57,7 +61,7 @@ void ContactSolver::convertContacts(btPersistentManifold** manifolds, int count,
   }
   for (Belt* belt : belts_) {
     belt->motor_impulse_ns =
-        std::clamp(kFrictionKept * belt->motor_impulse_ns, belt->min_impulse_ns, belt->max_impulse_ns);
+        std::clamp(belt->kept * belt->motor_impulse_ns, belt->min_impulse_ns, belt->max_impulse_ns);
     belt->speed_mps += belt->motor_impulse_ns / belt->moving_mass_kg;
   }
   for (Contact& contact : contacts_) warm_start(contact);
@@ -137,6 +141,7 @@ void ContactSolver::add_contact(btManifoldPoint& point, const btCollisionObject&
   c.give_velocity = -settings_.stiffness_npm * point.getDistance() / step_stiffness;
   c.normal_mass = 1 / (response(0, 0) + c.softness);
 
+  for (btScalar& mu : c.mu) mu = std::max(mu, kLeastFriction);
   const btScalar k11 = response(1, 1), k12 = response(1, 2), k22 = response(2, 2);
   const btScalar determinant = k11 * k22 - k12 * k12;
   c.stick[0] = k22 / determinant;
@@ -145,15 +150,16 @@ void ContactSolver::add_contact(btManifoldPoint& point, const btCollisionObject&
   // largest eigenvalue, with both directions scaled by their friction
   const btScalar s11 = k11 * c.mu[0] * c.mu[0], s12 = k12 * c.mu[0] * c.mu[1], s22 = k22 * c.mu[1] * c.mu[1];
   const btScalar largest = (s11 + s22) / 2 + std::hypot((s11 - s22) / 2, s12);
-  c.slide_step = largest > 0 ? 1 / largest : 0;
+  c.slide_step = 1 / largest;
   c.normal_to_slip[0] = response(1, 0);
   c.normal_to_slip[1] = response(2, 0);
 
   c.impulse[0] = point.m_appliedImpulse;
+  const btScalar kept = (swapped ? -1 : 1) * std::min(c.belt_a ? c.belt_a->kept : 1, c.belt_b ? c.belt_b->kept : 1);
   const btVector3 friction = point.m_lateralFrictionDir1 * point.m_appliedImpulseLateral1 +
                              point.m_lateralFrictionDir2 * point.m_appliedImpulseLateral2;
-  c.impulse[1] = (swapped ? -kFrictionKept : kFrictionKept) * friction.dot(c.axis[1]);
-  c.impulse[2] = (swapped ? -kFrictionKept : kFrictionKept) * friction.dot(c.axis[2]);
+  c.impulse[1] = kept * friction.dot(c.axis[1]);
+  c.impulse[2] = kept * friction.dot(c.axis[2]);
 }
 
 void ContactSolver::apply(Contact& c, const btScalar change[3]) {
@@ -204,7 +210,7 @@ void ContactSolver::solve_contact(Contact& c) {
     if (c.belt_b) slip[k] += c.belt_gain_b[k] * c.belt_b->speed_mps;
   }
   btScalar p[2] = {0, 0};
-  if (c.mu[0] > 0 && c.mu[1] > 0) {
+  if (normal > 0) {
     // sticking: the impulse that stops the slip, if friction can give it
     p[0] = c.impulse[1] - c.stick[0] * slip[0] - c.stick[1] * slip[1];
     p[1] = c.impulse[2] - c.stick[1] * slip[0] - c.stick[2] * slip[1];

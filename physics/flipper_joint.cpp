@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "physics/reachable_angle.hpp"
 #include "protocol/frames.hpp"
 
 namespace kenaf::physics {
@@ -14,21 +14,6 @@ constexpr double kEndStopTorque_nm = 1000;  // what the mechanical stop can hold
 constexpr double kEndStopGain_per_s = 20;
 
 }  // namespace
-
-double reachable_angle(double wanted, double present, double min, double max) {
-  constexpr double kTurn = 2 * std::numbers::pi;
-  double best = 0, best_distance = std::numeric_limits<double>::infinity();
-  const double first = wanted + kTurn * std::ceil((min - wanted) / kTurn - 1e-9);
-  for (double angle = first; angle <= max + 1e-9; angle += kTurn) {
-    if (std::abs(angle - present) < best_distance) {
-      best = std::clamp(angle, min, max);
-      best_distance = std::abs(angle - present);
-    }
-  }
-  if (std::isfinite(best_distance)) return best;
-  const double to_min = std::abs(frames::wrap_angle(wanted - min)), to_max = std::abs(frames::wrap_angle(wanted - max));
-  return to_min < to_max ? min : max;
-}
 
 FlipperJoint::FlipperJoint(btRigidBody& a, btRigidBody& b, const btTransform& X_AJ, const btTransform& X_BJ)
     : btTypedConstraint(HINGE_CONSTRAINT_TYPE, a, b), X_AJ_(X_AJ), X_BJ_(X_BJ) {}

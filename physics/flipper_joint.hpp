@@ -26,26 +26,22 @@ class FlipperJoint : public btTypedConstraint {
 
   double angle_rad() const { return angle_rad_; }
   double speed_radps() const;
-  double torque_nm(double time_step_s) const { return row_impulse[5] / time_step_s; }   // + lifts the tip
+  double torque_nm(double time_step_s) const { return row_impulse[5] / time_step_s; }  // + lifts the tip
 
   void getInfo1(btConstraintInfo1* info) override;
   void getInfo2(btConstraintInfo2* info) override;
   void setParam(int, btScalar, int) override {}
   btScalar getParam(int, int) const override { return 0; }
 
-  std::array<double, 6> row_impulse{};   // of the last step; the servo's is the last one
+  std::array<double, 6> row_impulse{};  // of the last step; the servo's is the last one
 
  private:
-  btVector3 axis_W() const;              // about which a positive angle turns
+  btVector3 axis_W() const;  // about which a positive angle turns
   double raw_angle_rad() const;
 
   btTransform X_AJ_, X_BJ_;
   double angle_rad_ = 0;
   double target_radps_ = 0, min_impulse_ = 0, max_impulse_ = 0;
 };
-
-// The angle to turn to for a wanted one: the same direction within the limits that is nearest to the present angle,
-// or the nearer limit where no such angle is within them.
-double reachable_angle(double wanted_rad, double present_rad, double min_rad, double max_rad);
 
 }  // namespace kenaf::physics

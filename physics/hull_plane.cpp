@@ -14,58 +14,50 @@ constexpr btScalar kTouching_m = 0.001;  // a gap that a step may close
 
 class HullPlaneAlgorithm : public btCollisionAlgorithm {
  public:
-  HullPlaneAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* hull,
-                     const btCollisionObjectWrapper* plane, bool swapped)
+  HullPlaneAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* body0,
+                     const btCollisionObjectWrapper* body1, bool swapped)
       : btCollisionAlgorithm(info), swapped_(swapped) {
-    if (m_dispatcher->needsCollision(hull->getCollisionObject(), plane->getCollisionObject())) {
-      manifold_ = m_dispatcher->getNewManifold(swapped ? plane->getCollisionObject() : hull->getCollisionObject(),
-                                               swapped ? hull->getCollisionObject() : plane->getCollisionObject());
-    }
+    const btCollisionObject *object0 = body0->getCollisionObject(), *object1 = body1->getCollisionObject();
+    if (!m_dispatcher->needsCollision(object0, object1)) return;
+    const auto* groups = groups_of(*(swapped ? body1 : body0));
+    const std::size_t count = groups ? groups->size() : 1;
+    for (std::size_t i = 0; i < count; ++i) manifolds_.push_back(m_dispatcher->getNewManifold(object0, object1));
   }
   ~HullPlaneAlgorithm() override {
-    if (manifold_) m_dispatcher->releaseManifold(manifold_);
+    for (btPersistentManifold* manifold : manifolds_) m_dispatcher->releaseManifold(manifold);
   }
 
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                         const btDispatcherInfo&, btManifoldResult* result) override {
-    if (!manifold_) return;
-    const btCollisionObjectWrapper& hull_wrap = swapped_ ? *body1 : *body0;
+    if (manifolds_.empty()) return;
+    const btCollisionObjectWrapper& hull = swapped_ ? *body1 : *body0;
     const btCollisionObjectWrapper& plane_wrap = swapped_ ? *body0 : *body1;
-    const auto& hull = *static_cast<const btConvexHullShape*>(hull_wrap.getCollisionShape());
     const auto& plane = *static_cast<const btStaticPlaneShape*>(plane_wrap.getCollisionShape());
-    const btTransform X_PH = plane_wrap.getWorldTransform().inverseTimes(hull_wrap.getWorldTransform());
+    const btVector3 normal_W = plane_wrap.getWorldTransform().getBasis() * plane.getPlaneNormal();
+    const btTransform X_PH = plane_wrap.getWorldTransform().inverseTimes(hull.getWorldTransform());
     const btVector3 normal_H = X_PH.getBasis().transpose() * plane.getPlaneNormal();
     const btScalar offset = plane.getPlaneNormal().dot(X_PH.getOrigin()) - plane.getPlaneConstant();
 
-    // the deepest four
-    struct Vertex {
-      btScalar distance;
-      int index;
-    };
-    std::array<Vertex, 4> found;
-    std::size_t count = 0;
-    for (int i = 0; i < hull.getNumPoints(); ++i) {
-      const btScalar distance = normal_H.dot(hull.getUnscaledPoints()[i]) + offset;
-      if (distance > kTouching_m) continue;
-      if (count == found.size()) {
-        const auto shallowest = std::max_element(
-            found.begin(), found.end(), [](const Vertex& a, const Vertex& b) { return a.distance < b.distance; });
-        if (distance < shallowest->distance) *shallowest = {distance, i};
-      } else {
-        found[count++] = {distance, i};
+    const auto touch = [&](btPersistentManifold* manifold, const btVector3* points, std::size_t count) {
+      const Deepest deepest = find_deepest(points, count, normal_H, offset);
+      result->setPersistentManifold(manifold);
+      for (std::size_t i = 0; i < deepest.count; ++i) {
+        const btScalar distance = deepest.point[i].distance;
+        const btVector3 on_hull_W = hull.getWorldTransform() * points[deepest.point[i].index];
+        // a result wants the normal on the second body and the point on it
+        if (swapped_)
+          result->addContactPoint(-normal_W, on_hull_W, distance);
+        else
+          result->addContactPoint(normal_W, on_hull_W - normal_W * distance, distance);
       }
+      if (manifold->getNumContacts()) result->refreshContactPoints();
+    };
+    if (const auto* groups = groups_of(hull)) {
+      for (std::size_t g = 0; g < groups->size(); ++g) touch(manifolds_[g], (*groups)[g].data(), (*groups)[g].size());
+    } else {
+      const auto& shape = *static_cast<const btConvexHullShape*>(hull.getCollisionShape());
+      touch(manifolds_.front(), shape.getUnscaledPoints(), static_cast<std::size_t>(shape.getNumPoints()));
     }
-    result->setPersistentManifold(manifold_);
-    const btVector3 normal_W = plane_wrap.getWorldTransform().getBasis() * plane.getPlaneNormal();
-    for (std::size_t i = 0; i < count; ++i) {
-      const btVector3 on_hull_W = hull_wrap.getWorldTransform() * hull.getUnscaledPoints()[found[i].index];
-      // a result wants the normal on the second body and the point on it
-      if (swapped_)
-        result->addContactPoint(-normal_W, on_hull_W, found[i].distance);
-      else
-        result->addContactPoint(normal_W, on_hull_W - normal_W * found[i].distance, found[i].distance);
-    }
-    if (manifold_->getNumContacts()) result->refreshContactPoints();
   }
 
   btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
@@ -73,11 +65,40 @@ class HullPlaneAlgorithm : public btCollisionAlgorithm {
     return 1;
   }
   void getAllContactManifolds(btManifoldArray& manifolds) override {
-    if (manifold_) manifolds.push_back(manifold_);
+    for (btPersistentManifold* manifold : manifolds_) manifolds.push_back(manifold);
   }
 
  private:
-  btPersistentManifold* manifold_ = nullptr;
+  struct Deepest {
+    struct Point {
+      btScalar distance;
+      std::size_t index;
+    };
+    std::array<Point, 4> point;
+    std::size_t count = 0;
+  };
+
+  static const ContactGroups* groups_of(const btCollisionObjectWrapper& hull) {
+    return static_cast<const ContactGroups*>(hull.getCollisionShape()->getUserPointer());
+  }
+
+  static Deepest find_deepest(const btVector3* points, std::size_t count, const btVector3& normal, btScalar offset) {
+    Deepest found;
+    for (std::size_t i = 0; i < count; ++i) {
+      const btScalar distance = normal.dot(points[i]) + offset;
+      if (distance > kTouching_m) continue;
+      if (found.count < found.point.size()) {
+        found.point[found.count++] = {distance, i};
+        continue;
+      }
+      auto& shallowest = *std::max_element(found.point.begin(), found.point.end(),
+                                           [](const auto& a, const auto& b) { return a.distance < b.distance; });
+      if (distance < shallowest.distance) shallowest = {distance, i};
+    }
+    return found;
+  }
+
+  std::vector<btPersistentManifold*> manifolds_;
   bool swapped_;
 };
 
@@ -87,7 +108,7 @@ btCollisionAlgorithm* HullPlaneContacts::Create::CreateCollisionAlgorithm(btColl
                                                                           const btCollisionObjectWrapper* body0,
                                                                           const btCollisionObjectWrapper* body1) {
   void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(HullPlaneAlgorithm));
-  return m_swapped ? new (memory) HullPlaneAlgorithm(info, body1, body0, true)
+  return m_swapped ? new (memory) HullPlaneAlgorithm(info, body0, body1, true)
                    : new (memory) HullPlaneAlgorithm(info, body0, body1, false);
 }
 

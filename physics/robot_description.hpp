@@ -39,7 +39,7 @@ struct TrackDescription {
   Eigen::Vector3d p_BT_m;          // centre of the LEFT track; the right one is its mirror image
   double friction_along;           // rolling direction
   double friction_across;
-  int pieces;                      // convex pieces along the length; they spread the load over the belly
+  int pieces;                      // of the belly with contacts of their own; they spread the load along it
 };
 
 struct TrackDriveDescription {

@@ -64,9 +64,14 @@ void RobotModel::make_hull(RobotId id) {
   for (const Track side : {kLeft, kRight}) {
     Eigen::Vector3d center = track.p_BT_m;
     if (side == kRight) center.y() = -center.y();
-    for (const Outline& outline : track_outlines(track))
-      add(make_prism(outline, track.width_m, center),
-          {.friction_along = track.friction_along, .friction_across = track.friction_across, .belt = &belts_[side]});
+    // One hull against obstacles: between two pieces an edge would meet faces that a track does not have. Against a
+    // plane each piece has contacts of its own, so that the load is spread along the belly.
+    auto shape = make_prism(track_outline(track), track.width_m, center);
+    for (const Outline& piece : track_pieces(track))
+      track_groups_[side].push_back(prism_points(piece, track.width_m, center));
+    shape->setUserPointer(&track_groups_[side]);
+    add(std::move(shape),
+        {.friction_along = track.friction_along, .friction_across = track.friction_across, .belt = &belts_[side]});
   }
   hull_ = make_body(body.mass_kg, *hull_shape_, to_bullet(body.inertia_kgm2), hull_collider_);
   world_.addRigidBody(hull_.get());

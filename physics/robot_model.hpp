@@ -10,6 +10,7 @@
 #include "physics/contact_solver.hpp"
 #include "physics/drive.hpp"
 #include "physics/flipper_joint.hpp"
+#include "physics/hull_plane.hpp"
 #include "physics/world.hpp"
 
 namespace kenaf::physics {
@@ -53,6 +54,7 @@ class RobotModel {
   btDiscreteDynamicsWorld& world_;
   ContactSolver& solver_;
   std::vector<std::unique_ptr<btCollisionShape>> hull_pieces_;
+  std::array<ContactGroups, kTrackCount> track_groups_;
   std::unique_ptr<btCompoundShape> hull_shape_;
   std::unique_ptr<btRigidBody> hull_;
   Collider hull_collider_;

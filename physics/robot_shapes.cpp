@@ -22,7 +22,13 @@ void add_arc(Outline& outline, const Eigen::Vector2d& center, double radius, dou
 
 }  // namespace
 
-std::vector<Outline> track_outlines(const TrackDescription& track) {
+Outline track_outline(const TrackDescription& track) {
+  TrackDescription whole = track;
+  whole.pieces = 1;
+  return track_pieces(whole).front();
+}
+
+std::vector<Outline> track_pieces(const TrackDescription& track) {
   const double half = track.length_m / 2 - track.end_radius_m;  // of the straight run
   const double r = track.end_radius_m;
   std::vector<Outline> pieces;
@@ -72,11 +78,17 @@ OutlineMoments moments(const Outline& outline) {
   return {area, c, Ixx - area * c.x() * c.x(), Izz - area * c.y() * c.y()};
 }
 
-std::unique_ptr<btConvexHullShape> make_prism(const Outline& outline, double width_m, const Eigen::Vector3d& offset) {
-  auto shape = std::make_unique<btConvexHullShape>();
+std::vector<btVector3> prism_points(const Outline& outline, double width_m, const Eigen::Vector3d& offset) {
+  std::vector<btVector3> points;
   for (const Eigen::Vector2d& p : outline)
     for (const double y : {-width_m / 2, width_m / 2})
-      shape->addPoint(to_bullet(offset + Eigen::Vector3d(p.x(), y, p.y())), false);
+      points.push_back(to_bullet(offset + Eigen::Vector3d(p.x(), y, p.y())));
+  return points;
+}
+
+std::unique_ptr<btConvexHullShape> make_prism(const Outline& outline, double width_m, const Eigen::Vector3d& offset) {
+  auto shape = std::make_unique<btConvexHullShape>();
+  for (const btVector3& point : prism_points(outline, width_m, offset)) shape->addPoint(point, false);
   shape->setMargin(kMargin_m);
   shape->recalcLocalAabb();
   shape->initializePolyhedralFeatures();

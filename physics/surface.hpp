@@ -11,26 +11,27 @@ namespace kenaf::physics {
 struct Belt {
   // set before a step
   double moving_mass_kg = 1;
-  double target_mps = 0;        // the motor turns towards it
-  double min_impulse_ns = 0;    // what the motor can give within a step, <= 0
-  double max_impulse_ns = 0;    // >= 0
+  double target_mps = 0;      // the motor turns towards it
+  double min_impulse_ns = 0;  // what the motor can give within a step, <= 0
+  double max_impulse_ns = 0;  // >= 0
   // state
-  double speed_mps = 0;         // of the surface relative to the body, + drives the robot forward
+  double speed_mps = 0;  // of the surface relative to the body, + drives the robot forward
   // results of a step
   double motor_impulse_ns = 0;
+  double kept = 1;  // of the friction that the next step starts from
 };
 
 struct Surface {
   double friction_along = 1;
-  double friction_across = 1;   // equal to `friction_along` where nothing runs
-  Belt* belt = nullptr;         // null: the surface does not move in its body
-  double axis_y = 1;            // the belt turns about (0, axis_y, 0) of its body, 1 or -1
+  double friction_across = 1;  // equal to `friction_along` where nothing runs
+  Belt* belt = nullptr;        // null: the surface does not move in its body
+  double axis_y = 1;           // the belt turns about (0, axis_y, 0) of its body, 1 or -1
 };
 
 // Hangs on btCollisionObject::getUserPointer().
 struct Collider {
-  std::vector<Surface> surfaces;   // of each child of a compound shape, or the only one
-  std::uint32_t robot = 0;         // 0: none
+  std::vector<Surface> surfaces;  // of each child of a compound shape, or the only one
+  std::uint32_t robot = 0;        // 0: none
 };
 
 }  // namespace kenaf::physics

@@ -29,14 +29,11 @@ class MotionHistory {
 
   void clear() { count_ = 0; }
   void push(const MotionSample& sample) { samples_[count_++ % samples_.size()] = sample; }
-  bool empty() const { return count_ == 0; }
   // 0 = the newest; older than the oldest gives the oldest.
   const MotionSample& back(std::size_t steps) const {
     const std::size_t kept = std::min(count_, samples_.size());
     return samples_[(count_ - 1 - std::min(steps, kept - 1)) % samples_.size()];
   }
-  // How many steps lie between the newest and the one that back(steps) gives.
-  std::size_t reach(std::size_t steps) const { return std::min(steps, std::min(count_, samples_.size()) - 1); }
 
  private:
   std::vector<MotionSample> samples_;

@@ -6,17 +6,23 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr double kTouchRadius_m = 0.05;  // a touch sensor feels contacts this near to its mount
+constexpr double kTouchRadius_m = 0.1;  // a touch sensor feels contacts this near to its mount
 
 std::size_t steps_in(double time_s, double time_step_s) {
   return static_cast<std::size_t>(std::llround(time_s / time_step_s));
+}
+
+// An inertial sensor averages over its period, but no longer than this.
+std::size_t averaging_steps(const SensorDescription& sensor, double time_step_s) {
+  constexpr double kLongest_s = 0.1;
+  return std::max<std::size_t>(1, steps_in(std::min(sensor.period_s, kLongest_s), time_step_s));
 }
 
 std::size_t history_length(const RobotDescription& robot, double time_step_s) {
   std::size_t longest = 0;
   for (const SensorDescription& sensor : robot.sensors) {
     std::size_t steps = steps_in(sensor.delay_s, time_step_s);
-    if (sensor.type == SensorType::imu) steps += std::max<std::size_t>(1, steps_in(sensor.period_s, time_step_s));
+    if (sensor.type == SensorType::imu) steps += averaging_steps(sensor, time_step_s);
     longest = std::max(longest, steps);
   }
   return longest + 1;
@@ -26,7 +32,10 @@ std::size_t history_length(const RobotDescription& robot, double time_step_s) {
 
 SensorSet::SensorSet(const RobotDescription& robot, const std::string& robot_name, std::uint64_t world_seed,
                      double time_step_s, double gravity_mps2)
-    : robot_(robot), gravity_mps2_(gravity_mps2), history_(history_length(robot, time_step_s)) {
+    : robot_(robot),
+      time_step_s_(time_step_s),
+      gravity_mps2_(gravity_mps2),
+      history_(history_length(robot, time_step_s)) {
   for (const SensorDescription& sensor : robot.sensors) {
     Entry& entry = entries_.emplace_back(SensorState(NoiseSource(world_seed, robot_name, sensor.name)),
                                          steps_in(sensor.period_s, time_step_s), steps_in(sensor.delay_s, time_step_s));
@@ -69,8 +78,8 @@ Reading SensorSet::measure(std::size_t i, const RayCaster& cast) {
     case SensorType::ins:
       return measure_ins(sensor, entry.state, now);
     case SensorType::imu: {
-      const std::size_t window = std::max<std::size_t>(1, entry.period_steps);
-      return measure_imu(sensor, entry.state, now, history_.back(entry.delay_steps + window), gravity_mps2_);
+      const MotionSample& before = history_.back(entry.delay_steps + averaging_steps(sensor, time_step_s_));
+      return measure_imu(sensor, entry.state, now, before, gravity_mps2_);
     }
     case SensorType::encoder:
       return measure_encoder(entry.state, now, robot_.drive);

@@ -37,7 +37,7 @@ class SensorSet {
   Reading measure(std::size_t sensor, const RayCaster& cast);
 
   const RobotDescription& robot_;
-  double gravity_mps2_;
+  double time_step_s_, gravity_mps2_;
   std::vector<Entry> entries_;
   MotionHistory history_;
   bool has_touch_ = false, has_odometry_ = false;
