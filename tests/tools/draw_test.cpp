@@ -109,6 +109,7 @@ TEST_CASE("Wrong input: exit status 2, what is wrong and where, and no picture")
   write_file(folder / "run.csv", kThereAndBack);
   write_file(folder / "broken.csv", "t_s,x_m,y_m\n0,0,zero\n");
   write_file(folder / "blind.csv", "t_s,battery_v\n0,24\n");
+  write_file(folder / "far.csv", "t_s,x_m,y_m\n0,0,0\n1.5,1e18,0\n");
   struct Case {
     std::string arguments, words;
   };
@@ -116,6 +117,7 @@ TEST_CASE("Wrong input: exit status 2, what is wrong and where, and no picture")
                         {"broken.csv --out a.png", "broken.csv:2:5: 'zero' in column 'y_m'"},
                         {"run.csv --run broken.csv --out a.png", "broken.csv:2:5"},
                         {"blind.csv --out a.png", "blind: no row has both x_m and y_m"},
+                        {"far.csv --out a.png", "far: at t_s = 1.5 the robot is more than 1000 km"},
                         {"run.csv --out a.gif", "a.gif: the picture's name must end in .png or .svg"},
                         {"run.csv --out no/such/folder/a.png", "no/such/folder/a.png"},
                         {"run.csv --out a.png --size 10x10", "--size 10x10"},

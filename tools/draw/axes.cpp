@@ -8,7 +8,7 @@ namespace kenaf::draw {
 
 namespace {
 
-constexpr double kTickSpacing = 44;  // at least so many pixels between two lines
+constexpr double kTickSpacing = 36;  // at least so many pixels between two lines
 constexpr double kTickSize = 11.5;
 constexpr double kShownInMillimetres_m = 1.5;
 

@@ -1,5 +1,7 @@
 #include "tools/draw/driven_path.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,6 +12,7 @@ namespace {
 
 constexpr double kClimbHeight_m = 0.04;
 constexpr double kClimbPitch_rad = 0.1;
+constexpr double kFarthest_m = 1e6;  // beyond it a double resolves no robot's details
 
 // The value of a column at each row, or the last one there was.
 class Channel {
@@ -83,7 +86,12 @@ DrivenPath driven_path(const runs::Run& run, const std::string& name, const phys
     posture.X_WB.p = {x.at(row), y.at(row), z.at(row)};
     posture.X_WB.q = physics::rotation_from({roll.at(row), pitch.at(row), yaw.at(row)});
     for (std::size_t i = 0; i < flippers.size(); ++i) posture.flipper_rad[i] = flippers[i].at(row);
-    if (x.measured(row) && y.measured(row)) path.postures.push_back(posture);
+    if (!x.measured(row) || !y.measured(row)) continue;
+    if (posture.X_WB.p.cwiseAbs().maxCoeff() > kFarthest_m) {
+      throw runs::RunFileError(
+          fmt::format("{}: at t_s = {} the robot is more than 1000 km from the origin", name, time_s[row]));
+    }
+    path.postures.push_back(posture);
   }
   if (path.postures.empty()) {
     throw runs::RunFileError(name + ": no row has both x_m and y_m; a run without positions cannot be drawn");

@@ -30,7 +30,7 @@ struct DrivenPath {
 };
 
 // Rows without x_m and y_m are left out; other quantities that a row does not have keep their last value. Throws
-// RunFileError where no row has a position.
+// RunFileError where no row has a position, or one is farther than 1000 km away.
 DrivenPath driven_path(const runs::Run& run, const std::string& name, const physics::RobotDescription& robot);
 
 // Indices of postures evenly apart, about `spacing_m`, turning counted as driving along a circle of `radius_m`; the

@@ -91,10 +91,9 @@ void draw_side_boxes(const Canvas& canvas, const Mapping& map, const std::vector
   }
 }
 
-// The time of each instant in a row above the robots, with a hair line down to the body's centre.
+// The time of each instant in a row above the robots, at `row`, with a hair line down to the body's centre.
 void draw_times(const Canvas& canvas, const Mapping& map, const DrivenPath& path,
-                const std::vector<std::size_t>& instants, const Projection& projection) {
-  const double row = map.area.top + 20;
+                const std::vector<std::size_t>& instants, const Projection& projection, double row) {
   double free_from = map.area.left;
   for (const std::size_t i : instants) {
     const std::string label = fmt::format("{:.1f} s", path.postures[i].time_s);
@@ -115,7 +114,7 @@ std::optional<Mapping> draw_side_view(const Canvas& canvas, const Rectangle& are
   const DrivenPath& first = scene.paths.front();
   const Projection projection{main_direction(first), Vector3d::UnitZ()};
   const double robot_m = scene.robot.track.length_m;
-  const std::vector<std::size_t> instants = spaced_postures(first, 0.9 * robot_m, robot_m / 2);
+  const std::vector<std::size_t> instants = spaced_postures(first, 1.05 * robot_m, robot_m / 2);
 
   Bounds bounds;
   for (const DrivenPath& path : scene.paths) bounds.add(centre_line(path, projection));
@@ -124,13 +123,12 @@ std::optional<Mapping> draw_side_view(const Canvas& canvas, const Rectangle& are
   }
   bounds.grow(0.1 * robot_m);
   const Rectangle inner = inside_labels(area);
-  Rectangle below_times = inner;
-  below_times.top += kTimeLabelRoom;
-  below_times.height -= kTimeLabelRoom;
-  Mapping map = fit(below_times, bounds.low, bounds.high);
-  // The same mapping over the whole area, what is shown above the robots included.
-  map.high.y() += kTimeLabelRoom / map.pixels_per_metre();
+  Mapping map = fit({inner.left, inner.top + kTimeLabelRoom, inner.width, inner.height - kTimeLabelRoom}, bounds.low,
+                    bounds.high);
+  // The same scale over the whole area; what is left of its height is sky, not ground.
   map.area = inner;
+  map.low.y() = bounds.low.y();
+  map.high.y() = map.low.y() + inner.height / map.pixels_per_metre();
 
   const std::vector<physics::Box> boxes = boxes_along(scene, projection);
   const bool along_x = projection.right_W == Vector3d::UnitX();
@@ -139,7 +137,7 @@ std::optional<Mapping> draw_side_view(const Canvas& canvas, const Rectangle& are
     const Clip clip(canvas, inner);
     draw_ground(canvas, map, scene, projection);
     draw_side_boxes(canvas, map, boxes, projection);
-    draw_times(canvas, map, first, instants, projection);
+    draw_times(canvas, map, first, instants, projection, map(bounds.high).y() - 12);
     for (const std::size_t i : instants) {
       draw_robot(canvas, map, robot_parts(scene.robot, first.postures[i], projection), i == instants.back() ? 0 : 0.5);
     }
