@@ -17,6 +17,8 @@ write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/kenafConfigVersion
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/kenafConfig.cmake" "${CMAKE_CURRENT_BINARY_DIR}/kenafConfigVersion.cmake"
   DESTINATION "${cmake_dir}")
 
+# Relative to the .pc file, so that `cmake --install --prefix` elsewhere still works.
+file(RELATIVE_PATH prefix_from_pc "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_INSTALL_PREFIX}")
 foreach(library real sim)
   configure_file(cmake/kenaf-${library}.pc.in "${CMAKE_CURRENT_BINARY_DIR}/kenaf-${library}.pc" @ONLY)
   install(FILES "${CMAKE_CURRENT_BINARY_DIR}/kenaf-${library}.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")

@@ -111,7 +111,7 @@ Reason move(Simulation& simulation, const MessageView& message, bool relative) {
   return "no object or robot of that name";
 }
 
-// One line for all of them, as the UDK server wrote it.
+// One line for all objects that match, as the UDK server wrote it, and the robot of that name.
 void get_status(const Simulation& simulation, Session& session, const MessageView& message) {
   const auto matches = [&](std::string_view key, std::string_view text) {
     const std::string_view wanted = text_of(message, key);
@@ -127,6 +127,13 @@ void get_status(const Simulation& simulation, Session& session, const MessageVie
         .numbers("Size", array_from(object.size_m), format)
         .numbers("Location", wire_vector(X_WBox.p), format)
         .numbers("Rotation", wire_angles(X_WBox.q), format);
+  }
+  for (const auto& other : simulation.sessions) {
+    if (!other->robot || !usarsim::equal_ignoring_case(other->robot->name, text_of(message, "Name"))) continue;
+    const physics::Pose X_WB = simulation.world.truth(other->robot->id).X_WB;
+    writer.text("Name", other->robot->name)
+        .numbers("Location", wire_vector(X_WB.p), session.formats.value)
+        .numbers("Rotation", wire_angles(X_WB.q), session.formats.value);
   }
   writer.end();
 }

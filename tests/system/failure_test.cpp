@@ -25,16 +25,23 @@ namespace {
 class Observer {
  public:
   explicit Observer(std::uint16_t port) : client_(port) {
-    client_.send("INIT {ClassName USARBotAPI.WorldController} {Name Observer}\r\n");
+    client_.send(
+        "INIT {ClassName USARBotAPI.WorldController} {Name Observer}\r\nCONTROL {Type Session} {Precision 9}\r\n");
   }
   struct Sighting {
     double time_s, x_m, y_m;
   };
+  // Waits until there is a robot to be seen: the relay places it anew when a program begins.
   Sighting look() {
-    client_.send("PING {Id 1}\r\nCONTROL {Type GetSTA} {Name Kenaf}\r\n");
-    const std::string time = client_.line_that_begins("PONG");
-    const std::string status = client_.line_that_begins("STA");
-    return {number_in(time, "Time"), number_in(status, "Location", 0), number_in(status, "Location", 1)};
+    while (true) {
+      client_.send("PING {Id 1}\r\nCONTROL {Type GetSTA} {Name Kenaf}\r\n");
+      const std::string time = client_.line_that_begins("PONG");
+      const std::string status = client_.line_that_begins("STA");
+      if (status.find("Location") != std::string::npos) {
+        return {number_in(time, "Time"), number_in(status, "Location", 0), number_in(status, "Location", 1)};
+      }
+      std::this_thread::sleep_for(5ms);
+    }
   }
 
  private:
