@@ -33,13 +33,6 @@ physics::World make_world(const ServerOptions& options) {
   return physics::World(description, settings, options.seed);
 }
 
-// The first complaint is a line in the log, the others are counted.
-void complain(Session& session, double wall_s, std::string_view what, std::string_view line) {
-  if (!session.bad_line_log.allow(wall_s)) return;
-  spdlog::warn("{}: {}: \"{}\" ({} more since the last such line)", session.peer, what, printable(line),
-               session.bad_line_log.suppressed());
-}
-
 bool is_word(std::string_view text) {
   return std::ranges::all_of(text, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -78,7 +71,7 @@ Session& Simulation::connect(std::string peer) {
 void Simulation::disconnect(const Session& session) {
   if (session.robot) {
     world.remove_robot(session.robot->id);
-    if (connection_log_.allow(wall_s)) spdlog::info("{}: robot {} left", session.peer, session.robot->name);
+    if (connection_log.allow(wall_s)) spdlog::info("{}: robot {} left", session.peer, session.robot->name);
   }
   std::erase_if(sessions, [&](const auto& other) { return other.get() == &session; });
 }
@@ -87,7 +80,7 @@ void Simulation::receive(Session& session, std::string_view bytes, double now_wa
   wall_s = now_wall_s;
   if (!session.lines.push(bytes)) {
     ++session.bad_lines;
-    complain(session, wall_s, "a line is longer than 64 KiB", "");
+    complain(*this, session, "a line is longer than 64 KiB", "");
   }
   while (const auto line = session.lines.next()) {
     handle_line(session, *line);
@@ -106,26 +99,26 @@ void Simulation::handle_line(Session& session, std::string_view line) {
   if (error != usarsim::ParseError::none || !is_word(message.type)) {
     ++session.bad_lines;
     const bool parsed = error == usarsim::ParseError::none;
-    complain(session, wall_s, parsed ? "not a USARSim message" : usarsim::describe(error), line);
+    complain(*this, session, parsed ? "not a USARSim message" : usarsim::describe(error), line);
     return;
   }
   const VerbEntry* entry = find_verb(message);
   if (entry == nullptr) {
-    complain(session, wall_s, "an unknown verb is ignored", line);
+    complain(*this, session, "an unknown verb is ignored", line);
     return;
   }
   const auto frame = number_of(message, "Frame");
   if (entry->takes_frame && frame && session.schedule.numbered()) {
-    if (!(*frame >= 0 && *frame < 1e15)) return complain(session, wall_s, "no such frame", line);
+    if (!(*frame >= 0 && *frame < 1e15)) return complain(*this, session, "no such frame", line);
     switch (session.schedule.take_answer(static_cast<std::uint64_t>(*frame), message.is("DRIVE"))) {
       case FrameSchedule::Answer::in_time:
         if (session.deferred.size() + line.size() > kMostDeferredBytes) {
-          return complain(session, wall_s, "too many commands for one frame", line);
+          return complain(*this, session, "too many commands for one frame", line);
         }
         session.deferred.append(line).push_back('\n');
         return;
       case FrameSchedule::Answer::ahead:
-        return complain(session, wall_s, "answers a frame that was not sent yet", line);
+        return complain(*this, session, "answers a frame that was not sent yet", line);
       case FrameSchedule::Answer::late:
         break;
     }
@@ -138,7 +131,7 @@ void Simulation::send_due(Session& session) {
   const std::uint64_t step = world.step_count();
   if (!session.schedule.due(step)) return watch_silence(session);
 
-  // What was meant for the frame that begins now. Swapped out first: it is new lines that belong to the next frame.
+  // What was meant for the frame that begins now.
   due_lines_.clear();
   std::swap(due_lines_, session.deferred);
   for (std::string_view rest = due_lines_; !rest.empty();) {

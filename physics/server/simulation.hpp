@@ -69,6 +69,7 @@ struct Simulation {
   std::vector<WorldObject> objects;
   std::vector<physics::SensorSample> samples;  // reused by every output
   double wall_s = 0;                           // of the call that is being worked on
+  LogLimiter connection_log{20, 0.5};          // robots that come and go
 
  private:
   struct StepRequest {
@@ -87,7 +88,6 @@ struct Simulation {
   std::vector<StepRequest> step_requests_;
   std::uint32_t last_session_ = 0;
   std::string due_lines_;  // scratch of send_due()
-  LogLimiter connection_log_{20, 0.5};
   LogLimiter behind_log_{1, 10};
   double dropped_s_ = 0;  // robot time that this machine is behind
   bool idle_ = true;      // time stood still at the last call

@@ -1,5 +1,7 @@
 #include "physics/server/verbs.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <array>
 
@@ -51,6 +53,12 @@ std::string printable(std::string_view text) {
       out, [](char c) { return c < ' ' || c > '~' || c == '{' || c == '}'; }, '?');
   if (text.size() > kLongest) out += "...";
   return out;
+}
+
+void complain(const Simulation& simulation, Session& session, std::string_view what, std::string_view text) {
+  if (!session.bad_line_log.allow(simulation.wall_s)) return;
+  spdlog::warn("{}: {}: \"{}\" ({} more since the last such line)", session.peer, what, printable(text),
+               session.bad_line_log.suppressed());
 }
 
 void answer(const Simulation& simulation, Session& session, std::string_view type, std::string_view name,

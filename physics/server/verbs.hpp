@@ -48,6 +48,9 @@ bool is_any_of(std::string_view text, std::initializer_list<std::string_view> wo
 // What a client sent, fit for a log line or an answer: printable, and not longer than 64 characters.
 std::string printable(std::string_view text);
 
+// A warning about what a client sent, `text`: the first is a line in the log, more within 5 s are counted.
+void complain(const Simulation&, Session&, std::string_view what, std::string_view text);
+
 // RES {Time t} {Type type} {Name name} {Status OK}, or {Status Failed} {Reason reason} where a reason is given.
 void answer(const Simulation&, Session&, std::string_view type, std::string_view name, std::string_view reason = {});
 

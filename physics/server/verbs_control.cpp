@@ -35,7 +35,7 @@ Reason set_speed(Simulation& simulation, const Session& session, const MessageVi
   const auto speed = number_of(message, "Value");
   if (!speed || !(*speed == 0 || (*speed >= 1e-3 && *speed <= 1e6))) return "Value is not 0 or from 0.001 to 1000000";
   simulation.clock.set_speed(*speed);
-  spdlog::info("{}: speed {}", session.peer, *speed);
+  spdlog::debug("{}: speed {}", session.peer, *speed);
   return kDone;
 }
 

@@ -10,21 +10,19 @@ namespace kenaf::server {
 namespace {
 
 // nullopt: a start pose was asked for that the world does not have.
-std::optional<physics::Pose> wanted_pose(const Simulation& simulation, const Session& session,
-                                         const MessageView& message) {
+std::optional<physics::Pose> wanted_pose(const Simulation& simulation, Session& session, const MessageView& message) {
   if (const auto start = message.find("Start")) {
     const physics::StartPose* pose = find_start_pose(simulation.world.description(), *start);
     if (pose != nullptr) return pose->X_WB;
-    spdlog::warn("{}: INIT refused: the world {} has no start pose \"{}\"; GETSTARTPOSES lists them", session.peer,
-                 simulation.world.description().name, printable(*start));
+    complain(simulation, session, "INIT refused: no such start pose in this world; GETSTARTPOSES lists them", *start);
     return std::nullopt;
   }
   physics::Pose X_WB = free_start_pose(simulation.world).X_WB;
   if (const auto location = read_location(message, "Location")) {
     X_WB = {*location, Eigen::Quaterniond::Identity()};
   } else if (message.find("Location")) {
-    spdlog::warn("{}: INIT: {{Location {}}} is not a place; the robot starts at a start pose", session.peer,
-                 printable(text_of(message, "Location")));
+    complain(simulation, session, "INIT: Location is not a place; the robot starts at a start pose",
+             text_of(message, "Location"));
   }
   if (const auto rotation = read_rotation(message, "Rotation")) X_WB.q = *rotation;
   return X_WB;
@@ -35,21 +33,18 @@ std::optional<physics::Pose> wanted_pose(const Simulation& simulation, const Ses
 void init(Simulation& simulation, Session& session, const MessageView& message) {
   const std::string_view class_name = text_of(message, "ClassName");
   if (session.robot || session.world_controller) {
-    spdlog::warn("{}: a second INIT on one connection is ignored", session.peer);
-    return;
+    return complain(simulation, session, "a second INIT on one connection is ignored", class_name);
   }
   if (is_any_of(class_name, {"USARBotAPI.WorldController", "WorldController"})) {
     session.world_controller = true;
     return;
   }
   if (simulation.robot_count() >= kMostRobots) {
-    spdlog::warn("{}: INIT refused: {} robots are in the world already", session.peer, kMostRobots);
-    return;
+    return complain(simulation, session, "INIT refused: 64 robots are in the world already", class_name);
   }
   const physics::RobotDescription* description = simulation.description_for_class(class_name);
   if (description == nullptr) {
-    spdlog::warn("{}: INIT refused: no robot description for class \"{}\"", session.peer, printable(class_name));
-    return;
+    return complain(simulation, session, "INIT refused: no robot description for this class", class_name);
   }
   const auto X_WB = wanted_pose(simulation, session, message);
   if (!X_WB) return;
@@ -67,6 +62,7 @@ void init(Simulation& simulation, Session& session, const MessageView& message) 
   session.last_command_step = step;
   // What a Session asked for before INIT holds.
   session.schedule.start(step, session.schedule.period_steps(), session.schedule.numbered());
+  if (!simulation.connection_log.allow(simulation.wall_s)) return;
   const Eigen::Vector3d p_WB = simulation.world.truth(id).X_WB.p;
   spdlog::info("{}: robot {} ({}) at {:.3f}, {:.3f}, {:.3f} m", session.peer, name, description->usarsim_class,
                p_WB.x(), p_WB.y(), p_WB.z());
