@@ -31,7 +31,7 @@ struct NumberKey {
 };
 constexpr NumberKey kNumberKeys[] = {
     {"period_s", &hrt_config::period_s, 0.001, 1, 0.01},
-    {"command_timeout_s", &hrt_config::command_timeout_s, 0.01, 10, 0.3},
+    {"command_timeout_s", &hrt_config::command_timeout_s, 0.01, 10, 0.2},
     {"link_timeout_s", &hrt_config::link_timeout_s, 0.05, 10, 0.5},
     {"connect_timeout_s", &hrt_config::connect_timeout_s, 0.05, 60, 3},
     {"max_speed_mmps", &hrt_config::max_speed_mmps, 1, 2000, 200},

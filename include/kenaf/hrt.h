@@ -121,7 +121,7 @@ typedef struct hrt_config {
 
   /* Cycle and link. */
   double period_s;          /* one cycle, robot time: 0.001 to 1, default 0.01 */
-  double command_timeout_s; /* silence after which the tracks stop, robot time: 0.01 to 10, default 0.3 */
+  double command_timeout_s; /* silence after which the tracks stop, robot time: 0.01 to 10, default 0.2 */
   double link_timeout_s;    /* silence of the link that is an error, wall clock: 0.05 to 10, default 0.5 */
   double connect_timeout_s; /* how long init waits for the robot, wall clock: 0.05 to 60, default 3 */
 

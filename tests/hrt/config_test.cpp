@@ -52,7 +52,7 @@ TEST_CASE("the defaults are the ones the header states, and valid") {
   const hrt_config config = hrt_config_default();
   CHECK_NOTHROW(check_config(config));
   CHECK(config.period_s == 0.01);
-  CHECK(config.command_timeout_s == 0.3);
+  CHECK(config.command_timeout_s == 0.2);
   CHECK(config.lockstep == 1);
   CHECK(std::string(config.relay) == "127.0.0.1:45454");
   CHECK(std::string(config.can_interface) == "can0");
