@@ -124,7 +124,7 @@ TEST_CASE("F4 a second commander is refused with a reason") {
   const auto refused = second.wait_for(30s);
   REQUIRE(refused.has_value());
   CHECK(*refused > 0);
-  CHECK(chain.log("status_monitor_sim").find("commands the robot") != std::string::npos);
+  CHECK(chain.log("status_monitor_sim").find("has commanded the robot") != std::string::npos);
   CHECK(first.wait_for(120s) == 0);
 }
 
