@@ -21,8 +21,13 @@ const Estimate& Estimator::update(const relay::State& state) {
   Estimate& now = estimate_;
   const bool first = !started_;
   now.frame = state.frame;
-  now.dt_s = first ? 0 : std::max(0.0, state.robot_time_s - now.t_s);
-  now.t_s = state.robot_time_s;
+  // The clock's zero is anywhere: in whole nanoseconds since the first cycle, the same run has the same times to the
+  // last bit whenever it begins.
+  const std::int64_t t_ns = std::llround(state.robot_time_s * 1e9);
+  if (first) start_ns_ = t_ns_ = t_ns;
+  now.dt_s = static_cast<double>(std::max<std::int64_t>(0, t_ns - t_ns_)) * 1e-9;
+  now.t_s = static_cast<double>(t_ns - start_ns_) * 1e-9;
+  t_ns_ = t_ns;
   now.has_encoders = (state.fields & relay::kHasEncoders) != 0;
   now.has_currents = (state.fields & relay::kHasCurrents) != 0;
   if (now.has_currents) {

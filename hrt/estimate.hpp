@@ -10,7 +10,7 @@ namespace kenaf::hrt {
 
 struct Estimate {
   std::uint32_t frame = 0;
-  double t_s = 0;
+  double t_s = 0;   // since the first cycle, in whole nanoseconds
   double dt_s = 0;  // since the cycle before; 0 in the first one
   bool has_encoders = false;
   bool has_currents = false;
@@ -34,6 +34,7 @@ class Estimator {
  private:
   EstimatorSettings settings_;
   Estimate estimate_;
+  std::int64_t start_ns_ = 0, t_ns_ = 0;  // the robot's clock in the first and in the newest cycle
   bool started_ = false;
   bool has_posture_ = false;  // once seen, the heading is never the encoders' again
   bool has_travel_ = false;

@@ -4,6 +4,14 @@
 #include <numbers>
 
 namespace kenaf::hrt {
+namespace {
+
+// Creeping makes progress several times a second. Where it has not for 0.3 s, a tenth of a second adds 1.5 times its
+// speed.
+constexpr double kPushAfter_s = 0.3;
+constexpr double kPush_per_s = 15;
+
+}  // namespace
 
 MotionLimits motion_limits_from(const hrt_config& config) {
   constexpr double kMetres = 1e-3;
@@ -21,14 +29,15 @@ MotionLimits motion_limits_from(const hrt_config& config) {
   };
 }
 
-double Approach::speed(double error, double before, double dt_s) const {
+double Approach::speed(double error, double before, double dt_s, double without_progress_s) const {
   const double remaining = std::abs(error);
-  const double wanted =
-      std::max(min_speed, std::min({max_speed, std::sqrt(2 * acceleration * remaining), gain * remaining}));
+  const double slowest =
+      std::min(min_speed * (1 + kPush_per_s * std::max(0.0, without_progress_s - kPushAfter_s)), max_speed);
+  const double profile = std::min({max_speed, std::sqrt(2 * acceleration * remaining), gain * remaining});
   // Speeding up is limited; slowing down follows the goal, whose square root is the deceleration.
-  const double reached = std::abs(before) + acceleration * dt_s;
   const bool turned_round = before * error < 0;
-  return std::copysign(std::min(wanted, turned_round ? min_speed : std::max(reached, min_speed)), error);
+  const double reached = turned_round ? 0 : std::abs(before) + acceleration * dt_s;
+  return std::copysign(std::max(slowest, std::min(profile, reached)), error);
 }
 
 double Approach::duration_s(double distance) const {

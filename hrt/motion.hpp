@@ -35,8 +35,10 @@ struct Approach {
   double gain;       // 1/s: the last part falls with this rate
   double min_speed;  // outside of the goal's band the motion never creeps slower
 
-  // The speed for a signed `error` to the goal, `dt_s` after `before` was commanded.
-  double speed(double error, double before, double dt_s) const;
+  // The speed for a signed `error` to the goal, `dt_s` after `before` was commanded. A motion that has not got on for
+  // `without_progress_s` pushes harder: what is too slow to overcome friction or a drive's dead band grows until it
+  // does.
+  double speed(double error, double before, double dt_s, double without_progress_s = 0) const;
   // The time the profile takes over `distance` from standstill to standstill.
   double duration_s(double distance) const;
 };
@@ -54,6 +56,7 @@ class ProgressWatch {
   enum class Finding { fine, no_progress, overcurrent };
   // `remaining`: the distance to the goal, unsigned; counts as progress once it fell by `step`.
   Finding look(double remaining, const Estimate& now);
+  double without_progress_s(const Estimate& now) const { return now.t_s - progress_t_s_; }
   // The goal was reached for now: what comes counts anew.
   void rest(const Estimate& now);
 

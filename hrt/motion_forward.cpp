@@ -56,7 +56,7 @@ MotionStep GoForward::step(const Estimate& now) {
       break;
   }
 
-  speed_mps_ = approach_.speed(error_m, speed_mps_, now.dt_s);
+  speed_mps_ = approach_.speed(error_m, speed_mps_, now.dt_s, watch_.without_progress_s(now));
   const double share_mps = kHeadingShare * std::abs(speed_mps_);
   const double turn_mps = std::clamp(
       0.5 * limits_.track_gauge_m * kHeadingGain_per_s * (heading_rad_ - now.heading_rad), -share_mps, share_mps);

@@ -51,7 +51,7 @@ MotionStep TurnInPlace::step(const Estimate& now) {
       break;
   }
 
-  turn_radps_ = approach_.speed(error_rad, turn_radps_, now.dt_s);
+  turn_radps_ = approach_.speed(error_rad, turn_radps_, now.dt_s, watch_.without_progress_s(now));
   const double track_mps = 0.5 * limits_.track_gauge_m * turn_radps_;
   result.track_speed_mps = {-track_mps, track_mps};
   return result;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 #include "hrt/error.hpp"
@@ -13,6 +14,11 @@ namespace kenaf::hrt {
 namespace {
 
 constexpr auto kLongestWait = std::chrono::milliseconds(100);
+
+// The clock's zero is anywhere: without its rounding the same run has the same file.
+double whole_nanoseconds(double t_s) {
+  return static_cast<double>(std::llround(t_s * 1e9)) / 1e9;
+}
 
 runs::RunWriter open_writer(const std::string& path) {
   try {
@@ -97,7 +103,8 @@ void Recorder::add(const relay::State& state, const DriveCommand& command) {
     ++lost_;
     return;
   }
-  queue_[(first_ + count_) % kQueueRows] = record_row(state, command, state.robot_time_s - start_t_s_);
+  queue_[(first_ + count_) % kQueueRows] =
+      record_row(state, command, whole_nanoseconds(state.robot_time_s - start_t_s_));
   ++count_;
   row_added_.notify_one();
 }

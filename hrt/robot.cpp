@@ -317,7 +317,10 @@ void Robot::step_calls() {
     ended = true;
     return true;
   });
-  if (ended) call_ended_.notify_all();
+  if (ended) {
+    last_call_t_s_ = estimate_.t_s;
+    call_ended_.notify_all();
+  }
 }
 
 void Robot::hold(std::unique_lock<std::mutex>& lock) {

@@ -31,6 +31,8 @@ constexpr auto kSlowestResend = 32ms;
 // A first State that has not come so long after Welcome was lost.
 constexpr auto kFirstStateResend = 20ms;
 constexpr auto kPingEvery = 1000ms;
+// This thread looks at its socket every 32 ms. Where it did not for longer, it was the process that slept.
+constexpr auto kLongestLook = 100ms;
 // A world server that answers pings but counts no frame for this many link time-outs will not count any more.
 constexpr double kFrozenLinkTimeouts = 20;
 constexpr int kByeCount = 3;
@@ -77,7 +79,7 @@ hrt::Connection RelayTransport::open(const hrt_config& config) {
   const Clock::time_point now = Clock::now();
   resend_after_ = kFirstStateResend;
   resend_at_ = now + resend_after_;
-  state_at_ = life_at_ = ping_at_ = now;
+  state_at_ = life_at_ = looked_at_ = ping_at_ = now;
   return connection;
 }
 
@@ -189,10 +191,15 @@ std::optional<relay::State> RelayTransport::take(const relay::Datagram& datagram
   return *state;
 }
 
-void RelayTransport::check_life(Clock::time_point now) const {
+void RelayTransport::check_life(Clock::time_point now) {
   if (port_closed_) {
     throw Error(HRT_E_LINK, fmt::format("the relay at {} is gone: nobody listens there any more", relay_));
   }
+  // What this process has slept through (a busy or paused machine, a debugger) is not the link's silence.
+  const Clock::duration slept = std::max<Clock::duration>(now - looked_at_ - kLongestLook, Clock::duration::zero());
+  state_at_ += slept;
+  life_at_ += slept;
+  looked_at_ = now;
   const double patience_s = frame_ == 0 ? connect_timeout_s_ : link_timeout_s_;
   const auto silent_s = [&](Clock::time_point since) { return std::chrono::duration<double>(now - since).count(); };
   if (silent_s(life_at_) > patience_s) {
@@ -219,7 +226,7 @@ void RelayTransport::send(const hrt::DriveCommand& command) {
   const Clock::time_point now = Clock::now();
   resend_at_ = now + resend_after_;
   // The time the program took is not the link's.
-  state_at_ = life_at_ = now;
+  state_at_ = life_at_ = looked_at_ = now;
 }
 
 void RelayTransport::send_what_is_due(Clock::time_point now) {

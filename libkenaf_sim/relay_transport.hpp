@@ -42,7 +42,7 @@ class RelayTransport final : public hrt::Transport {
   std::optional<relay::State> take(const relay::Datagram& datagram);
   void transmit(const relay::Datagram& datagram);
   void send_what_is_due(Clock::time_point now);
-  void check_life(Clock::time_point now) const;
+  void check_life(Clock::time_point now);
   // Sleeps until a datagram, an interrupt or `until`. False: interrupted.
   bool wait_readable(Clock::time_point until);
 
@@ -56,6 +56,7 @@ class RelayTransport final : public hrt::Transport {
   std::uint32_t frame_ = 0;    // newest State
   relay::Command command_{};   // sequence 0: none yet
   Clock::time_point resend_at_, state_at_, life_at_, ping_at_, pinged_at_;
+  Clock::time_point looked_at_;  // when the socket was last looked at
   Clock::duration resend_after_{};
   std::uint32_t ping_id_ = 0;
   std::atomic<double> round_trip_s_ = 0;

@@ -95,6 +95,10 @@ TEST_CASE("M2 speed over distance is the square root of twice the deceleration, 
   CHECK(approach.speed(0.0001, 0.2, 0.01) == Approx(0.003));
   CHECK(approach.speed(10, 0, 0.01) == Approx(0.004));       // 0.4 m/s^2 for 10 ms
   CHECK(std::abs(approach.speed(10, -0.2, 0.01)) <= 0.003);  // never a jump through 0
+  // 0.9 s without progress are 0.6 s of pushing: ten times the slowest, and never above the fastest.
+  CHECK(approach.speed(0.0001, 0.003, 0.01, 0.3) == Approx(0.003));
+  CHECK(approach.speed(0.0001, 0.003, 0.01, 0.9) == Approx(0.03));
+  CHECK(approach.speed(0.0001, 0.003, 0.01, 100) == Approx(0.2));
   // 1 m: (1 - 0.1) / 0.2 + 2 * 0.5 = 5.5 s, plus five time constants of 0.2 s.
   CHECK(approach.duration_s(1) == Approx(6.5));
   // 0.025 m: a triangle, 2 sqrt(0.025 / 0.4) = 0.5 s.
@@ -189,6 +193,14 @@ TEST_CASE("M6 a robot that gets on, but far too slowly, runs into the time limit
   CHECK(end.code == HRT_E_TIMEOUT);
   // Three times the profile's 6.5 s, plus 5 s.
   CHECK(ride.duration_s == Approx(3 * 6.5 + 5).margin(0.05));
+}
+
+TEST_CASE("M6 tracks that need 10 mm/s to get going are pushed until they do") {
+  Ride ride({.dead_band_mps = 0.01});
+  CHECK(ride.forward(0.1).code == HRT_OK);
+  CHECK(std::abs(ride.plant.x_m - 0.1) <= 0.001);
+  CHECK(ride.turn(45 * kDegree).code == HRT_OK);
+  CHECK(std::abs(ride.plant.yaw_rad / kDegree - 45) <= 0.3);
 }
 
 TEST_CASE("M7 a square of 100 mm closes within 10 mm and 2 degrees: slip, noise, off-centre turns, unequal tracks") {

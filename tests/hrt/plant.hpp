@@ -23,6 +23,7 @@ struct PlantSettings {
   double turn_centre_m = 0;                     // x of the point of the body that stays put in a turn
   double yaw_noise_rad = 0;                     // 1 sigma, white
   double max_track_mps = 1;                     // the drives go no faster
+  double dead_band_mps = 0;                     // a slower command does nothing
   double flipper_radps = 1.5;
   bool tracks_blocked = false;
   bool has_posture = true;
@@ -43,9 +44,9 @@ class Plant {
     const double dt = settings.period_s;
     std::array<double, 2> ground_mps{};
     for (std::size_t i = 0; i < 2; ++i) {
-      const double wanted = settings.tracks_blocked ? 0
-                                                    : std::clamp(command.track_speed_mps[i], -settings.max_track_mps,
-                                                                 settings.max_track_mps);
+      const double command_mps = command.track_speed_mps[i];
+      const bool stands = settings.tracks_blocked || std::abs(command_mps) < settings.dead_band_mps;
+      const double wanted = stands ? 0 : std::clamp(command_mps, -settings.max_track_mps, settings.max_track_mps);
       track_mps[i] += (wanted - track_mps[i]) * -std::expm1(-dt / settings.drive_lag_s);
       track_m[i] += track_mps[i] * dt;
       ground_mps[i] = track_mps[i] * settings.ground_per_belt[i];
