@@ -155,11 +155,11 @@ void ContactSolver::add_contact(btManifoldPoint& point, const btCollisionObject&
   c.normal_to_slip[1] = response(2, 0);
 
   c.impulse[0] = point.m_appliedImpulse;
-  const btScalar kept = (swapped ? -1 : 1) * std::min(c.belt_a ? c.belt_a->kept : 1, c.belt_b ? c.belt_b->kept : 1);
-  const btVector3 friction = point.m_lateralFrictionDir1 * point.m_appliedImpulseLateral1 +
-                             point.m_lateralFrictionDir2 * point.m_appliedImpulseLateral2;
-  c.impulse[1] = kept * friction.dot(c.axis[1]);
-  c.impulse[2] = kept * friction.dot(c.axis[2]);
+  // of body A, along this contact's own axes, which turn with the belt: Bullet keeps these two numbers with a point
+  // that it finds again, and no directions
+  const btScalar kept = std::min(c.belt_a ? c.belt_a->kept : 1, c.belt_b ? c.belt_b->kept : 1);
+  c.impulse[1] = kept * point.m_appliedImpulseLateral1;
+  c.impulse[2] = kept * point.m_appliedImpulseLateral2;
 }
 
 void ContactSolver::apply(Contact& c, const btScalar change[3]) {
@@ -280,11 +280,8 @@ btScalar ContactSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies
                                                       const btContactSolverInfo& info) {
   for (Contact& c : contacts_) {
     c.point->m_appliedImpulse = c.impulse[0];
-    c.point->m_lateralFrictionDir1 = c.axis[1];
-    c.point->m_lateralFrictionDir2 = c.axis[2];
-    const bool swapped = c.axis[0].dot(c.point->m_normalWorldOnB) < 0;
-    c.point->m_appliedImpulseLateral1 = swapped ? -c.impulse[1] : c.impulse[1];
-    c.point->m_appliedImpulseLateral2 = swapped ? -c.impulse[2] : c.impulse[2];
+    c.point->m_appliedImpulseLateral1 = c.impulse[1];
+    c.point->m_appliedImpulseLateral2 = c.impulse[2];
   }
   FlipperJoint* joint = nullptr;
   for (int i = 0, row = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i, ++row) {
