@@ -1,0 +1,64 @@
+// How fast the physics runs: steps per second, real-time factor and contacts per step, for one robot on one core.
+// Usage: physics_speed [robot-seconds per scene, default 20]
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "physics/world.hpp"
+
+using namespace kenaf::physics;
+
+namespace {
+
+struct Case {
+  const char* name;
+  const char* world;
+  double left_mps, right_mps, front_rad, rear_rad;
+  int robots;
+};
+
+void measure(const Case& scene, double time_s) {
+  std::vector<std::string> unsupported;
+  const WorldDescription description = load_world(scene.world, unsupported);
+  World world(description, {}, 1);
+  const RobotDescription robot = load_robot("kenaf");
+  RobotCommand command;
+  command.track_speed_mps = {scene.left_mps, scene.right_mps};
+  for (const Flipper f : {kFrontLeft, kFrontRight}) command.flipper[f].value = scene.front_rad;
+  for (const Flipper f : {kRearLeft, kRearRight}) command.flipper[f].value = scene.rear_rad;
+  for (int i = 0; i < scene.robots; ++i) {
+    const StartPose& start = description.start_poses[static_cast<std::size_t>(i) % description.start_poses.size()];
+    world.set_command(world.add_robot(robot, start.name, start.X_WB), command);
+  }
+  for (int i = 0; i < 1000; ++i) world.step();  // at rest on the ground, memory allocated
+
+  const auto steps = static_cast<int>(time_s / world.settings().time_step_s);
+  double contacts = 0;
+  const auto start = std::chrono::steady_clock::now();
+  for (int i = 0; i < steps; ++i) {
+    world.step();
+    contacts += static_cast<double>(world.contact_count());
+  }
+  const double taken_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  fmt::print("{:<28} {:>10.0f} {:>12.1f} {:>14.1f}\n", scene.name, steps / taken_s, time_s / taken_s, contacts / steps);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const double time_s = argc > 1 ? std::strtod(argv[1], nullptr) : 20;
+  if (!(time_s > 0)) {
+    fmt::print(stderr, "usage: physics_speed [robot-seconds per scene, more than 0]\n");
+    return 2;
+  }
+  fmt::print("{:<28} {:>10} {:>12} {:>14}\n", "scene", "steps/s", "real time x", "contacts/step");
+  for (const Case& scene : {Case{"standing", "flat", 0, 0, 1, 1, 1}, Case{"straight", "flat", 0.2, 0.2, 1, 1, 1},
+                            Case{"turning in place", "flat", -0.2, 0.2, 1, 1, 1},
+                            Case{"climbing a 100 mm step", "step-100", 0.1, 0.1, 0.8, 0, 1},
+                            Case{"16 robots, turning", "flat", -0.1, 0.2, 1, 1, 16}})
+    measure(scene, time_s);
+  return 0;
+}

@@ -1,0 +1,121 @@
+// F1 speed limit, F2 lifting, F3 torque limit, F4 modes, F5 limits of travel, F6 the flipper's own belt.
+#include <catch2/catch.hpp>
+
+#include "physics/reachable_angle.hpp"
+#include "tests/physics/scenes.hpp"
+
+using namespace kenaf::physics;
+
+TEST_CASE("F1: a flipper turns to its angle at its speed limit and stays") {
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
+  world.set_command(id, drive(0, 0, 1.9, 1.9));
+  double fastest = 0;
+  for (int i = 0; i < 500; ++i) {
+    world.step();
+    for (const double speed : world.truth(id).flipper_radps) fastest = std::max(fastest, std::abs(speed));
+  }
+  CHECK(fastest == Approx(1.5).epsilon(0.01));
+  // 0.9 rad take 0.6 s; after 0.5 s it has come 0.75 rad far
+  for (const double angle : world.truth(id).flipper_rad) CHECK(angle == Approx(1.75).margin(0.01));
+  run(world, 0.5);
+  for (const double angle : world.truth(id).flipper_rad) CHECK(angle == Approx(1.9).margin(1e-3));
+}
+
+TEST_CASE("F2: flippers lift the robot as their geometry says") {
+  World world(ground(), {}, 1);
+  const RobotDescription robot = load_robot("kenaf");
+  const RobotId id = world.add_robot(robot, "a", {});
+  world.set_command(id, drive(0, 0, -1.2, -1.2));
+  run(world, 4);
+  const RobotTruth truth = world.truth(id);
+  for (const double angle : truth.flipper_rad) CHECK(angle == Approx(-1.2).margin(0.01));
+  // on four tip drums: pivot height = length sin(1.2) + tip radius; 2 mm for drums made of flat faces and soft ground
+  const FlipperDescription& f = robot.flipper.front();
+  const double pivot = f.length_m * std::sin(1.2) + f.tip_radius_m;
+  CHECK(truth.X_WB.p.z() == Approx(pivot - f.p_BPivot_m.z()).margin(2e-3));
+  CHECK(std::abs(roll_pitch_yaw(truth.X_WB.q).y()) < 0.01);
+  // each carries a quarter of the weight at length cos(1.2); friction under the tips may take a part of it
+  for (const double torque : truth.flipper_nm) CHECK(std::abs(torque) < 20.0);
+}
+
+TEST_CASE("F2: the front pair alone raises the nose") {
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
+  world.set_command(id, drive(0, 0, -1.0, 1));
+  run(world, 3);
+  CHECK(roll_pitch_yaw(world.truth(id).X_WB.q).y() < -0.15);  // nose up is negative
+}
+
+TEST_CASE("F3: the torque limit holds, and a servo too weak lifts nothing") {
+  World world(ground(), {}, 1);
+  RobotDescription robot = load_robot("kenaf");
+  robot.servo.max_torque_nm = 2;
+  const RobotId id = world.add_robot(robot, "a", {});
+  world.set_command(id, drive(0, 0, -1.0, 1));
+  for (int i = 0; i < 3000; ++i) {
+    world.step();
+    for (const double torque : world.truth(id).flipper_nm) REQUIRE(std::abs(torque) <= 2 + 1e-9);
+  }
+  CHECK(std::abs(roll_pitch_yaw(world.truth(id).X_WB.q).y()) < 0.03);
+}
+
+TEST_CASE("F4: speed, torque and brake modes") {
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
+  RobotCommand command = drive(0, 0);
+  command.flipper[kFrontLeft] = {JointMode::speed, 0.5};
+  world.set_command(id, command);
+  run(world, 1);
+  CHECK(world.truth(id).flipper_rad[kFrontLeft] == Approx(1.5).margin(0.01));
+  command.flipper[kFrontLeft] = {JointMode::brake, 0};
+  world.set_command(id, command);
+  run(world, 1);
+  CHECK(world.truth(id).flipper_rad[kFrontLeft] == Approx(1.5).margin(0.01));
+  // without torque it falls to the ground
+  command.flipper[kFrontLeft] = {JointMode::torque, 0};
+  world.set_command(id, command);
+  run(world, 2);
+  CHECK(world.truth(id).flipper_rad[kFrontLeft] < 0);
+  command.flipper[kFrontLeft] = {JointMode::torque, 5};
+  world.set_command(id, command);
+  run(world, 0.5);
+  CHECK(world.truth(id).flipper_radps[kFrontLeft] == Approx(1.5).epsilon(0.01));
+}
+
+TEST_CASE("F5: the same direction within the limits, the nearest one") {
+  const double pi = std::numbers::pi;
+  CHECK(reachable_angle(0.5, 0, -2, 2) == Approx(0.5));
+  CHECK(reachable_angle(0.5 + 2 * pi, 0, -2, 2) == Approx(0.5));
+  CHECK(reachable_angle(3, 0, -2, 2) == Approx(2));
+  CHECK(reachable_angle(-3, 0, -2, 2) == Approx(-2));
+  CHECK(reachable_angle(1, 6, -2 * pi, 2 * pi) == Approx(1));
+  CHECK(reachable_angle(1, -4, -2 * pi, 2 * pi) == Approx(1 - 2 * pi));
+}
+
+TEST_CASE("F5: a flipper goes through the whole of its travel and stops at its end") {
+  World world(ground(), {}, 1);
+  RobotDescription robot = load_robot("kenaf");
+  robot.flipper.front().max_angle_rad = 2.8;
+  const RobotId id = world.add_robot(robot, "a", {});
+  RobotCommand command = drive(0, 0);
+  for (JointCommand& joint : command.flipper) joint = {JointMode::speed, 1.0};
+  world.set_command(id, command);
+  run(world, 4);
+  for (const double angle : world.truth(id).flipper_rad) CHECK(angle == Approx(2.8).margin(0.01));
+}
+
+TEST_CASE("F6: a driven flipper belt carries the robot on its flippers") {
+  for (const bool driven : {true, false}) {
+    World world(ground(), {}, 1);
+    RobotDescription robot = load_robot("kenaf");
+    robot.flipper.front().belt_driven = driven;
+    const RobotId id = world.add_robot(robot, "a", {});
+    world.set_command(id, drive(0, 0, -1.2, -1.2));
+    run(world, 3);
+    const double before = world.truth(id).X_WB.p.x();
+    world.set_command(id, drive(0.1, 0.1, -1.2, -1.2));
+    run(world, 2);
+    CHECK(world.truth(id).X_WB.p.x() - before == Approx(driven ? 0.195 : 0).margin(0.01));
+  }
+}

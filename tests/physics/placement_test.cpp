@@ -1,0 +1,139 @@
+// P1 lifted until free, P2 teleport, P3 many robots, P4 rays, P5 boxes, P6 mission packages, P7 bad calls.
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "tests/physics/scenes.hpp"
+
+using namespace kenaf::physics;
+
+TEST_CASE("P1: a robot in the ground is lifted until it is free") {
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(load_robot("kenaf"), "a", {{1, 2, -0.5}, rotation_from({0, 0, 0.5})});
+  const RobotTruth truth = world.truth(id);
+  // the belly is 0.09 m below its centre
+  CHECK(truth.X_WB.p.z() == Approx(0.09).margin(1e-3));
+  CHECK(truth.X_WB.p.x() == 1);
+  CHECK(truth.X_WB.p.y() == 2);
+  CHECK(yaw_of(truth.X_WB) == Approx(0.5));
+}
+
+TEST_CASE("P1: a robot in a box is lifted onto it, one in the air stays there") {
+  WorldDescription description = ground();
+  description.boxes.push_back(fixed_box({2, 2, 0.4}, {0, 0, 0.2}));
+  World world(description, {}, 1);
+  const RobotId inside = world.add_robot(load_robot("kenaf"), "a", {{0, 0, 0.2}, Eigen::Quaterniond::Identity()});
+  CHECK(world.truth(inside).X_WB.p.z() == Approx(0.49).margin(0.03));
+  const RobotId above = world.add_robot(load_robot("kenaf"), "b", {{5, 0, 3}, Eigen::Quaterniond::Identity()});
+  CHECK(world.truth(above).X_WB.p.z() == 3);
+  run(world, 1);
+  CHECK(world.truth(inside).X_WB.p.z() == Approx(0.49).margin(1e-3));
+}
+
+TEST_CASE("P1: a robot dropped from 50 mm comes to rest") {
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(load_robot("kenaf"), "a", {{0, 0, 0.14}, Eigen::Quaterniond::Identity()});
+  run(world, 2);
+  CHECK(world.truth(id).X_WB.p.z() == Approx(0.09).margin(1e-3));
+  CHECK(world.truth(id).v_WB_mps.norm() < 1e-4);
+}
+
+TEST_CASE("P2: a teleported robot is at rest at its new place") {
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
+  world.set_command(id, drive(0.3, 0.3));
+  run(world, 1);
+  world.teleport(id, {{5, 5, 0}, rotation_from({0, 0, 1})});
+  CHECK(world.truth(id).v_WB_mps.norm() == 0);
+  CHECK(world.truth(id).track_mps[kLeft] == 0);
+  CHECK(world.truth(id).X_WB.p.x() == 5);
+  world.set_command(id, drive(0, 0));
+  run(world, 1);
+  CHECK((world.truth(id).X_WB.p - Eigen::Vector3d(5, 5, 0.09)).norm() < 2e-3);
+}
+
+TEST_CASE("P3: sixteen robots in one world, each on its own way") {
+  std::vector<std::string> unsupported;
+  const WorldDescription flat = load_world("flat", unsupported);
+  REQUIRE(flat.start_poses.size() == 16);
+  World world(flat, {}, 1);
+  std::vector<RobotId> ids;
+  for (const StartPose& start : flat.start_poses) {
+    ids.push_back(world.add_robot(load_robot(ids.size() % 2 ? "p2dx" : "kenaf"), start.name, start.X_WB));
+    world.set_command(ids.back(), drive(0.1, 0.1));
+  }
+  run(world, 2);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const double ahead = world.truth(ids[i]).X_WB.p.x() - flat.start_poses[i].X_WB.p.x();
+    CHECK(ahead == Approx(0.19).margin(0.012));
+  }
+  world.remove_robot(ids[3]);
+  CHECK(world.robots().size() == 15);
+  CHECK_THROWS_AS(world.truth(ids[3]), std::out_of_range);
+  run(world, 0.1);
+}
+
+TEST_CASE("P3: robots meet") {
+  World world(ground(), {}, 1);
+  const RobotId a = world.add_robot(load_robot("p2at"), "a", {});
+  const RobotId b = world.add_robot(load_robot("p2at"), "b", {{1, 0, 0}, rotation_from({0, 0, std::numbers::pi})});
+  world.set_command(a, drive(0.2, 0.2));
+  world.set_command(b, drive(0.2, 0.2));
+  run(world, 5);
+  CHECK((world.truth(a).X_WB.p - world.truth(b).X_WB.p).norm() > 0.45);
+}
+
+TEST_CASE("P4: rays") {
+  WorldDescription description = ground();
+  description.boxes.push_back(fixed_box({1, 1, 1}, {3, 0, 0.5}));
+  World world(description, {}, 1);
+  const auto box = world.cast_ray({0, 0, 0.5}, {2, 0, 0}, 10);
+  REQUIRE(box);
+  CHECK(box->distance_m == Approx(2.5).margin(2e-3));
+  CHECK(box->normal_W.x() == Approx(-1));
+  CHECK_FALSE(world.cast_ray({0, 0, 0.5}, {1, 0, 0}, 2));
+  CHECK_FALSE(world.cast_ray({0, 0, 0.5}, {0, 0, 1}, 10));
+  const auto down = world.cast_ray({0, 0, 0.5}, {0, 0, -1}, 10);
+  REQUIRE(down);
+  CHECK(down->distance_m == Approx(0.5).margin(1e-6));
+  const RobotId id = world.add_robot(load_robot("kenaf"), "a", {{1, 0, 0}, Eigen::Quaterniond::Identity()});
+  CHECK(world.cast_ray({0, 0, 0.09}, {1, 0, 0}, 10)->distance_m < 1);
+  CHECK(world.cast_ray({0, 0, 0.09}, {1, 0, 0}, 10, id)->distance_m == Approx(2.5).margin(2e-3));
+}
+
+TEST_CASE("P5: boxes come, move and go") {
+  World world(ground(), {}, 1);
+  const BoxId id = world.add_box(fixed_box({1, 1, 1}, {3, 0, 0.5}));
+  CHECK(world.cast_ray({0, 0, 0.5}, {1, 0, 0}, 10));
+  world.move_box(id, {{0, 3, 0.5}, Eigen::Quaterniond::Identity()});
+  CHECK_FALSE(world.cast_ray({0, 0, 0.5}, {1, 0, 0}, 10));
+  CHECK(world.cast_ray({0, 0, 0.5}, {0, 1, 0}, 10)->distance_m == Approx(2.5).margin(2e-3));
+  world.remove_box(id);
+  CHECK_FALSE(world.cast_ray({0, 0, 0.5}, {0, 1, 0}, 10));
+  CHECK_THROWS_AS(world.remove_box(id), std::out_of_range);
+}
+
+TEST_CASE("P6: a mission package's links turn at their speed, within their limits") {
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
+  world.set_mission_link(id, 0, 0, 1.5);
+  run(world, 0.5);
+  CHECK(world.mission_link_rad(id, 0, 0) == Approx(1.0).margin(1e-6));  // 2 rad/s
+  world.set_mission_link(id, 0, 1, -9);
+  run(world, 1);
+  CHECK(world.mission_link_rad(id, 0, 0) == Approx(1.5));
+  CHECK(world.mission_link_rad(id, 0, 1) == Approx(-0.7853981));
+}
+
+TEST_CASE("P7: what is no pose, no number or no robot is refused") {
+  World world(ground(), {}, 1);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(world.add_robot(load_robot("kenaf"), "a", {{nan, 0, 0}, Eigen::Quaterniond::Identity()}),
+                  std::invalid_argument);
+  CHECK(world.robots().empty());
+  const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
+  world.set_command(id, drive(nan, 0.1));
+  run(world, 0.1);
+  CHECK(world.truth(id).X_WB.p.allFinite());
+  CHECK_THROWS_AS(world.set_command(RobotId{99}, {}), std::out_of_range);
+  CHECK_THROWS_AS(World(ground(), {.time_step_s = 0}, 1), std::invalid_argument);
+}

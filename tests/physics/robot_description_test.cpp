@@ -1,0 +1,97 @@
+// The shipped robots are what their files say, and what is wrong in a file is said with its place.
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <sstream>
+
+#include "physics/pose.hpp"
+#include "physics/robot_description.hpp"
+
+using namespace kenaf::physics;
+
+namespace {
+
+std::string kenaf_text() {
+  std::ifstream in(std::string(KENAF_SOURCE_DIR) + "/robots/kenaf.toml");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+// The error of kenaf.toml with `from` replaced.
+std::string error_with(const std::string& from, const std::string& to) {
+  std::string text = kenaf_text();
+  const std::size_t at = text.find(from);
+  REQUIRE(at != std::string::npos);
+  text.replace(at, from.size(), to);
+  try {
+    parse_robot(text, "test.toml");
+  } catch (const DescriptionError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("Kenaf is what is known of it") {
+  const RobotDescription robot = load_robot("kenaf");
+  CHECK(robot.name == "kenaf");
+  CHECK(robot.usarsim_class == "USARBot.Kenaf");
+  CHECK(robot.total_mass_kg() == Approx(20));
+  CHECK(robot.track.friction_along == 1.3);
+  CHECK(robot.track_gauge_m() == Approx(0.2));
+  // the whole robot's centre of mass, flippers straight out: 50 mm below its centre. An arm's own centre lies on its
+  // axis.
+  const double z = (robot.body.mass_kg * robot.body.p_BBcm_m.z() + 5.0 * robot.flipper.front().p_BPivot_m.z()) / 20;
+  CHECK(z == Approx(-0.05).margin(1e-4));
+  // the envelope: 0.6 x 0.4 x 0.18 m with the flippers folded over the body
+  const auto& f = robot.flipper.front();
+  CHECK(robot.track.length_m <= 0.6);
+  CHECK(f.p_BPivot_m.x() + f.pivot_radius_m <= 0.3);
+  CHECK(2 * (f.p_BPivot_m.y() + f.width_m / 2) <= 0.4);
+  CHECK(robot.body.size_m.z() / 2 + robot.track.end_radius_m - robot.track.p_BT_m.z() <= 0.18);
+  CHECK(f.length_m + f.tip_radius_m <= f.p_BPivot_m.x());  // front and rear do not meet when folded
+}
+
+TEST_CASE("All shipped robots load, by class too") {
+  for (const char* name : {"kenaf", "p2dx", "p2at"}) CHECK(load_robot(name).name == name);
+  CHECK(robot_name_for_class("USARBot.Kenaf") == "kenaf");
+  CHECK(robot_name_for_class("usarbot.kenaf") == "kenaf");
+  CHECK(robot_name_for_class("P2AT") == "p2at");
+  CHECK(robot_name_for_class("USARBot.Nobody").empty());
+  CHECK(robot_name_for_class("USARBot.../robots/kenaf").empty());
+  CHECK(robot_name_for_class("").empty());
+}
+
+TEST_CASE("What is wrong is said with file, line and column") {
+  CHECK(error_with("mass_kg = 15.0", "mass = 15.0").find("body.mass_kg is missing") != std::string::npos);
+  CHECK(error_with("mass_kg = 15.0", "mass_kg = 15.0\nmasse = 1").find("test.toml:12:1: body.masse is not a key") == 0);
+  CHECK(error_with("mass_kg = 15.0", "mass_kg = \"heavy\"").find("test.toml:11:11: body.mass_kg must be a number") ==
+        0);
+  CHECK(error_with("mass_kg = 15.0", "mass_kg = -1").find("body.mass_kg is -1, but must be more than 0") !=
+        std::string::npos);
+  CHECK(error_with("mass_kg = 15.0", "mass_kg = nan").find("must be") != std::string::npos);
+  CHECK(error_with("[0.44, 0.10, 0.16]", "[0.44, 0.10]").find("list of three numbers") != std::string::npos);
+  CHECK(error_with("[0.13, 0.44, 0.52]", "[0.13, 0.44, 5.2]").find("no rigid body") != std::string::npos);
+  CHECK(error_with("pieces = 6", "pieces = 6.5").find("whole number") != std::string::npos);
+  CHECK(error_with("belt_driven = true", "belt_driven = 1").find("true or false") != std::string::npos);
+  CHECK(error_with("type = \"GPS\"", "type = \"gps\"").find("must be one of GroundTruth") != std::string::npos);
+  CHECK(error_with("name = \"GPS\"", "name = \"INS\"").find("name of another sensor") != std::string::npos);
+  CHECK(error_with("[servo]", "[servo").find("test.toml:") == 0);
+  CHECK(error_with("start_angle_rad = 1.0", "start_angle_rad = 4.0").find("between min_angle_rad") !=
+        std::string::npos);
+  CHECK_THROWS_AS(load_robot("no-such-robot"), DescriptionError);
+  CHECK_THROWS_AS(load_robot("./no-such-file.toml"), DescriptionError);
+}
+
+TEST_CASE("Angles: z-y-x, pitch positive nose down") {
+  // nose down: the body's x axis points below the horizon
+  CHECK((rotation_from({0, 0.3, 0}) * Eigen::Vector3d::UnitX()).z() == Approx(-std::sin(0.3)));
+  // yaw to the left, roll right side down
+  CHECK((rotation_from({0, 0, 0.3}) * Eigen::Vector3d::UnitX()).y() == Approx(std::sin(0.3)));
+  CHECK((rotation_from({0.3, 0, 0}) * Eigen::Vector3d::UnitY()).z() == Approx(std::sin(0.3)));
+  const Eigen::Vector3d angles(0.4, -0.7, 2.5);
+  CHECK((roll_pitch_yaw(rotation_from(angles)) - angles).norm() < 1e-12);
+  const Pose X{{1, 2, 3}, rotation_from(angles)};
+  CHECK(compose(X, inverse(X)).p.norm() < 1e-12);
+}

@@ -1,0 +1,263 @@
+// S1 rate, S2 noise and bias, S3 delay, S4 to S9 what each kind of sensor measures, S10 reset.
+#include <catch2/catch.hpp>
+
+#include "physics/sensors/noise.hpp"
+#include "tests/physics/scenes.hpp"
+
+using namespace kenaf::physics;
+
+namespace {
+
+RobotDescription with_sensor(const SensorDescription& sensor) {
+  RobotDescription robot = load_robot("kenaf");
+  robot.sensors = {sensor};
+  return robot;
+}
+
+SensorDescription sensor_of(SensorType type) {
+  SensorDescription sensor{};
+  sensor.type = type;
+  sensor.name = "sensor";
+  return sensor;
+}
+
+template <typename T>
+T read_one(World& world, RobotId id) {
+  std::vector<SensorSample> samples;
+  world.read_sensors(id, samples);
+  REQUIRE(samples.size() == 1);
+  return std::get<T>(samples.front().reading);
+}
+
+}  // namespace
+
+TEST_CASE("S1: a sensor reports once a period, and at every call where it has none") {
+  RobotDescription robot = load_robot("kenaf");
+  robot.sensors = {sensor_of(SensorType::ground_truth), sensor_of(SensorType::ins)};
+  robot.sensors[1].period_s = 0.05;
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(robot, "a", {});
+  std::array<int, 2> reports{};
+  std::vector<SensorSample> samples;
+  for (int i = 0; i < 1000; ++i) {
+    samples.clear();
+    world.read_sensors(id, samples);
+    world.read_sensors(id, samples);  // nothing new without a step
+    for (const SensorSample& sample : samples) {
+      ++reports[sample.sensor];
+      CHECK(sample.t_s == world.time_s());
+    }
+    world.step();
+  }
+  CHECK(reports[0] == 1000);
+  CHECK(reports[1] == 20);
+}
+
+TEST_CASE("S2: noise is white, of its sigma; bias is drawn once; other names, other noise") {
+  SensorDescription sensor = sensor_of(SensorType::ins);
+  sensor.noise_rad = 0.01;
+  sensor.noise_m = 0.02;
+  sensor.bias_rad = 0.1;
+  World world(ground(), {}, 3);
+  const RobotId id = world.add_robot(with_sensor(sensor), "a", {});
+  const RobotId other = world.add_robot(with_sensor(sensor), "b", {{5, 0, 0}, Eigen::Quaterniond::Identity()});
+  run(world, 0.5);
+  constexpr int kSamples = 4000;
+  double sum = 0, squares = 0, position_squares = 0, successive = 0, last = 0, other_sum = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    world.step();
+    const auto reading = read_one<InsReading>(world, id);
+    const double roll = reading.roll_pitch_yaw_rad.x(), y = reading.p_WB_m.y();
+    other_sum += read_one<InsReading>(world, other).roll_pitch_yaw_rad.x();
+    sum += roll;
+    squares += roll * roll;
+    successive += i ? (roll - last) * (roll - last) : 0;
+    last = roll;
+    position_squares += y * y;
+  }
+  const double mean = sum / kSamples, sigma = std::sqrt(squares / kSamples - mean * mean);
+  // a sample sigma of n draws is off by sigma / sqrt(2 n), 1.1 %: 5 % is more than four of those
+  CHECK(sigma == Approx(0.01).epsilon(0.05));
+  CHECK(std::sqrt(position_squares / kSamples) == Approx(0.02).epsilon(0.05));
+  // white: successive differences have twice the variance
+  CHECK(successive / (kSamples - 1) == Approx(2 * sigma * sigma).epsilon(0.08));
+  CHECK(std::abs(mean) > 1e-3);  // this seed's bias
+  CHECK(std::abs(mean) < 0.5);
+  CHECK(std::abs(mean - other_sum / kSamples) > 1e-3);
+}
+
+TEST_CASE("S2: the generator is normal") {
+  NoiseSource noise(1, "robot", "sensor");
+  int within = 0;
+  constexpr int kDraws = 100000;
+  for (int i = 0; i < kDraws; ++i) within += std::abs(noise.normal()) < 1;
+  CHECK(within / double(kDraws) == Approx(0.6827).margin(0.005));
+}
+
+TEST_CASE("S3: a late sensor reports what was") {
+  SensorDescription sensor = sensor_of(SensorType::ground_truth);
+  sensor.delay_s = 0.03;
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(with_sensor(sensor), "a", {});
+  world.set_command(id, drive(0.4, 0.4));
+  std::vector<double> x;
+  for (int i = 0; i < 300; ++i) {
+    world.step();
+    x.push_back(world.truth(id).X_WB.p.x());
+  }
+  std::vector<SensorSample> samples;
+  world.read_sensors(id, samples);
+  CHECK(samples.front().t_s == Approx(0.27));
+  CHECK(std::get<GroundTruthReading>(samples.front().reading).p_WB_m.x() == x[269]);
+}
+
+TEST_CASE("S4: encoders count the sprocket's turning, odometry and tachometer follow") {
+  RobotDescription robot = load_robot("kenaf");
+  robot.sensors = {sensor_of(SensorType::encoder), sensor_of(SensorType::odometry), sensor_of(SensorType::tachometer)};
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(robot, "a", {});
+  world.set_command(id, drive(0.2, 0.2));
+  run(world, 2);
+  std::vector<SensorSample> samples;
+  world.read_sensors(id, samples);
+  const double travel = world.truth(id).track_m[kLeft];
+  CHECK(travel == Approx(0.39).margin(1e-3));
+  const auto counts = std::get<EncoderReading>(samples[0].reading).counts;
+  CHECK(static_cast<double>(counts[kLeft]) == Approx(travel / 0.065 * 2000 / (2 * std::numbers::pi)).margin(1));
+  const auto odometry = std::get<OdometryReading>(samples[1].reading);
+  CHECK(odometry.x_m == Approx(travel).margin(3e-4));
+  CHECK(std::abs(odometry.yaw_rad) < 2e-3);
+  const auto tachometer = std::get<TachometerReading>(samples[2].reading);
+  CHECK(tachometer.spin_radps[kRight] == Approx(0.2 / 0.065).epsilon(1e-3));
+  CHECK(tachometer.angle_rad[kLeft] == Approx(travel / 0.065));
+}
+
+TEST_CASE("S5: an inertial sensor feels gravity's reaction, acceleration and turning") {
+  SensorDescription sensor = sensor_of(SensorType::imu);
+  sensor.period_s = 0.01;
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(with_sensor(sensor), "a", {});
+  run(world, 0.5);
+  const auto rest = read_one<ImuReading>(world, id);
+  CHECK(rest.acceleration_mps2.z() == Approx(kGravity).epsilon(1e-3));
+  CHECK(std::abs(rest.acceleration_mps2.x()) < 0.01);
+  world.set_command(id, drive(0.4, 0.4));
+  run(world, 0.02);
+  const double v0 = world.truth(id).v_WB_mps.x();
+  run(world, 0.01);
+  const double v1 = world.truth(id).v_WB_mps.x();
+  CHECK(read_one<ImuReading>(world, id).acceleration_mps2.x() == Approx((v1 - v0) / 0.01).epsilon(1e-3));
+  CHECK(v1 - v0 > 0.01);
+  world.set_command(id, drive(-0.2, 0.2));
+  run(world, 1);
+  CHECK(read_one<ImuReading>(world, id).angular_velocity_radps.z() ==
+        Approx(world.truth(id).w_WB_radps.z()).epsilon(1e-6));
+}
+
+TEST_CASE("S6: a sonar sees the nearest in its cone, a scanner from left to right") {
+  WorldDescription description = ground();
+  description.boxes.push_back(fixed_box({0.2, 1, 2}, {2.1, 0, 1}));  // ahead, face at x = 2
+  description.boxes.push_back(fixed_box({1, 0.2, 2}, {0, 1.6, 1}));  // to the left, face at y = 1.5
+  RobotDescription robot = load_robot("kenaf");
+  SensorDescription sonar = sensor_of(SensorType::sonar);
+  sonar.X_BS.p = {0.2, 0, 0.1};
+  sonar.min_range_m = 0.05;
+  sonar.max_range_m = 5;
+  sonar.field_of_view_rad = 0.1;
+  SensorDescription scanner = sensor_of(SensorType::range_scanner);
+  scanner.name = "scanner";
+  scanner.X_BS.p = {0, 0, 0.1};
+  scanner.max_range_m = 4;
+  scanner.field_of_view_rad = std::numbers::pi;
+  scanner.resolution_rad = std::numbers::pi / 180;
+  robot.sensors = {sonar, scanner};
+  World world(description, {}, 1);
+  const RobotId id = world.add_robot(robot, "a", {});
+  std::vector<SensorSample> samples;
+  world.read_sensors(id, samples);
+  CHECK(std::get<SonarReading>(samples[0].reading).range_m == Approx(1.8).margin(5e-3));
+  const auto& scan = std::get<RangeScanReading>(samples[1].reading).range_m;
+  REQUIRE(scan.size() == 181);
+  CHECK(scan[0] == Approx(1.5).margin(5e-3));
+  CHECK(scan[90] == Approx(2.0).margin(5e-3));
+  CHECK(scan[180] == 4);
+}
+
+TEST_CASE("S7: GPS: x is east, y is north, and a roof takes the fix") {
+  World world(ground(), {}, 1);
+  const RobotId id =
+      world.add_robot(with_sensor(sensor_of(SensorType::gps)), "a", {{0, 1000, 0}, Eigen::Quaterniond::Identity()});
+  const auto north = read_one<GpsReading>(world, id);
+  CHECK(north.fix);
+  // a degree of latitude is 111.0 km at 39 degrees
+  CHECK(north.latitude_deg - 39.13383333 == Approx(1 / 111.01).epsilon(2e-3));
+  CHECK(north.longitude_deg == Approx(-77.21666667));
+  world.add_box(fixed_box({2, 2, 0.1}, {0, 1000, 3}));
+  world.step();
+  CHECK_FALSE(read_one<GpsReading>(world, id).fix);
+}
+
+TEST_CASE("S8: a touch sensor feels an obstacle at its mount, and not the ground") {
+  WorldDescription description = ground();
+  description.boxes.push_back(fixed_box({0.2, 1, 1}, {0.5, 0, 0.5}));
+  SensorDescription sensor = sensor_of(SensorType::touch);
+  sensor.X_BS.p = {0.29, 0, 0};
+  World world(description, {}, 1);
+  const RobotId id = world.add_robot(with_sensor(sensor), "a", {});
+  RobotCommand command = drive(0, 0, 1.8, 1.8);
+  world.set_command(id, command);
+  run(world, 1);
+  CHECK_FALSE(read_one<TouchReading>(world, id).touched);
+  command.track_speed_mps = {0.1, 0.1};
+  world.set_command(id, command);
+  bool touched = false;
+  for (int i = 0; i < 150 && !touched; ++i) {
+    run(world, 0.01);
+    touched = read_one<TouchReading>(world, id).touched;
+  }
+  CHECK(touched);
+  // the track's front is 0.29 m ahead of the centre, the box begins at 0.4
+  CHECK(world.truth(id).X_WB.p.x() == Approx(0.11).margin(0.005));
+}
+
+TEST_CASE("S9: currents follow force, the battery sags with them and runs down") {
+  RobotDescription robot = with_sensor(sensor_of(SensorType::drives));
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(robot, "a", {});
+  run(world, 1);
+  const auto idle = read_one<DrivesReading>(world, id);
+  CHECK(idle.track_a[kLeft] < 0.05);
+  world.set_command(id, drive(-0.3, 0.3));
+  run(world, 1);
+  const auto turning = read_one<DrivesReading>(world, id);
+  const RobotTruth truth = world.truth(id);
+  CHECK(turning.track_a[kLeft] == Approx(0.04 * std::abs(truth.track_force_n[kLeft]) + 0.3));
+  CHECK(turning.track_a[kLeft] > 1);
+  double total = turning.track_a[kLeft] + turning.track_a[kRight];
+  for (const double a : turning.flipper_a) total += a;
+  CHECK(turning.battery_v == Approx(25.9 - 0.1 * total));
+  CHECK(truth.battery_left_s == Approx(3600 - 2));
+}
+
+TEST_CASE("S10: a reset sensor starts from zero, an INS from the pose it is told") {
+  RobotDescription robot = load_robot("kenaf");
+  robot.sensors = {sensor_of(SensorType::encoder), sensor_of(SensorType::odometry), sensor_of(SensorType::ins)};
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(robot, "a", {});
+  world.set_command(id, drive(0.2, 0.2));
+  run(world, 1);
+  for (std::size_t i = 0; i < 3; ++i) world.reset_sensor(id, i);
+  world.reset_sensor(id, 2, GroundTruthReading{{10, 20, 0}, {0, 0, std::numbers::pi / 2}});
+  run(world, 1);
+  std::vector<SensorSample> samples;
+  world.read_sensors(id, samples);
+  CHECK(static_cast<double>(std::get<EncoderReading>(samples[0].reading).counts[kLeft]) ==
+        Approx(0.2 / 0.065 * 2000 / (2 * std::numbers::pi)).margin(2));
+  CHECK(std::get<OdometryReading>(samples[1].reading).x_m == Approx(0.2).margin(1e-3));
+  // it believes to look along +y, so 0.2 m ahead are 0.2 m in y
+  const auto ins = std::get<InsReading>(samples[2].reading);
+  CHECK(ins.p_WB_m.x() == Approx(10).margin(2e-3));
+  CHECK(ins.p_WB_m.y() == Approx(20.2).margin(2e-3));
+  CHECK(ins.roll_pitch_yaw_rad.z() == Approx(std::numbers::pi / 2).margin(2e-3));
+  CHECK_THROWS_AS(world.reset_sensor(id, 9), std::out_of_range);
+}
