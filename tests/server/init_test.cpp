@@ -154,13 +154,13 @@ TEST_CASE("start poses are told before INIT, in each dialect's form") {
   Conversation ut2004;
   const std::string groups = ut2004.answer_to("GETSTARTPOSES\r\n");
   CHECK(
-      groups.starts_with("NFO {StartPoses 16} {Name start_00 Location 0.0000,0.0000,-0.1000 Orientation "
-                         "0.0000,0.0000,0.0000} {Name start_01 Location 0.0000,-2.0000,-0.1000 Orientation "));
+      groups.starts_with("NFO {StartPoses 16} {Name start_00 Location 0.0000,0.0000,0.0000 Orientation "
+                         "0.0000,0.0000,0.0000} {Name start_01 Location 0.0000,-2.0000,0.0000 Orientation "));
   Conversation udk(fast(true));
   const std::string triplets = udk.answer_to("GetStartPoses\r\n");
   CHECK(
-      triplets.starts_with("NFO {StartPoses 16} {start_00 0.0000,0.0000,-0.1000 0.0000,0.0000,0.0000 start_01 "
-                           "0.0000,-2.0000,-0.1000 0.0000,0.0000,0.0000 start_02 "));
+      triplets.starts_with("NFO {StartPoses 16} {start_00 0.0000,0.0000,0.0000 0.0000,0.0000,0.0000 start_01 "
+                           "0.0000,-2.0000,0.0000 0.0000,0.0000,0.0000 start_02 "));
   CHECK(triplets.ends_with("0.0000,0.0000,0.0000}"));
 }
 
@@ -173,7 +173,7 @@ TEST_CASE("the robot leaves with its connection") {
   CHECK(talk.simulation.world.robots().empty());
 }
 
-TEST_CASE("--robot replaces what USARBot.Kenaf is, and nothing else") {
+TEST_CASE("the option --robot replaces what USARBot.Kenaf is, and nothing else") {
   ServerOptions options = fast();
   options.robot = "p2at";
   Conversation talk(options);
