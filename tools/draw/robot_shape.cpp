@@ -195,6 +195,14 @@ std::vector<Point> Mapping::operator()(const std::vector<Point>& points) const {
   return mapped;
 }
 
+Rectangle seen_part(const std::vector<Point>& outline, const Rectangle& area) {
+  const auto [left, right] = std::ranges::minmax_element(outline, {}, [](const Point& p) { return p.x(); });
+  const auto [top, bottom] = std::ranges::minmax_element(outline, {}, [](const Point& p) { return p.y(); });
+  const double seen_left = std::max(left->x(), area.left), seen_top = std::max(top->y(), area.top);
+  return {seen_left, seen_top, std::min(right->x(), area.right()) - seen_left,
+          std::min(bottom->y(), area.bottom()) - seen_top};
+}
+
 Mapping fit(const Rectangle& area, Point low, Point high) {
   const double metres_per_pixel = std::max((high.x() - low.x()) / area.width, (high.y() - low.y()) / area.height);
   const Point half = 0.5 * metres_per_pixel * Point(area.width, area.height);

@@ -49,6 +49,9 @@ struct Mapping {
   std::vector<Point> operator()(const std::vector<Point>& points) const;
 };
 
+// What of an outline's bounding box lies in `area`; width or height <= 0: nothing of it.
+Rectangle seen_part(const std::vector<Point>& outline, const Rectangle& area);
+
 // The mapping that shows low..high in `area`, grown to the area's shape about its centre.
 Mapping fit(const Rectangle& area, Point low, Point high);
 

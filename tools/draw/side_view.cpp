@@ -80,12 +80,9 @@ void draw_side_boxes(const Canvas& canvas, const Mapping& map, const std::vector
     canvas.fill(palette::kBox);
     canvas.stroke(palette::kBoxEdge, 1.4);
     const std::string label = fmt::format("{:.0f} mm", (box.X_WBox.p.z() + box.size_m.z() / 2) * 1000);
-    const auto [left, right] = std::ranges::minmax_element(outline, {}, [](const Point& p) { return p.x(); });
-    const auto [top, bottom] = std::ranges::minmax_element(outline, {}, [](const Point& p) { return p.y(); });
-    const double seen_left = std::max(left->x(), map.area.left), seen_right = std::min(right->x(), map.area.right());
-    const double seen_bottom = std::min(bottom->y(), map.area.bottom());
-    if (seen_right - seen_left > canvas.text_width(label, kTimeLabelSize) + 8 && seen_bottom - top->y() > 22) {
-      canvas.text({(seen_left + seen_right) / 2, (top->y() + seen_bottom) / 2 + 4}, label, kTimeLabelSize,
+    const Rectangle seen = seen_part(outline, map.area);
+    if (seen.width > canvas.text_width(label, kTimeLabelSize) + 8 && seen.height > 22) {
+      canvas.text({seen.left + seen.width / 2, seen.top + seen.height / 2 + 4}, label, kTimeLabelSize,
                   palette::kGreyInk, Align::centre);
     }
   }

@@ -30,13 +30,15 @@ void draw_boxes(const Canvas& canvas, const Mapping& map, const Scene& scene) {
   std::vector<physics::Box> boxes = scene.world.boxes;
   std::ranges::stable_sort(boxes, {}, top_m);
   for (const physics::Box& box : boxes) {
-    canvas.polygon(map(box_outline(box, kFromAbove)));
+    const std::vector<Point> outline = map(box_outline(box, kFromAbove));
+    canvas.polygon(outline);
     canvas.fill(palette::kBox);
     canvas.stroke(palette::kBoxEdge, 1.2);
     const std::string label = fmt::format("{:.0f} mm high", top_m(box) * 1000);
-    const double room = std::min(box.size_m.x(), box.size_m.y()) * map.pixels_per_metre();
-    if (canvas.text_width(label, 10.5) + 8 < room) {
-      canvas.text(map(kFromAbove(box.X_WBox.p)) + Point(0, 4), label, 10.5, palette::kGreyInk, Align::centre);
+    const Rectangle seen = seen_part(outline, map.area);
+    if (canvas.text_width(label, 10.5) + 8 < std::min(seen.width, seen.height)) {
+      canvas.text({seen.left + seen.width / 2, seen.top + seen.height / 2 + 4}, label, 10.5, palette::kGreyInk,
+                  Align::centre);
     }
   }
 }
