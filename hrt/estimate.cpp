@@ -12,6 +12,9 @@ namespace {
 // stays far below what the last, slow part of a turn can notice.
 constexpr double kHeadingSmoothing_s = 0.05;
 
+// Thirty years: in nanoseconds, a difference of two such times still fits 64 bits.
+constexpr double kLongest_s = 1e9;
+
 // Travel below this is the encoder's resolution, not motion.
 constexpr double kStillTravel_m = 0.00025;
 
@@ -23,7 +26,7 @@ const Estimate& Estimator::update(const relay::State& state) {
   now.frame = state.frame;
   // The clock's zero is anywhere: in whole nanoseconds since the first cycle, the same run has the same times to the
   // last bit whenever it begins.
-  const std::int64_t t_ns = std::llround(state.robot_time_s * 1e9);
+  const std::int64_t t_ns = std::llround(std::clamp(state.robot_time_s, -kLongest_s, kLongest_s) * 1e9);
   if (first) start_ns_ = t_ns_ = t_ns;
   now.dt_s = static_cast<double>(std::max<std::int64_t>(0, t_ns - t_ns_)) * 1e-9;
   now.t_s = static_cast<double>(t_ns - start_ns_) * 1e-9;
