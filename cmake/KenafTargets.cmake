@@ -50,18 +50,22 @@ function(kenaf_program name)
   install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT programs)
 endfunction()
 
-# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l...): one Catch2 program; ctest sees each of its test cases.
+# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [TIMEOUT s] [COST c]): one Catch2 program; ctest sees each of
+# its test cases, and starts those of the highest cost first.
 function(kenaf_test name)
-  cmake_parse_arguments(TEST "" "TIMEOUT" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  cmake_parse_arguments(TEST "" "TIMEOUT;COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
   if(NOT TEST_TIMEOUT)
     set(TEST_TIMEOUT 120)
   endif()
+  if(NOT TEST_COST)
+    set(TEST_COST 0)
+  endif()
   add_executable(${name} ${TEST_SOURCES})
-  target_link_libraries(${name} PRIVATE kenaf_test_main ${TEST_LIBRARIES} kenaf_warnings)
+  target_link_libraries(${name} PRIVATE Catch2::Catch2WithMain ${TEST_LIBRARIES} kenaf_warnings)
   target_compile_definitions(${name} PRIVATE KENAF_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   catch_discover_tests(${name}
     TEST_PREFIX "${name}: "
-    PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT})
+    PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT} COST ${TEST_COST})
 endfunction()
 
 # kenaf_fuzzer(NAME SOURCE s LIBRARIES l...): one libFuzzer target, seeded from fuzz/corpus/NAME.

@@ -29,6 +29,12 @@ btVector3 belt_direction(const Surface& surface, const btCollisionObject& body, 
 
 }  // namespace
 
+void ContactSolver::forget_contacts_of(const btCollisionObject& object) {
+  const void* collider = object.getUserPointer();
+  std::erase_if(contacts_,
+                [collider](const Contact& c) { return c.collider_a == collider || c.collider_b == collider; });
+}
+
 btScalar ContactSolver::solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds,
                                    int manifold_count, btTypedConstraint** constraints, int constraint_count,
                                    const btContactSolverInfo& info, btIDebugDraw* debug, btDispatcher* dispatcher) {

@@ -46,6 +46,8 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
 
   void add_belt(Belt* belt) { belts_.push_back(belt); }
   void remove_belt(Belt* belt) { std::erase(belts_, belt); }
+  // For what leaves the world: contacts() no longer speaks of it.
+  void forget_contacts_of(const btCollisionObject& object);
   btScalar solveGroup(btCollisionObject** bodies, int body_count, btPersistentManifold** manifolds, int manifold_count,
                       btTypedConstraint** constraints, int constraint_count, const btContactSolverInfo& info,
                       btIDebugDraw* debug, btDispatcher* dispatcher) override;

@@ -42,7 +42,10 @@ RobotModel::RobotModel(const RobotDescription& robot, RobotId id, btDiscreteDyna
 RobotModel::~RobotModel() {
   for (FlipperBody& flipper : flippers_)
     if (flipper.joint) world_.removeConstraint(flipper.joint.get());
-  for (btRigidBody* body : body_list_) world_.removeRigidBody(body);
+  for (btRigidBody* body : body_list_) {
+    solver_.forget_contacts_of(*body);
+    world_.removeRigidBody(body);
+  }
   for (Belt& belt : belts_) solver_.remove_belt(&belt);
 }
 

@@ -70,6 +70,7 @@ void Scene::add_box(BoxId id, const Box& box) {
 void Scene::remove_box(BoxId id) {
   const auto found = boxes_.find(id);
   if (found == boxes_.end()) throw std::out_of_range("no such box");
+  solver_.forget_contacts_of(*found->second.body);
   world_.removeRigidBody(found->second.body.get());
   boxes_.erase(found);
 }

@@ -1,4 +1,5 @@
-// P1 lifted until free, P2 teleport, P3 many robots, P4 rays, P5 boxes, P6 mission packages, P7 bad calls.
+// P1 lifted until free, P2 teleport, P3 many robots, P4 rays, P5 boxes, P6 mission packages, P7 bad calls,
+// P8 leaving.
 #include <catch2/catch.hpp>
 #include <limits>
 
@@ -136,4 +137,18 @@ TEST_CASE("P7: what is no pose, no number or no robot is refused") {
   CHECK(world.truth(id).X_WB.p.allFinite());
   CHECK_THROWS_AS(world.set_command(RobotId{99}, {}), std::out_of_range);
   CHECK_THROWS_AS(World(ground(), {.time_step_s = 0}, 1), std::invalid_argument);
+}
+
+TEST_CASE("P8: what leaves takes its contacts with it, before the next step too") {
+  World world(ground(), {}, 1);
+  const RobotId first = world.add_robot(load_robot("kenaf"), "a", {});
+  const BoxId crate = world.add_box(loose_box({0.2, 0.2, 0.2}, {{2, 0, 0.1}, Eigen::Quaterniond::Identity()}, 1, 1));
+  run(world, 0.5);
+  CHECK(world.contact_count() > 0);
+  world.remove_robot(first);
+  world.remove_box(crate);
+  CHECK(world.contact_count() == 0);
+  const RobotId second = world.add_robot(load_robot("kenaf"), "a", {});  // its touch sensor looks at the contacts
+  run(world, 0.5);
+  CHECK(world.truth(second).X_WB.p.z() == Approx(0.09).margin(1e-3));
 }

@@ -350,7 +350,7 @@ TEST_CASE("hostile datagrams: a log line, nothing dead, nothing lost") {
   std::mt19937 random(1);
   std::array<std::byte, 600> bytes;
   const auto attack = [&] {
-    for (int i = 0; i < 50; ++i) {
+    for (std::uint32_t i = 0; i < 50; ++i) {
       for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
       const std::size_t size = relay::encode(attacker.command(1 + i % 3, 0, 5, 5), bytes);
       const std::size_t cut = i % 2 == 0 ? size : random() % bytes.size();

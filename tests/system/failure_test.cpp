@@ -63,7 +63,7 @@ Observer::Sighting wait_for_motion(Observer& observer) {
 }  // namespace
 
 TEST_CASE("F1 F2 the world server dies and comes back") {
-  Chain chain("1");
+  Chain chain("3");
   support::Process program = chain.start_program("square_sim");
   Observer observer(chain.world_port());
   wait_for_motion(observer);
@@ -114,7 +114,7 @@ TEST_CASE("F3 the robot stands within 0.5 s of robot time after its program was 
 }
 
 TEST_CASE("F4 a second commander is refused with a reason") {
-  Chain chain("1");
+  Chain chain("3");
   const auto record = chain.folder() / "first.csv";
   support::Process first = chain.start_program("square_sim", {{"KENAF_RECORD", record.string()}});
   Observer observer(chain.world_port());

@@ -74,7 +74,7 @@ TEST_CASE("S4 garbage at both ports during the run changes nothing") {
   Chain quiet("0");
   const std::vector<Pose2> reference = drive_square(quiet);
 
-  Chain chain("1");
+  Chain chain("2");
   support::Process garbage({"/bin/bash", KENAF_SOURCE_DIR "/scripts/throw-garbage.sh",
                             std::to_string(chain.world_port()), std::to_string(chain.relay_port()), "6"},
                            chain.folder() / "garbage.log");
