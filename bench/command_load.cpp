@@ -43,15 +43,23 @@ class Tap {
     port_ = ntohs(address.sin_port);
     thread_ = std::thread([this, world_port] { pass(world_port); });
   }
-  ~Tap() { thread_.join(); }
+  ~Tap() {
+    ::shutdown(listener_, SHUT_RDWR);
+    thread_.join();
+    ::close(listener_);
+  }
   Tap(const Tap&) = delete;
   Tap& operator=(const Tap&) = delete;
   std::uint16_t port() const { return port_; }
   std::size_t distinct_speeds() const { return distinct_.load(); }
 
  private:
+  // One connection after the other, as the relay makes them.
   void pass(std::uint16_t world_port) {
-    const int relay = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+    for (int relay; (relay = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC)) >= 0;) pass(relay, world_port);
+  }
+  void pass(int relay, std::uint16_t world_port) {
+    lines_ = {};
     const int world = connected_socket(SOCK_STREAM, world_port);
     const int on = 1;
     ::setsockopt(relay, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
@@ -71,7 +79,6 @@ class Tap {
     }
     ::close(relay);
     ::close(world);
-    ::close(listener_);
   }
   void note(std::string_view text) {
     lines_.push(text);
