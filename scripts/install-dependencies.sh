@@ -15,7 +15,7 @@ case ${1:-all} in
   all)
     packages+=(
       # tests
-      abigail-tools binutils catch2 clang iproute2 libclang-rt-14-dev
+      abigail-tools binutils catch2 clang iproute2 libclang-rt-14-dev llvm
       # the CAN tests
       busybox-static can-utils cpio kmod qemu-system-x86 xz-utils
       # the package
