@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <numbers>
 #include <set>
-#include <sstream>
 
+#include "physics/description_file.hpp"
 #include "physics/toml_reader.hpp"
 #include "protocol/data_files.hpp"
 
@@ -218,19 +217,8 @@ RobotDescription parse_robot(std::string_view toml_text, const std::string& name
 }
 
 RobotDescription load_robot(const std::string& name_or_path) {
-  const std::filesystem::path path = find_data_file("robots", name_or_path, ".toml");
-  if (path.empty())
-    throw DescriptionError(
-        fmt::format("robot \"{}\": no such description; give the name of a file in robots/ without "
-                    "its ending, or the path of a .toml file",
-                    name_or_path));
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in || text.fail())
-    throw DescriptionError(
-        fmt::format("{}: cannot be read; check that the file exists and its permissions", path.string()));
-  return parse_robot(text.str(), path.string());
+  const DescriptionFile file = read_description_file("robot", name_or_path, ".toml");
+  return parse_robot(file.text, file.path);
 }
 
 std::string robot_name_for_class(std::string_view usarsim_class) {

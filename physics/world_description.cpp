@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <sdf/sdf.hh>
 #include <set>
-#include <sstream>
 
-#include "protocol/data_files.hpp"
+#include "physics/description_file.hpp"
 
 namespace kenaf::physics {
 namespace {
@@ -183,19 +181,8 @@ WorldDescription parse_world(std::string_view sdf_text, const std::string& name_
 }
 
 WorldDescription load_world(const std::string& name_or_path, std::vector<std::string>& unsupported) {
-  const std::filesystem::path path = find_data_file("worlds", name_or_path, ".sdf");
-  if (path.empty())
-    throw DescriptionError(
-        fmt::format("world \"{}\": no such description; give the name of a file in worlds/ without its "
-                    "ending, or the path of an .sdf file",
-                    name_or_path));
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in || text.fail())
-    throw DescriptionError(
-        fmt::format("{}: cannot be read; check that the file exists and its permissions", path.string()));
-  return parse_world(text.str(), path.string(), unsupported);
+  const DescriptionFile file = read_description_file("world", name_or_path, ".sdf");
+  return parse_world(file.text, file.path, unsupported);
 }
 
 }  // namespace kenaf::physics
