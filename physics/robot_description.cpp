@@ -49,6 +49,7 @@ TrackDescription read_track(TomlReader table) {
       .friction_along = table.number("friction_along", kFriction),
       .friction_across = table.number("friction_across", kFriction),
       .pieces = table.integer("pieces", 1, 32),
+      .lug_height_m = table.number_or("lug_height_m", 0, {.min = 0, .max = 0.05}),
   };
   if (track.length_m <= 2 * track.end_radius_m) table.fail("length_m", "must be more than twice end_radius_m");
   if (track.p_BT_m.y() <= track.width_m / 2) table.fail("left_center_m", "must have a y of more than half of width_m");
@@ -168,6 +169,20 @@ MissionPackageDescription read_mission_package(TomlReader& table) {
   return package;
 }
 
+Effects read_effects(TomlReader file) {
+  Effects effects;
+  for (const EffectInfo& effect : effect_catalogue()) {
+    if (!file.has(effect.name)) continue;
+    TomlReader table = file.table(effect.name);
+    for (const EffectParameter& parameter : effect.parameters)
+      effects.*(parameter.value) =
+          table.number_or(parameter.name, parameter.neutral, {.min = parameter.min, .max = parameter.max});
+    table.finish();
+  }
+  file.finish();
+  return effects;
+}
+
 }  // namespace
 
 std::string_view usarsim_type_name(SensorType type) {
@@ -212,6 +227,7 @@ RobotDescription parse_robot(std::string_view toml_text, const std::string& name
   }
   for (TomlReader& table : file.tables("mission_package"))
     robot.mission_packages.push_back(read_mission_package(table));
+  if (file.has("effects")) robot.effects = read_effects(file.table("effects"));
   file.finish();
   return robot;
 }

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "physics/effects.hpp"
 #include "physics/pose.hpp"
 #include "physics/robot_command.hpp"
 
@@ -40,6 +41,7 @@ struct TrackDescription {
   double friction_along;           // rolling direction
   double friction_across;
   int pieces;                      // of the belly with contacts of their own; they spread the load along it
+  double lug_height_m;             // what of the belt's profile catches behind an edge
 };
 
 struct TrackDriveDescription {
@@ -120,6 +122,7 @@ struct RobotDescription {
   BatteryDescription battery{};
   std::vector<SensorDescription> sensors;
   std::vector<MissionPackageDescription> mission_packages;
+  Effects effects;                 // switched on by [effects.NAME] tables
 
   bool has_flippers() const { return !flipper.empty(); }
   double total_mass_kg() const;

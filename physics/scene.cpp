@@ -25,7 +25,7 @@ Scene::Scene(const WorldDescription& description, const PhysicsSettings& setting
   info.m_erp = kJointCorrection;
   world_.getSimulationIslandManager()->setSplitIslands(false);  // belts belong to no island
   world_.setForceUpdateAllAabbs(false);
-  world_.setGravity({0, 0, -description.gravity_mps2});
+  world_.setGravity(to_bullet(description.gravity_W_mps2));
   for (const GroundPlane& plane : description.planes) {
     Fixture& fixture = planes_.emplace_back();
     fixture.shape = std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0);

@@ -53,7 +53,7 @@ struct World::Implementation {
   void build_robot(RobotId id, RobotEntry& entry) {
     entry.model = std::make_unique<RobotModel>(entry.description, id, scene->dynamics(), scene->solver());
     entry.sensors = std::make_unique<SensorSet>(entry.model->description, entry.name, seed, settings.time_step_s,
-                                                description.gravity_mps2);
+                                                description.gravity_W_mps2);
     entry.mission.clear();
     for (const MissionPackageDescription& package : entry.description.mission_packages) {
       auto& links = entry.mission.emplace_back();

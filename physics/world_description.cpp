@@ -140,7 +140,7 @@ WorldDescription read_world(Reader& reader, const sdf::World& world) {
   const auto gravity = world.Gravity();
   if (std::abs(gravity.X()) > 1e-9 || std::abs(gravity.Y()) > 1e-9 || !(gravity.Z() <= 0 && gravity.Z() > -1000))
     reader.fail(world.Element(), "<gravity> must point along -z; tilt the ground instead");
-  reader.world.gravity_mps2 = -gravity.Z();
+  reader.world.gravity_W_mps2 = {0, 0, gravity.Z()};
 
   for (std::uint64_t m = 0; m < world.ModelCount(); ++m) read_model(reader, *world.ModelByIndex(m));
   for (std::uint64_t f = 0; f < world.FrameCount(); ++f) {

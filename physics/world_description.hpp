@@ -2,6 +2,8 @@
 // World frame W: x forward, y left, z up. SI units. Thread safety: a value.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -25,6 +27,15 @@ struct Box {
   double mass_kg = 0;     // 0: fixed in the world
 };
 
+// A fixed surface of triangles: a mesh, a height map, or a shape that is neither box nor plane. Solid on the side
+// against which a triangle's normal (right-hand rule) points.
+struct TriangleMesh {
+  std::string name;
+  std::vector<Eigen::Vector3d> vertices_W;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  double friction = 1;
+};
+
 struct StartPose {
   std::string name;       // "PlayerStart_0" where the file names none
   Pose X_WB;
@@ -32,9 +43,10 @@ struct StartPose {
 
 struct WorldDescription {
   std::string name;
-  double gravity_mps2 = 9.80665;
+  Eigen::Vector3d gravity_W_mps2{0, 0, -9.80665};
   std::vector<GroundPlane> planes;
   std::vector<Box> boxes;
+  std::vector<TriangleMesh> meshes;
   std::vector<StartPose> start_poses;   // SDF frames attached to the world whose name begins with "start"; at least one
 };
 

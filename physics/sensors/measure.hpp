@@ -27,7 +27,7 @@ GroundTruthReading measure_ground_truth(const MotionSample& now);
 InsReading measure_ins(const SensorDescription& sensor, SensorState& state, const MotionSample& now);
 // `before` is one averaging time earlier: accelerations are the mean between the two.
 ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
-                       const MotionSample& before, double gravity_mps2);
+                       const MotionSample& before, const Eigen::Vector3d& gravity_W_mps2);
 
 EncoderReading measure_encoder(const SensorState& state, const MotionSample& now, const TrackDriveDescription& drive);
 OdometryReading measure_odometry(const SensorState& state, const MotionSample& now);

@@ -21,13 +21,13 @@ InsReading measure_ins(const SensorDescription& sensor, SensorState& state, cons
 }
 
 ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
-                       const MotionSample& before, double gravity_mps2) {
+                       const MotionSample& before, const Eigen::Vector3d& gravity_W_mps2) {
   const double dt = now.t_s - before.t_s;
   // velocity where the sensor is mounted
   const auto velocity = [&sensor](const MotionSample& s) -> Eigen::Vector3d {
     return s.v_WB_mps + s.w_WB_radps.cross(s.X_WB.q * sensor.X_BS.p);
   };
-  Eigen::Vector3d acceleration_W(0, 0, gravity_mps2), turn_W(0, 0, 0);
+  Eigen::Vector3d acceleration_W = -gravity_W_mps2, turn_W(0, 0, 0);
   if (dt > 0) {
     acceleration_W += (velocity(now) - velocity(before)) / dt;
     turn_W = (now.w_WB_radps - before.w_WB_radps) / dt;

@@ -31,10 +31,10 @@ std::size_t history_length(const RobotDescription& robot, double time_step_s) {
 }  // namespace
 
 SensorSet::SensorSet(const RobotDescription& robot, const std::string& robot_name, std::uint64_t world_seed,
-                     double time_step_s, double gravity_mps2)
+                     double time_step_s, const Eigen::Vector3d& gravity_W_mps2)
     : robot_(robot),
       time_step_s_(time_step_s),
-      gravity_mps2_(gravity_mps2),
+      gravity_W_mps2_(gravity_W_mps2),
       history_(history_length(robot, time_step_s)) {
   for (const SensorDescription& sensor : robot.sensors) {
     Entry& entry = entries_.emplace_back(SensorState(NoiseSource(world_seed, robot_name, sensor.name)),
@@ -79,7 +79,7 @@ Reading SensorSet::measure(std::size_t i, const RayCaster& cast) {
       return measure_ins(sensor, entry.state, now);
     case SensorType::imu: {
       const MotionSample& before = history_.back(entry.delay_steps + averaging_steps(sensor, time_step_s_));
-      return measure_imu(sensor, entry.state, now, before, gravity_mps2_);
+      return measure_imu(sensor, entry.state, now, before, gravity_W_mps2_);
     }
     case SensorType::encoder:
       return measure_encoder(entry.state, now, robot_.drive);

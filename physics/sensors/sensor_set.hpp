@@ -14,7 +14,7 @@ namespace kenaf::physics {
 class SensorSet {
  public:
   SensorSet(const RobotDescription& robot, const std::string& robot_name, std::uint64_t world_seed, double time_step_s,
-            double gravity_mps2);
+            const Eigen::Vector3d& gravity_W_mps2);
 
   // Once after placement and after each step. `touches_B`: where the robot is touched, in B.
   void record(const RobotTruth& truth, double t_s, const std::array<double, kTrackCount>& track_a,
@@ -37,7 +37,8 @@ class SensorSet {
   Reading measure(std::size_t sensor, const RayCaster& cast);
 
   const RobotDescription& robot_;
-  double time_step_s_, gravity_mps2_;
+  double time_step_s_;
+  Eigen::Vector3d gravity_W_mps2_;
   std::vector<Entry> entries_;
   MotionHistory history_;
   bool has_touch_ = false, has_odometry_ = false;

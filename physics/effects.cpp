@@ -1,0 +1,149 @@
+#include "physics/effects.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+
+namespace kenaf::physics {
+namespace {
+
+using P = EffectParameter;
+using E = Effects;
+
+constexpr P kCommandDelay[] = {{"delay_s", "s", 0, 0, 0.5, &E::command_delay_s}};
+constexpr P kCommandLoss[] = {{"probability", "1", 0, 0, 0.9, &E::command_loss}};
+constexpr P kCommandGain[] = {{"gain", "1", 1, 0.5, 1.5, &E::command_gain}};
+constexpr P kCommandSlew[] = {{"slowness_s2pm", "s^2/m", 0, 0, 10, &E::command_slew_s2pm}};
+constexpr P kDriveLag[] = {{"lag_s", "s", 0, 0, 1, &E::drive_lag_s}};
+constexpr P kDriveAsymmetry[] = {{"ratio", "1", 0, -0.5, 0.5, &E::drive_asymmetry}};
+constexpr P kDriveTorque[] = {{"scale", "1", 1, 0.02, 1.5, &E::drive_torque_scale}};
+constexpr P kDriveCoulomb[] = {{"force_n", "N", 0, 0, 100, &E::drive_coulomb_n}};
+constexpr P kDriveViscous[] = {{"damping_nspm", "N s/m", 0, 0, 200, &E::drive_viscous_nspm}};
+constexpr P kBatterySag[] = {{"resistance_ohm", "ohm", 0, 0, 5, &E::battery_resistance_ohm}};
+constexpr P kFlipperLag[] = {{"lag_s", "s", 0, 0, 1, &E::flipper_lag_s}};
+constexpr P kFlipperBacklash[] = {{"angle_rad", "rad", 0, 0, 0.3, &E::flipper_backlash_rad}};
+constexpr P kFlipperCompliance[] = {{"compliance_radpnm", "rad/(N m)", 0, 0, 0.05, &E::flipper_compliance_radpnm}};
+constexpr P kFlipperTorque[] = {{"scale", "1", 1, 0.05, 1.5, &E::flipper_torque_scale}};
+constexpr P kMass[] = {{"scale", "1", 1, 0.5, 2, &E::mass_scale}};
+constexpr P kRollInertia[] = {{"scale", "1", 1, 0.3, 4, &E::roll_inertia_scale}};
+constexpr P kPitchInertia[] = {{"scale", "1", 1, 0.3, 4, &E::pitch_inertia_scale}};
+constexpr P kYawInertia[] = {{"scale", "1", 1, 0.3, 4, &E::yaw_inertia_scale}};
+constexpr P kComForward[] = {{"offset_m", "m", 0, -0.1, 0.1, &E::com_forward_m}};
+constexpr P kComLeft[] = {{"offset_m", "m", 0, -0.05, 0.05, &E::com_left_m}};
+constexpr P kComUp[] = {{"offset_m", "m", 0, -0.05, 0.1, &E::com_up_m}};
+constexpr P kFrictionAlong[] = {{"scale", "1", 1, 0.3, 1.5, &E::friction_along_scale}};
+constexpr P kFrictionAcross[] = {{"scale", "1", 1, 0.2, 2, &E::friction_across_scale}};
+constexpr P kSlipWithSpeed[] = {{"slip_spm", "s/m", 0, 0, 1, &E::slip_with_speed_spm}};
+constexpr P kRollingResistance[] = {{"coefficient", "1", 0, 0, 0.2, &E::rolling_resistance}};
+constexpr P kLugHeight[] = {{"scale", "1", 1, 0, 3, &E::lug_height_scale}};
+constexpr P kGroundCompliance[] = {{"scale", "1", 1, 0.2, 50, &E::ground_compliance_scale}};
+constexpr P kGroundDamping[] = {{"scale", "1", 1, 0.1, 20, &E::ground_damping_scale}};
+constexpr P kObstacleHeight[] = {{"offset_m", "m", 0, -0.05, 0.05, &E::obstacle_height_m}};
+constexpr P kObstaclePosition[] = {{"offset_m", "m", 0, -0.1, 0.1, &E::obstacle_position_m}};
+constexpr P kGroundSlope[] = {{"pitch_rad", "rad", 0, -0.2, 0.2, &E::ground_slope_rad}};
+constexpr P kGroundBank[] = {{"roll_rad", "rad", 0, -0.2, 0.2, &E::ground_bank_rad}};
+constexpr P kEncoderScale[] = {{"scale", "1", 1, 0.8, 1.2, &E::encoder_scale}};
+constexpr P kPostureBias[] = {{"pitch_rad", "rad", 0, -0.1, 0.1, &E::posture_bias_rad}};
+constexpr P kPostureScale[] = {{"scale", "1", 1, 0.7, 1.3, &E::posture_scale}};
+constexpr P kPostureDelay[] = {{"delay_s", "s", 0, 0, 0.5, &E::posture_delay_s}};
+constexpr P kPostureMount[] = {{"yaw_rad", "rad", 0, -0.3, 0.3, &E::posture_mount_rad}};
+
+constexpr EffectInfo kCatalogue[] = {
+    {"command_delay", Stage::command, "commands reach the drives late", kCommandDelay},
+    {"command_loss", Stage::command, "a share of the commands never arrives; the one before holds", kCommandLoss},
+    {"command_gain", Stage::command, "track speeds arrive multiplied", kCommandGain},
+    {"command_slew", Stage::command, "track speeds change by at most 1 / slowness", kCommandSlew},
+    {"drive_lag", Stage::drive, "a second first-order lag in the track's speed loop", kDriveLag},
+    {"drive_asymmetry", Stage::drive, "the left track runs faster than the right one by this share", kDriveAsymmetry},
+    {"drive_torque_limit", Stage::drive, "the track motors' force at standstill, multiplied", kDriveTorque},
+    {"drive_coulomb", Stage::drive, "dry friction of the running gear, felt at the belt", kDriveCoulomb},
+    {"drive_viscous", Stage::drive, "friction of the running gear that grows with speed", kDriveViscous},
+    {"battery_sag", Stage::drive, "more internal resistance: current lowers voltage, voltage lowers force and speed",
+     kBatterySag},
+    {"flipper_lag", Stage::drive, "a first-order lag before the angle that the servo follows", kFlipperLag},
+    {"flipper_backlash", Stage::drive, "free play between servo and arm", kFlipperBacklash},
+    {"flipper_compliance", Stage::drive, "the arm gives way by this angle for each newton metre", kFlipperCompliance},
+    {"flipper_torque_limit", Stage::drive, "the flipper servos' torque, multiplied", kFlipperTorque},
+    {"mass", Stage::body, "mass of the body, and its inertia with it, multiplied", kMass},
+    {"roll_inertia", Stage::body, "moment of inertia of the body about x, multiplied", kRollInertia},
+    {"pitch_inertia", Stage::body, "moment of inertia of the body about y, multiplied", kPitchInertia},
+    {"yaw_inertia", Stage::body, "moment of inertia of the body about z, multiplied", kYawInertia},
+    {"com_forward", Stage::body, "the body's centre of mass lies further ahead", kComForward},
+    {"com_left", Stage::body, "the body's centre of mass lies further left", kComLeft},
+    {"com_up", Stage::body, "the body's centre of mass lies higher", kComUp},
+    {"friction_along", Stage::contact, "friction of the belts in rolling direction, multiplied", kFrictionAlong},
+    {"friction_across", Stage::contact, "friction of the belts across, multiplied", kFrictionAcross},
+    {"slip_with_speed", Stage::contact, "a belt at speed u carries the robot with u (1 - slip |u|)", kSlipWithSpeed},
+    {"rolling_resistance", Stage::contact, "belts are braked by this share of what presses on them",
+     kRollingResistance},
+    {"lug_height", Stage::contact, "height of the lugs that catch at an edge, multiplied", kLugHeight},
+    {"ground_compliance", Stage::terrain, "give of the ground under a load, multiplied", kGroundCompliance},
+    {"ground_damping", Stage::terrain, "damping of the ground under an impact, multiplied", kGroundDamping},
+    {"obstacle_height", Stage::terrain, "obstacles are higher than thought", kObstacleHeight},
+    {"obstacle_position", Stage::terrain, "obstacles are further ahead than thought", kObstaclePosition},
+    {"ground_slope", Stage::terrain, "the world is tilted, down ahead", kGroundSlope},
+    {"ground_bank", Stage::terrain, "the world is tilted, down to the right", kGroundBank},
+    {"encoder_scale", Stage::sensor, "encoders report track travel and speed multiplied", kEncoderScale},
+    {"posture_bias", Stage::sensor, "the posture sensor's pitch has an offset", kPostureBias},
+    {"posture_scale", Stage::sensor, "the posture sensor's roll and pitch are multiplied", kPostureScale},
+    {"posture_delay", Stage::sensor, "the posture sensor reports late", kPostureDelay},
+    {"posture_mount", Stage::sensor, "the posture sensor is mounted turned about the vertical", kPostureMount},
+};
+
+template <typename Range>
+std::string names_of(const Range& range) {
+  std::vector<std::string_view> names;
+  for (const auto& item : range) names.push_back(item.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+std::string_view stage_name(Stage stage) {
+  constexpr std::string_view names[] = {"command", "drive", "body", "contact", "terrain", "sensor"};
+  return names[static_cast<std::size_t>(stage)];
+}
+
+std::span<const EffectInfo> effect_catalogue() {
+  return kCatalogue;
+}
+
+const EffectInfo* find_effect(std::string_view name) {
+  const auto found = std::ranges::find(kCatalogue, name, &EffectInfo::name);
+  return found == std::end(kCatalogue) ? nullptr : &*found;
+}
+
+const EffectParameter* find_parameter(const EffectInfo& effect, std::string_view name) {
+  const auto found = std::ranges::find(effect.parameters, name, &EffectParameter::name);
+  return found == effect.parameters.end() ? nullptr : &*found;
+}
+
+void set_effect(Effects& effects, std::string_view assignment) {
+  const std::size_t colon = assignment.find(':'), equals = assignment.find('=');
+  if (colon == assignment.npos || equals == assignment.npos || equals < colon)
+    throw std::invalid_argument(
+        fmt::format("effect \"{}\": write NAME:PARAMETER=VALUE, such as command_delay:delay_s=0.05", assignment));
+  const std::string_view name = assignment.substr(0, colon);
+  const std::string_view parameter_name = assignment.substr(colon + 1, equals - colon - 1);
+  const std::string_view number = assignment.substr(equals + 1);
+  const EffectInfo* effect = find_effect(name);
+  if (!effect)
+    throw std::invalid_argument(fmt::format("effect \"{}\": there are {}", name, names_of(effect_catalogue())));
+  const EffectParameter* parameter = find_parameter(*effect, parameter_name);
+  if (!parameter)
+    throw std::invalid_argument(
+        fmt::format("effect {}: has no parameter \"{}\", but {}", name, parameter_name, names_of(effect->parameters)));
+  double value = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
+  if (error != std::errc{} || end != number.data() + number.size())
+    throw std::invalid_argument(fmt::format("effect {}: \"{}\" is no number", name, number));
+  if (!(value >= parameter->min && value <= parameter->max))
+    throw std::invalid_argument(fmt::format("effect {}: {} = {} is out of range; it goes from {} to {} {}", name,
+                                            parameter_name, value, parameter->min, parameter->max, parameter->unit));
+  effects.*(parameter->value) = value;
+}
+
+}  // namespace kenaf::physics

@@ -1,0 +1,86 @@
+// Effects: the named ways in which a robot or its ground may differ from the nominal model. One catalogue for the
+// simulator, the command line and the diagnosis. docs/effects.md has the physics of each.
+//
+// Every parameter has a neutral value, and with all at neutral a simulation gives the same bits as without effects.
+// Thread safety: values and constants.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kenaf::physics {
+
+// Where between a command and a measurement an effect acts. The same number of seconds is another effect in each stage.
+enum class Stage { command, drive, body, contact, terrain, sensor };
+std::string_view stage_name(Stage stage);
+
+// The value of every parameter. The physics reads these members; everything else goes through the catalogue.
+struct Effects {
+  // command: what becomes of a command before the drives get it
+  double command_delay_s = 0;
+  double command_loss = 0;       // share of commands that do not arrive
+  double command_gain = 1;       // of track speeds
+  double command_slew_s2pm = 0;  // track speeds change by 1 / this at most
+  // drive: between the command that arrived and belt or flipper
+  double drive_lag_s = 0;      // a second first-order lag of the speed loop
+  double drive_asymmetry = 0;  // left track faster by half of it, right one slower
+  double drive_torque_scale = 1;
+  double drive_coulomb_n = 0;  // friction of the running gear, at the belt
+  double drive_viscous_nspm = 0;
+  double battery_resistance_ohm = 0;  // added to the battery's own
+  double flipper_lag_s = 0;           // of the angle that the servo follows
+  double flipper_backlash_rad = 0;    // free play, between both ends
+  double flipper_compliance_radpnm = 0;
+  double flipper_torque_scale = 1;
+  // body
+  double mass_scale = 1;  // of the body, its inertia with it
+  double roll_inertia_scale = 1, pitch_inertia_scale = 1, yaw_inertia_scale = 1;
+  double com_forward_m = 0, com_left_m = 0, com_up_m = 0;  // of the body's centre of mass
+  // contact: between belt and ground
+  double friction_along_scale = 1, friction_across_scale = 1;
+  double slip_with_speed_spm = 0;  // belt's surface speed u drives as u (1 - this |u|)
+  double rolling_resistance = 0;   // force against the belt's motion for a unit of normal force
+  double lug_height_scale = 1;
+  // terrain
+  double ground_compliance_scale = 1, ground_damping_scale = 1;
+  double obstacle_height_m = 0;    // what is not under the start is higher
+  double obstacle_position_m = 0;  // what is not under the start is further ahead (+x of the world)
+  double ground_slope_rad = 0;     // the whole world falls away forward (+) under level axes
+  double ground_bank_rad = 0;      // the whole world falls away to the right (+)
+  // sensor
+  double encoder_scale = 1;     // reported track travel and speed
+  double posture_bias_rad = 0;  // added to the reported pitch
+  double posture_scale = 1;     // of reported roll and pitch
+  double posture_delay_s = 0;
+  double posture_mount_rad = 0;  // the posture sensor is mounted turned about z
+
+  bool operator==(const Effects&) const = default;
+};
+
+struct EffectParameter {
+  std::string_view name;     // with its unit as the last word, "delay_s"; "scale" has none
+  std::string_view unit;     // "s", "m/s"; "1" for a ratio
+  double neutral, min, max;  // min < max, neutral within
+  double Effects::*value;
+};
+
+struct EffectInfo {
+  std::string_view name;  // "command_delay"
+  Stage stage;
+  std::string_view summary;  // one line of physics
+  std::span<const EffectParameter> parameters;
+};
+
+// In the order of the stages.
+std::span<const EffectInfo> effect_catalogue();
+// Null: there is none of that name.
+const EffectInfo* find_effect(std::string_view name);
+const EffectParameter* find_parameter(const EffectInfo& effect, std::string_view name);
+
+// "command_delay:delay_s=0.05". Throws std::invalid_argument that says what is wrong and what there is: an unknown
+// effect or parameter, no number, out of range.
+void set_effect(Effects& effects, std::string_view assignment);
+
+}  // namespace kenaf::physics
