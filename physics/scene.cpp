@@ -31,11 +31,31 @@ Scene::Scene(const WorldDescription& description, const PhysicsSettings& setting
     fixture.shape = std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
     add_fixture(fixture, 0, plane.friction, plane.X_WP);
   }
+  for (const TriangleMesh& mesh : description.meshes) add_mesh(mesh);
 }
 
 Scene::~Scene() {
   for (auto& [id, box] : boxes_) world_.removeRigidBody(box.body.get());
+  for (MeshFixture& mesh : meshes_) world_.removeRigidBody(mesh.fixture.body.get());
   for (Fixture& plane : planes_) world_.removeRigidBody(plane.body.get());
+}
+
+void Scene::add_mesh(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return;
+  MeshFixture& added = meshes_.emplace_back();
+  added.mesh = mesh;
+  btIndexedMesh layout;
+  layout.m_numTriangles = static_cast<int>(mesh.triangles.size());
+  layout.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(added.mesh.triangles.data());
+  layout.m_triangleIndexStride = sizeof(added.mesh.triangles[0]);
+  layout.m_numVertices = static_cast<int>(mesh.vertices_W.size());
+  layout.m_vertexBase = reinterpret_cast<const unsigned char*>(added.mesh.vertices_W.data());
+  layout.m_vertexStride = sizeof(added.mesh.vertices_W[0]);
+  layout.m_vertexType = PHY_DOUBLE;
+  added.triangles.addIndexedMesh(layout, PHY_INTEGER);
+  constexpr bool kQuantized = true;  // of the tree's boxes, not of the vertices
+  added.fixture.shape = std::make_unique<btBvhTriangleMeshShape>(&added.triangles, kQuantized);
+  add_fixture(added.fixture, 0, mesh.friction, {});
 }
 
 void Scene::add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W) {

@@ -1,6 +1,7 @@
 // The Bullet side of a world: solver, ground and boxes, ray casts, and lifting a robot until it is free.
 #pragma once
 
+#include <list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -45,6 +46,13 @@ class Scene {
     std::unique_ptr<btRigidBody> body;
     std::unique_ptr<Collider> collider;
   };
+  // A fixed body of triangles; Bullet reads vertices and indices where they lie.
+  struct MeshFixture {
+    TriangleMesh mesh;
+    btTriangleIndexVertexArray triangles;
+    Fixture fixture;
+  };
+  void add_mesh(const TriangleMesh& mesh);
   void add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W);
   double lift_needed(RobotModel& robot);
 
@@ -55,6 +63,7 @@ class Scene {
   ContactSolver solver_;
   btDiscreteDynamicsWorld world_;
   std::vector<Fixture> planes_;
+  std::list<MeshFixture> meshes_;  // stay where they are, as Bullet points at them
   std::map<BoxId, Fixture> boxes_;
 };
 

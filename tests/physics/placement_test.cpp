@@ -101,6 +101,19 @@ TEST_CASE("P4: rays") {
   CHECK(world.cast_ray({0, 0, 0.09}, {1, 0, 0}, 10, id)->distance_m == Approx(2.5).margin(2e-3));
 }
 
+TEST_CASE("P4: rays meet meshes, from either side") {
+  WorldDescription description;
+  description.meshes.push_back(roof(0.5));
+  World world(description, {}, 1);
+  // at x = 1 the roof is halfway down from its ridge
+  const auto above = world.cast_ray({1, 0.5, 3}, {0, 0, -1}, 10);
+  REQUIRE(above);
+  CHECK(above->distance_m == Approx(2.75).margin(1e-9));
+  CHECK((above->normal_W - Eigen::Vector3d(0.25, 0, 1).normalized()).norm() < 1e-9);
+  CHECK(world.cast_ray({1, 0.5, 0}, {0, 0, 1}, 10)->distance_m == Approx(0.25).margin(1e-9));
+  CHECK_FALSE(world.cast_ray({3, 0.5, 3}, {0, 0, -1}, 10));
+}
+
 TEST_CASE("P5: boxes come, move and go") {
   World world(ground(), {}, 1);
   const BoxId id = world.add_box(fixed_box({1, 1, 1}, {3, 0, 0.5}));

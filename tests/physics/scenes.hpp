@@ -29,6 +29,14 @@ inline Box loose_box(const Eigen::Vector3d& size_m, const Pose& X_WBox, double m
   return {"box", size_m, X_WBox, friction, mass_kg};
 }
 
+// Two slopes of 2 m by 4 m that fall from a ridge along y at x = 0 to z = 0 at x = 2 m and -2 m.
+inline TriangleMesh roof(double ridge_m) {
+  return {"roof",
+          {{-2, -2, 0}, {0, -2, ridge_m}, {2, -2, 0}, {-2, 2, 0}, {0, 2, ridge_m}, {2, 2, 0}},
+          {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}},
+          1};
+}
+
 // Kenaf without flippers, of one friction coefficient in all directions.
 inline RobotDescription plain_tracks(double friction) {
   RobotDescription robot = load_robot("kenaf");
