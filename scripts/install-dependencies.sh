@@ -8,7 +8,7 @@ set -euo pipefail
 packages=(
   cmake g++ ninja-build pkg-config
   libboost-dev libboost-system-dev libbullet-dev libcairo2-dev libcli11-dev libeigen3-dev libfmt-dev
-  libsdformat-dev libspdlog-dev libtomlplusplus-dev
+  libsdformat-dev libspdlog-dev libtomlplusplus-dev nlohmann-json3-dev
 )
 case ${1:-all} in
   build) ;;

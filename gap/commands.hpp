@@ -1,0 +1,13 @@
+// The subcommands of kenaf-gap. Each declares itself, its options and what it does; what it does throws where the input
+// is bad, in words for the user, which the program prints before it ends with status 2.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace kenaf::gap {
+
+void add_effects_command(CLI::App& program);
+
+}  // namespace kenaf::gap

@@ -1,0 +1,55 @@
+// What the lists of kenaf-gap say, and how it refuses.
+#include "tests/gap/kenaf_gap.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "physics/effects.hpp"
+
+using namespace kenaf;
+using test::kenaf_gap;
+using test::Outcome;
+using test::TemporaryFolder;
+
+TEST_CASE("Effects as JSON: the whole catalogue, and only the keys that scripts rely on") {
+  const TemporaryFolder folder;
+  const Outcome outcome = kenaf_gap(folder, "effects --json");
+  REQUIRE(outcome.status == 0);
+  const auto list = nlohmann::json::parse(outcome.out);
+  REQUIRE(list.size() == physics::effect_catalogue().size());
+  for (const auto& effect : list) {
+    CHECK(effect.size() == 4);
+    CHECK_FALSE(effect.at("summary").get<std::string>().empty());
+    for (const auto& p : effect.at("parameters")) {
+      CHECK(p.size() == 5);
+      CHECK(p.at("min").get<double>() <= p.at("neutral").get<double>());
+      CHECK(p.at("neutral").get<double>() <= p.at("max").get<double>());
+      // what is listed can be given
+      physics::Effects effects;
+      physics::set_effect(effects, effect.at("name").get<std::string>() + ":" + p.at("name").get<std::string>() + "=" +
+                                       p.at("max").dump());
+      CHECK_FALSE(effects == physics::Effects{});
+    }
+  }
+}
+
+TEST_CASE("Effects as text: each with its stage, parameters and ranges") {
+  const TemporaryFolder folder;
+  const Outcome outcome = kenaf_gap(folder, "effects");
+  CHECK(outcome.status == 0);
+  for (const auto& effect : physics::effect_catalogue()) {
+    CHECK_THAT(outcome.out, Catch::Contains(std::string(effect.name)));
+    CHECK_THAT(outcome.out, Catch::Contains(std::string(effect.summary)));
+  }
+  CHECK_THAT(outcome.out, Catch::Contains("delay_s from 0 to 0.5 s; 0 changes nothing"));
+}
+
+TEST_CASE("Without a command, or with one that is not there, it says so and ends with 2") {
+  const TemporaryFolder folder;
+  CHECK(kenaf_gap(folder, "").status == 2);
+  CHECK(kenaf_gap(folder, "effects --jason").status == 2);
+  const Outcome outcome = kenaf_gap(folder, "effcts");
+  CHECK(outcome.status == 2);
+  CHECK_THAT(outcome.error, Catch::Contains("effcts"));
+  CHECK(kenaf_gap(folder, "--help").status == 0);
+}
