@@ -68,7 +68,11 @@ void ContactSolver::convertContacts(btPersistentManifold** manifolds, int count,
   for (Belt* belt : belts_) {
     belt->motor_impulse_ns =
         std::clamp(belt->kept * belt->motor_impulse_ns, belt->min_impulse_ns, belt->max_impulse_ns);
-    belt->speed_mps += belt->motor_impulse_ns / belt->moving_mass_kg;
+    belt->friction_impulse_ns *= belt->kept;
+    belt->viscous_impulse_ns *= belt->kept;
+    belt->speed_mps +=
+        (belt->motor_impulse_ns + belt->friction_impulse_ns + belt->viscous_impulse_ns) / belt->moving_mass_kg;
+    belt->load_ns = 0;
   }
   for (Contact& contact : contacts_) warm_start(contact);
 }
@@ -178,6 +182,8 @@ void ContactSolver::apply(Contact& c, const btScalar change[3]) {
     B.internalGetDeltaLinearVelocity() -= impulse * c.inverse_mass_b;
     B.internalGetDeltaAngularVelocity() -= c.turn_b[0] * change[0] + c.turn_b[1] * change[1] + c.turn_b[2] * change[2];
   }
+  if (c.belt_a) c.belt_a->load_ns += change[0];
+  if (c.belt_b) c.belt_b->load_ns += change[0];
   if (c.belt_a)
     c.belt_a->speed_mps += (c.belt_gain_a[0] * change[1] + c.belt_gain_a[1] * change[2]) / c.belt_a->moving_mass_kg;
   if (c.belt_b)
@@ -241,18 +247,31 @@ void ContactSolver::solve_contact(Contact& c) {
   apply(c, change);
 }
 
+void ContactSolver::solve_running_gear(Belt& belt, btScalar time_step) {
+  const auto push = [&belt](double& impulse_ns, double wanted_ns, double min_ns, double max_ns) {
+    const double before = impulse_ns;
+    impulse_ns = std::clamp(wanted_ns, min_ns, max_ns);
+    belt.speed_mps += (impulse_ns - before) / belt.moving_mass_kg;
+  };
+  const double m = belt.moving_mass_kg;
+  push(belt.motor_impulse_ns, belt.motor_impulse_ns + (belt.target_mps - belt.speed_mps) * m, belt.min_impulse_ns,
+       belt.max_impulse_ns);
+  if (const double damping_ns = belt.viscous_nspm * time_step; damping_ns > 0) {
+    // impulse = -damping * speed, with the speed after it
+    const double free_mps = belt.speed_mps - belt.viscous_impulse_ns / m;
+    push(belt.viscous_impulse_ns, -free_mps / (1 / damping_ns + 1 / m), -1e9, 1e9);
+  }
+  if (const double dry_ns = belt.dry_friction_ns + belt.rolling_resistance * belt.load_ns; dry_ns > 0)
+    push(belt.friction_impulse_ns, belt.friction_impulse_ns - belt.speed_mps * m, -dry_ns, dry_ns);
+}
+
 btScalar ContactSolver::solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
                                              btPersistentManifold** manifolds, int manifold_count,
                                              btTypedConstraint** constraints, int constraint_count,
                                              const btContactSolverInfo& info, btIDebugDraw* debug) {
   btSequentialImpulseConstraintSolver::solveSingleIteration(iteration, bodies, body_count, manifolds, manifold_count,
                                                             constraints, constraint_count, info, debug);
-  for (Belt* belt : belts_) {
-    const double before = belt->motor_impulse_ns;
-    const double wanted = before + (belt->target_mps - belt->speed_mps) * belt->moving_mass_kg;
-    belt->motor_impulse_ns = std::clamp(wanted, belt->min_impulse_ns, belt->max_impulse_ns);
-    belt->speed_mps += (belt->motor_impulse_ns - before) / belt->moving_mass_kg;
-  }
+  for (Belt* belt : belts_) solve_running_gear(*belt, info.m_timeStep);
   for (Contact& contact : contacts_) solve_contact(contact);
   return 1;  // a residual of 0 would end the iterations
 }

@@ -70,6 +70,7 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
                    int body_b, bool swapped, btScalar time_step);
   void warm_start(Contact& contact);
   void solve_contact(Contact& contact);
+  static void solve_running_gear(Belt& belt, btScalar time_step);
   void apply(Contact& contact, const btScalar change[3]);
 
   ContactSettings settings_;

@@ -14,10 +14,17 @@ struct Belt {
   double target_mps = 0;      // the motor turns towards it
   double min_impulse_ns = 0;  // what the motor can give within a step, <= 0
   double max_impulse_ns = 0;  // >= 0
+  double dry_friction_ns = 0;     // of the running gear, within a step
+  double viscous_nspm = 0;        // of the running gear
+  double rolling_resistance = 0;  // friction for a unit of what presses on the belt
+  double slip_spm = 0;            // the surface moves with speed (1 - slip |speed|)
   // state
   double speed_mps = 0;  // of the surface relative to the body, + drives the robot forward
   // results of a step
   double motor_impulse_ns = 0;
+  double friction_impulse_ns = 0;  // dry and rolling, of the running gear
+  double viscous_impulse_ns = 0;
+  double load_ns = 0;              // what presses on it
   double kept = 1;  // of the friction that the next step starts from
 };
 
@@ -26,6 +33,7 @@ struct Surface {
   double friction_across = 1;  // equal to `friction_along` where nothing runs
   Belt* belt = nullptr;        // null: the surface does not move in its body
   double axis_y = 1;           // the belt turns about (0, axis_y, 0) of its body, 1 or -1
+  double lug_height_m = 0;
 };
 
 // Hangs on btCollisionObject::getUserPointer().
