@@ -13,6 +13,8 @@ namespace {
 constexpr double kRenewal_m = 0.02;
 constexpr double kCreep_s = 0.5;
 constexpr btScalar kLeastFriction = 1e-6;  // for the ellipse of a surface that slides freely in one direction
+constexpr btScalar kEdgeRadius_m = 0.01;   // of timber and concrete
+constexpr btScalar kMostGrip = 10;         // a lug that is wholly behind an edge
 constexpr btScalar kSideFace = 0.1;  // |normal x belt axis| below which a surface is a side face without direction
 
 const Surface& surface_of(const Collider& collider, int child) {
@@ -25,6 +27,20 @@ const Surface& surface_of(const Collider& collider, int child) {
 btVector3 belt_direction(const Surface& surface, const btCollisionObject& body, const btVector3& outward_W) {
   if (!surface.belt) return {0, 0, 0};
   return outward_W.cross(body.getWorldTransform().getBasis().getColumn(1) * surface.axis_y);
+}
+
+// An edge is a little round, and a lug that meets it is to it what a step is to a wheel: the lug's corner presses on
+// the edge at an angle b from the belt's normal, cos b = 1 - height / radius, and holds up to tan(friction angle + b).
+btScalar grip_at_edge(btScalar mu, btScalar lug_height_m) {
+  if (lug_height_m <= 0) return mu;
+  const btScalar lug_angle = std::acos(1 - std::min(lug_height_m / kEdgeRadius_m, btScalar(1)));
+  const btScalar angle = std::atan(mu) + lug_angle;
+  return angle < std::atan(kMostGrip) ? std::tan(angle) : kMostGrip;
+}
+
+// Of a belt's speed, what moves the surface.
+btScalar driving_share(const Belt& belt) {
+  return 1 - std::min(belt.slip_spm * std::abs(belt.speed_mps), 1.0);
 }
 
 }  // namespace
@@ -48,23 +64,8 @@ void ContactSolver::convertContacts(btPersistentManifold** manifolds, int count,
   contacts_.clear();
   for (Belt* belt : belts_)
     belt->kept = std::exp(-info.m_timeStep * (std::abs(belt->speed_mps) / kRenewal_m + 1 / kCreep_s));
-  for (int m = 0; m < count; ++m) {
-    btPersistentManifold& manifold = *manifolds[m];
-    auto* body0 = const_cast<btCollisionObject*>(manifold.getBody0());
-    auto* body1 = const_cast<btCollisionObject*>(manifold.getBody1());
-    if (manifold.getNumContacts() == 0) continue;
-    const int id0 = getOrInitSolverBody(*body0, info.m_timeStep);
-    const int id1 = getOrInitSolverBody(*body1, info.m_timeStep);
-    const bool moves0 = !body0->isStaticOrKinematicObject(), moves1 = !body1->isStaticOrKinematicObject();
-    if (!moves0 && !moves1) continue;
-    for (int p = 0; p < manifold.getNumContacts(); ++p) {
-      btManifoldPoint& point = manifold.getContactPoint(p);
-      if (moves0)
-        add_contact(point, *body0, *body1, id0, id1, false, info.m_timeStep);
-      else
-        add_contact(point, *body1, *body0, id1, id0, true, info.m_timeStep);
-    }
-  }
+  for (int m = 0; m < count; ++m) add_manifold(*manifolds[m], info.m_timeStep);
+  for (BeltPair* pair : belt_ground_.pairs()) add_belt_pair(*pair, info.m_timeStep);
   for (Belt* belt : belts_) {
     belt->motor_impulse_ns =
         std::clamp(belt->kept * belt->motor_impulse_ns, belt->min_impulse_ns, belt->max_impulse_ns);
@@ -77,28 +78,76 @@ void ContactSolver::convertContacts(btPersistentManifold** manifolds, int count,
   for (Contact& contact : contacts_) warm_start(contact);
 }
 
-void ContactSolver::add_contact(btManifoldPoint& point, const btCollisionObject& a, const btCollisionObject& b,
-                                int body_a, int body_b, bool swapped, btScalar time_step) {
+void ContactSolver::add_manifold(btPersistentManifold& manifold, btScalar time_step) {
+  auto* body0 = const_cast<btCollisionObject*>(manifold.getBody0());
+  auto* body1 = const_cast<btCollisionObject*>(manifold.getBody1());
+  const bool moves0 = !body0->isStaticOrKinematicObject(), moves1 = !body1->isStaticOrKinematicObject();
+  if (manifold.getNumContacts() == 0 || (!moves0 && !moves1)) return;
+  const int id0 = getOrInitSolverBody(*body0, time_step);
+  const int id1 = getOrInitSolverBody(*body1, time_step);
+  for (int i = 0; i < manifold.getNumContacts(); ++i) {
+    btManifoldPoint& point = manifold.getContactPoint(i);
+    const Surface& surface0 = surface_of(*static_cast<const Collider*>(body0->getUserPointer()), point.m_index0);
+    const Surface& surface1 = surface_of(*static_cast<const Collider*>(body1->getUserPointer()), point.m_index1);
+    // one point for both bodies, so that the two impulses cancel in moment too
+    const btVector3 p_W = (point.getPositionWorldOnA() + point.getPositionWorldOnB()) * 0.5;
+    // Bullet keeps these numbers with a point that it finds again, and no directions: they are along this contact's
+    // own axes
+    const Touch touch{p_W,
+                      moves0 ? point.m_normalWorldOnB : -point.m_normalWorldOnB,
+                      point.getDistance(),
+                      1,
+                      false,
+                      moves0 ? surface0 : surface1,
+                      moves0 ? surface1 : surface0,
+                      {&point.m_appliedImpulse, &point.m_appliedImpulseLateral1, &point.m_appliedImpulseLateral2}};
+    if (moves0)
+      add_contact(touch, *body0, *body1, id0, id1, time_step);
+    else
+      add_contact(touch, *body1, *body0, id1, id0, time_step);
+  }
+}
+
+void ContactSolver::add_belt_pair(BeltPair& pair, btScalar time_step) {
+  if (pair.contacts.empty()) return;
+  auto* body = const_cast<btCollisionObject*>(pair.body);
+  auto* ground = const_cast<btCollisionObject*>(pair.ground);
+  const int id_a = getOrInitSolverBody(*body, time_step), id_b = getOrInitSolverBody(*ground, time_step);
+  const Surface& other = surface_of(*static_cast<const Collider*>(ground->getUserPointer()), 0);
+  for (BeltContact& contact : pair.contacts) {
+    const BeltTouch& at = contact.touch;
+    add_contact({pair.X_WT * at.p_T,
+                 pair.X_WT.getBasis() * at.normal_T,
+                 at.gap_m,
+                 at.share,
+                 at.edge,
+                 pair.belt->surface,
+                 other,
+                 {&contact.impulse[0], &contact.impulse[1], &contact.impulse[2]}},
+                *body, *ground, id_a, id_b, time_step);
+  }
+}
+
+void ContactSolver::add_contact(const Touch& touch, const btCollisionObject& a, const btCollisionObject& b, int body_a,
+                                int body_b, btScalar time_step) {
   Contact& c = contacts_.emplace_back();
-  c.point = &point;
+  for (int k = 0; k < 3; ++k) c.kept[k] = touch.kept[k];
   c.collider_a = static_cast<const Collider*>(a.getUserPointer());
   c.collider_b = static_cast<const Collider*>(b.getUserPointer());
   c.body_a = body_a;
   c.body_b = body_b;
   c.b_moves = !b.isStaticOrKinematicObject();
-  // one point for both bodies, so that the two impulses cancel in moment too
-  c.p_W = (point.getPositionWorldOnA() + point.getPositionWorldOnB()) * 0.5;
-
-  const Surface& surface_a = surface_of(*c.collider_a, swapped ? point.m_index1 : point.m_index0);
-  const Surface& surface_b = surface_of(*c.collider_b, swapped ? point.m_index0 : point.m_index1);
+  c.p_W = touch.p_W;
+  const Surface &surface_a = touch.surface_a, &surface_b = touch.surface_b;
   c.belt_a = surface_a.belt;
   c.belt_b = surface_b.belt;
-  const btVector3 normal = swapped ? -point.m_normalWorldOnB : point.m_normalWorldOnB;
+  const btVector3& normal = touch.normal_W;
   const btVector3 belt_a = belt_direction(surface_a, a, -normal);
   const btVector3 belt_b = belt_direction(surface_b, b, normal);
 
   c.mu[0] = surface_a.friction_along * surface_b.friction_along;
   c.mu[1] = surface_a.friction_across * surface_b.friction_across;
+  if (touch.edge) c.mu[0] = grip_at_edge(c.mu[0], surface_a.lug_height_m);
   c.axis[0] = normal;
   if (belt_a.length2() > kSideFace * kSideFace) {
     c.axis[1] = belt_a.normalized();
@@ -111,8 +160,8 @@ void ContactSolver::add_contact(btManifoldPoint& point, const btCollisionObject&
   }
   c.axis[2] = normal.cross(c.axis[1]);
   for (int k = 0; k < 2; ++k) {
-    c.belt_gain_a[k] = c.belt_a ? -belt_a.dot(c.axis[k + 1]) : 0;
-    c.belt_gain_b[k] = c.belt_b ? belt_b.dot(c.axis[k + 1]) : 0;
+    c.belt_gain_a[k] = c.belt_a ? -belt_a.dot(c.axis[k + 1]) * driving_share(*c.belt_a) : 0;
+    c.belt_gain_b[k] = c.belt_b ? belt_b.dot(c.axis[k + 1]) * driving_share(*c.belt_b) : 0;
   }
 
   const btSolverBody& A = m_tmpSolverBodyPool[body_a];
@@ -146,9 +195,10 @@ void ContactSolver::add_contact(btManifoldPoint& point, const btCollisionObject&
   };
 
   // spring and damper, implicit: impulse = -h (k (gap + h v) + d v), never negative
-  const btScalar step_stiffness = settings_.stiffness_npm * time_step + settings_.damping_nspm;
+  const btScalar stiffness = settings_.stiffness_npm * touch.share, damping = settings_.damping_nspm * touch.share;
+  const btScalar step_stiffness = stiffness * time_step + damping;
   c.softness = 1 / (time_step * step_stiffness);
-  c.give_velocity = -settings_.stiffness_npm * point.getDistance() / step_stiffness;
+  c.give_velocity = -stiffness * touch.gap_m / step_stiffness;
   c.normal_mass = 1 / (response(0, 0) + c.softness);
 
   for (btScalar& mu : c.mu) mu = std::max(mu, kLeastFriction);
@@ -164,12 +214,10 @@ void ContactSolver::add_contact(btManifoldPoint& point, const btCollisionObject&
   c.normal_to_slip[0] = response(1, 0);
   c.normal_to_slip[1] = response(2, 0);
 
-  c.impulse[0] = point.m_appliedImpulse;
-  // of body A, along this contact's own axes, which turn with the belt: Bullet keeps these two numbers with a point
-  // that it finds again, and no directions
+  c.impulse[0] = *c.kept[0];
   const btScalar kept = std::min(c.belt_a ? c.belt_a->kept : 1, c.belt_b ? c.belt_b->kept : 1);
-  c.impulse[1] = kept * point.m_appliedImpulseLateral1;
-  c.impulse[2] = kept * point.m_appliedImpulseLateral2;
+  c.impulse[1] = kept * *c.kept[1];
+  c.impulse[2] = kept * *c.kept[2];
 }
 
 void ContactSolver::apply(Contact& c, const btScalar change[3]) {
@@ -303,11 +351,8 @@ btScalar ContactSolver::solveGroupCacheFriendlySetup(btCollisionObject** bodies,
 
 btScalar ContactSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
                                                       const btContactSolverInfo& info) {
-  for (Contact& c : contacts_) {
-    c.point->m_appliedImpulse = c.impulse[0];
-    c.point->m_appliedImpulseLateral1 = c.impulse[1];
-    c.point->m_appliedImpulseLateral2 = c.impulse[2];
-  }
+  for (Contact& c : contacts_)
+    for (int k = 0; k < 3; ++k) *c.kept[k] = c.impulse[k];
   FlipperJoint* joint = nullptr;
   for (int i = 0, row = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i, ++row) {
     const btSolverConstraint& c = m_tmpSolverNonContactConstraintPool[i];

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "physics/belt_ground.hpp"
 #include "physics/bullet.hpp"
 #include "physics/surface.hpp"
 
@@ -22,7 +23,7 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
   // One contact point. Everything is of body A relative to body B, and A is never fixed. Rows: normal (from B to A),
   // along, across.
   struct Contact {
-    btManifoldPoint* point;
+    btScalar* kept[3];  // where the impulses stay until the next step
     const Collider *collider_a, *collider_b;
     btVector3 p_W;
     int body_a, body_b;  // in the solver's pool
@@ -42,7 +43,8 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
     btScalar impulse[3];
   };
 
-  explicit ContactSolver(const ContactSettings& settings) : settings_(settings) {}
+  ContactSolver(const ContactSettings& settings, const BeltGround& belt_ground)
+      : settings_(settings), belt_ground_(belt_ground) {}
 
   void add_belt(Belt* belt) { belts_.push_back(belt); }
   void remove_belt(Belt* belt) { std::erase(belts_, belt); }
@@ -66,14 +68,25 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
                                          const btContactSolverInfo& info) override;
 
  private:
-  void add_contact(btManifoldPoint& point, const btCollisionObject& a, const btCollisionObject& b, int body_a,
-                   int body_b, bool swapped, btScalar time_step);
+  // What a contact is made of, however it was found.
+  struct Touch {
+    btVector3 p_W, normal_W;  // from B to A
+    btScalar gap_m, share;
+    bool edge;
+    const Surface &surface_a, &surface_b;
+    btScalar* kept[3];
+  };
+  void add_manifold(btPersistentManifold& manifold, btScalar time_step);
+  void add_belt_pair(BeltPair& pair, btScalar time_step);
+  void add_contact(const Touch& touch, const btCollisionObject& a, const btCollisionObject& b, int body_a, int body_b,
+                   btScalar time_step);
   void warm_start(Contact& contact);
   void solve_contact(Contact& contact);
   static void solve_running_gear(Belt& belt, btScalar time_step);
   void apply(Contact& contact, const btScalar change[3]);
 
   ContactSettings settings_;
+  const BeltGround& belt_ground_;
   std::vector<Contact> contacts_;
   std::vector<Belt*> belts_;
 };

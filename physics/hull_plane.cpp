@@ -19,17 +19,15 @@ class HullPlaneAlgorithm : public btCollisionAlgorithm {
       : btCollisionAlgorithm(info), swapped_(swapped) {
     const btCollisionObject *object0 = body0->getCollisionObject(), *object1 = body1->getCollisionObject();
     if (!m_dispatcher->needsCollision(object0, object1)) return;
-    const auto* groups = groups_of(*(swapped ? body1 : body0));
-    const std::size_t count = groups ? groups->size() : 1;
-    for (std::size_t i = 0; i < count; ++i) manifolds_.push_back(m_dispatcher->getNewManifold(object0, object1));
+    manifold_ = m_dispatcher->getNewManifold(object0, object1);
   }
   ~HullPlaneAlgorithm() override {
-    for (btPersistentManifold* manifold : manifolds_) m_dispatcher->releaseManifold(manifold);
+    if (manifold_) m_dispatcher->releaseManifold(manifold_);
   }
 
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                         const btDispatcherInfo&, btManifoldResult* result) override {
-    if (manifolds_.empty()) return;
+    if (!manifold_) return;
     const btCollisionObjectWrapper& hull = swapped_ ? *body1 : *body0;
     const btCollisionObjectWrapper& plane_wrap = swapped_ ? *body0 : *body1;
     const auto& plane = *static_cast<const btStaticPlaneShape*>(plane_wrap.getCollisionShape());
@@ -38,26 +36,20 @@ class HullPlaneAlgorithm : public btCollisionAlgorithm {
     const btVector3 normal_H = X_PH.getBasis().transpose() * plane.getPlaneNormal();
     const btScalar offset = plane.getPlaneNormal().dot(X_PH.getOrigin()) - plane.getPlaneConstant();
 
-    const auto touch = [&](btPersistentManifold* manifold, const btVector3* points, std::size_t count) {
-      const Deepest deepest = find_deepest(points, count, normal_H, offset);
-      result->setPersistentManifold(manifold);
-      for (std::size_t i = 0; i < deepest.count; ++i) {
-        const btScalar distance = deepest.point[i].distance;
-        const btVector3 on_hull_W = hull.getWorldTransform() * points[deepest.point[i].index];
-        // a result wants the normal on the second body and the point on it
-        if (swapped_)
-          result->addContactPoint(-normal_W, on_hull_W, distance);
-        else
-          result->addContactPoint(normal_W, on_hull_W - normal_W * distance, distance);
-      }
-      if (manifold->getNumContacts()) result->refreshContactPoints();
-    };
-    if (const auto* groups = groups_of(hull)) {
-      for (std::size_t g = 0; g < groups->size(); ++g) touch(manifolds_[g], (*groups)[g].data(), (*groups)[g].size());
-    } else {
-      const auto& shape = *static_cast<const btConvexHullShape*>(hull.getCollisionShape());
-      touch(manifolds_.front(), shape.getUnscaledPoints(), static_cast<std::size_t>(shape.getNumPoints()));
+    const auto& shape = *static_cast<const btConvexHullShape*>(hull.getCollisionShape());
+    const btVector3* points = shape.getUnscaledPoints();
+    const Deepest deepest = find_deepest(points, static_cast<std::size_t>(shape.getNumPoints()), normal_H, offset);
+    result->setPersistentManifold(manifold_);
+    for (std::size_t i = 0; i < deepest.count; ++i) {
+      const btScalar distance = deepest.point[i].distance;
+      const btVector3 on_hull_W = hull.getWorldTransform() * points[deepest.point[i].index];
+      // a result wants the normal on the second body and the point on it
+      if (swapped_)
+        result->addContactPoint(-normal_W, on_hull_W, distance);
+      else
+        result->addContactPoint(normal_W, on_hull_W - normal_W * distance, distance);
     }
+    if (manifold_->getNumContacts()) result->refreshContactPoints();
   }
 
   btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
@@ -65,7 +57,7 @@ class HullPlaneAlgorithm : public btCollisionAlgorithm {
     return 1;
   }
   void getAllContactManifolds(btManifoldArray& manifolds) override {
-    for (btPersistentManifold* manifold : manifolds_) manifolds.push_back(manifold);
+    if (manifold_) manifolds.push_back(manifold_);
   }
 
  private:
@@ -77,10 +69,6 @@ class HullPlaneAlgorithm : public btCollisionAlgorithm {
     std::array<Point, 4> point;
     std::size_t count = 0;
   };
-
-  static const ContactGroups* groups_of(const btCollisionObjectWrapper& hull) {
-    return static_cast<const ContactGroups*>(hull.getCollisionShape()->getUserPointer());
-  }
 
   static Deepest find_deepest(const btVector3* points, std::size_t count, const btVector3& normal, btScalar offset) {
     Deepest found;
@@ -98,7 +86,7 @@ class HullPlaneAlgorithm : public btCollisionAlgorithm {
     return found;
   }
 
-  std::vector<btPersistentManifold*> manifolds_;
+  btPersistentManifold* manifold_ = nullptr;
   bool swapped_;
 };
 

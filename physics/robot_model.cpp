@@ -8,6 +8,8 @@
 namespace kenaf::physics {
 namespace {
 
+constexpr int kFlipperPieces = 2;  // of its straight run, with contacts at the ends of each
+
 bool is_front(Flipper flipper) {
   return flipper == kFrontLeft || flipper == kFrontRight;
 }
@@ -67,14 +69,21 @@ void RobotModel::make_hull(RobotId id) {
   for (const Track side : {kLeft, kRight}) {
     Eigen::Vector3d center = track.p_BT_m;
     if (side == kRight) center.y() = -center.y();
-    // One hull against obstacles: between two pieces an edge would meet faces that a track does not have. Against a
-    // plane each piece has contacts of its own, so that the load is spread along the belly.
+    const Surface surface{.friction_along = track.friction_along,
+                          .friction_across = track.friction_across,
+                          .belt = &belts_[side],
+                          .lug_height_m = track.lug_height_m};
+    const double straight_m = track.length_m - 2 * track.end_radius_m;
+    track_belts_[side] = {.radius = {track.end_radius_m, track.end_radius_m},
+                          .length = straight_m,
+                          .half_width = track.width_m / 2,
+                          .p_BodyT = to_bullet(Eigen::Vector3d(center - Eigen::Vector3d(straight_m / 2, 0, 0))),
+                          .pieces = track.pieces,
+                          .surface = surface};
+    track_tags_[side].belt = &track_belts_[side];
     auto shape = make_prism(track_outline(track), track.width_m, center);
-    for (const Outline& piece : track_pieces(track))
-      track_groups_[side].push_back(prism_points(piece, track.width_m, center));
-    shape->setUserPointer(&track_groups_[side]);
-    add(std::move(shape),
-        {.friction_along = track.friction_along, .friction_across = track.friction_across, .belt = &belts_[side]});
+    shape->setUserPointer(&track_tags_[side]);
+    add(std::move(shape), surface);
   }
   hull_ = make_body(body.mass_kg, *hull_shape_, to_bullet(body.inertia_kgm2), hull_collider_);
   world_.addRigidBody(hull_.get());
@@ -97,10 +106,20 @@ void RobotModel::make_flipper(Flipper which, RobotId id) {
 
   flipper.shape = make_prism(outline, f.width_m, -com);
   flipper.collider.robot = static_cast<std::uint32_t>(id);
-  flipper.collider.surfaces = {{.friction_along = f.friction_along,
-                                .friction_across = f.friction_across,
-                                .belt = f.belt_driven ? &belts_[side_of(which)] : nullptr,
-                                .axis_y = front ? 1.0 : -1.0}};
+  const Surface surface{.friction_along = f.friction_along,
+                        .friction_across = f.friction_across,
+                        .belt = f.belt_driven ? &belts_[side_of(which)] : nullptr,
+                        .axis_y = front ? 1.0 : -1.0,
+                        .lug_height_m = description.track.lug_height_m};
+  flipper.collider.surfaces = {surface};
+  flipper.belt = {.radius = {f.pivot_radius_m, f.tip_radius_m},
+                  .length = f.length_m,
+                  .half_width = f.width_m / 2,
+                  .p_BodyT = to_bullet(Eigen::Vector3d(-com)),
+                  .pieces = kFlipperPieces,
+                  .surface = surface};
+  flipper.tag.belt = &flipper.belt;
+  flipper.shape->setUserPointer(&flipper.tag);
   const double xx = m.Ixx / m.area, zz = m.Izz / m.area, yy = f.width_m * f.width_m / 12;
   flipper.body =
       make_body(f.mass_kg, *flipper.shape, f.mass_kg * btVector3(zz + yy, xx + zz, xx + yy), flipper.collider);

@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "physics/belt_ground.hpp"
 #include "physics/bullet.hpp"
 #include "physics/contact_solver.hpp"
 #include "physics/drive.hpp"
 #include "physics/flipper_joint.hpp"
-#include "physics/hull_plane.hpp"
 #include "physics/world.hpp"
 
 namespace kenaf::physics {
@@ -44,6 +44,8 @@ class RobotModel {
     std::unique_ptr<btRigidBody> body;
     std::unique_ptr<FlipperJoint> joint;
     Collider collider;
+    BeltShape belt;
+    ShapeTag tag;
     btTransform X_FlipperCom;    // the flipper's frame (x out along the arm) to its centre of mass
     btTransform X_BodyPivot;     // where that frame is in B at angle 0
   };
@@ -54,7 +56,8 @@ class RobotModel {
   btDiscreteDynamicsWorld& world_;
   ContactSolver& solver_;
   std::vector<std::unique_ptr<btCollisionShape>> hull_pieces_;
-  std::array<ContactGroups, kTrackCount> track_groups_;
+  std::array<BeltShape, kTrackCount> track_belts_;
+  std::array<ShapeTag, kTrackCount> track_tags_;
   std::unique_ptr<btCompoundShape> hull_shape_;
   std::unique_ptr<btRigidBody> hull_;
   Collider hull_collider_;

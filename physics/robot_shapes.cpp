@@ -23,30 +23,11 @@ void add_arc(Outline& outline, const Eigen::Vector2d& center, double radius, dou
 }  // namespace
 
 Outline track_outline(const TrackDescription& track) {
-  TrackDescription whole = track;
-  whole.pieces = 1;
-  return track_pieces(whole).front();
-}
-
-std::vector<Outline> track_pieces(const TrackDescription& track) {
   const double half = track.length_m / 2 - track.end_radius_m;  // of the straight run
-  const double r = track.end_radius_m;
-  std::vector<Outline> pieces;
-  for (int i = 0; i < track.pieces; ++i) {
-    const double rear = -half + 2 * half * i / track.pieces;
-    const double front = -half + 2 * half * (i + 1) / track.pieces;
-    Outline outline;
-    if (i == track.pieces - 1)
-      add_arc(outline, {front, 0}, r, -kPi / 2, kPi / 2, kTrackArcSegments);
-    else
-      outline.insert(outline.end(), {Eigen::Vector2d(front, -r), Eigen::Vector2d(front, r)});
-    if (i == 0)
-      add_arc(outline, {rear, 0}, r, kPi / 2, 3 * kPi / 2, kTrackArcSegments);
-    else
-      outline.insert(outline.end(), {Eigen::Vector2d(rear, r), Eigen::Vector2d(rear, -r)});
-    pieces.push_back(std::move(outline));
-  }
-  return pieces;
+  Outline outline;
+  add_arc(outline, {half, 0}, track.end_radius_m, -kPi / 2, kPi / 2, kTrackArcSegments);
+  add_arc(outline, {-half, 0}, track.end_radius_m, kPi / 2, 3 * kPi / 2, kTrackArcSegments);
+  return outline;
 }
 
 Outline flipper_outline(const FlipperDescription& flipper) {
@@ -78,17 +59,11 @@ OutlineMoments moments(const Outline& outline) {
   return {area, c, Ixx - area * c.x() * c.x(), Izz - area * c.y() * c.y()};
 }
 
-std::vector<btVector3> prism_points(const Outline& outline, double width_m, const Eigen::Vector3d& offset) {
-  std::vector<btVector3> points;
-  for (const Eigen::Vector2d& p : outline)
-    for (const double y : {-width_m / 2, width_m / 2})
-      points.push_back(to_bullet(offset + Eigen::Vector3d(p.x(), y, p.y())));
-  return points;
-}
-
 std::unique_ptr<btConvexHullShape> make_prism(const Outline& outline, double width_m, const Eigen::Vector3d& offset) {
   auto shape = std::make_unique<btConvexHullShape>();
-  for (const btVector3& point : prism_points(outline, width_m, offset)) shape->addPoint(point, false);
+  for (const Eigen::Vector2d& p : outline)
+    for (const double y : {-width_m / 2, width_m / 2})
+      shape->addPoint(to_bullet(offset + Eigen::Vector3d(p.x(), y, p.y())), false);
   shape->setMargin(kMargin_m);
   shape->recalcLocalAabb();
   shape->initializePolyhedralFeatures();

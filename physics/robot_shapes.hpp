@@ -13,8 +13,6 @@ namespace kenaf::physics {
 using Outline = std::vector<Eigen::Vector2d>;
 
 Outline track_outline(const TrackDescription& track);
-// The outline in pieces from rear to front. Neighbours share an edge; the end arcs belong to the first and last piece.
-std::vector<Outline> track_pieces(const TrackDescription& track);
 
 // A flipper around its pivot: x from the pivot to the tip drum.
 Outline flipper_outline(const FlipperDescription& flipper);
@@ -28,7 +26,6 @@ struct OutlineMoments {
 OutlineMoments moments(const Outline& outline);
 
 // A hull of `outline`, swept `width_m` along y around y = 0, moved by `offset`.
-std::vector<btVector3> prism_points(const Outline& outline, double width_m, const Eigen::Vector3d& offset);
 std::unique_ptr<btConvexHullShape> make_prism(const Outline& outline, double width_m, const Eigen::Vector3d& offset);
 std::unique_ptr<btBoxShape> make_box(const Eigen::Vector3d& size_m);
 

@@ -17,7 +17,8 @@ constexpr double kFree_m = 1e-5;
 Scene::Scene(const WorldDescription& description, const PhysicsSettings& settings)
     : dispatcher_(&configuration_),
       hull_plane_(dispatcher_),
-      solver_({settings.contact_stiffness_npm, settings.contact_damping_nspm}),
+      belt_ground_(dispatcher_, configuration_, hull_plane_),
+      solver_({settings.contact_stiffness_npm, settings.contact_damping_nspm}, belt_ground_),
       world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
   btContactSolverInfo& info = world_.getSolverInfo();
   info.m_numIterations = settings.solver_iterations;
@@ -55,6 +56,11 @@ void Scene::add_mesh(const TriangleMesh& mesh) {
   added.triangles.addIndexedMesh(layout, PHY_INTEGER);
   constexpr bool kQuantized = true;  // of the tree's boxes, not of the vertices
   added.fixture.shape = std::make_unique<btBvhTriangleMeshShape>(&added.triangles, kQuantized);
+  std::vector<btVector3> vertices;
+  for (const Eigen::Vector3d& p_W : mesh.vertices_W) vertices.push_back(to_bullet(p_W));
+  added.edges = std::make_unique<MeshEdges>(vertices, mesh.triangles);
+  added.tag.mesh = added.edges.get();
+  added.fixture.shape->setUserPointer(&added.tag);
   add_fixture(added.fixture, 0, mesh.friction, {});
 }
 
@@ -78,12 +84,16 @@ void Scene::step(double time_step_s) {
 
 void Scene::add_box(BoxId id, const Box& box) {
   Fixture& fixture = boxes_[id];
-  // A loose box is a hull, so that it stands on planes as robots do.
-  const Eigen::Vector2d half(box.size_m.x() / 2, box.size_m.z() / 2);
-  if (box.mass_kg > 0)
+  if (box.mass_kg > 0) {
+    // a hull, so that it stands on planes as robots do
+    const Eigen::Vector2d half(box.size_m.x() / 2, box.size_m.z() / 2);
     fixture.shape = make_prism({{half.x(), -half.y()}, half, {-half.x(), half.y()}, -half}, box.size_m.y(), {0, 0, 0});
-  else
+    fixture.half = to_bullet(Eigen::Vector3d(box.size_m / 2));
+    fixture.tag.box_half = &fixture.half;
+    fixture.shape->setUserPointer(&fixture.tag);
+  } else {
     fixture.shape = make_box(box.size_m);
+  }
   add_fixture(fixture, box.mass_kg, box.friction, box.X_WBox);
 }
 
@@ -130,10 +140,12 @@ double Scene::lift_needed(RobotModel& robot) {
     }
   } deepest;
   deepest.own = &robot.bodies();
+  belt_ground_.set_probing(true);
   for (btRigidBody* body : robot.bodies()) {
     deepest.self = body;
     world_.contactTest(body, deepest);
   }
+  belt_ground_.set_probing(false);
   return deepest.lift_m;
 }
 

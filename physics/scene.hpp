@@ -45,11 +45,15 @@ class Scene {
     std::unique_ptr<btCollisionShape> shape;
     std::unique_ptr<btRigidBody> body;
     std::unique_ptr<Collider> collider;
+    btVector3 half;  // of a loose box
+    ShapeTag tag;
   };
   // A fixed body of triangles; Bullet reads vertices and indices where they lie.
   struct MeshFixture {
     TriangleMesh mesh;
     btTriangleIndexVertexArray triangles;
+    std::unique_ptr<MeshEdges> edges;
+    ShapeTag tag;
     Fixture fixture;
   };
   void add_mesh(const TriangleMesh& mesh);
@@ -59,6 +63,7 @@ class Scene {
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
   HullPlaneContacts hull_plane_;
+  BeltGround belt_ground_;
   btDbvtBroadphase broadphase_;
   ContactSolver solver_;
   btDiscreteDynamicsWorld world_;
