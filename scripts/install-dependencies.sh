@@ -3,6 +3,7 @@
 #
 #   scripts/install-dependencies.sh          to build, test and package
 #   scripts/install-dependencies.sh build    only to build and to run the demo
+#   scripts/install-dependencies.sh bench    as without, and the engines that the benchmark compares with
 set -euo pipefail
 
 packages=(
@@ -10,9 +11,10 @@ packages=(
   libboost-dev libboost-system-dev libbullet-dev libcairo2-dev libcli11-dev libeigen3-dev libfmt-dev
   libsdformat-dev libspdlog-dev libtomlplusplus-dev nlohmann-json3-dev
 )
-case ${1:-all} in
+mode=${1:-all}
+case $mode in
   build) ;;
-  all)
+  all | bench)
     packages+=(
       # tests
       abigail-tools binutils catch2 clang iproute2 libclang-rt-14-dev llvm
@@ -21,8 +23,9 @@ case ${1:-all} in
       # the package
       dpkg-dev file
     )
+    if [ "$mode" = bench ]; then packages+=(libmujoco-dev libode-dev); fi
     ;;
-  *) echo "install-dependencies: '$1' is neither 'build' nor nothing" >&2; exit 2 ;;
+  *) echo "install-dependencies: '$mode' is neither 'build', 'bench' nor nothing" >&2; exit 2 ;;
 esac
 
 missing=()

@@ -1,0 +1,148 @@
+#include "bench/engines/engine_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "physics/robot_shapes.hpp"
+
+namespace kenaf::bench {
+namespace {
+
+using namespace physics;
+
+constexpr double kDrive_mps = 0.2;
+constexpr double kServoGain_per_s = 30;  // as physics/flipper_joint.cpp
+
+EngineScene climb(const std::string& name, WorldDescription world, double x_m, double z_m, double front_rad,
+                  double rear_rad, double duration_s) {
+  EngineScene scene;
+  scene.name = name;
+  scene.world = std::move(world);
+  scene.robot = load_robot("kenaf");
+  scene.X_start.p = {x_m, 0, z_m};
+  scene.command.track_speed_mps = {kDrive_mps, kDrive_mps};
+  for (const Flipper f : {kFrontLeft, kFrontRight}) scene.command.flipper[f].value = front_rad;
+  for (const Flipper f : {kRearLeft, kRearRight}) scene.command.flipper[f].value = rear_rad;
+  scene.duration_s = duration_s;
+  return scene;
+}
+
+WorldDescription shipped(const std::string& name) {
+  std::vector<std::string> unsupported;
+  WorldDescription world = load_world(name, unsupported);
+  if (!unsupported.empty()) throw std::runtime_error(unsupported.front());
+  return world;
+}
+
+// Two platforms 500 mm high, their tops at z = 0, `gap_m` apart from x = 0.
+WorldDescription trench(double gap_m) {
+  constexpr double kLength_m = 3, kWidth_m = 2, kHeight_m = 0.5;
+  WorldDescription world;
+  for (const double center : {-kLength_m / 2, gap_m + kLength_m / 2})
+    world.boxes.push_back(
+        {"platform", {kLength_m, kWidth_m, kHeight_m}, {{center, 0, -kHeight_m / 2}, Eigen::Quaterniond::Identity()}});
+  return world;
+}
+
+std::vector<Eigen::Vector3d> hull_of(const Outline& outline, double width_m, const Eigen::Vector3d& center) {
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector2d& p : outline)
+    for (const double y : {-width_m / 2, width_m / 2}) points.emplace_back(center + Eigen::Vector3d(p.x(), y, p.y()));
+  return points;
+}
+
+}  // namespace
+
+std::vector<EngineScene> climbs() {
+  const double z_m = belly_height_m(load_robot("kenaf"));
+  return {climb("straight, level", shipped("flat"), 0, z_m, 1, 1, 5),
+          climb("step of 100 mm", shipped("step-100"), 0.3, z_m, 0.8, 0, 7),
+          climb("step of 200 mm", shipped("step-200"), 0.3, z_m, 0.8, 0, 7),
+          climb("trench of 300 mm", trench(0.3), -0.6, z_m, 0, 0, 7)};
+}
+
+double belly_height_m(const RobotDescription& robot) {
+  return robot.track.end_radius_m - robot.track.p_BT_m.z();
+}
+
+EngineScene on_plane(const RobotDescription& robot, double slope_rad) {
+  EngineScene scene;
+  const Pose X_WP{Eigen::Vector3d::Zero(), rotation_from({0, slope_rad, 0})};
+  scene.world.planes.push_back({X_WP, 1});
+  scene.robot = robot;
+  scene.X_start = compose(X_WP, {{0, 0, belly_height_m(robot)}, Eigen::Quaterniond::Identity()});
+  for (JointCommand& flipper : scene.command.flipper) flipper.value = 1;
+  return scene;
+}
+
+RobotParts parts_of(const RobotDescription& robot) {
+  RobotParts parts;
+  const TrackDescription& track = robot.track;
+  for (const Track side : {kLeft, kRight}) {
+    Eigen::Vector3d center = track.p_BT_m;
+    if (side == kRight) center.y() = -center.y();
+    const Eigen::Vector3d to_drum(track.length_m / 2 - track.end_radius_m, 0, 0);
+    parts.tracks[side] = {center - to_drum,      center + to_drum,
+                          track.end_radius_m,    track.end_radius_m,
+                          track.width_m,         track.friction_along,
+                          track.friction_across, side,
+                          track.pieces,          hull_of(track_outline(track), track.width_m, center)};
+  }
+  if (!robot.has_flippers()) return parts;
+  const FlipperDescription& f = robot.flipper.front();
+  const Outline outline = flipper_outline(f);
+  const OutlineMoments m = moments(outline);
+  const double xx = m.Ixx / m.area, zz = m.Izz / m.area, yy = f.width_m * f.width_m / 12;
+  for (const Flipper which : {kFrontLeft, kFrontRight, kRearLeft, kRearRight}) {
+    const bool front = which == kFrontLeft || which == kFrontRight;
+    const Track side = which == kFrontLeft || which == kRearLeft ? kLeft : kRight;
+    const Eigen::Vector3d pivot(front ? f.p_BPivot_m.x() : -f.p_BPivot_m.x(),
+                                side == kLeft ? f.p_BPivot_m.y() : -f.p_BPivot_m.y(), f.p_BPivot_m.z());
+    // a rear flipper is a front one that is turned half round
+    const Eigen::Quaterniond turn = front ? Eigen::Quaterniond::Identity() : Eigen::Quaterniond(0, 0, 0, 1);
+    parts.arms.push_back({{Eigen::Vector3d::Zero(),
+                           {f.length_m, 0, 0},
+                           f.pivot_radius_m,
+                           f.tip_radius_m,
+                           f.width_m,
+                           f.friction_along,
+                           f.friction_across,
+                           f.belt_driven ? std::optional(side) : std::nullopt,
+                           1,
+                           hull_of(outline, f.width_m, Eigen::Vector3d::Zero())},
+                          f.mass_kg,
+                          {m.centroid.x(), 0, m.centroid.y()},
+                          f.mass_kg * Eigen::Vector3d(zz + yy, xx + zz, xx + yy),
+                          {pivot, turn}});
+  }
+  return parts;
+}
+
+std::vector<Cuboid> straight_part(const Belted& shape, int pieces) {
+  const Eigen::Vector3d size((shape.p_front_m - shape.p_rear_m).x() / pieces, shape.width_m,
+                             2 * std::min(shape.rear_radius_m, shape.front_radius_m));
+  std::vector<Cuboid> out;
+  for (int i = 0; i < pieces; ++i)
+    out.push_back({shape.p_rear_m + (shape.p_front_m - shape.p_rear_m) * ((i + 0.5) / pieces), size});
+  return out;
+}
+
+Drives::Drives(const EngineScene& scene) : command_(scene.command) {
+  if (!scene.robot) return;
+  const TrackDriveDescription& drive = scene.robot->drive;
+  if (drive.time_constant_s > 0) share_ = -std::expm1(-scene.time_step_s / drive.time_constant_s);
+  max_mps_ = drive.max_speed_mps;
+  max_radps_ = scene.robot->servo.max_speed_radps;
+}
+
+void Drives::advance() {
+  for (std::size_t i = 0; i < kTrackCount; ++i)
+    belt_mps_[i] += share_ * (std::clamp(command_.track_speed_mps[i], -max_mps_, max_mps_) - belt_mps_[i]);
+}
+
+double Drives::flipper_radps(std::size_t flipper, double angle_rad) const {
+  return std::clamp(kServoGain_per_s * (command_.flipper[flipper].value - angle_rad), -max_radps_, max_radps_);
+}
+
+}  // namespace kenaf::bench

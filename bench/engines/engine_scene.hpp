@@ -1,0 +1,78 @@
+// What every engine of the comparison is given: one robot or one loose block, on terrain of planes and boxes.
+//
+// Made from the project's own descriptions, so that all engines simulate the same masses, shapes and friction.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "physics/robot_command.hpp"
+#include "physics/robot_description.hpp"
+#include "physics/world_description.hpp"
+
+namespace kenaf::bench {
+
+struct EngineScene {
+  std::string name;
+  physics::WorldDescription world;                  // planes and fixed boxes; one friction for all of them
+  std::optional<physics::RobotDescription> robot;   // else the block
+  std::optional<physics::Box> block;
+  physics::Pose X_start;                            // of the robot's body frame
+  physics::RobotCommand command;
+  double duration_s = 0;
+  double time_step_s = 0.001;
+};
+
+// The climbs that are timed. Flippers stay where they are told: one posture for each obstacle.
+std::vector<EngineScene> climbs();
+// How high the body frame stands over level ground.
+double belly_height_m(const physics::RobotDescription& robot);
+// The robot at rest on a plane that falls away forward by `slope_rad`, flippers folded up.
+EngineScene on_plane(const physics::RobotDescription& robot, double slope_rad);
+
+// A drum pair with a belt around: track (equal drums) or flipper. Profile in x and z, swept along y.
+struct Belted {
+  Eigen::Vector3d p_rear_m, p_front_m;              // drum centres, of the flipper: pivot and tip
+  double rear_radius_m, front_radius_m, width_m;
+  double friction_along, friction_across;
+  std::optional<physics::Track> belt;               // whose speed it runs with
+  int pieces;                                       // that Kenaf cuts the straight runs into for its contacts
+  std::vector<Eigen::Vector3d> hull_m;              // corners of the convex hull of both drums
+};
+
+struct Cuboid { Eigen::Vector3d center_m, size_m; };
+// The straight part between the drums, cut into `pieces` of equal length; as high as the smaller drum.
+std::vector<Cuboid> straight_part(const Belted& shape, int pieces);
+
+struct Arm {
+  Belted shape;                                     // in the arm's frame: x out along the arm, origin at the pivot
+  double mass_kg;
+  Eigen::Vector3d p_com_m, inertia_kgm2;            // about the centre of mass
+  physics::Pose X_BArm;                             // at angle 0; a positive angle turns about -y of it
+};
+
+struct RobotParts {
+  std::array<Belted, physics::kTrackCount> tracks;  // in B
+  std::vector<Arm> arms;                            // in the order of physics::Flipper
+};
+RobotParts parts_of(const physics::RobotDescription& robot);
+
+// The drives as Kenaf's are in physics/, but for the force: lag of a track's speed, position loop of a flipper.
+class Drives {
+ public:
+  explicit Drives(const EngineScene& scene);
+  void advance();                                   // call before each step
+  double belt_mps(physics::Track track) const { return belt_mps_[track]; }
+  // The speed that a flipper at `angle_rad` shall have.
+  double flipper_radps(std::size_t flipper, double angle_rad) const;
+
+ private:
+  physics::RobotCommand command_;
+  double share_ = 1, max_mps_ = 0, max_radps_ = 0;
+  std::array<double, physics::kTrackCount> belt_mps_{};
+};
+
+}  // namespace kenaf::bench

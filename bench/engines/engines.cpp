@@ -1,0 +1,154 @@
+// Kenaf's physics beside MuJoCo's and ODE's: the same robot on the same terrain at the same time step, in one run.
+// docs/performance.md says what each engine is given. Status 1 where a limit is missed.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "bench/engines/accuracy.hpp"
+#include "bench/engines/machine.hpp"
+#include "bench/engines/speed.hpp"
+
+using namespace kenaf::bench;
+
+namespace {
+
+constexpr double kTimesFaster = 2, kTwoCores = 1.9;
+
+std::string name_of(const Engine& engine) {
+  return engine.name + ", " + engine.setting;
+}
+
+void print_speeds(const EngineScene& scene, const std::vector<Engine>& engines, const std::vector<Speed>& speeds) {
+  fmt::print("\n{}\n{:<41} {:>9} {:>9} {:>12} {:>9} {:>9} {:>7} {:>7} {:>7}\n", scene.name, "", "steps/s", "real time",
+             "contacts/step", "us/step", "us, wall", "Kenaf", "end x", "end z");
+  for (std::size_t e = 0; e < engines.size(); ++e) {
+    const Speed& s = speeds[e];
+    fmt::print("{:<41} {:>9.0f} {:>8.1f}x {:>13.1f} {:>9.2f} {:>9.2f} {:>6.2f}x {:>7.3f} {:>7.3f}\n",
+               name_of(engines[e]), s.steps_per_s(), s.steps_per_s() * scene.time_step_s, s.contacts_per_step,
+               s.cpu_us_per_step, s.wall_us_per_step, s.cpu_us_per_step / speeds[0].cpu_us_per_step, s.end.p.x(),
+               s.end.p.z());
+  }
+}
+
+void print_accuracy(const std::vector<Engine>& engines, const std::vector<std::vector<double>>& accuracy) {
+  fmt::print("\nerrors against closed forms\n{:<41}", "");
+  for (const AccuracyFigure& figure : accuracy_figures()) fmt::print(" {:>20}", figure.name);
+  fmt::print("\n");
+  for (std::size_t e = 0; e < engines.size(); ++e) {
+    fmt::print("{:<41}", name_of(engines[e]));
+    for (std::size_t i = 0; i < accuracy[e].size(); ++i)
+      fmt::print(" {:>20}", fmt::format(fmt::runtime(accuracy_figures()[i].format), accuracy[e][i]));
+    fmt::print("\n");
+  }
+  for (const AccuracyFigure& figure : accuracy_figures()) fmt::print("  {}: {}\n", figure.name, figure.what);
+}
+
+// The first engine is the measure of the others. Says where it is slower or less accurate than it shall be.
+bool holds_limits(const std::vector<EngineScene>& scenes, const std::vector<Engine>& engines,
+                  const std::vector<std::vector<Speed>>& speeds, const std::vector<std::vector<double>>& accuracy) {
+  bool holds = true;
+  for (std::size_t e = 0; e < engines.size(); ++e) {
+    if (engines[e].name == engines[0].name || !engines[e].same_contacts) continue;
+    for (std::size_t s = 0; s < scenes.size(); ++s) {
+      const double times = speeds[s][e].cpu_us_per_step / speeds[s][0].cpu_us_per_step;
+      if (times >= kTimesFaster) continue;
+      holds = false;
+      fmt::print("limit missed: {}: {:.2f} times as fast as {}, not {:.1f}\n", scenes[s].name, times,
+                 name_of(engines[e]), kTimesFaster);
+    }
+    for (std::size_t i = 0; i < accuracy_figures().size(); ++i) {
+      const AccuracyFigure& figure = accuracy_figures()[i];
+      if (std::abs(accuracy[0][i]) <= std::abs(accuracy[e][i]) + figure.slack) continue;
+      holds = false;
+      fmt::print("limit missed: {} is {:.3f}, worse than {}: {:.3f}\n", figure.name, accuracy[0][i],
+                 name_of(engines[e]), accuracy[e][i]);
+    }
+  }
+  return holds;
+}
+
+std::string csv_of(const Machine& machine, const std::vector<EngineScene>& scenes, const std::vector<Engine>& engines,
+                   const std::vector<std::vector<Speed>>& speeds, const std::vector<std::vector<double>>& accuracy,
+                   const EngineScene& scaled, const Scaling& scaling) {
+  std::string out =
+      "processor,cores,compiler,scene,engine,version,setting,threads,time_step_s,steps_per_s,real_time_factor,"
+      "contacts_per_step,cpu_us_per_step,wall_us_per_step,kenaf_times_as_fast,end_x_m,end_z_m";
+  for (const AccuracyFigure& figure : accuracy_figures()) out += fmt::format(",{}", figure.name);
+  out += "\n";
+  const std::string where = fmt::format("\"{}\",{},\"{}\"", machine.processor, machine.cores, machine.compiler);
+  for (std::size_t s = 0; s < scenes.size(); ++s)
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      const Speed& speed = speeds[s][e];
+      out += fmt::format("{},\"{}\",{},{},\"{}\",1,{},{:.0f},{:.2f},{:.2f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f}", where,
+                         scenes[s].name, engines[e].name, engines[e].version, engines[e].setting, scenes[s].time_step_s,
+                         speed.steps_per_s(), speed.steps_per_s() * scenes[s].time_step_s, speed.contacts_per_step,
+                         speed.cpu_us_per_step, speed.wall_us_per_step,
+                         speed.cpu_us_per_step / speeds[s][0].cpu_us_per_step, speed.end.p.x(), speed.end.p.z());
+      for (const double error : accuracy[e]) out += fmt::format(",{:.4f}", error);
+      out += "\n";
+    }
+  for (const auto& [threads, rate] : {std::pair(1, scaling.steps_per_s_one), std::pair(2, scaling.steps_per_s_all)}) {
+    out += fmt::format("{},\"{}, a world each\",{},{},\"{}\",{},{},{:.0f},{:.2f},,,,,,", where, scaled.name,
+                       engines[0].name, engines[0].version, engines[0].setting, threads, scaled.time_step_s, rate,
+                       rate * scaled.time_step_s);
+    out += std::string(accuracy_figures().size(), ',') + "\n";
+  }
+  return out;
+}
+
+void write_file(const std::filesystem::path& path, const std::string& text) {
+  const std::filesystem::path aside = path.string() + ".part";
+  std::ofstream file(aside, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw std::runtime_error(fmt::format("{} cannot be written", aside.string()));
+  std::filesystem::rename(aside, path);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  CLI::App app("Compares Kenaf's physics with MuJoCo's and ODE's");
+  std::string csv;
+  int repeats = 3;
+  app.add_option("--csv", csv, "also write the results to this file");
+  app.add_option("--repeats", repeats, "of each scene with each engine; medians are reported")
+      ->check(CLI::Range(1, 1000));
+  CLI11_PARSE(app, argc, argv);
+
+  const Machine machine = this_machine();
+  std::vector<Engine> engines = kenaf_engines();
+  for (const auto& more : {mujoco_engines(), ode_engines()}) engines.insert(engines.end(), more.begin(), more.end());
+  fmt::print("{}, {} cores, {}\n", machine.processor, machine.cores, machine.compiler);
+  fmt::print("Kenaf {}, MuJoCo {}, ODE {}; medians of {} runs, thread time on one core\n", engines.front().version,
+             mujoco_engines().front().version, engines.back().version, repeats);
+
+  const std::vector<EngineScene> scenes = climbs();
+  std::vector<std::vector<Speed>> speeds;
+  for (const EngineScene& scene : scenes) {
+    speeds.push_back(measure_speeds(scene, engines, repeats));
+    print_speeds(scene, engines, speeds.back());
+    std::fflush(stdout);
+  }
+  std::vector<std::vector<double>> accuracy;
+  for (const Engine& engine : engines) accuracy.push_back(measure_accuracy(engine));
+  print_accuracy(engines, accuracy);
+
+  const Scaling scaling = measure_scaling(scenes[2], engines[0], 2, repeats);
+  fmt::print("\ntwo cores, a world each ({}): {:.2f} times the steps/s of one by wall clock, {:.2f} by thread time\n",
+             scenes[2].name, scaling.by_wall, scaling.by_cpu);
+  bool holds = holds_limits(scenes, engines, speeds, accuracy);
+  if (scaling.by_wall < kTwoCores) {
+    holds = false;
+    fmt::print("limit missed: two cores make {:.2f} times the steps of one, not {:.1f}\n", scaling.by_wall, kTwoCores);
+  }
+  if (!csv.empty()) write_file(csv, csv_of(machine, scenes, engines, speeds, accuracy, scenes[2], scaling));
+  return holds ? 0 : 1;
+} catch (const std::exception& error) {
+  fmt::print(stderr, "engines: {}\n", error.what());
+  return 2;
+}

@@ -1,0 +1,245 @@
+#include <ode/ode.h>
+
+#include <array>
+#include <cmath>
+#include <cstdarg>
+#include <stdexcept>
+
+#include "bench/engines/runner.hpp"
+
+namespace kenaf::bench {
+namespace {
+
+using namespace physics;
+
+enum class Stepper { quick, world };  // projected Gauss-Seidel, or Dantzig's exact solver
+
+struct Options {
+  Stepper stepper;
+  int iterations;
+  bool pieces;  // the belly in as many boxes as Kenaf has pieces, else in one
+};
+
+// The same give of a contact as Kenaf has (PhysicsSettings), in ODE's terms.
+constexpr double kStiffness_npm = 2e5, kDamping_nspm = 1000;
+
+struct Surface {
+  double friction_along = 1, friction_across = 1;
+  std::optional<Track> belt;
+};
+
+void quaternion(const Eigen::Quaterniond& q, dQuaternion out) {
+  out[0] = q.w(), out[1] = q.x(), out[2] = q.y(), out[3] = q.z();
+}
+Eigen::Vector3d vector(const dReal* v) {
+  return {v[0], v[1], v[2]};
+}
+Eigen::Quaterniond rotation(const dReal* q) {
+  return {q[0], q[1], q[2], q[3]};
+}
+
+class OdeRunner : public Runner {
+ public:
+  OdeRunner(const EngineScene& scene, const Options& options)
+      : options_(options), time_step_s_(scene.time_step_s), drives_(scene) {
+    static const bool initialised = [] {
+      // WorldStep reports "LCP internal error" for redundant contacts, thousands of times, and goes on
+      dSetMessageHandler([](int, const char*, va_list) {});
+      return dInitODE2(0) != 0;
+    }();
+    if (!initialised) throw std::runtime_error("ODE does not start");
+    world_ = dWorldCreate();
+    terrain_ = dSimpleSpaceCreate(nullptr);
+    moving_ = dSimpleSpaceCreate(nullptr);
+    contacts_ = dJointGroupCreate(0);
+    const Eigen::Vector3d& g = scene.world.gravity_W_mps2;
+    dWorldSetGravity(world_, g.x(), g.y(), g.z());
+    dWorldSetQuickStepNumIterations(world_, options.iterations);
+    const double stiffness = kStiffness_npm * time_step_s_ + kDamping_nspm;
+    soft_erp_ = kStiffness_npm * time_step_s_ / stiffness;
+    soft_cfm_ = 1 / stiffness;
+
+    for (const GroundPlane& plane : scene.world.planes) {
+      friction_ = plane.friction;
+      const Eigen::Vector3d n = plane.X_WP.q * Eigen::Vector3d::UnitZ();
+      dCreatePlane(terrain_, n.x(), n.y(), n.z(), n.dot(plane.X_WP.p));
+    }
+    for (const Box& box : scene.world.boxes) {
+      friction_ = box.friction;
+      dGeomID geom = dCreateBox(terrain_, box.size_m.x(), box.size_m.y(), box.size_m.z());
+      dQuaternion q;
+      quaternion(box.X_WBox.q, q);
+      dGeomSetPosition(geom, box.X_WBox.p.x(), box.X_WBox.p.y(), box.X_WBox.p.z());
+      dGeomSetQuaternion(geom, q);
+    }
+    if (scene.robot)
+      add_robot(scene);
+    else
+      add_block(*scene.block);
+  }
+  ~OdeRunner() override {
+    dJointGroupDestroy(contacts_);
+    dWorldDestroy(world_);
+    dSpaceDestroy(terrain_);
+    dSpaceDestroy(moving_);
+  }
+  OdeRunner(const OdeRunner&) = delete;
+  OdeRunner& operator=(const OdeRunner&) = delete;
+
+  void step() override {
+    drives_.advance();
+    for (std::size_t i = 0; i < hinges_.size(); ++i)
+      dJointSetHingeParam(hinges_[i], dParamVel,
+                          drives_.flipper_radps(i, start_rad_ + dJointGetHingeAngle(hinges_[i])));
+    belt_axis_W_ = rotation(dBodyGetQuaternion(main_)) * Eigen::Vector3d::UnitY();
+    contact_count_ = 0;
+    dSpaceCollide2(reinterpret_cast<dGeomID>(moving_), reinterpret_cast<dGeomID>(terrain_), this, &near);
+    if (options_.stepper == Stepper::quick)
+      dWorldQuickStep(world_, time_step_s_);
+    else
+      dWorldStep(world_, time_step_s_);
+    dJointGroupEmpty(contacts_);
+  }
+  std::size_t contacts() const override { return contact_count_; }
+  Pose pose() const override {
+    const Eigen::Quaterniond q = rotation(dBodyGetQuaternion(main_));
+    return {vector(dBodyGetPosition(main_)) - q * p_com_m_, q};
+  }
+
+ private:
+  // `X_WCom`: of the centre of mass.
+  dBodyID add_body(double mass_kg, const Eigen::Vector3d& inertia, const Pose& X_WCom) {
+    dBodyID body = dBodyCreate(world_);
+    dMass mass;
+    dMassSetParameters(&mass, mass_kg, 0, 0, 0, inertia.x(), inertia.y(), inertia.z(), 0, 0, 0);
+    dBodySetMass(body, &mass);
+    dQuaternion q;
+    quaternion(X_WCom.q, q);
+    dBodySetPosition(body, X_WCom.p.x(), X_WCom.p.y(), X_WCom.p.z());
+    dBodySetQuaternion(body, q);
+    return body;
+  }
+
+  void add_geom(dGeomID geom, dBodyID body, const Eigen::Vector3d& p_ComGeom, Surface surface) {
+    dGeomSetBody(geom, body);
+    dGeomSetOffsetPosition(geom, p_ComGeom.x(), p_ComGeom.y(), p_ComGeom.z());
+    surface.friction_along *= friction_;
+    surface.friction_across *= friction_;
+    surfaces_.push_back(std::make_unique<Surface>(surface));
+    dGeomSetData(geom, surfaces_.back().get());
+  }
+
+  void add_belted(const Belted& b, dBodyID body, const Eigen::Vector3d& p_com) {
+    const Surface surface{b.friction_along, b.friction_across, b.belt};
+    for (const Cuboid& c : straight_part(b, options_.pieces ? b.pieces : 1))
+      add_geom(dCreateBox(moving_, c.size_m.x(), c.size_m.y(), c.size_m.z()), body, c.center_m - p_com, surface);
+    const auto drum = [&](const Eigen::Vector3d& p, double radius) {
+      dGeomID geom = dCreateCylinder(moving_, radius, b.width_m);
+      add_geom(geom, body, p - p_com, surface);
+      dQuaternion along_y;
+      dQFromAxisAndAngle(along_y, 1, 0, 0, M_PI / 2);
+      dGeomSetOffsetQuaternion(geom, along_y);
+    };
+    drum(b.p_rear_m, b.rear_radius_m);
+    drum(b.p_front_m, b.front_radius_m);
+  }
+
+  void add_block(const Box& block) {
+    const Eigen::Vector3d& s = block.size_m;
+    const Eigen::Vector3d inertia =
+        block.mass_kg / 12 *
+        Eigen::Vector3d(s.y() * s.y() + s.z() * s.z(), s.x() * s.x() + s.z() * s.z(), s.x() * s.x() + s.y() * s.y());
+    main_ = add_body(block.mass_kg, inertia, block.X_WBox);
+    add_geom(dCreateBox(moving_, s.x(), s.y(), s.z()), main_, {0, 0, 0}, {block.friction, block.friction, {}});
+  }
+
+  void add_robot(const EngineScene& scene) {
+    const RobotDescription& robot = *scene.robot;
+    const RobotParts parts = parts_of(robot);
+    const auto com_at = [](const Pose& X, const Eigen::Vector3d& p) { return Pose{X.p + X.q * p, X.q}; };
+    p_com_m_ = robot.body.p_BBcm_m;
+    main_ = add_body(robot.body.mass_kg, robot.body.inertia_kgm2, com_at(scene.X_start, p_com_m_));
+    const Eigen::Vector3d& s = robot.body.size_m;
+    add_geom(dCreateBox(moving_, s.x(), s.y(), s.z()), main_, -p_com_m_,
+             {robot.body.friction, robot.body.friction, {}});
+    for (const Belted& track : parts.tracks) add_belted(track, main_, p_com_m_);
+    for (const Arm& arm : parts.arms) {
+      start_rad_ = robot.flipper.front().start_angle_rad;
+      const Eigen::Quaterniond tip_up(Eigen::AngleAxisd(start_rad_, -Eigen::Vector3d::UnitY()));
+      const Pose X_WArm = compose(scene.X_start, {arm.X_BArm.p, arm.X_BArm.q * tip_up});
+      dBodyID body = add_body(arm.mass_kg, arm.inertia_kgm2, com_at(X_WArm, arm.p_com_m));
+      add_belted(arm.shape, body, arm.p_com_m);
+      dJointID hinge = dJointCreateHinge(world_, nullptr);
+      dJointAttach(hinge, body, main_);
+      dJointSetHingeAnchor(hinge, X_WArm.p.x(), X_WArm.p.y(), X_WArm.p.z());
+      const Eigen::Vector3d axis = X_WArm.q * -Eigen::Vector3d::UnitY();
+      dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
+      dJointSetHingeParam(hinge, dParamFMax, robot.servo.max_torque_nm);
+      hinges_.push_back(hinge);
+    }
+  }
+
+  static void near(void* self, dGeomID moving, dGeomID fixed) { static_cast<OdeRunner*>(self)->touch(moving, fixed); }
+
+  void touch(dGeomID moving, dGeomID fixed) {
+    if (!dGeomGetBody(moving)) std::swap(moving, fixed);
+    constexpr int kMost = 8;
+    dContact contact[kMost];
+    const int count = dCollide(moving, fixed, kMost, &contact[0].geom, sizeof(dContact));
+    const Surface& surface = *static_cast<const Surface*>(dGeomGetData(moving));
+    for (int i = 0; i < count; ++i) {
+      dSurfaceParameters& s = contact[i].surface;
+      s.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
+      s.soft_erp = soft_erp_;
+      s.soft_cfm = soft_cfm_;
+      s.mu = surface.friction_along;
+      if (surface.belt) {
+        // ODE's normal points into the moving body, so outward is against it; the first body's speed along fdir1,
+        // relative to the second, becomes motion1
+        const Eigen::Vector3d along = (-vector(contact[i].geom.normal)).cross(belt_axis_W_);
+        const double length = along.norm();
+        if (length > 0.1) {  // else a side face
+          s.mode |= dContactMu2 | dContactFDir1 | dContactMotion1;
+          s.mu2 = surface.friction_across;
+          s.motion1 = drives_.belt_mps(*surface.belt) * length;
+          for (int k = 0; k < 3; ++k) contact[i].fdir1[k] = along[k] / length;
+        }
+      }
+      dJointAttach(dJointCreateContact(world_, contacts_, &contact[i]), dGeomGetBody(moving), nullptr);
+    }
+    contact_count_ += static_cast<std::size_t>(count);
+  }
+
+  Options options_;
+  double time_step_s_, soft_erp_ = 0, soft_cfm_ = 0, friction_ = 1, start_rad_ = 0;
+  Drives drives_;
+  dWorldID world_{};
+  dSpaceID terrain_{}, moving_{};
+  dJointGroupID contacts_{};
+  dBodyID main_{};
+  Eigen::Vector3d p_com_m_{0, 0, 0}, belt_axis_W_{0, 1, 0};
+  std::vector<dJointID> hinges_;
+  std::vector<std::unique_ptr<Surface>> surfaces_;
+  std::size_t contact_count_ = 0;
+};
+
+}  // namespace
+
+std::vector<Engine> ode_engines() {
+  const auto engine = [](const char* setting, const Options& options) {
+    return Engine{"ODE", KENAF_ODE_VERSION, setting, options.pieces,
+                  [options](const EngineScene& scene) -> std::unique_ptr<Runner> {
+                    return std::make_unique<OdeRunner>(scene, options);
+                  }};
+  };
+  return {engine("QuickStep, 10 iterations", {Stepper::quick, 10, true}),
+          engine("QuickStep, 20 iterations", {Stepper::quick, 20, true}),
+          engine("QuickStep, 50 iterations", {Stepper::quick, 50, true}),
+          engine("WorldStep", {Stepper::world, 0, true}),
+          engine("QuickStep, 10 it.; 1 box a belly", {Stepper::quick, 10, false}),
+          engine("QuickStep, 20 it.; 1 box a belly", {Stepper::quick, 20, false}),
+          engine("QuickStep, 50 it.; 1 box a belly", {Stepper::quick, 50, false}),
+          engine("WorldStep; 1 box a belly", {Stepper::world, 0, false})};
+}
+
+}  // namespace kenaf::bench
