@@ -195,7 +195,9 @@ void ContactSolver::add_contact(const Touch& touch, const btCollisionObject& a, 
   };
 
   // spring and damper, implicit: impulse = -h (k (gap + h v) + d v), never negative
-  const btScalar stiffness = settings_.stiffness_npm * touch.share, damping = settings_.damping_nspm * touch.share;
+  const btScalar stiffness =
+      settings_.stiffness_npm * touch.share / (surface_a.compliance_scale * surface_b.compliance_scale);
+  const btScalar damping = settings_.damping_nspm * touch.share * surface_a.damping_scale * surface_b.damping_scale;
   const btScalar step_stiffness = stiffness * time_step + damping;
   c.softness = 1 / (time_step * step_stiffness);
   c.give_velocity = -stiffness * touch.gap_m / step_stiffness;
@@ -242,7 +244,7 @@ void ContactSolver::warm_start(Contact& c) {
   apply(c, c.impulse);
 }
 
-void ContactSolver::solve_contact(Contact& c) {
+btScalar ContactSolver::solve_contact(Contact& c) {
   btSolverBody& A = m_tmpSolverBodyPool[c.body_a];
   btVector3 linear = A.internalGetDeltaLinearVelocity();
   const btVector3& angular_a = A.internalGetDeltaAngularVelocity();
@@ -261,7 +263,7 @@ void ContactSolver::solve_contact(Contact& c) {
   const btScalar normal =
       std::max(c.impulse[0] - (v[0] - c.give_velocity + c.softness * c.impulse[0]) * c.normal_mass, btScalar(0));
   change[0] = normal - c.impulse[0];
-  if (normal <= 0 && c.impulse[0] <= 0 && c.impulse[1] == 0 && c.impulse[2] == 0) return;
+  if (normal <= 0 && c.impulse[0] <= 0 && c.impulse[1] == 0 && c.impulse[2] == 0) return 0;
 
   btScalar slip[2];
   for (int k = 0; k < 2; ++k) {
@@ -293,6 +295,7 @@ void ContactSolver::solve_contact(Contact& c) {
   c.impulse[1] = p[0];
   c.impulse[2] = p[1];
   apply(c, change);
+  return (change[0] * change[0] + change[1] * change[1] + change[2] * change[2]) * c.inverse_mass_a * c.inverse_mass_a;
 }
 
 void ContactSolver::solve_running_gear(Belt& belt, btScalar time_step) {
@@ -317,11 +320,11 @@ btScalar ContactSolver::solveSingleIteration(int iteration, btCollisionObject** 
                                              btPersistentManifold** manifolds, int manifold_count,
                                              btTypedConstraint** constraints, int constraint_count,
                                              const btContactSolverInfo& info, btIDebugDraw* debug) {
-  btSequentialImpulseConstraintSolver::solveSingleIteration(iteration, bodies, body_count, manifolds, manifold_count,
-                                                            constraints, constraint_count, info, debug);
+  btScalar residual = btSequentialImpulseConstraintSolver::solveSingleIteration(
+      iteration, bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, debug);
   for (Belt* belt : belts_) solve_running_gear(*belt, info.m_timeStep);
-  for (Contact& contact : contacts_) solve_contact(contact);
-  return 1;  // a residual of 0 would end the iterations
+  for (Contact& contact : contacts_) residual = std::max(residual, solve_contact(contact));
+  return residual;
 }
 
 btScalar ContactSolver::solveGroupCacheFriendlySetup(btCollisionObject** bodies, int body_count,

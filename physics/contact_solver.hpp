@@ -81,7 +81,7 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
   void add_contact(const Touch& touch, const btCollisionObject& a, const btCollisionObject& b, int body_a, int body_b,
                    btScalar time_step);
   void warm_start(Contact& contact);
-  void solve_contact(Contact& contact);
+  btScalar solve_contact(Contact& contact);  // gives the square of the velocity by which it changed body A
   static void solve_running_gear(Belt& belt, btScalar time_step);
   void apply(Contact& contact, const btScalar change[3]);
 

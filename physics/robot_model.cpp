@@ -17,6 +17,18 @@ Track side_of(Flipper flipper) {
   return flipper == kFrontLeft || flipper == kRearLeft ? kLeft : kRight;
 }
 
+Surface belt_surface(const RobotDescription& robot, double friction_along, double friction_across, Belt* belt,
+                     double axis_y) {
+  const Effects& effects = robot.effects;
+  return {.friction_along = friction_along * effects.friction_along_scale,
+          .friction_across = friction_across * effects.friction_across_scale,
+          .belt = belt,
+          .axis_y = axis_y,
+          .lug_height_m = robot.track.lug_height_m * effects.lug_height_scale,
+          .compliance_scale = effects.ground_compliance_scale,
+          .damping_scale = effects.ground_damping_scale};
+}
+
 std::unique_ptr<btRigidBody> make_body(double mass_kg, btCollisionShape& shape, const btVector3& inertia,
                                        Collider& collider) {
   auto body =
@@ -32,6 +44,8 @@ RobotModel::RobotModel(const RobotDescription& robot, RobotId id, btDiscreteDyna
     : description(robot), world_(world), solver_(solver), battery_left_s_(robot.battery.capacity_s) {
   for (Belt& belt : belts_) {
     belt.moving_mass_kg = description.drive.moving_mass_kg;
+    belt.rolling_resistance = description.effects.rolling_resistance;
+    belt.slip_spm = description.effects.slip_with_speed_spm;
     solver_.add_belt(&belt);
   }
   make_hull(id);
@@ -65,14 +79,14 @@ void RobotModel::make_hull(RobotId id) {
   const Eigen::Vector2d half(body.size_m.x() / 2, body.size_m.z() / 2);
   // a hull, not a btBoxShape: all of a robot meets the ground through the same algorithm
   add(make_prism({{half.x(), -half.y()}, half, {-half.x(), half.y()}, -half}, body.size_m.y(), {0, 0, 0}),
-      {.friction_along = body.friction, .friction_across = body.friction});
+      {.friction_along = body.friction,
+       .friction_across = body.friction,
+       .compliance_scale = description.effects.ground_compliance_scale,
+       .damping_scale = description.effects.ground_damping_scale});
   for (const Track side : {kLeft, kRight}) {
     Eigen::Vector3d center = track.p_BT_m;
     if (side == kRight) center.y() = -center.y();
-    const Surface surface{.friction_along = track.friction_along,
-                          .friction_across = track.friction_across,
-                          .belt = &belts_[side],
-                          .lug_height_m = track.lug_height_m};
+    const Surface surface = belt_surface(description, track.friction_along, track.friction_across, &belts_[side], 1);
     const double straight_m = track.length_m - 2 * track.end_radius_m;
     track_belts_[side] = {.radius = {track.end_radius_m, track.end_radius_m},
                           .length = straight_m,
@@ -106,11 +120,8 @@ void RobotModel::make_flipper(Flipper which, RobotId id) {
 
   flipper.shape = make_prism(outline, f.width_m, -com);
   flipper.collider.robot = static_cast<std::uint32_t>(id);
-  const Surface surface{.friction_along = f.friction_along,
-                        .friction_across = f.friction_across,
-                        .belt = f.belt_driven ? &belts_[side_of(which)] : nullptr,
-                        .axis_y = front ? 1.0 : -1.0,
-                        .lug_height_m = description.track.lug_height_m};
+  const Surface surface = belt_surface(description, f.friction_along, f.friction_across,
+                                       f.belt_driven ? &belts_[side_of(which)] : nullptr, front ? 1 : -1);
   flipper.collider.surfaces = {surface};
   flipper.belt = {.radius = {f.pivot_radius_m, f.tip_radius_m},
                   .length = f.length_m,

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kJointCorrection = 0.2;  // share of a joint's position error that is removed in a step
 constexpr double kFree_m = 1e-5;
+// An iteration that changes no velocity by more than this share of what gravity does in a step is the last one.
+constexpr double kSolved = 1e-5;
 
 }  // namespace
 
@@ -24,6 +26,8 @@ Scene::Scene(const WorldDescription& description, const PhysicsSettings& setting
   info.m_numIterations = settings.solver_iterations;
   info.m_splitImpulse = 0;  // contacts give way instead, see ContactSolver
   info.m_erp = kJointCorrection;
+  const double solved_mps = kSolved * description.gravity_W_mps2.norm() * settings.time_step_s;
+  info.m_leastSquaresResidualThreshold = solved_mps * solved_mps;
   world_.getSimulationIslandManager()->setSplitIslands(false);  // belts belong to no island
   world_.setForceUpdateAllAabbs(false);
   world_.setGravity(to_bullet(description.gravity_W_mps2));

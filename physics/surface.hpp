@@ -34,6 +34,8 @@ struct Surface {
   Belt* belt = nullptr;        // null: the surface does not move in its body
   double axis_y = 1;           // the belt turns about (0, axis_y, 0) of its body, 1 or -1
   double lug_height_m = 0;
+  double compliance_scale = 1;  // of the give of what it stands on
+  double damping_scale = 1;
 };
 
 // Hangs on btCollisionObject::getUserPointer().
