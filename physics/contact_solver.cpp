@@ -343,6 +343,13 @@ btScalar ContactSolver::solveGroupCacheFriendlySetup(btCollisionObject** bodies,
       joint = owner;
       row = 0;
     }
+    if (row == 5 && joint->softness() > 0) {
+      // a soft row of Bullet's own would not converge: it leaves the softness out of the row's mass
+      const btScalar mass = 1 / (1 / c.m_jacDiagABInv + joint->softness());
+      c.m_rhs *= mass / c.m_jacDiagABInv;
+      c.m_cfm = joint->softness() * mass;
+      c.m_jacDiagABInv = mass;
+    }
     c.m_appliedImpulse = btClamped(joint->row_impulse[static_cast<std::size_t>(row)], c.m_lowerLimit, c.m_upperLimit);
     btSolverBody& A = m_tmpSolverBodyPool[c.m_solverBodyIdA];
     btSolverBody& B = m_tmpSolverBodyPool[c.m_solverBodyIdB];

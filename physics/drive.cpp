@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/battery.hpp"
+
 namespace kenaf::physics {
 namespace {
 
@@ -10,21 +12,45 @@ constexpr double kTurning_mps = 0.01;  // from here on the motor's own friction 
 
 }  // namespace
 
-void TrackDrive::before_step(Belt& belt, const TrackDriveDescription& drive, double commanded_mps, double time_step_s) {
-  const double target = std::clamp(commanded_mps, -drive.max_speed_mps, drive.max_speed_mps);
-  // exact for a constant command, so the step size changes nothing
-  const double share = drive.time_constant_s > 0 ? -std::expm1(-time_step_s / drive.time_constant_s) : 1;
-  reference_mps += share * (target - reference_mps);
-  const double u = belt.speed_mps;
-  const double driving_n = drive.max_force_n * std::max(0.0, 1 - std::abs(u) / drive.max_speed_mps);
-  belt.target_mps = reference_mps;
-  belt.max_impulse_ns = (u > 0 ? driving_n : drive.max_force_n) * time_step_s;
-  belt.min_impulse_ns = -(u < 0 ? driving_n : drive.max_force_n) * time_step_s;
+TrackDrive::TrackDrive(const TrackDriveDescription& drive, const Effects& effects)
+    : drive_(drive),
+      lag_s_(effects.drive_lag_s),
+      dry_friction_n_(effects.drive_coulomb_n),
+      viscous_nspm_(effects.drive_viscous_nspm) {
+  drive_.max_force_n *= effects.drive_torque_scale;
 }
 
-double track_current_a(const TrackDriveDescription& drive, const Belt& belt, double time_step_s) {
-  return drive.amperes_per_newton * std::abs(belt.motor_impulse_ns) / time_step_s +
-         drive.idle_amperes * std::min(1.0, std::abs(belt.speed_mps) / kTurning_mps);
+void TrackDrive::before_step(Belt& belt, double commanded_mps, double voltage_share, double time_step_s) {
+  double target = std::clamp(commanded_mps, -drive_.max_speed_mps, drive_.max_speed_mps);
+  // both lags exact for a constant command, so the step size changes nothing
+  if (lag_s_ > 0) {
+    lagged_mps_ -= std::expm1(-time_step_s / lag_s_) * (target - lagged_mps_);
+    target = lagged_mps_;
+  }
+  const double share = drive_.time_constant_s > 0 ? -std::expm1(-time_step_s / drive_.time_constant_s) : 1;
+  reference_mps_ += share * (target - reference_mps_);
+  const double u = belt.speed_mps;
+  const double braking_n = drive_.max_force_n * voltage_share;
+  const double driving_n = drive_.max_force_n * std::max(0.0, voltage_share - std::abs(u) / drive_.max_speed_mps);
+  belt.target_mps = reference_mps_;
+  belt.max_impulse_ns = (u > 0 ? driving_n : braking_n) * time_step_s;
+  belt.min_impulse_ns = -(u < 0 ? driving_n : braking_n) * time_step_s;
+  belt.dry_friction_ns = dry_friction_n_ * time_step_s;
+  belt.viscous_nspm = viscous_nspm_;
+}
+
+double TrackDrive::current_a(const Belt& belt, double time_step_s) const {
+  return drive_.amperes_per_newton * std::abs(belt.motor_impulse_ns) / time_step_s +
+         drive_.idle_amperes * std::min(1.0, std::abs(belt.speed_mps) / kTurning_mps);
+}
+
+double TrackDrive::battery_current_a(const Belt& belt, double voltage_share, double time_step_s) const {
+  const double force_n = std::abs(belt.motor_impulse_ns) / time_step_s;
+  const double speed_share = belt.speed_mps / drive_.max_speed_mps;
+  const double idle_a = drive_.idle_amperes * std::min(1.0, std::abs(belt.speed_mps) / kTurning_mps);
+  return physics::battery_current_a(drive_.amperes_per_newton * force_n, force_n / drive_.max_force_n,
+                                    std::copysign(speed_share, belt.motor_impulse_ns * belt.speed_mps), voltage_share) +
+         physics::battery_current_a(idle_a, 0, std::abs(speed_share), voltage_share);
 }
 
 }  // namespace kenaf::physics

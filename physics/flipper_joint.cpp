@@ -12,11 +12,14 @@ namespace {
 constexpr double kServoGain_per_s = 30;     // of the position loop
 constexpr double kEndStopTorque_nm = 1000;  // what the mechanical stop can hold
 constexpr double kEndStopGain_per_s = 20;
+constexpr double kTeeth_radpnm = 1e-4;      // give of the gear's teeth, where there is play
+constexpr double kSpringDamping_s = 0.005;  // damping of the coupling over its stiffness
 
 }  // namespace
 
-FlipperJoint::FlipperJoint(btRigidBody& a, btRigidBody& b, const btTransform& X_AJ, const btTransform& X_BJ)
-    : btTypedConstraint(HINGE_CONSTRAINT_TYPE, a, b), X_AJ_(X_AJ), X_BJ_(X_BJ) {}
+FlipperJoint::FlipperJoint(btRigidBody& a, btRigidBody& b, const btTransform& X_AJ, const btTransform& X_BJ,
+                           const ServoCoupling& coupling)
+    : btTypedConstraint(HINGE_CONSTRAINT_TYPE, a, b), X_AJ_(X_AJ), X_BJ_(X_BJ), coupling_(coupling) {}
 
 btVector3 FlipperJoint::axis_W() const {
   return -(m_rbA.getCenterOfMassTransform().getBasis() * X_AJ_.getBasis().getColumn(1));
@@ -28,12 +31,16 @@ double FlipperJoint::raw_angle_rad() const {
   return std::atan2(R_WA.getColumn(2).dot(out_W), R_WA.getColumn(0).dot(out_W));
 }
 
-void FlipperJoint::measure() {
+void FlipperJoint::after_step(double time_step_s) {
   angle_rad_ += frames::wrap_angle(raw_angle_rad() - angle_rad_);
+  if (!coupling_.rigid())
+    servo_rad_ =
+        std::clamp(servo_rad_ + time_step_s * servo_radps_, angle_rad_ - most_apart_rad_, angle_rad_ + most_apart_rad_);
 }
 
 void FlipperJoint::restart(double angle_rad) {
-  angle_rad_ = angle_rad;
+  angle_rad_ = followed_rad_ = servo_rad_ = angle_rad;
+  servo_radps_ = 0;
   row_impulse = {};
 }
 
@@ -45,10 +52,16 @@ void FlipperJoint::drive(const JointCommand& command, const FlipperDescription& 
                          const FlipperServoDescription& servo, double time_step_s) {
   double torque = servo.max_torque_nm;
   double speed = 0;
+  const double at = servo_rad();
+  if (command.mode != JointMode::angle) followed_rad_ = at;
   switch (command.mode) {
     case JointMode::angle: {
-      const double target = reachable_angle(command.value, angle_rad_, flipper.min_angle_rad, flipper.max_angle_rad);
-      speed = std::clamp(kServoGain_per_s * (target - angle_rad_), -servo.max_speed_radps, servo.max_speed_radps);
+      double target = reachable_angle(command.value, at, flipper.min_angle_rad, flipper.max_angle_rad);
+      if (coupling_.lag_s > 0) {
+        followed_rad_ -= std::expm1(-time_step_s / coupling_.lag_s) * (target - followed_rad_);
+        target = followed_rad_;
+      }
+      speed = std::clamp(kServoGain_per_s * (target - at), -servo.max_speed_radps, servo.max_speed_radps);
       break;
     }
     case JointMode::speed:
@@ -64,16 +77,36 @@ void FlipperJoint::drive(const JointCommand& command, const FlipperDescription& 
   min_impulse_ = -torque * time_step_s;
   max_impulse_ = torque * time_step_s;
   // never past a limit within the next step; a load may press it past, then the stop pushes back
+  speed = std::clamp(speed, std::min((flipper.min_angle_rad - at) / time_step_s, 0.0),
+                     std::max((flipper.max_angle_rad - at) / time_step_s, 0.0));
+  if (!coupling_.rigid()) push_through(speed, torque, time_step_s);
   const double to_min = flipper.min_angle_rad - angle_rad_, to_max = flipper.max_angle_rad - angle_rad_;
-  speed = std::clamp(speed, std::min(to_min / time_step_s, 0.0), std::max(to_max / time_step_s, 0.0));
+  if (to_max < 0 || to_min > 0) softness_ = 0;  // the stop is at the arm
   if (to_max < 0) {
     speed = std::min(speed, kEndStopGain_per_s * to_max);
     min_impulse_ = -kEndStopTorque_nm * time_step_s;
   } else if (to_min > 0) {
     speed = std::max(speed, kEndStopGain_per_s * to_min);
     max_impulse_ = kEndStopTorque_nm * time_step_s;
+  } else if (softness_ > 0) {
+    return;
   }
   target_radps_ = speed;
+}
+
+// Spring and damper, implicit as a contact's: torque = k (apart + h (servo - arm speed)) + d (servo - arm speed), at
+// most what the servo has, and with play never a pull across it.
+void FlipperJoint::push_through(double servo_radps, double torque_nm, double time_step_s) {
+  const double give =
+      coupling_.play_rad > 0 ? std::max(coupling_.compliance_radpnm, kTeeth_radpnm) : coupling_.compliance_radpnm;
+  servo_radps_ = servo_radps;
+  most_apart_rad_ = coupling_.play_rad / 2 + give * torque_nm;
+  const double ahead = servo_rad_ - angle_rad_;
+  const double stiffness = 1 / give;
+  const double step_stiffness = stiffness * (time_step_s + kSpringDamping_s);
+  softness_ = 1 / (time_step_s * step_stiffness);
+  target_radps_ = servo_radps + stiffness * (ahead - std::copysign(coupling_.play_rad / 2, ahead)) / step_stiffness;
+  if (coupling_.play_rad > 0) (ahead < 0 ? max_impulse_ : min_impulse_) = 0;
 }
 
 void FlipperJoint::getInfo1(btConstraintInfo1* info) {

@@ -9,15 +9,28 @@
 
 namespace kenaf::physics {
 
+// What is between the servo and its arm: nothing, unless the effects put something there.
+struct ServoCoupling {
+  double lag_s = 0;                // of the angle that the servo follows
+  double play_rad = 0;             // between both ends
+  double compliance_radpnm = 0;
+  bool rigid() const { return play_rad == 0 && compliance_radpnm == 0; }
+};
+
 // The angle is counted through full turns, so a flipper with more than half a turn of travel knows where it is.
+//
+// Rigid, servo and arm are one, and the servo's row moves the arm. Otherwise the servo has an angle of its own: it moves
+// as it is told, and drags the arm by a spring and a damper that begin at the end of the play. Where the spring's torque
+// would go beyond the servo's, it is the servo that gives way.
 class FlipperJoint : public btTypedConstraint {
  public:
   // `X_AJ`, `X_BJ`: the joint's frame in the frames of the two bodies' centres of mass. They coincide at angle 0; a
   // positive angle turns B about -y of the joint's frame.
-  FlipperJoint(btRigidBody& a, btRigidBody& b, const btTransform& X_AJ, const btTransform& X_BJ);
+  FlipperJoint(btRigidBody& a, btRigidBody& b, const btTransform& X_AJ, const btTransform& X_BJ,
+               const ServoCoupling& coupling);
 
   // Reads the angle from the bodies; call once after each step.
-  void measure();
+  void after_step(double time_step_s);
   // Places it without history, as after a teleport.
   void restart(double angle_rad);
   // Sets the servo for the next step.
@@ -25,6 +38,8 @@ class FlipperJoint : public btTypedConstraint {
              double time_step_s);
 
   double angle_rad() const { return angle_rad_; }
+  // On the servo's side of play and compliance, where its encoder sits.
+  double servo_rad() const { return coupling_.rigid() ? angle_rad_ : servo_rad_; }
   double speed_radps() const;
   double torque_nm(double time_step_s) const { return row_impulse[5] / time_step_s; }  // + lifts the tip
 
@@ -34,14 +49,20 @@ class FlipperJoint : public btTypedConstraint {
   btScalar getParam(int, int) const override { return 0; }
 
   std::array<double, 6> row_impulse{};  // of the last step; the servo's is the last one
+  // Of the servo's row, in rad/s for an impulse of 1 N m s: what the row gives way.
+  double softness() const { return softness_; }
 
  private:
+  void push_through(double servo_radps, double torque_nm, double time_step_s);
   btVector3 axis_W() const;  // about which a positive angle turns
   double raw_angle_rad() const;
 
   btTransform X_AJ_, X_BJ_;
   double angle_rad_ = 0;
-  double target_radps_ = 0, min_impulse_ = 0, max_impulse_ = 0;
+  double target_radps_ = 0, min_impulse_ = 0, max_impulse_ = 0, softness_ = 0;
+  ServoCoupling coupling_;
+  double followed_rad_ = 0;  // the commanded angle behind the lag
+  double servo_rad_ = 0, servo_radps_ = 0, most_apart_rad_ = 0;  // unused where it is rigid
 };
 
 }  // namespace kenaf::physics

@@ -29,6 +29,7 @@ struct DrivesReading {
   std::array<double, kTrackCount> track_a;
   std::array<double, kFlipperCount> flipper_a;
   double battery_v;
+  std::array<double, kFlipperCount> flipper_rad{};  // from the servos' own encoders
 };
 
 using Reading = std::variant<GroundTruthReading, InsReading, ImuReading, EncoderReading, OdometryReading,

@@ -100,6 +100,7 @@ FlipperServoDescription read_servo(TomlReader table) {
       .max_speed_radps = table.number("max_speed_radps", kPositive),
       .max_torque_nm = table.number("max_torque_nm", kPositive),
       .amperes_per_nm = table.number("amperes_per_nm", kNotNegative),
+      .resolution_rad = table.number_or("resolution_rad", 0, {.min = 0, .max = 1}),
   };
   table.finish();
   return servo;
@@ -137,6 +138,8 @@ SensorDescription read_sensor(TomlReader& table) {
   sensor.noise_rad = table.number_or("noise_rad", 0, kNotNegative);
   sensor.noise_radps = table.number_or("noise_radps", 0, kNotNegative);
   sensor.noise_mps2 = table.number_or("noise_mps2", 0, kNotNegative);
+  sensor.noise_a = table.number_or("noise_a", 0, kNotNegative);
+  sensor.noise_v = table.number_or("noise_v", 0, kNotNegative);
   sensor.bias_rad = table.number_or("bias_rad", 0, kNotNegative);
   sensor.bias_radps = table.number_or("bias_radps", 0, kNotNegative);
   if (sensor.type == SensorType::sonar || sensor.type == SensorType::range_scanner) {

@@ -75,6 +75,7 @@ struct FlipperServoDescription {
   double max_speed_radps;
   double max_torque_nm;
   double amperes_per_nm;
+  double resolution_rad = 0;       // of its encoder; 0: exact
 };
 
 struct BatteryDescription {
@@ -97,7 +98,7 @@ struct SensorDescription {
   double period_s;                 // 0: at every output of its connection
   double delay_s;                  // age of what it reports
   // 1-sigma, white, per sample, and a constant bias drawn once for each robot. In the reading's own units.
-  double noise_m = 0, noise_rad = 0, noise_radps = 0, noise_mps2 = 0;
+  double noise_m = 0, noise_rad = 0, noise_radps = 0, noise_mps2 = 0, noise_a = 0, noise_v = 0;
   double bias_rad = 0, bias_radps = 0;
   // Ray sensors only.
   double min_range_m = 0, max_range_m = 0, field_of_view_rad = 0, resolution_rad = 0;

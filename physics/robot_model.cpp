@@ -38,10 +38,37 @@ std::unique_ptr<btRigidBody> make_body(double mass_kg, btCollisionShape& shape, 
   return body;
 }
 
+// The body as the effects have it. Moments that no rigid body has together are taken as they are: Bullet's equations of
+// motion have a solution for any three above zero.
+BodyDescription with_effects(BodyDescription body, const Effects& effects) {
+  body.mass_kg *= effects.mass_scale;
+  body.inertia_kgm2 *= effects.mass_scale;
+  body.inertia_kgm2.x() *= effects.roll_inertia_scale;
+  body.inertia_kgm2.y() *= effects.pitch_inertia_scale;
+  body.inertia_kgm2.z() *= effects.yaw_inertia_scale;
+  body.p_BBcm_m += Eigen::Vector3d(effects.com_forward_m, effects.com_left_m, effects.com_up_m);
+  return body;
+}
+
+// What all drives draw together at standstill with all their force.
+double stalled_a(const RobotDescription& robot) {
+  const Effects& effects = robot.effects;
+  const double track = robot.drive.amperes_per_newton * robot.drive.max_force_n * effects.drive_torque_scale;
+  const double flipper = robot.servo.amperes_per_nm * robot.servo.max_torque_nm * effects.flipper_torque_scale;
+  return static_cast<double>(kTrackCount) * track +
+         (robot.has_flippers() ? static_cast<double>(kFlipperCount) * flipper : 0);
+}
+
 }  // namespace
 
-RobotModel::RobotModel(const RobotDescription& robot, RobotId id, btDiscreteDynamicsWorld& world, ContactSolver& solver)
-    : description(robot), world_(world), solver_(solver), battery_left_s_(robot.battery.capacity_s) {
+RobotModel::RobotModel(const RobotDescription& robot, const std::string& name, std::uint64_t world_seed,
+                       double time_step_s, RobotId id, btDiscreteDynamicsWorld& world, ContactSolver& solver)
+    : description(robot),
+      world_(world),
+      solver_(solver),
+      channel_(robot.effects, world_seed, name, time_step_s),
+      drives_{TrackDrive(robot.drive, robot.effects), TrackDrive(robot.drive, robot.effects)},
+      battery_(robot.battery, robot.effects.battery_resistance_ohm, stalled_a(robot)) {
   for (Belt& belt : belts_) {
     belt.moving_mass_kg = description.drive.moving_mass_kg;
     belt.rolling_resistance = description.effects.rolling_resistance;
@@ -66,7 +93,7 @@ RobotModel::~RobotModel() {
 }
 
 void RobotModel::make_hull(RobotId id) {
-  const BodyDescription& body = description.body;
+  const BodyDescription body = with_effects(description.body, description.effects);
   const TrackDescription& track = description.track;
   X_BCom_ = btTransform(btQuaternion::getIdentity(), to_bullet(body.p_BBcm_m));
   hull_collider_.robot = static_cast<std::uint32_t>(id);
@@ -136,8 +163,11 @@ void RobotModel::make_flipper(Flipper which, RobotId id) {
       make_body(f.mass_kg, *flipper.shape, f.mass_kg * btVector3(zz + yy, xx + zz, xx + yy), flipper.collider);
   world_.addRigidBody(flipper.body.get());
   body_list_.push_back(flipper.body.get());
-  flipper.joint = std::make_unique<FlipperJoint>(*hull_, *flipper.body, X_BCom_.inverse() * flipper.X_BodyPivot,
-                                                 flipper.X_FlipperCom.inverse());
+  flipper.joint = std::make_unique<FlipperJoint>(
+      *hull_, *flipper.body, X_BCom_.inverse() * flipper.X_BodyPivot, flipper.X_FlipperCom.inverse(),
+      ServoCoupling{.lag_s = description.effects.flipper_lag_s,
+                    .play_rad = description.effects.flipper_backlash_rad,
+                    .compliance_radpnm = description.effects.flipper_compliance_radpnm});
 }
 
 void RobotModel::place(const Pose& X_WB, bool start_joints) {
@@ -167,30 +197,47 @@ void RobotModel::place(const Pose& X_WB, bool start_joints) {
   for (const Track side : {kLeft, kRight}) {
     belts_[side].speed_mps = 0;
     belts_[side].motor_impulse_ns = 0;
-    drives_[side].reference_mps = 0;
+    drives_[side].stop();
   }
-  if (start_joints)
-    for (JointCommand& joint : command.flipper)
+  channel_.stop_ramp();
+  if (start_joints) {
+    RobotCommand rest;
+    for (JointCommand& joint : rest.flipper)
       joint = {JointMode::angle, description.has_flippers() ? description.flipper.front().start_angle_rad : 0.0};
+    channel_.restart(rest);
+  }
+}
+
+// A servo's speed and torque shrink with the voltage as a track motor's do.
+FlipperServoDescription RobotModel::servo_now() const {
+  FlipperServoDescription servo = description.servo;
+  servo.max_torque_nm *= description.effects.flipper_torque_scale * battery_.voltage_share();
+  servo.max_speed_radps *= battery_.voltage_share();
+  return servo;
 }
 
 void RobotModel::before_step(double time_step_s) {
-  for (const Track side : {kLeft, kRight})
-    drives_[side].before_step(belts_[side], description.drive, command.track_speed_mps[side], time_step_s);
+  const RobotCommand& command = channel_.step();
+  for (const Track side : {kLeft, kRight}) {
+    const double favour = (side == kLeft ? 0.5 : -0.5) * description.effects.drive_asymmetry;
+    drives_[side].before_step(belts_[side], command.track_speed_mps[side] * (1 + favour), battery_.voltage_share(),
+                              time_step_s);
+  }
+  if (!description.has_flippers()) return;
+  const FlipperServoDescription servo = servo_now();
   for (std::size_t i = 0; i < kFlipperCount; ++i)
-    if (flippers_[i].joint)
-      flippers_[i].joint->drive(command.flipper[i], description.flipper.front(), description.servo, time_step_s);
+    flippers_[i].joint->drive(command.flipper[i], description.flipper.front(), servo, time_step_s);
 }
 
 void RobotModel::after_step(double time_step_s) {
   for (const Track side : {kLeft, kRight}) drives_[side].after_step(belts_[side], time_step_s);
   for (FlipperBody& flipper : flippers_)
-    if (flipper.joint) flipper.joint->measure();
-  battery_left_s_ = std::max(0.0, battery_left_s_ - time_step_s);
+    if (flipper.joint) flipper.joint->after_step(time_step_s);
+  battery_.after_step(battery_current_a(time_step_s), time_step_s);
 }
 
 double RobotModel::track_current_a(Track track, double time_step_s) const {
-  return physics::track_current_a(description.drive, belts_[track], time_step_s);
+  return drives_[track].current_a(belts_[track], time_step_s);
 }
 
 double RobotModel::flipper_current_a(Flipper flipper, double time_step_s) const {
@@ -198,12 +245,21 @@ double RobotModel::flipper_current_a(Flipper flipper, double time_step_s) const 
   return joint ? description.servo.amperes_per_nm * std::abs(joint->torque_nm(time_step_s)) : 0;
 }
 
-double RobotModel::battery_v(double time_step_s) const {
+double RobotModel::battery_current_a(double time_step_s) const {
+  const double voltage = battery_.voltage_share();
   double current = 0;
-  for (const Track side : {kLeft, kRight}) current += track_current_a(side, time_step_s);
-  for (const Flipper which : {kFrontLeft, kFrontRight, kRearLeft, kRearRight})
-    current += flipper_current_a(which, time_step_s);
-  return std::max(0.0, description.battery.open_circuit_v - description.battery.internal_resistance_ohm * current);
+  for (const Track side : {kLeft, kRight})
+    current += drives_[side].battery_current_a(belts_[side], voltage, time_step_s);
+  const double most_nm = description.servo.max_torque_nm * description.effects.flipper_torque_scale;
+  for (const Flipper which : {kFrontLeft, kFrontRight, kRearLeft, kRearRight}) {
+    const auto& joint = flippers_[which].joint;
+    if (!joint) continue;
+    const double torque = joint->torque_nm(time_step_s), speed = joint->speed_radps();
+    current +=
+        physics::battery_current_a(flipper_current_a(which, time_step_s), std::abs(torque) / most_nm,
+                                   std::copysign(speed / description.servo.max_speed_radps, torque * speed), voltage);
+  }
+  return current;
 }
 
 RobotTruth RobotModel::truth(double time_step_s) const {
@@ -215,17 +271,18 @@ RobotTruth RobotModel::truth(double time_step_s) const {
       from_bullet(hull_->getVelocityInLocalPoint(X_WB.getOrigin() - hull_->getWorldTransform().getOrigin()));
   for (const Track side : {kLeft, kRight}) {
     truth.track_mps[side] = belts_[side].speed_mps;
-    truth.track_m[side] = drives_[side].travel_m;
+    truth.track_m[side] = drives_[side].travel_m();
     truth.track_force_n[side] = belts_[side].motor_impulse_ns / time_step_s;
   }
   for (std::size_t i = 0; i < kFlipperCount; ++i) {
     if (!flippers_[i].joint) continue;
     truth.flipper_rad[i] = flippers_[i].joint->angle_rad();
+    truth.servo_rad[i] = flippers_[i].joint->servo_rad();
     truth.flipper_radps[i] = flippers_[i].joint->speed_radps();
     truth.flipper_nm[i] = flippers_[i].joint->torque_nm(time_step_s);
   }
-  truth.battery_v = battery_v(time_step_s);
-  truth.battery_left_s = battery_left_s_;
+  truth.battery_v = battery_.voltage_v();
+  truth.battery_left_s = battery_.left_s();
   return truth;
 }
 

@@ -6,8 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "physics/battery.hpp"
 #include "physics/belt_ground.hpp"
 #include "physics/bullet.hpp"
+#include "physics/command_channel.hpp"
 #include "physics/contact_solver.hpp"
 #include "physics/drive.hpp"
 #include "physics/flipper_joint.hpp"
@@ -17,7 +19,9 @@ namespace kenaf::physics {
 
 class RobotModel {
  public:
-  RobotModel(const RobotDescription& description, RobotId id, btDiscreteDynamicsWorld& world, ContactSolver& solver);
+  // `name` and `world_seed` seed what is left to chance; the time step is that of every step to come.
+  RobotModel(const RobotDescription& description, const std::string& name, std::uint64_t world_seed, double time_step_s,
+             RobotId id, btDiscreteDynamicsWorld& world, ContactSolver& solver);
   ~RobotModel();
   RobotModel(const RobotModel&) = delete;
   RobotModel& operator=(const RobotModel&) = delete;
@@ -25,18 +29,17 @@ class RobotModel {
   // At rest, joints at their start angles when `start_joints`, else at their present ones.
   void place(const Pose& X_WB, bool start_joints);
 
+  void send(const RobotCommand& command) { channel_.send(command); }
   void before_step(double time_step_s);
   void after_step(double time_step_s);
 
   RobotTruth truth(double time_step_s) const;
   double track_current_a(Track track, double time_step_s) const;
   double flipper_current_a(Flipper flipper, double time_step_s) const;
-  double battery_v(double time_step_s) const;
 
   const std::vector<btRigidBody*>& bodies() const { return body_list_; }
 
   const RobotDescription description;
-  RobotCommand command;
 
  private:
   struct FlipperBody {
@@ -52,6 +55,8 @@ class RobotModel {
 
   void make_hull(RobotId id);
   void make_flipper(Flipper which, RobotId id);
+  FlipperServoDescription servo_now() const;
+  double battery_current_a(double time_step_s) const;
 
   btDiscreteDynamicsWorld& world_;
   ContactSolver& solver_;
@@ -64,9 +69,10 @@ class RobotModel {
   btTransform X_BCom_;
   std::array<FlipperBody, kFlipperCount> flippers_;
   std::array<Belt, kTrackCount> belts_;
+  CommandChannel channel_;
   std::array<TrackDrive, kTrackCount> drives_;
+  Battery battery_;
   std::vector<btRigidBody*> body_list_;
-  double battery_left_s_;
 };
 
 }  // namespace kenaf::physics

@@ -51,7 +51,8 @@ struct World::Implementation {
   }
 
   void build_robot(RobotId id, RobotEntry& entry) {
-    entry.model = std::make_unique<RobotModel>(entry.description, id, scene->dynamics(), scene->solver());
+    entry.model = std::make_unique<RobotModel>(entry.description, entry.name, seed, settings.time_step_s, id,
+                                               scene->dynamics(), scene->solver());
     entry.sensors = std::make_unique<SensorSet>(entry.model->description, entry.name, seed, settings.time_step_s,
                                                 description.gravity_W_mps2);
     entry.mission.clear();
@@ -183,12 +184,7 @@ const RobotDescription& World::robot_description(RobotId id) const {
 }
 
 void World::set_command(RobotId id, const RobotCommand& command) {
-  RobotCommand& now = impl_->robot(id).model->command;
-  // what is no number changes nothing
-  for (std::size_t i = 0; i < kTrackCount; ++i)
-    if (std::isfinite(command.track_speed_mps[i])) now.track_speed_mps[i] = command.track_speed_mps[i];
-  for (std::size_t i = 0; i < kFlipperCount; ++i)
-    if (std::isfinite(command.flipper[i].value)) now.flipper[i] = command.flipper[i];
+  impl_->robot(id).model->send(command);
 }
 
 void World::set_mission_link(RobotId id, std::size_t package, std::size_t link, double angle_rad) {

@@ -39,6 +39,7 @@ struct RobotTruth {
   std::array<double, kTrackCount> track_mps, track_m;
   std::array<double, kTrackCount> track_force_n;   // motor's at the belt, + pushes the robot forward
   std::array<double, kFlipperCount> flipper_rad, flipper_radps, flipper_nm;
+  std::array<double, kFlipperCount> servo_rad;     // on the servo's side of play and compliance, if there are any
   double battery_v, battery_left_s;
 };
 

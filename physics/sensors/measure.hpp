@@ -23,13 +23,34 @@ struct SensorState {
   Pose X_given_true;  // INS: turns the true pose into the one it was told to have
 };
 
+// What an inclinometer makes of a pose: posture is against gravity, whatever way the world's axes point.
+class PostureSense {
+ public:
+  PostureSense(const Effects& effects, const Eigen::Vector3d& gravity_W_mps2);
+
+  // Turned so that gravity points along -z; where gravity does so in W, the same bits.
+  Pose leveled(const Pose& X_WB) const { return {X_WB.p, q_LW_ * X_WB.q}; }
+  // Roll, pitch, yaw of a level pose, with the faults that the effects give the sensor.
+  Eigen::Vector3d sensed(const Eigen::Quaterniond& q_LB) const;
+
+ private:
+  Eigen::Quaterniond q_LW_;
+  double mount_rad_, scale_, bias_rad_;
+};
+
 GroundTruthReading measure_ground_truth(const MotionSample& now);
-InsReading measure_ins(const SensorDescription& sensor, SensorState& state, const MotionSample& now);
+// `X_WB` is the pose that the sensor reports, which may be an older one than the nominal delay says.
+InsReading measure_ins(const SensorDescription& sensor, SensorState& state, const Pose& X_WB,
+                       const PostureSense& posture);
 // `before` is one averaging time earlier: accelerations are the mean between the two.
 ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
-                       const MotionSample& before, const Eigen::Vector3d& gravity_W_mps2);
+                       const MotionSample& before, const Eigen::Vector3d& gravity_W_mps2, const Pose& X_WB,
+                       const PostureSense& posture);
 
-EncoderReading measure_encoder(const SensorState& state, const MotionSample& now, const TrackDriveDescription& drive);
+EncoderReading measure_encoder(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
+                               const TrackDriveDescription& drive);
+DrivesReading measure_drives(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
+                             const FlipperServoDescription& servo);
 OdometryReading measure_odometry(const SensorState& state, const MotionSample& now);
 TachometerReading measure_tachometer(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
                                      const TrackDriveDescription& drive);

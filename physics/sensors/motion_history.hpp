@@ -15,8 +15,9 @@ struct MotionSample {
   double t_s = 0;
   Pose X_WB;
   Eigen::Vector3d v_WB_mps{0, 0, 0}, w_WB_radps{0, 0, 0};
-  std::array<double, kTrackCount> track_mps{}, track_m{}, track_a{};
-  std::array<double, kFlipperCount> flipper_a{};
+  std::array<double, kTrackCount> track_mps{}, track_m{};  // as the encoders have it
+  std::array<double, kTrackCount> track_a{};
+  std::array<double, kFlipperCount> flipper_a{}, servo_rad{};
   double battery_v = 0;
   Eigen::Vector3d odometry{0, 0, 0};  // x, y, yaw from the encoders since placement
   std::uint64_t touched = 0;          // bit i: sensor i is touched
@@ -33,6 +34,15 @@ class MotionHistory {
   const MotionSample& back(std::size_t steps) const {
     const std::size_t kept = std::min(count_, samples_.size());
     return samples_[(count_ - 1 - std::min(steps, kept - 1)) % samples_.size()];
+  }
+  // Between two samples: on the way from one to the other.
+  Pose pose_back(double steps) const {
+    const auto whole = static_cast<std::size_t>(steps);
+    const double rest = steps - static_cast<double>(whole);
+    const Pose& newer = back(whole).X_WB;
+    if (rest == 0) return newer;
+    const Pose& older = back(whole + 1).X_WB;
+    return {newer.p + rest * (older.p - newer.p), newer.q.slerp(rest, older.q)};
   }
 
  private:

@@ -17,9 +17,9 @@ class NoiseSource {
   double normal();
   double normal(double sigma) { return sigma > 0 ? sigma * normal() : 0; }
   Eigen::Vector3d normal3(double sigma);
+  double uniform();  // in (0, 1]
 
  private:
-  double uniform();  // in (0, 1]
   std::uint64_t state_;
   double spare_ = 0;
   bool has_spare_ = false;

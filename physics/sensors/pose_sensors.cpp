@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include "physics/sensors/measure.hpp"
 #include "protocol/frames.hpp"
 
@@ -10,18 +13,42 @@ Eigen::Vector3d wrapped(const Eigen::Vector3d& angles) {
 
 }  // namespace
 
+PostureSense::PostureSense(const Effects& effects, const Eigen::Vector3d& gravity_W_mps2)
+    : q_LW_(Eigen::Quaterniond::Identity()),
+      mount_rad_(effects.posture_mount_rad),
+      scale_(effects.posture_scale),
+      bias_rad_(effects.posture_bias_rad) {
+  // up_W is the last row of R_LW = R_y(pitch) R_x(roll): (-sin p, cos p sin r, cos p cos r)
+  if (!(gravity_W_mps2.norm() > 0)) return;
+  const Eigen::Vector3d up_W = -gravity_W_mps2.normalized();
+  if (up_W.x() == 0 && up_W.y() == 0 && up_W.z() > 0) return;
+  q_LW_ = rotation_from({std::atan2(up_W.y(), up_W.z()), std::asin(std::clamp(-up_W.x(), -1.0, 1.0)), 0});
+}
+
+Eigen::Vector3d PostureSense::sensed(const Eigen::Quaterniond& q_LB) const {
+  Eigen::Vector3d angles = roll_pitch_yaw(q_LB);
+  if (mount_rad_ != 0) {
+    // roll and pitch are those of the sensor's own axes; its heading was set to the body's
+    const Eigen::Quaterniond q_BS(Eigen::AngleAxisd(mount_rad_, Eigen::Vector3d::UnitZ()));
+    angles.head<2>() = roll_pitch_yaw(q_LB * q_BS).head<2>();
+  }
+  return {scale_ * angles.x(), scale_ * angles.y() + bias_rad_, angles.z()};
+}
+
 GroundTruthReading measure_ground_truth(const MotionSample& now) {
   return {now.X_WB.p, roll_pitch_yaw(now.X_WB.q)};
 }
 
-InsReading measure_ins(const SensorDescription& sensor, SensorState& state, const MotionSample& now) {
-  const Pose X = compose(state.X_given_true, now.X_WB);
+InsReading measure_ins(const SensorDescription& sensor, SensorState& state, const Pose& X_WB,
+                       const PostureSense& posture) {
+  const Pose X = compose(state.X_given_true, posture.leveled(X_WB));
   const Eigen::Vector3d position = X.p + state.noise.normal3(sensor.noise_m);
-  return {position, wrapped(roll_pitch_yaw(X.q) + state.bias_rad + state.noise.normal3(sensor.noise_rad))};
+  return {position, wrapped(posture.sensed(X.q) + state.bias_rad + state.noise.normal3(sensor.noise_rad))};
 }
 
 ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
-                       const MotionSample& before, const Eigen::Vector3d& gravity_W_mps2) {
+                       const MotionSample& before, const Eigen::Vector3d& gravity_W_mps2, const Pose& X_WB,
+                       const PostureSense& posture) {
   const double dt = now.t_s - before.t_s;
   // velocity where the sensor is mounted
   const auto velocity = [&sensor](const MotionSample& s) -> Eigen::Vector3d {
@@ -38,7 +65,7 @@ ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, cons
   reading.angular_velocity_radps = q_BW * now.w_WB_radps + state.bias_radps + state.noise.normal3(sensor.noise_radps);
   reading.angular_acceleration_radps2 = q_BW * turn_W;
   reading.roll_pitch_yaw_rad =
-      wrapped(roll_pitch_yaw(now.X_WB.q) + state.bias_rad + state.noise.normal3(sensor.noise_rad));
+      wrapped(posture.sensed(posture.leveled(X_WB).q) + state.bias_rad + state.noise.normal3(sensor.noise_rad));
   return reading;
 }
 

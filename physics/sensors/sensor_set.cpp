@@ -20,9 +20,11 @@ std::size_t averaging_steps(const SensorDescription& sensor, double time_step_s)
 
 std::size_t history_length(const RobotDescription& robot, double time_step_s) {
   std::size_t longest = 0;
+  const auto posture_delay = static_cast<std::size_t>(std::ceil(robot.effects.posture_delay_s / time_step_s));
   for (const SensorDescription& sensor : robot.sensors) {
     std::size_t steps = steps_in(sensor.delay_s, time_step_s);
-    if (sensor.type == SensorType::imu) steps += averaging_steps(sensor, time_step_s);
+    if (sensor.type == SensorType::ins) steps += posture_delay;
+    if (sensor.type == SensorType::imu) steps += std::max(posture_delay, averaging_steps(sensor, time_step_s));
     longest = std::max(longest, steps);
   }
   return longest + 1;
@@ -35,6 +37,8 @@ SensorSet::SensorSet(const RobotDescription& robot, const std::string& robot_nam
     : robot_(robot),
       time_step_s_(time_step_s),
       gravity_W_mps2_(gravity_W_mps2),
+      posture_(robot.effects, gravity_W_mps2),
+      posture_delay_steps_(robot.effects.posture_delay_s / time_step_s),
       history_(history_length(robot, time_step_s)) {
   for (const SensorDescription& sensor : robot.sensors) {
     Entry& entry = entries_.emplace_back(SensorState(NoiseSource(world_seed, robot_name, sensor.name)),
@@ -48,16 +52,20 @@ SensorSet::SensorSet(const RobotDescription& robot, const std::string& robot_nam
 
 void SensorSet::record(const RobotTruth& truth, double t_s, const std::array<double, kTrackCount>& track_a,
                        const std::array<double, kFlipperCount>& flipper_a, std::span<const Eigen::Vector3d> touches_B) {
-  if (has_odometry_) odometry_ = advance_odometry(odometry_, track_m_, truth.track_m, robot_);
-  track_m_ = truth.track_m;
+  std::array<double, kTrackCount> track_m = truth.track_m, track_mps = truth.track_mps;
+  for (double& travel : track_m) travel *= robot_.effects.encoder_scale;
+  for (double& speed : track_mps) speed *= robot_.effects.encoder_scale;
+  if (has_odometry_) odometry_ = advance_odometry(odometry_, track_m_, track_m, robot_);
+  track_m_ = track_m;
   MotionSample sample{.t_s = t_s,
                       .X_WB = truth.X_WB,
                       .v_WB_mps = truth.v_WB_mps,
                       .w_WB_radps = truth.w_WB_radps,
-                      .track_mps = truth.track_mps,
-                      .track_m = truth.track_m,
+                      .track_mps = track_mps,
+                      .track_m = track_m,
                       .track_a = track_a,
                       .flipper_a = flipper_a,
+                      .servo_rad = truth.servo_rad,
                       .battery_v = truth.battery_v,
                       .odometry = odometry_};
   for (std::size_t i = 0; has_touch_ && i < entries_.size(); ++i) {
@@ -72,17 +80,21 @@ Reading SensorSet::measure(std::size_t i, const RayCaster& cast) {
   const SensorDescription& sensor = robot_.sensors[i];
   Entry& entry = entries_[i];
   const MotionSample& now = history_.back(entry.delay_steps);
+  // A report says when it was measured by the sensor's own delay: an effect does not tell of itself.
+  const auto late_pose = [&] {
+    return history_.pose_back(static_cast<double>(entry.delay_steps) + posture_delay_steps_);
+  };
   switch (sensor.type) {
     case SensorType::ground_truth:
       return measure_ground_truth(now);
     case SensorType::ins:
-      return measure_ins(sensor, entry.state, now);
+      return measure_ins(sensor, entry.state, late_pose(), posture_);
     case SensorType::imu: {
       const MotionSample& before = history_.back(entry.delay_steps + averaging_steps(sensor, time_step_s_));
-      return measure_imu(sensor, entry.state, now, before, gravity_W_mps2_);
+      return measure_imu(sensor, entry.state, now, before, gravity_W_mps2_, late_pose(), posture_);
     }
     case SensorType::encoder:
-      return measure_encoder(entry.state, now, robot_.drive);
+      return measure_encoder(sensor, entry.state, now, robot_.drive);
     case SensorType::odometry:
       return measure_odometry(entry.state, now);
     case SensorType::tachometer:
@@ -96,7 +108,7 @@ Reading SensorSet::measure(std::size_t i, const RayCaster& cast) {
     case SensorType::touch:
       return TouchReading{(now.touched >> i & 1) != 0};
     case SensorType::drives:
-      return DrivesReading{now.track_a, now.flipper_a, now.battery_v};
+      return measure_drives(sensor, entry.state, now, robot_.servo);
   }
   throw std::logic_error("unknown sensor type");
 }
@@ -117,7 +129,9 @@ void SensorSet::reset(std::size_t sensor, const std::optional<GroundTruthReading
   state.start_track_m = now.track_m;
   state.start_odometry = now.odometry;
   state.X_given_true = {};
-  if (pose) state.X_given_true = compose({pose->p_WB_m, rotation_from(pose->roll_pitch_yaw_rad)}, inverse(now.X_WB));
+  if (pose)
+    state.X_given_true =
+        compose({pose->p_WB_m, rotation_from(pose->roll_pitch_yaw_rad)}, inverse(posture_.leveled(now.X_WB)));
 }
 
 }  // namespace kenaf::physics

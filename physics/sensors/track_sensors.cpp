@@ -12,10 +12,25 @@ std::int64_t counts_of(double track_m, const TrackDriveDescription& drive) {
 
 }  // namespace
 
-EncoderReading measure_encoder(const SensorState& state, const MotionSample& now, const TrackDriveDescription& drive) {
+EncoderReading measure_encoder(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
+                               const TrackDriveDescription& drive) {
   EncoderReading reading{};
-  for (const Track side : {kLeft, kRight})
-    reading.counts[side] = counts_of(now.track_m[side], drive) - counts_of(state.start_track_m[side], drive);
+  for (const Track side : {kLeft, kRight}) {
+    const double jitter_m = state.noise.normal(sensor.noise_rad) * drive.sprocket_radius_m;
+    reading.counts[side] = counts_of(now.track_m[side] + jitter_m, drive) - counts_of(state.start_track_m[side], drive);
+  }
+  return reading;
+}
+
+DrivesReading measure_drives(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
+                             const FlipperServoDescription& servo) {
+  DrivesReading reading{now.track_a, now.flipper_a, now.battery_v + state.noise.normal(sensor.noise_v), now.servo_rad};
+  for (double& current : reading.track_a) current += state.noise.normal(sensor.noise_a);
+  for (double& current : reading.flipper_a) current += state.noise.normal(sensor.noise_a);
+  for (double& angle : reading.flipper_rad) {
+    angle += state.noise.normal(sensor.noise_rad);
+    if (servo.resolution_rad > 0) angle = std::round(angle / servo.resolution_rad) * servo.resolution_rad;
+  }
   return reading;
 }
 

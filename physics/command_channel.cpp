@@ -1,0 +1,80 @@
+#include "physics/command_channel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/frames.hpp"
+
+namespace kenaf::physics {
+namespace {
+
+constexpr double kWhole = 1e-6;  // of a step: a delay this near to whole steps is meant so
+
+// No sensor has a name with a blank, so no sensor draws from the same generator.
+constexpr std::string_view kGeneratorName = "command channel";
+
+RobotCommand between(const RobotCommand& newer, const RobotCommand& older, double older_share) {
+  RobotCommand out = newer;
+  for (std::size_t i = 0; i < kTrackCount; ++i)
+    out.track_speed_mps[i] += older_share * (older.track_speed_mps[i] - newer.track_speed_mps[i]);
+  for (std::size_t i = 0; i < kFlipperCount; ++i) {
+    if (older.flipper[i].mode != newer.flipper[i].mode) {
+      out.flipper[i] = older.flipper[i];  // nothing lies between two modes; the newer one is still under way
+      continue;
+    }
+    const double apart = older.flipper[i].value - newer.flipper[i].value;
+    // an angle is a direction
+    out.flipper[i].value +=
+        older_share * (newer.flipper[i].mode == JointMode::angle ? frames::wrap_angle(apart) : apart);
+  }
+  return out;
+}
+
+}  // namespace
+
+CommandChannel::CommandChannel(const Effects& effects, std::uint64_t world_seed, std::string_view robot,
+                               double time_step_s)
+    : noise_(world_seed, robot, kGeneratorName),
+      loss_(effects.command_loss),
+      gain_(effects.command_gain),
+      step_mps_(effects.command_slew_s2pm > 0 ? time_step_s / effects.command_slew_s2pm : 0) {
+  const double steps = effects.command_delay_s / time_step_s;
+  delay_steps_ = static_cast<std::size_t>(std::floor(steps + kWhole));
+  delay_rest_ = steps - static_cast<double>(delay_steps_);
+  if (delay_rest_ < kWhole) delay_rest_ = 0;
+  line_.resize(delay_steps_ + 2);
+}
+
+void CommandChannel::restart(const RobotCommand& command) {
+  sent_ = received_ = command;
+  std::fill(line_.begin(), line_.end(), command);
+  stop_ramp();
+}
+
+void CommandChannel::send(const RobotCommand& command) {
+  for (std::size_t i = 0; i < kTrackCount; ++i)
+    if (std::isfinite(command.track_speed_mps[i])) sent_.track_speed_mps[i] = command.track_speed_mps[i];
+  for (std::size_t i = 0; i < kFlipperCount; ++i)
+    if (std::isfinite(command.flipper[i].value)) sent_.flipper[i] = command.flipper[i];
+  if (loss_ > 0 && noise_.uniform() <= loss_) return;
+  received_ = sent_;
+  for (double& speed : received_.track_speed_mps) speed *= gain_;
+}
+
+const RobotCommand& CommandChannel::step() {
+  newest_ = (newest_ + 1) % line_.size();
+  line_[newest_] = received_;
+  const auto late = [this](std::size_t steps) -> const RobotCommand& {
+    return line_[(newest_ + line_.size() - steps) % line_.size()];
+  };
+  told_ = delay_rest_ > 0 ? between(late(delay_steps_), late(delay_steps_ + 1), delay_rest_) : late(delay_steps_);
+  if (step_mps_ > 0) {
+    for (std::size_t i = 0; i < kTrackCount; ++i) {
+      ramp_mps_[i] += std::clamp(told_.track_speed_mps[i] - ramp_mps_[i], -step_mps_, step_mps_);
+      told_.track_speed_mps[i] = ramp_mps_[i];
+    }
+  }
+  return told_;
+}
+
+}  // namespace kenaf::physics
