@@ -7,6 +7,7 @@
 
 #include "physics/server/report.hpp"
 #include "physics/server/verbs.hpp"
+#include "physics/terrain_effects.hpp"
 
 namespace kenaf::server {
 
@@ -26,11 +27,13 @@ physics::World make_world(const ServerOptions& options) {
         fmt::format("a time step of {} s: choose more than 0 and at most 0.02 s", options.time_step_s));
   }
   std::vector<std::string> unsupported;
-  const physics::WorldDescription description = physics::load_world(options.world, unsupported);
+  const physics::WorldDescription nominal = physics::load_world(options.world, unsupported);
   for (const std::string& element : unsupported) spdlog::warn("world {}: ignored: {}", options.world, element);
   physics::PhysicsSettings settings;
   settings.time_step_s = options.time_step_s;
-  return physics::World(description, settings, options.seed);
+  // There is one world, so it is the one that the effects of --robot make, whoever else comes to drive in it.
+  const physics::Effects effects = physics::load_robot(options.robot).effects;
+  return physics::World(physics::with_terrain_effects(nominal, effects), settings, options.seed);
 }
 
 bool is_word(std::string_view text) {
@@ -151,7 +154,7 @@ void Simulation::send_due(Session& session) {
 }
 
 void Simulation::watch_silence(Session& session) {
-  if (session.silent || session.command_timeout_steps == 0) return;
+  if (session.command_timeout_steps == 0) return;
   if (world.step_count() < session.last_command_step + session.command_timeout_steps) return;
   session.silent = true;
   SessionRobot& robot = *session.robot;
@@ -160,7 +163,7 @@ void Simulation::watch_silence(Session& session) {
   for (physics::JointCommand& joint : robot.command.flipper) {
     if (joint.mode != physics::JointMode::angle) joint = {physics::JointMode::brake, 0};
   }
-  world.set_command(robot.id, robot.command);
+  world.set_command(robot.id, robot.command);  // again and again: command_loss may take any one of them
 }
 
 bool Simulation::held_by_lockstep(std::optional<double>& until_wall_s) {
