@@ -2,7 +2,7 @@
 include(CMakePackageConfigHelpers)
 
 install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kenaf")
-install(DIRECTORY robots worlds DESTINATION "${CMAKE_INSTALL_DATADIR}/kenaf"
+install(DIRECTORY robots worlds manoeuvres DESTINATION "${CMAKE_INSTALL_DATADIR}/kenaf"
   FILES_MATCHING PATTERN "*.toml" PATTERN "*.sdf")
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")

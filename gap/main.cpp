@@ -16,6 +16,8 @@ constexpr int kBadInput = 2;
 
 constexpr void (*kCommands[])(CLI::App&) = {
     kenaf::gap::add_effects_command,
+    kenaf::gap::add_manoeuvres_command,
+    kenaf::gap::add_simulate_command,
 };
 
 }  // namespace

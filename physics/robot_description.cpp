@@ -201,13 +201,7 @@ double RobotDescription::track_gauge_m() const {
 }
 
 RobotDescription parse_robot(std::string_view toml_text, const std::string& name_for_errors) {
-  toml::table root;
-  try {
-    root = toml::parse(toml_text);
-  } catch (const toml::parse_error& error) {
-    throw DescriptionError(fmt::format("{}:{}:{}: {}", name_for_errors, error.source().begin.line,
-                                       error.source().begin.column, error.description()));
-  }
+  const toml::table root = parse_toml(toml_text, name_for_errors);
   TomlReader file(root, "", name_for_errors);
   RobotDescription robot{};
   robot.name = std::filesystem::path(name_for_errors).stem().string();

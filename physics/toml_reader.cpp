@@ -15,6 +15,15 @@ std::string range_text(Range range) {
 
 }  // namespace
 
+toml::table parse_toml(std::string_view text, const std::string& file) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    throw DescriptionError(fmt::format("{}:{}:{}: {}", file, at.line, at.column, error.description()));
+  }
+}
+
 TomlReader::TomlReader(const toml::table& table, std::string where, const std::string& file)
     : table_(table), where_(std::move(where)), file_(file) {}
 
@@ -76,12 +85,16 @@ std::string TomlReader::text(std::string_view key) {
   return *found.value<std::string>();
 }
 
-Eigen::Vector3d TomlReader::vector3(std::string_view key, Range range) {
+std::vector<double> TomlReader::numbers(std::string_view key, std::size_t count, Range range) {
   const toml::array* list = node(key).as_array();
-  if (!list || list->size() != 3) fail(key, "must be a list of three numbers");
-  Eigen::Vector3d out;
-  for (std::size_t i = 0; i < 3; ++i) out[static_cast<Eigen::Index>(i)] = checked(key, (*list)[i], range);
+  if (!list || list->size() != count) fail(key, fmt::format("must be a list of {} numbers", count));
+  std::vector<double> out;
+  for (const toml::node& item : *list) out.push_back(checked(key, item, range));
   return out;
+}
+
+Eigen::Vector3d TomlReader::vector3(std::string_view key, Range range) {
+  return Eigen::Vector3d::Map(numbers(key, 3, range).data());
 }
 
 Eigen::Vector3d TomlReader::vector3_or(std::string_view key, const Eigen::Vector3d& fallback) {
@@ -109,7 +122,7 @@ std::vector<TomlReader> TomlReader::tables(std::string_view key) {
 void TomlReader::finish() const {
   for (const auto& [key, value] : table_) {
     if (std::find(read_.begin(), read_.end(), key.str()) == read_.end())
-      fail_at(key.source(), fmt::format("{} is not a key of a robot description", name_of(key.str())));
+      fail_at(key.source(), fmt::format("{} is not a known key", name_of(key.str())));
   }
 }
 

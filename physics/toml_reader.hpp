@@ -22,6 +22,9 @@ inline constexpr Range kAny{};
 inline constexpr Range kNotNegative{.min = 0};
 inline constexpr Range kPositive{.min = 0, .open_min = true};
 
+// Throws DescriptionError where `text` is no TOML.
+toml::table parse_toml(std::string_view text, const std::string& file);
+
 class TomlReader {
  public:
   // `where` is the table's dotted name for messages, empty for the file itself. Both references must outlive this.
@@ -33,6 +36,7 @@ class TomlReader {
   int integer(std::string_view key, int min, int max);
   bool boolean(std::string_view key);
   std::string text(std::string_view key);
+  std::vector<double> numbers(std::string_view key, std::size_t count, Range range = kAny);  // a list of so many
   Eigen::Vector3d vector3(std::string_view key, Range range = kAny);
   Eigen::Vector3d vector3_or(std::string_view key, const Eigen::Vector3d& fallback);
   TomlReader table(std::string_view key);

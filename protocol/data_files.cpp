@@ -1,16 +1,16 @@
 #include "protocol/data_files.hpp"
 
 #include <cstdlib>
+#include <map>
 #include <system_error>
-#include <vector>
 
 namespace kenaf {
 
 namespace fs = std::filesystem;
 
-fs::path find_data_file(std::string_view folder, const std::string& name, std::string_view extension) {
-  if (name.find('/') != std::string::npos || name.ends_with(extension)) return name;
+namespace {
 
+std::vector<fs::path> data_roots() {
   std::vector<fs::path> roots;
   if (const char* set = std::getenv("KENAF_DATA_DIR"); set != nullptr && *set != '\0') roots.emplace_back(set);
   std::error_code ignored;
@@ -18,13 +18,34 @@ fs::path find_data_file(std::string_view folder, const std::string& name, std::s
     roots.push_back(program.parent_path().parent_path() / "share" / "kenaf");
   }
   roots.emplace_back(KENAF_SOURCE_DATA_DIR);
+  return roots;
+}
+
+}  // namespace
+
+fs::path find_data_file(std::string_view folder, const std::string& name, std::string_view extension) {
+  if (name.find('/') != std::string::npos || name.ends_with(extension)) return name;
 
   const std::string file_name = name + std::string(extension);
-  for (const fs::path& root : roots) {
+  std::error_code ignored;
+  for (const fs::path& root : data_roots()) {
     fs::path candidate = root / folder / file_name;
     if (fs::is_regular_file(candidate, ignored)) return candidate;
   }
   return {};
+}
+
+std::vector<fs::path> list_data_files(std::string_view folder, std::string_view extension) {
+  std::map<std::string, fs::path> by_name;
+  for (const fs::path& root : data_roots()) {
+    std::error_code no_such_folder;
+    for (const fs::directory_entry& entry : fs::directory_iterator(root / folder, no_such_folder)) {
+      if (entry.path().extension() == extension) by_name.emplace(entry.path().filename(), entry.path());
+    }
+  }
+  std::vector<fs::path> files;
+  for (const auto& [name, path] : by_name) files.push_back(path);
+  return files;
 }
 
 }  // namespace kenaf

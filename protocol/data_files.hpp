@@ -1,9 +1,10 @@
-// Where the files that ship with the project are found: robots/, worlds/.
+// Where the files that ship with the project are found: robots/, worlds/, manoeuvres/.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kenaf {
 
@@ -12,5 +13,8 @@ namespace kenaf {
 // from. Where `name` contains a '/' or ends in `extension` it is a path and is returned as it is.
 // Empty: not found anywhere.
 std::filesystem::path find_data_file(std::string_view folder, const std::string& name, std::string_view extension);
+
+// All of `folder` that end in `extension`, by file name; where a name is in more than one of those places, the first.
+std::vector<std::filesystem::path> list_data_files(std::string_view folder, std::string_view extension);
 
 }  // namespace kenaf

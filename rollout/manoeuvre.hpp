@@ -15,17 +15,19 @@
 
 #include "physics/pose.hpp"
 #include "physics/robot_command.hpp"
+#include "runs/run_file.hpp"
 
 namespace kenaf::rollout {
 
 // A phase ends when any of these holds, or its time is up.
 struct PhaseEnd {
-  std::optional<double> pitch_above_rad, pitch_below_rad;
-  std::optional<double> x_above_m, x_below_m, z_above_m;
-  std::optional<double> turned_rad;  // |yaw| since the phase began, at least
+  std::optional<double> pitch_above_rad{}, pitch_below_rad{};
+  std::optional<double> x_above_m{}, x_below_m{}, z_above_m{};
+  std::optional<double> turned_rad{};  // |yaw| since the phase began, at least
 };
 
 struct Phase {
+  std::string name;  // may be empty
   std::array<double, physics::kTrackCount> track_mps{};
   std::optional<std::array<double, physics::kFlipperCount>> flipper_rad;  // empty: as before
   double at_most_s = 0;
@@ -34,24 +36,46 @@ struct Phase {
 
 // When the manoeuvre counts as done: where the robot is at its end.
 struct Success {
-  std::optional<double> x_above_m, z_above_m, z_below_m;
+  std::optional<double> x_above_m{}, z_above_m{}, z_below_m{};
   double upright_within_rad = std::numeric_limits<double>::infinity();  // roll and pitch
+};
+
+struct TimedCommand {
+  double t_s;
+  physics::RobotCommand command;
+};
+
+// A start that is not the world's: that of a recorded run.
+struct Start {
+  double x_m, y_m, yaw_rad;
+  std::optional<double> z_m;  // empty: on the ground
+  std::optional<std::array<double, physics::kFlipperCount>> flipper_rad;  // empty: as the robot's description says
 };
 
 struct Manoeuvre {
   std::string name, summary;
-  std::string world;        // shipped name or path
+  std::string world;        // shipped name or path; empty: a replay that does not know
   double start_lift_m = 0;  // above the start pose of the world
   std::vector<Phase> phases;
   std::optional<Success> success;
+
+  // A replay instead of phases: each command holds until the next one, the last one's time ends it.
+  std::vector<TimedCommand> timed;
+  std::optional<Start> start;
+
   double at_most_s() const;  // of all phases
 };
 
 // A shipped name ("step-200-flippers"), the path of a TOML file that holds one manoeuvre, or "replay:FILE.csv", which
-// repeats the commands of a recorded run at their times. Throws physics::DescriptionError with file, line and column.
+// repeats the commands of a recorded run at their times. Throws physics::DescriptionError with file, line and column,
+// for a replay runs::RunFileError.
 Manoeuvre load_manoeuvre(const std::string& name);
 std::vector<Manoeuvre> parse_manoeuvres(std::string_view toml_text, const std::string& name_for_errors);
 // All shipped ones, in the order of their names.
 std::vector<Manoeuvre> shipped_manoeuvres();
+
+// The commands of a run, from the pose and the flipper angles of its first rows on. An empty cell holds what was
+// commanded before. Throws runs::RunFileError where there is no command or no start in it.
+Manoeuvre replay_of(const runs::Run& run, const std::string& name_for_errors);
 
 }  // namespace kenaf::rollout

@@ -71,7 +71,7 @@ TEST_CASE("What is wrong is said with file, line and column") {
   CHECK(error_with("mass_kg = 15.0", "mass_kg = -1").find("body.mass_kg is -1, but must be more than 0") !=
         std::string::npos);
   CHECK(error_with("mass_kg = 15.0", "mass_kg = nan").find("must be") != std::string::npos);
-  CHECK(error_with("[0.44, 0.10, 0.16]", "[0.44, 0.10]").find("list of three numbers") != std::string::npos);
+  CHECK(error_with("[0.44, 0.10, 0.16]", "[0.44, 0.10]").find("list of 3 numbers") != std::string::npos);
   CHECK(error_with("[0.13, 0.44, 0.52]", "[0.13, 0.44, 5.2]").find("no rigid body") != std::string::npos);
   CHECK(error_with("pieces = 6", "pieces = 6.5").find("whole number") != std::string::npos);
   CHECK(error_with("belt_driven = true", "belt_driven = 1").find("true or false") != std::string::npos);

@@ -1,0 +1,70 @@
+// kenaf-gap simulate: runs of the simulator, as a dataset.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "gap/commands.hpp"
+#include "gap/physics_settings.hpp"
+#include "gap/simulate.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+void print(const SimulatedDataset& dataset) {
+  for (const std::string& warning : dataset.warnings)
+    std::fprintf(stderr, "kenaf-gap: warning: not simulated: %s\n", warning.c_str());
+  for (const SimulatedRun& run : dataset.runs) {
+    const char* outcome = !run.succeeded ? "" : *run.succeeded ? ", done" : ", not done";
+    std::printf("%s: %s, %.2f s%s\n", run.file.c_str(), run.manoeuvre.c_str(), run.duration_s, outcome);
+    if (!run.fault.empty())
+      std::fprintf(stderr, "kenaf-gap: warning: %s ended early: %s\n", run.file.c_str(), run.fault.c_str());
+  }
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("simulate", "drives manoeuvres in simulation and writes a run dataset");
+  struct Options {
+    SimulationRequest request;
+    std::vector<std::string> physics;
+  };
+  const auto options = std::make_shared<Options>();
+  SimulationRequest& request = options->request;
+  const auto one_word_each = [](CLI::Option* option, const char* type) {
+    option->expected(1)->take_all()->allow_extra_args(false)->type_name(type);
+    return option;
+  };
+  command->add_option("--robot", request.robot, "a shipped name or a TOML file")->capture_default_str();
+  command->add_option("--world", request.world, "a shipped name or an SDF file [each manoeuvre's own]");
+  one_word_each(command->add_option("--manoeuvre", request.manoeuvres,
+                                    "a shipped name, a TOML file, or replay:FILE.csv; may be given several times"),
+                "M")
+      ->required();
+  one_word_each(command->add_option("--effect", request.effects, "switches an effect on; may be given several times"),
+                "NAME:PARAMETER=VALUE");
+  one_word_each(command->add_option("--physics", options->physics,
+                                    "time_step_s, solver_iterations, contact_stiffness_npm or contact_damping_nspm"),
+                "KEY=VALUE");
+  command->add_option("--repeats", request.repeats, "of each manoeuvre")->capture_default_str();
+  command->add_option("--noise", request.noise_scale, "scales the noise of all sensors; 0: exact")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  command
+      ->add_option("--scatter", request.scatter_scale,
+                   "scales how start poses differ; 1: 5 mm in x and y, 0.01 rad in yaw; 0: all alike")
+      ->check(CLI::Range(0.0, 100.0))
+      ->capture_default_str();
+  command->add_option("--seed", request.seed, "of noise and scatter")->capture_default_str();
+  command->add_option("--jobs", request.jobs, "threads; 0: one a core")->capture_default_str();
+  command->add_option("--out", request.out, "folder of the dataset; must be empty or not there")
+      ->required()
+      ->type_name("DIR");
+  command->add_flag("--force", request.force, "write into a folder that is not empty; replaces files of the same name");
+  command->callback([options] {
+    for (const std::string& assignment : options->physics) set_physics(options->request.physics, assignment);
+    print(simulate_dataset(options->request));
+  });
+}
+
+}  // namespace kenaf::gap

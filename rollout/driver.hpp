@@ -1,0 +1,42 @@
+// The operator of a manoeuvre: from posture, place and time to the next command.
+//
+// Knows no simulator; the same operator could watch a robot. Thread safety: a value.
+#pragma once
+
+#include <optional>
+
+#include "physics/pose.hpp"
+#include "physics/robot_command.hpp"
+#include "rollout/manoeuvre.hpp"
+
+namespace kenaf::rollout {
+
+class Driver {
+ public:
+  // `manoeuvre` must outlive this. `flipper_rad`: where the flippers are at the start.
+  Driver(const Manoeuvre& manoeuvre, const std::array<double, physics::kFlipperCount>& flipper_rad);
+
+  // What to command from `t_s` on, which never goes back; empty: the manoeuvre is over, the command before holds. A
+  // phase ends at the first call at which its end holds, and the next one begins with it.
+  std::optional<physics::RobotCommand> command(double t_s, const physics::Pose& X_WB);
+
+  // When a replay's next command is due; infinity otherwise: phases are as quick as they are asked.
+  double next_due_s() const;
+  // Of the phase that runs now; as many as there are when the manoeuvre is over.
+  std::size_t phase() const { return phase_; }
+
+ private:
+  bool ended(const Phase& phase, double t_s, const physics::Pose& X_WB) const;
+  std::optional<physics::RobotCommand> timed_command(double t_s);
+
+  const Manoeuvre& manoeuvre_;
+  physics::RobotCommand command_;
+  std::size_t phase_ = 0, next_timed_ = 0;
+  double phase_began_s_ = 0, turned_rad_ = 0;
+  std::optional<double> last_yaw_rad_;
+};
+
+// Whether the manoeuvre's own measure is met with the robot at `X_WB`; false without one.
+bool succeeded(const Manoeuvre& manoeuvre, const physics::Pose& X_WB);
+
+}  // namespace kenaf::rollout

@@ -1,0 +1,147 @@
+#include "rollout/roll_out.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "rollout/driver.hpp"
+#include "rollout/run_recorder.hpp"
+
+namespace kenaf::rollout {
+namespace {
+
+using physics::Pose;
+using physics::RobotCommand;
+using physics::RobotDescription;
+using physics::RobotId;
+using physics::World;
+using FlipperAngles = std::array<double, physics::kFlipperCount>;
+
+constexpr double kSettle_s = 0.5;  // a robot that is put down stands still after that
+constexpr double kFold_s = 5;      // flippers get from anywhere to anywhere in that
+constexpr double kInPlace_rad = 0.002;
+constexpr double kInTheAir_m = 0.01;  // a recorded start that is higher than this above the ground is a drop
+
+std::uint64_t steps_per_sample(const RollOutOptions& options) {
+  const double ratio = options.sample_period_s / options.physics.time_step_s;
+  if (!(ratio >= 0.5 && ratio < 1e6) || std::abs(ratio - std::round(ratio)) > 1e-6)
+    throw std::invalid_argument(fmt::format("the sample period of {} s is no multiple of time_step_s = {}",
+                                            options.sample_period_s, options.physics.time_step_s));
+  return static_cast<std::uint64_t>(std::llround(ratio));
+}
+
+FlipperAngles flippers_at_start(const Manoeuvre& manoeuvre, const RobotDescription& robot) {
+  FlipperAngles angles{};
+  if (!robot.has_flippers()) return angles;
+  angles.fill(robot.flipper.front().start_angle_rad);
+  if (manoeuvre.start) return manoeuvre.start->flipper_rad.value_or(angles);
+  return manoeuvre.phases.empty() ? angles : manoeuvre.phases.front().flipper_rad.value_or(angles);
+}
+
+Pose start_pose(const physics::WorldDescription& world, const Manoeuvre& manoeuvre, const RollOutOptions& options) {
+  Pose X_WB = world.start_poses.front().X_WB;
+  if (manoeuvre.start) {
+    const Start& start = *manoeuvre.start;
+    return {{start.x_m, start.y_m, start.z_m.value_or(X_WB.p.z())}, physics::rotation_from({0, 0, start.yaw_rad})};
+  }
+  physics::NoiseSource noise(options.seed, "world", "start pose");
+  const double x = noise.normal(options.start_scatter_m), y = noise.normal(options.start_scatter_m);
+  const double yaw = noise.normal(options.start_scatter_rad);
+  return physics::compose(X_WB, {{x, y, 0}, physics::rotation_from({0, 0, yaw})});
+}
+
+// One robot in a world, and what its simulation costs.
+struct Scene {
+  World world;
+  RobotId robot{};
+  std::uint64_t contacts = 0;
+
+  void step() {
+    world.step();
+    contacts += world.contact_count();
+  }
+  void step_for(double time_s) {
+    for (const double end_s = world.time_s() + time_s; world.time_s() < end_s;) step();
+  }
+};
+
+double furthest_off(const FlipperAngles& angles, const FlipperAngles& wanted) {
+  double most = 0;
+  for (std::size_t i = 0; i < angles.size(); ++i) most = std::max(most, std::abs(angles[i] - wanted[i]));
+  return most;
+}
+
+// At rest at the start pose, joints included, sensors counting from here.
+void put_at_start(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, const FlipperAngles& flippers,
+                  const Pose& X_WB) {
+  const bool alike = std::ranges::count(flippers, flippers.front()) == std::ssize(flippers);
+  if (robot.has_flippers() && alike)
+    robot.flipper.front().start_angle_rad =
+        std::clamp(flippers.front(), robot.flipper.front().min_angle_rad, robot.flipper.front().max_angle_rad);
+  scene.robot = scene.world.add_robot(robot, "robot", X_WB);
+  RobotCommand rest;
+  for (std::size_t i = 0; i < flippers.size(); ++i) rest.flipper[i] = {physics::JointMode::angle, flippers[i]};
+  scene.world.set_command(scene.robot, rest);
+  if (robot.has_flippers() && !alike) {
+    while (scene.world.time_s() < kFold_s &&
+           furthest_off(scene.world.truth(scene.robot).flipper_rad, flippers) > kInPlace_rad)
+      scene.step();
+    scene.world.teleport(scene.robot, X_WB);
+  }
+  scene.step_for(kSettle_s);
+
+  const Pose X_WB_settled = scene.world.truth(scene.robot).X_WB;
+  double lift_m = manoeuvre.start_lift_m;
+  if (manoeuvre.start && manoeuvre.start->z_m && *manoeuvre.start->z_m > X_WB_settled.p.z() + kInTheAir_m)
+    lift_m = *manoeuvre.start->z_m - X_WB_settled.p.z();
+  if (lift_m > 0) scene.world.teleport(scene.robot, {X_WB_settled.p + Eigen::Vector3d(0, 0, lift_m), X_WB_settled.q});
+  for (std::size_t i = 0; i < robot.sensors.size(); ++i) scene.world.reset_sensor(scene.robot, i);
+}
+
+}  // namespace
+
+RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription& world, const Manoeuvre& manoeuvre,
+                 const RollOutOptions& options) {
+  if (manoeuvre.phases.empty() && manoeuvre.timed.empty())
+    throw std::invalid_argument(fmt::format("manoeuvre {}: has neither phases nor commands", manoeuvre.name));
+  const std::uint64_t per_sample = steps_per_sample(options);
+  const RobotDescription measured = instrumented(robot, options.noise_scale);
+  const FlipperAngles flippers = flippers_at_start(manoeuvre, robot);
+  Scene scene{World(world, options.physics, options.seed)};
+  put_at_start(scene, measured, manoeuvre, flippers, start_pose(world, manoeuvre, options));
+
+  RollOut out;
+  RunRecorder recorder(measured, options);
+  Driver driver(manoeuvre, flippers);
+  RobotCommand command;
+  std::vector<physics::SensorSample> samples;
+  for (std::uint64_t step = 0;; ++step) {
+    const double t_s = static_cast<double>(step) * options.physics.time_step_s;
+    const bool sample = step % per_sample == 0;
+    if (sample || t_s >= driver.next_due_s()) {
+      out.end = scene.world.truth(scene.robot);
+      const auto next = driver.command(t_s, out.end.X_WB);
+      if (next) command = *next;
+      while (out.phase_began_s.size() < std::min(driver.phase() + 1, manoeuvre.phases.size()))
+        out.phase_began_s.push_back(t_s);
+      if (sample) {
+        samples.clear();
+        scene.world.read_sensors(scene.robot, samples);
+        // nine decimals: 0.29, not 29 * 0.01
+        recorder.add(std::round(t_s * 1e9) / 1e9, command, out.end, samples);
+      }
+      if (!next) break;
+      scene.world.set_command(scene.robot, command);
+    }
+    scene.step();
+  }
+  out.run = recorder.take();
+  out.succeeded = succeeded(manoeuvre, out.end.X_WB);
+  out.steps = scene.world.step_count();
+  out.contacts_per_step = static_cast<double>(scene.contacts) / static_cast<double>(out.steps);
+  return out;
+}
+
+}  // namespace kenaf::rollout

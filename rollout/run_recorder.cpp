@@ -1,0 +1,157 @@
+#include "rollout/run_recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "protocol/frames.hpp"
+
+namespace kenaf::rollout {
+namespace {
+
+using physics::kFrontLeft;
+using physics::kFrontRight;
+using physics::kLeft;
+using physics::kRearLeft;
+using physics::kRearRight;
+using physics::kRight;
+using physics::RobotDescription;
+using physics::SensorDescription;
+using physics::SensorType;
+
+const SensorDescription* sensor_of(const RobotDescription& robot, SensorType type) {
+  const auto found = std::ranges::find(robot.sensors, type, &SensorDescription::type);
+  return found == robot.sensors.end() ? nullptr : &*found;
+}
+
+bool has(const RobotDescription& robot, SensorType type) {
+  return sensor_of(robot, type) != nullptr;
+}
+
+double metres_per_count(const physics::TrackDriveDescription& drive) {
+  return drive.sprocket_radius_m / drive.encoder_counts_per_radian;
+}
+
+std::vector<std::string> flipper_names(std::string_view prefix, std::string_view suffix) {
+  std::vector<std::string> names;
+  for (const std::string_view flipper : {"fl", "fr", "rl", "rr"})
+    names.push_back(std::string(prefix).append(flipper).append(suffix));
+  return names;
+}
+
+}  // namespace
+
+RobotDescription instrumented(RobotDescription robot, double noise_scale) {
+  std::set<SensorType> kept{SensorType::ins, SensorType::imu, SensorType::encoder, SensorType::tachometer,
+                            SensorType::drives};
+  std::erase_if(robot.sensors, [&kept](const SensorDescription& sensor) { return kept.erase(sensor.type) == 0; });
+  for (SensorDescription& sensor : robot.sensors)
+    for (double* sigma : {&sensor.noise_m, &sensor.noise_rad, &sensor.noise_radps, &sensor.noise_mps2, &sensor.bias_rad,
+                          &sensor.bias_radps})
+      *sigma *= noise_scale;
+  return robot;
+}
+
+std::map<std::string, double> column_noise(const RobotDescription& nominal, const RollOutOptions& options) {
+  const RobotDescription robot = instrumented(nominal, options.noise_scale);
+  std::map<std::string, double> noise;
+  const auto add = [&noise](double sigma, std::initializer_list<const char*> columns) {
+    for (const char* column : columns)
+      if (sigma > 0) noise[column] = sigma;
+  };
+  add(options.mocap_noise_m * options.noise_scale, {"x_m", "y_m", "z_m"});
+  add(options.mocap_noise_rad * options.noise_scale, {"yaw_rad"});
+  if (const auto* ins = sensor_of(robot, SensorType::ins)) add(ins->noise_rad, {"roll_rad", "pitch_rad"});
+  if (const auto* imu = sensor_of(robot, SensorType::imu)) {
+    add(imu->noise_radps, {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"});
+    add(imu->noise_mps2, {"acc_x_mps2", "acc_y_mps2", "acc_z_mps2"});
+  }
+  if (const auto* tachometer = sensor_of(robot, SensorType::tachometer))
+    add(tachometer->noise_radps * robot.drive.sprocket_radius_m, {"track_left_mps", "track_right_mps"});
+  // whole counts: evenly distributed over one
+  if (has(robot, SensorType::encoder))
+    add(metres_per_count(robot.drive) / std::sqrt(12.0), {"track_left_m", "track_right_m"});
+  return noise;
+}
+
+RunRecorder::RunRecorder(const RobotDescription& robot, const RollOutOptions& options)
+    : robot_(robot),
+      mocap_noise_m_(options.mocap_noise_m * options.noise_scale),
+      mocap_noise_rad_(options.mocap_noise_rad * options.noise_scale),
+      mocap_noise_(options.seed, "world", "motion capture") {
+  const bool flippers = robot.has_flippers(), drives = has(robot, SensorType::drives);
+  time_ = add_group(true, {"t_s"});
+  cmd_track_ = add_group(true, {"cmd_track_left_mps", "cmd_track_right_mps"});
+  cmd_flipper_ = add_group(flippers, flipper_names("cmd_flipper_", "_rad"));
+  track_speed_ = add_group(has(robot, SensorType::tachometer), {"track_left_mps", "track_right_mps"});
+  track_travel_ = add_group(has(robot, SensorType::encoder), {"track_left_m", "track_right_m"});
+  flipper_ = add_group(flippers, flipper_names("flipper_", "_rad"));
+  track_current_ = add_group(drives, {"track_left_a", "track_right_a"});
+  flipper_current_ = add_group(drives && flippers, flipper_names("flipper_", "_a"));
+  battery_ = add_group(drives, {"battery_v"});
+  position_ = add_group(true, {"x_m", "y_m", "z_m"});
+  tilt_ = add_group(has(robot, SensorType::ins), {"roll_rad", "pitch_rad"});
+  yaw_ = add_group(true, {"yaw_rad"});
+  gyro_ = add_group(has(robot, SensorType::imu), {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"});
+  acceleration_ = add_group(has(robot, SensorType::imu), {"acc_x_mps2", "acc_y_mps2", "acc_z_mps2"});
+  run_.values.resize(run_.columns.size());
+}
+
+RunRecorder::Group RunRecorder::add_group(bool measured, const Names& names) {
+  if (!measured) return {};
+  const Group group{run_.columns.size(), names.size()};
+  run_.columns.insert(run_.columns.end(), names.begin(), names.end());
+  return group;
+}
+
+void RunRecorder::put(Group group, std::initializer_list<double> values) {
+  for (std::size_t i = 0; i < group.count; ++i) run_.values[group.first + i].back() = values.begin()[i];
+}
+
+void RunRecorder::put_reading(const physics::InsReading& reading) {
+  put(tilt_, {reading.roll_pitch_yaw_rad.x(), reading.roll_pitch_yaw_rad.y()});
+}
+
+void RunRecorder::put_reading(const physics::ImuReading& reading) {
+  const Eigen::Vector3d &w = reading.angular_velocity_radps, &a = reading.acceleration_mps2;
+  put(gyro_, {w.x(), w.y(), w.z()});
+  put(acceleration_, {a.x(), a.y(), a.z()});
+}
+
+void RunRecorder::put_reading(const physics::EncoderReading& reading) {
+  const double metres = metres_per_count(robot_.drive);
+  put(track_travel_,
+      {static_cast<double>(reading.counts[kLeft]) * metres, static_cast<double>(reading.counts[kRight]) * metres});
+}
+
+void RunRecorder::put_reading(const physics::TachometerReading& reading) {
+  const double radius_m = robot_.drive.sprocket_radius_m;
+  put(track_speed_, {reading.spin_radps[kLeft] * radius_m, reading.spin_radps[kRight] * radius_m});
+}
+
+void RunRecorder::put_reading(const physics::DrivesReading& reading) {
+  const auto& a = reading.flipper_a;
+  put(track_current_, {reading.track_a[kLeft], reading.track_a[kRight]});
+  put(flipper_current_, {a[kFrontLeft], a[kFrontRight], a[kRearLeft], a[kRearRight]});
+  put(battery_, {reading.battery_v});
+}
+
+void RunRecorder::add(double t_s, const physics::RobotCommand& command, const physics::RobotTruth& truth,
+                      std::span<const physics::SensorSample> samples) {
+  for (auto& column : run_.values) column.push_back(std::numeric_limits<double>::quiet_NaN());
+  put(time_, {t_s});
+  put(cmd_track_, {command.track_speed_mps[kLeft], command.track_speed_mps[kRight]});
+  const auto& flipper = command.flipper;
+  put(cmd_flipper_,
+      {flipper[kFrontLeft].value, flipper[kFrontRight].value, flipper[kRearLeft].value, flipper[kRearRight].value});
+  const auto& angle = truth.flipper_rad;
+  put(flipper_, {angle[kFrontLeft], angle[kFrontRight], angle[kRearLeft], angle[kRearRight]});
+  const Eigen::Vector3d p_WB = truth.X_WB.p + mocap_noise_.normal3(mocap_noise_m_);
+  put(position_, {p_WB.x(), p_WB.y(), p_WB.z()});
+  put(yaw_, {frames::wrap_angle(physics::roll_pitch_yaw(truth.X_WB.q).z() + mocap_noise_.normal(mocap_noise_rad_))});
+  for (const physics::SensorSample& sample : samples)
+    std::visit([this](const auto& reading) { put_reading(reading); }, sample.reading);
+}
+
+}  // namespace kenaf::rollout

@@ -1,0 +1,50 @@
+// Turns commands, sensor readings and motion capture into the rows of a run.
+// Thread safety: none; one thread owns a RunRecorder.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "physics/sensors/noise.hpp"
+#include "rollout/roll_out.hpp"
+
+namespace kenaf::rollout {
+
+// `robot` with the sensors that a run has columns for alone, the first of each type, and all noise scaled.
+physics::RobotDescription instrumented(physics::RobotDescription robot, double noise_scale);
+
+class RunRecorder {
+ public:
+  // `robot` as instrumented() makes it; must outlive this.
+  RunRecorder(const physics::RobotDescription& robot, const RollOutOptions& options);
+
+  void add(double t_s, const physics::RobotCommand& command, const physics::RobotTruth& truth,
+           std::span<const physics::SensorSample> samples);
+  runs::Run take() { return std::move(run_); }
+
+ private:
+  using Names = std::vector<std::string>;
+  // Columns side by side, found by the first one; none where the robot does not measure them.
+  struct Group {
+    std::size_t first = 0, count = 0;
+  };
+  Group add_group(bool measured, const Names& names);
+  void put(Group group, std::initializer_list<double> values);
+
+  void put_reading(const physics::InsReading& reading);
+  void put_reading(const physics::ImuReading& reading);
+  void put_reading(const physics::EncoderReading& reading);
+  void put_reading(const physics::TachometerReading& reading);
+  void put_reading(const physics::DrivesReading& reading);
+  template <typename Other>
+  void put_reading(const Other&) {}
+
+  const physics::RobotDescription& robot_;
+  double mocap_noise_m_, mocap_noise_rad_;
+  physics::NoiseSource mocap_noise_;
+  runs::Run run_;
+  Group time_, cmd_track_, cmd_flipper_, track_speed_, track_travel_, flipper_, track_current_, flipper_current_,
+      battery_, position_, tilt_, yaw_, gyro_, acceleration_;
+};
+
+}  // namespace kenaf::rollout

@@ -1,0 +1,87 @@
+// A recorded run as a manoeuvre.
+#include <catch2/catch.hpp>
+
+#include "rollout/roll_out.hpp"
+#include "tests/runs/temporary_folder.hpp"
+
+using namespace kenaf;
+using namespace kenaf::rollout;
+using Catch::Contains;
+
+namespace {
+
+Manoeuvre replay(const std::string& csv) {
+  return replay_of(runs::parse_run(csv, "run.csv"), "run.csv");
+}
+
+}  // namespace
+
+TEST_CASE("A run's commands, at its times from its first row on; an empty cell holds") {
+  const Manoeuvre manoeuvre = replay(
+      "t_s,cmd_track_left_mps,cmd_track_right_mps,x_m,y_m,yaw_rad,flipper_fl_rad,flipper_fr_rad,flipper_rl_rad,"
+      "flipper_rr_rad,cmd_flipper_fl_rad\n"
+      "5,0.1,0.2,,1,2,0.5,0.6,0.7,0.8,\n"
+      "5.5,,0.3,3,9,9,9,9,9,9,0.9\n"
+      "5.75,0.4,,,,,,,,,\n");
+  REQUIRE(manoeuvre.start);
+  CHECK(manoeuvre.start->x_m == 3);  // the first one that was measured
+  CHECK(manoeuvre.start->y_m == 1);
+  CHECK(manoeuvre.start->yaw_rad == 2);
+  CHECK_FALSE(manoeuvre.start->z_m);
+  CHECK(*manoeuvre.start->flipper_rad == std::array{0.5, 0.6, 0.7, 0.8});
+  REQUIRE(manoeuvre.timed.size() == 3);
+  CHECK(manoeuvre.timed[0].t_s == 0);
+  CHECK(manoeuvre.timed[1].t_s == 0.5);
+  CHECK(manoeuvre.timed[1].command.track_speed_mps == std::array{0.1, 0.3});
+  CHECK(manoeuvre.timed[2].command.track_speed_mps == std::array{0.4, 0.3});
+  CHECK(manoeuvre.timed[0].command.flipper[physics::kFrontLeft].value == 0.5);  // not commanded yet: as it stands
+  CHECK(manoeuvre.timed[2].command.flipper[physics::kFrontLeft].value == 0.9);
+  CHECK(manoeuvre.timed[2].command.flipper[physics::kRearRight].value == 0.8);
+  CHECK(manoeuvre.at_most_s() == 0.75);
+}
+
+TEST_CASE("A run without commands or without a start cannot be repeated, and says so") {
+  CHECK_THROWS_WITH(replay("t_s,x_m,y_m,yaw_rad\n0,0,0,0\n"), Contains("run.csv: has no commands to repeat"));
+  CHECK_THROWS_WITH(replay("t_s,cmd_track_left_mps,cmd_track_right_mps,x_m,y_m\n0,0,0,0,0\n"),
+                    Contains("run.csv: has no yaw_rad"));
+  CHECK_THROWS_WITH(replay("t_s,cmd_track_left_mps,cmd_track_right_mps\n"), Contains("has no commands"));
+  CHECK_THROWS_AS(load_manoeuvre("replay:/no/such/file.csv"), runs::RunFileError);
+}
+
+TEST_CASE("The replay of a rollout drives the same path") {
+  const auto robot = physics::load_robot("kenaf");
+  std::vector<std::string> unsupported;
+  const auto world = physics::load_world("flat", unsupported);
+  Manoeuvre weave;
+  for (const auto& [left, right] : {std::pair{0.3, 0.1}, {0.05, 0.3}, {-0.2, -0.3}})
+    weave.phases.push_back(
+        {.name = "", .track_mps = {left, right}, .flipper_rad = {{0.8, 0.8, 0.3, 0.3}}, .at_most_s = 0.6, .end = {}});
+  RollOutOptions exact;
+  exact.noise_scale = 0;
+  const RollOut first = roll_out(robot, world, weave, exact);
+  const RollOut second = roll_out(robot, world, replay_of(first.run, "first"), exact);
+
+  REQUIRE(second.run.row_count() == first.run.row_count());
+  for (const char* column : {"cmd_track_left_mps", "cmd_flipper_rl_rad", "t_s"}) {
+    const auto a = first.run.column(column), b = second.run.column(column);
+    CHECK(std::equal(a.begin(), a.end(), b.begin(), b.end()));
+  }
+  // The second one starts where the first one had settled, and settles once more.
+  for (const char* column : {"x_m", "y_m", "z_m", "yaw_rad", "pitch_rad", "flipper_fl_rad", "flipper_rr_rad"}) {
+    INFO(column);
+    const auto a = first.run.column(column), b = second.run.column(column);
+    for (std::size_t i = 0; i < a.size(); ++i) CHECK(b[i] == Approx(a[i]).margin(0.001));
+  }
+}
+
+TEST_CASE("The replay of a drop falls from where the run began") {
+  const auto robot = physics::load_robot("kenaf");
+  std::vector<std::string> unsupported;
+  const auto world = physics::load_world("flat", unsupported);
+  RollOutOptions exact;
+  exact.noise_scale = 0;
+  const RollOut first = roll_out(robot, world, load_manoeuvre("drop"), exact);
+  const RollOut second = roll_out(robot, world, replay_of(first.run, "first"), exact);
+  CHECK(second.run.column("z_m").front() == Approx(first.run.column("z_m").front()).margin(1e-4));
+  CHECK(second.run.column("z_m")[8] == Approx(first.run.column("z_m")[8]).margin(1e-3));
+}

@@ -1,0 +1,184 @@
+// A robot driven through a manoeuvre: what mechanics says it does, and what is recorded of it.
+#include "rollout/roll_out.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <thread>
+
+using namespace kenaf;
+using namespace kenaf::rollout;
+using Catch::Contains;
+
+namespace {
+
+const physics::WorldDescription& flat() {
+  static const physics::WorldDescription world = [] {
+    std::vector<std::string> unsupported;
+    return physics::load_world("flat", unsupported);
+  }();
+  return world;
+}
+
+RollOutOptions exact() {
+  RollOutOptions options;
+  options.noise_scale = 0;
+  return options;
+}
+
+Manoeuvre straight(double speed_mps, double time_s) {
+  Manoeuvre manoeuvre;
+  manoeuvre.name = "straight";
+  manoeuvre.phases = {
+      {.name = "", .track_mps = {speed_mps, speed_mps}, .flipper_rad = {}, .at_most_s = time_s, .end = {}}};
+  manoeuvre.success = Success{.x_above_m = speed_mps * time_s / 2};
+  return manoeuvre;
+}
+
+// Cells that were not measured are equal too.
+bool same_bits(const runs::Run& a, const runs::Run& b) {
+  const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+  return a.columns == b.columns && std::ranges::equal(a.values, b.values, [&](const auto& x, const auto& y) {
+           return std::ranges::equal(x, y, same);
+         });
+}
+
+}  // namespace
+
+// A first-order lag of T = 0.05 s costs v T of the way: x = v (t - T) once t >> T.
+TEST_CASE("Straight ahead: the way of a speed loop with a lag, in every column that measures it") {
+  const auto robot = physics::load_robot("kenaf");
+  const RollOut out = roll_out(robot, flat(), straight(0.2, 1), exact());
+  REQUIRE(out.run.row_count() == 101);
+  CHECK(out.run.column("t_s")[29] == 0.29);
+  CHECK(out.run.column("t_s").back() == 1);
+  const double way_m = 0.2 * (1 - robot.drive.time_constant_s);
+  const double moved_m = out.run.column("x_m").back() - out.run.column("x_m").front();
+  CHECK(moved_m == Approx(way_m).epsilon(0.01));
+  CHECK(out.run.column("track_left_m").back() == Approx(way_m).epsilon(0.01));
+  CHECK(out.run.column("track_left_m").front() == 0);
+  CHECK(out.run.column("track_right_mps").back() == Approx(0.2).epsilon(0.001));
+  CHECK(out.run.column("cmd_track_right_mps").front() == 0.2);
+  CHECK(out.run.column("acc_z_mps2").back() == Approx(9.80665).epsilon(0.01));
+  CHECK(out.run.column("y_m").back() == Approx(0).margin(1e-4));
+  CHECK(out.run.column("battery_v").back() < robot.battery.open_circuit_v);
+  CHECK(out.run.column("track_left_a").back() >= robot.drive.idle_amperes);
+  CHECK(out.succeeded);
+  CHECK(out.fault.empty());
+  CHECK(out.steps == 1500);  // half a second of them to settle
+  CHECK(out.contacts_per_step > 4);
+  CHECK(out.end.X_WB.p.x() == out.run.column("x_m").back());
+}
+
+TEST_CASE("The robot stands still before the first row") {
+  const auto robot = physics::load_robot("kenaf");
+  Manoeuvre stand = straight(0, 0.2);
+  stand.phases[0].flipper_rad = GENERATE(std::array{0.0, 0.0, 0.0, 0.0}, std::array{1.2, 1.2, 0.2, 0.2});
+  const RollOut out = roll_out(robot, flat(), stand, exact());
+  for (const char* column : {"x_m", "z_m", "pitch_rad", "flipper_fl_rad", "flipper_rl_rad"}) {
+    INFO(column);
+    CHECK(out.run.column(column).back() == Approx(out.run.column(column).front()).margin(1e-4));
+  }
+  CHECK(out.run.column("flipper_fl_rad").front() == Approx((*stand.phases[0].flipper_rad)[0]).margin(0.01));
+  CHECK(out.run.column("flipper_rl_rad").front() == Approx((*stand.phases[0].flipper_rad)[2]).margin(0.01));
+}
+
+// g t^2 / 2 = 50 mm after 0.101 s; the semi-implicit step falls by g h t / 2 more, 0.5 mm.
+TEST_CASE("A drop falls freely, then lies on the ground") {
+  const auto robot = physics::load_robot("kenaf");
+  const RollOut out = roll_out(robot, flat(), load_manoeuvre("drop"), exact());
+  const auto z = out.run.column("z_m");
+  CHECK(z[0] - z[8] == Approx(9.80665 * 0.08 * 0.08 / 2).margin(6e-4));
+  CHECK(z.front() - z.back() == Approx(0.05).margin(0.002));
+  CHECK(out.succeeded);
+}
+
+TEST_CASE("Phases end where the robot is, and say when they began") {
+  const auto robot = physics::load_robot("kenaf");
+  Manoeuvre manoeuvre = straight(0.4, 5);
+  manoeuvre.phases[0].end.x_above_m = 0.2;
+  manoeuvre.phases.push_back(manoeuvre.phases[0]);
+  manoeuvre.phases[1].track_mps = {-0.4, -0.4};
+  manoeuvre.phases[1].end = {.x_below_m = 0.1};
+  const RollOut out = roll_out(robot, flat(), manoeuvre, exact());
+  REQUIRE(out.phase_began_s.size() == 2);
+  CHECK(out.phase_began_s[0] == 0);
+  CHECK(out.phase_began_s[1] == Approx(0.2 / 0.4 + 0.05).margin(0.03));
+  CHECK(out.end.X_WB.p.x() == Approx(0.1).margin(0.01));
+  CHECK_FALSE(out.succeeded);  // back again
+}
+
+TEST_CASE(
+    "Without noise the seed changes no bit; with noise it does; the same seed gives the same bits on any thread") {
+  const auto robot = physics::load_robot("kenaf");
+  const Manoeuvre manoeuvre = straight(0.2, 0.3);
+  RollOutOptions one = exact(), two = exact();
+  two.seed = 2;
+  CHECK(same_bits(roll_out(robot, flat(), manoeuvre, one).run, roll_out(robot, flat(), manoeuvre, two).run));
+  one.noise_scale = two.noise_scale = 1;
+  const runs::Run first = roll_out(robot, flat(), manoeuvre, one).run;
+  CHECK_FALSE(same_bits(first, roll_out(robot, flat(), manoeuvre, two).run));
+  std::array<runs::Run, 2> runs;
+  {
+    std::vector<std::jthread> threads;
+    for (runs::Run& run : runs) threads.emplace_back([&] { run = roll_out(robot, flat(), manoeuvre, one).run; });
+  }
+  CHECK(same_bits(first, runs[0]));
+  CHECK(same_bits(first, runs[1]));
+}
+
+TEST_CASE("Noise has the sigma that is stated for its column") {
+  const auto robot = physics::load_robot("kenaf");
+  RollOutOptions options;
+  options.noise_scale = 2;
+  const auto noise = column_noise(robot, options);
+  CHECK(noise.at("x_m") == 2 * options.mocap_noise_m);
+  const runs::Run run = roll_out(robot, flat(), straight(0, 3), options).run;
+  for (const auto& [column, sigma] : noise) {
+    if (column.starts_with("track_") && column.ends_with("_m")) continue;  // stands on one count
+    INFO(column);
+    const auto values = run.column(column);
+    double mean = 0, squares = 0;
+    for (const double value : values) mean += value / static_cast<double>(values.size());
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    // 301 samples know their sigma to 4 %; four times that
+    CHECK(std::sqrt(squares / static_cast<double>(values.size() - 1)) == Approx(sigma).epsilon(0.16));
+  }
+}
+
+TEST_CASE("Starts scatter with the sigma asked for, and not in a replay") {
+  auto robot = physics::load_robot("kenaf");
+  RollOutOptions options = exact();
+  options.start_scatter_m = 0.005;
+  double squares = 0;
+  for (options.seed = 1; options.seed <= 8; ++options.seed) {
+    const double x = roll_out(robot, flat(), straight(0, 0.01), options).run.column("x_m").front();
+    squares += x * x / 8;
+  }
+  CHECK(std::sqrt(squares) > 0.002);  // a chi square of 8 is not below 1.3 in 99.6 % of cases
+  CHECK(std::sqrt(squares) < 0.009);
+  Manoeuvre replay = straight(0, 0.01);
+  replay.start = Start{.x_m = 0.5, .y_m = 0, .yaw_rad = 0, .z_m = {}, .flipper_rad = {}};
+  CHECK(roll_out(robot, flat(), replay, options).run.column("x_m").front() == Approx(0.5).margin(1e-4));
+}
+
+TEST_CASE("A robot without sensors or flippers leaves their columns out, a slow sensor leaves cells empty") {
+  auto robot = physics::load_robot("kenaf");
+  robot.flipper.clear();
+  std::erase_if(robot.sensors, [](const auto& sensor) { return sensor.type != physics::SensorType::ins; });
+  robot.sensors.front().period_s = 0.05;
+  const runs::Run run = roll_out(robot, flat(), straight(0.2, 0.2), {}).run;
+  CHECK(run.columns == std::vector<std::string>{"t_s", "cmd_track_left_mps", "cmd_track_right_mps", "x_m", "y_m", "z_m",
+                                                "roll_rad", "pitch_rad", "yaw_rad"});
+  const auto pitch = run.column("pitch_rad");
+  for (std::size_t i = 0; i < pitch.size(); ++i) CHECK(std::isnan(pitch[i]) == (i % 5 != 0));
+}
+
+TEST_CASE("A time step that does not divide the sample period is refused in words") {
+  RollOutOptions options;
+  options.physics.time_step_s = 0.003;
+  CHECK_THROWS_WITH(roll_out(physics::load_robot("kenaf"), flat(), straight(0.2, 1), options),
+                    Contains("0.01") && Contains("time_step_s = 0.003"));
+  options.physics.time_step_s = 0.002;
+  CHECK(roll_out(physics::load_robot("kenaf"), flat(), straight(0.2, 0.1), options).run.row_count() == 11);
+}
