@@ -8,6 +8,7 @@ class App;
 
 namespace kenaf::gap {
 
+void add_compare_command(CLI::App& program);
 void add_effects_command(CLI::App& program);
 void add_manoeuvres_command(CLI::App& program);
 void add_simulate_command(CLI::App& program);

@@ -1,6 +1,7 @@
 // kenaf-gap: how far simulation and reality are apart, and why.
 //
 //   kenaf-gap effects
+//   kenaf-gap compare REAL SIM --out DIR
 //   kenaf-gap --help
 //
 // Exit status: 0 done, 2 bad input, with what is wrong and where on standard error.
@@ -15,6 +16,7 @@ namespace {
 constexpr int kBadInput = 2;
 
 constexpr void (*kCommands[])(CLI::App&) = {
+    kenaf::gap::add_compare_command,
     kenaf::gap::add_effects_command,
     kenaf::gap::add_manoeuvres_command,
     kenaf::gap::add_simulate_command,

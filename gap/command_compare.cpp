@@ -1,0 +1,46 @@
+// kenaf-gap compare: how far two datasets are apart, run by run.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "gap/commands.hpp"
+#include "gap/compare/report.hpp"
+
+namespace kenaf::gap {
+
+void add_compare_command(CLI::App& program) {
+  struct Options {
+    std::string real, sim, out;
+    CompareOptions compare;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command =
+      program.add_subcommand("compare", "aligns two datasets run by run and reports the errors per frame");
+  command->add_option("real", options->real, "the dataset that is compared with, a folder")
+      ->required()
+      ->type_name("REAL");
+  command->add_option("sim", options->sim, "the dataset that is compared, a folder")->required()->type_name("SIM");
+  command->add_option("--out", options->out, "folder for compare.html, compare.json and matched-NNN.csv")
+      ->required()
+      ->type_name("DIR");
+  command->add_flag("--align-start,!--no-align-start", options->compare.align_start,
+                    "move each simulated run to the start of its real one, in x, y and yaw [yes]");
+  command
+      ->add_option("--start", options->compare.start_s, "the start is the mean over this time; 0: the first frame [0]")
+      ->check(CLI::Range(0.0, 1e6))
+      ->type_name("SECONDS");
+  command
+      ->add_option("--band", options->compare.band_s,
+                   "match no frames that are farther than this from an even course of time")
+      ->check(CLI::Range(1e-3, 1e9))
+      ->type_name("SECONDS");
+  command->callback([options] {
+    const Comparison comparison = compare_datasets(options->real, options->sim, options->compare);
+    write_report(comparison, options->out);
+    std::printf("%s\n%s\n", comparison_text(comparison).c_str(),
+                (options->out + "/compare.html has the figures").c_str());
+  });
+}
+
+}  // namespace kenaf::gap

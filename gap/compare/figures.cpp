@@ -1,0 +1,148 @@
+#include "gap/compare/figures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "gap/compare/report_numbers.hpp"
+#include "gap/compare/world_section.hpp"
+
+namespace kenaf::gap {
+
+namespace {
+
+using plot::Chart;
+using plot::Ink;
+using plot::Line;
+using plot::Point;
+using plot::Stroke;
+
+constexpr std::size_t kJoinedPairs = 60;
+// What is shown around the paths of the body's centre: the robot is about 0.5 m long, its centre 0.1 m above ground.
+constexpr double kAround_m = 0.2, kBelow_m = 0.2;
+constexpr double kTimeHeight_px = 270;
+const Point kBreak{std::numeric_limits<double>::quiet_NaN(), 0};
+
+// About kJoinedPairs of the matched pairs, evenly over the real run.
+Line joined_pairs(const ComparedRun& run) {
+  Line line{{}, Ink::faint, Stroke::hair, "matched frames"};
+  const std::size_t every = std::max<std::size_t>(1, run.real.size() / kJoinedPairs);
+  for (std::size_t next = 0; const FramePair& pair : run.matching.pairs) {
+    if (pair.real < next) continue;
+    next = pair.real + every;
+    const PoseFrame &real = run.real[pair.real], &sim = run.sim[pair.sim];
+    line.points.insert(line.points.end(), {{real.x_m, real.z_m}, {sim.x_m, sim.z_m}, kBreak});
+  }
+  return line;
+}
+
+void add_world(Chart& chart, const physics::WorldDescription& world, double y_m, const Point& low, const Point& high) {
+  const WorldSection section = world_section(world, y_m, low, high);
+  for (const auto& solid : section.solids) chart.areas.push_back({solid, Ink::ground});
+  std::vector<Point> meshes;
+  for (const auto& [a, b] : section.surfaces) {
+    const bool seen = std::max(a.x(), b.x()) > low.x() && std::min(a.x(), b.x()) < high.x();
+    if (seen) meshes.insert(meshes.end(), {a, b, kBreak});
+  }
+  if (!meshes.empty()) chart.areas.push_back({std::move(meshes), Ink::ground, false});
+}
+
+double degrees(double rad) {
+  return kDegrees * rad;
+}
+
+// A line of one quantity of each real frame's error over the real run's time.
+Line error_line(const ComparedRun& run, const std::vector<FrameError>& errors, double FrameError::*quantity,
+                double scale, Ink ink, Stroke stroke, std::string legend) {
+  Line line{{}, ink, stroke, std::move(legend)};
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    line.points.emplace_back(run.real[i].t_s, scale * std::abs(errors[i].*quantity));
+  }
+  return line;
+}
+
+Line mean_line(const ComparedRun& run, double value, Ink ink) {
+  return {{{run.real.front().t_s, value}, {run.real.back().t_s, value}}, ink, Stroke::dashed, ""};
+}
+
+Chart over_time(const ComparedRun& run, std::string title, std::string y_label, double width_px) {
+  Chart chart;
+  chart.title = std::move(title);
+  chart.x_label = "time of the real run (s)";
+  chart.y_label = std::move(y_label);
+  chart.width_px = width_px;
+  chart.height_px = kTimeHeight_px;
+  chart.include = {{run.real.front().t_s, 0}};
+  return chart;
+}
+
+}  // namespace
+
+Chart path_figure(const ComparedRun& run, const physics::WorldDescription* world, double width_px) {
+  Chart chart;
+  chart.title = "Paths of the body's centre in the vertical plane, to scale";
+  chart.x_label = "x (m)";
+  chart.y_label = "z (m)";
+  chart.equal_scales = true;
+  chart.width_px = width_px;
+  Line real{vertical_path(run.real), Ink::real, Stroke::solid, "real"};
+  Line sim{vertical_path(run.sim), Ink::sim, Stroke::dashed, "simulated"};
+  Point low = real.points.front(), high = low;
+  for (const Line* line : {&real, &sim}) {
+    for (const Point& p : line->points) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+  }
+  chart.include = {low - Point(kAround_m, kBelow_m), high + Point(kAround_m, kAround_m / 2)};
+  // The view may grow to keep its scale; the section reaches beyond whatever it grows to.
+  const double beyond_m = 10 * (1 + (high - low).maxCoeff());
+  const double y_m = std::isnan(run.real.front().y_m) ? 0 : run.real.front().y_m;
+  if (world != nullptr) add_world(chart, *world, y_m, low.array() - beyond_m, high.array() + beyond_m);
+  chart.lines = {joined_pairs(run), std::move(real), std::move(sim)};
+  return chart;
+}
+
+Chart pitch_figure(const ComparedRun& run, double width_px) {
+  Chart chart = over_time(run, "Pitch, matched frames", "pitch, nose down (deg)", width_px);
+  Line real{{}, Ink::real, Stroke::solid, "real"}, sim{{}, Ink::sim, Stroke::dashed, "simulated"};
+  for (const PoseFrame& frame : run.real) real.points.emplace_back(frame.t_s, degrees(frame.pitch_rad));
+  for (const FramePair& pair : run.matching.pairs) {
+    sim.points.emplace_back(run.real[pair.real].t_s, degrees(run.sim[pair.sim].pitch_rad));
+  }
+  chart.lines = {std::move(real), std::move(sim)};
+  return chart;
+}
+
+Chart position_error_figure(const ComparedRun& run, double width_px) {
+  Chart chart = over_time(run, "Position error per frame, norm of (x, z)", "error (mm)", width_px);
+  const double matched_mm = kMillimetres * run.errors.matched_summary.position_m.mean();
+  const double same_time_mm = kMillimetres * run.errors.same_time_summary.position_m.mean();
+  chart.lines = {error_line(run, run.errors.same_time, &FrameError::position_m, kMillimetres, Ink::faint, Stroke::solid,
+                            fmt::format("at the same time, mean {}", number(same_time_mm, 1))),
+                 mean_line(run, same_time_mm, Ink::faint),
+                 error_line(run, run.errors.matched, &FrameError::position_m, kMillimetres, Ink::real, Stroke::solid,
+                            fmt::format("matched, mean {} (dashed)", number(matched_mm, 1))),
+                 mean_line(run, matched_mm, Ink::real)};
+  return chart;
+}
+
+Chart angle_error_figure(const ComparedRun& run, double width_px) {
+  Chart chart = over_time(run, "Angle errors per matched frame", "error (deg)", width_px);
+  const ErrorSummary& summary = run.errors.matched_summary;
+  const auto add = [&](double FrameError::*quantity, const Summary& mean, Ink ink, std::string_view name) {
+    if (mean.weight() == 0) return;
+    chart.lines.push_back(error_line(run, run.errors.matched, quantity, kDegrees, ink, Stroke::solid,
+                                     fmt::format("{}, mean {}", name, number(degrees(mean.mean()), 2))));
+  };
+  add(&FrameError::roll_rad, summary.roll_rad, Ink::third, "roll");
+  add(&FrameError::yaw_rad, summary.yaw_rad, Ink::fourth, "yaw");
+  add(&FrameError::pitch_rad, summary.pitch_rad, Ink::real, "pitch");
+  if (summary.pitch_rad.weight() > 0)
+    chart.lines.push_back(mean_line(run, degrees(summary.pitch_rad.mean()), Ink::real));
+  return chart;
+}
+
+}  // namespace kenaf::gap

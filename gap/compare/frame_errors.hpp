@@ -1,0 +1,65 @@
+// How far a simulated run is from a real one: per frame of the real run, and summed up.
+//
+// Two comparisons stand beside each other. *Matched*: with the simulated frames that DP matching gives; it compares paths
+// and hides delays. *Same time*: with the simulated pose at the real frame's own time; it shows them.
+//
+// Errors are simulated less real; angles wrapped to [-pi, pi]. NaN: one of the two was not measured.
+// Thread safety: values and pure functions.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "gap/compare/dp_matching.hpp"
+#include "gap/compare/pose_frames.hpp"
+
+namespace kenaf::gap {
+
+struct FrameError {
+  double position_m;  // the norm of the difference of (x, z), never negative
+  double y_m;
+  double roll_rad, pitch_rad, yaw_rad;
+  double time_s;      // how much later the simulated frame is, 0 at the same time
+};
+
+FrameError frame_error(const PoseFrame& real, const PoseFrame& sim);
+
+// Of the sizes (absolute values) of an error. All NaN where there was none.
+class Summary {
+ public:
+  // An error that is NaN is not counted.
+  void add(double error, double weight = 1);
+  void add(const Summary& other);
+
+  double weight() const { return weight_; }  // frames
+  double mean() const;
+  double rms() const;
+  double max() const;
+
+ private:
+  double weight_ = 0, sum_ = 0, sum_of_squares_ = 0, max_ = 0;
+};
+
+struct ErrorSummary {
+  Summary position_m, y_m, roll_rad, pitch_rad, yaw_rad, time_s;
+  void add(const FrameError& error, double weight = 1);
+  void add(const ErrorSummary& other);
+};
+
+struct RunErrors {
+  // A frame of the real run that is in several pairs has the mean of their errors' sizes here.
+  std::vector<FrameError> matched;     // one for each real frame; sizes, but time_s with its sign
+  std::vector<FrameError> same_time;   // one for each real frame; all NaN outside of the simulated run's time
+  // Every real frame counts once: the pairs that it is in share its weight.
+  ErrorSummary matched_summary, same_time_summary;
+  FrameError at_end;                   // of the last pair, the two ends
+};
+
+RunErrors run_errors(const std::vector<PoseFrame>& real, const std::vector<PoseFrame>& sim,
+                     const std::vector<FramePair>& pairs);
+
+// For each pair the share of its real frame: one over the number of pairs that the frame is in.
+std::vector<double> pair_weights(const std::vector<FramePair>& pairs);
+
+}  // namespace kenaf::gap

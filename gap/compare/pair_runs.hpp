@@ -1,0 +1,32 @@
+// Which run of one dataset is compared with which of the other.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "runs/dataset.hpp"
+
+namespace kenaf::gap {
+
+struct RunPair {
+  std::size_t real, sim;  // indices in Dataset::runs
+  std::size_t repeat;     // of the manoeuvre, from 0
+};
+
+struct LeftOutRun {
+  enum class Side { real, sim } side;
+  std::size_t index;  // in Dataset::runs
+  std::string why;    // in words
+};
+
+struct RunPairs {
+  std::vector<RunPair> pairs;  // in the order of the real runs
+  std::vector<LeftOutRun> left_out;
+};
+
+// The k-th repeat of a manoeuvre belongs to the k-th of the other dataset, in the order in which the datasets list them.
+// Runs without a manoeuvre's name count as one manoeuvre. What has no counterpart is left out, with the reason.
+RunPairs pair_runs(const runs::Dataset& real, const runs::Dataset& sim);
+
+}  // namespace kenaf::gap

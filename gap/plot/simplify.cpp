@@ -1,0 +1,51 @@
+#include "gap/plot/simplify.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+namespace kenaf::gap::plot {
+
+namespace {
+
+using Eigen::Vector2d;
+
+double distance_to_segment(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
+  const Vector2d along = b - a;
+  const double squared = along.squaredNorm();
+  const double share = squared > 0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0;
+  return (a + share * along - p).norm();
+}
+
+}  // namespace
+
+std::vector<Vector2d> simplified(std::span<const Vector2d> points, double tolerance) {
+  if (points.size() < 3) return {points.begin(), points.end()};
+  std::vector<bool> stays(points.size(), false);
+  stays.front() = stays.back() = true;
+  std::vector<std::pair<std::size_t, std::size_t>> open{{0, points.size() - 1}};
+  while (!open.empty()) {
+    const auto [first, last] = open.back();
+    open.pop_back();
+    std::size_t farthest = first;
+    double most = tolerance;
+    for (std::size_t i = first + 1; i < last; ++i) {
+      const double distance = distance_to_segment(points[i], points[first], points[last]);
+      if (distance > most) {
+        most = distance;
+        farthest = i;
+      }
+    }
+    if (farthest == first) continue;
+    stays[farthest] = true;
+    open.emplace_back(first, farthest);
+    open.emplace_back(farthest, last);
+  }
+  std::vector<Vector2d> kept;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (stays[i]) kept.push_back(points[i]);
+  }
+  return kept;
+}
+
+}  // namespace kenaf::gap::plot
