@@ -117,20 +117,20 @@ Chart pitch_figure(const ComparedRun& run, double width_px) {
 }
 
 Chart position_error_figure(const ComparedRun& run, double width_px) {
-  Chart chart = over_time(run, "Position error per frame, norm of (x, z)", "error (mm)", width_px);
+  Chart chart = over_time(run, "Position error per frame, norm of (x, z); means dashed", "error (mm)", width_px);
   const double matched_mm = kMillimetres * run.errors.matched_summary.position_m.mean();
   const double same_time_mm = kMillimetres * run.errors.same_time_summary.position_m.mean();
   chart.lines = {error_line(run, run.errors.same_time, &FrameError::position_m, kMillimetres, Ink::faint, Stroke::solid,
                             fmt::format("at the same time, mean {}", number(same_time_mm, 1))),
                  mean_line(run, same_time_mm, Ink::faint),
                  error_line(run, run.errors.matched, &FrameError::position_m, kMillimetres, Ink::real, Stroke::solid,
-                            fmt::format("matched, mean {} (dashed)", number(matched_mm, 1))),
+                            fmt::format("matched, mean {}", number(matched_mm, 1))),
                  mean_line(run, matched_mm, Ink::real)};
   return chart;
 }
 
 Chart angle_error_figure(const ComparedRun& run, double width_px) {
-  Chart chart = over_time(run, "Angle errors per matched frame", "error (deg)", width_px);
+  Chart chart = over_time(run, "Angle errors per matched frame; mean of pitch dashed", "error (deg)", width_px);
   const ErrorSummary& summary = run.errors.matched_summary;
   const auto add = [&](double FrameError::*quantity, const Summary& mean, Ink ink, std::string_view name) {
     if (mean.weight() == 0) return;

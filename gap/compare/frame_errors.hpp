@@ -20,7 +20,7 @@ struct FrameError {
   double position_m;  // the norm of the difference of (x, z), never negative
   double y_m;
   double roll_rad, pitch_rad, yaw_rad;
-  double time_s;      // how much later the simulated frame is, 0 at the same time
+  double time_s;      // how much later the simulated frame is; NaN where they were compared at the same time
 };
 
 FrameError frame_error(const PoseFrame& real, const PoseFrame& sim);

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kLeft_px = 62, kRight_px = 14, kTop_px = 50, kBottom_px = 42;
 constexpr double kTitleBase_px = 16, kLegendBase_px = 38, kLegendSample_px = 24;
-constexpr double kLetter_px = 6.7;  // about the width of a letter at the font size of 13
-constexpr double kPixelsPerTick_x = 75, kPixelsPerTick_y = 38;
+constexpr double kLetter_px = 7.5;  // about the width of a letter at the font size of 13
+constexpr double kPixelsPerTick_x = 60, kPixelsPerTick_y = 30;
 constexpr double kTolerance_px = 0.15;                        // by which a drawn line may differ from its points
 constexpr double kLeastHeight_px = 90, kMostHeight_px = 520;  // of the plot, where the scales are equal
 
