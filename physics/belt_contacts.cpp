@@ -116,17 +116,31 @@ class BoxTouches {
     }
     corners();
     inner_edges(s);
-    if (wall_beside_) side();
+    if (overlap_ < kDeepest_m && overlap_ < depth_in_plane()) side();
   }
 
  private:
   void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar share, bool edge, std::uint32_t id) {
     // what is deeper along the slice than across it is a wall that the belt's side face meets
-    if (-gap > overlap_) {
-      wall_beside_ = true;
-      return;
+    if (-gap <= overlap_) out_.push_back({p, normal, gap, share, edge, id});
+  }
+
+  // How far the belt would have to go to be free of the box without leaving its slices; negative: it is free.
+  btScalar depth_in_plane() const {
+    btScalar least = BT_LARGE_FLOAT;
+    for (int j = 0; j < 3; ++j) {
+      for (const int sign : {-1, 1}) {
+        const btVector3 normal = box_.axes.getColumn(j) * sign;
+        const btScalar in_plane = btSqrt(normal.x() * normal.x() + normal.z() * normal.z());
+        if (in_plane < kSideways) continue;
+        const btVector3 flat(normal.x() / in_plane, 0, normal.z() / in_plane);
+        const btScalar lowest = std::min(normal.dot(furthest_on_disc(belt_, 0, -flat)),
+                                         normal.dot(furthest_on_disc(belt_, 1, -flat))) -
+                                btFabs(normal.y()) * belt_.half_width;
+        least = std::min(least, box_.half[j] + normal.dot(box_.center) - lowest);
+      }
     }
-    out_.push_back({p, normal, gap, share, edge, id});
+    return least;
   }
 
   void faces(std::uint32_t slice, btScalar y, btScalar slice_share) {
@@ -151,10 +165,7 @@ class BoxTouches {
   // A point of an edge against the belt's outline.
   void edge_point(const BoxEdge& edge, const btVector3& p, btScalar share, std::uint32_t id) {
     const OutlineDistance at = distance_to_outline(belt_, p.x(), p.z());
-    if (at.distance > kTouching_m || at.distance < -kDeepest_m) {
-      if (at.distance < -overlap_) wall_beside_ = true;
-      return;
-    }
+    if (at.distance > kTouching_m || at.distance < -kDeepest_m) return;
     const int j1 = (edge.axis + 1) % 3, j2 = (edge.axis + 2) % 3;
     const btVector3 normal = -at.outward;
     if (!within_cone(normal, box_.axes.getColumn(j1) * edge.sign(j1), box_.axes.getColumn(j2) * edge.sign(j2))) return;
@@ -259,7 +270,6 @@ class BoxTouches {
   std::size_t first_;
   std::array<btVector3, 8> corner_;
   btScalar overlap_ = 0, beside_ = 1;
-  bool wall_beside_ = false;
 };
 
 }  // namespace

@@ -73,16 +73,28 @@ RobotModel::RobotModel(const RobotDescription& robot, const std::string& name, s
     belt.moving_mass_kg = description.drive.moving_mass_kg;
     belt.rolling_resistance = description.effects.rolling_resistance;
     belt.slip_spm = description.effects.slip_with_speed_spm;
-    solver_.add_belt(&belt);
   }
   make_hull(id);
   if (description.has_flippers())
     for (const Flipper which : {kFrontLeft, kFrontRight, kRearLeft, kRearRight}) make_flipper(which, id);
-  for (FlipperBody& flipper : flippers_)
-    if (flipper.joint) world_.addConstraint(flipper.joint.get(), true);  // true: it does not collide with the hull
+  enter_dynamics();
 }
 
 RobotModel::~RobotModel() {
+  leave_dynamics();
+}
+
+void RobotModel::enter_dynamics() {
+  if (in_dynamics_) return;
+  for (Belt& belt : belts_) solver_.add_belt(&belt);
+  for (btRigidBody* body : body_list_) world_.addRigidBody(body);
+  for (FlipperBody& flipper : flippers_)
+    if (flipper.joint) world_.addConstraint(flipper.joint.get(), true);  // true: it does not collide with the hull
+  in_dynamics_ = true;
+}
+
+void RobotModel::leave_dynamics() {
+  if (!in_dynamics_) return;
   for (FlipperBody& flipper : flippers_)
     if (flipper.joint) world_.removeConstraint(flipper.joint.get());
   for (btRigidBody* body : body_list_) {
@@ -90,6 +102,7 @@ RobotModel::~RobotModel() {
     world_.removeRigidBody(body);
   }
   for (Belt& belt : belts_) solver_.remove_belt(&belt);
+  in_dynamics_ = false;
 }
 
 void RobotModel::make_hull(RobotId id) {
@@ -127,7 +140,6 @@ void RobotModel::make_hull(RobotId id) {
     add(std::move(shape), surface);
   }
   hull_ = make_body(body.mass_kg, *hull_shape_, to_bullet(body.inertia_kgm2), hull_collider_);
-  world_.addRigidBody(hull_.get());
   body_list_.push_back(hull_.get());
 }
 
@@ -161,7 +173,6 @@ void RobotModel::make_flipper(Flipper which, RobotId id) {
   const double xx = m.Ixx / m.area, zz = m.Izz / m.area, yy = f.width_m * f.width_m / 12;
   flipper.body =
       make_body(f.mass_kg, *flipper.shape, f.mass_kg * btVector3(zz + yy, xx + zz, xx + yy), flipper.collider);
-  world_.addRigidBody(flipper.body.get());
   body_list_.push_back(flipper.body.get());
   flipper.joint = std::make_unique<FlipperJoint>(
       *hull_, *flipper.body, X_BCom_.inverse() * flipper.X_BodyPivot, flipper.X_FlipperCom.inverse(),
@@ -171,6 +182,7 @@ void RobotModel::make_flipper(Flipper which, RobotId id) {
 }
 
 void RobotModel::place(const Pose& X_WB, bool start_joints) {
+  enter_dynamics();
   const auto put = [this](btRigidBody& body, const btTransform& X) {
     body.setWorldTransform(X);
     body.setInterpolationWorldTransform(X);

@@ -39,6 +39,9 @@ class RobotModel {
 
   const std::vector<btRigidBody*>& bodies() const { return body_list_; }
 
+  // Out of the dynamics it stands still and nothing meets it; place() puts it back.
+  void leave_dynamics();
+
   const RobotDescription description;
 
  private:
@@ -53,6 +56,7 @@ class RobotModel {
     btTransform X_BodyPivot;     // where that frame is in B at angle 0
   };
 
+  void enter_dynamics();
   void make_hull(RobotId id);
   void make_flipper(Flipper which, RobotId id);
   FlipperServoDescription servo_now() const;
@@ -73,6 +77,7 @@ class RobotModel {
   std::array<TrackDrive, kTrackCount> drives_;
   Battery battery_;
   std::vector<btRigidBody*> body_list_;
+  bool in_dynamics_ = false;
 };
 
 }  // namespace kenaf::physics

@@ -1,5 +1,7 @@
 #include "physics/world.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -27,7 +29,24 @@ struct RobotEntry {
     double angle_rad = 0, target_rad = 0;
   };
   std::vector<std::vector<MissionLink>> mission;
+  std::string fault;
+  RobotTruth last_whole{};  // before the fault
 };
+
+// What no robot on tracks does.
+constexpr double kFastest_mps = 50, kFastest_radps = 500, kDeepest_m = -100, kFurthest_m = 1e5;
+
+std::string fault_of(const RobotTruth& truth, double t_s) {
+  const double speed = truth.v_WB_mps.norm(), spin = truth.w_WB_radps.norm();
+  const Eigen::Vector3d& p = truth.X_WB.p;
+  if (!p.allFinite() || !truth.X_WB.q.coeffs().allFinite() || !std::isfinite(speed) || !std::isfinite(spin))
+    return fmt::format("its pose is no number at {:.3f} s", t_s);
+  if (speed > kFastest_mps || spin > kFastest_radps)
+    return fmt::format("it exploded: {:.0f} m/s and {:.0f} rad/s at {:.3f} s", speed, spin, t_s);
+  if (p.z() < kDeepest_m || p.norm() > kFurthest_m)
+    return fmt::format("it left the world: x {:.0f}, y {:.0f}, z {:.0f} m at {:.3f} s", p.x(), p.y(), p.z(), t_s);
+  return {};
+}
 
 }  // namespace
 
@@ -64,14 +83,30 @@ struct World::Implementation {
       }
     }
     scene->place_free(*entry.model, entry.X_WB_first, true);
+    entry.fault.clear();
     touches.clear();
     record(id, entry);
+  }
+
+  // Before anything else can touch what is no number.
+  static void stop_at_fault(RobotEntry& entry) {
+    entry.model->leave_dynamics();
+    entry.last_whole.v_WB_mps.setZero();
+    entry.last_whole.w_WB_radps.setZero();
   }
 
   void record(RobotId id, RobotEntry& entry) {
     const RobotModel& model = *entry.model;
     const double dt = settings.time_step_s;
-    const RobotTruth truth = model.truth(dt);
+    if (entry.fault.empty()) {
+      const RobotTruth truth = model.truth(dt);
+      entry.fault = fault_of(truth, time_s());
+      if (entry.fault.empty())
+        entry.last_whole = truth;
+      else
+        stop_at_fault(entry);
+    }
+    const RobotTruth& truth = entry.last_whole;
     if (entry.sensors->has_touch()) {
       const Pose X_BW = inverse(truth.X_WB);
       scene->touches(id, touches);
@@ -109,11 +144,12 @@ struct World::Implementation {
 
   void step() {
     const double dt = settings.time_step_s;
-    for (auto& [id, entry] : robots) entry.model->before_step(dt);
+    for (auto& [id, entry] : robots)
+      if (entry.fault.empty()) entry.model->before_step(dt);
     scene->step(dt);
     ++steps;
     for (auto& [id, entry] : robots) {
-      entry.model->after_step(dt);
+      if (entry.fault.empty()) entry.model->after_step(dt);
       for (std::size_t p = 0; p < entry.mission.size(); ++p) {
         for (std::size_t l = 0; l < entry.mission[p].size(); ++l) {
           auto& link = entry.mission[p][l];
@@ -201,7 +237,9 @@ double World::mission_link_rad(RobotId id, std::size_t package, std::size_t link
 void World::teleport(RobotId id, const Pose& X_WB) {
   check_pose(X_WB, "teleport");
   RobotEntry& entry = impl_->robot(id);
-  impl_->scene->place_free(*entry.model, {X_WB.p, X_WB.q.normalized()}, false);
+  // after a fault its joints may be no numbers either
+  impl_->scene->place_free(*entry.model, {X_WB.p, X_WB.q.normalized()}, !entry.fault.empty());
+  entry.fault.clear();
   entry.sensors->forget_motion();
   impl_->touches.clear();
   impl_->record(id, entry);
@@ -219,7 +257,11 @@ std::size_t World::contact_count() const {
 }
 
 RobotTruth World::truth(RobotId id) const {
-  return impl_->robot(id).model->truth(impl_->settings.time_step_s);
+  return impl_->robot(id).last_whole;
+}
+
+const std::string& World::fault(RobotId id) const {
+  return impl_->robot(id).fault;
 }
 
 void World::read_sensors(RobotId id, std::vector<SensorSample>& out) {

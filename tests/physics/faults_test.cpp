@@ -1,0 +1,62 @@
+// F1 a robot that falls out of the world, F2 one that explodes, F3 one that is no number: each is named, and harms no
+// other.
+#include <catch2/catch.hpp>
+
+#include "tests/physics/scenes.hpp"
+
+using namespace kenaf::physics;
+using Catch::Contains;
+
+TEST_CASE("F1: a robot without ground under it leaves the world, and can be put back") {
+  WorldDescription pit = ground();
+  pit.planes.clear();
+  pit.boxes.push_back(fixed_box({4, 4, 1}, {0, 0, -0.5}));
+  World world(pit, {}, 1);
+  const RobotId lost = world.add_robot(load_robot("kenaf"), "a", {{10, 0, 0}, Eigen::Quaterniond::Identity()});
+  // 100 m take sqrt(2 * 100 / g) = 4.516 s
+  run(world, 4.51);
+  CHECK(world.fault(lost).empty());
+  run(world, 0.02);
+  CHECK_THAT(world.fault(lost), Contains("left the world"));
+  const Pose at_fault = world.truth(lost).X_WB;
+  run(world, 1);
+  CHECK(world.truth(lost).X_WB.p == at_fault.p);
+  CHECK(world.truth(lost).v_WB_mps.norm() == 0);
+  world.teleport(lost, {});
+  CHECK(world.fault(lost).empty());
+  world.set_command(lost, drive(0.2, 0.2));
+  run(world, 2);
+  CHECK(world.truth(lost).X_WB.p.x() == Approx(0.39).margin(5e-3));
+}
+
+TEST_CASE("F2, F3: a robot whose numbers end is named, and its neighbour drives on to the same bits") {
+  RobotDescription wild = load_robot("kenaf");
+  std::string expected;
+  SECTION("explodes: belts that pull with ten times its weight reach 50 m/s in 0.5 s") {
+    wild.track.friction_along = 10;
+    wild.drive.max_speed_mps = 1e5;
+    wild.drive.max_force_n = 1e6;
+    expected = "exploded";
+  }
+  SECTION("is no number: a moment of inertia that has no inverse") {
+    wild.body.inertia_kgm2 = {1e-310, 1e-310, 1e-310};
+    expected = "no number";
+  }
+  const auto end_of_neighbour = [&](bool company) {
+    World world(ground(), {}, 1);
+    const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
+    RobotId other{};
+    if (company) {
+      other = world.add_robot(wild, "b", {{5, 0, 0}, Eigen::Quaterniond::Identity()});
+      world.set_command(other, drive(1e4, 1e4));
+    }
+    world.set_command(id, drive(0.3, 0.1));
+    run(world, 1);
+    if (company) CHECK_THAT(world.fault(other), Contains(expected));
+    CHECK(world.fault(id).empty());
+    return world.truth(id).X_WB;
+  };
+  const Pose alone = end_of_neighbour(false), beside = end_of_neighbour(true);
+  CHECK(alone.p == beside.p);
+  CHECK(alone.q.coeffs() == beside.q.coeffs());
+}
