@@ -65,7 +65,7 @@ TEST_CASE("All shipped robots load, by class too") {
 
 TEST_CASE("What is wrong is said with file, line and column") {
   CHECK(error_with("mass_kg = 15.0", "mass = 15.0").find("body.mass_kg is missing") != std::string::npos);
-  CHECK(error_with("mass_kg = 15.0", "mass_kg = 15.0\nmasse = 1").find("test.toml:12:1: body.masse is not a key") == 0);
+  CHECK(error_with("mass_kg = 15.0", "mass_kg = 15.0\nmasse = 1").find("test.toml:12:1: body.masse is not a known key") == 0);
   CHECK(error_with("mass_kg = 15.0", "mass_kg = \"heavy\"").find("test.toml:11:11: body.mass_kg must be a number") ==
         0);
   CHECK(error_with("mass_kg = 15.0", "mass_kg = -1").find("body.mass_kg is -1, but must be more than 0") !=
