@@ -164,7 +164,8 @@ std::string comparison_html(const Comparison& comparison) {
       "each other as can be. It compares paths and hides delays: two runs along one path match without error, however "
       "late one of them is. What it hid stands under time difference (how much later, or earlier, the matched "
       "simulated "
-      "frame is) and under same time (errors without matching). All are sizes, without sign.</p>\n";
+      "frame is; it means little while the robot stands) and under same time (errors without matching). All are sizes, "
+      "without sign.</p>\n";
   for (const std::string& note : worlds.notes) html += fmt::format("<p>{}</p>\n", escaped(note));
   return html + summary_table(comparison) + sections + left_out_list(comparison) + "</body>\n</html>\n";
 }
