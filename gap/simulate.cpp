@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 
 // Chosen: how well a robot is put on a mark by hand.
 constexpr double kStartScatter_m = 0.005, kStartScatter_rad = 0.01;
+constexpr double kLargestScale = 1000;
 constexpr int kMostRuns = 100000;
 
 // FNV-1a, http://www.isthe.com/chongo/tech/comp/fnv/, of everything that a run's noise depends on.
@@ -79,7 +80,8 @@ class PartFolder {
   fs::path out_, part_;
 };
 
-// What a dataset calls a description: a shipped name, or the copy of a file that it keeps beside dataset.toml.
+// What a dataset calls a description: a shipped name, or the copy of a file that it keeps beside dataset.toml. A world
+// of meshes or height maps stays where they are, under its full path.
 class Descriptions {
  public:
   Descriptions(fs::path folder, std::string extension) : folder_(std::move(folder)), extension_(std::move(extension)) {}
@@ -89,10 +91,12 @@ class Descriptions {
     if (!path) return name_or_path;
     const auto [known, is_new] = names_.try_emplace(name_or_path, fs::path(name_or_path).stem().string() + extension_);
     if (is_new) {
-      const std::string copy = known->second;
+      const std::string text = runs::read_whole_file(name_or_path);
+      if (text.find("<uri>") != text.npos) return known->second = fs::absolute(name_or_path).lexically_normal();
+      const std::string& copy = known->second;
       if (copy == "dataset.toml" || fs::exists(folder_ / copy))
         throw std::runtime_error(fmt::format("{}: another file of the dataset has that name; rename it", name_or_path));
-      runs::write_whole_file(folder_ / copy, runs::read_whole_file(name_or_path));
+      runs::write_whole_file(folder_ / copy, text);
     }
     return known->second;
   }
@@ -132,6 +136,9 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
   if (request.manoeuvres.empty()) throw std::invalid_argument("no manoeuvre; kenaf-gap manoeuvres lists them");
   if (request.repeats < 1 || std::ssize(request.manoeuvres) > kMostRuns / request.repeats)
     throw std::invalid_argument(fmt::format("repeats must be at least 1, and all runs together at most {}", kMostRuns));
+  for (const double scale : {request.noise_scale, request.scatter_scale})
+    if (!(scale >= 0 && scale <= kLargestScale))
+      throw std::invalid_argument(fmt::format("noise and scatter must be from 0 to {}", kLargestScale));
   const physics::RobotDescription nominal = physics::load_robot(request.robot);
   physics::RobotDescription robot = nominal;
   for (const std::string& effect : request.effects) physics::set_effect(robot.effects, effect);

@@ -10,6 +10,7 @@
 #include "physics/description_file.hpp"
 #include "physics/toml_reader.hpp"
 #include "protocol/data_files.hpp"
+#include "runs/dataset.hpp"
 
 namespace kenaf::rollout {
 namespace {
@@ -89,6 +90,17 @@ Manoeuvre read_manoeuvre(TomlReader& table, const std::vector<Phase>& shared_pha
   return manoeuvre;
 }
 
+// A replay of a dataset's run is one more repeat of what it repeats, in the same world.
+void name_as_dataset_does(Manoeuvre& replay, const fs::path& run_file) {
+  const fs::path folder = run_file.parent_path();
+  if (!fs::exists(folder / "dataset.toml")) return;
+  const runs::Dataset dataset = runs::read_dataset(folder);
+  const auto run = std::ranges::find(dataset.runs, run_file.filename().string(), &runs::DatasetRun::file);
+  if (run == dataset.runs.end()) return;
+  if (!run->manoeuvre.empty()) replay.name = run->manoeuvre;
+  replay.world = runs::resolve_beside(folder, run->world.empty() ? dataset.world : run->world, ".sdf");
+}
+
 std::vector<Manoeuvre> read_file(const fs::path& path) {
   const physics::DescriptionFile file = physics::read_description_file("manoeuvre", path.string(), ".toml");
   return parse_manoeuvres(file.text, file.path);
@@ -131,6 +143,7 @@ Manoeuvre load_manoeuvre(const std::string& name) {
     const fs::path path = name.substr(kReplay.size());
     Manoeuvre replay = replay_of(runs::read_run(path), path.string());
     replay.name = std::string(kReplay) + path.filename().string();
+    name_as_dataset_does(replay, path);
     return replay;
   }
   if (name.find('/') != name.npos || name.ends_with(".toml")) {

@@ -67,15 +67,18 @@ struct Manoeuvre {
 };
 
 // A shipped name ("step-200-flippers"), the path of a TOML file that holds one manoeuvre, or "replay:FILE.csv", which
-// repeats the commands of a recorded run at their times. Throws physics::DescriptionError with file, line and column,
-// for a replay runs::RunFileError.
+// repeats the commands of a recorded run at their times. Where that file is a run of the dataset.toml beside it, it has
+// that run's manoeuvre name and world. Throws physics::DescriptionError with file, line and column, for a replay
+// runs::RunFileError.
 Manoeuvre load_manoeuvre(const std::string& name);
+// The manoeuvres of a file, whose own worlds are beside it.
 std::vector<Manoeuvre> parse_manoeuvres(std::string_view toml_text, const std::string& name_for_errors);
 // All shipped ones, in the order of their names.
 std::vector<Manoeuvre> shipped_manoeuvres();
 
 // The commands of a run, from the pose and the flipper angles of its first rows on. An empty cell holds what was
-// commanded before. Throws runs::RunFileError where there is no command or no start in it.
+// commanded before. Throws runs::RunFileError where there is no command or no start in it, or it lasts more
+// than an hour.
 Manoeuvre replay_of(const runs::Run& run, const std::string& name_for_errors);
 
 }  // namespace kenaf::rollout

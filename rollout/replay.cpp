@@ -10,6 +10,7 @@ namespace kenaf::rollout {
 namespace {
 
 using Column = std::span<const double>;
+constexpr double kLongest_s = 3600;
 constexpr std::array<std::string_view, physics::kFlipperCount> kFlippers{"fl", "fr", "rl", "rr"};
 
 std::optional<double> first_measured(Column column) {
@@ -44,6 +45,8 @@ Manoeuvre replay_of(const runs::Run& run, const std::string& name_for_errors) {
   if (time.empty() || !first_measured(tracks[0]) || !first_measured(tracks[1]))
     throw runs::RunFileError(fmt::format(
         "{}: has no commands to repeat; they are in cmd_track_left_mps and cmd_track_right_mps", name_for_errors));
+  if (!(time.back() - time.front() <= kLongest_s))
+    throw runs::RunFileError(fmt::format("{}: lasts more than {} s", name_for_errors, kLongest_s));
   Manoeuvre replay;
   replay.name = name_for_errors;
   replay.summary = "the commands of " + name_for_errors;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "physics/terrain_effects.hpp"
 #include "rollout/driver.hpp"
 #include "rollout/run_recorder.hpp"
 
@@ -21,7 +22,7 @@ using FlipperAngles = std::array<double, physics::kFlipperCount>;
 
 constexpr double kSettle_s = 0.5;  // a robot that is put down stands still after that
 constexpr double kFold_s = 5;      // flippers get from anywhere to anywhere in that
-constexpr double kInPlace_rad = 0.002;
+constexpr double kStill_radps = 0.005;
 constexpr double kInTheAir_m = 0.01;  // a recorded start that is higher than this above the ground is a drop
 
 std::uint64_t steps_per_sample(const RollOutOptions& options) {
@@ -52,9 +53,10 @@ Pose start_pose(const physics::WorldDescription& world, const Manoeuvre& manoeuv
   return physics::compose(X_WB, {{x, y, 0}, physics::rotation_from({0, 0, yaw})});
 }
 
-// One robot in a world, and what its simulation costs.
+// One robot in a world, what it is told, and what its simulation costs.
 struct Scene {
   World world;
+  std::uint64_t per_sample;
   RobotId robot{};
   std::uint64_t contacts = 0;
 
@@ -62,16 +64,18 @@ struct Scene {
     world.step();
     contacts += world.contact_count();
   }
-  void step_for(double time_s) {
-    for (const double end_s = world.time_s() + time_s; world.time_s() < end_s;) step();
+  // A command at every sample, as in the run: one alone might get lost.
+  void hold(const RobotCommand& command, double time_s) {
+    for (const double end_s = world.time_s() + time_s; world.time_s() < end_s;) {
+      world.set_command(robot, command);
+      for (std::uint64_t i = 0; i < per_sample; ++i) step();
+    }
+  }
+  bool flippers_move() const {
+    return std::ranges::any_of(world.truth(robot).flipper_radps,
+                               [](double speed_radps) { return std::abs(speed_radps) > kStill_radps; });
   }
 };
-
-double furthest_off(const FlipperAngles& angles, const FlipperAngles& wanted) {
-  double most = 0;
-  for (std::size_t i = 0; i < angles.size(); ++i) most = std::max(most, std::abs(angles[i] - wanted[i]));
-  return most;
-}
 
 // At rest at the start pose, joints included, sensors counting from here.
 void put_at_start(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, const FlipperAngles& flippers,
@@ -83,14 +87,12 @@ void put_at_start(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuv
   scene.robot = scene.world.add_robot(robot, "robot", X_WB);
   RobotCommand rest;
   for (std::size_t i = 0; i < flippers.size(); ++i) rest.flipper[i] = {physics::JointMode::angle, flippers[i]};
-  scene.world.set_command(scene.robot, rest);
   if (robot.has_flippers() && !alike) {
-    while (scene.world.time_s() < kFold_s &&
-           furthest_off(scene.world.truth(scene.robot).flipper_rad, flippers) > kInPlace_rad)
-      scene.step();
+    do scene.hold(rest, kSettle_s);
+    while (scene.flippers_move() && scene.world.time_s() < kFold_s);
     scene.world.teleport(scene.robot, X_WB);
   }
-  scene.step_for(kSettle_s);
+  scene.hold(rest, kSettle_s);
 
   const Pose X_WB_settled = scene.world.truth(scene.robot).X_WB;
   double lift_m = manoeuvre.start_lift_m;
@@ -109,7 +111,7 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
   const std::uint64_t per_sample = steps_per_sample(options);
   const RobotDescription measured = instrumented(robot, options.noise_scale);
   const FlipperAngles flippers = flippers_at_start(manoeuvre, robot);
-  Scene scene{World(world, options.physics, options.seed)};
+  Scene scene{World(physics::with_terrain_effects(world, robot.effects), options.physics, options.seed), per_sample};
   put_at_start(scene, measured, manoeuvre, flippers, start_pose(world, manoeuvre, options));
 
   RollOut out;

@@ -29,6 +29,11 @@ bool has(const RobotDescription& robot, SensorType type) {
   return sensor_of(robot, type) != nullptr;
 }
 
+// What is rounded to steps is evenly distributed over one.
+double with_rounding(double sigma, double step) {
+  return std::hypot(sigma, step / std::sqrt(12.0));
+}
+
 double metres_per_count(const physics::TrackDriveDescription& drive) {
   return drive.sprocket_radius_m / drive.encoder_counts_per_radian;
 }
@@ -47,8 +52,8 @@ RobotDescription instrumented(RobotDescription robot, double noise_scale) {
                             SensorType::drives};
   std::erase_if(robot.sensors, [&kept](const SensorDescription& sensor) { return kept.erase(sensor.type) == 0; });
   for (SensorDescription& sensor : robot.sensors)
-    for (double* sigma : {&sensor.noise_m, &sensor.noise_rad, &sensor.noise_radps, &sensor.noise_mps2, &sensor.bias_rad,
-                          &sensor.bias_radps})
+    for (double* sigma : {&sensor.noise_m, &sensor.noise_rad, &sensor.noise_radps, &sensor.noise_mps2, &sensor.noise_a,
+                          &sensor.noise_v, &sensor.bias_rad, &sensor.bias_radps})
       *sigma *= noise_scale;
   return robot;
 }
@@ -56,8 +61,8 @@ RobotDescription instrumented(RobotDescription robot, double noise_scale) {
 std::map<std::string, double> column_noise(const RobotDescription& nominal, const RollOutOptions& options) {
   const RobotDescription robot = instrumented(nominal, options.noise_scale);
   std::map<std::string, double> noise;
-  const auto add = [&noise](double sigma, std::initializer_list<const char*> columns) {
-    for (const char* column : columns)
+  const auto add = [&noise](double sigma, const std::vector<std::string>& columns) {
+    for (const std::string& column : columns)
       if (sigma > 0) noise[column] = sigma;
   };
   add(options.mocap_noise_m * options.noise_scale, {"x_m", "y_m", "z_m"});
@@ -67,11 +72,19 @@ std::map<std::string, double> column_noise(const RobotDescription& nominal, cons
     add(imu->noise_radps, {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"});
     add(imu->noise_mps2, {"acc_x_mps2", "acc_y_mps2", "acc_z_mps2"});
   }
+  const double radius_m = robot.drive.sprocket_radius_m;
   if (const auto* tachometer = sensor_of(robot, SensorType::tachometer))
-    add(tachometer->noise_radps * robot.drive.sprocket_radius_m, {"track_left_mps", "track_right_mps"});
-  // whole counts: evenly distributed over one
-  if (has(robot, SensorType::encoder))
-    add(metres_per_count(robot.drive) / std::sqrt(12.0), {"track_left_m", "track_right_m"});
+    add(tachometer->noise_radps * radius_m, {"track_left_mps", "track_right_mps"});
+  if (const auto* encoder = sensor_of(robot, SensorType::encoder))
+    add(with_rounding(encoder->noise_rad * radius_m, metres_per_count(robot.drive)), {"track_left_m", "track_right_m"});
+  if (const auto* drives = sensor_of(robot, SensorType::drives)) {
+    add(drives->noise_a, {"track_left_a", "track_right_a"});
+    add(drives->noise_v, {"battery_v"});
+    if (robot.has_flippers()) {
+      add(drives->noise_a, flipper_names("flipper_", "_a"));
+      add(with_rounding(drives->noise_rad, robot.servo.resolution_rad), flipper_names("flipper_", "_rad"));
+    }
+  }
   return noise;
 }
 
@@ -86,7 +99,7 @@ RunRecorder::RunRecorder(const RobotDescription& robot, const RollOutOptions& op
   cmd_flipper_ = add_group(flippers, flipper_names("cmd_flipper_", "_rad"));
   track_speed_ = add_group(has(robot, SensorType::tachometer), {"track_left_mps", "track_right_mps"});
   track_travel_ = add_group(has(robot, SensorType::encoder), {"track_left_m", "track_right_m"});
-  flipper_ = add_group(flippers, flipper_names("flipper_", "_rad"));
+  flipper_ = add_group(drives && flippers, flipper_names("flipper_", "_rad"));
   track_current_ = add_group(drives, {"track_left_a", "track_right_a"});
   flipper_current_ = add_group(drives && flippers, flipper_names("flipper_", "_a"));
   battery_ = add_group(drives, {"battery_v"});
@@ -131,9 +144,10 @@ void RunRecorder::put_reading(const physics::TachometerReading& reading) {
 }
 
 void RunRecorder::put_reading(const physics::DrivesReading& reading) {
-  const auto& a = reading.flipper_a;
+  const auto &a = reading.flipper_a, &angle = reading.flipper_rad;
   put(track_current_, {reading.track_a[kLeft], reading.track_a[kRight]});
   put(flipper_current_, {a[kFrontLeft], a[kFrontRight], a[kRearLeft], a[kRearRight]});
+  put(flipper_, {angle[kFrontLeft], angle[kFrontRight], angle[kRearLeft], angle[kRearRight]});
   put(battery_, {reading.battery_v});
 }
 
@@ -145,8 +159,6 @@ void RunRecorder::add(double t_s, const physics::RobotCommand& command, const ph
   const auto& flipper = command.flipper;
   put(cmd_flipper_,
       {flipper[kFrontLeft].value, flipper[kFrontRight].value, flipper[kRearLeft].value, flipper[kRearRight].value});
-  const auto& angle = truth.flipper_rad;
-  put(flipper_, {angle[kFrontLeft], angle[kFrontRight], angle[kRearLeft], angle[kRearRight]});
   const Eigen::Vector3d p_WB = truth.X_WB.p + mocap_noise_.normal3(mocap_noise_m_);
   put(position_, {p_WB.x(), p_WB.y(), p_WB.z()});
   put(yaw_, {frames::wrap_angle(physics::roll_pitch_yaw(truth.X_WB.q).z() + mocap_noise_.normal(mocap_noise_rad_))});
