@@ -11,6 +11,7 @@
 namespace kenaf::physics {
 namespace {
 
+constexpr std::size_t kSpare = 24;     // pairs, so that a robot that meets an obstacle allocates nothing
 constexpr std::size_t kReserved = 96;  // contacts; a track on a step has about 30
 constexpr btScalar kFlat = 1e-4;       // sine of the angle between two triangles that are one surface
 
@@ -49,16 +50,24 @@ MeshEdges::MeshEdges(const std::vector<btVector3>& vertices,
   }
 }
 
+struct BeltGround::Pair : BeltPair {
+  std::vector<BeltContact> before;
+};
+
 class BeltGround::Algorithm : public btCollisionAlgorithm {
  public:
   Algorithm(const btCollisionAlgorithmConstructionInfo& info, BeltGround& owner, bool swapped)
-      : btCollisionAlgorithm(info), owner_(owner), pair_(std::make_unique<Pair>()), swapped_(swapped) {
-    pair_->contacts.reserve(kReserved);
-    pair_->before.reserve(kReserved);
-    owner_.touches_.reserve(kReserved);
+      : btCollisionAlgorithm(info), owner_(owner), swapped_(swapped) {
+    if (owner_.spare_.empty()) owner_.add_spare();
+    pair_ = std::move(owner_.spare_.back());
+    owner_.spare_.pop_back();
     owner_.pairs_.push_back(pair_.get());
   }
-  ~Algorithm() override { std::erase(owner_.pairs_, pair_.get()); }
+  ~Algorithm() override {
+    std::erase(owner_.pairs_, pair_.get());
+    pair_->contacts.clear();
+    owner_.spare_.push_back(std::move(pair_));
+  }
 
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                         const btDispatcherInfo&, btManifoldResult*) override {
@@ -142,9 +151,6 @@ class BeltGround::Algorithm : public btCollisionAlgorithm {
   }
 
   BeltGround& owner_;
-  struct Pair : BeltPair {
-    std::vector<BeltContact> before;
-  };
   std::unique_ptr<Pair> pair_;  // not in here: Bullet's pool has room for its own algorithms' size
   bool swapped_;
 };
@@ -172,6 +178,8 @@ struct BeltGround::Create : btCollisionAlgorithmCreateFunc {
 
 BeltGround::BeltGround(btCollisionDispatcher& dispatcher, btCollisionConfiguration& configuration,
                        HullPlaneContacts& hulls) {
+  touches_.reserve(kReserved);
+  for (std::size_t i = 0; i < kSpare; ++i) add_spare();
   const int hull = CONVEX_HULL_SHAPE_PROXYTYPE;
   for (const int other :
        {STATIC_PLANE_PROXYTYPE, BOX_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE, TRIANGLE_MESH_SHAPE_PROXYTYPE}) {
@@ -187,5 +195,16 @@ BeltGround::BeltGround(btCollisionDispatcher& dispatcher, btCollisionConfigurati
 }
 
 BeltGround::~BeltGround() = default;
+
+void BeltGround::add_spare() {
+  auto pair = std::make_unique<Pair>();
+  pair->contacts.reserve(kReserved);
+  pair->before.reserve(kReserved);
+  spare_.push_back(std::move(pair));
+  // each may come back while the others are here
+  const std::size_t all = spare_.size() + pairs_.size();
+  spare_.reserve(all);
+  pairs_.reserve(all);
+}
 
 }  // namespace kenaf::physics

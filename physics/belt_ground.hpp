@@ -59,8 +59,12 @@ class BeltGround {
  private:
   class Algorithm;
   struct Create;
+  struct Pair;
+  void add_spare();
+
   std::vector<std::unique_ptr<Create>> create_;
   std::vector<BeltPair*> pairs_;
+  std::vector<std::unique_ptr<Pair>> spare_;
   bool probing_ = false;
   std::vector<BeltTouch> touches_;  // scratch
 };

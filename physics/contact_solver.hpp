@@ -44,7 +44,10 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
   };
 
   ContactSolver(const ContactSettings& settings, const BeltGround& belt_ground)
-      : settings_(settings), belt_ground_(belt_ground) {}
+      : settings_(settings), belt_ground_(belt_ground) {
+    constexpr std::size_t kManyContacts = 256;  // so that a step need not allocate
+    contacts_.reserve(kManyContacts);
+  }
 
   void add_belt(Belt* belt) { belts_.push_back(belt); }
   void remove_belt(Belt* belt) { std::erase(belts_, belt); }

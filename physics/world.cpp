@@ -85,6 +85,8 @@ struct World::Implementation {
     scene->place_free(*entry.model, entry.X_WB_first, true);
     entry.fault.clear();
     touches.clear();
+    constexpr std::size_t kManyTouches = 256;  // so that a step need not allocate
+    touches.reserve(kManyTouches);
     record(id, entry);
   }
 
