@@ -106,12 +106,12 @@ double turn_error(const Engine& engine, RobotDescription robot) {
 
 const std::vector<AccuracyFigure>& accuracy_figures() {
   static const std::vector<AccuracyFigure> figures{
-      {"fall_error_mm", "way of a fall of 1 s against g t^2/2", "{:.3f}", 1e-3},
-      {"slide_error_percent", "way of a block in 1 s down 30 degrees, friction 0.3", "{:.3f}", 0.05},
+      {"fall_error_mm", "way of a fall of 1 s against g t^2/2", "{:.3f}", 0},
+      {"slide_error_percent", "way of a block in 1 s down 30 degrees, friction 0.3", "{:.3f}", 1},
       {"creep_mm", "robot with stopped belts on 20 degrees, in 10 s", "{:.3f}", 0.1},
-      {"speed_error_percent", "way of the robot at 0.2 m/s on level ground", "{:.3f}", 0.01},
-      {"sink_mm", "robot at rest on level ground", "{:.3f}", 1e-2},
-      {"turn_error_percent", "turn in place against the uniform-pressure solution", "{:.1f}", 0.1}};
+      {"speed_error_percent", "way of the robot at 0.2 m/s on level ground", "{:.3f}", 0.1},
+      {"sink_mm", "robot at rest on level ground", "{:.3f}", 0.1},
+      {"turn_error_percent", "turn in place against the uniform-pressure solution", "{:.1f}", 10}};
   return figures;
 }
 

@@ -79,15 +79,23 @@ EngineScene on_plane(const RobotDescription& robot, double slope_rad) {
 RobotParts parts_of(const RobotDescription& robot) {
   RobotParts parts;
   const TrackDescription& track = robot.track;
+  // On a plane Kenaf touches with two points at each end of its pieces; the other engines with four of each box and two
+  // of each drum.
+  const int boxes = std::max(1, (2 * (track.pieces + 1) - 4 + 3) / 4);
   for (const Track side : {kLeft, kRight}) {
     Eigen::Vector3d center = track.p_BT_m;
     if (side == kRight) center.y() = -center.y();
     const Eigen::Vector3d to_drum(track.length_m / 2 - track.end_radius_m, 0, 0);
-    parts.tracks[side] = {center - to_drum,      center + to_drum,
-                          track.end_radius_m,    track.end_radius_m,
-                          track.width_m,         track.friction_along,
-                          track.friction_across, side,
-                          track.pieces,          hull_of(track_outline(track), track.width_m, center)};
+    parts.tracks[side] = {center - to_drum,
+                          center + to_drum,
+                          track.end_radius_m,
+                          track.end_radius_m,
+                          track.width_m,
+                          track.friction_along,
+                          track.friction_across,
+                          side,
+                          boxes,
+                          hull_of(track_outline(track), track.width_m, center)};
   }
   if (!robot.has_flippers()) return parts;
   const FlipperDescription& f = robot.flipper.front();
@@ -119,12 +127,12 @@ RobotParts parts_of(const RobotDescription& robot) {
   return parts;
 }
 
-std::vector<Cuboid> straight_part(const Belted& shape, int pieces) {
-  const Eigen::Vector3d size((shape.p_front_m - shape.p_rear_m).x() / pieces, shape.width_m,
+std::vector<Cuboid> straight_part(const Belted& shape, int boxes) {
+  const Eigen::Vector3d size((shape.p_front_m - shape.p_rear_m).x() / boxes, shape.width_m,
                              2 * std::min(shape.rear_radius_m, shape.front_radius_m));
   std::vector<Cuboid> out;
-  for (int i = 0; i < pieces; ++i)
-    out.push_back({shape.p_rear_m + (shape.p_front_m - shape.p_rear_m) * ((i + 0.5) / pieces), size});
+  for (int i = 0; i < boxes; ++i)
+    out.push_back({shape.p_rear_m + (shape.p_front_m - shape.p_rear_m) * ((i + 0.5) / boxes), size});
   return out;
 }
 

@@ -39,13 +39,13 @@ struct Belted {
   double rear_radius_m, front_radius_m, width_m;
   double friction_along, friction_across;
   std::optional<physics::Track> belt;               // whose speed it runs with
-  int pieces;                                       // that Kenaf cuts the straight runs into for its contacts
+  int boxes;                                        // of the straight part, for about as many contacts as Kenaf has
   std::vector<Eigen::Vector3d> hull_m;              // corners of the convex hull of both drums
 };
 
 struct Cuboid { Eigen::Vector3d center_m, size_m; };
-// The straight part between the drums, cut into `pieces` of equal length; as high as the smaller drum.
-std::vector<Cuboid> straight_part(const Belted& shape, int pieces);
+// The straight part between the drums, cut into boxes of equal length; as high as the smaller drum.
+std::vector<Cuboid> straight_part(const Belted& shape, int boxes);
 
 struct Arm {
   Belted shape;                                     // in the arm's frame: x out along the arm, origin at the pivot

@@ -62,7 +62,8 @@ bool holds_limits(const std::vector<EngineScene>& scenes, const std::vector<Engi
     }
     for (std::size_t i = 0; i < accuracy_figures().size(); ++i) {
       const AccuracyFigure& figure = accuracy_figures()[i];
-      if (std::abs(accuracy[0][i]) <= std::abs(accuracy[e][i]) + figure.slack) continue;
+      constexpr double kRounding = 1e-9;
+      if (std::abs(accuracy[0][i]) <= std::max(std::abs(accuracy[e][i]), figure.tolerance) + kRounding) continue;
       holds = false;
       fmt::print("limit missed: {} is {:.3f}, worse than {}: {:.3f}\n", figure.name, accuracy[0][i],
                  name_of(engines[e]), accuracy[e][i]);

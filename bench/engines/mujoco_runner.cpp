@@ -11,9 +11,8 @@ namespace {
 
 using namespace physics;
 
-// Of a belt: two cylinders with a row of boxes between them, as many as Kenaf has pieces; or with one box; or one
-// convex mesh.
-enum class Shapes { pieces, box, hull };
+// Of a belt: two cylinders with a row of boxes between them, or with one box, or one convex mesh.
+enum class Shapes { boxes, box, hull };
 
 struct Options {
   const char* solver;
@@ -113,7 +112,7 @@ class ModelText {
                   b.friction_along, belt);
     }
     std::string geoms;
-    for (const Cuboid& c : straight_part(b, options_.shapes == Shapes::pieces ? b.pieces : 1))
+    for (const Cuboid& c : straight_part(b, options_.shapes == Shapes::boxes ? b.boxes : 1))
       geoms += geom("box", "", c.center_m, c.size_m / 2, b.friction_along, belt);
     const std::string along_y = "euler=\"90 0 0\"";
     return geoms + geom("cylinder", along_y, b.p_rear_m, {b.rear_radius_m, b.width_m / 2, 0}, b.friction_along, belt) +
@@ -204,16 +203,16 @@ class MujocoRunner : public Runner {
 
 std::vector<Engine> mujoco_engines() {
   const auto engine = [](const char* setting, const Options& options) {
-    return Engine{"MuJoCo", mj_versionString(), setting, options.shapes == Shapes::pieces,
+    return Engine{"MuJoCo", mj_versionString(), setting, options.shapes == Shapes::boxes,
                   [options](const EngineScene& scene) -> std::unique_ptr<Runner> {
                     return std::make_unique<MujocoRunner>(scene, options);
                   }};
   };
-  return {engine("Newton, elliptic", {"Newton", "elliptic", Shapes::pieces}),
-          engine("Newton, pyramidal", {"Newton", "pyramidal", Shapes::pieces}),
-          engine("CG, elliptic", {"CG", "elliptic", Shapes::pieces}),
-          engine("CG, pyramidal", {"CG", "pyramidal", Shapes::pieces}),
-          engine("PGS, pyramidal, 20 iterations", {"PGS", "pyramidal", Shapes::pieces, 20}),
+  return {engine("Newton, elliptic", {"Newton", "elliptic", Shapes::boxes}),
+          engine("Newton, pyramidal", {"Newton", "pyramidal", Shapes::boxes}),
+          engine("CG, elliptic", {"CG", "elliptic", Shapes::boxes}),
+          engine("CG, pyramidal", {"CG", "pyramidal", Shapes::boxes}),
+          engine("PGS, pyramidal, 20 iterations", {"PGS", "pyramidal", Shapes::boxes, 20}),
           engine("Newton, elliptic; 1 box a belly", {"Newton", "elliptic", Shapes::box}),
           engine("Newton, pyramidal; 1 box a belly", {"Newton", "pyramidal", Shapes::box}),
           engine("Newton, elliptic; meshes", {"Newton", "elliptic", Shapes::hull}),

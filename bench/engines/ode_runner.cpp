@@ -17,7 +17,7 @@ enum class Stepper { quick, world };  // projected Gauss-Seidel, or Dantzig's ex
 struct Options {
   Stepper stepper;
   int iterations;
-  bool pieces;  // the belly in as many boxes as Kenaf has pieces, else in one
+  bool boxes;  // a row of boxes between the drums, else one
 };
 
 // The same give of a contact as Kenaf has (PhysicsSettings), in ODE's terms.
@@ -131,7 +131,7 @@ class OdeRunner : public Runner {
 
   void add_belted(const Belted& b, dBodyID body, const Eigen::Vector3d& p_com) {
     const Surface surface{b.friction_along, b.friction_across, b.belt};
-    for (const Cuboid& c : straight_part(b, options_.pieces ? b.pieces : 1))
+    for (const Cuboid& c : straight_part(b, options_.boxes ? b.boxes : 1))
       add_geom(dCreateBox(moving_, c.size_m.x(), c.size_m.y(), c.size_m.z()), body, c.center_m - p_com, surface);
     const auto drum = [&](const Eigen::Vector3d& p, double radius) {
       dGeomID geom = dCreateCylinder(moving_, radius, b.width_m);
@@ -227,7 +227,7 @@ class OdeRunner : public Runner {
 
 std::vector<Engine> ode_engines() {
   const auto engine = [](const char* setting, const Options& options) {
-    return Engine{"ODE", KENAF_ODE_VERSION, setting, options.pieces,
+    return Engine{"ODE", KENAF_ODE_VERSION, setting, options.boxes,
                   [options](const EngineScene& scene) -> std::unique_ptr<Runner> {
                     return std::make_unique<OdeRunner>(scene, options);
                   }};

@@ -22,7 +22,7 @@ struct Engine {
   std::string name;     // "MuJoCo"
   std::string version;
   std::string setting;  // "Newton, elliptic"
-  bool same_contacts;   // the load is spread along a track as Kenaf does it; else fewer contacts, for comparison alone
+  bool same_contacts;   // about as many as Kenaf, along all of a track; else fewer, for the record: no limit
   std::function<std::unique_ptr<Runner>(const EngineScene&)> build;
 };
 
