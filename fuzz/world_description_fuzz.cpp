@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::string> unsupported;
   try {
     const auto world =
-        kenaf::physics::parse_world({reinterpret_cast<const char*>(data), size}, "fuzz.sdf", unsupported);
+        kenaf::physics::parse_world({reinterpret_cast<const char*>(data), size}, "fuzz.sdf", "", unsupported);
     if (world.start_poses.empty()) __builtin_trap();
     for (const auto& box : world.boxes)
       if (!(box.size_m.minCoeff() > 0) || !box.X_WBox.p.allFinite()) __builtin_trap();

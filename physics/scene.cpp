@@ -1,5 +1,7 @@
 #include "physics/scene.hpp"
 
+#include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -153,8 +155,26 @@ double Scene::lift_needed(RobotModel& robot) {
   return deepest.lift_m;
 }
 
+double Scene::depth_in_mesh(const Eigen::Vector3d& p_W) const {
+  struct MeshAbove : btCollisionWorld::ClosestRayResultCallback {
+    using ClosestRayResultCallback::ClosestRayResultCallback;
+    bool needsCollision(btBroadphaseProxy* proxy) const override {
+      const auto* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
+      return object->getCollisionShape()->getShapeType() == TRIANGLE_MESH_SHAPE_PROXYTYPE;
+    }
+  };
+  constexpr double kHighest_m = 1000;
+  const btVector3 from_W = to_bullet(p_W), to_W = from_W + btVector3(0, 0, kHighest_m);
+  MeshAbove above(from_W, to_W);
+  above.m_flags |= btTriangleRaycastCallback::kF_KeepUnflippedNormal;
+  world_.rayTest(from_W, to_W, above);
+  return above.hasHit() && above.m_hitNormalWorld.z() > 0 ? above.m_closestHitFraction * kHighest_m : 0;
+}
+
 void Scene::place_free(RobotModel& robot, Pose X_WB, bool start_joints) {
   constexpr int kMaxLifts = 1000;
+  // deep inside, it would touch none of the triangles
+  X_WB.p.z() += depth_in_mesh(X_WB.p);
   robot.place(X_WB, start_joints);
   for (int i = 0; i < kMaxLifts; ++i) {
     const double lift_m = lift_needed(robot);

@@ -59,6 +59,8 @@ class Scene {
   void add_mesh(const TriangleMesh& mesh);
   void add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W);
   double lift_needed(RobotModel& robot);
+  // How far below the surface of a mesh's solid a point is; 0: outside of it.
+  double depth_in_mesh(const Eigen::Vector3d& p_W) const;
 
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;

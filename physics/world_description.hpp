@@ -50,10 +50,13 @@ struct WorldDescription {
   std::vector<StartPose> start_poses;   // SDF frames attached to the world whose name begins with "start"; at least one
 };
 
-// A shipped name ("flat") or the path of an SDF file. Throws DescriptionError; what SDF has and this simulator does
-// not is listed in `unsupported`, an element a line, rather than dropped in silence.
+// A shipped name ("flat") or the path of an SDF file. Throws DescriptionError ("file:line: what is wrong"); what SDF has
+// and this simulator does not is listed in `unsupported`, an element a line, rather than dropped in silence.
+// Meshes and height maps are looked up in the SDF file's own folder and below it, nowhere else; a world may have 2^21
+// triangles and 64 MiB of files.
 WorldDescription load_world(const std::string& name_or_path, std::vector<std::string>& unsupported);
+// `folder`: where the files that the text names are; empty: it may name none.
 WorldDescription parse_world(std::string_view sdf_text, const std::string& name_for_errors,
-                             std::vector<std::string>& unsupported);
+                             const std::filesystem::path& folder, std::vector<std::string>& unsupported);
 
 }  // namespace kenaf::physics

@@ -38,6 +38,39 @@ TEST_CASE("P1: a robot dropped from 50 mm comes to rest") {
   CHECK(world.truth(id).v_WB_mps.norm() < 1e-4);
 }
 
+TEST_CASE("P1: a robot placed in or deep below a mesh is lifted onto it and stands there") {
+  // a floor of triangles at 0.3 m, solid below
+  WorldDescription description = ground();
+  description.meshes.push_back(
+      {"floor", {{-3, -3, 0.3}, {3, -3, 0.3}, {3, 3, 0.3}, {-3, 3, 0.3}}, {{0, 1, 2}, {0, 2, 3}}, 1});
+  World world(description, {}, 1);
+  const RobotId in = world.add_robot(load_robot("kenaf"), "in", {{0, 1.5, 0.3}, Eigen::Quaterniond::Identity()});
+  const RobotId below = world.add_robot(load_robot("kenaf"), "below", {});
+  run(world, 1);
+  for (const RobotId id : {in, below}) {
+    CHECK(world.truth(id).X_WB.p.z() == Approx(0.39).margin(1e-3));
+    CHECK(world.truth(id).v_WB_mps.norm() < 1e-3);
+    CHECK(std::abs(roll_pitch_yaw(world.truth(id).X_WB.q).y()) < 1e-3);
+  }
+}
+
+TEST_CASE("P1: a robot stands on shipped hills and rubble") {
+  for (const char* name : {"hills", "rubble-mesh"}) {
+    std::vector<std::string> unsupported;
+    World world(load_world(name, unsupported), {}, 1);
+    const double ground_m = 5 - world.cast_ray({3, 0, 5}, {0, 0, -1}, 10)->distance_m;
+    const RobotId id = world.add_robot(load_robot("kenaf"), "a", {{3, 0, 0}, Eigen::Quaterniond::Identity()});
+    run(world, 3);
+    const Pose X_WB = world.truth(id).X_WB;
+    INFO(name);
+    CHECK((X_WB.p.head<2>() - Eigen::Vector2d(3, 0)).norm() < 0.1);
+    // its belly is 0.09 m below its centre, and no bump is higher than 0.2 m
+    CHECK(X_WB.p.z() > ground_m + 0.07);
+    CHECK(X_WB.p.z() < 0.09 + 0.21);
+    CHECK(world.truth(id).v_WB_mps.norm() < 0.01);
+  }
+}
+
 TEST_CASE("P2: a teleported robot is at rest at its new place") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});

@@ -21,7 +21,7 @@ std::string model(const std::string& geometry, const std::string& more = "<stati
 std::string error_of(const std::string& text) {
   std::vector<std::string> unsupported;
   try {
-    parse_world(text, "test.sdf", unsupported);
+    parse_world(text, "test.sdf", "", unsupported);
   } catch (const DescriptionError& error) {
     return error.what();
   }
@@ -30,37 +30,16 @@ std::string error_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("All shipped worlds load completely") {
-  for (const char* name : {"flat", "boxes", "step-50", "step-100", "step-150", "step-200"}) {
-    std::vector<std::string> unsupported;
-    const WorldDescription world = load_world(name, unsupported);
-    CHECK(world.name == name);
-    CHECK(unsupported.empty());
-    CHECK(world.planes.size() == 1);
-    CHECK_FALSE(world.start_poses.empty());
-  }
-}
-
-TEST_CASE("A step is as high as its name says and begins at x = 1") {
-  for (const int height_mm : {50, 100, 150, 200}) {
-    std::vector<std::string> unsupported;
-    const WorldDescription world = load_world("step-" + std::to_string(height_mm), unsupported);
-    const Box& box = world.boxes.at(0);
-    CHECK(box.X_WBox.p.z() + box.size_m.z() / 2 == Approx(height_mm * 1e-3));
-    CHECK(box.X_WBox.p.x() - box.size_m.x() / 2 == Approx(1));
-  }
-}
-
 TEST_CASE("Boxes: pose through model and link, friction, mass") {
   std::vector<std::string> unsupported;
-  const WorldDescription fixed = parse_world(sdf(model("<box><size>1 2 3</size></box>")), "t", unsupported);
+  const WorldDescription fixed = parse_world(sdf(model("<box><size>1 2 3</size></box>")), "t", "", unsupported);
   REQUIRE(fixed.boxes.size() == 1);
   CHECK(fixed.boxes[0].mass_kg == 0);
   CHECK(fixed.boxes[0].friction == 0.7);
   CHECK(fixed.boxes[0].size_m == Eigen::Vector3d(1, 2, 3));
   // 0.1 m along the model's own x, which is turned by 0.5
   CHECK((fixed.boxes[0].X_WBox.p - Eigen::Vector3d(1 + 0.1 * std::cos(0.5), 2 + 0.1 * std::sin(0.5), 3)).norm() < 1e-9);
-  const WorldDescription loose = parse_world(sdf(model("<box><size>1 2 3</size></box>", "")), "t", unsupported);
+  const WorldDescription loose = parse_world(sdf(model("<box><size>1 2 3</size></box>", "")), "t", "", unsupported);
   CHECK(loose.boxes.at(0).mass_kg == 4);
   CHECK(unsupported.empty());
 }
@@ -68,23 +47,48 @@ TEST_CASE("Boxes: pose through model and link, friction, mass") {
 TEST_CASE("Start poses are the frames that begin with start") {
   std::vector<std::string> unsupported;
   const auto world = parse_world(
-      sdf("<frame name=\"start_a\"><pose>1 2 0 0 0 0.5</pose></frame><frame name=\"other\"/>"), "t", unsupported);
+      sdf("<frame name=\"start_a\"><pose>1 2 0 0 0 0.5</pose></frame><frame name=\"other\"/>"), "t", "", unsupported);
   REQUIRE(world.start_poses.size() == 1);
   CHECK(world.start_poses[0].name == "start_a");
   CHECK(roll_pitch_yaw(world.start_poses[0].X_WB.q).z() == Approx(0.5));
-  CHECK(parse_world(sdf(""), "t", unsupported).start_poses.at(0).name == "PlayerStart_0");
+  CHECK(parse_world(sdf(""), "t", "", unsupported).start_poses.at(0).name == "PlayerStart_0");
+}
+
+TEST_CASE("Models within models stand where the outer one puts them, and are static with it") {
+  std::vector<std::string> unsupported;
+  const auto world =
+      parse_world(sdf("<model name=\"outer\"><static>true</static><pose>1 0 0 0 0 1.5707963267948966</pose>"
+                      "<model name=\"inner\"><pose>2 0 0 0 0 0</pose><link name=\"l\"><pose>0 0 3 0 0 0</pose>"
+                      "<collision name=\"c\"><geometry><box><size>1 1 "
+                      "1</size></box></geometry></collision></link></model></model>"),
+                  "t", "", unsupported);
+  CHECK(unsupported.empty());
+  REQUIRE(world.boxes.size() == 1);
+  CHECK(world.boxes[0].name == "outer/inner");
+  CHECK((world.boxes[0].X_WBox.p - Eigen::Vector3d(1, 2, 3)).norm() < 1e-9);
+  CHECK(world.boxes[0].mass_kg == 0);
 }
 
 TEST_CASE("What is not simulated is named with its line") {
   std::vector<std::string> unsupported;
-  const auto world = parse_world(sdf(model("<cylinder><radius>1</radius><length>1</length></cylinder>") +
-                                     "\n<light name=\"sun\" type=\"directional\"/>\n<something>1</something>"),
-                                 "test.sdf", unsupported);
+  const auto world = parse_world(sdf(model("<image><uri>a.png</uri></image>") +
+                                     "\n<light name=\"sun\" type=\"directional\"/>\n<something>1</something>\n"
+                                     "<include><uri>model://ground_plane</uri></include>"),
+                                 "test.sdf", "", unsupported);
   CHECK(world.boxes.empty());
-  REQUIRE(unsupported.size() == 3);
-  CHECK(unsupported[0] == "test.sdf:3: <cylinder> in <geometry> is not simulated");
-  CHECK(unsupported[1] == "test.sdf:4: <light> in <world> is not simulated");
-  CHECK(unsupported[2].find("<something> in <world>") != std::string::npos);
+  REQUIRE(unsupported.size() == 4);
+  CHECK(unsupported[0] == "test.sdf:6: <include> is not read; write the model itself into the world");
+  CHECK(unsupported[1] == "test.sdf:3: <image> in <geometry> is not simulated");
+  CHECK(unsupported[2] == "test.sdf:4: <light> in <world> is not simulated");
+  CHECK(unsupported[3].find("<something> in <world>") != std::string::npos);
+}
+
+TEST_CASE("A loose model that is no box is left out, and said so") {
+  std::vector<std::string> unsupported;
+  const auto world = parse_world(sdf(model("<sphere><radius>1</radius></sphere>", "")), "test.sdf", "", unsupported);
+  CHECK(world.meshes.empty());
+  REQUIRE(unsupported.size() == 1);
+  CHECK(unsupported[0] == "test.sdf:3: a <sphere> of a model that is not <static> is not simulated");
 }
 
 TEST_CASE("A model of several loose bodies is left out, and said so") {
@@ -92,7 +96,7 @@ TEST_CASE("A model of several loose bodies is left out, and said so") {
   const auto world =
       parse_world(sdf("<model name=\"arm\"><link name=\"a\"/><link name=\"b\"/>"
                       "<joint name=\"j\" type=\"fixed\"><parent>a</parent><child>b</child></joint></model>"),
-                  "test.sdf", unsupported);
+                  "test.sdf", "", unsupported);
   CHECK(world.boxes.empty());
   CHECK(unsupported.size() == 2);  // the joint, and the model
 }
@@ -103,6 +107,8 @@ TEST_CASE("What cannot be a world is refused with its place") {
   CHECK(error_of(sdf("<gravity>down</gravity>")).find("test.sdf:3: ") == 0);
   CHECK(error_of(sdf(model("<box><size>1 -2 3</size></box>"))).find("test.sdf:3: ") == 0);
   CHECK(error_of(sdf(model("<box><size>1 nan 3</size></box>"))).find("test.sdf:3: ") == 0);
+  CHECK(error_of(sdf(model("<box><size>1 1 1</size></box><sphere><radius>1</radius></sphere>"))).find("one shape") !=
+        std::string::npos);
   CHECK(error_of("<sdf version=\"1.9\"></sdf>").find("exactly one <world>") != std::string::npos);
   std::vector<std::string> unsupported;
   CHECK_THROWS_AS(load_world("no-such-world", unsupported), DescriptionError);

@@ -1,0 +1,199 @@
+#include "physics/mesh_file.hpp"
+
+#include <assimp/BaseImporter.h>
+#include <assimp/MemoryIOWrapper.h>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <expat.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <Eigen/Geometry>
+#include <assimp/Importer.hpp>
+#include <memory>
+#include <set>
+#include <vector>
+
+#include "physics/robot_description.hpp"
+
+namespace kenaf::physics {
+namespace {
+
+std::string extension_of(MeshFormat format) {
+  return format == MeshFormat::stl ? "stl" : format == MeshFormat::obj ? "obj" : "dae";
+}
+
+// All that assimp may open: the bytes at hand, under one name.
+class OneFile final : public Assimp::IOSystem {
+ public:
+  OneFile(std::string_view bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {}
+  bool Exists(const char* name) const override { return name == name_; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    if (!Exists(name) || *mode != 'r') return nullptr;
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(bytes_.data()), bytes_.size());
+  }
+  void Close(Assimp::IOStream* stream) override { delete stream; }
+
+ private:
+  std::string_view bytes_;
+  std::string name_;
+};
+
+// The file's ending alone decides how it is read.
+void keep_only_loader(Assimp::Importer& importer, const std::string& extension) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    Assimp::BaseImporter* const loader = importer.GetImporter(i);
+    std::set<std::string> extensions;
+    loader->GetExtensionList(extensions);
+    if (extensions.contains(extension)) continue;
+    importer.UnregisterLoader(loader);
+    delete loader;  // no longer the importer's
+  }
+}
+
+// Assimp's Collada reader follows elements and instances of nodes by recursion, without a limit, and takes anything
+// with a directory of a ZIP archive at its end for one. Expat, which has limits, looks at the file first.
+struct ColladaCheck {
+  static constexpr int kMostNested = 100;
+  int depth = 0;
+  const char* refusal = nullptr;
+  XML_Parser parser = nullptr;
+};
+
+void collada_start(void* user, const XML_Char* name, const XML_Char**) {
+  auto& check = *static_cast<ColladaCheck*>(user);
+  if (++check.depth > ColladaCheck::kMostNested) check.refusal = "has elements nested more than 100 deep";
+  if (std::string_view(name) == "instance_node")
+    check.refusal =
+        "has an <instance_node>, which is not supported; export the nodes themselves, or an OBJ or STL file";
+  if (check.refusal) XML_StopParser(check.parser, XML_FALSE);
+}
+
+void collada_end(void* user, const XML_Char*) {
+  --static_cast<ColladaCheck*>(user)->depth;
+}
+
+void check_collada(std::string_view bytes) {
+  const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), XML_ParserFree);
+  ColladaCheck check;
+  check.parser = parser.get();
+  XML_SetUserData(parser.get(), &check);
+  XML_SetElementHandler(parser.get(), collada_start, collada_end);
+  if (XML_Parse(parser.get(), bytes.data(), static_cast<int>(bytes.size()), 1) == XML_STATUS_OK) return;
+  if (check.refusal)
+    throw DescriptionError(fmt::format("{} (line {})", check.refusal, XML_GetCurrentLineNumber(parser.get())));
+  throw DescriptionError(fmt::format("is not a well-formed Collada file: {} (line {})",
+                                     XML_ErrorString(XML_GetErrorCode(parser.get())),
+                                     XML_GetCurrentLineNumber(parser.get())));
+}
+
+Eigen::Affine3d from_assimp(const aiMatrix4x4& m) {
+  Eigen::Affine3d X;
+  X.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
+  return X;
+}
+
+class Collector {
+ public:
+  Collector(const aiScene& scene, const MeshPart& part, std::size_t most_triangles)
+      : scene_(scene), part_(part), most_triangles_(most_triangles) {}
+
+  MeshContent collect() {
+    struct Entry {
+      const aiNode* node;
+      Eigen::Affine3d X_FileParent;
+      bool wanted;
+    };
+    std::vector<Entry> open{{scene_.mRootNode, Eigen::Affine3d::Identity(), part_.submesh.empty()}};
+    while (!open.empty()) {
+      const auto [node, X_FileParent, parent_wanted] = open.back();
+      open.pop_back();
+      const Eigen::Affine3d X_FileNode = X_FileParent * from_assimp(node->mTransformation);
+      const bool wanted = parent_wanted || has_name(node->mName);
+      for (unsigned m = 0; m < node->mNumMeshes; ++m) {
+        const aiMesh& mesh = *scene_.mMeshes[node->mMeshes[m]];
+        if (mesh.mName.length > 0) names_.insert(mesh.mName.C_Str());
+        if (wanted || has_name(mesh.mName)) append(mesh, X_FileNode);
+      }
+      for (unsigned c = node->mNumChildren; c-- > 0;) open.push_back({node->mChildren[c], X_FileNode, wanted});
+    }
+    if (content_.surface.triangles.empty()) refuse_empty();
+    if (part_.centred) centre();
+    return std::move(content_);
+  }
+
+ private:
+  bool has_name(const aiString& name) const { return !part_.submesh.empty() && part_.submesh == name.C_Str(); }
+
+  void append(const aiMesh& mesh, const Eigen::Affine3d& X_FileNode) {
+    std::vector<Eigen::Vector3d>& vertices = content_.surface.vertices;
+    if (mesh.mNumFaces > most_triangles_ - content_.surface.triangles.size())
+      throw DescriptionError(
+          fmt::format("has more triangles than the {} that are left for this world", most_triangles_));
+    const std::size_t first = vertices.size();
+    const bool mirrored = X_FileNode.linear().determinant() < 0;
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D& p = mesh.mVertices[v];
+      vertices.emplace_back(X_FileNode * Eigen::Vector3d(p.x, p.y, p.z));
+      if (!vertices.back().allFinite()) throw DescriptionError("has a vertex that is not a number");
+    }
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      if (face.mNumIndices != 3) {
+        ++content_.other_faces;
+        continue;
+      }
+      std::array<std::uint32_t, 3> triangle{};
+      for (unsigned i = 0; i < 3; ++i) {
+        if (face.mIndices[i] >= mesh.mNumVertices) throw DescriptionError("has a triangle with a missing vertex");
+        triangle[mirrored ? 2 - i : i] = static_cast<std::uint32_t>(first + face.mIndices[i]);
+      }
+      content_.surface.triangles.push_back(triangle);
+    }
+  }
+
+  [[noreturn]] void refuse_empty() const {
+    if (part_.submesh.empty()) throw DescriptionError("has no triangles");
+    throw DescriptionError(fmt::format("has no submesh \"{}\" with triangles; its meshes are: {}", part_.submesh,
+                                       fmt::join(names_, ", ")));
+  }
+
+  void centre() {
+    Eigen::AlignedBox3d bounds;
+    for (const Eigen::Vector3d& p : content_.surface.vertices) bounds.extend(p);
+    const Eigen::Vector3d middle = bounds.center();
+    for (Eigen::Vector3d& p : content_.surface.vertices) p -= middle;
+  }
+
+  const aiScene& scene_;
+  const MeshPart& part_;
+  std::size_t most_triangles_;
+  MeshContent content_;
+  std::set<std::string> names_;
+};
+
+}  // namespace
+
+MeshContent read_mesh(std::string_view bytes, MeshFormat format, const MeshPart& part, std::size_t most_triangles) {
+  if (bytes.empty()) throw DescriptionError("is an empty file");
+  if (format == MeshFormat::dae) check_collada(bytes);
+  const std::string extension = extension_of(format), name = "mesh." + extension;
+  try {
+    Assimp::Importer importer;
+    keep_only_loader(importer, extension);
+    importer.SetIOHandler(new OneFile(bytes, name));  // which it deletes
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+    const aiScene* scene = importer.ReadFile(name, aiProcess_Triangulate);
+    if (!scene || !scene->mRootNode)
+      throw DescriptionError(fmt::format("cannot be read as a .{} mesh: {}", extension, importer.GetErrorString()));
+    return Collector(*scene, part, most_triangles).collect();
+  } catch (const DescriptionError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw DescriptionError(fmt::format("cannot be read as a .{} mesh: {}", extension, error.what()));
+  }
+}
+
+}  // namespace kenaf::physics

@@ -1,0 +1,92 @@
+#include "physics/triangle_surface.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace kenaf::physics {
+namespace {
+
+constexpr double kThinnest_m = 1e-6;
+
+void join_vertices(TriangleSurface& surface) {
+  const std::vector<Eigen::Vector3d>& v = surface.vertices;
+  std::vector<std::uint32_t> order(v.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+    return std::lexicographical_compare(v[a].begin(), v[a].end(), v[b].begin(), v[b].end());
+  });
+  std::vector<std::uint32_t> first_alike(v.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    first_alike[order[i]] = i > 0 && v[order[i]] == v[order[i - 1]] ? first_alike[order[i - 1]] : order[i];
+
+  constexpr auto kUnused = static_cast<std::uint32_t>(-1);
+  std::vector<std::uint32_t> new_index(v.size(), kUnused);
+  std::vector<Eigen::Vector3d> kept;
+  for (auto& triangle : surface.triangles) {
+    for (std::uint32_t& corner : triangle) {
+      std::uint32_t& index = new_index[first_alike[corner]];
+      if (index == kUnused) {
+        index = static_cast<std::uint32_t>(kept.size());
+        kept.push_back(v[corner]);
+      }
+      corner = index;
+    }
+  }
+  surface.vertices = std::move(kept);
+}
+
+void examine_edges(const TriangleSurface& surface, TidySurface& tidied) {
+  // (low vertex, high vertex) and whether the triangle goes upward along it
+  std::vector<std::pair<std::array<std::uint32_t, 2>, bool>> edges;
+  edges.reserve(3 * surface.triangles.size());
+  for (const auto& t : surface.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t a = t[i], b = t[(i + 1) % 3];
+      edges.push_back({{std::min(a, b), std::max(a, b)}, a < b});
+    }
+  }
+  std::ranges::sort(edges);
+  tidied.closed = !edges.empty();
+  for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+    std::ptrdiff_t upward = 0;
+    for (end = i; end < edges.size() && edges[end].first == edges[i].first; ++end) upward += edges[end].second ? 1 : -1;
+    if (upward != 0) tidied.closed = false;
+    if (end - i == 2 && upward != 0) tidied.windings_agree = false;
+  }
+}
+
+bool too_thin(const TriangleSurface& surface, const std::array<std::uint32_t, 3>& t) {
+  const Eigen::Vector3d &a = surface.vertices[t[0]], &b = surface.vertices[t[1]], &c = surface.vertices[t[2]];
+  const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+  return !((b - a).cross(c - a).norm() > kThinnest_m * longest);
+}
+
+}  // namespace
+
+double volume_m3(const TriangleSurface& surface) {
+  if (surface.vertices.empty()) return 0;
+  const Eigen::Vector3d& o = surface.vertices.front();
+  double six_volumes = 0;
+  for (const auto& t : surface.triangles) {
+    const auto corner = [&](std::size_t i) -> Eigen::Vector3d { return surface.vertices[t[i]] - o; };
+    six_volumes += corner(0).dot(corner(1).cross(corner(2)));
+  }
+  return six_volumes / 6;
+}
+
+TidySurface tidy(TriangleSurface& surface) {
+  TidySurface tidied;
+  join_vertices(surface);
+  const auto pinched = [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
+  tidied.dropped = std::erase_if(surface.triangles, pinched);
+  // before more of them go: a thin triangle may be all that closes a crack
+  examine_edges(surface, tidied);
+  if (tidied.closed && volume_m3(surface) < 0)
+    for (auto& t : surface.triangles) std::swap(t[1], t[2]);
+  tidied.dropped += std::erase_if(surface.triangles, [&](const auto& t) { return too_thin(surface, t); });
+  return tidied;
+}
+
+}  // namespace kenaf::physics
