@@ -134,13 +134,14 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
         // nine decimals: 0.29, not 29 * 0.01
         recorder.add(std::round(t_s * 1e9) / 1e9, command, out.end, samples);
       }
-      if (!next) break;
+      out.fault = scene.world.fault(scene.robot);
+      if (!next || !out.fault.empty()) break;
       scene.world.set_command(scene.robot, command);
     }
     scene.step();
   }
   out.run = recorder.take();
-  out.succeeded = succeeded(manoeuvre, out.end.X_WB);
+  out.succeeded = out.fault.empty() && succeeded(manoeuvre, out.end.X_WB);
   out.steps = scene.world.step_count();
   out.contacts_per_step = static_cast<double>(scene.contacts) / static_cast<double>(out.steps);
   return out;

@@ -29,7 +29,7 @@ struct RollOutOptions {
 struct RollOut {
   runs::Run run;           // columns of docs/run-format.md
   bool succeeded = false;  // by the manoeuvre's own measure; false without one
-  std::string fault;       // why the simulation was ended early; empty: it was not
+  std::string fault;       // why the simulation was ended early, as World::fault() says it; empty: it was not
   physics::RobotTruth end{};
   std::vector<double> phase_began_s;  // of each phase that was reached
   double contacts_per_step = 0;

@@ -174,6 +174,18 @@ TEST_CASE("A robot without sensors or flippers leaves their columns out, a slow 
   for (std::size_t i = 0; i < pitch.size(); ++i) CHECK(std::isnan(pitch[i]) == (i % 5 != 0));
 }
 
+// 100 m of fall take sqrt(2 * 100 / g) = 4.516 s, half a second of it before the first row.
+TEST_CASE("A robot that leaves the world ends its run there, and is no success") {
+  physics::WorldDescription nothing = flat();
+  nothing.planes.clear();
+  Manoeuvre fall = straight(0, 10);
+  fall.success = Success{.z_below_m = 0};
+  const RollOut out = roll_out(physics::load_robot("kenaf"), nothing, fall, {});
+  CHECK_THAT(out.fault, Contains("left the world"));
+  CHECK(out.run.column("t_s").back() == Approx(4.02).margin(0.011));
+  CHECK_FALSE(out.succeeded);
+}
+
 TEST_CASE("A time step that does not divide the sample period is refused in words") {
   RollOutOptions options;
   options.physics.time_step_s = 0.003;
