@@ -139,7 +139,7 @@ class BeltGround::Algorithm : public btCollisionAlgorithm {
     pair_->contacts.clear();
     std::size_t next = 0;
     for (const BeltTouch& touch : owner_.touches_) {
-      BeltContact& contact = pair_->contacts.emplace_back(touch, std::array<btScalar, 3>{});
+      BeltContact& contact = pair_->contacts.emplace_back(BeltContact{touch, {}});
       for (std::size_t i = 0; i < pair_->before.size(); ++i) {
         const BeltContact& before = pair_->before[(next + i) % pair_->before.size()];
         if (before.touch.feature != touch.feature) continue;
