@@ -70,6 +70,7 @@ int main(int argc, char** argv) {
                             Case{"turning in place", "flat", -0.2, 0.2, 1, 1},
                             Case{"climbing a 100 mm step", "step-100", 0.2, 0.2, 0.8, 0, 1, 0.3},
                             Case{"climbing a 200 mm step", "step-200", 0.2, 0.2, 0.8, 0, 1, 0.3},
+                            Case{"crossing a 300 mm trench", "trench-300", 0.2, 0.2, 0, 0, 1, 0.4},
                             Case{"16 robots, turning", "flat", -0.1, 0.2, 1, 1, 16}})
     measure(scene, time_s);
   return 0;

@@ -35,16 +35,6 @@ WorldDescription shipped(const std::string& name) {
   return world;
 }
 
-// Two platforms 500 mm high, their tops at z = 0, `gap_m` apart from x = 0.
-WorldDescription trench(double gap_m) {
-  constexpr double kLength_m = 3, kWidth_m = 2, kHeight_m = 0.5;
-  WorldDescription world;
-  for (const double center : {-kLength_m / 2, gap_m + kLength_m / 2})
-    world.boxes.push_back(
-        {"platform", {kLength_m, kWidth_m, kHeight_m}, {{center, 0, -kHeight_m / 2}, Eigen::Quaterniond::Identity()}});
-  return world;
-}
-
 std::vector<Eigen::Vector3d> hull_of(const Outline& outline, double width_m, const Eigen::Vector3d& center) {
   std::vector<Eigen::Vector3d> points;
   for (const Eigen::Vector2d& p : outline)
@@ -59,7 +49,7 @@ std::vector<EngineScene> climbs() {
   return {climb("straight, level", shipped("flat"), 0, z_m, 1, 1, 5),
           climb("step of 100 mm", shipped("step-100"), 0.3, z_m, 0.8, 0, 7),
           climb("step of 200 mm", shipped("step-200"), 0.3, z_m, 0.8, 0, 7),
-          climb("trench of 300 mm", trench(0.3), -0.6, z_m, 0, 0, 7)};
+          climb("trench of 300 mm", shipped("trench-300"), 0.4, z_m, 0, 0, 7)};
 }
 
 double belly_height_m(const RobotDescription& robot) {
