@@ -298,11 +298,14 @@ btScalar ContactSolver::solve_contact(Contact& c) {
   return (change[0] * change[0] + change[1] * change[1] + change[2] * change[2]) * c.inverse_mass_a * c.inverse_mass_a;
 }
 
-void ContactSolver::solve_running_gear(Belt& belt, btScalar time_step) {
-  const auto push = [&belt](double& impulse_ns, double wanted_ns, double min_ns, double max_ns) {
+btScalar ContactSolver::solve_running_gear(Belt& belt, btScalar time_step) {
+  btScalar changed = 0;
+  const auto push = [&](double& impulse_ns, double wanted_ns, double min_ns, double max_ns) {
     const double before = impulse_ns;
     impulse_ns = std::clamp(wanted_ns, min_ns, max_ns);
-    belt.speed_mps += (impulse_ns - before) / belt.moving_mass_kg;
+    const double change_mps = (impulse_ns - before) / belt.moving_mass_kg;
+    belt.speed_mps += change_mps;
+    changed = std::max(changed, change_mps * change_mps);
   };
   const double m = belt.moving_mass_kg;
   push(belt.motor_impulse_ns, belt.motor_impulse_ns + (belt.target_mps - belt.speed_mps) * m, belt.min_impulse_ns,
@@ -312,8 +315,11 @@ void ContactSolver::solve_running_gear(Belt& belt, btScalar time_step) {
     const double free_mps = belt.speed_mps - belt.viscous_impulse_ns / m;
     push(belt.viscous_impulse_ns, -free_mps / (1 / damping_ns + 1 / m), -1e9, 1e9);
   }
-  if (const double dry_ns = belt.dry_friction_ns + belt.rolling_resistance * belt.load_ns; dry_ns > 0)
+  // without a load too: what rolling friction gave in the last step has to go
+  if (const double dry_ns = belt.dry_friction_ns + belt.rolling_resistance * belt.load_ns;
+      dry_ns > 0 || belt.friction_impulse_ns != 0)
     push(belt.friction_impulse_ns, belt.friction_impulse_ns - belt.speed_mps * m, -dry_ns, dry_ns);
+  return changed;
 }
 
 btScalar ContactSolver::solveSingleIteration(int iteration, btCollisionObject** bodies, int body_count,
@@ -322,7 +328,7 @@ btScalar ContactSolver::solveSingleIteration(int iteration, btCollisionObject** 
                                              const btContactSolverInfo& info, btIDebugDraw* debug) {
   btScalar residual = btSequentialImpulseConstraintSolver::solveSingleIteration(
       iteration, bodies, body_count, manifolds, manifold_count, constraints, constraint_count, info, debug);
-  for (Belt* belt : belts_) solve_running_gear(*belt, info.m_timeStep);
+  for (Belt* belt : belts_) residual = std::max(residual, solve_running_gear(*belt, info.m_timeStep));
   for (Contact& contact : contacts_) residual = std::max(residual, solve_contact(contact));
   return residual;
 }

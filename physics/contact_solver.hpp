@@ -85,7 +85,7 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
                    btScalar time_step);
   void warm_start(Contact& contact);
   btScalar solve_contact(Contact& contact);  // gives the square of the velocity by which it changed body A
-  static void solve_running_gear(Belt& belt, btScalar time_step);
+  static btScalar solve_running_gear(Belt& belt, btScalar time_step);  // gives the largest square of a speed change
   void apply(Contact& contact, const btScalar change[3]);
 
   ContactSettings settings_;

@@ -84,6 +84,37 @@ TEST_CASE("What is wrong is said with file, line and column") {
   CHECK_THROWS_AS(load_robot("./no-such-file.toml"), DescriptionError);
 }
 
+TEST_CASE("Effects, lugs and a servo's encoder stand in the description, or stay neutral") {
+  const RobotDescription nominal = load_robot("kenaf");
+  CHECK(nominal.effects == Effects{});
+  const RobotDescription robot =
+      parse_robot(kenaf_text() +
+                      "\n[effects.command_delay]\ndelay_s = 0.08\n[effects.pitch_inertia]\nscale = 1.42\n"
+                      "[effects.com_up]\n",
+                  "test.toml");
+  CHECK(robot.effects == Effects{.command_delay_s = 0.08, .pitch_inertia_scale = 1.42});
+  CHECK(error_with("pieces = 6", "pieces = 6\nlug_height_m = 0.06").find("track.lug_height_m is 0.06, but must be") !=
+        std::string::npos);
+  CHECK(error_with("amperes_per_nm = 0.25", "amperes_per_nm = 0.25\nresolution_rad = 2").find("servo.resolution_rad") !=
+        std::string::npos);
+}
+
+TEST_CASE("What is wrong with an effect is said with file, line and column") {
+  const auto error = [](const std::string& effects) {
+    return error_with("usarsim_class = \"USARBot.Kenaf\"\n", "usarsim_class = \"USARBot.Kenaf\"\n" + effects);
+  };
+  CHECK(error("[effects.comand_delay]\ndelay_s = 0.1\n").find("test.toml:9:10: effects.comand_delay is not a known key") ==
+        0);
+  CHECK(error("[effects.command_delay]\ndelay = 0.1\n")
+            .find("test.toml:10:1: effects.command_delay.delay is not a known key") == 0);
+  CHECK(error("[effects.command_delay]\ndelay_s = 0.7\n")
+            .find("test.toml:10:11: effects.command_delay.delay_s is 0.7, but must be from 0 to 0.5") == 0);
+  CHECK(error("[effects.command_delay]\ndelay_s = \"long\"\n")
+            .find("test.toml:10:11: effects.command_delay.delay_s must be a number") == 0);
+  CHECK(error("[effects]\ncommand_delay = 0.1\n").find("test.toml:10:17: effects.command_delay must be a table") == 0);
+  CHECK(error("effects = 3\n").find("test.toml:9:11: effects must be a table") == 0);
+}
+
 TEST_CASE("Angles: z-y-x, pitch positive nose down") {
   // nose down: the body's x axis points below the horizon
   CHECK((rotation_from({0, 0.3, 0}) * Eigen::Vector3d::UnitX()).z() == Approx(-std::sin(0.3)));

@@ -1,0 +1,138 @@
+// Effects of the command stage: what becomes of a command before the drives have it.
+#include <catch2/catch.hpp>
+
+#include "physics/command_channel.hpp"
+#include "tests/physics/scenes.hpp"
+
+using namespace kenaf::physics;
+
+namespace {
+
+constexpr double kStep_s = 0.001;
+
+CommandChannel channel_with(const Effects& effects, std::uint64_t seed = 1, const char* robot = "a") {
+  CommandChannel channel(effects, seed, robot, kStep_s);
+  channel.restart({});
+  return channel;
+}
+
+double left(CommandChannel& channel) {
+  return channel.step().track_speed_mps[kLeft];
+}
+
+}  // namespace
+
+TEST_CASE("Command delay: the robot does the same, that much later") {
+  const auto path = [](double delay_s) {
+    RobotDescription robot = load_robot("kenaf");
+    robot.effects.command_delay_s = delay_s;
+    World world(ground(), {}, 1);
+    const RobotId id = world.add_robot(robot, "a", {});
+    run(world, 0.5);
+    std::vector<Eigen::Vector3d> out;
+    for (int i = 0; i < 1500; ++i) {
+      if (i == 0) world.set_command(id, drive(0.2, 0.3));
+      if (i == 700) world.set_command(id, drive(0.1, -0.1));
+      world.step();
+      out.push_back(world.truth(id).X_WB.p);
+    }
+    return out;
+  };
+  const auto now = path(0), late = path(0.1);
+  for (std::size_t i = 0; i + 100 < now.size(); i += 50) CHECK((late[i + 100] - now[i]).norm() < 1e-4);
+}
+
+TEST_CASE("Command delay: whole steps, and between two steps in proportion") {
+  for (const double steps : {0.0, 1.0, 2.0, 2.25, 2.5, 7.75}) {
+    CommandChannel channel = channel_with({.command_delay_s = steps * kStep_s});
+    channel.step();
+    channel.send(drive(1, 1));
+    // of a command that came n steps ago, the drives have that part which is not under way any more
+    for (int n = 0; n < 12; ++n) CHECK(left(channel) == Approx(std::clamp(n + 1 - steps, 0.0, 1.0)).margin(1e-9));
+  }
+}
+
+TEST_CASE("Command delay: between two modes of a joint there is nothing") {
+  CommandChannel channel = channel_with({.command_delay_s = 1.5 * kStep_s});
+  RobotCommand command;
+  command.flipper[kFrontLeft] = {JointMode::speed, 0.8};
+  channel.send(command);
+  CHECK(channel.step().flipper[kFrontLeft].mode == JointMode::angle);
+  CHECK(channel.step().flipper[kFrontLeft].mode == JointMode::angle);
+  CHECK(channel.step().flipper[kFrontLeft].mode == JointMode::speed);
+  CHECK(channel.step().flipper[kFrontLeft].value == 0.8);
+}
+
+TEST_CASE("Command loss: of a share that is lost the rest arrives, and the command before holds meanwhile") {
+  const auto arrivals = [](double loss, std::uint64_t seed, const char* robot) {
+    CommandChannel channel = channel_with({.command_loss = loss}, seed, robot);
+    std::vector<bool> arrived;
+    double before = 0;
+    for (int i = 1; i <= 10000; ++i) {
+      channel.send(drive(i, i));
+      const double now = left(channel);
+      CHECK((now == i || now == before));
+      arrived.push_back(now == i);
+      before = now;
+    }
+    return arrived;
+  };
+  const auto share = [](const std::vector<bool>& arrived) {
+    return static_cast<double>(std::count(arrived.begin(), arrived.end(), true)) / 10000;
+  };
+  // a share of 10 000 draws has a sigma of sqrt(p (1 - p) / 10000), below 0.005
+  CHECK(share(arrivals(0.3, 1, "a")) == Approx(0.7).margin(0.02));
+  CHECK(share(arrivals(0.9, 1, "a")) == Approx(0.1).margin(0.02));
+  CHECK(share(arrivals(0, 1, "a")) == 1);
+  CHECK(arrivals(0.3, 1, "a") == arrivals(0.3, 1, "a"));
+  CHECK(arrivals(0.3, 1, "a") != arrivals(0.3, 2, "a"));
+  CHECK(arrivals(0.3, 1, "a") != arrivals(0.3, 1, "b"));
+}
+
+TEST_CASE("Command gain: the tracks run by that much faster, the flippers go where they are told") {
+  RobotDescription robot = load_robot("kenaf");
+  robot.effects.command_gain = 1.2;
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(robot, "a", {});
+  world.set_command(id, drive(0.2, 0.2, 0.6, 0.6));
+  run(world, 1);
+  CHECK(world.truth(id).v_WB_mps.x() == Approx(0.24).epsilon(1e-3));
+  CHECK(world.truth(id).flipper_rad[kFrontLeft] == Approx(0.6).margin(1e-3));
+}
+
+TEST_CASE("Command slew: speed = time / slowness, up and down") {
+  RobotDescription robot = load_robot("kenaf");
+  robot.effects.command_slew_s2pm = 5;
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(robot, "a", {});
+  world.set_command(id, drive(0.4, 0.4));
+  run(world, 1);
+  // 0.2 m/s^2; the speed loop's lag of 0.05 s leaves it 0.01 m/s behind the ramp
+  CHECK(world.truth(id).track_mps[kLeft] == Approx(0.19).epsilon(0.01));
+  run(world, 2);
+  CHECK(world.truth(id).track_mps[kLeft] == Approx(0.4).epsilon(1e-3));
+  world.set_command(id, drive(0, 0));
+  run(world, 1);
+  CHECK(world.truth(id).track_mps[kLeft] == Approx(0.21).epsilon(0.01));
+}
+
+TEST_CASE("Command stage: the ramp is of the speed after the gain, and begins when the command has arrived") {
+  CommandChannel channel = channel_with({.command_delay_s = 0.1, .command_gain = 1.5, .command_slew_s2pm = 1});
+  channel.send(drive(0.2, 0.2));
+  for (int i = 0; i < 100; ++i) CHECK(left(channel) == 0);
+  for (int i = 1; i <= 299; ++i) CHECK(left(channel) == Approx(i * kStep_s));
+  for (int i = 0; i < 10; ++i) left(channel);
+  CHECK(left(channel) == Approx(0.3));
+}
+
+TEST_CASE("Command stage: after a teleport the ramp begins at rest") {
+  RobotDescription robot = load_robot("kenaf");
+  robot.effects.command_slew_s2pm = 5;
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(robot, "a", {});
+  world.set_command(id, drive(0.4, 0.4));
+  run(world, 3);
+  world.teleport(id, {});
+  run(world, 0.1);
+  CHECK(world.truth(id).track_mps[kLeft] < 0.025);
+}
