@@ -1,10 +1,10 @@
-// DP matching of two paths in the vertical plane (dynamic programming; also called dynamic time warping): which frame of
-// one belongs to which frame of the other, in order, so that they lie as near each other as can be.
+// DP matching of two paths in the vertical plane (dynamic programming; also called dynamic time warping): which frame
+// of one belongs to which frame of the other, in order, so that they lie as near each other as can be.
 //
 // Symmetric form with steps (1, 0), (0, 1) and (1, 1), the last with weight 2, and no slope limit: H. Sakoe, S. Chiba,
-// "Dynamic programming algorithm optimization for spoken word recognition", IEEE Trans. ASSP 26(1), 1978, P = 0. With that
-// weight every path from corner to corner weighs n + m in all, so that no step is cheaper than another, and exchanging
-// the two runs gives the same cost.
+// "Dynamic programming algorithm optimization for spoken word recognition", IEEE Trans. ASSP 26(1), 1978, P = 0. With
+// that weight every path from corner to corner weighs n + m in all, so that no step is cheaper than another, and
+// exchanging the two runs gives the same cost.
 //
 // Thread safety: pure functions.
 #pragma once

@@ -1,7 +1,7 @@
 // How far a simulated run is from a real one: per frame of the real run, and summed up.
 //
-// Two comparisons stand beside each other. *Matched*: with the simulated frames that DP matching gives; it compares paths
-// and hides delays. *Same time*: with the simulated pose at the real frame's own time; it shows them.
+// Two comparisons stand beside each other. *Matched*: with the simulated frames that DP matching gives; it compares
+// paths and hides delays. *Same time*: with the simulated pose at the real frame's own time; it shows them.
 //
 // Errors are simulated less real; angles wrapped to [-pi, pi]. NaN: one of the two was not measured.
 // Thread safety: values and pure functions.

@@ -1,6 +1,6 @@
 // The frames of a run: the rows in which the place of the robot in the vertical plane was measured.
 //
-// Frame W: x forward, y left, z up; intrinsic z-y-x angles, pitch positive nose down; SI units, radians. NaN: not known.
+// Frame W: x forward, y left, z up; intrinsic z-y-x angles, pitch positive nose down; SI units, radians. NaN: unknown.
 // Thread safety: pure functions.
 #pragma once
 
@@ -44,8 +44,8 @@ struct StartOffset {
   bool turned = true;  // false: y or yaw of a start is not known, so it was only shifted
 };
 
-// Moves `sim` so that it starts where `real` starts, in x, y and yaw. The start is the mean over the frames of the first
-// `start_s` seconds; 0: the first frame alone. Where y or yaw of a start is not known, only the place is moved.
+// Moves `sim` so that it starts where `real` starts, in x, y and yaw. The start is the mean over the frames of the
+// first `start_s` seconds; 0: the first frame alone. Where y or yaw of a start is not known, only the place is moved.
 StartOffset align_start(const std::vector<PoseFrame>& real, std::vector<PoseFrame>& sim, double start_s);
 
 }  // namespace kenaf::gap

@@ -21,7 +21,8 @@ constexpr double kWide_px = 1100, kHalf_px = 540;
 
 constexpr std::string_view kPageStyle = R"(body { background: var(--paper); color: var(--ink); max-width: 1100px;
   margin: 24px auto; padding: 0 16px; font: 15px/1.45 system-ui, "DejaVu Sans", "Liberation Sans", Arial, sans-serif; }
-h1 { font-size: 24px; margin: 0 0 4px; } h2 { font-size: 18px; margin: 40px 0 2px; } p { margin: 6px 0; max-width: 80ch; }
+h1 { font-size: 24px; margin: 0 0 4px; } h2 { font-size: 18px; margin: 40px 0 2px; }
+p { margin: 6px 0; max-width: 80ch; }
 .soft { color: var(--soft); } a { color: var(--real); }
 .tables { overflow-x: auto; }
 table { border-collapse: collapse; font-size: 13px; margin: 12px 0; font-variant-numeric: tabular-nums; }

@@ -1,5 +1,5 @@
-// A chart as SVG: lines and areas over two axes with round ticks, for reports that open offline. Text stays text, so that
-// it can be searched and copied; colours are classes of one style sheet, so that a page suits light, dark and paper.
+// A chart as SVG: lines and areas over two axes with round ticks, for reports that open offline. Text stays text, so
+// that it can be searched and copied; colours are classes of one style sheet, so that a page suits light, dark and paper.
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -12,8 +12,8 @@ namespace kenaf::gap::plot {
 
 using Point = Eigen::Vector2d;
 
-// Colours by role, from the Okabe-Ito palette, which the common kinds of colour blindness tell apart. Real and simulated
-// differ in brightness too, for grey prints.
+// Colours by role, from the Okabe-Ito palette, which the common kinds of colour blindness tell apart. Real and
+// simulated differ in brightness too, for grey prints.
 enum class Ink { real, sim, third, fourth, faint, ground };
 
 enum class Stroke { solid, dashed, dotted, hair };
