@@ -1,5 +1,6 @@
 // A chart as SVG: lines and areas over two axes with round ticks, for reports that open offline. Text stays text, so
-// that it can be searched and copied; colours are classes of one style sheet, so that a page suits light, dark and paper.
+// that it can be searched and copied; colours are classes of one style sheet, so that a page suits light, dark and
+// paper.
 // Thread safety: values and pure functions.
 #pragma once
 
