@@ -22,7 +22,8 @@ physics::RobotDescription round_robot() {
                  .p_BT_m = {0, 0.1, 0},
                  .friction_along = 1,
                  .friction_across = 1,
-                 .pieces = 1};
+                 .pieces = 1,
+                 .lug_height_m = 0};
   physics::FlipperDescription flipper{};
   flipper.length_m = 0.2;
   flipper.pivot_radius_m = 0.05;
