@@ -93,7 +93,7 @@ TEST_CASE("Effects, lugs and a servo's encoder stand in the description, or stay
                       "[effects.com_up]\n",
                   "test.toml");
   CHECK(robot.effects == Effects{.command_delay_s = 0.08, .pitch_inertia_scale = 1.42});
-  CHECK(error_with("pieces = 6", "pieces = 6\nlug_height_m = 0.06").find("track.lug_height_m is 0.06, but must be") !=
+  CHECK(error_with("lug_height_m = 0.0005", "lug_height_m = 0.06").find("track.lug_height_m is 0.06, but must be") !=
         std::string::npos);
   CHECK(error_with("amperes_per_nm = 0.25", "amperes_per_nm = 0.25\nresolution_rad = 2").find("servo.resolution_rad") !=
         std::string::npos);
