@@ -26,9 +26,9 @@ TEST_CASE("Level ground fills what lies below 0; the step's box stands where its
   const WorldSection section = world_section(physics::load_world("step-200", unsupported), 0, kLow, kHigh);
   REQUIRE(section.solids.size() == 2);
   for (const auto& [x, z] : {std::pair{-3, -1}, {5, -1}, {5, 0}, {-3, 0}}) CHECK(has_corner(section.solids[0], x, z));
-  // worlds/step-200.sdf: front face at x = 1 m, 2 m deep, 200 mm high
+  // worlds/step-200.sdf: front face at x = 1 m, 3 m deep, 200 mm high
   REQUIRE(section.solids[1].size() == 4);
-  for (const auto& [x, z] : {std::pair{1.0, 0.0}, {3.0, 0.0}, {3.0, 0.2}, {1.0, 0.2}})
+  for (const auto& [x, z] : {std::pair{1.0, 0.0}, {4.0, 0.0}, {4.0, 0.2}, {1.0, 0.2}})
     CHECK(has_corner(section.solids[1], x, z));
   CHECK(section.surfaces.empty());
 }

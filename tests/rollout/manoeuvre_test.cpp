@@ -5,6 +5,7 @@
 #include <set>
 
 #include "physics/robot_description.hpp"
+#include "protocol/data_files.hpp"
 #include "tests/runs/temporary_folder.hpp"
 
 using namespace kenaf;
@@ -99,6 +100,7 @@ TEST_CASE("The shipped manoeuvres: each name once, sorted, found by its name") {
     CHECK((names.empty() || *names.rbegin() < manoeuvre.name));
     CHECK(names.insert(manoeuvre.name).second);
     CHECK_FALSE(manoeuvre.summary.empty());
+    CHECK_FALSE(find_data_file("worlds", manoeuvre.world, ".sdf").empty());
   }
   for (const std::string name : {"straight",      "straight-fast",     "turn-in-place", "arc",        "square",
                                  "flipper-sweep", "random-speeds",     "speed-steps",   "drop",       "ramp",
