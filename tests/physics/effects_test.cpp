@@ -63,7 +63,9 @@ TEST_CASE("E1: at its neutral value no effect changes a bit") {
   CHECK(drive_with({}).hash == nominal);
   for (const EffectInfo& effect : effect_catalogue()) {
     Effects effects;
-    for (const EffectParameter& parameter : effect.parameters) effects.*(parameter.value) = parameter.neutral;
+    for (const EffectParameter& parameter : effect.parameters)
+      set_effect(effects, std::string(effect.name) + ":" + std::string(parameter.name) + "=" +
+                              std::to_string(parameter.neutral));
     INFO(effect.name);
     CHECK(effects == Effects{});
     CHECK(drive_with(effects).hash == nominal);
