@@ -1,4 +1,6 @@
 // kenaf-gap simulate: runs of the simulator, as a dataset.
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -10,15 +12,26 @@
 namespace kenaf::gap {
 namespace {
 
+// Throws RunsWentWrong where a run has a fault.
 void print(const SimulatedDataset& dataset) {
+  std::size_t faults = 0;
   for (const std::string& warning : dataset.warnings)
     std::fprintf(stderr, "kenaf-gap: warning: not simulated: %s\n", warning.c_str());
   for (const SimulatedRun& run : dataset.runs) {
-    const char* outcome = !run.succeeded ? "" : *run.succeeded ? ", done" : ", not done";
+    const char* outcome = !run.fault.empty() ? ", went wrong"
+                          : !run.succeeded   ? ""
+                          : *run.succeeded   ? ", done"
+                                             : ", not done";
     std::printf("%s: %s, %.2f s%s\n", run.file.c_str(), run.manoeuvre.c_str(), run.duration_s, outcome);
-    if (!run.fault.empty())
-      std::fprintf(stderr, "kenaf-gap: warning: %s ended early: %s\n", run.file.c_str(), run.fault.c_str());
+    if (run.fault.empty()) continue;
+    ++faults;
+    std::fprintf(stderr, "kenaf-gap: %s: the simulation went wrong: %s\n", run.file.c_str(), run.fault.c_str());
   }
+  if (faults > 0)
+    throw RunsWentWrong(
+        fmt::format("{} of {} runs ended early; the dataset is written, with a fault at each of them. "
+                    "Are robot, effects and physics settings meant so?",
+                    faults, dataset.runs.size()));
 }
 
 }  // namespace

@@ -2,11 +2,18 @@
 // is bad, in words for the user, which the program prints before it ends with status 2.
 #pragma once
 
+#include <stdexcept>
+
 namespace CLI {
 class App;
 }
 
 namespace kenaf::gap {
+
+// Everything was done as asked, but runs are no use: status 1.
+struct RunsWentWrong : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 void add_compare_command(CLI::App& program);
 void add_effects_command(CLI::App& program);

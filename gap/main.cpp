@@ -4,7 +4,8 @@
 //   kenaf-gap compare REAL SIM --out DIR
 //   kenaf-gap --help
 //
-// Exit status: 0 done, 2 bad input, with what is wrong and where on standard error.
+// Exit status: 0 done, 1 done but for runs whose simulation went wrong, 2 bad input, with what is wrong and where on
+// standard error.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -13,7 +14,7 @@
 
 namespace {
 
-constexpr int kBadInput = 2;
+constexpr int kWentWrong = 1, kBadInput = 2;
 
 constexpr void (*kCommands[])(CLI::App&) = {
     kenaf::gap::add_compare_command,
@@ -33,6 +34,9 @@ int main(int argc, char** argv) {
     if (program.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : kBadInput;
+  } catch (const kenaf::gap::RunsWentWrong& error) {
+    std::fprintf(stderr, "kenaf-gap: %s\n", error.what());
+    return kWentWrong;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "kenaf-gap: %s\n", error.what());
     return kBadInput;

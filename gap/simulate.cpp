@@ -190,6 +190,7 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
            .duration_s = out.run.column("t_s").back(),
            .succeeded = of.manoeuvre.success ? std::optional(out.succeeded) : std::nullopt,
            .fault = out.fault};
+    dataset.runs[i].fault = out.fault;
   });
   runs::write_dataset(folder.path(), dataset);
   folder.finish();

@@ -41,7 +41,8 @@ struct SimulatedDataset {
   std::vector<std::string> warnings;     // what of a world the simulator does not do
 };
 
-// Writes the dataset to `out`: all of it or, where it throws, nothing. Throws std::exception with words for the user:
+// Writes the dataset to `out`: all of it or, where it throws, nothing. A run whose simulation went wrong is written as
+// far as it came, and marked with its fault in dataset.toml. Throws std::exception with words for the user:
 // bad input, or `out` holds something and `force` is not set.
 SimulatedDataset simulate_dataset(const SimulationRequest& request);
 

@@ -69,7 +69,7 @@ struct World::Implementation {
     return found->second;
   }
 
-  void build_robot(RobotId id, RobotEntry& entry) {
+  void build_robot(RobotId id, RobotEntry& entry, const Pose& X_WB) {
     entry.model = std::make_unique<RobotModel>(entry.description, entry.name, seed, settings.time_step_s, id,
                                                scene->dynamics(), scene->solver());
     entry.sensors = std::make_unique<SensorSet>(entry.model->description, entry.name, seed, settings.time_step_s,
@@ -82,7 +82,7 @@ struct World::Implementation {
         links.push_back({rest, rest});
       }
     }
-    scene->place_free(*entry.model, entry.X_WB_first, true);
+    scene->place_free(*entry.model, X_WB, true);
     entry.fault.clear();
     touches.clear();
     constexpr std::size_t kManyTouches = 256;  // so that a step need not allocate
@@ -90,11 +90,14 @@ struct World::Implementation {
     record(id, entry);
   }
 
-  // Before anything else can touch what is no number.
+  // Before anything else can touch what is no number. Its drives are dead: no sensor reads a speed or a current.
   static void stop_at_fault(RobotEntry& entry) {
     entry.model->leave_dynamics();
-    entry.last_whole.v_WB_mps.setZero();
-    entry.last_whole.w_WB_radps.setZero();
+    RobotTruth& truth = entry.last_whole;
+    truth.v_WB_mps.setZero();
+    truth.w_WB_radps.setZero();
+    truth.track_mps = truth.track_force_n = {};
+    truth.flipper_radps = truth.flipper_nm = {};
   }
 
   void record(RobotId id, RobotEntry& entry) {
@@ -109,6 +112,7 @@ struct World::Implementation {
         stop_at_fault(entry);
     }
     const RobotTruth& truth = entry.last_whole;
+    if (!entry.fault.empty()) return entry.sensors->record(truth, time_s(), {}, {}, {});
     if (entry.sensors->has_touch()) {
       const Pose X_BW = inverse(truth.X_WB);
       scene->touches(id, touches);
@@ -138,7 +142,7 @@ struct World::Implementation {
         scene->add_box(box->first, box->second);
         ++box;
       } else {
-        build_robot(robot->first, robot->second);
+        build_robot(robot->first, robot->second, robot->second.X_WB_first);
         ++robot;
       }
     }
@@ -202,7 +206,7 @@ RobotId World::add_robot(const RobotDescription& description, const std::string&
   entry.description = description;
   entry.name = name;
   entry.X_WB_first = {X_WB.p, X_WB.q.normalized()};
-  impl_->build_robot(id, entry);
+  impl_->build_robot(id, entry, entry.X_WB_first);
   return id;
 }
 
@@ -239,9 +243,10 @@ double World::mission_link_rad(RobotId id, std::size_t package, std::size_t link
 void World::teleport(RobotId id, const Pose& X_WB) {
   check_pose(X_WB, "teleport");
   RobotEntry& entry = impl_->robot(id);
-  // after a fault its joints may be no numbers either
-  impl_->scene->place_free(*entry.model, {X_WB.p, X_WB.q.normalized()}, !entry.fault.empty());
-  entry.fault.clear();
+  const Pose X_WB_unit{X_WB.p, X_WB.q.normalized()};
+  // after a fault nothing of the robot's state can be trusted to be a number
+  if (!entry.fault.empty()) return impl_->build_robot(id, entry, X_WB_unit);
+  impl_->scene->place_free(*entry.model, X_WB_unit, false);
   entry.sensors->forget_motion();
   impl_->touches.clear();
   impl_->record(id, entry);

@@ -69,7 +69,8 @@ class World {
   // Turns a link (from 0) of a mission package; clamped to its limits, moves with its speed limit.
   void set_mission_link(RobotId id, std::size_t package, std::size_t link, double angle_rad);
   double mission_link_rad(RobotId id, std::size_t package, std::size_t link) const;
-  // Moves a robot and puts it at rest. Lifted as by add_robot.
+  // Moves a robot and puts it at rest. Lifted as by add_robot. After a fault it begins anew, as add_robot places it:
+  // joints, sensors and command too.
   void teleport(RobotId id, const Pose& X_WB);
   // Starts a sensor's integration anew: encoder counts, odometry, tachometer angle from 0; INS from its argument.
   void reset_sensor(RobotId id, std::size_t sensor, std::optional<GroundTruthReading> pose = std::nullopt);
@@ -81,7 +82,8 @@ class World {
   RobotTruth truth(RobotId id) const;
   // What went wrong with a robot's simulation, in words; empty: nothing. Once it did, the robot is taken out of the
   // dynamics where it last was whole, until it is teleported or the world is reset: its pose is no longer a number, it
-  // moves faster than anything on tracks can, or it fell out of the world.
+  // moves faster than anything on tracks can, or it fell out of the world. Its sensors go on to report that it stands
+  // there, all finite.
   const std::string& fault(RobotId id) const;
   // What the sensors have to report now, in the order of the description: each sensor whose period has passed since
   // its last report by this call. Two calls without a step between give nothing the second time.

@@ -74,7 +74,7 @@ bool leaves_the_folder(const fs::path& file) {
 DatasetRun read_run_entry(const toml::table& table, std::string_view file) {
   const TableReader reader(table, file);
   DatasetRun run{reader.text("file"), reader.optional_text("manoeuvre").value_or(""),
-                 reader.optional_text("world").value_or("")};
+                 reader.optional_text("world").value_or(""), reader.optional_text("fault").value_or("")};
   if (leaves_the_folder(run.file)) reader.fail(*reader.find("file"), "'" + run.file + "' is outside of the dataset");
   return run;
 }
@@ -174,6 +174,7 @@ void write_dataset(const fs::path& folder, const Dataset& dataset) {
     line("file", as_toml(run.file));
     if (!run.manoeuvre.empty()) line("manoeuvre", as_toml(run.manoeuvre));
     if (!run.world.empty()) line("world", as_toml(run.world));
+    if (!run.fault.empty()) line("fault", as_toml(run.fault));
   }
   const fs::path file = folder / kFileName;
   parse_dataset(text, file.string());  // what cannot be read back is not written

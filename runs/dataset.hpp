@@ -17,6 +17,7 @@ struct DatasetRun {
   std::string file;       // relative to the folder
   std::string manoeuvre;  // runs that share it repeat one manoeuvre
   std::string world;      // as Dataset::world; empty: the dataset's
+  std::string fault{};    // why a simulated run ended early: its simulation went wrong; empty: it did not
 };
 
 struct Dataset {

@@ -36,6 +36,12 @@ void match(ComparedRun& run, const CompareOptions& options) {
   run.errors = run_errors(run.real, run.sim, run.matching.pairs);
 }
 
+PoseFrames frames_of(const runs::DatasetRun& run, const fs::path& folder) {
+  PoseFrames frames = pose_frames(runs::read_run(folder / run.file));
+  if (!run.fault.empty()) frames.unusable = "its simulation went wrong: " + run.fault;
+  return frames;
+}
+
 std::string world_of(const runs::DatasetRun& run, const runs::Dataset& dataset, const fs::path& folder) {
   return runs::resolve_beside(folder, run.world.empty() ? dataset.world : run.world, ".sdf");
 }
@@ -61,8 +67,7 @@ Comparison compare_datasets(const fs::path& real_folder, const fs::path& sim_fol
   const RunPairs pairs = pair_runs(comparison.real, comparison.sim);
   for (const RunPair& pair : pairs.pairs) {
     const runs::DatasetRun &real = comparison.real.runs[pair.real], &sim = comparison.sim.runs[pair.sim];
-    PoseFrames real_frames = pose_frames(runs::read_run(real_folder / real.file));
-    PoseFrames sim_frames = pose_frames(runs::read_run(sim_folder / sim.file));
+    PoseFrames real_frames = frames_of(real, real_folder), sim_frames = frames_of(sim, sim_folder);
     if (!real_frames.unusable.empty() || !sim_frames.unusable.empty()) {
       const auto why = [](const PoseFrames& own, const std::string& counterpart) {
         return own.unusable.empty() ? "its counterpart " + counterpart + " cannot be compared" : own.unusable;

@@ -23,6 +23,7 @@ struct SessionRobot {
   physics::RobotCommand command;  // in force
   bool normalized = false;        // the client's speeds are per cent of the fastest; sticky
   bool light = false;
+  bool fault_told = false;        // that its simulation went wrong
   struct {
     double speed = 0, front_rad = 0, rear_rad = 0;
   } ackermann;  // as the client sent them last

@@ -211,6 +211,7 @@ Simulation::Progress Simulation::advance(double now_wall_s) {
 
   world.step();
   if (!stepping) clock.stepped();
+  tell_faults();
   answer_steps();
   for (const auto& session : sessions) send_due(*session);
   return {true, std::nullopt};
@@ -226,6 +227,22 @@ void Simulation::answer_steps() {
   while (!step_requests_.empty() && world.step_count() >= step_requests_.front().until_step) {
     if (Session* session = find_session(step_requests_.front().session)) answer(*this, *session, "Control", "Step");
     step_requests_.erase(step_requests_.begin());
+  }
+}
+
+void Simulation::tell_faults() {
+  for (const auto& session : sessions) {
+    if (!session->robot) continue;
+    SessionRobot& robot = *session->robot;
+    const std::string& fault = world.fault(robot.id);
+    const bool is_new = !fault.empty() && !robot.fault_told;
+    robot.fault_told = !fault.empty();
+    if (!is_new) continue;
+    if (fault_log_.allow(wall_s))
+      spdlog::error(
+          "{}: the simulation of robot {} went wrong: {}; it stands still until it is moved or the world is reset",
+          session->peer, robot.name, fault);
+    answer(*this, *session, "Robot", robot.name, fault);
   }
 }
 

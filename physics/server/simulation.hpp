@@ -81,6 +81,7 @@ struct Simulation {
   void send_due(Session& session);
   void watch_silence(Session& session);
   void answer_steps();
+  void tell_faults();
   bool held_by_lockstep(std::optional<double>& until_wall_s);
   Session* find_session(std::uint32_t id);
 
@@ -89,6 +90,7 @@ struct Simulation {
   std::uint32_t last_session_ = 0;
   std::string due_lines_;  // scratch of send_due()
   LogLimiter behind_log_{1, 10};
+  LogLimiter fault_log_{kMostRobots, 5};
   double dropped_s_ = 0;  // robot time that this machine is behind
   bool idle_ = true;      // time stood still at the last call
 };

@@ -157,6 +157,35 @@ TEST_CASE("A folder with something in it is left alone, or with --force written 
   CHECK(simulate(folder, "--manoeuvre ./short.toml --out empty").status == 0);
 }
 
+// Nothing but a box under the start: the robot drives off it after 0.5 m of way and 2.5 s, and falls for 4.5 s more
+// until it is 100 m down.
+TEST_CASE("A run whose robot leaves the world: status 1, named, marked in the dataset, and not compared") {
+  const TemporaryFolder folder;
+  write_file(folder / "island.sdf",
+             "<sdf version='1.9'><world name='island'><frame name='start_00'><pose>0 0 0 0 0 0</pose></frame>"
+             "<model name='box'><static>true</static><pose>0 0 -0.5 0 0 0</pose><link name='l'><collision name='c'>"
+             "<geometry><box><size>1 1 1</size></box></geometry></collision></link></model></world></sdf>");
+  write_file(folder / "off.toml",
+             "[[manoeuvre]]\nname = 'off'\nsummary = 'over the edge'\nworld = 'island.sdf'\n"
+             "success = { z_below_m = 1.0 }\nphase = [{ track_mps = [0.2, 0.2], at_most_s = 20.0 }]\n");
+  const Outcome outcome = simulate(folder, "--manoeuvre ./short.toml --manoeuvre ./off.toml --out data");
+  CHECK(outcome.status == 1);
+  CHECK_THAT(outcome.out, Catch::Contains("run-001.csv: off, ") && Catch::Contains(" s, went wrong\n"));
+  CHECK_THAT(outcome.error, Catch::Contains("run-001.csv: the simulation went wrong: it left the world: x ") &&
+                                Catch::Contains("1 of 2 runs"));
+  const runs::Dataset dataset = runs::read_dataset(folder / "data");
+  CHECK(dataset.runs.at(0).fault.empty());
+  CHECK_THAT(dataset.runs.at(1).fault, Catch::StartsWith("it left the world"));
+  // as far as it came: every row a number, and the last one from near the end of the fall
+  CHECK(runs::read_run(folder / "data/run-001.csv").column("z_m").back() == Approx(-100).margin(1));
+
+  REQUIRE(kenaf_gap(folder, "compare data data --out out").status == 0);
+  const auto report = nlohmann::json::parse(read_file(folder / "out/compare.json"));
+  CHECK(report["runs"].size() == 1);
+  REQUIRE(report["left_out"].size() == 2);
+  CHECK_THAT(report["left_out"][0]["why"].get<std::string>(), Catch::StartsWith("its simulation went wrong: it left"));
+}
+
 TEST_CASE("Bad input: exit status 2, what is wrong in words, and no folder") {
   const TemporaryFolder folder;
   write_file(folder / "bad.toml", kShort + "speed = 3\n");

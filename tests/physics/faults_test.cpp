@@ -60,3 +60,33 @@ TEST_CASE("F2, F3: a robot whose numbers end is named, and its neighbour drives 
   CHECK(alone.p == beside.p);
   CHECK(alone.q.coeffs() == beside.q.coeffs());
 }
+
+TEST_CASE("F4: after a fault sensors report a robot that stands, in numbers, and a teleport begins anew") {
+  RobotDescription wild = load_robot("kenaf");
+  wild.body.inertia_kgm2 = {1e-310, 1e-310, 1e-310};
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(wild, "a", {});
+  world.set_command(id, drive(0.3, 0.3));
+  run(world, 1);
+  REQUIRE_THAT(world.fault(id), Contains("no number"));
+  const RobotTruth truth = world.truth(id);
+  CHECK(truth.X_WB.p.allFinite());
+  CHECK(truth.track_mps == std::array<double, 2>{});
+  CHECK(std::isfinite(truth.battery_v));
+  std::vector<SensorSample> samples;
+  world.read_sensors(id, samples);
+  for (const SensorSample& sample : samples) {
+    if (const auto* encoder = std::get_if<EncoderReading>(&sample.reading))
+      for (const auto count : encoder->counts) CHECK(std::abs(count) < 1000);
+    if (const auto* drives = std::get_if<DrivesReading>(&sample.reading)) {
+      for (const double current_a : drives->track_a) CHECK(std::abs(current_a) < 1);
+      CHECK(std::isfinite(drives->battery_v));
+    }
+  }
+  // a moment of inertia without an inverse is one still: it goes wrong again, and says so again
+  world.teleport(id, {});
+  CHECK(world.fault(id).empty());
+  CHECK(world.truth(id).X_WB.p.allFinite());
+  run(world, 1);
+  CHECK_THAT(world.fault(id), Contains("no number"));
+}

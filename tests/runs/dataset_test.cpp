@@ -92,7 +92,7 @@ TEST_CASE("What is written reads back, whatever its texts hold") {
                         "C:\\worlds\\a.sdf",
                         "two\nlines, a tab\t, ''' and \"\"\", ü, \x01",
                         {{"x_m", 0.1}, {"odd column", 1e-9}, {"yaw_rad", 3}},
-                        {{"run-000.csv", "square", ""}, {"run-001.csv", "", "boxes"}}};
+                        {{"run-000.csv", "square", ""}, {"run-001.csv", "", "boxes", "it left the \"world\""}}};
   write_dataset(folder / "new/dataset", dataset);
   const Dataset again = read_dataset(folder / "new/dataset");
   CHECK(again.source == dataset.source);
@@ -103,6 +103,8 @@ TEST_CASE("What is written reads back, whatever its texts hold") {
   REQUIRE(again.runs.size() == 2);
   CHECK(again.runs[0].manoeuvre == "square");
   CHECK(again.runs[1].world == "boxes");
+  CHECK(again.runs[0].fault.empty());
+  CHECK(again.runs[1].fault == dataset.runs[1].fault);
   CHECK_FALSE(std::filesystem::exists(folder / "new/dataset/dataset.toml.part"));
 }
 
