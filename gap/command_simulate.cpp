@@ -2,15 +2,21 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 #include "gap/commands.hpp"
+#include "gap/option_checks.hpp"
 #include "gap/physics_settings.hpp"
 #include "gap/simulate.hpp"
 
 namespace kenaf::gap {
 namespace {
+
+constexpr std::uint64_t kMostJobs = 1000, kMostRepeats = 100000;
+constexpr double kLargestScale = 1000;
 
 // Throws RunsWentWrong where a run has a fault.
 void print(const SimulatedDataset& dataset) {
@@ -50,32 +56,38 @@ void add_simulate_command(CLI::App& program) {
   };
   command->add_option("--robot", request.robot, "a shipped name or a TOML file")->capture_default_str();
   command->add_option("--world", request.world, "a shipped name or an SDF file [each manoeuvre's own]");
-  one_word_each(command->add_option("--manoeuvre", request.manoeuvres,
-                                    "a shipped name, a TOML file, or replay:FILE.csv; may be given several times"),
-                "M")
-      ->required();
+  one_word_each(
+      command->add_option("--manoeuvre", request.manoeuvres,
+                          "a shipped name, a TOML file, or replay:FILE.csv; required, may be given several times"),
+      "M");
   one_word_each(command->add_option("--effect", request.effects, "switches an effect on; may be given several times"),
                 "NAME:PARAMETER=VALUE");
   one_word_each(command->add_option("--physics", options->physics,
                                     "time_step_s, solver_iterations, contact_stiffness_npm or contact_damping_nspm"),
                 "KEY=VALUE");
-  command->add_option("--repeats", request.repeats, "of each manoeuvre")->capture_default_str();
-  command
-      ->add_option("--noise", request.noise_scale, "scales the noise of all sensors; 0: exact")
-
+  command->add_option("--repeats", request.repeats, "of each manoeuvre")
+      ->check(whole_number(kMostRepeats))
+      ->capture_default_str();
+  command->add_option("--noise", request.noise_scale, "scales the noise of all sensors; 0: exact")
+      ->check(number_in(0, kLargestScale))
       ->capture_default_str();
   command
       ->add_option("--scatter", request.scatter_scale,
                    "scales how start poses differ; 1: 5 mm in x and y, 0.01 rad in yaw; 0: all alike")
-
+      ->check(number_in(0, kLargestScale))
       ->capture_default_str();
-  command->add_option("--seed", request.seed, "of noise and scatter")->capture_default_str();
-  command->add_option("--jobs", request.jobs, "threads; 0: one a core")->capture_default_str();
-  command->add_option("--out", request.out, "folder of the dataset; must be empty or not there")
-      ->required()
+  command->add_option("--seed", request.seed, "of noise and scatter")
+      ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
+      ->capture_default_str();
+  command->add_option("--jobs", request.jobs, "threads; 0: one a core")
+      ->check(whole_number(kMostJobs))
+      ->capture_default_str();
+  command->add_option("--out", request.out, "folder of the dataset; must be empty or not there; required")
       ->type_name("DIR");
   command->add_flag("--force", request.force, "write into a folder that is not empty; replaces files of the same name");
   command->callback([options] {
+    if (options->request.manoeuvres.empty()) throw CLI::RequiredError("--manoeuvre");
+    if (options->request.out.empty()) throw CLI::RequiredError("--out");
     for (const std::string& assignment : options->physics) set_physics(options->request.physics, assignment);
     print(simulate_dataset(options->request));
   });

@@ -5,8 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <map>
 #include <stdexcept>
+#include <system_error>
 
 #include "gap/parallel.hpp"
 #include "gap/physics_settings.hpp"
@@ -37,17 +39,26 @@ std::uint64_t seed_of(std::uint64_t seed, const std::string& manoeuvre, int repe
 class PartFolder {
  public:
   PartFolder(const fs::path& out, bool force) : out_(out) {
-    if (fs::exists(out) && !fs::is_directory(out))
+    if (out.empty()) throw std::invalid_argument("no folder to write to; give one with --out");
+    std::error_code error;
+    const fs::file_status status = fs::status(out, error);
+    if (fs::exists(status) && !fs::is_directory(status))
       throw std::runtime_error(fmt::format("{}: is no folder", out.string()));
-    if (fs::exists(out) && !fs::is_empty(out) && !force)
-      throw std::runtime_error(
-          fmt::format("{}: is not empty; give another folder, or --force to write into it", out.string()));
+    if (!fs::status_known(status)) fail(out, "cannot be reached", error.value());
+    if (fs::exists(status)) {
+      const bool empty = fs::is_empty(out, error);
+      if (error) fail(out, "cannot be read", error.value());
+      if (!empty && !force)
+        throw std::runtime_error(
+            fmt::format("{}: is not empty; give another folder, or --force to write into it", out.string()));
+    }
     fs::path whole = fs::absolute(out).lexically_normal();
     if (!whole.has_filename()) whole = whole.parent_path();  // "runs/" is "runs"
     out_ = whole;
-    fs::create_directories(out_.parent_path());
+    fs::create_directories(out_.parent_path(), error);
+    if (error) fail(out, "cannot be made", error.value());
     std::string name = out_.string() + ".part-XXXXXX";
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(fmt::format("{}: cannot be made", name));
+    if (::mkdtemp(name.data()) == nullptr) fail(out, "cannot be made", errno);
     part_ = name;
     fs::permissions(part_,
                     fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read | fs::perms::others_exec,
@@ -77,6 +88,10 @@ class PartFolder {
   }
 
  private:
+  [[noreturn]] static void fail(const fs::path& folder, std::string_view what, int error) {
+    throw std::runtime_error(fmt::format("{}: {}: {}", folder.string(), what, std::generic_category().message(error)));
+  }
+
   fs::path out_, part_;
 };
 

@@ -1,14 +1,27 @@
 #include "physics/description_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <cerrno>
 #include <fstream>
 #include <sstream>
+#include <system_error>
+#include <vector>
 
 #include "physics/robot_description.hpp"
 #include "protocol/data_files.hpp"
 
 namespace kenaf::physics {
+namespace {
+
+std::string shipped_names(const std::string& folder, std::string_view extension) {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& path : list_data_files(folder, extension)) names.push_back(path.stem().string());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
 
 DescriptionFile read_description_file(std::string_view kind, const std::string& name_or_path,
                                       std::string_view extension) {
@@ -16,15 +29,16 @@ DescriptionFile read_description_file(std::string_view kind, const std::string& 
   const std::filesystem::path path = find_data_file(folder, name_or_path, extension);
   if (path.empty())
     throw DescriptionError(
-        fmt::format("{} \"{}\": no such description; give the name of a file in {}/ without its ending, or the path of "
-                    "a file that ends in {}",
-                    kind, name_or_path, folder, extension));
+        fmt::format("{0} \"{1}\": no such {0}; give the path of a file that ends in {2}, or one of {3}", kind,
+                    name_or_path, extension, shipped_names(folder, extension)));
+  errno = 0;
   std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in || text.fail())
+  in.peek();
+  if (!in.is_open() || in.bad())
     throw DescriptionError(
-        fmt::format("{}: cannot be read; check that the file exists and its permissions", path.string()));
+        fmt::format("{}: cannot be read: {}", path.string(), std::generic_category().message(errno)));
+  std::ostringstream text;
+  if (in) text << in.rdbuf();  // an empty file has nothing to be read
   return {path.string(), text.str()};
 }
 

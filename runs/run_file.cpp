@@ -129,6 +129,7 @@ Run read_run(const std::filesystem::path& file) {
 Run parse_run(std::string_view text, std::string_view name_for_errors) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   Place place{name_for_errors, 1};
+  if (only_blanks(text)) fail(place, 1, "the file is empty; its first line names the columns, t_s among them");
   std::vector<Cell> cells;
   split(take_line(text), cells);
   const std::size_t time_column = check_columns(cells, place);

@@ -84,6 +84,7 @@ double wrapped(double angle_rad) {
 
 PoseFrames pose_frames(const runs::Run& run) {
   const auto t_s = run.column("t_s"), x_m = run.column("x_m"), z_m = run.column("z_m");
+  if (run.row_count() == 0) return {{}, "has no rows"};
   if (x_m.empty() || z_m.empty()) {
     return {{},
             x_m.empty() && z_m.empty() ? "x_m and z_m were not measured"

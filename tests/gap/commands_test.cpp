@@ -52,4 +52,27 @@ TEST_CASE("Without a command, or with one that is not there, it says so and ends
   CHECK(outcome.status == 2);
   CHECK_THAT(outcome.error, Catch::Contains("effcts"));
   CHECK(kenaf_gap(folder, "--help").status == 0);
+  CHECK_THAT(kenaf_gap(folder, "--version").out, Catch::StartsWith("0."));
+}
+
+TEST_CASE("Whoever mistypes is told by the program, which word, and where to look") {
+  const TemporaryFolder folder;
+  for (const auto& [arguments, words] : {std::pair{"effects more", "not expected: more\nkenaf-gap effects --help"},
+                                         {"simulate --manoeuver drop --out o", "--manoeuver"},
+                                         {"simulate --out o", "--manoeuvre is required"},
+                                         {"compare o", "SIM is required"}}) {
+    INFO(arguments);
+    const Outcome outcome = kenaf_gap(folder, arguments);
+    CHECK(outcome.status == 2);
+    CHECK_THAT(outcome.error, Catch::StartsWith("kenaf-gap: ") && Catch::Contains(words));
+  }
+}
+
+TEST_CASE("A list that cannot be written is no success") {
+  const TemporaryFolder folder;
+  for (const std::string list : {"effects", "effects --json", "manoeuvres"}) {
+    const std::string command = "'" KENAF_GAP "' " + list + " >/dev/full 2>'" + (folder / "error.txt").string() + "'";
+    CHECK(WEXITSTATUS(std::system(command.c_str())) == 2);
+    CHECK_THAT(test::read_file(folder / "error.txt"), Catch::Contains("standard output cannot be written"));
+  }
 }

@@ -172,10 +172,15 @@ TEST_CASE("Bad input: status 2, the place in words, and nothing written") {
   };
   CHECK_THAT(refused("real nowhere --out out"), Catch::Contains("nowhere/dataset.toml: cannot be opened"));
   CHECK_THAT(refused("real sim"), Catch::Contains("--out"));
-  CHECK_THAT(refused("real --out out"), Catch::Contains("sim"));
+  CHECK_THAT(refused("real --out out"), Catch::Contains("SIM is required"));
   CHECK_THAT(refused("real sim --out out --band -1"), Catch::Contains("--band"));
+  CHECK_THAT(refused("real sim --out out --start nan"), Catch::Contains("--start: \"nan\" is no number from 0"));
   write_file(folder / "sim/run-0.csv", "t_s,x_m,z_m\n0,0,0\n1,oops,0\n");
   CHECK_THAT(refused("real sim --out out"), Catch::Contains("sim/run-0.csv:3:3: 'oops'"));
+  write_file(folder / "sim/run-0.csv", "");
+  CHECK_THAT(refused("real sim --out out"), Catch::Contains("sim/run-0.csv:1:1: the file is empty"));
+  write_file(folder / "sim/run-0.csv", "t_s,x_m,z_m\n");
+  CHECK_THAT(refused("real sim --out out"), Catch::Contains("sim run-0.csv (drive): has no rows"));
   write_file(folder / "sim/dataset.toml", "format = 3\n");
   CHECK_THAT(refused("real sim --out out"), Catch::Contains("sim/dataset.toml:1:10:"));
 }

@@ -189,6 +189,7 @@ TEST_CASE("A run whose robot leaves the world: status 1, named, marked in the da
 TEST_CASE("Bad input: exit status 2, what is wrong in words, and no folder") {
   const TemporaryFolder folder;
   write_file(folder / "bad.toml", kShort + "speed = 3\n");
+  write_file(folder / "empty.toml", "");
   struct Case {
     std::string arguments, words;
   };
@@ -196,9 +197,19 @@ TEST_CASE("Bad input: exit status 2, what is wrong in words, and no folder") {
                         {"--manoeuvre drop", "--out"},
                         {"--manoeuvre dorp --out data", "manoeuvre \"dorp\": no such manoeuvre"},
                         {"--manoeuvre ./bad.toml --out data", "./bad.toml:8:1: manoeuvre[0].speed is not a known key"},
-                        {"--manoeuvre drop --robot kenoff --out data", "kenoff"},
-                        {"--manoeuvre drop --world nowhere --out data", "nowhere"},
-                        {"--manoeuvre drop --effect mass:scale=9 --out data", "out of range"},
+                        {"--manoeuvre empty.toml --out data", "empty.toml:1:1: manoeuvre is missing"},
+                        {"--manoeuvre drop --robot kenoff --out data",
+                         "no such robot; give the path of a file that ends "
+                         "in .toml, or one of kenaf,"},
+                        {"--manoeuvre drop --robot none.toml --out data", "none.toml: cannot be read: No such file"},
+                        {"--manoeuvre drop --robot ./ --out data", "./: cannot be read: Is a directory"},
+                        {"--manoeuvre drop --robot empty.toml --out data", "empty.toml:1:1: usarsim_class is missing"},
+                        {"--manoeuvre drop --world nowhere --out data", "world \"nowhere\": no such world"},
+                        {"--manoeuvre drop --effect mass:scale=9 --out data",
+                         "scale = 9 is out of range; it goes from "
+                         "0.5 to 2\n"},
+                        {"--manoeuvre drop --effect mass:scale=nan --out data", "out of range"},
+                        {"--manoeuvre drop --effect mass:scale=1,5 --out data", "scale = \"1,5\" is no number"},
                         {"--manoeuvre drop --effect gravity --out data", "NAME:PARAMETER=VALUE"},
                         {"--manoeuvre drop --physics time_step_s=0.003 --out data", "time_step_s = 0.003"},
                         {"--manoeuvre drop --physics time_step_s=1 --out data", "out of range"},
@@ -206,9 +217,14 @@ TEST_CASE("Bad input: exit status 2, what is wrong in words, and no folder") {
                         {"--manoeuvre drop --physics solver_iterations=2.5 --out data", "no whole number"},
                         {"--manoeuvre drop --physics gravity=1 --out data", "contact_stiffness_npm"},
                         {"--manoeuvre drop --repeats 0 --out data", "repeats"},
-                        {"--manoeuvre drop --noise -1 --out data", "noise and scatter must be from 0"},
-                        {"--manoeuvre drop --scatter nan --out data", "noise and scatter"},
+                        {"--manoeuvre drop --noise -1 --out data", "--noise: \"-1\" is no number from 0 to 1000"},
+                        {"--manoeuvre drop --scatter nan --out data", "--scatter: \"nan\""},
+                        {"--manoeuvre drop --seed -1 --out data", "--seed: \"-1\" is no whole number"},
+                        {"--manoeuvre drop --seed 99999999999999999999 --out data", "is no whole number"},
+                        {"--manoeuvre drop --jobs 1.5 --out data", "--jobs: \"1.5\" is no whole number"},
                         {"--manoeuvre replay:none.csv --out data", "none.csv: cannot be opened"},
+                        {"--manoeuvre replay:empty.toml --out data", "empty.toml:1:1: the file is empty"},
+                        {"--manoeuvre drop --out short.toml/data", "short.toml/data: cannot be made: Not a directory"},
                         {"--manoeuvre drop --out short.toml", "short.toml: is no folder"}}) {
     INFO(c.arguments);
     const Outcome outcome = simulate(folder, c.arguments);

@@ -53,7 +53,7 @@ TEST_CASE("A last line without its end is a row; a header alone is a run without
 }
 
 TEST_CASE("What is refused of a run, with its line and column") {
-  CHECK_THAT(refusal_of(""), Catch::StartsWith("run.csv:1:1: a column without a name"));
+  CHECK_THAT(refusal_of(""), Catch::StartsWith("run.csv:1:1: the file is empty"));
   CHECK_THAT(refusal_of("x_m,y_m\n"), Catch::StartsWith("run.csv:1:1: no column t_s"));
   CHECK_THAT(refusal_of("t_s,x_m,x_m\n"), Catch::StartsWith("run.csv:1:9: the column 'x_m' is named twice"));
   CHECK_THAT(refusal_of("t_s,,x_m\n"), Catch::StartsWith("run.csv:1:5: a column without a name"));
