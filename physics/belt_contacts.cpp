@@ -109,13 +109,14 @@ class BoxTouches {
     }
 
     const Slices s = slices(belt_, kBoxSlices);
-    for (int k = 0; k < s.count; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      faces(static_cast<std::uint32_t>(k), s.y[i], s.share[i]);
-      edges(static_cast<std::uint32_t>(k), s.y[i], s.share[i]);
+    faces(s);
+    for (std::uint32_t e = 0; e < kBoxEdges; ++e) {
+      const BoxEdge edge = box_edge(e);
+      if (!near(corner_[edge.from], corner_[edge.to])) continue;
+      edge_in_slices(edge, e, s);
+      inner_edge(edge, e, s);
     }
     corners();
-    inner_edges(s);
     if (overlap_ < kDeepest_m && overlap_ < depth_in_plane()) side();
   }
 
@@ -123,6 +124,15 @@ class BoxTouches {
   void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar share, bool edge, std::uint32_t id) {
     // what is deeper along the slice than across it is a wall that the belt's side face meets
     if (-gap <= overlap_) out_.push_back({p, normal, gap, share, edge, id});
+  }
+
+  // How far the belt reaches below a face of axis j; `flat` is the part of the face's normal in the slices, unit
+  // length.
+  btScalar depth_below(int j, const btVector3& normal, const btVector3& flat) const {
+    const btScalar lowest =
+        std::min(normal.dot(furthest_on_disc(belt_, 0, -flat)), normal.dot(furthest_on_disc(belt_, 1, -flat))) -
+        btFabs(normal.y()) * belt_.half_width;
+    return box_.half[j] + normal.dot(box_.center) - lowest;
   }
 
   // How far the belt would have to go to be free of the box without leaving its slices; negative: it is free.
@@ -134,31 +144,44 @@ class BoxTouches {
         const btScalar in_plane = btSqrt(normal.x() * normal.x() + normal.z() * normal.z());
         if (in_plane < kSideways) continue;
         const btVector3 flat(normal.x() / in_plane, 0, normal.z() / in_plane);
-        const btScalar lowest = std::min(normal.dot(furthest_on_disc(belt_, 0, -flat)),
-                                         normal.dot(furthest_on_disc(belt_, 1, -flat))) -
-                                btFabs(normal.y()) * belt_.half_width;
-        least = std::min(least, box_.half[j] + normal.dot(box_.center) - lowest);
+        least = std::min(least, depth_below(j, normal, flat));
       }
     }
     return least;
   }
 
-  void faces(std::uint32_t slice, btScalar y, btScalar slice_share) {
+  void faces(const Slices& s) {
     for (int j = 0; j < 3; ++j) {
       for (const int sign : {-1, 1}) {
         const btVector3 normal = box_.axes.getColumn(j) * sign;
         const btScalar in_plane = btSqrt(normal.x() * normal.x() + normal.z() * normal.z());
         if (in_plane < kSideways) continue;
         const btVector3 flat(normal.x() / in_plane, 0, normal.z() / in_plane);
+        if (depth_below(j, normal, flat) < -kTouching_m) continue;
         const std::uint32_t face = static_cast<std::uint32_t>(2 * j + (sign > 0));
-        outline_points(belt_, flat, [&](std::uint32_t place, btVector3 p, btScalar share) {
-          p.setY(y);
-          const btVector3 from_center = p - box_.center;
-          const btScalar gap = normal.dot(from_center) - box_.half[j];
-          if (gap > kTouching_m || gap < -kDeepest_m || !in_slabs(box_, from_center, j)) return;
-          add(p - normal * (gap / 2), normal, gap, share * slice_share, false, feature(face, slice, place));
+        outline_points(belt_, flat, [&](std::uint32_t place, const btVector3& p, btScalar share) {
+          face_points(j, normal, face, s, place, p, share);
         });
       }
+    }
+  }
+
+  // A point of the outline, in each slice. Where the face goes on across the whole belt, the edges of the belt carry
+  // all, as on a plane.
+  void face_points(int j, const btVector3& normal, std::uint32_t face, const Slices& s, std::uint32_t place,
+                   btVector3 p, btScalar share) {
+    const auto over = [&](std::size_t k) {
+      p.setY(s.y[k]);
+      return in_slabs(box_, p - box_.center, j);
+    };
+    const bool whole = over(0) && over(2);
+    for (std::size_t k = 0; k < kBoxSlices; ++k) {
+      if (whole ? k == 1 : !over(k)) continue;
+      p.setY(s.y[k]);
+      const btScalar gap = normal.dot(p - box_.center) - box_.half[j];
+      if (gap > kTouching_m || gap < -kDeepest_m) continue;
+      add(p - normal * (gap / 2), normal, gap, share * (whole ? 1 : s.share[k]), false,
+          feature(face, static_cast<std::uint32_t>(k), place));
     }
   }
 
@@ -172,15 +195,23 @@ class BoxTouches {
     add(p + at.outward * (at.distance / -2), normal, at.distance, share, true, id);
   }
 
-  void edges(std::uint32_t slice, btScalar y, btScalar share) {
-    for (std::uint32_t e = 0; e < kBoxEdges; ++e) {
-      const BoxEdge edge = box_edge(e);
-      const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
-      const btScalar rise = p1.y() - p0.y();
-      if (btFabs(rise) < 1e-9) continue;
-      const btScalar t = (y - p0.y()) / rise;
+  // Whether a line reaches into the box that holds the belt.
+  bool near(const btVector3& p0, const btVector3& p1) const {
+    const btScalar r = std::max(belt_.radius[0], belt_.radius[1]) + kTouching_m;
+    return std::max(p0.x(), p1.x()) >= -belt_.radius[0] - kTouching_m &&
+           std::min(p0.x(), p1.x()) <= belt_.length + belt_.radius[1] + kTouching_m && std::max(p0.z(), p1.z()) >= -r &&
+           std::min(p0.z(), p1.z()) <= r && std::max(p0.y(), p1.y()) >= -belt_.half_width &&
+           std::min(p0.y(), p1.y()) <= belt_.half_width;
+  }
+
+  void edge_in_slices(const BoxEdge& edge, std::uint32_t e, const Slices& s) {
+    const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
+    const btScalar rise = p1.y() - p0.y();
+    if (btFabs(rise) < 1e-9) return;
+    for (std::size_t k = 0; k < kBoxSlices; ++k) {
+      const btScalar t = (s.y[k] - p0.y()) / rise;
       if (t < 0 || t > 1) continue;
-      edge_point(edge, p0 + (p1 - p0) * t, share, feature(6 + e, slice, 0));
+      edge_point(edge, p0 + (p1 - p0) * t, s.share[k], feature(6 + e, static_cast<std::uint32_t>(k), 0));
     }
   }
 
@@ -199,37 +230,30 @@ class BoxTouches {
   }
 
   // An edge that stays between two slices: where it is deepest.
-  void inner_edges(const Slices& s) {
-    for (std::uint32_t e = 0; e < kBoxEdges; ++e) {
-      const BoxEdge edge = box_edge(e);
-      const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
-      const btScalar low = std::min(p0.y(), p1.y()), high = std::max(p0.y(), p1.y());
-      bool seen = high < -belt_.half_width || low > belt_.half_width;
-      for (int k = 0; k < s.count; ++k) {
-        const btScalar y = s.y[static_cast<std::size_t>(k)];
-        seen = seen || (low <= y && y <= high && high - low > 1e-9);
+  void inner_edge(const BoxEdge& edge, std::uint32_t e, const Slices& s) {
+    const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
+    const btScalar low = std::min(p0.y(), p1.y()), high = std::max(p0.y(), p1.y());
+    for (std::size_t k = 0; k < kBoxSlices; ++k)
+      if (low <= s.y[k] && s.y[k] <= high && high - low > 1e-9) return;
+    // the distance to a convex outline has one minimum along a line
+    const auto distance = [&](btScalar t) {
+      const btVector3 p = p0 + (p1 - p0) * t;
+      return distance_to_outline(belt_, p.x(), p.z()).distance;
+    };
+    btScalar from = 0, to = 1;
+    constexpr btScalar kGolden = 0.6180339887498949;
+    btScalar a = to - kGolden * (to - from), b = from + kGolden * (to - from);
+    btScalar at_a = distance(a), at_b = distance(b);
+    for (int i = 0; i < 24; ++i) {
+      if (at_a < at_b) {
+        to = b, b = a, at_b = at_a;
+        a = to - kGolden * (to - from), at_a = distance(a);
+      } else {
+        from = a, a = b, at_a = at_b;
+        b = from + kGolden * (to - from), at_b = distance(b);
       }
-      if (seen) continue;
-      // the distance to a convex outline has one minimum along a line
-      const auto distance = [&](btScalar t) {
-        const btVector3 p = p0 + (p1 - p0) * t;
-        return distance_to_outline(belt_, p.x(), p.z()).distance;
-      };
-      btScalar from = 0, to = 1;
-      constexpr btScalar kGolden = 0.6180339887498949;
-      btScalar a = to - kGolden * (to - from), b = from + kGolden * (to - from);
-      btScalar at_a = distance(a), at_b = distance(b);
-      for (int i = 0; i < 24; ++i) {
-        if (at_a < at_b) {
-          to = b, b = a, at_b = at_a;
-          a = to - kGolden * (to - from), at_a = distance(a);
-        } else {
-          from = a, a = b, at_a = at_b;
-          b = from + kGolden * (to - from), at_b = distance(b);
-        }
-      }
-      edge_point(edge, p0 + (p1 - p0) * ((from + to) / 2), 1, feature(19, 0, e));
     }
+    edge_point(edge, p0 + (p1 - p0) * ((from + to) / 2), 1, feature(19, 0, e));
   }
 
   // The belt's side face against the box: instead of all that was found along the slices.

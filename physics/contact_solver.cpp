@@ -33,9 +33,10 @@ btVector3 belt_direction(const Surface& surface, const btCollisionObject& body, 
 // the edge at an angle b from the belt's normal, cos b = 1 - height / radius, and holds up to tan(friction angle + b).
 btScalar grip_at_edge(btScalar mu, btScalar lug_height_m) {
   if (lug_height_m <= 0) return mu;
-  const btScalar lug_angle = std::acos(1 - std::min(lug_height_m / kEdgeRadius_m, btScalar(1)));
-  const btScalar angle = std::atan(mu) + lug_angle;
-  return angle < std::atan(kMostGrip) ? std::tan(angle) : kMostGrip;
+  const btScalar cosine = 1 - std::min(lug_height_m / kEdgeRadius_m, btScalar(1));
+  const btScalar sine = std::sqrt(1 - cosine * cosine);
+  const btScalar rise = mu * cosine + sine, run = cosine - mu * sine;
+  return rise < kMostGrip * run ? rise / run : kMostGrip;
 }
 
 // Of a belt's speed, what moves the surface.
@@ -162,6 +163,8 @@ void ContactSolver::add_contact(const Touch& touch, const btCollisionObject& a, 
   for (int k = 0; k < 2; ++k) {
     c.belt_gain_a[k] = c.belt_a ? -belt_a.dot(c.axis[k + 1]) * driving_share(*c.belt_a) : 0;
     c.belt_gain_b[k] = c.belt_b ? belt_b.dot(c.axis[k + 1]) * driving_share(*c.belt_b) : 0;
+    c.belt_push_a[k] = c.belt_a ? c.belt_gain_a[k] / c.belt_a->moving_mass_kg : 0;
+    c.belt_push_b[k] = c.belt_b ? c.belt_gain_b[k] / c.belt_b->moving_mass_kg : 0;
   }
 
   const btSolverBody& A = m_tmpSolverBodyPool[body_a];
@@ -174,6 +177,7 @@ void ContactSolver::add_contact(const Touch& touch, const btCollisionObject& a, 
   A.getVelocityInLocalPointNoDelta(r_a, velocity_a);
   B.getVelocityInLocalPointNoDelta(r_b, velocity_b);
   for (int k = 0; k < 3; ++k) {
+    c.push_a[k] = c.axis[k] * c.inverse_mass_a;
     c.arm_a[k] = r_a.cross(c.axis[k]);
     c.turn_a[k] = A.m_originalBody->getInvInertiaTensorWorld() * c.arm_a[k];
     if (c.b_moves) {
@@ -188,8 +192,7 @@ void ContactSolver::add_contact(const Touch& touch, const btCollisionObject& a, 
     if (c.b_moves) k += c.arm_b[i].dot(c.turn_b[j]);
     if (i == j) k += c.inverse_mass_a + c.inverse_mass_b;
     if (i > 0 && j > 0) {
-      if (c.belt_a) k += c.belt_gain_a[i - 1] * c.belt_gain_a[j - 1] / c.belt_a->moving_mass_kg;
-      if (c.belt_b) k += c.belt_gain_b[i - 1] * c.belt_gain_b[j - 1] / c.belt_b->moving_mass_kg;
+      k += c.belt_gain_a[i - 1] * c.belt_push_a[j - 1] + c.belt_gain_b[i - 1] * c.belt_push_b[j - 1];
     }
     return k;
   };
@@ -203,15 +206,19 @@ void ContactSolver::add_contact(const Touch& touch, const btCollisionObject& a, 
   c.give_velocity = -stiffness * touch.gap_m / step_stiffness;
   c.normal_mass = 1 / (response(0, 0) + c.softness);
 
-  for (btScalar& mu : c.mu) mu = std::max(mu, kLeastFriction);
+  for (std::size_t k = 0; k < 2; ++k) {
+    c.mu[k] = std::max(c.mu[k], kLeastFriction);
+    c.inverse_mu[k] = 1 / c.mu[k];
+  }
   const btScalar k11 = response(1, 1), k12 = response(1, 2), k22 = response(2, 2);
-  const btScalar determinant = k11 * k22 - k12 * k12;
-  c.stick[0] = k22 / determinant;
-  c.stick[1] = -k12 / determinant;
-  c.stick[2] = k11 / determinant;
+  const btScalar inverse_determinant = 1 / (k11 * k22 - k12 * k12);
+  c.stick[0] = k22 * inverse_determinant;
+  c.stick[1] = -k12 * inverse_determinant;
+  c.stick[2] = k11 * inverse_determinant;
   // largest eigenvalue, with both directions scaled by their friction
   const btScalar s11 = k11 * c.mu[0] * c.mu[0], s12 = k12 * c.mu[0] * c.mu[1], s22 = k22 * c.mu[1] * c.mu[1];
-  const btScalar largest = (s11 + s22) / 2 + std::hypot((s11 - s22) / 2, s12);
+  const btScalar difference = (s11 - s22) / 2;
+  const btScalar largest = (s11 + s22) / 2 + std::sqrt(difference * difference + s12 * s12);
   c.slide_step = 1 / largest;
   c.normal_to_slip[0] = response(1, 0);
   c.normal_to_slip[1] = response(2, 0);
@@ -222,22 +229,25 @@ void ContactSolver::add_contact(const Touch& touch, const btCollisionObject& a, 
   c.impulse[2] = kept * *c.kept[2];
 }
 
-void ContactSolver::apply(Contact& c, const btScalar change[3]) {
-  const btVector3 impulse = c.axis[0] * change[0] + c.axis[1] * change[1] + c.axis[2] * change[2];
+// Inline: as a call it makes a step 8 % longer.
+[[gnu::always_inline]] inline void ContactSolver::apply(Contact& c, const btScalar change[3]) {
   btSolverBody& A = m_tmpSolverBodyPool[c.body_a];
-  A.internalGetDeltaLinearVelocity() += impulse * c.inverse_mass_a;
+  A.internalGetDeltaLinearVelocity() += c.push_a[0] * change[0] + c.push_a[1] * change[1] + c.push_a[2] * change[2];
   A.internalGetDeltaAngularVelocity() += c.turn_a[0] * change[0] + c.turn_a[1] * change[1] + c.turn_a[2] * change[2];
   if (c.b_moves) {
     btSolverBody& B = m_tmpSolverBodyPool[c.body_b];
+    const btVector3 impulse = c.axis[0] * change[0] + c.axis[1] * change[1] + c.axis[2] * change[2];
     B.internalGetDeltaLinearVelocity() -= impulse * c.inverse_mass_b;
     B.internalGetDeltaAngularVelocity() -= c.turn_b[0] * change[0] + c.turn_b[1] * change[1] + c.turn_b[2] * change[2];
   }
-  if (c.belt_a) c.belt_a->load_ns += change[0];
-  if (c.belt_b) c.belt_b->load_ns += change[0];
-  if (c.belt_a)
-    c.belt_a->speed_mps += (c.belt_gain_a[0] * change[1] + c.belt_gain_a[1] * change[2]) / c.belt_a->moving_mass_kg;
-  if (c.belt_b)
-    c.belt_b->speed_mps += (c.belt_gain_b[0] * change[1] + c.belt_gain_b[1] * change[2]) / c.belt_b->moving_mass_kg;
+  if (c.belt_a) {
+    c.belt_a->load_ns += change[0];
+    c.belt_a->speed_mps += c.belt_push_a[0] * change[1] + c.belt_push_a[1] * change[2];
+  }
+  if (c.belt_b) {
+    c.belt_b->load_ns += change[0];
+    c.belt_b->speed_mps += c.belt_push_b[0] * change[1] + c.belt_push_b[1] * change[2];
+  }
 }
 
 void ContactSolver::warm_start(Contact& c) {
@@ -276,13 +286,13 @@ btScalar ContactSolver::solve_contact(Contact& c) {
     // sticking: the impulse that stops the slip, if friction can give it
     p[0] = c.impulse[1] - c.stick[0] * slip[0] - c.stick[1] * slip[1];
     p[1] = c.impulse[2] - c.stick[1] * slip[0] - c.stick[2] * slip[1];
-    const btScalar along = p[0] / c.mu[0], across = p[1] / c.mu[1];
+    const btScalar along = p[0] * c.inverse_mu[0], across = p[1] * c.inverse_mu[1];
     if (along * along + across * across > normal * normal) {
       // sliding: a step against the slip, then back onto the limit ellipse. In coordinates scaled by the friction
       // the ellipse is a circle, and the point where this rests is the one that dissipates most: the impulse
       // points against the slip (isotropic), or along the ellipse's normal there.
-      btScalar q0 = c.impulse[1] / c.mu[0] - c.slide_step * c.mu[0] * slip[0];
-      btScalar q1 = c.impulse[2] / c.mu[1] - c.slide_step * c.mu[1] * slip[1];
+      const btScalar q0 = c.impulse[1] * c.inverse_mu[0] - c.slide_step * c.mu[0] * slip[0];
+      const btScalar q1 = c.impulse[2] * c.inverse_mu[1] - c.slide_step * c.mu[1] * slip[1];
       const btScalar length = std::sqrt(q0 * q0 + q1 * q1);
       const btScalar scale = length > normal ? normal / length : 1;
       p[0] = q0 * scale * c.mu[0];

@@ -29,17 +29,19 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
     int body_a, body_b;  // in the solver's pool
     bool b_moves;
     btVector3 axis[3];
+    btVector3 push_a[3];             // inverse mass * axis
     btVector3 arm_a[3], arm_b[3];    // r x axis
     btVector3 turn_a[3], turn_b[3];  // inverse inertia * arm
     btScalar inverse_mass_a, inverse_mass_b;
     Belt *belt_a, *belt_b;
-    btScalar belt_gain_a[2], belt_gain_b[2];  // slip along, across for a belt's speed
+    btScalar belt_gain_a[2], belt_gain_b[2];  // slip along, across for a belt's speed; 0 without a belt
+    btScalar belt_push_a[2], belt_push_b[2];  // belt's speed for a unit impulse along, across
     btScalar free_velocity[3];                // before any impulse of this step
     btScalar normal_mass, softness, give_velocity;
     btScalar normal_to_slip[2];  // slip along, across for a unit normal impulse
     btScalar stick[3];           // inverse of the 2 x 2 matrix from friction impulse to slip: 11, 12, 22
     btScalar slide_step;
-    btScalar mu[2];
+    btScalar mu[2], inverse_mu[2];
     btScalar impulse[3];
   };
 
