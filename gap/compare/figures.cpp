@@ -121,7 +121,7 @@ Chart position_error_figure(const ComparedRun& run, double width_px) {
   const double matched_mm = kMillimetres * run.errors.matched_summary.position_m.mean();
   const double same_time_mm = kMillimetres * run.errors.same_time_summary.position_m.mean();
   chart.lines = {error_line(run, run.errors.same_time, &FrameError::position_m, kMillimetres, Ink::faint, Stroke::solid,
-                            fmt::format("at the same time, mean {} mm", number(same_time_mm, 1))),
+                            fmt::format("same time, mean {} mm", number(same_time_mm, 1))),
                  mean_line(run, same_time_mm, Ink::faint),
                  error_line(run, run.errors.matched, &FrameError::position_m, kMillimetres, Ink::real, Stroke::solid,
                             fmt::format("matched, mean {} mm", number(matched_mm, 1))),

@@ -19,7 +19,7 @@ constexpr double kTitleBase_px = 16, kLegendBase_px = 38, kLegendSample_px = 24;
 constexpr double kLetter_px = 7.5;  // about the width of a letter at the font size of 13
 constexpr double kPixelsPerTick_x = 60, kPixelsPerTick_y = 30;
 constexpr double kTolerance_px = 0.15;                        // by which a drawn line may differ from its points
-constexpr double kLeastHeight_px = 90, kMostHeight_px = 520;  // of the plot, where the scales are equal
+constexpr double kLeastHeight_px = 90, kMostHeight_px = 340;  // of the plot, where the scales are equal
 
 std::string_view ink_class(Ink ink) {
   constexpr std::string_view kClasses[] = {"real", "sim", "third", "fourth", "faint", "ground"};

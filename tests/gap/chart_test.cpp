@@ -103,6 +103,6 @@ TEST_CASE("With equal scales a metre is as long in both directions") {
   CHECK_THAT(to_svg(chart), Catch::Contains("d=\"M0.0 250.0L1000.0 0.0\""));
 
   chart.lines = {{{{0, 0}, {1, 4}}, Ink::real, Stroke::solid, ""}};  // high: still to scale, about its middle
-  CHECK_THAT(to_svg(chart), Catch::Contains("d=\"M435.0 520.0L565.0 0.0\""));
-  CHECK(attribute(to_svg(chart), "height") == Approx(520 + 92));
+  CHECK_THAT(to_svg(chart), Catch::Contains("d=\"M457.5 340.0L542.5 0.0\""));
+  CHECK(attribute(to_svg(chart), "height") == Approx(340 + 92));
 }
