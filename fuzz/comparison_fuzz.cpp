@@ -1,0 +1,40 @@
+// Any two runs, one after the other with a zero byte between, can be compared or it is said why not; the report of
+// those that can is whole.
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "gap/compare/report.hpp"
+
+using namespace kenaf;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::size_t between = text.find('\0');
+  if (between == text.npos || size > 8192) return 0;
+  gap::PoseFrames real, sim;
+  try {
+    real = gap::pose_frames(runs::parse_run(text.substr(0, between), "real"));
+    sim = gap::pose_frames(runs::parse_run(text.substr(between + 1), "sim"));
+  } catch (const runs::RunFileError&) {
+    return 0;
+  }
+  for (const gap::PoseFrames* side : {&real, &sim})
+    if (side->unusable.empty() != (side->frames.size() >= 2)) __builtin_trap();
+  if (!real.unusable.empty() || !sim.unusable.empty()) return 0;
+
+  gap::ComparedRun run{};
+  run.real_world = "none.sdf";  // said on the page; one that is there would only be slow
+  run.start_offset = gap::align_start(real.frames, sim.frames, 0.5);
+  run.matching = gap::match_paths(gap::vertical_path(real.frames), gap::vertical_path(sim.frames));
+  run.errors = gap::run_errors(real.frames, sim.frames, run.matching.pairs);
+  run.real = real.frames;
+  run.sim = sim.frames;
+  if (!(run.matching.cost_m >= 0) || run.errors.matched.size() != run.real.size()) __builtin_trap();
+  gap::Comparison comparison{};
+  comparison.runs.push_back(run);
+  if (!gap::comparison_html(comparison).ends_with("</html>\n") || gap::comparison_json(comparison).empty() ||
+      gap::comparison_text(comparison).empty() || gap::matched_csv(run).empty())
+    __builtin_trap();
+  return 0;
+}

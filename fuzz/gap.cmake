@@ -1,0 +1,3 @@
+foreach(fuzzer assignment_fuzz comparison_fuzz)
+  kenaf_fuzzer(${fuzzer} SOURCE ${CMAKE_CURRENT_LIST_DIR}/${fuzzer}.cpp LIBRARIES kenaf_gap)
+endforeach()

@@ -1,0 +1,1 @@
+kenaf_fuzzer(heartbeat_fuzz SOURCE heartbeat_fuzz.cpp LIBRARIES kenaf_real_transport)
