@@ -11,8 +11,8 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr std::size_t kSpare = 24;     // pairs, so that a robot that meets an obstacle allocates nothing
-constexpr std::size_t kReserved = 96;  // contacts; a track on a step has about 30
+constexpr std::size_t kSpare = 96;     // pairs, so that a robot in a field of obstacles allocates nothing
+constexpr std::size_t kReserved = 48;  // contacts; a track on a step has about 20
 constexpr btScalar kFlat = 1e-4;       // sine of the angle between two triangles that are one surface
 
 const ShapeTag* tag_of(const btCollisionObjectWrapper& object) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <barrier>
+#include <chrono>
 #include <cmath>
 #include <thread>
 
@@ -18,6 +19,35 @@ double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+// A thread each on a core of its own, started at once; what each took.
+std::vector<Clocks> run_together(const EngineScene& scene, const Engine& engine, unsigned threads) {
+  const long steps = steps_of(scene);
+  std::vector<Clocks> taken(threads);
+  std::barrier start(threads);
+  std::vector<std::jthread> workers;
+  for (unsigned w = 0; w < threads; ++w)
+    workers.emplace_back([&, w] {
+      pin_to_core(w);
+      const auto runner = engine.build(scene);
+      start.arrive_and_wait();
+      const Clocks before = read_clocks();
+      for (long i = 0; i < steps; ++i) runner->step();
+      const Clocks after = read_clocks();
+      taken[w] = {after.cpu_s - before.cpu_s, after.wall_s - before.wall_s};
+    });
+  workers.clear();
+  return taken;
+}
+
+Rates medians(const std::vector<Rates>& rates) {
+  std::vector<double> by_wall, by_cpu;
+  for (const Rates& r : rates) {
+    by_wall.push_back(r.by_wall);
+    by_cpu.push_back(r.by_cpu);
+  }
+  return {median(by_wall), median(by_cpu)};
 }
 
 }  // namespace
@@ -54,42 +84,41 @@ std::vector<Speed> measure_speeds(const EngineScene& scene, const std::vector<En
   return speeds;
 }
 
-Scaling measure_scaling(const EngineScene& scene, const Engine& engine, unsigned threads, int repeats) {
-  const long steps = steps_of(scene);
-  struct Rates {
-    double by_wall, by_cpu;
+Scaling measure_scaling(const EngineScene& scene, const Engine& engine, unsigned threads, int pairs) {
+  constexpr double kDisturbed = 1.02;
+  constexpr double kPatience_s = 60;
+  struct Pair {
+    Rates one, all;
+    Rates times() const { return {all.by_wall / one.by_wall, all.by_cpu / one.by_cpu}; }
   };
-  const auto rates_of = [&](unsigned count) {
-    std::vector<Clocks> taken(count);
-    std::barrier start(count);
-    std::vector<std::jthread> workers;
-    for (unsigned w = 0; w < count; ++w)
-      workers.emplace_back([&, w] {
-        pin_to_core(w);
-        const auto runner = engine.build(scene);
-        start.arrive_and_wait();
-        const Clocks before = read_clocks();
-        for (long i = 0; i < steps; ++i) runner->step();
-        const Clocks after = read_clocks();
-        taken[w] = {after.cpu_s - before.cpu_s, after.wall_s - before.wall_s};
-      });
-    workers.clear();
-    Rates rates{};
-    for (const Clocks& t : taken) {
-      rates.by_wall += static_cast<double>(steps) / t.wall_s;
-      rates.by_cpu += static_cast<double>(steps) / t.cpu_s;
-    }
-    return rates;
-  };
-  std::vector<double> by_wall, by_cpu, one_rates, all_rates;
-  for (int repeat = 0; repeat < repeats; ++repeat) {
-    const Rates one = rates_of(1), all = rates_of(threads);
-    by_wall.push_back(all.by_wall / one.by_wall);
-    by_cpu.push_back(all.by_cpu / one.by_cpu);
-    one_rates.push_back(one.by_wall);
-    all_rates.push_back(all.by_wall);
+  std::vector<Pair> measured, undisturbed;
+  const double begun_s = read_clocks().wall_s;
+  while (static_cast<int>(undisturbed.size()) < pairs && read_clocks().wall_s - begun_s < kPatience_s) {
+    bool quiet = true;
+    const auto rates_of = [&](unsigned count) {
+      Rates rates{};
+      for (const Clocks& t : run_together(scene, engine, count)) {
+        rates.by_wall += static_cast<double>(steps_of(scene)) / t.wall_s;
+        rates.by_cpu += static_cast<double>(steps_of(scene)) / t.cpu_s;
+        quiet = quiet && t.wall_s < kDisturbed * t.cpu_s;
+      }
+      return rates;
+    };
+    const Rates one = rates_of(1);
+    measured.push_back({one, rates_of(threads)});
+    if (quiet)
+      undisturbed.push_back(measured.back());
+    else
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
-  return {median(by_wall), median(by_cpu), median(one_rates), median(all_rates)};
+  std::vector<Rates> times, ones, alls;
+  for (const Pair& pair : undisturbed.empty() ? measured : undisturbed) {
+    times.push_back(pair.times());
+    ones.push_back(pair.one);
+    alls.push_back(pair.all);
+  }
+  return {medians(times), medians(ones), medians(alls), static_cast<int>(undisturbed.size()),
+          static_cast<int>(measured.size())};
 }
 
 }  // namespace kenaf::bench

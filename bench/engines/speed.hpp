@@ -17,11 +17,17 @@ struct Speed {
 // Each engine in turn, `repeats` times round, so that whatever else the machine does hurts all alike. On one core.
 std::vector<Speed> measure_speeds(const EngineScene& scene, const std::vector<Engine>& engines, int repeats);
 
-// Steps/s in sum of `threads` threads that simulate a scene each, over that of one; the median of `repeats` pairs.
-struct Scaling {
-  double by_wall, by_cpu;          // by_cpu leaves out what other programs took of the cores
-  double steps_per_s_one, steps_per_s_all;  // by wall clock
+// Steps/s in sum of threads that simulate a scene each: by the clock on the wall, and by the threads' own time, which
+// leaves out what other programs took of the cores.
+struct Rates {
+  double by_wall, by_cpu;
 };
-Scaling measure_scaling(const EngineScene& scene, const Engine& engine, unsigned threads, int repeats);
+// Of `threads` threads over that of one, measured in pairs, one after the other. A pair counts where no thread waited for
+// its core for more than 2 % of the time. Medians of the first `pairs` that count, or of all where none does within a minute.
+struct Scaling {
+  Rates times, one, all;
+  int undisturbed, tried;
+};
+Scaling measure_scaling(const EngineScene& scene, const Engine& engine, unsigned threads, int pairs);
 
 }  // namespace kenaf::bench
