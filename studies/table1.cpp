@@ -25,27 +25,31 @@ using rollout::Obstacle;
 using rollout::PublishedExperiment;
 
 constexpr double kTimeStep_s = 0.001;
-constexpr int kValues = 12;        // of each effect on each side of its neutral value, evenly
-constexpr double kSharpness = 64;  // a boundary between two of them is found to this part of their distance
+constexpr int kValues = 8;         // of each effect on each side of its neutral value, evenly
+constexpr double kSharpness = 32;  // a boundary between two of them is found to this part of their distance
+
+// The operator of the manoeuvres sees the robot itself, not what its sensors report.
+bool acts(const EffectInfo& effect) {
+  return effect.stage != physics::Stage::sensor;
+}
 
 // ---- critical sizes
 
 // Sizes in millimetres between which the outcome changes. A search by bisection alone would miss a second change.
 struct Critical {
   int largest_passed_mm = 0, smallest_failed_mm = 0;
-  bool one_change = true;  // on a grid of 5 mm nothing above fails and passes again
+  bool one_change = true;  // on the grid nothing above fails and passes again
 };
 
-Critical critical_size(Obstacle obstacle, const RobotDescription& robot, double time_step_s) {
-  constexpr int kGrid_mm = 5;
+Critical critical_size(Obstacle obstacle, const RobotDescription& robot, double time_step_s, int grid_mm) {
   const bool step = obstacle == Obstacle::step;
   const int from_mm = step ? 50 : 100, to_mm = step ? 450 : 500;
   const auto passes = [&](int size_mm) {
     return rollout::attempt(obstacle, size_mm * 1e-3, robot, time_step_s).succeeded;
   };
-  Critical found{from_mm - kGrid_mm, to_mm + kGrid_mm, true};
+  Critical found{from_mm - grid_mm, to_mm + grid_mm, true};
   bool failed = false;
-  for (int size_mm = from_mm; size_mm <= to_mm; size_mm += kGrid_mm) {
+  for (int size_mm = from_mm; size_mm <= to_mm; size_mm += grid_mm) {
     const bool pass = passes(size_mm);
     if (pass && !failed) found.largest_passed_mm = size_mm;
     if (!pass && !failed) found.smallest_failed_mm = size_mm;
@@ -176,13 +180,13 @@ void write_critical_sizes(const std::filesystem::path& file, unsigned jobs) {
     for (const EffectInfo& effect : physics::effect_catalogue())
       for (const EffectParameter& parameter : effect.parameters)
         for (const double end : {parameter.min, parameter.max})
-          if (end != parameter.neutral && effect.stage != physics::Stage::sensor)
+          if (end != parameter.neutral && acts(effect))
             cases.push_back({obstacle, kTimeStep_s, &effect, &parameter, end, {}});
   }
   in_parallel(cases.size(), jobs, [&](std::size_t i) {
     RobotDescription robot = rollout::robot_of_the_experiments();
     if (cases[i].parameter) robot.effects.*cases[i].parameter->value = cases[i].value;
-    cases[i].found = critical_size(cases[i].obstacle, robot, cases[i].time_step_s);
+    cases[i].found = critical_size(cases[i].obstacle, robot, cases[i].time_step_s, cases[i].parameter ? 20 : 5);
   });
   std::ofstream out(file);
   out << "obstacle,time_step_s,effect,parameter,value,largest_passed_mm,smallest_failed_mm,one_change\n";
@@ -197,7 +201,7 @@ void write_effects(const std::filesystem::path& file, unsigned jobs) {
   for (const EffectInfo& effect : physics::effect_catalogue())
     for (const EffectParameter& parameter : effect.parameters)
       for (const double end : {parameter.min, parameter.max})
-        if (end != parameter.neutral) sides.push_back({&effect, &parameter, end, {}, {}, 0, 0, true});
+        if (end != parameter.neutral && acts(effect)) sides.push_back({&effect, &parameter, end, {}, {}, 0, 0, true});
   in_parallel(sides.size(), jobs, [&](std::size_t i) { study(sides[i]); });
   std::ofstream out(file);
   out << "effect,parameter,unit,neutral,end,real_row,first_change,changes_there,changes_at_end\n";
