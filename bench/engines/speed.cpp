@@ -55,31 +55,36 @@ Rates medians(const std::vector<Rates>& rates) {
 std::vector<Speed> measure_speeds(const EngineScene& scene, const std::vector<Engine>& engines, int repeats) {
   pin_to_core(0);
   struct Times {
-    std::vector<double> cpu_us, wall_us;
+    std::vector<double> cpu_us, wall_us, slower;
   };
   std::vector<Times> times(engines.size());
   std::vector<Speed> speeds(engines.size());
   const long steps = steps_of(scene);
-  for (int repeat = 0; repeat < repeats; ++repeat) {
-    for (std::size_t e = 0; e < engines.size(); ++e) {
-      const auto runner = engines[e].build(scene);
-      std::size_t contacts = 0;
-      const Clocks before = read_clocks();
-      for (long i = 0; i < steps; ++i) {
-        runner->step();
-        contacts += runner->contacts();
-      }
-      const Clocks after = read_clocks();
-      const auto n = static_cast<double>(steps);
-      times[e].cpu_us.push_back(1e6 * (after.cpu_s - before.cpu_s) / n);
-      times[e].wall_us.push_back(1e6 * (after.wall_s - before.wall_s) / n);
-      speeds[e].contacts_per_step = static_cast<double>(contacts) / n;
-      speeds[e].end = runner->pose();
+  const auto run = [&](std::size_t e) {
+    const auto runner = engines[e].build(scene);
+    std::size_t contacts = 0;
+    const Clocks before = read_clocks();
+    for (long i = 0; i < steps; ++i) {
+      runner->step();
+      contacts += runner->contacts();
     }
-  }
+    const Clocks after = read_clocks();
+    const auto n = static_cast<double>(steps);
+    times[e].cpu_us.push_back(1e6 * (after.cpu_s - before.cpu_s) / n);
+    times[e].wall_us.push_back(1e6 * (after.wall_s - before.wall_s) / n);
+    speeds[e].contacts_per_step = static_cast<double>(contacts) / n;
+    speeds[e].end = runner->pose();
+  };
+  for (int repeat = 0; repeat < repeats; ++repeat)
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      run(0);
+      if (e > 0) run(e);
+      times[e].slower.push_back(times[e].cpu_us.back() / times[0].cpu_us.back());
+    }
   for (std::size_t e = 0; e < engines.size(); ++e) {
     speeds[e].cpu_us_per_step = median(times[e].cpu_us);
     speeds[e].wall_us_per_step = median(times[e].wall_us);
+    speeds[e].times_as_slow = median(times[e].slower);
   }
   return speeds;
 }

@@ -9,12 +9,14 @@ namespace kenaf::bench {
 
 struct Speed {
   double cpu_us_per_step, wall_us_per_step;  // medians over the repeats
+  double times_as_slow;                      // as the first engine, which ran just before each time; median of the pairs
   double contacts_per_step;
   physics::Pose end;                         // where the robot came to
   double steps_per_s() const { return 1e6 / cpu_us_per_step; }
 };
 
-// Each engine in turn, `repeats` times round, so that whatever else the machine does hurts all alike. On one core.
+// Each engine in turn, `repeats` times round, the first one before each of the others: a core's speed can drift by half
+// within a minute where other machines share it, so only what ran side by side is compared. On one core.
 std::vector<Speed> measure_speeds(const EngineScene& scene, const std::vector<Engine>& engines, int repeats);
 
 // Steps/s in sum of threads that simulate a scene each: by the clock on the wall, and by the threads' own time, which
