@@ -11,7 +11,7 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr std::size_t kSpare = 96;     // pairs, so that a robot in a field of obstacles allocates nothing
+constexpr std::size_t kSpare = 96;     // pairs that a robot may come to have
 constexpr std::size_t kReserved = 48;  // contacts; a track on a step has about 20
 constexpr btScalar kFlat = 1e-4;       // sine of the angle between two triangles that are one surface
 
@@ -177,24 +177,31 @@ struct BeltGround::Create : btCollisionAlgorithmCreateFunc {
 };
 
 BeltGround::BeltGround(btCollisionDispatcher& dispatcher, btCollisionConfiguration& configuration,
-                       HullPlaneContacts& hulls) {
+                       HullPlaneContacts& hull_plane, HullSolidContacts& hull_solid) {
   touches_.reserve(kReserved);
-  for (std::size_t i = 0; i < kSpare; ++i) add_spare();
+  make_room();
   const int hull = CONVEX_HULL_SHAPE_PROXYTYPE;
   for (const int other :
        {STATIC_PLANE_PROXYTYPE, BOX_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE, TRIANGLE_MESH_SHAPE_PROXYTYPE}) {
     for (const auto& [a, b] : {std::pair{hull, other}, std::pair{other, hull}}) {
       auto& create = *create_.emplace_back(std::make_unique<Create>());
       create.owner = this;
-      create.otherwise = other == STATIC_PLANE_PROXYTYPE ? &hulls.create(a == other)
-                                                         : configuration.getCollisionAlgorithmCreateFunc(a, b);
-      create.m_swapped = create.otherwise->m_swapped;
+      if (other == STATIC_PLANE_PROXYTYPE)
+        create.otherwise = &hull_plane.create(a == other);
+      else if (other == TRIANGLE_MESH_SHAPE_PROXYTYPE)
+        create.otherwise = configuration.getCollisionAlgorithmCreateFunc(a, b);
+      else
+        create.otherwise = &hull_solid.create();
       dispatcher.registerCollisionCreateFunc(a, b, &create);
     }
   }
 }
 
 BeltGround::~BeltGround() = default;
+
+void BeltGround::make_room() {
+  while (spare_.size() < kSpare) add_spare();
+}
 
 void BeltGround::add_spare() {
   auto pair = std::make_unique<Pair>();

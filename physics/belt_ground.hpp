@@ -10,6 +10,7 @@
 #include "physics/belt_contacts.hpp"
 #include "physics/bullet.hpp"
 #include "physics/hull_plane.hpp"
+#include "physics/hull_solid.hpp"
 
 namespace kenaf::physics {
 
@@ -46,14 +47,18 @@ struct BeltPair {
 
 class BeltGround {
  public:
-  // Makes `dispatcher` use it for belts. Other hulls meet planes by `hulls`, everything else as `configuration` has it.
-  BeltGround(btCollisionDispatcher& dispatcher, btCollisionConfiguration& configuration, HullPlaneContacts& hulls);
+  // Makes `dispatcher` use it for belts. Other hulls meet planes by `hull_plane`, boxes and hulls by `hull_solid`, meshes as
+  // `configuration` has it.
+  BeltGround(btCollisionDispatcher& dispatcher, btCollisionConfiguration& configuration, HullPlaneContacts& hull_plane,
+             HullSolidContacts& hull_solid);
   ~BeltGround();
   BeltGround(const BeltGround&) = delete;
   BeltGround& operator=(const BeltGround&) = delete;
 
   // While it probes, belts meet the ground as any hull does: that also finds what is deep inside, for placing a robot.
   void set_probing(bool probing) { probing_ = probing; }
+  // So that the steps to come need not allocate: for one robot more, in a field of obstacles.
+  void make_room();
   const std::vector<BeltPair*>& pairs() const { return pairs_; }
 
  private:

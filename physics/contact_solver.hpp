@@ -47,11 +47,13 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
 
   ContactSolver(const ContactSettings& settings, const BeltGround& belt_ground)
       : settings_(settings), belt_ground_(belt_ground) {
-    constexpr std::size_t kManyContacts = 256;  // so that a step need not allocate
     contacts_.reserve(kManyContacts);
   }
 
-  void add_belt(Belt* belt) { belts_.push_back(belt); }
+  void add_belt(Belt* belt) {
+    belts_.push_back(belt);
+    contacts_.reserve(kManyContacts * belts_.size());
+  }
   void remove_belt(Belt* belt) { std::erase(belts_, belt); }
   // For what leaves the world: contacts() no longer speaks of it.
   void forget_contacts_of(const btCollisionObject& object);
@@ -73,6 +75,8 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
                                          const btContactSolverInfo& info) override;
 
  private:
+  static constexpr std::size_t kManyContacts = 128;  // of a belt's side of a robot, so that a step need not allocate
+
   // What a contact is made of, however it was found.
   struct Touch {
     btVector3 p_W, normal_W;  // from B to A

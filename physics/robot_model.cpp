@@ -110,19 +110,12 @@ void RobotModel::make_hull(RobotId id) {
   const TrackDescription& track = description.track;
   X_BCom_ = btTransform(btQuaternion::getIdentity(), to_bullet(body.p_BBcm_m));
   hull_collider_.robot = static_cast<std::uint32_t>(id);
-  hull_shape_ = std::make_unique<btCompoundShape>();
+  hull_shape_ = std::make_unique<btCompoundShape>(false);  // without a tree: it has three pieces
   const auto add = [this](std::unique_ptr<btCollisionShape> shape, const Surface& surface) {
     hull_shape_->addChildShape(X_BCom_.inverse(), shape.get());
     hull_pieces_.push_back(std::move(shape));
     hull_collider_.surfaces.push_back(surface);
   };
-  const Eigen::Vector2d half(body.size_m.x() / 2, body.size_m.z() / 2);
-  // a hull, not a btBoxShape: all of a robot meets the ground through the same algorithm
-  add(make_prism({{half.x(), -half.y()}, half, {-half.x(), half.y()}, -half}, body.size_m.y(), {0, 0, 0}),
-      {.friction_along = body.friction,
-       .friction_across = body.friction,
-       .compliance_scale = description.effects.ground_compliance_scale,
-       .damping_scale = description.effects.ground_damping_scale});
   for (const Track side : {kLeft, kRight}) {
     Eigen::Vector3d center = track.p_BT_m;
     if (side == kRight) center.y() = -center.y();
@@ -139,6 +132,13 @@ void RobotModel::make_hull(RobotId id) {
     shape->setUserPointer(&track_tags_[side]);
     add(std::move(shape), surface);
   }
+  const Eigen::Vector2d half(body.size_m.x() / 2, body.size_m.z() / 2);
+  // a hull, not a btBoxShape: all of a robot meets the ground through the same algorithm
+  add(make_prism({{half.x(), -half.y()}, half, {-half.x(), half.y()}, -half}, body.size_m.y(), {0, 0, 0}),
+      {.friction_along = body.friction,
+       .friction_across = body.friction,
+       .compliance_scale = description.effects.ground_compliance_scale,
+       .damping_scale = description.effects.ground_damping_scale});
   hull_ = make_body(body.mass_kg, *hull_shape_, to_bullet(body.inertia_kgm2), hull_collider_);
   body_list_.push_back(hull_.get());
 }

@@ -21,7 +21,9 @@ constexpr double kSolved = 1e-5;
 Scene::Scene(const WorldDescription& description, const PhysicsSettings& settings)
     : dispatcher_(&configuration_),
       hull_plane_(dispatcher_),
-      belt_ground_(dispatcher_, configuration_, hull_plane_),
+      belt_ground_(dispatcher_, configuration_, hull_plane_, hull_solid_),
+      compound_contacts_(dispatcher_),
+      broadphase_(&pairs_),
       solver_({settings.contact_stiffness_npm, settings.contact_damping_nspm}, belt_ground_),
       world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
   btContactSolverInfo& info = world_.getSolverInfo();
@@ -173,6 +175,7 @@ double Scene::depth_in_mesh(const Eigen::Vector3d& p_W) const {
 
 void Scene::place_free(RobotModel& robot, Pose X_WB, bool start_joints) {
   constexpr int kMaxLifts = 1000;
+  belt_ground_.make_room();
   // deep inside, it would touch none of the triangles
   X_WB.p.z() += depth_in_mesh(X_WB.p);
   robot.place(X_WB, start_joints);

@@ -8,8 +8,11 @@
 #include <vector>
 
 #include "physics/bullet.hpp"
+#include "physics/compound_contacts.hpp"
 #include "physics/contact_solver.hpp"
+#include "physics/contact_tables.hpp"
 #include "physics/hull_plane.hpp"
+#include "physics/hull_solid.hpp"
 #include "physics/robot_model.hpp"
 #include "physics/world.hpp"
 
@@ -63,9 +66,12 @@ class Scene {
   double depth_in_mesh(const Eigen::Vector3d& p_W) const;
 
   btDefaultCollisionConfiguration configuration_;
-  btCollisionDispatcher dispatcher_;
+  Dispatcher dispatcher_;
   HullPlaneContacts hull_plane_;
+  HullSolidContacts hull_solid_;
   BeltGround belt_ground_;
+  CompoundContacts compound_contacts_;
+  PairTable pairs_;
   btDbvtBroadphase broadphase_;
   ContactSolver solver_;
   btDiscreteDynamicsWorld world_;
