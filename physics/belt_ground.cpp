@@ -11,9 +11,8 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr std::size_t kSpare = 96;     // pairs that a robot may come to have
-constexpr std::size_t kReserved = 48;  // contacts; a track on a step has about 20
-constexpr btScalar kFlat = 1e-4;       // sine of the angle between two triangles that are one surface
+constexpr std::size_t kReserved = 128;  // contacts; a track on a step has about 20, on triangles of 5 mm above 48
+constexpr btScalar kFlat = 1e-4;        // sine of the angle between two triangles that are one surface
 
 const ShapeTag* tag_of(const btCollisionObjectWrapper& object) {
   return static_cast<const ShapeTag*>(object.getCollisionShape()->getUserPointer());
@@ -179,7 +178,6 @@ struct BeltGround::Create : btCollisionAlgorithmCreateFunc {
 BeltGround::BeltGround(btCollisionDispatcher& dispatcher, btCollisionConfiguration& configuration,
                        HullPlaneContacts& hull_plane, HullSolidContacts& hull_solid) {
   touches_.reserve(kReserved);
-  make_room();
   const int hull = CONVEX_HULL_SHAPE_PROXYTYPE;
   for (const int other :
        {STATIC_PLANE_PROXYTYPE, BOX_SHAPE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE, TRIANGLE_MESH_SHAPE_PROXYTYPE}) {
@@ -199,8 +197,10 @@ BeltGround::BeltGround(btCollisionDispatcher& dispatcher, btCollisionConfigurati
 
 BeltGround::~BeltGround() = default;
 
-void BeltGround::make_room() {
-  while (spare_.size() < kSpare) add_spare();
+void BeltGround::make_room(std::size_t pairs) {
+  spare_.reserve(pairs);
+  pairs_.reserve(pairs);
+  while (spare_.size() + pairs_.size() < pairs) add_spare();
 }
 
 void BeltGround::add_spare() {

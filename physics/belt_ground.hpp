@@ -57,8 +57,8 @@ class BeltGround {
 
   // While it probes, belts meet the ground as any hull does: that also finds what is deep inside, for placing a robot.
   void set_probing(bool probing) { probing_ = probing; }
-  // So that the steps to come need not allocate: for one robot more, in a field of obstacles.
-  void make_room();
+  // So that a step need not allocate: for so many pairs in all.
+  void make_room(std::size_t pairs);
   const std::vector<BeltPair*>& pairs() const { return pairs_; }
 
  private:

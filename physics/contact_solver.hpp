@@ -45,14 +45,15 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
     btScalar impulse[3];
   };
 
-  ContactSolver(const ContactSettings& settings, const BeltGround& belt_ground)
+  ContactSolver(const ContactSettings& settings, BeltGround& belt_ground)
       : settings_(settings), belt_ground_(belt_ground) {
-    contacts_.reserve(kManyContacts);
+    contacts_.reserve(kManyContacts);  // without a robot: of boxes
   }
 
   void add_belt(Belt* belt) {
     belts_.push_back(belt);
     contacts_.reserve(kManyContacts * belts_.size());
+    belt_ground_.make_room(kManyPairs * belts_.size());
   }
   void remove_belt(Belt* belt) { std::erase(belts_, belt); }
   // For what leaves the world: contacts() no longer speaks of it.
@@ -75,7 +76,8 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
                                          const btContactSolverInfo& info) override;
 
  private:
-  static constexpr std::size_t kManyContacts = 128;  // of a belt's side of a robot, so that a step need not allocate
+  // Of one side of a robot, so that a step need not allocate. In a field of pallets each of its three belts is near ten or more.
+  static constexpr std::size_t kManyContacts = 128, kManyPairs = 48;
 
   // What a contact is made of, however it was found.
   struct Touch {
@@ -95,7 +97,7 @@ class ContactSolver : public btSequentialImpulseConstraintSolver {
   void apply(Contact& contact, const btScalar change[3]);
 
   ContactSettings settings_;
-  const BeltGround& belt_ground_;
+  BeltGround& belt_ground_;
   std::vector<Contact> contacts_;
   std::vector<Belt*> belts_;
 };

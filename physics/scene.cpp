@@ -175,7 +175,6 @@ double Scene::depth_in_mesh(const Eigen::Vector3d& p_W) const {
 
 void Scene::place_free(RobotModel& robot, Pose X_WB, bool start_joints) {
   constexpr int kMaxLifts = 1000;
-  belt_ground_.make_room();
   // deep inside, it would touch none of the triangles
   X_WB.p.z() += depth_in_mesh(X_WB.p);
   robot.place(X_WB, start_joints);

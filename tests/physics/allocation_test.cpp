@@ -174,6 +174,21 @@ TEST_CASE("M3: nor where a robot pushes boxes on each other and against a wall")
   CHECK(allocations_in(world, 3, robot, nullptr) == 0);
 }
 
+TEST_CASE("M4: nor where three robots fall on each other in a field of pallets") {
+  std::vector<std::string> unsupported;
+  const WorldDescription description = load_world("step-field", unsupported);
+  World world(description, {}, 1);
+  const RobotDescription kenaf = load_robot("kenaf");
+  Pose X_WB = description.start_poses.front().X_WB;
+  X_WB.p.x() += 0.5;
+  for (const char* name : {"a", "b", "c"}) {
+    world.set_command(world.add_robot(kenaf, name, X_WB), drive(0.4, 0.3, 0.8, -0.8));
+    X_WB.p += Eigen::Vector3d(0.3, 0.2, 0.4);
+  }
+  world.step();
+  CHECK(allocations_in(world, 2, world.robots().front(), nullptr) == 0);
+}
+
 TEST_CASE("M4: nor where sixteen robots turn among each other") {
   World world(ground(), {}, 1);
   const RobotDescription kenaf = load_robot("kenaf");
