@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cerrno>
 #include <cstddef>
+#include <new>
 
 #include "tests/physics/scenes.hpp"
 
@@ -65,9 +66,10 @@ long allocations_in(World& world, double time_s, RobotId robot, std::vector<Sens
 
 TEST_CASE("M0: an allocation is counted") {
   const long before = allocations;
-  const std::vector<int> memory(1000);
-  CHECK(memory.size() == 1000);
-  CHECK(allocations == before + 1);
+  void* memory = ::operator new(1000);  // called by its name, so that no compiler leaves it out
+  const long counted = allocations - before;
+  ::operator delete(memory);
+  CHECK(counted == 1);
 }
 
 namespace {
