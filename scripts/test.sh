@@ -4,7 +4,7 @@
 #   scripts/test.sh                 everything
 #   scripts/test.sh release asan    only the named parts, of:
 #       release   g++, as installed: all tests, the CAN bus, the package
-#       asan      clang, address and undefined behaviour sanitizers: all tests but those and the published table
+#       asan      clang, address and undefined behaviour sanitizers: all tests but those, the published table and long runs
 #       fuzz      the fuzzers of that build, FUZZ_SECONDS each (default 6)
 #       tsan      g++, thread sanitizer: the relay and the libraries
 #
@@ -41,7 +41,7 @@ run_release() {
 run_asan() {
   build asan
   step "tests under address and undefined behaviour sanitizers"
-  ctest --preset asan -j "$jobs" -LE 'release-only|table1' -E '^abi:'
+  ctest --preset asan -j "$jobs" -LE 'release-only|table1|long' -E '^abi:'
 }
 
 run_tsan() {
