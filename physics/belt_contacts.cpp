@@ -126,6 +126,19 @@ class BoxTouches {
     if (-gap <= overlap_) out_.push_back({p, normal, gap, share, edge, id});
   }
 
+  // The faces that are not beside the slices: axis, side, normal, and the normal's part in the slices, unit length.
+  template <typename Use>
+  void for_each_face(Use&& use) const {
+    for (int j = 0; j < 3; ++j) {
+      for (const int sign : {-1, 1}) {
+        const btVector3 normal = box_.axes.getColumn(j) * sign;
+        const btScalar in_plane = btSqrt(normal.x() * normal.x() + normal.z() * normal.z());
+        if (in_plane < kSideways) continue;
+        use(j, sign, normal, btVector3(normal.x() / in_plane, 0, normal.z() / in_plane));
+      }
+    }
+  }
+
   // How far the belt reaches below a face of axis j; `flat` is the part of the face's normal in the slices, unit
   // length.
   btScalar depth_below(int j, const btVector3& normal, const btVector3& flat) const {
@@ -138,32 +151,20 @@ class BoxTouches {
   // How far the belt would have to go to be free of the box without leaving its slices; negative: it is free.
   btScalar depth_in_plane() const {
     btScalar least = BT_LARGE_FLOAT;
-    for (int j = 0; j < 3; ++j) {
-      for (const int sign : {-1, 1}) {
-        const btVector3 normal = box_.axes.getColumn(j) * sign;
-        const btScalar in_plane = btSqrt(normal.x() * normal.x() + normal.z() * normal.z());
-        if (in_plane < kSideways) continue;
-        const btVector3 flat(normal.x() / in_plane, 0, normal.z() / in_plane);
-        least = std::min(least, depth_below(j, normal, flat));
-      }
-    }
+    for_each_face([&](int j, int, const btVector3& normal, const btVector3& flat) {
+      least = std::min(least, depth_below(j, normal, flat));
+    });
     return least;
   }
 
   void faces(const Slices& s) {
-    for (int j = 0; j < 3; ++j) {
-      for (const int sign : {-1, 1}) {
-        const btVector3 normal = box_.axes.getColumn(j) * sign;
-        const btScalar in_plane = btSqrt(normal.x() * normal.x() + normal.z() * normal.z());
-        if (in_plane < kSideways) continue;
-        const btVector3 flat(normal.x() / in_plane, 0, normal.z() / in_plane);
-        if (depth_below(j, normal, flat) < -kTouching_m) continue;
-        const std::uint32_t face = static_cast<std::uint32_t>(2 * j + (sign > 0));
-        outline_points(belt_, flat, [&](std::uint32_t place, const btVector3& p, btScalar share) {
-          face_points(j, normal, face, s, place, p, share);
-        });
-      }
-    }
+    for_each_face([&](int j, int sign, const btVector3& normal, const btVector3& flat) {
+      if (depth_below(j, normal, flat) < -kTouching_m) return;
+      const std::uint32_t face = static_cast<std::uint32_t>(2 * j + (sign > 0));
+      outline_points(belt_, flat, [&](std::uint32_t place, const btVector3& p, btScalar share) {
+        face_points(j, normal, face, s, place, p, share);
+      });
+    });
   }
 
   // A point of the outline, in each slice. Where the face goes on across the whole belt, the edges of the belt carry

@@ -13,6 +13,7 @@
 #include <optional>
 #include <thread>
 
+#include "gap/parallel.hpp"
 #include "rollout/published_experiments.hpp"
 
 namespace {
@@ -75,15 +76,19 @@ Row published_row(bool PublishedExperiment::*which) {
   return row;
 }
 
-Row row_with(const EffectParameter& parameter, double value) {
-  RobotDescription robot = rollout::robot_of_the_experiments();
-  robot.effects.*parameter.value = value;
+Row row_of(const RobotDescription& robot) {
   Row row = 0;
   const auto experiments = rollout::published_experiments();
   for (std::size_t i = 0; i < experiments.size(); ++i)
     row |= Row{rollout::attempt(experiments[i].obstacle, experiments[i].size_mm * 1e-3, robot, kTimeStep_s).succeeded}
            << i;
   return row;
+}
+
+Row row_with(const EffectParameter& parameter, double value) {
+  RobotDescription robot = rollout::robot_of_the_experiments();
+  robot.effects.*parameter.value = value;
+  return row_of(robot);
 }
 
 std::string differences(Row row, Row from) {
@@ -118,7 +123,6 @@ struct Side {
   std::vector<Interval> real;
   std::optional<double> first_change;  // the smallest deviation seen that changes the row
   Row row_at_first_change = 0, row_at_end = 0;
-  bool neutral_is_simulated = true;
 };
 
 void study(Side& side) {
@@ -127,8 +131,7 @@ void study(Side& side) {
   const EffectParameter& parameter = *side.parameter;
   const auto is_real = [&](double value) { return row_with(parameter, value) == real; };
   double before = parameter.neutral;
-  Row row_before = row_with(parameter, before);
-  side.neutral_is_simulated = row_before == simulated;
+  Row row_before = simulated;
   for (int i = 1; i <= kValues; ++i) {
     const double value = parameter.neutral + (side.end - parameter.neutral) * i / kValues;
     const Row row = row_with(parameter, value);
@@ -152,16 +155,11 @@ void study(Side& side) {
 // ---- output
 
 void in_parallel(std::size_t count, unsigned jobs, const std::function<void(std::size_t)>& work) {
-  std::atomic<std::size_t> next = 0, done = 0;
-  std::vector<std::jthread> threads;
-  for (unsigned j = 0; j < jobs; ++j)
-    threads.emplace_back([&] {
-      for (std::size_t i; (i = next++) < count;) {
-        work(i);
-        fmt::print(stderr, "\r{} of {} ", ++done, count);
-      }
-    });
-  threads.clear();
+  std::atomic<std::size_t> done = 0;
+  gap::for_each_job(count, jobs, [&](std::size_t i) {
+    work(i);
+    fmt::print(stderr, "\r{} of {} ", ++done, count);
+  });
   fmt::print(stderr, "\n");
 }
 
@@ -197,20 +195,21 @@ void write_critical_sizes(const std::filesystem::path& file, unsigned jobs) {
 }
 
 void write_effects(const std::filesystem::path& file, unsigned jobs) {
+  const Row simulated = published_row(&PublishedExperiment::simulated);
+  if (row_of(rollout::robot_of_the_experiments()) != simulated)
+    throw std::runtime_error("without effects the row is not the simulated one");
   std::vector<Side> sides;
   for (const EffectInfo& effect : physics::effect_catalogue())
     for (const EffectParameter& parameter : effect.parameters)
       for (const double end : {parameter.min, parameter.max})
-        if (end != parameter.neutral && acts(effect)) sides.push_back({&effect, &parameter, end, {}, {}, 0, 0, true});
+        if (end != parameter.neutral && acts(effect)) sides.push_back({&effect, &parameter, end, {}, {}, 0, 0});
   in_parallel(sides.size(), jobs, [&](std::size_t i) { study(sides[i]); });
   std::ofstream out(file);
   out << "effect,parameter,unit,neutral,end,real_row,first_change,changes_there,changes_at_end\n";
   for (const Side& side : sides) {
-    if (!side.neutral_is_simulated) throw std::runtime_error("without effects the row is not the simulated one");
     std::vector<std::string> real;
     for (const Side::Interval& interval : side.real)
       real.push_back(fmt::format("{:.3g} to {:.3g}", interval.from, interval.to));
-    const Row simulated = published_row(&PublishedExperiment::simulated);
     out << fmt::format("{},{},{},{:g},{:g},{},{},{},{}\n", side.effect->name, side.parameter->name,
                        side.parameter->unit, side.parameter->neutral, side.end, fmt::join(real, "; "),
                        side.first_change ? fmt::format("{:.3g}", *side.first_change) : "",
