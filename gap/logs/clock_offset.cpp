@@ -1,0 +1,382 @@
+#include "gap/logs/clock_offset.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace kenaf::gap {
+namespace {
+
+// All of these are chosen.
+constexpr double kShortestWindow_s = 0.2, kWindowSamples = 3, kGridPerWindow = 4;
+constexpr Eigen::Index kMostGridPoints = 8192;  // of either side; a longer log gets a coarser grid
+constexpr double kShortestOverlap_s = 1;
+constexpr double kTellsSomething = 0.5;         // r squared from which on a quantity counts
+constexpr double kFollows = 0.8, kAbsurd = 10;  // r squared and factor beyond the bounds that show a wrong unit
+constexpr double kRefuted = 2;                  // an offset is, where it leaves so many times the variance
+constexpr double kEnoughMotion = 0.2;           // of what the less moving side saw has to lie in the overlap
+constexpr double kWidestPeak_s = 2, kLargestError_s = 0.25;
+constexpr double kCorrelatedOver_s = 2;  // residuals farther apart are taken as independent
+constexpr Eigen::Index kMostFinePoints = 20000;
+constexpr double kBodyIsGoodEnough_s = 0.01;  // then what slips only compares
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+
+// Rates on a grid; 0 where not known, and then the mask is 0.
+struct Rates {
+  ArrayXd value, known;
+  double energy() const { return value.square().sum(); }
+};
+
+Rates rates_on(const Course& course, double first_s, double step_s, double window_s, Index count) {
+  Rates rates{ArrayXd::Zero(count), ArrayXd::Zero(count)};
+  for (Index i = 0; i < count; ++i) {
+    const double rate = mean_rate(course, first_s + static_cast<double>(i) * step_s, window_s);
+    if (std::isnan(rate)) continue;
+    rates.value[i] = rate;
+    rates.known[i] = 1;
+  }
+  return rates;
+}
+
+struct Grid {
+  double window_s, step_s, robot_first_s, capture_first_s;
+  Index robot_count, capture_count;
+
+  double offset_s(Index lag) const { return robot_first_s - capture_first_s + static_cast<double>(lag) * step_s; }
+  Index first_lag() const { return 1 - capture_count; }
+  Index lag_count() const { return robot_count + capture_count - 1; }
+};
+
+struct Span {
+  double first_s = std::numeric_limits<double>::infinity(), last_s = -first_s;
+  void add(const Course& course) {
+    first_s = std::min(first_s, course.t_s.front());
+    last_s = std::max(last_s, course.t_s.back());
+  }
+  double length_s() const { return last_s - first_s; }
+};
+
+Grid grid_for(const std::vector<CourseSeenTwice>& courses) {
+  Span robot, capture;
+  double longest_step_s = 0;
+  for (const CourseSeenTwice& course : courses) {
+    robot.add(course.robot);
+    capture.add(course.capture);
+    for (const Course* side : {&course.robot, &course.capture})
+      longest_step_s = std::max(longest_step_s, median_step(side->t_s, side->value));
+  }
+  Grid grid{};
+  const double longest_s = std::max(robot.length_s(), capture.length_s());
+  grid.window_s = std::max({kShortestWindow_s, kWindowSamples * longest_step_s,
+                            kGridPerWindow * longest_s / static_cast<double>(kMostGridPoints)});
+  grid.step_s = grid.window_s / kGridPerWindow;
+  grid.robot_first_s = robot.first_s;
+  grid.capture_first_s = capture.first_s;
+  grid.robot_count = static_cast<Index>(robot.length_s() / grid.step_s) + 1;
+  grid.capture_count = static_cast<Index>(capture.length_s() / grid.step_s) + 1;
+  return grid;
+}
+
+// One quantity at one lag: the robot's rates a fitted by gain b.
+struct Fit {
+  double count = 0, robot_energy = 0, capture_energy = 0, gain = 0, squares = 0;
+
+  double r_squared() const { return robot_energy > 0 ? std::max(0.0, 1 - squares / robot_energy) : 0; }
+  double log_likelihood() const {
+    return r_squared() > 0 ? -0.5 * count * std::log(std::max(1e-9, 1 - r_squared())) : 0;
+  }
+};
+
+Fit fit_at(const Rates& robot, const Rates& capture, Index lag, double least_gain, double most_gain) {
+  const Index i = std::max<Index>(0, lag), j = i - lag;
+  const Index count = std::min(robot.value.size() - i, capture.value.size() - j);
+  const auto a = robot.value.segment(i, count), a_known = robot.known.segment(i, count);
+  const auto b = capture.value.segment(j, count), b_known = capture.known.segment(j, count);
+  Fit fit;
+  fit.count = (a_known * b_known).sum();
+  fit.robot_energy = (a.square() * b_known).sum();
+  fit.capture_energy = (a_known * b.square()).sum();
+  const double product = (a * b).sum();
+  if (!(fit.capture_energy > 0)) return fit.squares = fit.robot_energy, fit;
+  fit.gain = std::clamp(product / fit.capture_energy, least_gain, most_gain);
+  fit.squares = fit.robot_energy - 2 * fit.gain * product + fit.gain * fit.gain * fit.capture_energy;
+  return fit;
+}
+
+struct Quantity {
+  const CourseSeenTwice* seen;
+  Rates robot, capture;
+  std::vector<Fit> fits;  // of each lag
+};
+
+struct Coarse {
+  Index best = 0;  // in fits
+  double log_likelihood = 0;
+};
+
+Coarse search(std::vector<Quantity>& quantities, const Grid& grid, bool any_gain) {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  Coarse coarse;
+  ArrayXd sum = ArrayXd::Zero(grid.lag_count());
+  for (Quantity& quantity : quantities) {
+    quantity.fits.resize(static_cast<std::size_t>(grid.lag_count()));
+    for (Index k = 0; k < grid.lag_count(); ++k) {
+      Fit& fit = quantity.fits[static_cast<std::size_t>(k)];
+      fit = fit_at(quantity.robot, quantity.capture, grid.first_lag() + k, any_gain ? -kAny : quantity.seen->least_gain,
+                   any_gain ? kAny : quantity.seen->most_gain);
+      if (fit.count * grid.step_s >= kShortestOverlap_s) sum[k] += fit.log_likelihood();
+    }
+  }
+  coarse.log_likelihood = sum.maxCoeff(&coarse.best);
+  return coarse;
+}
+
+const Fit& at(const Quantity& quantity, Index k) {
+  return quantity.fits[static_cast<std::size_t>(k)];
+}
+
+bool tells_something(const Quantity& quantity, Index k) {
+  return at(quantity, k).r_squared() >= kTellsSomething;
+}
+
+// Enough of the motion lies in the overlap, measured by the side that saw less of it.
+bool moves_in_overlap(const Quantity& quantity, Index k) {
+  const Fit& fit = at(quantity, k);
+  const double all = std::min(quantity.robot.energy(), fit.gain * fit.gain * quantity.capture.energy());
+  return fit.robot_energy >= kEnoughMotion * all;
+}
+
+std::string what_a_gain_means(const CourseSeenTwice& seen, double gain) {
+  const auto near = [&](double value) { return std::abs(std::log(std::abs(gain) / value)) < 0.4; };
+  std::string words =
+      fmt::format("{} would agree if the robot's were {:.3g} times the motion capture's", seen.name, gain);
+  if (gain < 0)
+    words += ": one of the two has the sign turned; x forward, y left, z up, so that a left turn is positive";
+  else if (near(1e-3))
+    words += ": the motion capture looks like millimetres; give --mocap-units mm";
+  else if (near(1e-2))
+    words += ": the motion capture looks like centimetres; its columns are in metres";
+  else if (near(1e3))
+    words += ": the run looks like millimetres; its columns are in metres, or is --mocap-units mm one too many?";
+  else if (near(1 / 57.29578))
+    words += ": the motion capture looks like degrees; name its columns roll_deg, pitch_deg, yaw_deg";
+  else if (near(57.29578))
+    words += ": the run looks like degrees; its columns are in radians";
+  return words;
+}
+
+[[noreturn]] void no_agreement(std::vector<Quantity>& quantities, const Grid& grid) {
+  const Coarse any = search(quantities, grid, true);
+  double best = 0;
+  for (const Quantity& quantity : quantities) best = std::max(best, at(quantity, any.best).r_squared());
+  std::string words = "run and motion capture do not agree at any offset";
+  for (const Quantity& quantity : quantities) {
+    const Fit& fit = at(quantity, any.best);
+    const bool odd = fit.gain < quantity.seen->least_gain || fit.gain > quantity.seen->most_gain;
+    if (odd && fit.r_squared() >= kFollows) throw NoOffset(words + ". " + what_a_gain_means(*quantity.seen, fit.gain));
+  }
+  throw NoOffset(fmt::format("{} (correlation at most {:.2f}): are they of the same drive?", words, std::sqrt(best)));
+}
+
+// Throws where a quantity follows the other side's but for its sign, or a factor that only a unit explains.
+void check_units(const std::vector<Quantity>& quantities, const Grid& grid, Index best) {
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  for (const Quantity& quantity : quantities) {
+    const CourseSeenTwice& seen = *quantity.seen;
+    const Fit fit = fit_at(quantity.robot, quantity.capture, grid.first_lag() + best, -kAny, kAny);
+    const bool absurd = fit.gain < 0 || fit.gain < seen.least_gain / kAbsurd || fit.gain > seen.most_gain * kAbsurd;
+    if (absurd && fit.r_squared() >= kFollows) throw NoOffset(what_a_gain_means(seen, fit.gain));
+  }
+}
+
+// Throws where another offset explains the rates about as well, or too wide a range of them does.
+void check_unique(const std::vector<Quantity>& quantities, const Grid& grid, Index best) {
+  const auto refuted = [&](Index k) {
+    bool moves = false;
+    for (const Quantity& quantity : quantities) {
+      if (!tells_something(quantity, best)) continue;
+      const Fit &here = at(quantity, k), &there = at(quantity, best);
+      if (here.count * grid.step_s < kShortestOverlap_s) continue;
+      const double floor = 1e-6 * quantity.robot.energy() / quantity.robot.known.sum();
+      if (here.squares / here.count > kRefuted * std::max(there.squares / there.count, floor)) return true;
+      moves = moves || moves_in_overlap(quantity, k);
+    }
+    return !moves;
+  };
+  Index low = best, high = best;
+  while (low > 0 && !refuted(low - 1)) --low;
+  while (high + 1 < grid.lag_count() && !refuted(high + 1)) ++high;
+  if (static_cast<double>(high - low) * grid.step_s > kWidestPeak_s)
+    throw NoOffset(
+        fmt::format("every offset from {:.2f} to {:.2f} s fits about as well: the robot hardly changes its "
+                    "speed or direction where both logs overlap; start and stop within both of them",
+                    grid.offset_s(grid.first_lag() + low), grid.offset_s(grid.first_lag() + high)));
+  Index rival = -1;
+  for (Index k = 0; k < grid.lag_count(); ++k)
+    if ((k < low || k > high) && !refuted(k) &&
+        (rival < 0 || at(quantities[0], k).count > at(quantities[0], rival).count))
+      rival = k;
+  if (rival >= 0)
+    throw NoOffset(
+        fmt::format("offsets of {:.2f} s and of {:.2f} s fit about as well: the drive repeats itself; let both "
+                    "logs begin before the robot moves and end after it, or cut off what only one of them saw",
+                    grid.offset_s(grid.first_lag() + best), grid.offset_s(grid.first_lag() + rival)));
+}
+
+// The sum over i of x(i) x(i + lag), weighted for lags up to `most` by Bartlett's triangle, both ways.
+double bartlett_sum(const ArrayXd& x, Index most) {
+  double sum = x.square().sum();
+  for (Index lag = 1; lag <= std::min(most, x.size() - 1); ++lag) {
+    const double weight = 1 - static_cast<double>(lag) / static_cast<double>(most + 1);
+    sum += 2 * weight * (x.head(x.size() - lag) * x.tail(x.size() - lag)).sum();
+  }
+  return sum;
+}
+
+// The variance of the sum of j r, with r stationary.
+double stationary_variance(const ArrayXd& j, const ArrayXd& r, Index most) {
+  const Index n = r.size();
+  double sum = j.square().sum() * r.square().sum();
+  for (Index lag = 1; lag <= std::min(most, n - 1); ++lag) {
+    const double weight = 1 - static_cast<double>(lag) / static_cast<double>(most + 1);
+    const auto pairs = [&](const ArrayXd& x) { return (x.head(n - lag) * x.tail(n - lag)).sum(); };
+    sum += 2 * weight * pairs(j) * pairs(r);
+  }
+  return sum / static_cast<double>(n);
+}
+
+// Least squares of offset and gain from `start_s` on; empty where it leaves the neighbourhood or finds no motion.
+std::optional<QuantityOffset> refine(const CourseSeenTwice& seen, const Grid& grid, double start_s) {
+  const double window_s = grid.window_s;
+  Span span;
+  span.add(seen.robot);
+  const double sample_s = median_step(seen.robot.t_s, seen.robot.value);
+  const double step_s =
+      std::max(std::min(grid.step_s, sample_s), span.length_s() / static_cast<double>(kMostFinePoints));
+  const auto count = static_cast<Index>(span.length_s() / step_s) + 1;
+  double offset_s = start_s, gain = 0;
+  ArrayXd residual, slope;
+  double curvature = 0, correlation = 0;
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    std::vector<double> a, b, b_slope;
+    for (Index i = 0; i < count; ++i) {
+      const double t_s = span.first_s + static_cast<double>(i) * step_s, there_s = t_s - offset_s;
+      const double robot = mean_rate(seen.robot, t_s, window_s), capture = mean_rate(seen.capture, there_s, window_s);
+      const double before = mean_rate(seen.capture, there_s - grid.step_s, window_s);
+      const double after = mean_rate(seen.capture, there_s + grid.step_s, window_s);
+      if (std::isnan(robot + capture + before + after)) continue;
+      a.push_back(robot);
+      b.push_back(capture);
+      b_slope.push_back((after - before) / (2 * grid.step_s));
+    }
+    if (static_cast<double>(a.size()) * step_s < kShortestOverlap_s) return std::nullopt;
+    const auto as_array = [](const std::vector<double>& v) {
+      return Eigen::Map<const ArrayXd>(v.data(), static_cast<Index>(v.size()));
+    };
+    const ArrayXd robot = as_array(a), capture = as_array(b), derivative = as_array(b_slope);
+    const double energy = capture.square().sum();
+    if (!(energy > 0)) return std::nullopt;
+    gain = (robot * capture).sum() / energy;
+    correlation = gain * std::sqrt(energy / robot.square().sum());
+    residual = robot - gain * capture;
+    // Of the residual by the offset, less what a change of the gain does as well.
+    slope = gain * (derivative - capture * ((derivative * capture).sum() / energy));
+    curvature = slope.square().sum();
+    if (!(curvature > 0)) return std::nullopt;
+    const double change_s = -(slope * residual).sum() / curvature;
+    offset_s += std::clamp(change_s, -0.5 * window_s, 0.5 * window_s);
+    if (std::abs(offset_s - start_s) > 2 * window_s) return std::nullopt;
+    if (std::abs(change_s) < 1e-7) break;
+  }
+  const auto most = std::min(static_cast<Index>(kCorrelatedOver_s / step_s), residual.size() / 4);
+  const double variance = std::max(stationary_variance(slope, residual, most), bartlett_sum(slope * residual, most)) /
+                          (curvature * curvature);
+  const bool no_match = gain < seen.least_gain || gain > seen.most_gain || correlation * correlation < kTellsSomething;
+  if (no_match || !(variance < 1)) return std::nullopt;
+  return QuantityOffset{seen.name, offset_s, std::sqrt(variance), gain, correlation, false};
+}
+
+bool moves(const Course& course, double enough) {
+  const auto [least, most] = std::ranges::minmax(course.value);
+  return most - least >= enough;
+}
+
+}  // namespace
+
+ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses) {
+  std::vector<CourseSeenTwice> usable;
+  bool robot_moves = false, capture_moves = false;
+  for (const CourseSeenTwice& course : courses) {
+    if (course.robot.t_s.size() < 2 || course.capture.t_s.size() < 2) continue;
+    usable.push_back(course);
+    robot_moves = robot_moves || moves(course.robot, course.enough);
+    capture_moves = capture_moves || moves(course.capture, course.enough);
+  }
+  if (usable.empty())
+    throw NoOffset("the run measured nothing that motion capture sees too: no tracks, turn rate or posture");
+  if (!robot_moves) throw NoOffset("the robot does not move in the run");
+  if (!capture_moves) throw NoOffset("the robot does not move in the motion capture");
+
+  const Grid grid = grid_for(usable);
+  std::vector<Quantity> quantities;
+  for (const CourseSeenTwice& seen : usable)
+    quantities.push_back({&seen,
+                          rates_on(seen.robot, grid.robot_first_s, grid.step_s, grid.window_s, grid.robot_count),
+                          rates_on(seen.capture, grid.capture_first_s, grid.step_s, grid.window_s, grid.capture_count),
+                          {}});
+  const Coarse coarse = search(quantities, grid, false);
+  const auto tells = [&](const Quantity& quantity) { return tells_something(quantity, coarse.best); };
+  if (coarse.log_likelihood <= 0 || std::ranges::none_of(quantities, tells)) no_agreement(quantities, grid);
+  if (std::ranges::none_of(quantities, [&](const Quantity& q) { return tells(q) && moves_in_overlap(q, coarse.best); }))
+    throw NoOffset(
+        "run and motion capture overlap where the robot hardly moves: were both recording during the drive?");
+  check_unique(quantities, grid, coarse.best);
+  check_units(quantities, grid, coarse.best);
+
+  ClockOffset result;
+  const double start_s = grid.offset_s(grid.first_lag() + coarse.best);
+  for (const Quantity& quantity : quantities) {
+    if (const auto refined = refine(*quantity.seen, grid, start_s)) result.quantities.push_back(*refined);
+    result.overlap_s = std::max(result.overlap_s, at(quantity, coarse.best).count * grid.step_s);
+  }
+  const auto slips = [&](const QuantityOffset& quantity) {
+    return std::ranges::find(usable, quantity.name, &CourseSeenTwice::name)->slips;
+  };
+  const bool body_is_enough = std::ranges::any_of(result.quantities, [&](const QuantityOffset& quantity) {
+    return !slips(quantity) && quantity.standard_error_s < kBodyIsGoodEnough_s;
+  });
+  double weights = 0, sum = 0;
+  result.from_tracks = true;
+  for (QuantityOffset& quantity : result.quantities) {
+    quantity.used = !body_is_enough || !slips(quantity);
+    if (!quantity.used) continue;
+    const double weight = 1 / (quantity.standard_error_s * quantity.standard_error_s);
+    weights += weight;
+    sum += weight * quantity.offset_s;
+    result.from_tracks = result.from_tracks && slips(quantity);
+  }
+  if (!(weights > 0)) no_agreement(quantities, grid);
+  result.offset_s = sum / weights;
+  double chi_squared = 0, count = 0;
+  for (const QuantityOffset& quantity : result.quantities) {
+    if (!quantity.used) continue;
+    chi_squared += std::pow((quantity.offset_s - result.offset_s) / quantity.standard_error_s, 2);
+    ++count;
+  }
+  const double birge = count > 1 ? std::max(1.0, std::sqrt(chi_squared / (count - 1))) : 1;
+  result.standard_error_s = birge / std::sqrt(weights);
+  if (!(result.standard_error_s <= kLargestError_s))
+    throw NoOffset(
+        fmt::format("the offset is only known to {:.2f} s: the robot changes its speed or direction too little "
+                    "where both logs overlap",
+                    result.standard_error_s));
+  return result;
+}
+
+}  // namespace kenaf::gap

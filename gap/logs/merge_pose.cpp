@@ -1,0 +1,120 @@
+#include "gap/logs/merge_pose.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "physics/pose.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kGapSteps = 2.5;  // chosen: one captured pose may be missing
+constexpr std::array<const char*, 6> kPoseColumns = {"x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad"};
+
+double median_step_of(const MotionCapture& capture) {
+  std::vector<double> t_s;
+  for (const CapturedPose& pose : capture.poses) t_s.push_back(pose.t_s);
+  return median_step(t_s, t_s);
+}
+
+// Between the captured poses before and after `t_s`; empty outside of them and in a gap.
+std::optional<CapturedPose> pose_between(const MotionCapture& capture, double t_s, double max_gap_s) {
+  const auto after = std::ranges::lower_bound(capture.poses, t_s, {}, &CapturedPose::t_s);
+  if (after == capture.poses.end()) return std::nullopt;
+  if (after->t_s == t_s) return *after;
+  if (after == capture.poses.begin()) return std::nullopt;
+  const CapturedPose &a = *(after - 1), &b = *after;
+  if (b.t_s - a.t_s > max_gap_s) return std::nullopt;
+  const double share = (t_s - a.t_s) / (b.t_s - a.t_s);
+  return CapturedPose{t_s, a.p_m + share * (b.p_m - a.p_m), a.q.slerp(share, b.q)};
+}
+
+double yaw_of(const Eigen::Quaterniond& q) {
+  return physics::roll_pitch_yaw(q).z();
+}
+
+// Turns and shifts all poses in the plane so that the first one, or the mean over the first `start_s`, is the origin.
+void put_start_at_origin(std::vector<std::optional<CapturedPose>>& poses, double start_s) {
+  const auto first = std::ranges::find_if(poses, [](const auto& pose) { return pose.has_value(); });
+  if (first == poses.end()) return;
+  const CapturedPose start = **first;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Vector2d heading = Eigen::Vector2d::Zero();
+  double count = 0;
+  for (const auto& pose : poses) {
+    if (!pose || pose->t_s > start.t_s + start_s) continue;
+    sum += pose->p_m;
+    heading += Eigen::Vector2d(std::cos(yaw_of(pose->q)), std::sin(yaw_of(pose->q)));
+    ++count;
+  }
+  const Eigen::Vector3d origin(sum.x() / count, sum.y() / count, 0);
+  const Eigen::Quaterniond back(Eigen::AngleAxisd(-std::atan2(heading.y(), heading.x()), Eigen::Vector3d::UnitZ()));
+  for (auto& pose : poses) {
+    if (!pose) continue;
+    pose->p_m = back * (pose->p_m - origin);
+    pose->q = back * pose->q;
+  }
+}
+
+bool has_values(std::span<const double> column) {
+  return std::ranges::any_of(column, [](double value) { return !std::isnan(value); });
+}
+
+}  // namespace
+
+MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const MergeOptions& options) {
+  MergedRun merged{run, {}, 0, 0, {}};
+  merged.max_gap_s = options.max_gap_s.value_or(kGapSteps * median_step_of(capture));
+  merged.offset = options.offset_s ? ClockOffset{.offset_s = *options.offset_s, .quantities = {}}
+                                   : estimate_clock_offset(courses_seen_twice(run, capture));
+
+  const auto t_s = run.column("t_s");
+  std::vector<std::optional<CapturedPose>> poses;
+  for (const double time_s : t_s)
+    poses.push_back(pose_between(capture, time_s - merged.offset.offset_s, merged.max_gap_s));
+  merged.rows_with_pose =
+      static_cast<std::size_t>(std::ranges::count_if(poses, [](const auto& p) { return p.has_value(); }));
+  if (merged.rows_with_pose == 0)
+    throw runs::RunFileError(
+        fmt::format("no row of the run lies between two captured poses at most {:.3g} s apart", merged.max_gap_s));
+  if (!options.keep_frame) put_start_at_origin(poses, options.start_s);
+
+  runs::Run& out = merged.run;
+  const std::array<bool, 6> measured = {true, true, capture.has_z, capture.has_tilt, capture.has_tilt, true};
+  for (std::size_t i = 0; i < kPoseColumns.size(); ++i) {
+    if (!measured[i]) continue;
+    const std::string name = kPoseColumns[i];
+    auto found = std::ranges::find(out.columns, name);
+    if (found != out.columns.end() && has_values(out.column(name))) {
+      const std::string kept = "recorded_" + name;
+      if (!out.column(kept).empty() || std::ranges::find(out.columns, kept) != out.columns.end())
+        throw runs::RunFileError(
+            fmt::format("{} holds values and {} is there too: motion capture was merged before; "
+                        "merge into the run as it was recorded",
+                        name, kept));
+      *found = kept;
+      merged.renamed.emplace_back(name, kept);
+      found = out.columns.end();
+    }
+    if (found == out.columns.end()) {
+      out.columns.push_back(name);
+      out.values.emplace_back(t_s.size(), kUnknown);
+      found = out.columns.end() - 1;
+    }
+    std::vector<double>& values = out.values[static_cast<std::size_t>(found - out.columns.begin())];
+    for (std::size_t row = 0; row < poses.size(); ++row) {
+      if (!poses[row]) continue;
+      const Eigen::Vector3d rpy = physics::roll_pitch_yaw(poses[row]->q);
+      const double six[] = {poses[row]->p_m.x(), poses[row]->p_m.y(), poses[row]->p_m.z(), rpy.x(), rpy.y(), rpy.z()};
+      values[row] = six[i];
+    }
+  }
+  return merged;
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,35 @@
+// Poses that a motion-capture system (or lidar, total station) recorded beside the robot, from its CSV file.
+// Thread safety: pure functions.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runs/run_file.hpp"
+
+namespace kenaf::gap {
+
+enum class LengthUnit { metres, millimetres };
+
+struct CapturedPose {
+  double t_s;                // of the capture's own clock
+  Eigen::Vector3d p_m;       // z 0 where not measured
+  Eigen::Quaterniond q;      // roll and pitch 0 where not measured
+};
+
+struct MotionCapture {
+  std::vector<CapturedPose> poses;  // in order of time
+  bool has_z, has_tilt;
+};
+
+// Columns: t_s; x_m, y_m and, where measured, z_m; yaw_rad and, where measured, roll_rad and pitch_rad; or qx, qy, qz,
+// qw in any order instead of the angles. Lengths may be named x_mm, ... and angles roll_deg, ... as well; `unit` is
+// that of columns without _mm. Other columns are ignored. A row in which one of these is empty is no measurement.
+// Throws RunFileError with the file's name, and line and column where a cell is wrong: a column missing or there in two
+// forms, fewer than two poses, a quaternion that is none.
+MotionCapture parse_motion_capture(std::string_view text, std::string_view name_for_errors, LengthUnit unit);
+MotionCapture motion_capture_of(const runs::Run& table, std::string_view name_for_errors, LengthUnit unit);
+
+}  // namespace kenaf::gap
