@@ -1,0 +1,252 @@
+// Units, signs and time: quantities that should be the same up to slip, compared.
+#include <array>
+#include <numbers>
+
+#include "gap/logs/run_checks.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+// Chosen. Quantities go together from this correlation on; a factor is one of units where no slip, gain or gear
+// explains it, and near the unit's own within what slip adds to it.
+constexpr double kTogether = 0.8, kLengthFactor = 20, kAngleFactor = 15;
+constexpr double kLeastMove_m = 0.1, kLeastTurn_rad = 0.2;
+constexpr double kDegreesInARadian = 180 / std::numbers::pi;
+constexpr double kMostSpeed_mps = 5;  // of a robot that is not known
+
+constexpr std::array<const char*, 2> kSides = {"left", "right"};
+constexpr std::array<const char*, 4> kFlippers = {"fl", "fr", "rl", "rr"};
+
+std::string length_unit(double factor) {
+  return factor > 300 ? "millimetres" : "centimetres";
+}
+
+}  // namespace
+
+void RunChecks::check_clock() {
+  constexpr double kCoarse_s = 0.5, kGapSteps = 10, kOddShare = 0.1, kEpoch_s = 1e6;
+  const auto t_s = column("t_s");
+  const double median_s = median_step(t_s, t_s);
+
+  // What adds up is slower than its rate by the unit of time.
+  std::vector<std::optional<Relation>> relations;
+  if (median_s >= kCoarse_s) {
+    for (const std::string side : kSides)
+      relations.push_back(relate(adding("track_" + side + "_m"), rate("track_" + side + "_mps")));
+    for (const char* speed : {"track_{}_mps", "cmd_track_{}_mps"}) {
+      const std::string left = fmt::format(fmt::runtime(speed), "left"),
+                        right = fmt::format(fmt::runtime(speed), "right");
+      if (!has(left) || !has(right)) continue;
+      const auto a = column(left), b = column(right);
+      std::vector<double> mean(t_s.size());
+      for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = 0.5 * (a[i] + b[i]);
+      relations.push_back(relate(forward(), course_of_rate(t_s, mean, 1e300)));
+    }
+    relations.push_back(relate(upright_angle("yaw_rad"), rate("gyro_z_radps")));
+  }
+  for (const auto& [per_second, name] : {std::pair{1e3, "milliseconds"}, {1e6, "microseconds"}})
+    for (const auto& relation : relations)
+      if (relation && relation->correlation >= kTogether &&
+          std::abs(std::log(relation->ratio * per_second)) < std::log(3))
+        return add(Severity::refuse, "t_s",
+                   fmt::format("looks like {}: it steps by {:.3g}, and what is travelled by that time is {:.3g} times "
+                               "what the speeds say; divide it by {:.0f}",
+                               name, median_s, relation->ratio, per_second));
+  if (median_s >= kCoarse_s)
+    add(Severity::warn, "t_s",
+        fmt::format("steps by {:.3g} s: too coarse to tell anything, if it is in seconds", median_s));
+  if (std::abs(t_s.front()) > kEpoch_s)
+    add(Severity::warn, "t_s", fmt::format("begins at {:.0f} s; it counts from the start of the run", t_s.front()),
+        line(0));
+
+  std::size_t gaps = 0, first_gap = 0, odd = 0;
+  double longest_s = 0;
+  for (std::size_t i = 1; i < t_s.size(); ++i) {
+    const double step_s = t_s[i] - t_s[i - 1];
+    if (step_s < 0.5 * median_s || step_s > 2 * median_s) ++odd;
+    if (step_s <= std::max(kGapSteps * median_s, kCoarse_s)) continue;
+    if (gaps++ == 0) first_gap = i;
+    longest_s = std::max(longest_s, step_s);
+  }
+  if (gaps > 0)
+    add(Severity::warn, "t_s",
+        fmt::format(
+            "has {} gaps of up to {:.3g} s, where rows come each {:.3g} s: rows were lost, or several runs stand "
+            "in one file",
+            gaps, longest_s, median_s),
+        line(first_gap));
+  if (static_cast<double>(odd) > kOddShare * static_cast<double>(t_s.size()))
+    add(Severity::warn, "t_s",
+        fmt::format(
+            "{} of {} steps are less than half or more than twice the median of {:.3g} s: are these the times of "
+            "measuring, or of writing?",
+            odd, t_s.size() - 1, median_s));
+}
+
+void RunChecks::check_same_length(const std::string& name, const std::string& other,
+                                  const std::optional<Relation>& relation) {
+  if (!relation || relation->correlation < kTogether || found(name) || found(other)) return;
+  const bool first_large = relation->ratio > kLengthFactor;
+  if (!first_large && relation->ratio > 1 / kLengthFactor) return;
+  const double factor = first_large ? relation->ratio : 1 / relation->ratio;
+  add(Severity::refuse, first_large ? name : other,
+      fmt::format("looks like {}: it is {:.3g} times what {} says; columns are in metres", length_unit(factor), factor,
+                  first_large ? other : name));
+}
+
+void RunChecks::check_same_angle(const std::string& name, const std::string& other,
+                                 const std::optional<Relation>& relation, double enough) {
+  if (!relation || relation->correlation < kTogether || std::min(relation->first, relation->second) < enough) return;
+  if (found(name) || found(other)) return;
+  const bool first_large = relation->ratio > kAngleFactor;
+  if (!first_large && relation->ratio > 1 / kAngleFactor) return;
+  const double factor = first_large ? relation->ratio : 1 / relation->ratio;
+  add(Severity::refuse, first_large ? name : other,
+      fmt::format("looks like degrees: it is {:.3g} times what {} says; columns are in radians", factor,
+                  first_large ? other : name));
+}
+
+void RunChecks::check_turned_sign(const std::string& name, const std::string& other,
+                                  const std::optional<Relation>& relation, double enough_first, double enough_second,
+                                  const std::string& what_to_do) {
+  if (!relation || relation->correlation > -kTogether || found(name) || found(other)) return;
+  if (relation->first < enough_first || relation->second < enough_second) return;
+  add(Severity::refuse, name,
+      fmt::format("has the sign turned against {} (correlation {:.2f}): {}", other, relation->correlation, what_to_do));
+}
+
+void RunChecks::check_scales() {
+  for (const std::string side : kSides) {
+    const std::string command = "cmd_track_" + side + "_mps", speed = "track_" + side + "_mps",
+                      travel = "track_" + side + "_m";
+    const auto by_command = relate(rate(command), rate(speed)), by_travel = relate(adding(travel), rate(speed));
+    check_same_length(command, speed, by_command);
+    check_same_length(travel, speed, by_travel);
+    const std::string words = "a track that carries the robot forward is positive, on both sides";
+    check_turned_sign(speed, command, by_command, kLeastMove_m, kLeastMove_m,
+                      words + "; or are left and right exchanged?");
+    check_turned_sign(travel, speed, by_travel, kLeastMove_m, kLeastMove_m, words);
+    if (!has(speed)) {
+      const auto both = relate(rate(command), adding(travel));
+      check_same_length(command, travel, both);
+      check_turned_sign(travel, command, both, kLeastMove_m, kLeastMove_m, words);
+    }
+  }
+  const auto crossed = [this](const std::string& side, const std::string& other_side) {
+    const auto own = relate(rate("cmd_track_" + side + "_mps"), rate("track_" + side + "_mps"));
+    const auto across = relate(rate("cmd_track_" + side + "_mps"), rate("track_" + other_side + "_mps"));
+    return own && across && own->correlation < 0.5 && across->correlation > 0.95;
+  };
+  if (crossed("left", "right") && crossed("right", "left") && !found("track_left_mps"))
+    add(Severity::refuse, "track_left_mps",
+        "follows cmd_track_right_mps, and track_right_mps the left one: left and right are exchanged");
+  for (const std::string flipper : kFlippers) {
+    const std::string angle = "flipper_" + flipper + "_rad", command = "cmd_" + angle;
+    const auto relation = relate_values(command, angle);
+    check_same_angle(command, angle, relation, kLeastTurn_rad);
+    check_turned_sign(angle, command, relation, kLeastTurn_rad, kLeastTurn_rad,
+                      "0 is straight out along the body, tip up is positive, for all four flippers");
+  }
+  for (const auto& [angle, axis] : {std::pair{"yaw_rad", "z"}, {"pitch_rad", "y"}, {"roll_rad", "x"}}) {
+    const std::string gyro = std::string("gyro_") + axis + "_radps";
+    const auto relation = relate(upright_angle(angle), rate(gyro));
+    check_same_angle(angle, gyro, relation, kLeastTurn_rad / 5);
+    check_turned_sign(angle, gyro, relation, kLeastTurn_rad, kLeastTurn_rad,
+                      "x forward, y left, z up: roll is positive right side down, pitch nose down, yaw to the left");
+  }
+
+  // Pose against tracks. Slip and blocked robots only make the pose's way shorter.
+  const Course ahead = forward();
+  const auto along = relate(ahead, belts(0.5, 0.5)), turning = relate(upright_angle("yaw_rad"), belts(-1, 1));
+  const double way_m = distance_of_belts(), farthest_m = farthest_from_start();
+  constexpr double kSlide_m = 1;  // without its tracks: down a slope, off an edge
+  if (farthest_m > kLengthFactor * (way_m + 0.1) && farthest_m > kLengthFactor * kSlide_m && has("cmd_track_left_mps"))
+    add(Severity::refuse, "x_m",
+        fmt::format("looks like {} together with y_m: the robot is up to {:.4g} from its start, but its tracks went "
+                    "{:.3g} m; columns are in metres",
+                    length_unit(farthest_m / (way_m + 0.1)), farthest_m, way_m));
+  check_turned_sign("x_m", "the tracks", along, 2 * kLeastMove_m, 2 * kLeastMove_m,
+                    "x is forward at the start, and yaw the heading of the robot's front");
+  if (turning && turning->correlation >= kTogether && robot_ != nullptr && !found("yaw_rad")) {
+    // Slip makes a robot turn less than its tracks say, never several times as much.
+    const double turned = turning->ratio * robot_->track_gauge_m();
+    if (turned > kAngleFactor && turning->first > kLeastTurn_rad * kDegreesInARadian / 4)
+      add(Severity::refuse, "yaw_rad",
+          fmt::format(
+              "looks like degrees: the robot turns {:.3g} times what its tracks make it; columns are in radians",
+              turned));
+  }
+  check_turned_sign("yaw_rad", "the tracks", turning, 2 * kLeastTurn_rad, 2 * kLeastMove_m,
+                    "a left turn is positive, and then the right track is the faster one");
+}
+
+void RunChecks::check_ranges() {
+  const auto largest = [this](const std::string& name) {
+    double most = 0;
+    for (const double value : column(name)) most = std::isnan(value) ? most : std::max(most, std::abs(value));
+    return most;
+  };
+  const auto line_above = [this](const std::string& name, double limit) {
+    const auto values = column(name);
+    return line(static_cast<std::size_t>(
+        std::ranges::find_if(values, [limit](double v) { return std::abs(v) > limit; }) - values.begin()));
+  };
+  const auto refuse_above = [&](const std::string& name, double limit, const std::string& text) {
+    if (const double most = largest(name); most > limit)
+      add(Severity::refuse, name, fmt::format("is {:.4g} {}", most, text), line_above(name, limit));
+  };
+
+  const double most_mps = robot_ != nullptr ? robot_->drive.max_speed_mps : kMostSpeed_mps;
+  for (const std::string name : {"cmd_track_left_mps", "cmd_track_right_mps", "track_left_mps", "track_right_mps"})
+    refuse_above(
+        name, kLengthFactor * most_mps,
+        fmt::format("where {:.3g} m/s is the fastest there is: it looks like millimetres or centimetres a second",
+                    most_mps));
+  // z-y-x angles lie in these ranges by their definition.
+  constexpr double kRounding = 0.01;
+  refuse_above("pitch_rad", 0.5 * std::numbers::pi + kRounding,
+               "at most, beyond pi/2, where no pitch is: it looks like degrees");
+  refuse_above("roll_rad", 2 * std::numbers::pi + kRounding, "at most, beyond a whole turn: it looks like degrees");
+  for (const std::string name : {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"})
+    refuse_above(name, 60, "rad/s at most, ten turns a second: it looks like degrees a second");
+  refuse_above("battery_v", 1000, "V: it looks like millivolts");
+  for (const std::string side : kSides) refuse_above("track_" + side + "_a", 1000, "A: it looks like milliamperes");
+  for (const std::string flipper : kFlippers)
+    refuse_above("flipper_" + flipper + "_a", 1000, "A: it looks like milliamperes");
+
+  if (robot_ != nullptr && robot_->has_flippers()) {
+    const physics::FlipperDescription& limits = robot_->flipper.front();
+    const double limit = std::max(std::abs(limits.min_angle_rad), std::abs(limits.max_angle_rad));
+    for (const std::string flipper : kFlippers)
+      for (const std::string& name : {"cmd_flipper_" + flipper + "_rad", "flipper_" + flipper + "_rad"}) {
+        refuse_above(name, 3 * limit, fmt::format("where {:.3g} rad is its limit: it looks like degrees", limit));
+        constexpr double kLoose_rad = 0.5;  // of an encoder with an offset, a stop that gives way
+        if (const double most = largest(name); most > limit + kLoose_rad && !found(name))
+          add(Severity::warn, name, fmt::format("goes to {:.3g} rad, beyond its limit of {:.3g} rad", most, limit),
+              line_above(name, limit + kLoose_rad));
+      }
+  }
+
+  const auto x = column("acc_x_mps2"), y = column("acc_y_mps2"), z = column("acc_z_mps2");
+  std::vector<double> norms;
+  for (std::size_t i = 0; i < std::min({x.size(), y.size(), z.size()}); ++i)
+    if (const double norm = std::hypot(x[i], y[i], z[i]); !std::isnan(norm)) norms.push_back(norm);
+  if (norms.empty()) return;
+  const auto middle = norms.begin() + std::ssize(norms) / 2;
+  std::ranges::nth_element(norms, middle);
+  if (*middle > 0.8 && *middle < 1.2)
+    add(Severity::refuse, "acc_x_mps2",
+        fmt::format("looks like multiples of g, with acc_y and acc_z: their norm is {:.3g}; at rest it is 9.81 m/s2",
+                    *middle));
+  else if (*middle > 500)
+    add(Severity::refuse, "acc_x_mps2",
+        fmt::format("looks like millimetres or centimetres, with acc_y and acc_z: their norm is {:.4g}; at rest it is "
+                    "9.81 m/s2",
+                    *middle));
+  else if (*middle < 5 || *middle > 20)
+    add(Severity::warn, "acc_x_mps2",
+        fmt::format("its norm with acc_y and acc_z is {:.3g} mostly; at rest it is 9.81 m/s2, gravity included",
+                    *middle));
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,205 @@
+// Commands, sensors that say nothing, and the pose.
+#include <array>
+#include <numbers>
+
+#include "gap/logs/run_checks.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+// Chosen.
+constexpr double kMoves_m = 0.1, kCarries_m = 0.3, kSeen_m = 0.2, kTurns_rad = 0.3;
+constexpr std::size_t kFewestValues = 10;
+
+constexpr std::array<const char*, 2> kSides = {"left", "right"};
+constexpr std::array<const char*, 4> kFlippers = {"fl", "fr", "rl", "rr"};
+
+// The same number in all rows that have one, to the last bit: no sensor that works does that for long.
+bool constant(std::span<const double> column) {
+  std::size_t count = 0;
+  double first = 0;
+  for (const double value : column) {
+    if (std::isnan(value)) continue;
+    if (count++ == 0) first = value;
+    if (value != first) return false;
+  }
+  return count >= kFewestValues;
+}
+
+double total_change(const Course& course) {
+  double sum = 0;
+  for (std::size_t i = 1; i < course.value.size(); ++i) sum += std::abs(course.value[i] - course.value[i - 1]);
+  return sum;
+}
+
+double range(std::span<const double> column) {
+  double least = INFINITY, most = -INFINITY;
+  for (const double value : column) {
+    if (std::isnan(value)) continue;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  return most >= least ? most - least : 0;
+}
+
+}  // namespace
+
+void RunChecks::check_commands() {
+  const bool tracks = has("cmd_track_left_mps") && has("cmd_track_right_mps");
+  if (!tracks) {
+    add(Severity::refuse, has("cmd_track_left_mps") ? "cmd_track_right_mps" : "cmd_track_left_mps",
+        "is missing or empty: without what was commanded no run can be repeated in simulation");
+    return;
+  }
+  const auto ever = [this](const std::string& name) {
+    return std::ranges::any_of(column(name), [](double value) { return std::abs(value) > 0; });
+  };
+  if (ever("cmd_track_left_mps") || ever("cmd_track_right_mps")) return;
+  const bool flippers_commanded = std::ranges::any_of(
+      kFlippers, [this](const std::string& flipper) { return range(column("cmd_flipper_" + flipper + "_rad")) > 0; });
+  const double travelled_m = std::max(total_change(belts(1, 0)), total_change(belts(0, 1)));
+  if (travelled_m > kCarries_m)
+    add(Severity::refuse, "cmd_track_left_mps",
+        fmt::format(
+            "is zero all the time, and so is cmd_track_right_mps, but the tracks went {:.3g} m: the commands were "
+            "not recorded",
+            travelled_m));
+  else if (!flippers_commanded && range(column("x_m")) < 0.01 && range(column("y_m")) < 0.01 &&
+           range(column("z_m")) < 0.01)
+    add(Severity::warn, "cmd_track_left_mps",
+        "is zero all the time, nothing else is commanded, and the robot stands: this run tells nothing");
+}
+
+void RunChecks::check_constants() {
+  const bool pose_moves = farthest_from_start() > kSeen_m;
+  for (const std::string side : kSides) {
+    const double commanded_m = total_change(rate("cmd_track_" + side + "_mps"));
+    if (commanded_m < kMoves_m) continue;
+    for (const std::string& name : {"track_" + side + "_mps", "track_" + side + "_m"}) {
+      if (!constant(column(name))) continue;
+      const bool other = has("track_" + side + (name.ends_with("_mps") ? "_m" : "_mps"));
+      add(pose_moves ? Severity::refuse : Severity::warn, name,
+          fmt::format(
+              "never changes, while {:.3g} m are commanded{}: the encoder is dead or its column is not filled{}",
+              commanded_m, pose_moves ? " and the robot moves" : "",
+              other || pose_moves ? "; leave the cells empty" : ", or the track is blocked"));
+    }
+    if (const std::string name = "track_" + side + "_a"; constant(column(name)))
+      add(Severity::warn, name,
+          "never changes while the track is driven; leave the cells empty where it is not measured");
+  }
+  for (const std::string flipper : kFlippers) {
+    const std::string angle = "flipper_" + flipper + "_rad";
+    if (const double commanded = range(column("cmd_" + angle)); commanded > kTurns_rad && constant(column(angle)))
+      add(Severity::warn, angle,
+          fmt::format("never changes, while {:.3g} rad are commanded: its encoder is dead, or the flipper is stuck",
+                      commanded));
+  }
+  const double way_m = distance_of_belts();
+  if (way_m < kCarries_m) return;
+  if (has("x_m") && constant(column("x_m")) && constant(column("y_m")))
+    add(Severity::refuse, "x_m",
+        fmt::format(
+            "never changes, nor does y_m, while the tracks go {:.3g} m: the pose is frozen; leave the cells empty "
+            "where nothing was measured",
+            way_m));
+  else if (constant(column("yaw_rad")))
+    add(Severity::refuse, "yaw_rad",
+        "never changes while the robot drives: the heading is not measured; leave the column out");
+  for (const std::string name :
+       {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps", "acc_x_mps2", "acc_y_mps2", "acc_z_mps2"})
+    if (constant(column(name)))
+      add(Severity::warn, name, "never changes while the robot drives: the sensor is dead; leave the cells empty");
+}
+
+void RunChecks::check_pose() {
+  const auto t_s = column("t_s"), x = column("x_m"), y = column("y_m"), z = column("z_m"), yaw = column("yaw_rad");
+  const bool tracks_measured = has("track_left_mps") || has("track_left_m");
+  if (!has("x_m") || !has("y_m")) {
+    add(tracks_measured ? Severity::warn : Severity::refuse, has("x_m") ? "y_m" : "x_m",
+        tracks_measured
+            ? "is missing or empty: where the robot went is not known; kenaf-gap merge puts motion capture's "
+              "pose into a run"
+            : "is missing or empty, and the tracks were not measured either: there is nothing to compare with");
+    return;
+  }
+  if (found("x_m")) return;  // in another unit every step is a jump
+
+  constexpr double kLate_s = 0.5, kStart_s = 0.3, kStill_mps = 0.1, kFrozen_s = 1, kFrozenBelts_m = 0.2;
+  constexpr double kJump_m = 0.1, kFall_mps = 5, kJump_rad = 0.5, kTumble_radps = 15, kSpeeds = 5;
+  const double most_mps = robot_ != nullptr ? robot_->drive.max_speed_mps : 1;
+  const Course left = belts(1, 0), right = belts(0, 1);
+  const std::vector<bool> stands = upright();
+  std::size_t jumps = 0, first_jump = 0, turns = 0, first_turn = 0, frozen = 0;
+  double farthest_m = 0, longest_frozen_s = 0;
+  std::optional<std::size_t> start, last, last_yaw, same_since;
+  for (std::size_t i = 0; i < t_s.size(); ++i) {
+    if (!stands[i]) last_yaw.reset();
+    if (i < yaw.size() && !std::isnan(yaw[i]) && stands[i]) {
+      const double dt_s = last_yaw ? t_s[i] - t_s[*last_yaw] : 0;
+      const double turn = last_yaw ? std::abs(std::remainder(yaw[i] - yaw[*last_yaw], 2 * std::numbers::pi)) : 0;
+      if (turn > kJump_rad + kTumble_radps * dt_s && turns++ == 0) first_turn = i;
+      last_yaw = i;
+    }
+    if (std::isnan(x[i] + y[i])) continue;
+    if (!start) start = i;
+    if (last) {
+      const double rise = z.empty() || std::isnan(z[i] + z[*last]) ? 0 : z[i] - z[*last];
+      const double way_m = std::hypot(x[i] - x[*last], y[i] - y[*last], rise), dt_s = t_s[i] - t_s[*last];
+      if (way_m > kJump_m + (kSpeeds * most_mps + kFall_mps) * dt_s) {
+        if (jumps++ == 0) first_jump = i;
+        farthest_m = std::max(farthest_m, way_m);
+      }
+      if (way_m > 0) same_since.reset();
+      if (way_m == 0 && !same_since) same_since = *last;
+      if (same_since && t_s[i] - t_s[*same_since] > std::max(longest_frozen_s, kFrozen_s)) {
+        const auto went = [&](const Course& belt) {
+          return std::abs(value_at(belt, t_s[i]) - value_at(belt, t_s[*same_since]));
+        };
+        if (std::min(went(left), went(right)) > kFrozenBelts_m) {
+          longest_frozen_s = t_s[i] - t_s[*same_since];
+          frozen = *same_since;
+        }
+      }
+    }
+    last = i;
+  }
+  if (longest_frozen_s > 0)
+    add(Severity::warn, "x_m",
+        fmt::format(
+            "stands still to the last digit for {:.3g} s with y_m, while the tracks run: the last pose was repeated "
+            "where nothing was measured; empty the cells there",
+            longest_frozen_s),
+        line(frozen));
+  if (jumps > 0)
+    add(Severity::warn, "x_m",
+        fmt::format("jumps {} times with y_m and z_m, by up to {:.3g} m between two rows that have a pose: markers "
+                    "were taken for "
+                    "others; empty the cells there",
+                    jumps, farthest_m),
+        line(first_jump));
+  if (turns > 0)
+    add(Severity::warn, "yaw_rad",
+        fmt::format("jumps {} times by more than a robot turns between two rows: markers were taken for others; empty "
+                    "the cells there",
+                    turns),
+        line(first_turn));
+  if (t_s[*start] - t_s.front() > kLate_s)
+    add(Severity::warn, "x_m",
+        fmt::format(
+            "has no value before {:.3g} s: the run's first pose is where a simulation of it starts; cut the rows "
+            "before it",
+            t_s[*start]),
+        line(*start));
+  if (!tracks_measured) {
+    for (std::size_t i = *start; i < t_s.size() && t_s[i] <= t_s[*start] + kStart_s; ++i)
+      if (t_s[i] - t_s[*start] > 0.5 * kStart_s &&
+          std::hypot(x[i] - x[*start], y[i] - y[*start]) > kStill_mps * (t_s[i] - t_s[*start]) + 0.02) {
+        add(Severity::warn, "x_m",
+            "moves from the first row on, and no track speed is measured there: how fast the run starts is not known");
+        break;
+      }
+  }
+}
+
+}  // namespace kenaf::gap

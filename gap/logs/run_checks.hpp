@@ -1,0 +1,73 @@
+// What the checks of plausibility.hpp share: one run with its robot's limits, and the findings so far.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "gap/logs/course.hpp"
+#include "gap/plausibility.hpp"
+
+namespace kenaf::gap {
+
+// How two quantities go together that should be the same: their mean rates over windows of 0.2 s or more.
+struct Relation {
+  double ratio;         // of their root mean squares
+  double correlation;   // about zero
+  double first, second; // how far each went in all: the sum of sizes of its changes
+};
+
+class RunChecks {
+ public:
+  RunChecks(const runs::Run& run, std::string file, const physics::RobotDescription* robot)
+      : run_(run), file_(std::move(file)), robot_(robot) {}
+
+  void check_clock();          // before the scales, which it must come before: false time falsifies all rates
+  void check_scales();         // units and signs of quantities that go together
+  void check_ranges();         // values that nothing has
+  void check_commands();
+  void check_constants();
+  void check_pose();
+
+  std::vector<Finding> take() { return std::move(findings_); }
+
+ private:
+  using Severity = Finding::Severity;
+  std::span<const double> column(const std::string& name) const { return run_.column(name); }
+  bool has(const std::string& name) const;           // with at least one value
+  static std::size_t line(std::size_t row) { return row + 2; }
+  void add(Severity severity, const std::string& name, const std::string& text, std::size_t at_line = 0) {
+    findings_.push_back({severity, file_, at_line, name, text});
+  }
+  bool found(const std::string& name) const;         // something is said of it already
+
+  Course adding(const std::string& name) const;      // of a column that adds up: travel, an angle
+  // Of roll, pitch or yaw, unwrapped, where the robot is upright: near pitch pi/2 yaw jumps, and upside down all turn.
+  Course upright_angle(const std::string& name) const;
+  std::vector<bool> upright() const;                 // each row; by the newest roll and pitch, where there are any
+  Course rate(const std::string& name) const;        // of a column of rates
+  Course forward() const;                            // of the pose, along its heading
+  Course belts(double left, double right) const;     // measured, else commanded
+  std::optional<Relation> relate(const Course& first, const Course& second) const;
+  // Of the values instead, about their means, as a slow servo follows in value and not in rate. An empty cell holds the
+  // value before it. `first` and `second` are their ranges.
+  std::optional<Relation> relate_values(const std::string& name, const std::string& other) const;
+  double distance_of_belts() const;                  // the farther going belt's way, to and fro
+  double farthest_from_start() const;                // of the pose in the plane
+
+  void check_same_length(const std::string& name, const std::string& other, const std::optional<Relation>& relation);
+  void check_same_angle(const std::string& name, const std::string& other, const std::optional<Relation>& relation,
+                        double enough);
+  void check_turned_sign(const std::string& name, const std::string& other, const std::optional<Relation>& relation,
+                         double enough_first, double enough_second, const std::string& what_to_do);
+
+  const runs::Run& run_;
+  std::string file_;
+  const physics::RobotDescription* robot_;
+  std::vector<Finding> findings_;
+};
+
+}  // namespace kenaf::gap

@@ -1,0 +1,66 @@
+#include "gap/plausibility.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "gap/logs/run_checks.hpp"
+
+namespace kenaf::gap {
+
+std::string in_words(const Finding& finding) {
+  std::string words = finding.file;
+  if (finding.line > 0) words += fmt::format(":{}", finding.line);
+  if (!finding.column.empty()) words += ": " + finding.column;
+  return words + ": " + finding.text;
+}
+
+bool any_refused(std::span<const Finding> findings) {
+  return std::ranges::find(findings, Finding::Severity::refuse, &Finding::severity) != findings.end();
+}
+
+std::vector<Finding> check_run(const runs::Run& run, const std::string& file, const physics::RobotDescription* robot) {
+  constexpr std::size_t kFewestRows = 10;
+  if (run.row_count() < kFewestRows)
+    return {{Finding::Severity::refuse, file, 0, "",
+             fmt::format("has {} rows; a run of fewer than {} tells nothing", run.row_count(), kFewestRows)}};
+  RunChecks checks(run, file, robot);
+  checks.check_clock();
+  std::vector<Finding> findings = checks.take();
+  if (any_refused(findings)) return findings;  // with false times all rates are false
+  checks.check_ranges();
+  checks.check_scales();
+  checks.check_commands();
+  checks.check_constants();
+  checks.check_pose();
+  std::ranges::move(checks.take(), std::back_inserter(findings));
+  return findings;
+}
+
+std::vector<Finding> check_noise(const runs::Dataset& dataset,
+                                 std::span<const std::vector<std::string>> columns_of_runs) {
+  std::set<std::string> known;
+  for (const auto& columns : columns_of_runs) known.insert(columns.begin(), columns.end());
+  std::vector<Finding> findings;
+  for (const auto& [name, sigma] : dataset.noise)
+    if (!known.contains(name))
+      findings.push_back({Finding::Severity::warn, "dataset.toml", 0, name,
+                          "has a [noise], but no run has such a column; is its name right?"});
+  return findings;
+}
+
+std::vector<Finding> check_plausibility(const runs::Dataset& dataset, std::span<const runs::Run> runs,
+                                        const physics::RobotDescription* robot) {
+  std::vector<std::vector<std::string>> columns;
+  std::vector<Finding> findings;
+  for (std::size_t i = 0; i < std::min(runs.size(), dataset.runs.size()); ++i) {
+    columns.push_back(runs[i].columns);
+    if (!dataset.runs[i].fault.empty()) continue;
+    std::ranges::move(check_run(runs[i], dataset.runs[i].file, robot), std::back_inserter(findings));
+  }
+  std::ranges::move(check_noise(dataset, columns), std::back_inserter(findings));
+  return findings;
+}
+
+}  // namespace kenaf::gap

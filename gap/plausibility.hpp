@@ -1,0 +1,45 @@
+// Is a log what it says it is? Units, signs, clocks, sensors that are dead, poses that jump: what the format cannot
+// refuse and a diagnosis would take for a difference between robot and simulator.
+//
+// What is certain is refused, what is likely is warned of; a log that is right has no finding. A robot that slips,
+// falls or stands still is right, and so is one that already moves in its first row.
+//
+// Thread safety: pure functions.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "physics/robot_description.hpp"
+#include "runs/dataset.hpp"
+#include "runs/run_file.hpp"
+
+namespace kenaf::gap {
+
+struct Finding {
+  enum class Severity { warn, refuse };
+  Severity severity;
+  std::string file;    // as the dataset names it; "dataset.toml" where it is of all runs
+  std::size_t line;    // of the file, from 1, as read_run() counts; 0: of the whole column or file
+  std::string column;  // empty: of none alone
+  std::string text;    // what is wrong, and what to do
+};
+
+// "run-000.csv:17: x_m: jumps ..."; without a line "run-000.csv: x_m: ...".
+std::string in_words(const Finding& finding);
+bool any_refused(std::span<const Finding> findings);
+
+// Of one run. `robot`: whose limits it has; null: not known, and fewer things are certain.
+std::vector<Finding> check_run(const runs::Run& run, const std::string& file, const physics::RobotDescription* robot);
+
+// Of a dataset as a whole: its noise. `runs` as Dataset::runs lists them. Without those of check_run().
+std::vector<Finding> check_noise(const runs::Dataset& dataset,
+                                 std::span<const std::vector<std::string>> columns_of_runs);
+
+// Both, of all runs but those with a fault.
+std::vector<Finding> check_plausibility(const runs::Dataset& dataset, std::span<const runs::Run> runs,
+                                        const physics::RobotDescription* robot);
+
+}  // namespace kenaf::gap
