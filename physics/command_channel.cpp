@@ -51,6 +51,13 @@ void CommandChannel::restart(const RobotCommand& command) {
   stop_ramp();
 }
 
+void CommandChannel::begin(const RobotCommand& command, const std::array<double, kTrackCount>& track_mps) {
+  sent_ = received_ = command;
+  for (double& speed : received_.track_speed_mps) speed *= gain_;
+  std::fill(line_.begin(), line_.end(), received_);
+  ramp_mps_ = track_mps;
+}
+
 void CommandChannel::send(const RobotCommand& command) {
   for (std::size_t i = 0; i < kTrackCount; ++i)
     if (std::isfinite(command.track_speed_mps[i])) sent_.track_speed_mps[i] = command.track_speed_mps[i];

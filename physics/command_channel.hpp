@@ -28,6 +28,9 @@ class CommandChannel {
 
   // As if `command` had been sent for ever; the ramp stands at rest.
   void restart(const RobotCommand& command);
+  // As if `command` had been sent for so long that nothing else is under way, with the ramp at `track_mps`: a robot that
+  // is on its way already.
+  void begin(const RobotCommand& command, const std::array<double, kTrackCount>& track_mps);
   // The tracks stand, whatever was commanded: the ramp begins at 0 again. What is under way arrives.
   void stop_ramp() { ramp_mps_ = {}; }
   // From the commander. What is no number leaves what was sent before.

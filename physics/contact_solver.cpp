@@ -44,6 +44,11 @@ btScalar driving_share(const Belt& belt) {
   return 1 - std::min(belt.slip_spm * std::abs(belt.speed_mps), 1.0);
 }
 
+// A belt that keeps its speed takes from its motor what a contact takes from it.
+void hold_against(Belt& belt, const btScalar gain[2], const btScalar impulse[3]) {
+  if (std::isinf(belt.moving_mass_kg)) belt.motor_impulse_ns -= gain[0] * impulse[1] + gain[1] * impulse[2];
+}
+
 }  // namespace
 
 void ContactSolver::forget_contacts_of(const btCollisionObject& object) {
@@ -309,6 +314,7 @@ btScalar ContactSolver::solve_contact(Contact& c) {
 }
 
 btScalar ContactSolver::solve_running_gear(Belt& belt, btScalar time_step) {
+  if (std::isinf(belt.moving_mass_kg)) return 0;
   btScalar changed = 0;
   const auto push = [&](double& impulse_ns, double wanted_ns, double min_ns, double max_ns) {
     const double before = impulse_ns;
@@ -377,8 +383,11 @@ btScalar ContactSolver::solveGroupCacheFriendlySetup(btCollisionObject** bodies,
 
 btScalar ContactSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int body_count,
                                                       const btContactSolverInfo& info) {
-  for (Contact& c : contacts_)
+  for (Contact& c : contacts_) {
     for (int k = 0; k < 3; ++k) *c.kept[k] = c.impulse[k];
+    if (c.belt_a) hold_against(*c.belt_a, c.belt_gain_a, c.impulse);
+    if (c.belt_b) hold_against(*c.belt_b, c.belt_gain_b, c.impulse);
+  }
   FlipperJoint* joint = nullptr;
   for (int i = 0, row = 0; i < m_tmpSolverNonContactConstraintPool.size(); ++i, ++row) {
     const btSolverConstraint& c = m_tmpSolverNonContactConstraintPool[i];

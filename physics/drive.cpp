@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "physics/battery.hpp"
 
@@ -20,6 +21,14 @@ TrackDrive::TrackDrive(const TrackDriveDescription& drive, const Effects& effect
   drive_.max_force_n *= effects.drive_torque_scale;
 }
 
+void TrackDrive::prescribe(Belt& belt, double speed_mps) {
+  turn_at(speed_mps);
+  belt.moving_mass_kg = std::numeric_limits<double>::infinity();
+  belt.speed_mps = speed_mps;
+  belt.min_impulse_ns = belt.max_impulse_ns = 0;  // the solver says what it would have taken
+  belt.friction_impulse_ns = belt.viscous_impulse_ns = 0;
+}
+
 void TrackDrive::before_step(Belt& belt, double commanded_mps, double voltage_share, double time_step_s) {
   double target = std::clamp(commanded_mps, -drive_.max_speed_mps, drive_.max_speed_mps);
   // both lags exact for a constant command, so the step size changes nothing
@@ -32,6 +41,7 @@ void TrackDrive::before_step(Belt& belt, double commanded_mps, double voltage_sh
   const double u = belt.speed_mps;
   const double braking_n = drive_.max_force_n * voltage_share;
   const double driving_n = drive_.max_force_n * std::max(0.0, voltage_share - std::abs(u) / drive_.max_speed_mps);
+  belt.moving_mass_kg = drive_.moving_mass_kg;
   belt.target_mps = reference_mps_;
   belt.max_impulse_ns = (u > 0 ? driving_n : braking_n) * time_step_s;
   belt.min_impulse_ns = -(u < 0 ? driving_n : braking_n) * time_step_s;

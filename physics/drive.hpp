@@ -15,8 +15,10 @@ class TrackDrive {
  public:
   TrackDrive(const TrackDriveDescription& drive, const Effects& effects);
 
-  // As at placement: the belt stands, the drive wants nothing.
-  void stop() { lagged_mps_ = reference_mps_ = 0; }
+  // As after turning at this speed for long, commanded so: it goes on from here.
+  void turn_at(double speed_mps) { lagged_mps_ = reference_mps_ = speed_mps; }
+  // Instead of before_step(): in the next step the belt has this speed, whatever motor and running gear are.
+  void prescribe(Belt& belt, double speed_mps);
   void before_step(Belt& belt, double commanded_mps, double voltage_share, double time_step_s);
   void after_step(const Belt& belt, double time_step_s) { travel_m_ += belt.speed_mps * time_step_s; }
 

@@ -94,6 +94,16 @@ void FlipperJoint::drive(const JointCommand& command, const FlipperDescription& 
   target_radps_ = speed;
 }
 
+void FlipperJoint::prescribe(double angle_rad, double time_step_s) {
+  constexpr double kAnyTorque_nm = 1e6;
+  target_radps_ = frames::wrap_angle(angle_rad - angle_rad_) / time_step_s;
+  max_impulse_ = kAnyTorque_nm * time_step_s;
+  min_impulse_ = -max_impulse_;
+  softness_ = most_apart_rad_ = 0;
+  servo_rad_ = followed_rad_ = angle_rad_ + target_radps_ * time_step_s;
+  servo_radps_ = 0;
+}
+
 // Spring and damper, implicit as a contact's: torque = k (apart + h (servo - arm speed)) + d (servo - arm speed), at
 // most what the servo has, and with play never a pull across it.
 void FlipperJoint::push_through(double servo_radps, double torque_nm, double time_step_s) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "protocol/relay_datagram.hpp"
 
@@ -30,6 +31,13 @@ struct JointCommand {
 struct RobotCommand {
   std::array<double, kTrackCount> track_speed_mps{};  // surface speed of each track relative to the body, + = forward
   std::array<JointCommand, kFlipperCount> flipper{};
+};
+
+// What belts and flippers do whatever they are told: as measured on a robot, so that its drives play no part.
+struct PrescribedMotion {
+  std::array<std::optional<double>, kTrackCount> track_mps{};      // surface speed; empty: the drive follows the command
+  std::array<std::optional<double>, kFlipperCount> flipper_rad{};  // likewise
+  bool operator==(const PrescribedMotion&) const = default;
 };
 
 }  // namespace kenaf::physics

@@ -209,8 +209,9 @@ void RobotModel::place(const Pose& X_WB, bool start_joints) {
   for (const Track side : {kLeft, kRight}) {
     belts_[side].speed_mps = 0;
     belts_[side].motor_impulse_ns = 0;
-    drives_[side].stop();
+    drives_[side].turn_at(0);
   }
+  prescribed_ = {};
   channel_.stop_ramp();
   if (start_joints) {
     RobotCommand rest;
@@ -218,6 +219,26 @@ void RobotModel::place(const Pose& X_WB, bool start_joints) {
       joint = {JointMode::angle, description.has_flippers() ? description.flipper.front().start_angle_rad : 0.0};
     channel_.restart(rest);
   }
+}
+
+void RobotModel::set_in_motion(const RobotMotion& motion, const RobotCommand& command) {
+  const btVector3 v = to_bullet(motion.v_WB_mps), w = to_bullet(motion.w_WB_radps);
+  const btVector3 p_WB = (hull_->getWorldTransform() * X_BCom_.inverse()).getOrigin();
+  for (btRigidBody* body : body_list_) {
+    const btVector3 v_com = v + w.cross(body->getWorldTransform().getOrigin() - p_WB);
+    body->setLinearVelocity(v_com);
+    body->setAngularVelocity(w);
+    body->setInterpolationLinearVelocity(v_com);
+    body->setInterpolationAngularVelocity(w);
+  }
+  std::array<double, kTrackCount> told_mps{};  // what the channel would have given for these speeds
+  for (const Track side : {kLeft, kRight}) {
+    belts_[side].speed_mps = motion.track_mps[side];
+    belts_[side].motor_impulse_ns = 0;
+    drives_[side].turn_at(motion.track_mps[side]);
+    told_mps[side] = motion.track_mps[side] / favour(side);
+  }
+  channel_.begin(command, told_mps);
 }
 
 // A servo's speed and torque shrink with the voltage as a track motor's do.
@@ -231,14 +252,20 @@ FlipperServoDescription RobotModel::servo_now() const {
 void RobotModel::before_step(double time_step_s) {
   const RobotCommand& command = channel_.step();
   for (const Track side : {kLeft, kRight}) {
-    const double favour = (side == kLeft ? 0.5 : -0.5) * description.effects.drive_asymmetry;
-    drives_[side].before_step(belts_[side], command.track_speed_mps[side] * (1 + favour), battery_.voltage_share(),
-                              time_step_s);
+    if (prescribed_.track_mps[side])
+      drives_[side].prescribe(belts_[side], *prescribed_.track_mps[side]);
+    else
+      drives_[side].before_step(belts_[side], command.track_speed_mps[side] * favour(side), battery_.voltage_share(),
+                                time_step_s);
   }
   if (!description.has_flippers()) return;
   const FlipperServoDescription servo = servo_now();
-  for (std::size_t i = 0; i < kFlipperCount; ++i)
-    flippers_[i].joint->drive(command.flipper[i], description.flipper.front(), servo, time_step_s);
+  for (std::size_t i = 0; i < kFlipperCount; ++i) {
+    if (prescribed_.flipper_rad[i])
+      flippers_[i].joint->prescribe(*prescribed_.flipper_rad[i], time_step_s);
+    else
+      flippers_[i].joint->drive(command.flipper[i], description.flipper.front(), servo, time_step_s);
+  }
 }
 
 void RobotModel::after_step(double time_step_s) {

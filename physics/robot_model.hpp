@@ -30,6 +30,9 @@ class RobotModel {
   void place(const Pose& X_WB, bool start_joints);
 
   void send(const RobotCommand& command) { channel_.send(command); }
+  // World's contracts.
+  void set_in_motion(const RobotMotion& motion, const RobotCommand& command);
+  void prescribe(const PrescribedMotion& motion) { prescribed_ = motion; }
   void before_step(double time_step_s);
   void after_step(double time_step_s);
 
@@ -60,6 +63,8 @@ class RobotModel {
   void make_hull(RobotId id);
   void make_flipper(Flipper which, RobotId id);
   FlipperServoDescription servo_now() const;
+  // What a track is told is multiplied by this.
+  double favour(Track side) const { return 1 + (side == kLeft ? 0.5 : -0.5) * description.effects.drive_asymmetry; }
   double battery_current_a(double time_step_s) const;
 
   btDiscreteDynamicsWorld& world_;
@@ -74,6 +79,7 @@ class RobotModel {
   std::array<FlipperBody, kFlipperCount> flippers_;
   std::array<Belt, kTrackCount> belts_;
   CommandChannel channel_;
+  PrescribedMotion prescribed_;
   std::array<TrackDrive, kTrackCount> drives_;
   Battery battery_;
   std::vector<btRigidBody*> body_list_;

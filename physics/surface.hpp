@@ -10,7 +10,7 @@ namespace kenaf::physics {
 // together with the contacts: the motor drives it, the friction on all the surfaces it runs over brakes it.
 struct Belt {
   // set before a step
-  double moving_mass_kg = 1;
+  double moving_mass_kg = 1;  // infinite: its speed is what it was set to, whatever pushes on it
   double target_mps = 0;      // the motor turns towards it
   double min_impulse_ns = 0;  // what the motor can give within a step, <= 0
   double max_impulse_ns = 0;  // >= 0

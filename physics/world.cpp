@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -250,6 +251,24 @@ void World::teleport(RobotId id, const Pose& X_WB) {
   entry.sensors->forget_motion();
   impl_->touches.clear();
   impl_->record(id, entry);
+}
+
+void World::set_in_motion(RobotId id, const RobotMotion& motion, const RobotCommand& command) {
+  RobotEntry& entry = impl_->robot(id);
+  const auto whole = [](double speed) { return std::isfinite(speed); };
+  if (!motion.v_WB_mps.allFinite() || !motion.w_WB_radps.allFinite() || !std::ranges::all_of(motion.track_mps, whole))
+    throw std::invalid_argument("set_in_motion: a speed is not finite");
+  if (!entry.fault.empty()) return;
+  entry.model->set_in_motion(motion, command);
+  entry.sensors->forget_motion();  // it did not get there by accelerating
+  impl_->record(id, entry);
+}
+
+void World::prescribe(RobotId id, const PrescribedMotion& motion) {
+  const auto whole = [](const std::optional<double>& value) { return !value || std::isfinite(*value); };
+  if (!std::ranges::all_of(motion.track_mps, whole) || !std::ranges::all_of(motion.flipper_rad, whole))
+    throw std::invalid_argument("prescribe: a speed or an angle is not finite");
+  impl_->robot(id).model->prescribe(motion);
 }
 
 void World::reset_sensor(RobotId id, std::size_t sensor, std::optional<GroundTruthReading> pose) {

@@ -43,6 +43,12 @@ struct RobotTruth {
   double battery_v, battery_left_s;
 };
 
+// How a robot moves, as a rigid body on belts that run.
+struct RobotMotion {
+  Eigen::Vector3d v_WB_mps{0, 0, 0}, w_WB_radps{0, 0, 0};  // of the body frame's origin, in W; flippers move with it
+  std::array<double, kTrackCount> track_mps{};
+};
+
 struct RayHit { double distance_m; Eigen::Vector3d normal_W; };
 
 class World {
@@ -72,6 +78,15 @@ class World {
   // Moves a robot and puts it at rest. Lifted as by add_robot. After a fault it begins anew, as add_robot places it:
   // joints, sensors and command too.
   void teleport(RobotId id, const Pose& X_WB);
+  // From here on the robot moves so, where it is, as if `command` had been sent for long: command and drives are in the
+  // state of turning at these speeds, and what `command` differs by from them they still have to do. What holds of
+  // it the next steps decide, by friction and mass. Not for a robot with a fault.
+  void set_in_motion(RobotId id, const RobotMotion& motion, const RobotCommand& command);
+  // In the steps to come, until told otherwise, a belt has exactly the speed and a flipper exactly the angle that is
+  // stated: no motor limit, no lag, no command has a part in it. Angles are directions: a flipper goes the short way. A
+  // drive that is let go follows its command from the speed at that moment. Forces and currents are those that
+  // the ground asks for. teleport() and reset() end it.
+  void prescribe(RobotId id, const PrescribedMotion& motion);
   // Starts a sensor's integration anew: encoder counts, odometry, tachometer angle from 0; INS from its argument.
   void reset_sensor(RobotId id, std::size_t sensor, std::optional<GroundTruthReading> pose = std::nullopt);
 

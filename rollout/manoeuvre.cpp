@@ -25,7 +25,7 @@ constexpr Range kTrackSpeed{.min = -10, .max = 10};
 constexpr Range kFlipperAngle{.min = -2 * kPi, .max = 2 * kPi};
 constexpr Range kPitch{.min = -kPi, .max = kPi};
 constexpr double kLongest_s = 3600;
-constexpr std::string_view kReplay = "replay:";
+constexpr std::string_view kReplay = "replay:", kReplayMeasured = "replay-measured:";
 
 std::optional<double> optional_number(TomlReader& table, std::string_view key, Range range = physics::kAny) {
   return table.has(key) ? std::optional(table.number(key, range)) : std::nullopt;
@@ -139,10 +139,11 @@ std::vector<Manoeuvre> shipped_manoeuvres() {
 }
 
 Manoeuvre load_manoeuvre(const std::string& name) {
-  if (name.starts_with(kReplay)) {
-    const fs::path path = name.substr(kReplay.size());
-    Manoeuvre replay = replay_of(runs::read_run(path), path.string());
-    replay.name = std::string(kReplay) + path.filename().string();
+  for (const auto& [prefix, make] : {std::pair{kReplay, &replay_of}, {kReplayMeasured, &replay_measured_of}}) {
+    if (!name.starts_with(prefix)) continue;
+    const fs::path path = name.substr(prefix.size());
+    Manoeuvre replay = make(runs::read_run(path), path.string());
+    replay.name = std::string(prefix) + path.filename().string();
     name_as_dataset_does(replay, path);
     return replay;
   }

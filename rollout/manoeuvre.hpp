@@ -15,6 +15,7 @@
 
 #include "physics/pose.hpp"
 #include "physics/robot_command.hpp"
+#include "rollout/measured_motion.hpp"
 #include "runs/run_file.hpp"
 
 namespace kenaf::rollout {
@@ -50,6 +51,7 @@ struct Start {
   double x_m, y_m, yaw_rad;
   std::optional<double> z_m;  // empty: on the ground
   std::optional<std::array<double, physics::kFlipperCount>> flipper_rad;  // empty: as the robot's description says
+  std::optional<StartMotion> motion{};    // empty: it stands
 };
 
 struct Manoeuvre {
@@ -62,23 +64,29 @@ struct Manoeuvre {
   // A replay instead of phases: each command holds until the next one, the last one's time ends it.
   std::vector<TimedCommand> timed;
   std::optional<Start> start;
+  // Belts and flippers that follow this exactly instead of their commands, as if their drives were ideal.
+  std::optional<MeasuredMotion> measured{};
 
   double at_most_s() const;  // of all phases
 };
 
-// A shipped name ("step-200-flippers"), the path of a TOML file that holds one manoeuvre, or "replay:FILE.csv", which
-// repeats the commands of a recorded run at their times. Where that file is a run of the dataset.toml beside it, it has
-// that run's manoeuvre name and world. Throws physics::DescriptionError with file, line and column, for a replay
-// runs::RunFileError.
+// A shipped name ("step-200-flippers"), the path of a TOML file that holds one manoeuvre, "replay:FILE.csv", which
+// is replay_of() that recorded run, or "replay-measured:FILE.csv", replay_measured_of() it. Where that file is a run of the
+// dataset.toml beside it, it has that run's manoeuvre name and world. Throws physics::DescriptionError with file,
+// line and column, for a replay runs::RunFileError.
 Manoeuvre load_manoeuvre(const std::string& name);
 // The manoeuvres of a file, whose own worlds are beside it.
 std::vector<Manoeuvre> parse_manoeuvres(std::string_view toml_text, const std::string& name_for_errors);
 // All shipped ones, in the order of their names.
 std::vector<Manoeuvre> shipped_manoeuvres();
 
-// The commands of a run, from the pose and the flipper angles of its first rows on. An empty cell holds what was
-// commanded before. Throws runs::RunFileError where there is no command or no start in it, or it lasts more
-// than an hour.
+// The commands of a run, from the pose, the flipper angles and the motion of its first rows on. An empty cell holds
+// what was commanded before. Throws runs::RunFileError where there is no command or no start in it, or it lasts
+// more than an hour.
 Manoeuvre replay_of(const runs::Run& run, const std::string& name_for_errors);
+// The same with belts and flippers that turn as they were measured (rollout/measured_motion.hpp), so that command and
+// drives play no part in what the body does. What was never measured follows its command through its drive; where both
+// tracks were measured a run needs no commands. Throws runs::RunFileError too where nothing was measured.
+Manoeuvre replay_measured_of(const runs::Run& run, const std::string& name_for_errors);
 
 }  // namespace kenaf::rollout

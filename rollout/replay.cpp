@@ -36,25 +36,20 @@ std::optional<std::array<double, physics::kFlipperCount>> flippers_at_start(cons
   return angles;
 }
 
-}  // namespace
-
-Manoeuvre replay_of(const runs::Run& run, const std::string& name_for_errors) {
+Manoeuvre replay(const runs::Run& run, const std::string& file) {
   const Column time = run.column("t_s");
+  if (!(time.back() - time.front() <= kLongest_s))
+    throw runs::RunFileError(fmt::format("{}: lasts more than {} s", file, kLongest_s));
   const std::array<Column, physics::kTrackCount> tracks{run.column("cmd_track_left_mps"),
                                                         run.column("cmd_track_right_mps")};
-  if (time.empty() || !first_measured(tracks[0]) || !first_measured(tracks[1]))
-    throw runs::RunFileError(fmt::format(
-        "{}: has no commands to repeat; they are in cmd_track_left_mps and cmd_track_right_mps", name_for_errors));
-  if (!(time.back() - time.front() <= kLongest_s))
-    throw runs::RunFileError(fmt::format("{}: lasts more than {} s", name_for_errors, kLongest_s));
   Manoeuvre replay;
-  replay.name = name_for_errors;
-  replay.summary = "the commands of " + name_for_errors;
-  replay.start = {.x_m = at_start(run, "x_m", name_for_errors),
-                  .y_m = at_start(run, "y_m", name_for_errors),
-                  .yaw_rad = at_start(run, "yaw_rad", name_for_errors),
+  replay.name = file;
+  replay.start = {.x_m = at_start(run, "x_m", file),
+                  .y_m = at_start(run, "y_m", file),
+                  .yaw_rad = at_start(run, "yaw_rad", file),
                   .z_m = first_measured(run.column("z_m")),
-                  .flipper_rad = flippers_at_start(run)};
+                  .flipper_rad = flippers_at_start(run),
+                  .motion = motion_at_start(run)};
 
   std::array<Column, physics::kFlipperCount> flippers;
   physics::RobotCommand command;  // stands until the first one
@@ -71,6 +66,37 @@ Manoeuvre replay_of(const runs::Run& run, const std::string& name_for_errors) {
     replay.timed.push_back({time[row] - time.front(), command});
   }
   return replay;
+}
+
+bool has_track_commands(const runs::Run& run) {
+  return first_measured(run.column("cmd_track_left_mps")) && first_measured(run.column("cmd_track_right_mps"));
+}
+
+}  // namespace
+
+Manoeuvre replay_of(const runs::Run& run, const std::string& name_for_errors) {
+  if (!has_track_commands(run))
+    throw runs::RunFileError(fmt::format(
+        "{}: has no commands to repeat; they are in cmd_track_left_mps and cmd_track_right_mps", name_for_errors));
+  Manoeuvre out = replay(run, name_for_errors);
+  out.summary = "the commands of " + name_for_errors;
+  return out;
+}
+
+Manoeuvre replay_measured_of(const runs::Run& run, const std::string& name_for_errors) {
+  MeasuredMotion measured = measured_motion(run);
+  if (measured.empty())
+    throw runs::RunFileError(fmt::format(
+        "{}: has no measured tracks or flippers to repeat; they are in track_left_mps or track_left_m, flipper_fl_rad "
+        "and so on",
+        name_for_errors));
+  if (std::ranges::any_of(measured.track_mps, &TimeSeries::empty) && !has_track_commands(run))
+    throw runs::RunFileError(
+        fmt::format("{}: has neither commands nor measured speeds of both tracks to repeat", name_for_errors));
+  Manoeuvre out = replay(run, name_for_errors);
+  out.summary = "tracks and flippers of " + name_for_errors + " as measured";
+  out.measured = std::move(measured);
+  return out;
 }
 
 }  // namespace kenaf::rollout

@@ -102,6 +102,34 @@ void put_at_start(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuv
   for (std::size_t i = 0; i < robot.sensors.size(); ++i) scene.world.reset_sensor(scene.robot, i);
 }
 
+// What tracks did if encoders reported this of them.
+physics::PrescribedMotion without_encoder_scale(physics::PrescribedMotion motion, const RobotDescription& robot) {
+  for (std::optional<double>& speed : motion.track_mps)
+    if (speed) *speed /= robot.effects.encoder_scale;
+  return motion;
+}
+
+// The settled robot moves from here on as the run did.
+void set_in_motion(Scene& scene, const RobotDescription& robot, const StartMotion& motion,
+                   const RobotCommand& command) {
+  const double gauge_m = robot.track_gauge_m();
+  physics::RobotMotion start;
+  double forward_mps = motion.forward_mps.value_or(0), yaw_radps = motion.yaw_radps.value_or(0);
+  if (motion.track_mps) {
+    for (std::size_t i = 0; i < start.track_mps.size(); ++i)
+      start.track_mps[i] = (*motion.track_mps)[i] / robot.effects.encoder_scale;
+    const auto [left, right] = start.track_mps;
+    if (!motion.forward_mps) forward_mps = (left + right) / 2;
+    if (!motion.yaw_radps) yaw_radps = (right - left) / gauge_m;
+  } else {
+    start.track_mps = {forward_mps - yaw_radps * gauge_m / 2, forward_mps + yaw_radps * gauge_m / 2};
+  }
+  const Eigen::Quaterniond& q_WB = scene.world.truth(scene.robot).X_WB.q;
+  start.v_WB_mps = q_WB * Eigen::Vector3d(forward_mps, 0, 0);
+  start.w_WB_radps = q_WB * Eigen::Vector3d(0, 0, yaw_radps);
+  scene.world.set_in_motion(scene.robot, start, command);
+}
+
 }  // namespace
 
 RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription& world, const Manoeuvre& manoeuvre,
@@ -118,6 +146,9 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
   RunRecorder recorder(measured, options);
   Driver driver(manoeuvre, flippers);
   RobotCommand command;
+  if (manoeuvre.start && manoeuvre.start->motion)
+    set_in_motion(scene, robot, *manoeuvre.start->motion,
+                  manoeuvre.timed.empty() ? command : manoeuvre.timed.front().command);
   std::vector<physics::SensorSample> samples;
   for (std::uint64_t step = 0;; ++step) {
     const double t_s = static_cast<double>(step) * options.physics.time_step_s;
@@ -138,6 +169,9 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
       if (!next || !out.fault.empty()) break;
       scene.world.set_command(scene.robot, command);
     }
+    if (manoeuvre.measured)
+      scene.world.prescribe(scene.robot,
+                            without_encoder_scale(manoeuvre.measured->at(t_s + options.physics.time_step_s), measured));
     scene.step();
   }
   out.run = recorder.take();

@@ -1,0 +1,232 @@
+#include "rollout/measured_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "protocol/frames.hpp"
+
+namespace kenaf::rollout {
+namespace {
+
+constexpr std::array<std::string_view, physics::kTrackCount> kTracks{"left", "right"};
+constexpr std::array<std::string_view, physics::kFlipperCount> kFlippers{"fl", "fr", "rl", "rr"};
+constexpr double kSameTime_s = 1e-9;
+constexpr double kTravelCounts_s = 0.1;  // over so long a speed is held to its travel
+constexpr double kMeanSpeed_s = 0.05;    // of travel alone
+constexpr double kShare_s = 0.5, kShare_m = 0.05;
+constexpr double kParabola_s = 0.25, kBeyond_sigma = 4;
+constexpr Eigen::Index kFewestPoses = 6;
+constexpr double kStands_mps = 0.01, kStands_radps = 0.05;
+
+TimeSeries series_of(const runs::Run& run, std::string_view column) {
+  const auto time = run.column("t_s"), values = run.column(column);
+  TimeSeries series;
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    if (std::isnan(values[row])) continue;
+    series.t_s.push_back(time[row] - time.front());
+    series.value.push_back(values[row]);
+  }
+  return series;
+}
+
+TimeSeries without_full_turns(TimeSeries angle) {
+  for (std::size_t i = 1; i < angle.value.size(); ++i)
+    angle.value[i] = angle.value[i - 1] + frames::wrap_angle(angle.value[i] - angle.value[i - 1]);
+  return angle;
+}
+
+// The integral of a series from its first point on.
+class Integral {
+ public:
+  explicit Integral(const TimeSeries& series) : series_(series) {
+    for (std::size_t i = 0; i + 1 < series.t_s.size(); ++i)
+      at_point_.push_back(at_point_.back() +
+                          (series.t_s[i + 1] - series.t_s[i]) * (series.value[i] + series.value[i + 1]) / 2);
+  }
+  double to(double time_s) const {
+    const auto& t = series_.t_s;
+    if (time_s <= t.front()) return (time_s - t.front()) * series_.value.front();
+    const auto i = static_cast<std::size_t>(std::ranges::upper_bound(t, time_s) - t.begin()) - 1;
+    return at_point_[i] + (time_s - t[i]) * (series_.value[i] + series_.at(time_s)) / 2;
+  }
+
+ private:
+  const TimeSeries& series_;
+  std::vector<double> at_point_{0};
+};
+
+// Points of `series` at least `apart_s` from each other, the first one first.
+std::vector<std::size_t> knots(const TimeSeries& series, double apart_s) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < series.t_s.size(); ++i)
+    if (out.empty() || series.t_s[i] >= series.t_s[out.back()] + apart_s - kSameTime_s) out.push_back(i);
+  return out;
+}
+
+TimeSeries mean_speeds(const TimeSeries& travel) {
+  TimeSeries speed;
+  const std::vector<std::size_t> at = knots(travel, kMeanSpeed_s);
+  for (std::size_t k = 1; k < at.size(); ++k) {
+    const double from_s = travel.t_s[at[k - 1]], to_s = travel.t_s[at[k]];
+    speed.t_s.push_back((from_s + to_s) / 2);
+    speed.value.push_back((travel.value[at[k]] - travel.value[at[k - 1]]) / (to_s - from_s));
+  }
+  return speed;
+}
+
+TimeSeries held_to_travel(const TimeSeries& speed, const TimeSeries& travel) {
+  const std::vector<std::size_t> at = knots(travel, kTravelCounts_s);
+  if (at.size() < 2) return speed;
+  const Integral distance(speed);
+  TimeSeries out;
+  const auto add = [&out](double t_s, double value) {
+    out.t_s.push_back(t_s);
+    out.value.push_back(value);
+  };
+  std::size_t i = 0;  // the next point of `speed`
+  for (; i < speed.t_s.size() && speed.t_s[i] < travel.t_s[at.front()]; ++i) add(speed.t_s[i], speed.value[i]);
+  for (std::size_t k = 1; k < at.size(); ++k) {
+    const double from_s = travel.t_s[at[k - 1]], to_s = travel.t_s[at[k]];
+    const double missing_m = travel.value[at[k]] - travel.value[at[k - 1]] - (distance.to(to_s) - distance.to(from_s));
+    const double more_mps = missing_m / (to_s - from_s);
+    add(from_s, speed.at(from_s) + more_mps);
+    for (; i < speed.t_s.size() && speed.t_s[i] < to_s; ++i)
+      if (speed.t_s[i] > from_s) add(speed.t_s[i], speed.value[i] + more_mps);
+    add(to_s, speed.at(to_s) + more_mps);
+  }
+  for (; i < speed.t_s.size(); ++i) add(speed.t_s[i], speed.value[i]);
+  return out;
+}
+
+TimeSeries track_speed(const runs::Run& run, std::string_view track) {
+  const TimeSeries travel = series_of(run, fmt::format("track_{}_m", track));
+  TimeSeries speed = series_of(run, fmt::format("track_{}_mps", track));
+  if (speed.empty()) speed = mean_speeds(travel);
+  return speed.empty() ? speed : held_to_travel(speed, travel);
+}
+
+// The poses of a run's first `time_s` in which all three were measured.
+struct Poses {
+  std::vector<double> t_s, x_m, y_m, yaw_rad;  // since the first row; yaw without full turns
+};
+
+Poses first_poses(const runs::Run& run, double time_s) {
+  const auto time = run.column("t_s"), x = run.column("x_m"), y = run.column("y_m"), yaw = run.column("yaw_rad");
+  Poses poses;
+  if (x.empty() || y.empty() || yaw.empty()) return poses;
+  for (std::size_t row = 0; row < time.size() && time[row] - time.front() <= time_s + kSameTime_s; ++row) {
+    if (std::isnan(x[row]) || std::isnan(y[row]) || std::isnan(yaw[row])) continue;
+    poses.t_s.push_back(time[row] - time.front());
+    poses.x_m.push_back(x[row]);
+    poses.y_m.push_back(y[row]);
+    const double before = poses.yaw_rad.empty() ? yaw[row] : poses.yaw_rad.back();
+    poses.yaw_rad.push_back(before + frames::wrap_angle(yaw[row] - before));
+  }
+  return poses;
+}
+
+// From tracks to body. With d the way that the tracks went apart and s the mean of their ways, least squares for k in
+// yaw = yaw_0 + k d, and then for c in p = p_0 + c times the integral of (cos yaw, sin yaw) ds.
+StartMotion motion_of_tracks(const MeasuredMotion& measured, const Poses& poses,
+                             const std::array<double, physics::kTrackCount>& track_mps) {
+  using physics::kLeft;
+  using physics::kRight;
+  StartMotion motion{.track_mps = track_mps, .forward_mps = {}, .yaw_radps = {}};
+  if (poses.t_s.empty()) return motion;
+  const Integral left(measured.track_mps[kLeft]), right(measured.track_mps[kRight]);
+  const double t0_s = poses.t_s.front();
+  double dd = 0, d_yaw = 0, s_before_m = 0, furthest_d_m = 0, furthest_s_m = 0;
+  std::vector<double> s_m, d_m;
+  for (std::size_t i = 0; i < poses.t_s.size(); ++i) {
+    const double l = left.to(poses.t_s[i]) - left.to(t0_s), r = right.to(poses.t_s[i]) - right.to(t0_s);
+    s_m.push_back((l + r) / 2);
+    d_m.push_back(r - l);
+    dd += d_m[i] * d_m[i];
+    d_yaw += d_m[i] * (poses.yaw_rad[i] - poses.yaw_rad[0]);
+    furthest_d_m = std::max(furthest_d_m, std::abs(d_m[i]));
+    furthest_s_m = std::max(furthest_s_m, std::abs(s_m[i]));
+  }
+  if (furthest_d_m >= kShare_m) motion.yaw_radps = d_yaw / dd * (track_mps[kRight] - track_mps[kLeft]);
+  if (furthest_s_m < kShare_m) return motion;
+
+  Eigen::Vector2d way(0, 0);
+  double ww = 0, w_p = 0;
+  for (std::size_t i = 1; i < poses.t_s.size(); ++i) {
+    const double yaw = (poses.yaw_rad[i] + poses.yaw_rad[i - 1]) / 2;
+    way += (s_m[i] - s_before_m) * Eigen::Vector2d(std::cos(yaw), std::sin(yaw));
+    s_before_m = s_m[i];
+    ww += way.squaredNorm();
+    w_p += way.dot(Eigen::Vector2d(poses.x_m[i] - poses.x_m[0], poses.y_m[i] - poses.y_m[0]));
+  }
+  if (ww > 0) motion.forward_mps = w_p / ww * (track_mps[kLeft] + track_mps[kRight]) / 2;
+  return motion;
+}
+
+std::optional<StartMotion> motion_of_poses(const Poses& poses) {
+  const auto n = static_cast<Eigen::Index>(poses.t_s.size());
+  if (n < kFewestPoses) return std::nullopt;
+  Eigen::MatrixXd powers(n, 3), where(n, 3);
+  const double cos0 = std::cos(poses.yaw_rad[0]), sin0 = std::sin(poses.yaw_rad[0]);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    powers.row(i) << 1, poses.t_s[k], poses.t_s[k] * poses.t_s[k];
+    where.row(i) << cos0 * poses.x_m[k] + sin0 * poses.y_m[k], poses.yaw_rad[k], 0;
+  }
+  const Eigen::Matrix3d covariance = (powers.transpose() * powers).inverse();
+  const Eigen::MatrixXd fit = covariance * powers.transpose() * where;
+  const Eigen::MatrixXd rest = where - powers * fit;
+  const auto moves = [&](Eigen::Index quantity, double least) {
+    const double variance = rest.col(quantity).squaredNorm() / static_cast<double>(n - 3) * covariance(1, 1);
+    return std::abs(fit(1, quantity)) > std::max(least, kBeyond_sigma * std::sqrt(variance));
+  };
+  const bool drives = moves(0, kStands_mps), turns = moves(1, kStands_radps);
+  if (!drives && !turns) return std::nullopt;
+  return StartMotion{.track_mps = {}, .forward_mps = drives ? fit(1, 0) : 0, .yaw_radps = turns ? fit(1, 1) : 0};
+}
+
+}  // namespace
+
+double TimeSeries::at(double time_s) const {
+  const auto after = std::ranges::upper_bound(t_s, time_s);
+  if (after == t_s.begin()) return value.front();
+  if (after == t_s.end()) return value.back();
+  const auto i = static_cast<std::size_t>(after - t_s.begin());
+  return value[i - 1] + (value[i] - value[i - 1]) * (time_s - t_s[i - 1]) / (t_s[i] - t_s[i - 1]);
+}
+
+bool MeasuredMotion::empty() const {
+  return std::ranges::all_of(track_mps, &TimeSeries::empty) && std::ranges::all_of(flipper_rad, &TimeSeries::empty);
+}
+
+physics::PrescribedMotion MeasuredMotion::at(double time_s) const {
+  physics::PrescribedMotion motion;
+  for (std::size_t i = 0; i < track_mps.size(); ++i)
+    if (!track_mps[i].empty()) motion.track_mps[i] = track_mps[i].at(time_s);
+  for (std::size_t i = 0; i < flipper_rad.size(); ++i)
+    if (!flipper_rad[i].empty()) motion.flipper_rad[i] = flipper_rad[i].at(time_s);
+  return motion;
+}
+
+MeasuredMotion measured_motion(const runs::Run& run) {
+  MeasuredMotion motion;
+  for (std::size_t i = 0; i < kTracks.size(); ++i) motion.track_mps[i] = track_speed(run, kTracks[i]);
+  for (std::size_t i = 0; i < kFlippers.size(); ++i)
+    motion.flipper_rad[i] = without_full_turns(series_of(run, fmt::format("flipper_{}_rad", kFlippers[i])));
+  return motion;
+}
+
+std::optional<StartMotion> motion_at_start(const runs::Run& run) {
+  const MeasuredMotion measured = measured_motion(run);
+  if (std::ranges::any_of(measured.track_mps, &TimeSeries::empty))
+    return motion_of_poses(first_poses(run, kParabola_s));
+  std::array<double, physics::kTrackCount> track_mps{};
+  for (std::size_t i = 0; i < track_mps.size(); ++i) track_mps[i] = measured.track_mps[i].at(0);
+  if (std::ranges::all_of(track_mps, [](double speed) { return std::abs(speed) < kStands_mps; })) return std::nullopt;
+  return motion_of_tracks(measured, first_poses(run, kShare_s), track_mps);
+}
+
+}  // namespace kenaf::rollout

@@ -1,0 +1,53 @@
+// What a recorded run measured of its own motion: how tracks and flippers turned, and how it moved when it began.
+// Thread safety: values and pure functions.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "physics/robot_command.hpp"
+#include "runs/run_file.hpp"
+
+namespace kenaf::rollout {
+
+// A quantity over the time since a run's first row: straight lines between its points, constant before and after them.
+// Of two points at one time the second one counts from there on. Empty: never measured.
+struct TimeSeries {
+  std::vector<double> t_s, value;  // t_s never goes back
+
+  bool empty() const { return t_s.empty(); }
+  double at(double time_s) const;  // not of an empty one
+};
+
+// A series is empty where the run measured none of it.
+struct MeasuredMotion {
+  std::array<TimeSeries, physics::kTrackCount> track_mps;
+  std::array<TimeSeries, physics::kFlipperCount> flipper_rad;  // without jumps at full turns
+
+  bool empty() const;
+  physics::PrescribedMotion at(double time_s) const;
+};
+
+// Tracks: the measured speed, empty cells interpolated. Where travel is measured too, speed gives the shape and travel
+// the mean, since a speed's noise adds up over time and that of travel does not: over every 0.1 s (chosen: several
+// samples of most logs) a constant is added to the speed, so that it comes as far as the travel says. Where there is travel
+// alone: the mean speeds of each 0.05 s, joined at their middles.
+MeasuredMotion measured_motion(const runs::Run& run);
+
+// How a robot on the ground moves when a run begins.
+struct StartMotion {
+  std::optional<std::array<double, physics::kTrackCount>> track_mps;  // empty: what gives the body's motion without slip
+  std::optional<double> forward_mps, yaw_radps;  // of the body; empty: what the tracks give without slip
+};
+
+// Empty: it stands. That is where both tracks turn at less than 10 mm/s: a drive ends that within 1 mm.
+//
+// The body moves as its tracks in the first row would have it, in forward speed and yaw rate, each times the share of it
+// that the poses of the first 0.5 s show: a turn on tracks slips by a third and more, and differences of single
+// poses would be mostly noise. Tracks that went less than 50 mm in that time, or apart, tell of no share.
+// A run that never measured its tracks moves as its poses do, by a parabola through their first 0.25 s, where that is
+// beyond 4 sigma of their own scatter; with fewer than 6 poses there it stands.
+std::optional<StartMotion> motion_at_start(const runs::Run& run);
+
+}  // namespace kenaf::rollout
