@@ -96,7 +96,8 @@ void FlipperJoint::drive(const JointCommand& command, const FlipperDescription& 
 
 void FlipperJoint::prescribe(double angle_rad, double time_step_s) {
   constexpr double kAnyTorque_nm = 1e6;
-  target_radps_ = frames::wrap_angle(angle_rad - angle_rad_) / time_step_s;
+  constexpr double kFastest_radps = 10;  // chosen: an arm that hung elsewhere at first gets there without a blow
+  target_radps_ = std::clamp(frames::wrap_angle(angle_rad - angle_rad_) / time_step_s, -kFastest_radps, kFastest_radps);
   max_impulse_ = kAnyTorque_nm * time_step_s;
   min_impulse_ = -max_impulse_;
   softness_ = most_apart_rad_ = 0;

@@ -83,9 +83,9 @@ class World {
   // it the next steps decide, by friction and mass. Not for a robot with a fault.
   void set_in_motion(RobotId id, const RobotMotion& motion, const RobotCommand& command);
   // In the steps to come, until told otherwise, a belt has exactly the speed and a flipper exactly the angle that is
-  // stated: no motor limit, no lag, no command has a part in it. Angles are directions: a flipper goes the short way. A
-  // drive that is let go follows its command from the speed at that moment. Forces and currents are those that
-  // the ground asks for. teleport() and reset() end it.
+  // stated: no motor limit, no lag, no command has a part in it. Angles are directions: a flipper goes the short way, at
+  // most at 10 rad/s. A drive that is let go follows its command from the speed at that moment. Forces and currents
+  // are those that the ground asks for. teleport() and reset() end it.
   void prescribe(RobotId id, const PrescribedMotion& motion);
   // Starts a sensor's integration anew: encoder counts, odometry, tachometer angle from 0; INS from its argument.
   void reset_sensor(RobotId id, std::size_t sensor, std::optional<GroundTruthReading> pose = std::nullopt);

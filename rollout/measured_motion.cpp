@@ -18,8 +18,8 @@ constexpr double kSameTime_s = 1e-9;
 constexpr double kTravelCounts_s = 0.1;  // over so long a speed is held to its travel
 constexpr double kMeanSpeed_s = 0.05;    // of travel alone
 constexpr double kShare_s = 0.5, kShare_m = 0.05;
-constexpr double kParabola_s = 0.25, kBeyond_sigma = 4;
-constexpr Eigen::Index kFewestPoses = 6;
+constexpr double kCubic_s = 0.25, kBeyond_sigma = 4;
+constexpr Eigen::Index kFewestPoses = 8;
 constexpr double kStands_mps = 0.01, kStands_radps = 0.05;
 
 TimeSeries series_of(const runs::Run& run, std::string_view column) {
@@ -169,18 +169,19 @@ StartMotion motion_of_tracks(const MeasuredMotion& measured, const Poses& poses,
 std::optional<StartMotion> motion_of_poses(const Poses& poses) {
   const auto n = static_cast<Eigen::Index>(poses.t_s.size());
   if (n < kFewestPoses) return std::nullopt;
-  Eigen::MatrixXd powers(n, 3), where(n, 3);
+  Eigen::MatrixXd powers(n, 4), where(n, 2);
   const double cos0 = std::cos(poses.yaw_rad[0]), sin0 = std::sin(poses.yaw_rad[0]);
   for (Eigen::Index i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    powers.row(i) << 1, poses.t_s[k], poses.t_s[k] * poses.t_s[k];
-    where.row(i) << cos0 * poses.x_m[k] + sin0 * poses.y_m[k], poses.yaw_rad[k], 0;
+    const double t = poses.t_s[k];
+    powers.row(i) << 1, t, t * t, t * t * t;
+    where.row(i) << cos0 * poses.x_m[k] + sin0 * poses.y_m[k], poses.yaw_rad[k];
   }
-  const Eigen::Matrix3d covariance = (powers.transpose() * powers).inverse();
+  const Eigen::Matrix4d covariance = (powers.transpose() * powers).inverse();
   const Eigen::MatrixXd fit = covariance * powers.transpose() * where;
   const Eigen::MatrixXd rest = where - powers * fit;
   const auto moves = [&](Eigen::Index quantity, double least) {
-    const double variance = rest.col(quantity).squaredNorm() / static_cast<double>(n - 3) * covariance(1, 1);
+    const double variance = rest.col(quantity).squaredNorm() / static_cast<double>(n - 4) * covariance(1, 1);
     return std::abs(fit(1, quantity)) > std::max(least, kBeyond_sigma * std::sqrt(variance));
   };
   const bool drives = moves(0, kStands_mps), turns = moves(1, kStands_radps);
@@ -221,8 +222,7 @@ MeasuredMotion measured_motion(const runs::Run& run) {
 
 std::optional<StartMotion> motion_at_start(const runs::Run& run) {
   const MeasuredMotion measured = measured_motion(run);
-  if (std::ranges::any_of(measured.track_mps, &TimeSeries::empty))
-    return motion_of_poses(first_poses(run, kParabola_s));
+  if (std::ranges::any_of(measured.track_mps, &TimeSeries::empty)) return motion_of_poses(first_poses(run, kCubic_s));
   std::array<double, physics::kTrackCount> track_mps{};
   for (std::size_t i = 0; i < track_mps.size(); ++i) track_mps[i] = measured.track_mps[i].at(0);
   if (std::ranges::all_of(track_mps, [](double speed) { return std::abs(speed) < kStands_mps; })) return std::nullopt;

@@ -46,8 +46,9 @@ struct StartMotion {
 // The body moves as its tracks in the first row would have it, in forward speed and yaw rate, each times the share of it
 // that the poses of the first 0.5 s show: a turn on tracks slips by a third and more, and differences of single
 // poses would be mostly noise. Tracks that went less than 50 mm in that time, or apart, tell of no share.
-// A run that never measured its tracks moves as its poses do, by a parabola through their first 0.25 s, where that is
-// beyond 4 sigma of their own scatter; with fewer than 6 poses there it stands.
+// A run that never measured its tracks moves as its poses do, by a cubic through their first 0.25 s, where that is
+// beyond 4 sigma of their own scatter; with fewer than 8 poses there it stands. One that drives off at once from
+// rest may be given up to a quarter of its speed so: encoders are worth having.
 std::optional<StartMotion> motion_at_start(const runs::Run& run);
 
 }  // namespace kenaf::rollout

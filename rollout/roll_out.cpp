@@ -58,6 +58,7 @@ struct Scene {
   World world;
   std::uint64_t per_sample;
   RobotId robot{};
+  physics::PrescribedMotion held{};  // while it is put down
   std::uint64_t contacts = 0;
 
   void step() {
@@ -68,6 +69,7 @@ struct Scene {
   void hold(const RobotCommand& command, double time_s) {
     for (const double end_s = world.time_s() + time_s; world.time_s() < end_s;) {
       world.set_command(robot, command);
+      world.prescribe(robot, held);  // a teleport ended it
       for (std::uint64_t i = 0; i < per_sample; ++i) step();
     }
   }
@@ -85,6 +87,11 @@ void put_at_start(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuv
     robot.flipper.front().start_angle_rad =
         std::clamp(flippers.front(), robot.flipper.front().min_angle_rad, robot.flipper.front().max_angle_rad);
   scene.robot = scene.world.add_robot(robot, "robot", X_WB);
+  if (manoeuvre.measured) {
+    scene.held = manoeuvre.measured->at(0);
+    for (std::optional<double>& speed : scene.held.track_mps)
+      if (speed) speed = 0;
+  }
   RobotCommand rest;
   for (std::size_t i = 0; i < flippers.size(); ++i) rest.flipper[i] = {physics::JointMode::angle, flippers[i]};
   if (robot.has_flippers() && !alike) {

@@ -54,7 +54,7 @@ TEST_CASE("Kenaf is what is known of it") {
 }
 
 TEST_CASE("All shipped robots load, by class too") {
-  for (const char* name : {"kenaf", "p2dx", "p2at"}) CHECK(load_robot(name).name == name);
+  for (const char* name : {"kenaf", "p2dx", "p2at", "marmotte"}) CHECK(load_robot(name).name == name);
   CHECK(robot_name_for_class("USARBot.Kenaf") == "kenaf");
   CHECK(robot_name_for_class("usarbot.kenaf") == "kenaf");
   CHECK(robot_name_for_class("P2AT") == "p2at");
