@@ -26,8 +26,9 @@ RollOutOptions exact() {
   return options;
 }
 
-// Root mean square of the simulated column less the measured one, where that was measured.
-double residual(const runs::Run& real, const runs::Run& simulated, const char* column, bool angle = false) {
+// Root mean square of the simulated column less the measured one, where that was measured, in the first `until_s`.
+double residual(const runs::Run& real, const runs::Run& simulated, const char* column, double until_s,
+                bool angle = false) {
   const auto time = real.column("t_s"), measured = real.column(column), sim = simulated.column(column);
   TimeSeries series;
   for (std::size_t i = 0; i < sim.size(); ++i) {
@@ -38,13 +39,15 @@ double residual(const runs::Run& real, const runs::Run& simulated, const char* c
   double sum = 0;
   int count = 0;
   for (std::size_t i = 0; i < time.size(); ++i) {
-    if (std::isnan(measured[i])) continue;
+    if (std::isnan(measured[i]) || time[i] - time[0] > until_s) continue;
     const double off = series.at(time[i] - time[0]) - measured[i];
     sum += std::pow(angle ? frames::wrap_angle(off) : off, 2);
     ++count;
   }
   return std::sqrt(sum / count);
 }
+
+constexpr double kWhole_s = 10;  // longer than any of the runs
 
 double median(std::vector<double> values) {
   std::ranges::sort(values);
@@ -98,19 +101,20 @@ TEST_CASE("Marmotte's runs are replayed by their commands and by their measured 
     if (commands.start->motion)
       CHECK(by_commands.run.column("track_left_mps")[0] == Approx(run.column("track_left_mps")[0]).margin(1e-9));
     for (const char* column : {"track_left_mps", "track_right_mps"}) {
-      speed.push_back(residual(run, by_commands.run, column));
-      measured_speed.push_back(residual(run, by_tracks.run, column));
+      speed.push_back(residual(run, by_commands.run, column, kWhole_s));
+      measured_speed.push_back(residual(run, by_tracks.run, column, kWhole_s));
     }
-    yaw.push_back(residual(run, by_commands.run, "yaw_rad", true));
-    measured_yaw.push_back(residual(run, by_tracks.run, "yaw_rad", true));
+    yaw.push_back(residual(run, by_commands.run, "yaw_rad", 1, true));
+    measured_yaw.push_back(residual(run, by_tracks.run, "yaw_rad", 1, true));
   }
   CAPTURE(median(speed), median(measured_speed), median(yaw), median(measured_yaw));
   CHECK(moving > 7);  // most begin in the step before theirs
   // belts that follow the measured speed differ by what the rows' times are off the multiples of 0.01 s
   CHECK(median(measured_speed) < 0.01);
   CHECK(median(speed) > 5 * median(measured_speed));
-  // robot and description share units, signs and sides: with sides swapped, yaw would be off by a turn's worth
   CHECK(median(speed) < 0.3);
-  CHECK(median(measured_yaw) < median(yaw));
-  CHECK(median(measured_yaw) < 1);
+  // Units, signs and sides are right: in 1 s these runs turn by about 1 rad, and with the sides swapped yaw would be
+  // off by twice that. What is left is a turn's slip.
+  CHECK(median(yaw) < 0.4);
+  CHECK(median(measured_yaw) < 0.4);
 }
