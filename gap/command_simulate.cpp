@@ -58,7 +58,8 @@ void add_simulate_command(CLI::App& program) {
   command->add_option("--world", request.world, "a shipped name or an SDF file [each manoeuvre's own]");
   one_word_each(
       command->add_option("--manoeuvre", request.manoeuvres,
-                          "a shipped name, a TOML file, or replay:FILE.csv; required, may be given several times"),
+                          "a shipped name, a TOML file, replay:FILE.csv or replay-measured:FILE.csv; required, may be given "
+                          "several times"),
       "M");
   one_word_each(command->add_option("--effect", request.effects, "switches an effect on; may be given several times"),
                 "NAME:PARAMETER=VALUE");
