@@ -15,16 +15,6 @@
 namespace kenaf::gap {
 namespace {
 
-void write_run(const std::filesystem::path& file, const runs::Run& run) {
-  runs::RunWriter writer(file, run.columns);
-  std::vector<double> row(run.columns.size());
-  for (std::size_t i = 0; i < run.row_count(); ++i) {
-    for (std::size_t c = 0; c < row.size(); ++c) row[c] = run.values[c][i];
-    writer.add_row(row);
-  }
-  writer.finish();
-}
-
 void print(const MergedRun& merged) {
   const ClockOffset& offset = merged.offset;
   if (offset.quantities.empty()) {
@@ -104,7 +94,7 @@ void add_merge_command(CLI::App& program) {
         throw std::runtime_error(fmt::format("{}: {}", options->run, error.what()));
       }
     }();
-    write_run(options->out, merged.run);
+    runs::write_run(options->out, merged.run);
     print(merged);
   });
 }

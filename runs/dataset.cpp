@@ -118,6 +118,14 @@ std::string as_toml(double value) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
+std::string run_entry(const DatasetRun& run) {
+  std::string text = "\n[[run]]\nfile = " + as_toml(run.file) + "\n";
+  if (!run.manoeuvre.empty()) text += "manoeuvre = " + as_toml(run.manoeuvre) + "\n";
+  if (!run.world.empty()) text += "world = " + as_toml(run.world) + "\n";
+  if (!run.fault.empty()) text += "fault = " + as_toml(run.fault) + "\n";
+  return text;
+}
+
 std::string as_toml_key(const std::string& key) {
   constexpr std::string_view kBare = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
   return !key.empty() && key.find_first_not_of(kBare) == std::string::npos ? key : as_toml(key);
@@ -169,19 +177,24 @@ void write_dataset(const fs::path& folder, const Dataset& dataset) {
   if (!dataset.description.empty()) line("description", as_toml(dataset.description));
   if (!dataset.noise.empty()) text += "\n[noise]\n";
   for (const auto& [column, sigma] : dataset.noise) line(as_toml_key(column), as_toml(sigma));
-  for (const DatasetRun& run : dataset.runs) {
-    text += "\n[[run]]\n";
-    line("file", as_toml(run.file));
-    if (!run.manoeuvre.empty()) line("manoeuvre", as_toml(run.manoeuvre));
-    if (!run.world.empty()) line("world", as_toml(run.world));
-    if (!run.fault.empty()) line("fault", as_toml(run.fault));
-  }
+  for (const DatasetRun& run : dataset.runs) text += run_entry(run);
   const fs::path file = folder / kFileName;
   parse_dataset(text, file.string());  // what cannot be read back is not written
 
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw RunFileError(folder.string() + ": cannot be made: " + error.message());
+  write_whole_file(file, text);
+}
+
+void append_runs(const fs::path& folder, std::span<const DatasetRun> runs) {
+  const fs::path file = folder / kFileName;
+  std::string text = read_whole_file(file);
+  const std::size_t before = parse_dataset(text, file.string()).runs.size();
+  if (!text.ends_with('\n')) text += '\n';
+  for (const DatasetRun& run : runs) text += run_entry(run);
+  if (parse_dataset(text, file.string()).runs.size() != before + runs.size())
+    throw RunFileError(file.string() + ": its runs do not stand as [[run]] at its end; none can be added");
   write_whole_file(file, text);
 }
 

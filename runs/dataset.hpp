@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,6 +38,10 @@ Dataset parse_dataset(std::string_view toml_text, std::string_view name_for_erro
 
 // Writes `folder`/dataset.toml, whole or not at all; makes the folder where it is missing. Throws RunFileError.
 void write_dataset(const std::filesystem::path& folder, const Dataset& dataset);
+
+// Adds runs at the end of `folder`/dataset.toml, whose text stays as it is. Throws RunFileError: the file is not there, or
+// could not be read back with them, as its runs stand in another form than [[run]] or one is there already.
+void append_runs(const std::filesystem::path& folder, std::span<const DatasetRun> runs);
 
 // `name` as a loader takes it: a file beside dataset.toml becomes its path, a shipped name stays as it is.
 std::string resolve_beside(const std::filesystem::path& folder, const std::string& name, std::string_view extension);

@@ -213,4 +213,14 @@ void RunWriter::finish() {
   finish_part_file(std::exchange(descriptor_, -1), file_);
 }
 
+void write_run(const std::filesystem::path& file, const Run& run) {
+  RunWriter writer(file, run.columns);
+  std::vector<double> row(run.columns.size());
+  for (std::size_t i = 0; i < run.row_count(); ++i) {
+    for (std::size_t c = 0; c < row.size(); ++c) row[c] = run.values[c][i];
+    writer.add_row(row);
+  }
+  writer.finish();
+}
+
 }  // namespace kenaf::runs

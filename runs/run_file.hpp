@@ -63,4 +63,7 @@ class RunWriter {
   int descriptor_ = -1;
 };
 
+// All of a run, by a RunWriter.
+void write_run(const std::filesystem::path& file, const Run& run);
+
 }  // namespace kenaf::runs

@@ -77,6 +77,9 @@ void RunChecks::check_constants() {
     if (commanded_m < kMoves_m) continue;
     for (const std::string& name : {"track_" + side + "_mps", "track_" + side + "_m"}) {
       if (!constant(column(name))) continue;
+      const bool turns = std::ranges::any_of(column(name), [](double value) { return std::abs(value) > 0; });
+      const bool as_commanded = turns && constant(column("cmd_track_" + side + "_mps"));
+      if (name.ends_with("_mps") && as_commanded) continue;
       const bool other = has("track_" + side + (name.ends_with("_mps") ? "_m" : "_mps"));
       add(pose_moves ? Severity::refuse : Severity::warn, name,
           fmt::format(

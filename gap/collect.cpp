@@ -1,0 +1,129 @@
+#include "gap/collect.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <stdexcept>
+#include <system_error>
+
+#include "gap/dataset_files.hpp"
+#include "physics/world_description.hpp"
+#include "rollout/manoeuvre.hpp"
+#include "runs/whole_file.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+namespace fs = std::filesystem;
+
+// "run.csv", or "run-2.csv" where that is taken in the folder or among `names`.
+std::string free_name(const fs::path& file, const fs::path& folder, std::set<std::string>& names) {
+  std::string name = file.filename().string();
+  for (int k = 2; names.contains(name) || fs::exists(folder / name); ++k)
+    name = fmt::format("{}-{}{}", file.stem().string(), k, file.extension().string());
+  names.insert(name);
+  return name;
+}
+
+std::string world_of(const CollectRequest& request, const RecordedRun& run,
+                     const std::vector<rollout::Manoeuvre>& shipped, const std::optional<runs::Dataset>& there) {
+  if (!request.world.empty()) return request.world;
+  const auto found = std::ranges::find(shipped, run.manoeuvre, &rollout::Manoeuvre::name);
+  if (found != shipped.end()) return found->world;
+  if (there) return there->world;
+  throw std::invalid_argument(
+      fmt::format("{}: no manoeuvre that ships is called '{}', so its world is not known; give --world",
+                  run.file.string(), run.manoeuvre));
+}
+
+// Copies that go away again unless they are kept.
+class Copies {
+ public:
+  ~Copies() {
+    std::error_code ignored;
+    for (const fs::path& file : files_) fs::remove(file, ignored);
+  }
+  void add(const fs::path& from, const fs::path& to) {
+    const fs::path part = to.string() + ".part";
+    files_.push_back(part);
+    std::error_code error;
+    fs::copy_file(from, part, fs::copy_options::overwrite_existing, error);
+    if (!error) fs::rename(part, to, error);
+    if (error)
+      throw std::runtime_error(
+          fmt::format("{}: cannot be copied from {}: {}", to.string(), from.string(), error.message()));
+    files_.back() = to;
+  }
+  void keep() { files_.clear(); }
+
+ private:
+  std::vector<fs::path> files_;
+};
+
+}  // namespace
+
+CollectedDataset collect_dataset(const CollectRequest& request) {
+  if (request.runs.empty()) throw std::invalid_argument("no runs; give CSV files");
+  CollectedDataset result;
+  std::optional<runs::Dataset> there;
+  if (fs::exists(request.out / "dataset.toml")) there = runs::read_dataset(request.out);
+  result.extended = there.has_value();
+  if (there && !request.robot.empty() && request.robot != there->robot)
+    throw std::invalid_argument(fmt::format("{}: its robot is '{}', not '{}'; give another folder with --out",
+                                            request.out.string(), there->robot, request.robot));
+  if (there && there->source != request.source)
+    throw std::invalid_argument(
+        fmt::format("{}: its source is '{}', not '{}'", request.out.string(), there->source, request.source));
+
+  const std::string asked_robot = request.robot.empty() ? "kenaf" : request.robot;
+  const physics::RobotDescription robot =
+      physics::load_robot(there ? runs::resolve_beside(request.out, there->robot, ".toml") : asked_robot);
+  for (const RecordedRun& run : request.runs) {
+    const std::vector<Finding> findings = check_run(runs::read_run(run.file), run.file.string(), &robot);
+    result.findings.insert(result.findings.end(), findings.begin(), findings.end());
+  }
+  result.refused = any_refused(result.findings) && !request.unchecked;
+  if (result.refused) return result;
+
+  const std::vector<rollout::Manoeuvre> shipped = rollout::shipped_manoeuvres();
+  std::vector<std::string> worlds;
+  for (const RecordedRun& run : request.runs) {
+    worlds.push_back(world_of(request, run, shipped, there));
+    if (there && worlds.back() == there->world) continue;
+    std::vector<std::string> what_is_not_simulated;
+    physics::load_world(worlds.back(), what_is_not_simulated);  // or it says why not
+  }
+
+  std::optional<PartFolder> whole;
+  if (!there) whole.emplace(request.out, false);
+  const fs::path folder = there ? request.out : whole->path();
+  Descriptions robots(folder, ".toml"), world_files(folder, ".sdf");
+  runs::Dataset dataset = there.value_or(runs::Dataset{.source = request.source,
+                                                       .robot = robots.add(asked_robot),
+                                                       .world = world_files.add(worlds.front()),
+                                                       .description = request.description,
+                                                       .noise = {},
+                                                       .runs = {}});
+  std::set<std::string> names;
+  Copies copies;
+  for (std::size_t i = 0; i < request.runs.size(); ++i) {
+    const RecordedRun& run = request.runs[i];
+    const std::string name = free_name(run.file, folder, names);
+    copies.add(run.file, folder / name);
+    const std::string world = world_files.add(worlds[i]);
+    result.runs.push_back({name, run.manoeuvre, world == dataset.world ? std::string() : world});
+  }
+  if (there) {
+    runs::append_runs(folder, result.runs);
+  } else {
+    dataset.runs = result.runs;
+    runs::write_dataset(folder, dataset);
+    whole->finish();
+  }
+  copies.keep();
+  return result;
+}
+
+}  // namespace kenaf::gap
