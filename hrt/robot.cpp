@@ -15,8 +15,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A held answer never reaches the 0.25 s after which a world server stops waiting in lock step.
-constexpr auto kLongestHold = std::chrono::milliseconds(200);
+// A held answer never reaches the 2 s after which a world server stops waiting in lock step.
+constexpr auto kLongestHold = std::chrono::seconds(1);
+// How often a hold looks at what the program does: a quick program is never looked at.
+constexpr auto kLookEvery = std::chrono::milliseconds(5);
 // A motion takes the goal heading of the one before it where the robot is no farther from it.
 constexpr double kSameHeading_rad = 2 * std::numbers::pi / 180;
 // hrt_stop leaves a flipper's command as it is where it has arrived: its servo then does not creep.
@@ -41,7 +43,7 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
     measured_ = *first;
     estimate_ = estimator_.update(*first);
     last_call_t_s_ = estimate_.t_s;
-    due_.push_back(std::this_thread::get_id());
+    due_.push_back({gettid()});
     if (config_.record[0] != '\0') recorder_ = std::make_unique<Recorder>(config_.record, connection_.lockstep);
     if (recorder_) recorder_->add(*first, command_);
     thread_ = start_quiet_thread([this, state = *first] { run(state); });
@@ -142,7 +144,7 @@ void Robot::run_motion(Motion motion, double heading_rad, std::unique_lock<std::
 void Robot::run_call(Call& call, std::unique_lock<std::mutex>& lock) {
   call.start_frame = estimate_.frame;
   calls_.push_back(&call);
-  std::erase(due_, call.owner);
+  std::erase_if(due_, [&](const Due& due) { return due.thread == call.owner; });
   program_acted_.notify_one();
   call_ended_.wait(lock, [&] { return call.verdict.has_value(); });
   if (call.verdict->code != HRT_OK) throw Error(call.verdict->code, call.verdict->text);
@@ -167,8 +169,7 @@ std::unique_lock<std::mutex> Robot::lock_open() {
 }
 
 void Robot::note_setting() {
-  hold_until_ =
-      Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(config_.hold_s));
+  for (Due& due : due_) due.watch = {};
   program_acted_.notify_one();
 }
 
@@ -273,7 +274,9 @@ void Robot::close() {
 void Robot::run(relay::State state) {
   try {
     for (std::optional<relay::State> next = state; next; next = transport_->wait_state()) {
-      transport_->send(answer(*next));
+      const std::optional<DriveCommand> command = answer(*next);
+      if (!command) return;
+      transport_->send(*command);
     }
   } catch (const Error& error) {
     fail(error.code(), error.what());
@@ -288,8 +291,9 @@ void Robot::fail(int code, const std::string& text) {
   end_calls([](const Call&) { return true; }, code, text);
 }
 
-DriveCommand Robot::answer(const relay::State& state) {
+std::optional<DriveCommand> Robot::answer(const relay::State& state) {
   std::unique_lock lock(mutex_);
+  if (closing_) return std::nullopt;     // this state was faster than the interrupt
   if (state.frame != estimate_.frame) {  // the first one was taken by the constructor
     lost_cycles_ += state.frame - estimate_.frame - 1;
     measured_ = state;
@@ -313,7 +317,7 @@ void Robot::step_calls() {
     std::optional<Verdict> verdict = call->step();
     if (!verdict || estimate_.frame == call->start_frame) return false;
     call->verdict = std::move(verdict);
-    due_.push_back(call->owner);
+    due_.push_back({call->owner});
     ended = true;
     return true;
   });
@@ -325,13 +329,22 @@ void Robot::step_calls() {
 
 void Robot::hold(std::unique_lock<std::mutex>& lock) {
   const Clock::time_point latest = Clock::now() + kLongestHold;
-  note_setting();
-  while (!due_.empty() && !closing_) {
-    const Clock::time_point until = std::min(hold_until_, latest);
-    if (Clock::now() >= until) break;
-    program_acted_.wait_until(lock, until);
+  if (config_.hold_s == 0) due_.clear();
+  while (!due_.empty() && !closing_ && Clock::now() < latest) {
+    const std::cv_status woken = program_acted_.wait_until(lock, Clock::now() + kLookEvery);
+    if (woken == std::cv_status::timeout) look_at_due();
+    transport_->keep_alive();
   }
   due_.clear();
+}
+
+// Lets go of those that have kept robot time waiting for long enough by their own doing.
+void Robot::look_at_due() {
+  const double wall_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+  std::erase_if(due_, [&](Due& due) {
+    due.watch.look(look_at_thread(due.thread), wall_s);
+    return due.watch.spent_s() >= config_.hold_s;
+  });
 }
 
 void Robot::compose_command() {

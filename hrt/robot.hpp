@@ -5,7 +5,8 @@
 // call has just ended is due to make its next one (lock step only), send the answer.
 #pragma once
 
-#include <chrono>
+#include <unistd.h>
+
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -20,6 +21,7 @@
 #include "hrt/estimate.hpp"
 #include "hrt/motion.hpp"
 #include "hrt/recorder.hpp"
+#include "hrt/thread_watch.hpp"
 #include "hrt/transport.hpp"
 #include "kenaf/hrt.h"
 
@@ -62,7 +64,8 @@ class Robot {
   void snapshot(Snapshot& out);
   bool is_lost() const;
 
-  // Stops the robot and ends every call with HRT_E_CLOSED. Throws where the recording is not whole.
+  // Stops the robot and ends every call with HRT_E_CLOSED; a recording ends with the cycle that is known now. Throws
+  // where the recording is not whole.
   void close();
 
  private:
@@ -76,10 +79,15 @@ class Robot {
   struct Call {
     Kind kind;
     std::function<std::optional<Verdict>()> step;  // looks at the newest cycle; called under the lock
-    std::thread::id owner = std::this_thread::get_id();
+    pid_t owner = gettid();
     std::uint32_t start_frame = 0;  // it ends in a later cycle than this one
     std::uint32_t stepped_frame = 0;
     std::optional<Verdict> verdict{};
+  };
+  // A thread whose call has just ended: the answer is held for its next one.
+  struct Due {
+    pid_t thread;
+    ThreadWatch watch{};
   };
   template <typename Motion>
   void run_motion(Motion motion, double heading_rad, std::unique_lock<std::mutex>& lock);
@@ -87,9 +95,10 @@ class Robot {
   void end_calls(const std::function<bool(const Call&)>& which, int code, const std::string& text);
 
   void run(relay::State state);
-  DriveCommand answer(const relay::State& state);
+  std::optional<DriveCommand> answer(const relay::State& state);  // nullopt: closed before
   void step_calls();
   void hold(std::unique_lock<std::mutex>& lock);
+  void look_at_due();
   void compose_command();
   void fail(int code, const std::string& text);
 
@@ -120,9 +129,8 @@ class Robot {
   std::array<double, kFlipperCount> flipper_rad_{};
   std::optional<double> goal_heading_rad_;  // of the motion before, while nothing else has moved the robot
   double last_call_t_s_ = 0;
-  std::vector<Call*> calls_;          // those that wait
-  std::vector<std::thread::id> due_;  // threads whose call has just ended: the answer is held for them
-  std::chrono::steady_clock::time_point hold_until_;
+  std::vector<Call*> calls_;  // those that wait
+  std::vector<Due> due_;
   std::unique_ptr<Recorder> recorder_;
 
   std::mutex close_mutex_;  // one close at a time

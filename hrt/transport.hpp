@@ -27,7 +27,7 @@ struct Connection {
   bool lockstep;    // in force
 };
 
-// Thread safety: open, wait_state, send and close belong to one thread at a time; interrupt and the link health may be
+// Thread safety: open, wait_state, send, keep_alive and close belong to one thread at a time; interrupt and the link health may be
 // called from any thread while it is open.
 class Transport {
  public:
@@ -43,7 +43,11 @@ class Transport {
   // Answers the state that wait_state returned last. Delivers it even where packets get lost.
   virtual void send(const DriveCommand& command) = 0;
 
-  // Makes wait_state return, now or at its next call.
+  // The answer is still being waited for: whoever would take the silence for an absent commander is told otherwise.
+  // Cheap enough to be called every few milliseconds.
+  virtual void keep_alive() {}
+
+  // Makes wait_state return, now or at its next call; a state that is there already may be returned first.
   virtual void interrupt() = 0;
 
   // Stops the robot and gives it back. Does not throw.

@@ -31,6 +31,8 @@ constexpr auto kSlowestResend = 32ms;
 // A first State that has not come so long after Welcome was lost.
 constexpr auto kFirstStateResend = 20ms;
 constexpr auto kPingEvery = 1000ms;
+// The relay takes a commander that says nothing for a second for gone.
+constexpr auto kAliveEvery = 100ms;
 // This thread looks at its socket every 32 ms. Where it did not for longer, it was the process that slept.
 constexpr auto kLongestLook = 100ms;
 // A world server that answers pings but counts no frame for this many link time-outs will not count any more.
@@ -188,6 +190,7 @@ std::optional<relay::State> RelayTransport::take(const relay::Datagram& datagram
   if (state->frame <= frame_) return std::nullopt;
   frame_ = state->frame;
   state_at_ = life_at_ = now;
+  alive_at_ = now + kAliveEvery;
   return *state;
 }
 
@@ -227,6 +230,14 @@ void RelayTransport::send(const hrt::DriveCommand& command) {
   resend_at_ = now + resend_after_;
   // The time the program took is not the link's.
   state_at_ = life_at_ = looked_at_ = now;
+}
+
+// The command before is in force: the relay has it, and hears it as a sign of life.
+void RelayTransport::keep_alive() {
+  const Clock::time_point now = Clock::now();
+  if (now < alive_at_) return;
+  transmit(command_);
+  alive_at_ = now + kAliveEvery;
 }
 
 void RelayTransport::send_what_is_due(Clock::time_point now) {

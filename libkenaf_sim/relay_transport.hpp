@@ -26,6 +26,7 @@ class RelayTransport final : public hrt::Transport {
   hrt::Connection open(const hrt_config& config) override;
   std::optional<relay::State> wait_state() override;
   void send(const hrt::DriveCommand& command) override;
+  void keep_alive() override;
   void interrupt() override;
   void close() override;
   double round_trip_s() const override { return round_trip_s_; }
@@ -55,7 +56,7 @@ class RelayTransport final : public hrt::Transport {
   std::uint64_t session_ = 0;  // 0: none
   std::uint32_t frame_ = 0;    // newest State
   relay::Command command_{};   // sequence 0: none yet
-  Clock::time_point resend_at_, state_at_, life_at_, ping_at_, pinged_at_;
+  Clock::time_point resend_at_, state_at_, life_at_, alive_at_, ping_at_, pinged_at_;
   Clock::time_point looked_at_;  // when the socket was last looked at
   Clock::duration resend_after_{};
   std::uint32_t ping_id_ = 0;

@@ -23,10 +23,11 @@
  * Lock step
  *   A simulator in lock step (the default) does not begin the next cycle before this one was answered. While a blocking
  *   call of this header has just returned, the library keeps the answer back until the program's next blocking call,
- *   at most hold_s of wall-clock time after the last call that set something. So a program made of blocking calls,
- *   with any calls that set something between them, gives the same run every time and at every speed of the
- *   simulator. A program that works or sleeps longer than hold_s on the wall clock sees robot time run on meanwhile.
- *   The real robot does not wait for anybody.
+ *   at most until it has worked or slept for hold_s since the last call that set something; time in which it waits for
+ *   a processor or a disk does not count, up to a second in all. So a program made of blocking calls, with any calls
+ *   that set something between them, gives the same run every time, at every speed of the simulator and on a busy
+ *   machine. A program that works or sleeps longer than hold_s sees robot time run on meanwhile. The real robot does
+ *   not wait for anybody.
  *
  * Units and frames
  *   Millimetres, degrees, seconds, amperes, volts. The body frame is x forward, y left, z up (REP 103); angles of a
@@ -139,7 +140,7 @@ typedef struct hrt_config {
                                        0.1 to 2, default 1. Used only where there is no posture sensor. */
 
   /* libkenaf_sim. */
-  double hold_s;          /* longest hold of a cycle in lock step, wall clock: 0 to 0.2, default 0.05 */
+  double hold_s;          /* what a program may work or sleep while a cycle waits: 0 to 0.2, default 0.05 */
   int32_t lockstep;       /* 1: robot time waits for this program (default); 0: it does not */
   int32_t reset_robot;    /* 1: init puts the robot back to its start pose (default); 0: it stays where it is */
   char relay[128];        /* HOST:PORT of kenaf-relayd, default 127.0.0.1:45454 */
@@ -191,7 +192,7 @@ int hrt_kenaf_init(void);
  * Also HRT_E_ARGUMENT: null, not from hrt_config_default(), or a member out of its range; hrt_last_error() names it. */
 int hrt_kenaf_init_with(const hrt_config* config);
 
-/* Stops the tracks, ends a recording and gives the robot back. Calls that wait in other threads return HRT_E_CLOSED.
+/* Stops the tracks, ends a recording with the newest cycle, and gives the robot back. Calls that wait in other threads return HRT_E_CLOSED.
  * Also called when the process ends by exit() or by returning from main(). Without an open robot: HRT_OK.
  * HRT_E_RECORD: closed, but the recording is incomplete. */
 int hrt_close(void);

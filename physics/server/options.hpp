@@ -14,7 +14,7 @@ struct ServerOptions {
   bool udk_dialect = false;
   std::uint64_t seed = 1;  // of the sensors' noise
   double time_step_s = 0.001;
-  double lockstep_wait_s = 0.25;  // wall-clock time that lock step waits for an answer
+  double lockstep_wait_s = 2;  // wall-clock time that lock step waits for an answer
 };
 
 }  // namespace kenaf::server

@@ -137,6 +137,7 @@ std::vector<relay::Datagram> FakeRelay::answers_to(const relay::Datagram& datagr
   }
   const auto* command = std::get_if<relay::Command>(&datagram);
   if (command == nullptr || command->session != session_) return {};
+  if (command->sequence == plant_.state.acknowledged) ++repeats_;
   const std::uint32_t next = plant_.state.frame + 1;
   const auto happens_at = [&](std::uint32_t frame) { return frame != 0 && next >= frame; };
   if (happens_at(behaviour_.silent_from_frame)) return {};

@@ -40,6 +40,7 @@ class FakeRelay {
   int byes() const { return byes_; }
   int hellos() const { return hellos_; }
   int pings() const { return pings_; }
+  int repeats() const { return repeats_; }  // Commands that it had already
   std::optional<relay::Hello> hello() const;
 
  private:
@@ -54,7 +55,7 @@ class FakeRelay {
   std::uint64_t session_ = 0;
   std::vector<relay::Command> commands_;
   std::optional<relay::Hello> hello_;
-  std::atomic<int> byes_ = 0, hellos_ = 0, pings_ = 0;
+  std::atomic<int> byes_ = 0, hellos_ = 0, pings_ = 0, repeats_ = 0;
   std::thread thread_;
 };
 

@@ -45,7 +45,7 @@ std::optional<relay::State> FakeTransport::wait_state() {
     else
       robot_->changed.wait(lock, may_go_on);
   }
-  if (robot_->interrupted) return std::nullopt;
+  if (robot_->interrupted && (!answered_ || robot_->late_interrupts-- <= 0)) return std::nullopt;
   if (first_) {
     first_ = false;
     return robot_->plant.state;

@@ -252,6 +252,25 @@ TEST_CASE("R4 the round trip is measured") {
   CHECK(hrt_close() == HRT_OK);
 }
 
+TEST_CASE("R4 a relay hears from a commander that thinks, and robot time stands still meanwhile") {
+  FakeRelay relay({});
+  sim::RelayTransport transport;
+  transport.open(config_for(relay.address()));
+  REQUIRE(transport.wait_state());
+  transport.send({});
+  REQUIRE(transport.wait_state());
+  const int before = relay.repeats();
+  while (relay.repeats() < before + 3) {
+    transport.keep_alive();
+    std::this_thread::sleep_for(1ms);
+  }
+  CHECK(relay.commands().size() == 1);
+  transport.send({});
+  const auto state = transport.wait_state();
+  REQUIRE(state);
+  CHECK(state->frame == 3);
+}
+
 TEST_CASE("R5 closing says goodbye three times") {
   FakeRelay relay({});
   const hrt_config config = config_for(relay.address());
