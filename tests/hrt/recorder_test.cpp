@@ -1,0 +1,167 @@
+// A recording beside the cycle, on a disk that stalls: a pipe that nobody reads stands for it, so that how long it
+// stalls is the test's to say and not a clock's.
+//   R1 no cycle waits for the disk; R2 what the queue holds is not lost; R3 what is lost is counted and said; R4 the
+//   environment variable records as the call does
+#include "hrt/recorder.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "hrt/error.hpp"
+#include "kenaf/hrt.h"
+#include "runs/run_file.hpp"
+#include "tests/hrt/fake_transport.hpp"
+#include "tests/support/process.hpp"
+
+using namespace kenaf;
+using hrt::DriveCommand;
+using hrt::Recorder;
+
+namespace {
+
+// Where a recording to `file` is written aside: nothing more than a pipe holds, 64 KiB, goes there before resume().
+class StalledDisk {
+ public:
+  explicit StalledDisk(const std::string& file) {
+    const std::string part = file + ".part";
+    REQUIRE(::mkfifo(part.c_str(), 0600) == 0);
+    descriptor_ = ::open(part.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    REQUIRE(descriptor_ >= 0);
+  }
+  ~StalledDisk() {
+    if (reader_.joinable()) reader_.join();
+    ::close(descriptor_);
+  }
+  StalledDisk(const StalledDisk&) = delete;
+  StalledDisk& operator=(const StalledDisk&) = delete;
+
+  // Takes all from now on, until the recording is closed.
+  void resume() {
+    REQUIRE(::fcntl(descriptor_, F_SETFL, 0) == 0);  // reading waits
+    reader_ = std::thread([this] {
+      std::array<char, 65536> chunk;
+      for (ssize_t count; (count = ::read(descriptor_, chunk.data(), chunk.size())) > 0;)
+        bytes_.append(chunk.data(), static_cast<std::size_t>(count));
+    });
+  }
+  // After the recording was closed.
+  runs::Run written() {
+    reader_.join();
+    return runs::parse_run(bytes_, "recording");
+  }
+
+ private:
+  int descriptor_;
+  std::thread reader_;
+  std::string bytes_;
+};
+
+relay::State state_of(std::uint32_t frame) {
+  relay::State state{};
+  state.frame = frame;
+  state.robot_time_s = 0.01 * frame;
+  return state;
+}
+
+std::string recording_in(const support::TemporaryFolder& folder) {
+  return (folder.path() / "run.csv").string();
+}
+
+}  // namespace
+
+TEST_CASE("R1 R2 a disk that stalls for as many cycles as the queue holds costs neither a wait nor a row") {
+  const support::TemporaryFolder folder;
+  StalledDisk disk(recording_in(folder));
+  Recorder recorder(recording_in(folder), false);
+  // If one add() waited for the disk, it would wait for good: nobody reads before all of them are done.
+  constexpr std::uint32_t kRows = Recorder::kQueueRows;
+  for (std::uint32_t i = 0; i < kRows; ++i) recorder.add(state_of(i), DriveCommand{});
+  disk.resume();
+  recorder.finish();
+  const runs::Run run = disk.written();
+  REQUIRE(run.row_count() == kRows);
+  for (std::size_t i = 0; i < kRows; ++i) REQUIRE(run.column("frame")[i] == static_cast<double>(i));
+}
+
+TEST_CASE("R1 R3 one that stalls for longer loses rows, still without a wait, and the recording says how many") {
+  const support::TemporaryFolder folder;
+  StalledDisk disk(recording_in(folder));
+  Recorder recorder(recording_in(folder), false);
+  constexpr std::uint32_t kRows = 3 * Recorder::kQueueRows;
+  for (std::uint32_t i = 0; i < kRows; ++i) recorder.add(state_of(i), DriveCommand{});
+  disk.resume();
+  std::string said;
+  try {
+    recorder.finish();
+  } catch (const hrt::Error& error) {
+    CHECK(error.code() == HRT_E_RECORD);
+    said = error.what();
+  }
+  const runs::Run run = disk.written();
+  // A row of a state without values is more than 32 bytes, so that the pipe takes fewer than 2048 of them.
+  CHECK(run.row_count() >= Recorder::kQueueRows);
+  CHECK(run.row_count() < Recorder::kQueueRows + 2048);
+  CHECK_THAT(said, Catch::Contains(std::to_string(kRows - run.row_count()) + " rows are missing"));
+}
+
+TEST_CASE("R1 R2 a robot that does not wait for its program is answered in every cycle while the disk stalls") {
+  const support::TemporaryFolder folder;
+  StalledDisk disk(recording_in(folder));
+  const auto robot = hrt::test::use_fake_robot();
+  robot->lockstep = false;
+  REQUIRE(hrt_kenaf_init() == HRT_OK);
+  REQUIRE(hrt_record_start(recording_in(folder).c_str()) == HRT_OK);
+  REQUIRE(hrt_set_tracks(100, 100) == HRT_OK);
+  // 40 s are 4000 cycles, twice what the pipe takes. The fake robot goes on only when a cycle is answered, so that one
+  // that waited for the disk would never end.
+  REQUIRE(hrt_sleep(40) == HRT_OK);
+  disk.resume();
+  REQUIRE(hrt_record_stop() == HRT_OK);
+  REQUIRE(hrt_close() == HRT_OK);
+  const runs::Run run = disk.written();
+  CHECK(run.row_count() >= 4000);
+  const auto frame = run.column("frame"), late = run.column("late_commands");
+  for (std::size_t i = 0; i < run.row_count(); ++i) {
+    REQUIRE(frame[i] == frame[0] + static_cast<double>(i));
+    REQUIRE(late[i] == 0);
+  }
+}
+
+TEST_CASE("R4 KENAF_RECORD records the same as the call, from the first cycle on") {
+  const support::TemporaryFolder folder;
+  const std::string by_variable = (folder.path() / "variable.csv").string(),
+                    by_call = (folder.path() / "call.csv").string();
+  const auto drive = [] {
+    REQUIRE(hrt_set_flipper(HRT_FRONT_LEFT, 10) == HRT_OK);
+    REQUIRE(hrt_go_forward(50) == HRT_OK);
+    REQUIRE(hrt_close() == HRT_OK);
+  };
+  hrt::test::use_fake_robot();
+  ::setenv("KENAF_RECORD", by_variable.c_str(), 1);
+  const int opened = hrt_kenaf_init();
+  ::unsetenv("KENAF_RECORD");
+  REQUIRE(opened == HRT_OK);
+  drive();
+
+  hrt::test::use_fake_robot();
+  REQUIRE(hrt_kenaf_init() == HRT_OK);
+  REQUIRE(hrt_record_start(by_call.c_str()) == HRT_OK);
+  drive();
+
+  const runs::Run variable = runs::read_run(by_variable), call = runs::read_run(by_call);
+  CHECK(variable.columns == call.columns);
+  CHECK(variable.column("frame")[0] == 1);
+  // The call may come in a later cycle than the first; from there on both are the same drive.
+  REQUIRE(call.row_count() > 0);
+  const auto travel_by_variable = variable.column("track_left_m"), travel_by_call = call.column("track_left_m");
+  CHECK(travel_by_variable.back() == Approx(0.05).margin(0.001));
+  CHECK(travel_by_call.back() == travel_by_variable.back());
+}
