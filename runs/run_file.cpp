@@ -19,6 +19,8 @@ namespace {
 
 constexpr std::string_view kTimeColumn = "t_s";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets write it
+// Bounds of memory, chosen: 2^24 values are 134 MB.
+constexpr std::size_t kMostValues = std::size_t{1} << 24, kLongestLine = std::size_t{1} << 20;
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
 struct Cell {
@@ -63,15 +65,6 @@ bool only_blanks(std::string_view text) {
   return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
 }
 
-// Takes the next line, without its CR LF or LF.
-std::string_view take_line(std::string_view& rest) {
-  const std::size_t end = std::min(rest.size(), rest.find('\n'));
-  std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(std::min(rest.size(), end + 1));
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  return line;
-}
-
 std::optional<double> finite_number(std::string_view text) {
   double value = 0;
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
@@ -109,6 +102,84 @@ void check_time(double time_s, double last_time_s, std::size_t column, const Pla
   if (time_s <= last_time_s) fail(place, column, "t_s does not grow from the row before");
 }
 
+// Reads a run from its text piece by piece, so that no more of a long file is held than its values.
+class RunReader {
+ public:
+  explicit RunReader(std::string_view name_for_errors) : place_{name_for_errors, 0} {}
+
+  void take(std::string_view text) {
+    for (std::size_t end; (end = text.find('\n')) != text.npos; text.remove_prefix(end + 1)) {
+      begun_.append(text.substr(0, end));
+      take_line();
+    }
+    begun_.append(text);
+    if (begun_.size() > kLongestLine) fail({place_.file, place_.line + 1}, kLongestLine, "the line is too long");
+  }
+
+  Run finish() {
+    if (!begun_.empty()) take_line();
+    if (!has_header_) fail({place_.file, 1}, 1, "the file is empty; its first line names the columns, t_s among them");
+    return std::move(run_);
+  }
+
+ private:
+  void take_line() {
+    std::string_view line = begun_;
+    if (place_.line == 0 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    ++place_.line;
+    if (!only_blanks(line)) {
+      if (first_blank_ != 0) refuse_blank();
+      has_header_ ? take_row(line) : take_header(line);
+    } else if (first_blank_ == 0) {
+      first_blank_ = place_.line;  // of those at the end, or one too many
+      blank_ = line;
+    }
+    begun_.clear();
+  }
+
+  void refuse_blank() {
+    place_.line = first_blank_;
+    has_header_ ? take_row(blank_) : take_header(blank_);
+  }
+
+  void take_header(std::string_view line) {
+    split(line, cells_);
+    time_column_ = check_columns(cells_, place_);
+    for (const Cell& cell : cells_) run_.columns.emplace_back(cell.text);
+    run_.values.resize(cells_.size());
+    has_header_ = true;
+  }
+
+  void take_row(std::string_view line) {
+    split(line, cells_);
+    if (cells_.size() != run_.columns.size()) {
+      fail(place_, cells_.size() > run_.columns.size() ? cells_[run_.columns.size()].column : line.size() + 1,
+           "the row has " + std::to_string(cells_.size()) + " cells, but the first line names " +
+               std::to_string(run_.columns.size()) + " columns");
+    }
+    if ((run_.row_count() + 1) * cells_.size() > kMostValues)
+      fail(place_, 1,
+           "more than " + std::to_string(kMostValues) + " values; that is beyond an hour of 40 columns at " +
+               "100 Hz: cut the file into one for each run");
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      run_.values[i].push_back(read_cell(cells_[i], run_.columns[i], place_));
+    }
+    const double time_s = run_.values[time_column_].back();
+    check_time(time_s, last_time_s_, cells_[time_column_].column, place_);
+    last_time_s_ = time_s;
+  }
+
+  Place place_;        // the line taken last; 0: none yet
+  std::string begun_;  // a line whose end has not come
+  bool has_header_ = false;
+  std::size_t first_blank_ = 0, time_column_ = 0;
+  std::string blank_;
+  double last_time_s_ = -std::numeric_limits<double>::infinity();
+  std::vector<Cell> cells_;
+  Run run_;
+};
+
 void append_number(std::string& out, double value) {
   std::array<char, 32> digits;
   out.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
@@ -123,39 +194,16 @@ std::span<const double> Run::column(std::string_view name) const {
 }
 
 Run read_run(const std::filesystem::path& file) {
-  return parse_run(read_whole_file(file), file.string());
+  const std::string name = file.string();
+  RunReader reader(name);
+  read_in_chunks(file, [&reader](std::string_view chunk) { reader.take(chunk); });
+  return reader.finish();
 }
 
 Run parse_run(std::string_view text, std::string_view name_for_errors) {
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  Place place{name_for_errors, 1};
-  if (only_blanks(text)) fail(place, 1, "the file is empty; its first line names the columns, t_s among them");
-  std::vector<Cell> cells;
-  split(take_line(text), cells);
-  const std::size_t time_column = check_columns(cells, place);
-
-  Run run;
-  for (const Cell& cell : cells) run.columns.emplace_back(cell.text);
-  run.values.resize(cells.size());
-  double last_time_s = -std::numeric_limits<double>::infinity();
-  while (!text.empty()) {
-    ++place.line;
-    const std::string_view line = take_line(text);
-    if (only_blanks(line) && only_blanks(text)) break;  // empty lines at the end
-    split(line, cells);
-    if (cells.size() != run.columns.size()) {
-      fail(place, cells.size() > run.columns.size() ? cells[run.columns.size()].column : line.size() + 1,
-           "the row has " + std::to_string(cells.size()) + " cells, but the first line names " +
-               std::to_string(run.columns.size()) + " columns");
-    }
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      run.values[i].push_back(read_cell(cells[i], run.columns[i], place));
-    }
-    const double time_s = run.values[time_column].back();
-    check_time(time_s, last_time_s, cells[time_column].column, place);
-    last_time_s = time_s;
-  }
-  return run;
+  RunReader reader(name_for_errors);
+  reader.take(text);
+  return reader.finish();
 }
 
 RunWriter::RunWriter(std::filesystem::path file, std::vector<std::string> columns)

@@ -32,7 +32,8 @@ struct Run {
 };
 
 // Reads a run. Throws RunFileError: no such file, no t_s, times not strictly increasing, a cell that is no finite
-// number, a row with another count of cells, a column named twice or not at all. Unknown columns are kept.
+// number, a row with another count of cells, a column named twice or not at all, more than 2^24 values (an hour of 40
+// columns at 100 Hz is less). Unknown columns are kept. However long the file, memory is bounded by its values.
 Run read_run(const std::filesystem::path& file);
 Run parse_run(std::string_view text, std::string_view name_for_errors);
 

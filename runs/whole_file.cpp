@@ -62,18 +62,25 @@ void write_whole_file(const fs::path& file, std::string_view bytes) {
   finish_part_file(descriptor, file);
 }
 
-std::string read_whole_file(const fs::path& file) {
+void read_in_chunks(const fs::path& file, const std::function<void(std::string_view)>& take) {
+  struct Closed {
+    int descriptor;
+    ~Closed() { ::close(descriptor); }
+  };
   const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) fail(file, "cannot be opened", errno);
-  std::string bytes;
+  const Closed closed{descriptor};
   std::array<char, 65536> chunk;
   ssize_t count = 0;
   while ((count = ::read(descriptor, chunk.data(), chunk.size())) > 0 || (count < 0 && errno == EINTR)) {
-    if (count > 0) bytes.append(chunk.data(), static_cast<std::size_t>(count));
+    if (count > 0) take({chunk.data(), static_cast<std::size_t>(count)});
   }
-  const int error = errno;
-  ::close(descriptor);
-  if (count < 0) fail(file, "cannot be read", error);
+  if (count < 0) fail(file, "cannot be read", errno);
+}
+
+std::string read_whole_file(const fs::path& file) {
+  std::string bytes;
+  read_in_chunks(file, [&bytes](std::string_view chunk) { bytes.append(chunk); });
   return bytes;
 }
 

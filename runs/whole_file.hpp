@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -13,7 +14,11 @@ void write_whole_file(const std::filesystem::path& file, std::string_view bytes)
 // All bytes of a file. Throws RunFileError where it cannot be read.
 std::string read_whole_file(const std::filesystem::path& file);
 
-// The steps of the same for a file that grows: open the part file, append to it, rename it. Each throws RunFileError.
+// The same piece by piece, in order.
+void read_in_chunks(const std::filesystem::path& file, const std::function<void(std::string_view)>& take);
+
+// The steps of write_whole_file() for a file that grows: open the part file, append to it, rename it. Each throws
+// RunFileError.
 int open_part_file(const std::filesystem::path& file);
 void append_to_part_file(int descriptor, const std::filesystem::path& file, std::string_view bytes);
 // Closes `descriptor` in every case.

@@ -148,3 +148,30 @@ TEST_CASE("A full disk is an error, and the file does not appear") {
   CHECK_THROWS_WITH(RunWriter(folder / "run.csv", {"t_s"}), Catch::Contains("No space left"));
   CHECK_FALSE(std::filesystem::exists(folder / "run.csv"));
 }
+
+TEST_CASE("A run is read the same in pieces as at once, wherever a piece ends") {
+  // More than one piece of 64 KiB: the rows get longer, so that ends fall everywhere in them.
+  std::string text = "t_s,x_m\r\n";
+  for (int i = 0; i < 20000; ++i)
+    text +=
+        std::to_string(i) + "," + std::string(static_cast<std::size_t>(i % 7), ' ') + std::to_string(i * i) + "\r\n";
+  const TemporaryFolder folder;
+  kenaf::test::write_file(folder / "run.csv", text);
+  const Run whole = parse_run(text, "run.csv"), pieces = read_run(folder / "run.csv");
+  CHECK(pieces.columns == whole.columns);
+  CHECK(pieces.values == whole.values);
+  kenaf::test::write_file(folder / "run.csv", text + "20000,wrong\n");
+  CHECK_THROWS_WITH(read_run(folder / "run.csv"), Catch::Contains("run.csv:20002:7: 'wrong' in column 'x_m'"));
+}
+
+TEST_CASE("What is too large for memory is refused before it fills it") {
+  // A thousand columns in 16778 rows are 2^24 values and more.
+  std::string header = "t_s", cells;
+  for (int i = 1; i < 1000; ++i) header += ",c" + std::to_string(i), cells += ',';
+  std::string text = header + "\n";
+  for (int i = 0; i < 16778; ++i) text += std::to_string(i) + cells + "\n";
+  CHECK_THROWS_WITH(parse_run(text, "long.csv"), Catch::Contains("long.csv:16779:1: more than 16777216 values"));
+  // No line end at all, as in a file that is none.
+  CHECK_THROWS_WITH(parse_run(std::string(2 << 20, '7'), "none.csv"),
+                    Catch::Contains("none.csv:1:") && Catch::Contains("too long"));
+}
