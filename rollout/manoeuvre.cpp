@@ -160,7 +160,8 @@ Manoeuvre load_manoeuvre(const std::string& name) {
   std::vector<std::string> names;
   for (const Manoeuvre& manoeuvre : all) names.push_back(manoeuvre.name);
   throw DescriptionError(
-      fmt::format("manoeuvre \"{}\": no such manoeuvre; give the path of a TOML file, replay:FILE.csv, replay-measured:FILE.csv, or one of {}",
+      fmt::format("manoeuvre \"{}\": no such manoeuvre; give the path of a TOML file, replay:FILE.csv, "
+                  "replay-measured:FILE.csv, or one of {}",
                   name, fmt::join(names, ", ")));
 }
 

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "protocol/frames.hpp"
@@ -17,7 +18,7 @@ constexpr std::array<std::string_view, physics::kFlipperCount> kFlippers{"fl", "
 constexpr double kSameTime_s = 1e-9;
 constexpr double kTravelCounts_s = 0.1;  // over so long a speed is held to its travel
 constexpr double kMeanSpeed_s = 0.05;    // of travel alone
-constexpr double kShare_s = 0.5, kShare_m = 0.05;
+constexpr double kShare_m = 0.05;
 constexpr double kCubic_s = 0.25, kBeyond_sigma = 4;
 constexpr Eigen::Index kFewestPoses = 8;
 constexpr double kStands_mps = 0.01, kStands_radps = 0.05;
@@ -129,40 +130,44 @@ Poses first_poses(const runs::Run& run, double time_s) {
   return poses;
 }
 
-// From tracks to body. With d the way that the tracks went apart and s the mean of their ways, least squares for k in
-// yaw = yaw_0 + k d, and then for c in p = p_0 + c times the integral of (cos yaw, sin yaw) ds.
+// Least squares for k in b = constant + k a, of all columns together; empty where a spreads over less than `least`.
+std::optional<double> slope(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double least) {
+  const Eigen::MatrixXd from_mean = a.rowwise() - a.colwise().mean();
+  const Eigen::RowVectorXd spread = a.colwise().maxCoeff() - a.colwise().minCoeff();
+  if (spread.norm() < least) return std::nullopt;
+  return from_mean.cwiseProduct(b).sum() / from_mean.squaredNorm();
+}
+
+// From tracks to body: yaw goes with what the right track went more than the left one, and position with the mean of
+// their ways along the measured yaw.
 StartMotion motion_of_tracks(const MeasuredMotion& measured, const Poses& poses,
                              const std::array<double, physics::kTrackCount>& track_mps) {
   using physics::kLeft;
   using physics::kRight;
   StartMotion motion{.track_mps = track_mps, .forward_mps = {}, .yaw_radps = {}};
-  if (poses.t_s.empty()) return motion;
+  const auto n = static_cast<Eigen::Index>(poses.t_s.size());
+  if (n < 2) return motion;
   const Integral left(measured.track_mps[kLeft]), right(measured.track_mps[kRight]);
-  const double t0_s = poses.t_s.front();
-  double dd = 0, d_yaw = 0, s_before_m = 0, furthest_d_m = 0, furthest_s_m = 0;
-  std::vector<double> s_m, d_m;
-  for (std::size_t i = 0; i < poses.t_s.size(); ++i) {
-    const double l = left.to(poses.t_s[i]) - left.to(t0_s), r = right.to(poses.t_s[i]) - right.to(t0_s);
-    s_m.push_back((l + r) / 2);
-    d_m.push_back(r - l);
-    dd += d_m[i] * d_m[i];
-    d_yaw += d_m[i] * (poses.yaw_rad[i] - poses.yaw_rad[0]);
-    furthest_d_m = std::max(furthest_d_m, std::abs(d_m[i]));
-    furthest_s_m = std::max(furthest_s_m, std::abs(s_m[i]));
+  Eigen::MatrixXd apart_m(n, 1), yaw_rad(n, 1), way_m(n, 2), p_m(n, 2);
+  double s_before_m = 0, yaw_before_rad = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double l = left.to(poses.t_s[k]), r = right.to(poses.t_s[k]), s_m = (l + r) / 2;
+    apart_m(i) = r - l;
+    yaw_rad(i) = poses.yaw_rad[k];
+    p_m.row(i) << poses.x_m[k], poses.y_m[k];
+    const double along = (poses.yaw_rad[k] + yaw_before_rad) / 2;
+    if (i == 0)
+      way_m.row(i).setZero();
+    else
+      way_m.row(i) = way_m.row(i - 1) + (s_m - s_before_m) * Eigen::RowVector2d(std::cos(along), std::sin(along));
+    s_before_m = s_m;
+    yaw_before_rad = poses.yaw_rad[k];
   }
-  if (furthest_d_m >= kShare_m) motion.yaw_radps = d_yaw / dd * (track_mps[kRight] - track_mps[kLeft]);
-  if (furthest_s_m < kShare_m) return motion;
-
-  Eigen::Vector2d way(0, 0);
-  double ww = 0, w_p = 0;
-  for (std::size_t i = 1; i < poses.t_s.size(); ++i) {
-    const double yaw = (poses.yaw_rad[i] + poses.yaw_rad[i - 1]) / 2;
-    way += (s_m[i] - s_before_m) * Eigen::Vector2d(std::cos(yaw), std::sin(yaw));
-    s_before_m = s_m[i];
-    ww += way.squaredNorm();
-    w_p += way.dot(Eigen::Vector2d(poses.x_m[i] - poses.x_m[0], poses.y_m[i] - poses.y_m[0]));
-  }
-  if (ww > 0) motion.forward_mps = w_p / ww * (track_mps[kLeft] + track_mps[kRight]) / 2;
+  if (const auto radpm = slope(apart_m, yaw_rad, kShare_m))
+    motion.yaw_radps = *radpm * (track_mps[kRight] - track_mps[kLeft]);
+  if (const auto share = slope(way_m, p_m, kShare_m))
+    motion.forward_mps = std::clamp(*share, 0.0, 1.0) * (track_mps[kLeft] + track_mps[kRight]) / 2;
   return motion;
 }
 
@@ -226,7 +231,7 @@ std::optional<StartMotion> motion_at_start(const runs::Run& run) {
   std::array<double, physics::kTrackCount> track_mps{};
   for (std::size_t i = 0; i < track_mps.size(); ++i) track_mps[i] = measured.track_mps[i].at(0);
   if (std::ranges::all_of(track_mps, [](double speed) { return std::abs(speed) < kStands_mps; })) return std::nullopt;
-  return motion_of_tracks(measured, first_poses(run, kShare_s), track_mps);
+  return motion_of_tracks(measured, first_poses(run, std::numeric_limits<double>::infinity()), track_mps);
 }
 
 }  // namespace kenaf::rollout

@@ -44,8 +44,9 @@ struct StartMotion {
 // Empty: it stands. That is where both tracks turn at less than 10 mm/s: a drive ends that within 1 mm.
 //
 // The body moves as its tracks in the first row would have it, in forward speed and yaw rate, each times the share of it
-// that the poses of the first 0.5 s show: a turn on tracks slips by a third and more, and differences of single
-// poses would be mostly noise. Tracks that went less than 50 mm in that time, or apart, tell of no share.
+// that the run's poses show: a turn on tracks slips by a third and more. That is a slope over the whole run, since
+// differences of its first poses would be noise, and delay where poses are late. Tracks that never went 50 mm, or apart,
+// tell of no share. It lies between 0 and 1; for yaw the caller sees to that, who knows the gauge.
 // A run that never measured its tracks moves as its poses do, by a cubic through their first 0.25 s, where that is
 // beyond 4 sigma of their own scatter; with fewer than 8 poses there it stands. One that drives off at once from
 // rest may be given up to a quarter of its speed so: encoders are worth having.

@@ -127,7 +127,10 @@ void set_in_motion(Scene& scene, const RobotDescription& robot, const StartMotio
       start.track_mps[i] = (*motion.track_mps)[i] / robot.effects.encoder_scale;
     const auto [left, right] = start.track_mps;
     if (!motion.forward_mps) forward_mps = (left + right) / 2;
-    if (!motion.yaw_radps) yaw_radps = (right - left) / gauge_m;
+    const double without_slip_radps = (right - left) / gauge_m;
+    yaw_radps = motion.yaw_radps ? std::clamp(*motion.yaw_radps, std::min(0.0, without_slip_radps),
+                                              std::max(0.0, without_slip_radps))
+                                 : without_slip_radps;
   } else {
     start.track_mps = {forward_mps - yaw_radps * gauge_m / 2, forward_mps + yaw_radps * gauge_m / 2};
   }

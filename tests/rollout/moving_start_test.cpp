@@ -154,19 +154,35 @@ TEST_CASE("How the body moves at first: the tracks' motion, times the share that
                              -r * (std::cos(yaw) - std::cos(1.0)), yaw);
         }));
   };
-  for (const double share : {0.9, 0.6, -0.1}) {
+  for (const double share : {0.9, 0.6, 1.4, -0.3}) {
     const auto motion = with(share);
     REQUIRE(motion);
     CHECK((*motion->track_mps)[physics::kLeft] == 0.2);
     CHECK((*motion->track_mps)[physics::kRight] == 0.6);
-    CHECK(*motion->forward_mps == Approx(share * 0.4).epsilon(1e-3));  // chords of an arc of 0.05 rad: 1e-4
+    CHECK(*motion->forward_mps ==
+          Approx(std::clamp(share, 0.0, 1.0) * 0.4).epsilon(1e-3));  // chords of an arc of 0.05 rad: 1e-4
     CHECK(*motion->yaw_radps == Approx(0.5).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("Poses that are late make no body turn faster than its tracks can turn it, nor the other way") {
+  const auto robot = physics::load_robot("kenaf");
+  Manoeuvre still = drive({{0, 0}}, 0.1);
+  for (const double yaw_radps : {9.0, -9.0, 0.5}) {
+    still.start = Start{.x_m = 0,
+                        .y_m = 0,
+                        .yaw_rad = 0,
+                        .z_m = {},
+                        .flipper_rad = {},
+                        .motion = StartMotion{.track_mps = {{-0.1, 0.1}}, .forward_mps = 0, .yaw_radps = yaw_radps}};
+    const double first = roll_out(robot, flat(), still, exact()).run.column("gyro_z_radps").front();
+    CHECK(first == Approx(std::clamp(yaw_radps, 0.0, 0.2 / robot.track_gauge_m())).margin(1e-9));
   }
 }
 
 TEST_CASE("Without poses to tell, a body moves as its tracks do") {
   const auto motion = motion_at_start(runs::parse_run(
-      "t_s,track_left_mps,track_right_mps,x_m,y_m,yaw_rad\n0,0.2,0.3,0,0,0\n1,0.2,0.3,0.2,0,0.1\n", "run.csv"));
+      "t_s,track_left_mps,track_right_mps,x_m,y_m,yaw_rad\n0,0.2,0.3,0,0,0\n2,0.2,0.3,,,\n", "run.csv"));
   REQUIRE(motion);
   CHECK_FALSE(motion->forward_mps);
   CHECK_FALSE(motion->yaw_radps);
