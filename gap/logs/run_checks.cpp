@@ -9,7 +9,7 @@ namespace {
 // Chosen, as for the clocks' offset.
 constexpr double kShortestWindow_s = 0.2, kWindowSamples = 3, kGridPerWindow = 4, kGapSteps = 5, kLeastGap_s = 0.25,
                  kUpright_rad = 1;
-constexpr double kFewestWindows = 5;
+constexpr double kFewestPoints = 15;
 
 double longest_gap_s(std::span<const double> t_s, std::span<const double> values) {
   return std::max(kLeastGap_s, kGapSteps * median_step(t_s, values));
@@ -103,10 +103,12 @@ std::optional<Relation> RunChecks::relate(const Course& first, const Course& sec
   const double step_of_slower = std::max(median_step(first.t_s, first.t_s), median_step(second.t_s, second.t_s));
   const double window_s = std::max(kShortestWindow_s, kWindowSamples * step_of_slower),
                step_s = window_s / kGridPerWindow;
-  const double from_s = std::max(first.t_s.front(), second.t_s.front()),
-               to_s = std::min(first.t_s.back(), second.t_s.back());
   double aa = 0, bb = 0, ab = 0, sum_a = 0, sum_b = 0, count = 0;
-  for (double t_s = from_s; t_s <= to_s; t_s += step_s) {
+  // At times that have a sample: however far a clock has jumped, there are no more of them.
+  double next_s = first.t_s.front();
+  for (const double t_s : first.t_s) {
+    if (t_s < next_s) continue;
+    next_s = t_s + step_s;
     const double a = mean_rate(first, t_s, window_s), b = mean_rate(second, t_s, window_s);
     if (std::isnan(a + b)) continue;
     aa += a * a;
@@ -116,7 +118,7 @@ std::optional<Relation> RunChecks::relate(const Course& first, const Course& sec
     sum_b += std::abs(b) * step_s;
     ++count;
   }
-  if (count < kFewestWindows * kGridPerWindow || !(aa > 0) || !(bb > 0)) return std::nullopt;
+  if (count < kFewestPoints || !(aa > 0) || !(bb > 0)) return std::nullopt;
   return Relation{std::sqrt(aa / bb), ab / std::sqrt(aa * bb), sum_a, sum_b};
 }
 

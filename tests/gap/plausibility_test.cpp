@@ -197,6 +197,8 @@ TEST_CASE("Time in milliseconds is told by what adds up; gaps, odd steps and oth
   // Row 301 of the file, with the header, is the first after 3 s; its time and all later ones are two seconds later.
   const std::string gap = found(changed(arc(), {"t_s"}, [](double t) { return t > 2.985 ? t + 2 : t; }));
   CHECK_THAT(gap, Catch::StartsWith("warning: run.csv:301: t_s: has 1 gaps of up to 2.01 s"));
+  // A clock that was set during the run: said, and no reason to walk through the years between.
+  CHECK_THAT(found(changed(arc(), {"t_s"}, [](double t) { return t > 6 ? t + 1.7e9 : t; })), Catch::Contains("1 gaps"));
   // Written in bursts: four rows 1 ms apart, then 37 ms nothing.
   runs::Run bursts = arc();
   for (std::size_t i = 0; i < bursts.row_count(); ++i)
