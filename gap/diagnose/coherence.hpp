@@ -1,0 +1,40 @@
+// How far whitened differences are from chance, summed where a gap adds up and noise does not.
+//
+// A gap looks alike in the repeats of a manoeuvre and in neighbouring spans of time; noise does not. So differences are
+// first averaged over both (a cell: one channel in one stretch of a manoeuvre) and then squared: 1 is chance.
+// Thread safety: values and pure functions.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "gap/diagnose/features.hpp"
+#include "gap/diagnose/noise_floor.hpp"
+
+namespace kenaf::gap {
+
+struct Cell {
+  std::size_t group;    // of repeats_of()
+  std::size_t channel;
+  std::size_t stretch;  // from the start: [stretch, stretch + 1) times stretch_s
+  double z;             // standard normal by chance
+};
+
+class Coherence {
+ public:
+  Coherence(const std::vector<FeatureMap>& features, std::vector<std::vector<std::size_t>> groups, double stretch_s);
+
+  std::size_t cell_count() const { return cells_.size(); }
+  double stretch_s() const { return stretch_s_; }
+  std::vector<Cell> cells(const std::vector<Eigen::VectorXd>& whitened) const;
+  // Sum of z^2 over all cells: by chance near cell_count().
+  double energy(const std::vector<Eigen::VectorXd>& whitened) const;
+
+ private:
+  double stretch_s_;
+  std::vector<Cell> cells_;                         // with z = 0
+  std::vector<double> scale_;                       // 1 / sqrt of the bins in a cell
+  std::vector<std::vector<std::size_t>> cell_of_;   // of each bin of each run
+};
+
+}  // namespace kenaf::gap

@@ -1,0 +1,151 @@
+#include "gap/diagnose/curve_fit.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace kenaf::gap {
+namespace {
+
+// Between two neighbouring points of a curve, from `a` (share 0) to `b` (share 1).
+struct Segment {
+  CurvePoint a, b;
+};
+
+double gap_product(const Products& p, int column) {
+  return column < 0 ? 0 : p.shift_gap[column];
+}
+double shift_product(const Products& p, int i, int j) {
+  return i < 0 || j < 0 ? 0 : p.shift_shift(i, j);
+}
+
+// left = constant - 2 linear . s + s . square s for shares s of the segments, each in [0, 1]
+struct Quadratic {
+  double constant;
+  double linear[2];
+  double square[2][2];
+  double at(double s, double t) const {
+    return constant - 2 * (linear[0] * s + linear[1] * t) + square[0][0] * s * s + 2 * square[0][1] * s * t +
+           square[1][1] * t * t;
+  }
+};
+
+// Of one term along a line, clamped to the segment.
+double best_share(double linear, double square) {
+  return square > 0 ? std::clamp(linear / square, 0.0, 1.0) : 0;
+}
+
+OnCurve on_segment(std::size_t curve, const Segment& segment, double share) {
+  return {curve,
+          segment.a.value + share * (segment.b.value - segment.a.value),
+          {segment.a.column, segment.b.column},
+          {1 - share, share}};
+}
+
+}  // namespace
+
+std::vector<Products> products_of_runs(const EffectCurves& curves) {
+  std::vector<Products> products;
+  for (std::size_t r = 0; r < curves.gap.size(); ++r)
+    products.push_back({curves.gap[r].squaredNorm(), curves.shifts[r].transpose() * curves.gap[r],
+                        curves.shifts[r].transpose() * curves.shifts[r], static_cast<double>(curves.gap[r].size())});
+  return products;
+}
+
+Products weighted_sum(const std::vector<Products>& runs, std::span<const double> weights) {
+  const auto columns = runs.front().shift_gap.size();
+  Products sum{0, Eigen::VectorXd::Zero(columns), Eigen::MatrixXd::Zero(columns, columns), 0};
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    if (weights[r] == 0) continue;
+    sum.gap_gap += weights[r] * runs[r].gap_gap;
+    sum.shift_gap += weights[r] * runs[r].shift_gap;
+    sum.shift_shift += weights[r] * runs[r].shift_shift;
+    sum.bins += weights[r] * runs[r].bins;
+  }
+  return sum;
+}
+
+OnCurve at_value(const std::vector<EffectCurve>& curves, std::size_t curve, double value) {
+  const std::vector<CurvePoint>& points = curves[curve].points;
+  auto above = std::ranges::lower_bound(points, value, {}, &CurvePoint::value);
+  if (above == points.begin()) ++above;
+  if (above == points.end()) --above;
+  const Segment segment{*(above - 1), *above};
+  return on_segment(curve, segment, (value - segment.a.value) / (segment.b.value - segment.a.value));
+}
+
+CurveFit fit_one(const Products& p, const std::vector<EffectCurve>& curves, std::size_t curve) {
+  CurveFit best{{}, std::numeric_limits<double>::infinity()};
+  const std::vector<CurvePoint>& points = curves[curve].points;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Segment segment{points[i - 1], points[i]};
+    const int a = segment.a.column, b = segment.b.column;
+    const double aa = shift_product(p, a, a), ab = shift_product(p, a, b), bb = shift_product(p, b, b);
+    const Quadratic q{p.gap_gap - 2 * gap_product(p, a) + aa,
+                      {gap_product(p, b) - gap_product(p, a) - ab + aa, 0},
+                      {{aa - 2 * ab + bb, 0}, {0, 0}}};
+    const double share = best_share(q.linear[0], q.square[0][0]);
+    if (const double left = q.at(share, 0); left < best.left) best = {{on_segment(curve, segment, share)}, left};
+  }
+  return best;
+}
+
+CurveFit fit_two(const Products& p, const std::vector<EffectCurve>& curves, std::size_t first, std::size_t second) {
+  CurveFit best{{}, std::numeric_limits<double>::infinity()};
+  const auto &one = curves[first].points, &two = curves[second].points;
+  for (std::size_t i = 1; i < one.size(); ++i)
+    for (std::size_t j = 1; j < two.size(); ++j) {
+      const Segment s{one[i - 1], one[i]}, t{two[j - 1], two[j]};
+      const int a = s.a.column, b = s.b.column, c = t.a.column, d = t.b.column;
+      const auto dot = [&](int x, int y) { return shift_product(p, x, y); };
+      const auto dots = [&](int x, int y, int u, int v) { return dot(x, u) - dot(x, v) - dot(y, u) + dot(y, v); };
+      // origin o = a + c, directions e = b - a and f = d - c
+      const double o_gap = gap_product(p, a) + gap_product(p, c);
+      const double oo = dot(a, a) + 2 * dot(a, c) + dot(c, c);
+      const double oe = dot(a, b) - dot(a, a) + dot(c, b) - dot(c, a);
+      const double of = dot(a, d) - dot(a, c) + dot(c, d) - dot(c, c);
+      const double ef = dots(b, a, d, c);
+      const Quadratic q{p.gap_gap - 2 * o_gap + oo,
+                        {gap_product(p, b) - gap_product(p, a) - oe, gap_product(p, d) - gap_product(p, c) - of},
+                        {{dots(b, a, b, a), ef}, {ef, dots(d, c, d, c)}}};
+      const auto consider = [&](double share_s, double share_t) {
+        if (const double left = q.at(share_s, share_t); left < best.left)
+          best = {{on_segment(first, s, share_s), on_segment(second, t, share_t)}, left};
+      };
+      const double determinant = q.square[0][0] * q.square[1][1] - ef * ef;
+      if (determinant > 1e-12 * q.square[0][0] * q.square[1][1]) {
+        const double inner_s = (q.linear[0] * q.square[1][1] - q.linear[1] * ef) / determinant;
+        const double inner_t = (q.linear[1] * q.square[0][0] - q.linear[0] * ef) / determinant;
+        if (inner_s >= 0 && inner_s <= 1 && inner_t >= 0 && inner_t <= 1) {
+          consider(inner_s, inner_t);
+          continue;
+        }
+      }
+      for (const double edge : {0.0, 1.0}) {
+        consider(best_share(q.linear[0] - ef * edge, q.square[0][0]), edge);
+        consider(edge, best_share(q.linear[1] - ef * edge, q.square[1][1]));
+      }
+    }
+  return best;
+}
+
+double left_with(const Products& p, std::span<const OnCurve> places) {
+  double left = p.gap_gap;
+  for (const OnCurve& one : places)
+    for (std::size_t i = 0; i < 2; ++i) {
+      left -= 2 * one.weight[i] * gap_product(p, one.column[i]);
+      for (const OnCurve& two : places)
+        for (std::size_t j = 0; j < 2; ++j)
+          left += one.weight[i] * two.weight[j] * shift_product(p, one.column[i], two.column[j]);
+    }
+  return left;
+}
+
+Eigen::VectorXd shift_at(const EffectCurves& curves, std::size_t run, std::span<const OnCurve> places) {
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(curves.gap[run].size());
+  for (const OnCurve& place : places)
+    for (std::size_t i = 0; i < 2; ++i)
+      if (place.column[i] >= 0) shift += place.weight[i] * curves.shifts[run].col(place.column[i]);
+  return shift;
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,50 @@
+// Least squares on effect curves: the value of one effect, or of two together, that explains most of a gap.
+//
+// Only inner products are needed, so a fit to any selection or weighting of runs costs next to nothing.
+// Two effects are taken to add: that holds for small ones, and is corrected where a fit is confirmed by simulation.
+// Thread safety: values and pure functions.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "gap/diagnose/effect_curves.hpp"
+
+namespace kenaf::gap {
+
+// Inner products of one run, or of a weighted sum of runs.
+struct Products {
+  double gap_gap = 0;
+  Eigen::VectorXd shift_gap;
+  Eigen::MatrixXd shift_shift;
+  double bins = 0;
+};
+std::vector<Products> products_of_runs(const EffectCurves& curves);
+Products weighted_sum(const std::vector<Products>& runs, std::span<const double> weights);
+
+// A place on a curve, as weights of at most two of its columns.
+struct OnCurve {
+  std::size_t curve;
+  double value;  // of the parameter
+  std::array<int, 2> column{-1, -1};
+  std::array<double, 2> weight{0, 0};
+};
+OnCurve at_value(const std::vector<EffectCurve>& curves, std::size_t curve, double value);
+
+struct CurveFit {
+  std::vector<OnCurve> places;  // one for each effect that is fitted, in the order asked
+  double left = 0;              // squared length of what is not explained
+};
+CurveFit fit_one(const Products& products, const std::vector<EffectCurve>& curves, std::size_t curve);
+CurveFit fit_two(const Products& products, const std::vector<EffectCurve>& curves, std::size_t first,
+                 std::size_t second);
+
+// Squared length of what is left with effects at given places.
+double left_with(const Products& products, std::span<const OnCurve> places);
+
+// The whitened shift of run r.
+Eigen::VectorXd shift_at(const EffectCurves& curves, std::size_t run, std::span<const OnCurve> places);
+
+}  // namespace kenaf::gap

@@ -1,0 +1,52 @@
+// What each effect would do to the observed runs, along its range: a curve through whitened space, known at some values and
+// straight between them. All fits, held-out scores and resamplings are made on these curves, without further roll-outs.
+// Thread safety: values and pure functions.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gap/diagnose/noise_floor.hpp"
+#include "gap/diagnose/prediction.hpp"
+#include "physics/effects.hpp"
+
+namespace kenaf::gap {
+
+struct CurvePoint {
+  double value;     // of the parameter
+  int column;       // of EffectCurves::shifts; -1: the neutral value, which shifts nothing
+};
+
+struct EffectCurve {
+  const physics::EffectInfo* effect;
+  const physics::EffectParameter* parameter;
+  std::vector<CurvePoint> points;  // by value
+  // The largest length of the curve, in floors: below 1 these runs do not show the effect at any size.
+  double visible = 0;
+};
+
+struct EffectCurves {
+  std::vector<EffectCurve> curves;
+  std::vector<Eigen::VectorXd> gap;     // whitened: measured minus nominal, of each run
+  std::vector<Eigen::MatrixXd> shifts;  // whitened: varied minus nominal, of each run; one column for each point
+};
+
+// The parameters that can be fitted to these runs: those of the catalogue but `without`, of a robot with flippers or
+// without, in a world with obstacles or without. What is random (command_loss) is not among them.
+std::vector<EffectCurve> candidate_curves(const Observations& observations, std::span<const std::string> without);
+
+// Simulates points spread over each candidate's range, denser near neutral.
+EffectCurves scan_effects(std::vector<EffectCurve> candidates, const std::vector<Eigen::VectorXd>& residuals,
+                          const std::vector<Eigen::VectorXd>& nominal, const NoiseFloor& floor, Predictor& predictor);
+
+// Adds points of one curve or more, each at a new value.
+struct NewPoint {
+  std::size_t curve;
+  double value;
+};
+void add_points(EffectCurves& curves, std::span<const NewPoint> points, const std::vector<Eigen::VectorXd>& nominal,
+                const NoiseFloor& floor, Predictor& predictor);
+
+}  // namespace kenaf::gap

@@ -1,0 +1,112 @@
+#include "gap/diagnose/features.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "gap/diagnose/channels.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+void unwrap(std::vector<double>& angles) {
+  for (std::size_t i = 1; i < angles.size(); ++i)
+    angles[i] -= kTurn * std::round((angles[i] - angles[i - 1]) / kTurn);
+}
+
+}  // namespace
+
+FeatureMap::FeatureMap(const runs::Run& measured, double span_s) : span_s_(span_s) {
+  const std::span<const double> time = measured.column("t_s");
+  std::vector<double> means;
+  for (std::size_t c = 0; c < diagnosis_channels().size(); ++c) {
+    const Channel& channel = diagnosis_channels()[c];
+    const std::span<const double> column = measured.column(channel.column);
+    Series series{c, {}, {}};
+    for (std::size_t i = 0; i < column.size(); ++i) {
+      if (std::isnan(column[i])) continue;
+      series.t_s.push_back(time[i] - time.front());
+      series.value.push_back(column[i]);
+    }
+    if (series.t_s.empty()) continue;
+    if (channel.angle) unwrap(series.value);
+    for (std::size_t i = 0; i < series.t_s.size(); ++i) {
+      // a time on a border belongs to the later span, whatever its last bit
+      const auto span = static_cast<std::size_t>(series.t_s[i] / span_s + 1e-6);
+      if (bins_.empty() || bins_.back().channel != c || bins_.back().span != span) {
+        bins_.push_back({c, span, 0});
+        means.push_back(0);
+      }
+      ++bins_.back().samples;
+      means.back() += series.value[i];
+    }
+    series_.push_back(std::move(series));
+  }
+  measured_ = Eigen::Map<const Eigen::VectorXd>(means.data(), static_cast<Eigen::Index>(means.size()));
+  for (std::size_t b = 0; b < bins_.size(); ++b)
+    measured_[static_cast<Eigen::Index>(b)] /= static_cast<double>(bins_[b].samples);
+}
+
+std::vector<double> FeatureMap::simulated_at(const runs::Run& simulated, const Series& series) const {
+  const Channel& channel = diagnosis_channels()[series.channel];
+  const std::span<const double> time = simulated.column("t_s"), column = simulated.column(channel.column);
+  std::vector<double> t_s, value, result(series.t_s.size(), 0.0);
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    if (std::isnan(column[i])) continue;
+    t_s.push_back(time[i] - time.front());
+    value.push_back(column[i]);
+  }
+  if (t_s.empty()) return result;
+  if (channel.angle) {
+    unwrap(value);
+    const double turns = std::round((series.value.front() - value.front()) / kTurn);
+    for (double& angle : value) angle += kTurn * turns;
+  }
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    while (next < t_s.size() && t_s[next] < series.t_s[i]) ++next;
+    if (next == 0)
+      result[i] = value.front();
+    else if (next == t_s.size())
+      result[i] = value.back();
+    else {
+      const double share = (series.t_s[i] - t_s[next - 1]) / (t_s[next] - t_s[next - 1]);
+      result[i] = value[next - 1] + share * (value[next] - value[next - 1]);
+    }
+  }
+  return result;
+}
+
+Eigen::VectorXd FeatureMap::of(const runs::Run& simulated) const {
+  Eigen::VectorXd means = Eigen::VectorXd::Zero(measured_.size());
+  Eigen::Index bin = 0;
+  for (const Series& series : series_) {
+    const std::vector<double> at = simulated_at(simulated, series);
+    std::size_t in_bin = 0;
+    for (const double value : at) {
+      if (in_bin == bins_[static_cast<std::size_t>(bin)].samples) {
+        ++bin;
+        in_bin = 0;
+      }
+      means[bin] += value;
+      ++in_bin;
+    }
+    ++bin;
+  }
+  for (std::size_t b = 0; b < bins_.size(); ++b)
+    means[static_cast<Eigen::Index>(b)] /= static_cast<double>(bins_[b].samples);
+  return means;
+}
+
+std::vector<double> FeatureMap::sample_residual(const runs::Run& simulated, std::size_t channel) const {
+  for (const Series& series : series_) {
+    if (series.channel != channel) continue;
+    std::vector<double> residual = simulated_at(simulated, series);
+    for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = series.value[i] - residual[i];
+    return residual;
+  }
+  return {};
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,185 @@
+#include "gap/diagnose/noise_floor.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "gap/diagnose/channels.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kMadToSigma = 1.4826;
+constexpr double kTrimmed = 0.05;  // of the largest squares, which are events, not noise
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Of bins in a row a second difference leaves what changes slowly out, and with it most of a gap.
+void add_second_differences(const FeatureMap& features, const VectorXd& values,
+                            std::vector<std::vector<double>>& by_channel) {
+  const auto bins = features.bins();
+  for (std::size_t b = 2; b < bins.size(); ++b) {
+    if (bins[b].channel != bins[b - 2].channel || bins[b].span != bins[b - 2].span + 2) continue;
+    const auto i = static_cast<Index>(b);
+    by_channel[bins[b].channel].push_back(std::abs(values[i - 2] - 2 * values[i - 1] + values[i]) / std::sqrt(6.0));
+  }
+}
+
+// The most samples that a bin of each channel has.
+std::vector<std::size_t> full_bins(const std::vector<FeatureMap>& features) {
+  std::vector<std::size_t> full(diagnosis_channels().size(), 0);
+  for (const FeatureMap& map : features)
+    for (const Bin& bin : map.bins()) full[bin.channel] = std::max(full[bin.channel], bin.samples);
+  return full;
+}
+
+VectorXd sigma_of_bins(const FeatureMap& features, const std::vector<double>& sigma,
+                       const std::vector<std::size_t>& full) {
+  VectorXd result(static_cast<Index>(features.bins().size()));
+  for (std::size_t b = 0; b < features.bins().size(); ++b) {
+    const Bin& bin = features.bins()[b];
+    result[static_cast<Index>(b)] =
+        sigma[bin.channel] * std::sqrt(static_cast<double>(full[bin.channel]) / static_cast<double>(bin.samples));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::size_t>> repeats_of(const Observations& observations) {
+  std::vector<std::vector<std::size_t>> groups;
+  std::map<std::pair<std::string, std::size_t>, std::size_t> known;
+  for (std::size_t r = 0; r < observations.runs.size(); ++r) {
+    const Observation& run = observations.runs[r];
+    const auto [group, is_new] = known.try_emplace({run.manoeuvre, run.world}, groups.size());
+    if (is_new) groups.emplace_back();
+    groups[group->second].push_back(r);
+  }
+  return groups;
+}
+
+std::vector<VectorXd> deviations_from_repeats(const std::vector<FeatureMap>& features,
+                                              const std::vector<VectorXd>& residuals,
+                                              const std::vector<std::vector<std::size_t>>& repeats) {
+  struct Sum {
+    double value = 0;
+    int count = 0;
+  };
+  std::vector<VectorXd> result(residuals.size());
+  for (const std::vector<std::size_t>& group : repeats) {
+    if (group.size() < 2) continue;
+    std::map<std::pair<std::size_t, std::size_t>, Sum> sums;
+    const auto each_bin = [&](auto&& use) {
+      for (const std::size_t r : group)
+        for (std::size_t b = 0; b < features[r].bins().size(); ++b)
+          use(r, static_cast<Index>(b), sums[{features[r].bins()[b].channel, features[r].bins()[b].span}]);
+    };
+    for (const std::size_t r : group) result[r] = VectorXd::Zero(residuals[r].size());
+    each_bin([&](std::size_t r, Index b, Sum& sum) { sum.value += residuals[r][b], ++sum.count; });
+    each_bin([&](std::size_t r, Index b, Sum& sum) {
+      if (sum.count > 1)
+        result[r][b] = (residuals[r][b] - sum.value / sum.count) * std::sqrt(sum.count / (sum.count - 1.0));
+    });
+  }
+  return result;
+}
+
+Whitener::Whitener(const VectorXd& sigma, const Eigen::MatrixXd& shapes) : inverse_sigma_(sigma.cwiseInverse()) {
+  // covariance in units of sigma: 1 + S S^T; along its direction u_i the variance is 1 + s_i^2
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(inverse_sigma_.asDiagonal() * shapes, Eigen::ComputeThinU);
+  directions_ = svd.matrixU();
+  shrink_ = 1 - (1 + svd.singularValues().array().square()).rsqrt();
+}
+
+VectorXd Whitener::operator()(const VectorXd& difference) const {
+  const VectorXd scaled = inverse_sigma_.cwiseProduct(difference);
+  return scaled - directions_ * shrink_.cwiseProduct(directions_.transpose() * scaled);
+}
+
+NoiseFloor noise_floor(const Observations& observations, const std::vector<FeatureMap>& features,
+                       const std::vector<VectorXd>& residuals, const std::vector<OpenShapes>& open) {
+  const std::size_t channels = diagnosis_channels().size();
+  const auto deviations = deviations_from_repeats(features, residuals, repeats_of(observations));
+  const std::vector<std::size_t> full = full_bins(features);
+  NoiseFloor floor{std::vector<double>(channels, 0), {}, false};
+  std::vector<std::vector<double>> jumps(channels);
+  for (std::size_t r = 0; r < features.size(); ++r) {
+    floor.from_repeats |= deviations[r].size() > 0;
+    add_second_differences(features[r], deviations[r].size() > 0 ? deviations[r] : residuals[r], jumps);
+  }
+  for (std::size_t c = 0; c < channels; ++c)
+    if (full[c] > 0)
+      floor.sigma[c] = std::max(diagnosis_channels()[c].resolution, jumps[c].empty() ? 0 : kMadToSigma * median(jumps[c]));
+
+  const auto whiten = [&] {
+    floor.whiteners.clear();
+    for (std::size_t r = 0; r < features.size(); ++r) {
+      const VectorXd noise = sigma_of_bins(features[r], floor.sigma, full);
+      floor.whiteners.emplace_back((noise.array().square() + open[r].roughness.array().square()).sqrt(), open[r].shapes);
+    }
+  };
+  whiten();
+  if (!floor.from_repeats) return floor;
+  // what repeats differ by, beyond noise from bin to bin: slow wander, and events that are not quite at the same time
+  std::vector<std::vector<double>> squares(channels);
+  for (std::size_t r = 0; r < features.size(); ++r) {
+    if (deviations[r].size() == 0) continue;
+    const VectorXd white = floor.whiteners[r](deviations[r]);
+    for (std::size_t b = 0; b < features[r].bins().size(); ++b)
+      squares[features[r].bins()[b].channel].push_back(white[static_cast<Index>(b)] * white[static_cast<Index>(b)]);
+  }
+  for (std::size_t c = 0; c < channels; ++c) {
+    if (squares[c].empty()) continue;
+    std::ranges::sort(squares[c]);
+    const auto kept = static_cast<std::size_t>(std::ceil(static_cast<double>(squares[c].size()) * (1 - kTrimmed)));
+    double sum = 0;
+    for (std::size_t i = 0; i < kept; ++i) sum += squares[c][i];
+    floor.sigma[c] *= std::sqrt(std::max(1.0, sum / static_cast<double>(kept)));
+  }
+  whiten();
+  return floor;
+}
+
+std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, const std::vector<VectorXd>& nominal,
+                                    Predictor& predictor, double start_sigma_m, double start_sigma_rad) {
+  constexpr std::size_t kOpen = 6;
+  std::vector<Variation> variations(2 * kOpen, predictor.nominal());
+  for (const bool minus : {false, true}) {
+    Variation* v = variations.data() + (minus ? kOpen : 0);
+    const double sign = minus ? -1 : 1, factor = minus ? 0.5 : 2;
+    v[0].start_x_m += sign * start_sigma_m;
+    v[1].start_y_m += sign * start_sigma_m;
+    v[2].start_yaw_rad += sign * start_sigma_rad;
+    v[3].physics.time_step_s *= factor;
+    v[4].physics.contact_stiffness_npm *= factor;
+    v[5].physics.contact_damping_nspm *= factor;
+  }
+  const auto predicted = predictor.predict(variations);
+  std::vector<OpenShapes> open;
+  for (std::size_t r = 0; r < nominal.size(); ++r) {
+    const auto channels = static_cast<Index>(diagnosis_channels().size());
+    open.push_back({Eigen::MatrixXd::Zero(nominal[r].size(), kOpen + channels), VectorXd::Zero(nominal[r].size())});
+    for (std::size_t b = 0; b < features[r].bins().size(); ++b) {
+      const std::size_t channel = features[r].bins()[b].channel;
+      open[r].shapes(static_cast<Index>(b), static_cast<Index>(kOpen + channel)) = diagnosis_channels()[channel].resolution;
+    }
+    for (std::size_t i = 0; i < kOpen; ++i) {
+      const VectorXd plus = predicted[i][r] - nominal[r], minus = predicted[i + kOpen][r] - nominal[r];
+      open[r].shapes.col(static_cast<Index>(i)) = (plus - minus) / 2;
+      open[r].roughness.array() += ((plus + minus) / 2).array().square();
+    }
+    open[r].roughness = open[r].roughness.cwiseSqrt();
+  }
+  return open;
+}
+
+}  // namespace kenaf::gap

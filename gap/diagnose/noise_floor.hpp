@@ -1,0 +1,66 @@
+// What a difference between robot and simulation may be without being a gap: measurement noise and the spread of repeats,
+// taken from the data, and what the simulation itself leaves open (where exactly the robot stood at the start, and
+// numbers of the simulator that no robot has).
+//
+// The floor of a run is a Gaussian: independent noise of each bin, and a few shapes in time, each with an unknown amount of
+// standard deviation 1. docs/gap-method.md has the derivation.
+// Thread safety: values and pure functions.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "gap/diagnose/features.hpp"
+#include "gap/diagnose/observation.hpp"
+#include "gap/diagnose/prediction.hpp"
+
+namespace kenaf::gap {
+
+// Runs that repeat one manoeuvre in one world, in the order in which each comes first.
+std::vector<std::vector<std::size_t>> repeats_of(const Observations& observations);
+
+// How each run deviates from the mean of its repeats, by bins at the same time; scaled so that its variance is that of
+// one run. Empty for a run without repeats.
+std::vector<Eigen::VectorXd> deviations_from_repeats(const std::vector<FeatureMap>& features,
+                                                     const std::vector<Eigen::VectorXd>& residuals,
+                                                     const std::vector<std::vector<std::size_t>>& repeats);
+
+// Turns differences of one run into numbers that are independent with standard deviation 1 where there is no gap.
+class Whitener {
+ public:
+  Whitener() = default;
+  // `sigma`: of each bin. `shapes`: one column each.
+  Whitener(const Eigen::VectorXd& sigma, const Eigen::MatrixXd& shapes);
+  Eigen::VectorXd operator()(const Eigen::VectorXd& difference) const;
+
+ private:
+  Eigen::VectorXd inverse_sigma_;
+  Eigen::MatrixXd directions_;  // orthonormal, in units of sigma
+  Eigen::VectorXd shrink_;
+};
+
+struct NoiseFloor {
+  std::vector<double> sigma;       // of a full bin of each channel, all of what is independent; 0: never measured
+  std::vector<Whitener> whiteners;  // of each run
+  bool from_repeats = false;       // otherwise from the residuals alone, which a gap makes larger
+};
+
+// What the simulation leaves open in one run. A variation by +1 and by -1 sigma shifts the prediction by a shape, up to sign,
+// as long as all is smooth. What of it is not up to sign (a fall that begins earlier either way) has no shape that could be
+// known, so it counts as noise of those bins.
+struct OpenShapes {
+  Eigen::MatrixXd shapes;     // one column for each variation
+  Eigen::VectorXd roughness;  // of each bin, 1 sigma
+};
+// Start pose by its uncertainty (`start_sigma_m`, `start_sigma_rad`); time step, contact stiffness and damping by a factor
+// of 2 either way; and for each channel an offset of its resolution: a count more or less lasts as long as the robot
+// rolls on.
+std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features,
+                                    const std::vector<Eigen::VectorXd>& nominal, Predictor& predictor,
+                                    double start_sigma_m, double start_sigma_rad);
+
+// `residuals`: measured minus nominal, of each run.
+NoiseFloor noise_floor(const Observations& observations, const std::vector<FeatureMap>& features,
+                       const std::vector<Eigen::VectorXd>& residuals, const std::vector<OpenShapes>& open);
+
+}  // namespace kenaf::gap
