@@ -7,7 +7,7 @@ using physics::Stage;
 
 constexpr Channel kChannels[] = {
     {"track_left_mps", "m/s", false, Stage::drive, 1e-3},    {"track_right_mps", "m/s", false, Stage::drive, 1e-3},
-    {"track_left_m", "m", false, Stage::drive, 2e-4},        {"track_right_m", "m", false, Stage::drive, 2e-4},
+    {"track_left_m", "m", false, Stage::drive, 1e-3},        {"track_right_m", "m", false, Stage::drive, 1e-3},
     {"flipper_fl_rad", "rad", true, Stage::drive, 1e-3},     {"flipper_fr_rad", "rad", true, Stage::drive, 1e-3},
     {"flipper_rl_rad", "rad", true, Stage::drive, 1e-3},     {"flipper_rr_rad", "rad", true, Stage::drive, 1e-3},
     {"track_left_a", "A", false, Stage::drive, 0.05},        {"track_right_a", "A", false, Stage::drive, 0.05},
