@@ -140,11 +140,11 @@ double left_with(const Products& p, std::span<const OnCurve> places) {
   return left;
 }
 
-Eigen::VectorXd shift_at(const EffectCurves& curves, std::size_t run, std::span<const OnCurve> places) {
-  Eigen::VectorXd shift = Eigen::VectorXd::Zero(curves.gap[run].size());
+Eigen::VectorXd shift_at(const Eigen::MatrixXd& shifts, std::span<const OnCurve> places) {
+  Eigen::VectorXd shift = Eigen::VectorXd::Zero(shifts.rows());
   for (const OnCurve& place : places)
     for (std::size_t i = 0; i < 2; ++i)
-      if (place.column[i] >= 0) shift += place.weight[i] * curves.shifts[run].col(place.column[i]);
+      if (place.column[i] >= 0) shift += place.weight[i] * shifts.col(place.column[i]);
   return shift;
 }
 

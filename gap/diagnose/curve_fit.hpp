@@ -44,7 +44,7 @@ CurveFit fit_two(const Products& products, const std::vector<EffectCurve>& curve
 // Squared length of what is left with effects at given places.
 double left_with(const Products& products, std::span<const OnCurve> places);
 
-// The whitened shift of run r.
-Eigen::VectorXd shift_at(const EffectCurves& curves, std::size_t run, std::span<const OnCurve> places);
+// The shift at given places, of a run whose points' shifts are the columns.
+Eigen::VectorXd shift_at(const Eigen::MatrixXd& shifts, std::span<const OnCurve> places);
 
 }  // namespace kenaf::gap

@@ -22,32 +22,30 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
   Diagnosis d;
   d.observations = observe(folder, options.robot, options.world);
   for (const Observation& run : d.observations.runs) d.features.emplace_back(run.run, options.span_s);
-  Predictor predictor(d.observations, d.features, options.jobs);
+  Predictor predictor(d.observations, d.features, repeats_of(d.observations), options.jobs);
 
-  const std::vector<VectorXd> nominal = predictor.predict({predictor.nominal()}).front();
-  const std::vector<VectorXd> residuals = residuals_of(d.features, nominal);
-  d.floor = noise_floor(d.observations, d.features, residuals, open_shapes(d.features, nominal, predictor, kStart_m, kStart_rad));
-  const auto groups = repeats_of(d.observations);
+  const std::vector<VectorXd> residuals = residuals_of(d.features, predictor.nominal());
+  d.floor = noise_floor(d.features, residuals, predictor.repeats(),
+                        open_shapes(d.features, predictor, predictor.unvaried(), kStart_m, kStart_rad));
+  const NoiseFloor nominal_floor = d.floor;
   const double inflation = inflation_from_repeats(
-      d.features, d.floor, deviations_from_repeats(d.features, residuals, groups), options.stretch_s);
-  const Coherence coherence(d.features, groups, options.stretch_s);
+      d.features, d.floor, deviations_from_repeats(d.features, residuals, predictor.repeats()), options.stretch_s);
+  const Coherence coherence(d.features, predictor.repeats(), options.stretch_s);
 
-  d.curves = scan_effects(candidate_curves(d.observations, options.without), residuals, nominal, d.floor, predictor);
+  d.curves = scan_effects(candidate_curves(d.observations, options.without), residuals, d.floor, predictor);
   const Simulator simulator{
-      [&](EffectCurves& curves, std::span<const NewPoint> points) {
-        add_points(curves, points, nominal, d.floor, predictor);
+      [&](EffectCurves& curves, std::span<const NewPoint> points, Fidelity fidelity) {
+        add_points(curves, points, fidelity, predictor);
       },
-      [&](std::span<const std::vector<OnCurve>> asked) {
+      [&](std::span<const std::vector<NewPoint>> asked, Fidelity fidelity) {
         std::vector<Variation> variations;
-        for (const std::vector<OnCurve>& places : asked) {
-          variations.push_back(predictor.nominal());
-          for (const OnCurve& place : places)
-            variations.back().effects.*d.curves.curves[place.curve].parameter->value = place.value;
-        }
-        auto shifts = predictor.predict(variations);
-        for (auto& shift : shifts)
-          for (std::size_t r = 0; r < shift.size(); ++r) shift[r] = d.floor.whiteners[r](shift[r] - nominal[r]);
-        return shifts;
+        for (const std::vector<NewPoint>& effects : asked) variations.push_back(varied(d.curves, effects, predictor));
+        return predictor.shifts(variations, fidelity);
+      },
+      [&](std::span<const NewPoint> effects) {
+        d.floor = with_open_shapes(nominal_floor, open_shapes(d.features, predictor, varied(d.curves, effects, predictor),
+                                                              kStart_m, kStart_rad));
+        return d.floor.whiteners;
       }};
   d.decision = decide(d.curves, coherence, inflation, simulator, options.decision, options.seed);
   d.roll_outs = predictor.roll_outs();

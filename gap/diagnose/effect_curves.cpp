@@ -7,7 +7,7 @@ namespace kenaf::gap {
 namespace {
 
 // Parts of the way from neutral to an end of the range.
-constexpr double kSpread[] = {0.04, 0.2, 0.5, 1};
+constexpr double kSpread[] = {0.06, 0.3, 1};
 
 bool has_obstacles(const Observations& observations) {
   return std::ranges::any_of(observations.worlds, [](const physics::WorldDescription& world) {
@@ -31,31 +31,50 @@ std::vector<EffectCurve> candidate_curves(const Observations& observations, std:
     // an effect is one number to be found: each of its parameters is a candidate of its own
     for (const physics::EffectParameter& parameter : effect.parameters) {
       const double present = observations.robot.effects.*parameter.value;
-      curves.push_back({&effect, &parameter, {{present, -1}}, 0});
+      curves.push_back({&effect, &parameter, {{present, -1, true}}, 0});
     }
   }
   return curves;
 }
 
-void add_points(EffectCurves& curves, std::span<const NewPoint> points, const std::vector<Eigen::VectorXd>& nominal,
-                const NoiseFloor& floor, Predictor& predictor) {
-  std::vector<Variation> variations;
-  for (const NewPoint& point : points) {
-    variations.push_back(predictor.nominal());
-    variations.back().effects.*curves.curves[point.curve].parameter->value = point.value;
+void set_whiteners(EffectCurves& curves, std::vector<Whitener> whiteners) {
+  curves.whiteners = std::move(whiteners);
+  for (std::size_t r = 0; r < curves.residual.size(); ++r) {
+    curves.gap[r] = curves.whiteners[r](curves.residual[r]);
+    for (Eigen::Index c = 0; c < curves.shifts[r].cols(); ++c)
+      curves.shifts[r].col(c) = curves.whiteners[r](curves.raw_shifts[r].col(c));
   }
-  const auto predicted = predictor.predict(variations);
+}
+
+Variation varied(const EffectCurves& curves, std::span<const NewPoint> effects, const Predictor& predictor) {
+  Variation variation = predictor.unvaried();
+  for (const NewPoint& effect : effects)
+    variation.effects.*curves.curves[effect.curve].parameter->value = effect.value;
+  return variation;
+}
+
+void add_points(EffectCurves& curves, std::span<const NewPoint> points, Fidelity fidelity, Predictor& predictor) {
+  std::vector<Variation> variations;
+  for (const NewPoint& point : points) variations.push_back(varied(curves, {&point, 1}, predictor));
+  const std::vector<Shift> shifts = predictor.shifts(variations, fidelity);
   const auto first = static_cast<int>(curves.shifts.front().cols());
-  for (std::size_t r = 0; r < nominal.size(); ++r) {
-    curves.shifts[r].conservativeResize(nominal[r].size(), first + std::ssize(points));
-    for (std::size_t p = 0; p < points.size(); ++p)
-      curves.shifts[r].col(first + static_cast<Eigen::Index>(p)) =
-          floor.whiteners[r](predicted[p][r] - nominal[r]);
+  for (std::size_t r = 0; r < curves.shifts.size(); ++r) {
+    for (auto* matrix : {&curves.raw_shifts[r], &curves.shifts[r]})
+      matrix->conservativeResize(Eigen::NoChange, first + std::ssize(points));
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      const auto column = first + static_cast<Eigen::Index>(p);
+      curves.raw_shifts[r].col(column) = shifts[p][r];
+      curves.shifts[r].col(column) = curves.whiteners[r](shifts[p][r]);
+    }
   }
   for (std::size_t p = 0; p < points.size(); ++p) {
     EffectCurve& curve = curves.curves[points[p].curve];
-    const CurvePoint added{points[p].value, first + static_cast<int>(p)};
-    curve.points.insert(std::ranges::upper_bound(curve.points, added.value, {}, &CurvePoint::value), added);
+    const CurvePoint added{points[p].value, first + static_cast<int>(p), fidelity == Fidelity::every_run};
+    const auto place = std::ranges::lower_bound(curve.points, added.value, {}, &CurvePoint::value);
+    if (place != curve.points.end() && place->value == added.value)
+      *place = added;
+    else
+      curve.points.insert(place, added);
     double length = 0;
     for (const Eigen::MatrixXd& shift : curves.shifts) length += shift.col(added.column).squaredNorm();
     curve.visible = std::max(curve.visible, std::sqrt(length));
@@ -63,12 +82,11 @@ void add_points(EffectCurves& curves, std::span<const NewPoint> points, const st
 }
 
 EffectCurves scan_effects(std::vector<EffectCurve> candidates, const std::vector<Eigen::VectorXd>& residuals,
-                          const std::vector<Eigen::VectorXd>& nominal, const NoiseFloor& floor, Predictor& predictor) {
-  EffectCurves curves{std::move(candidates), {}, {}};
-  for (std::size_t r = 0; r < residuals.size(); ++r) {
-    curves.gap.push_back(floor.whiteners[r](residuals[r]));
-    curves.shifts.emplace_back(residuals[r].size(), 0);
-  }
+                          const NoiseFloor& floor, Predictor& predictor) {
+  EffectCurves curves{std::move(candidates), residuals, {}, {}, residuals, {}};
+  for (const Eigen::VectorXd& run : residuals) curves.raw_shifts.emplace_back(run.size(), 0);
+  curves.shifts = curves.raw_shifts;
+  set_whiteners(curves, floor.whiteners);
   std::vector<NewPoint> points;
   for (std::size_t c = 0; c < curves.curves.size(); ++c) {
     const double neutral = curves.curves[c].points.front().value;
@@ -76,7 +94,7 @@ EffectCurves scan_effects(std::vector<EffectCurve> candidates, const std::vector
       for (const double part : kSpread)
         if (end != neutral) points.push_back({c, neutral + part * (end - neutral)});
   }
-  add_points(curves, points, nominal, floor, predictor);
+  add_points(curves, points, Fidelity::representatives, predictor);
   return curves;
 }
 

@@ -17,6 +17,7 @@ namespace kenaf::gap {
 struct CurvePoint {
   double value;     // of the parameter
   int column;       // of EffectCurves::shifts; -1: the neutral value, which shifts nothing
+  bool exact;       // every run was simulated, not only representatives
 };
 
 struct EffectCurve {
@@ -29,24 +30,33 @@ struct EffectCurve {
 
 struct EffectCurves {
   std::vector<EffectCurve> curves;
-  std::vector<Eigen::VectorXd> gap;     // whitened: measured minus nominal, of each run
-  std::vector<Eigen::MatrixXd> shifts;  // whitened: varied minus nominal, of each run; one column for each point
+  std::vector<Eigen::VectorXd> residual;    // measured minus nominal, of each run
+  std::vector<Eigen::MatrixXd> raw_shifts;  // varied minus nominal, of each run; one column for each point
+  std::vector<Whitener> whiteners;          // of each run
+  // the same, whitened
+  std::vector<Eigen::VectorXd> gap;
+  std::vector<Eigen::MatrixXd> shifts;
 };
+
+// With other whiteners, all that is whitened is made anew.
+void set_whiteners(EffectCurves& curves, std::vector<Whitener> whiteners);
 
 // The parameters that can be fitted to these runs: those of the catalogue but `without`, of a robot with flippers or
 // without, in a world with obstacles or without. What is random (command_loss) is not among them.
 std::vector<EffectCurve> candidate_curves(const Observations& observations, std::span<const std::string> without);
 
-// Simulates points spread over each candidate's range, denser near neutral.
+// Simulates points spread over each candidate's range, denser near neutral, by representatives.
 EffectCurves scan_effects(std::vector<EffectCurve> candidates, const std::vector<Eigen::VectorXd>& residuals,
-                          const std::vector<Eigen::VectorXd>& nominal, const NoiseFloor& floor, Predictor& predictor);
+                          const NoiseFloor& floor, Predictor& predictor);
 
-// Adds points of one curve or more, each at a new value.
+// Adds points to curves. One that is there at the same value is replaced.
 struct NewPoint {
   std::size_t curve;
   double value;
 };
-void add_points(EffectCurves& curves, std::span<const NewPoint> points, const std::vector<Eigen::VectorXd>& nominal,
-                const NoiseFloor& floor, Predictor& predictor);
+void add_points(EffectCurves& curves, std::span<const NewPoint> points, Fidelity fidelity, Predictor& predictor);
+
+// Effects at their values, on top of the nominal ones.
+Variation varied(const EffectCurves& curves, std::span<const NewPoint> effects, const Predictor& predictor);
 
 }  // namespace kenaf::gap

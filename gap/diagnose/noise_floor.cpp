@@ -3,8 +3,6 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <utility>
 
 #include "gap/diagnose/channels.hpp"
 
@@ -42,6 +40,10 @@ std::vector<std::size_t> full_bins(const std::vector<FeatureMap>& features) {
   return full;
 }
 
+VectorXd hypot(const VectorXd& a, const VectorXd& b) {
+  return (a.array().square() + b.array().square()).sqrt();
+}
+
 VectorXd sigma_of_bins(const FeatureMap& features, const std::vector<double>& sigma,
                        const std::vector<std::size_t>& full) {
   VectorXd result(static_cast<Index>(features.bins().size()));
@@ -55,44 +57,6 @@ VectorXd sigma_of_bins(const FeatureMap& features, const std::vector<double>& si
 
 }  // namespace
 
-std::vector<std::vector<std::size_t>> repeats_of(const Observations& observations) {
-  std::vector<std::vector<std::size_t>> groups;
-  std::map<std::pair<std::string, std::size_t>, std::size_t> known;
-  for (std::size_t r = 0; r < observations.runs.size(); ++r) {
-    const Observation& run = observations.runs[r];
-    const auto [group, is_new] = known.try_emplace({run.manoeuvre, run.world}, groups.size());
-    if (is_new) groups.emplace_back();
-    groups[group->second].push_back(r);
-  }
-  return groups;
-}
-
-std::vector<VectorXd> deviations_from_repeats(const std::vector<FeatureMap>& features,
-                                              const std::vector<VectorXd>& residuals,
-                                              const std::vector<std::vector<std::size_t>>& repeats) {
-  struct Sum {
-    double value = 0;
-    int count = 0;
-  };
-  std::vector<VectorXd> result(residuals.size());
-  for (const std::vector<std::size_t>& group : repeats) {
-    if (group.size() < 2) continue;
-    std::map<std::pair<std::size_t, std::size_t>, Sum> sums;
-    const auto each_bin = [&](auto&& use) {
-      for (const std::size_t r : group)
-        for (std::size_t b = 0; b < features[r].bins().size(); ++b)
-          use(r, static_cast<Index>(b), sums[{features[r].bins()[b].channel, features[r].bins()[b].span}]);
-    };
-    for (const std::size_t r : group) result[r] = VectorXd::Zero(residuals[r].size());
-    each_bin([&](std::size_t r, Index b, Sum& sum) { sum.value += residuals[r][b], ++sum.count; });
-    each_bin([&](std::size_t r, Index b, Sum& sum) {
-      if (sum.count > 1)
-        result[r][b] = (residuals[r][b] - sum.value / sum.count) * std::sqrt(sum.count / (sum.count - 1.0));
-    });
-  }
-  return result;
-}
-
 Whitener::Whitener(const VectorXd& sigma, const Eigen::MatrixXd& shapes) : inverse_sigma_(sigma.cwiseInverse()) {
   // covariance in units of sigma: 1 + S S^T; along its direction u_i the variance is 1 + s_i^2
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(inverse_sigma_.asDiagonal() * shapes, Eigen::ComputeThinU);
@@ -105,12 +69,12 @@ VectorXd Whitener::operator()(const VectorXd& difference) const {
   return scaled - directions_ * shrink_.cwiseProduct(directions_.transpose() * scaled);
 }
 
-NoiseFloor noise_floor(const Observations& observations, const std::vector<FeatureMap>& features,
-                       const std::vector<VectorXd>& residuals, const std::vector<OpenShapes>& open) {
+NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vector<VectorXd>& residuals,
+                       const std::vector<std::vector<std::size_t>>& repeats, const std::vector<OpenShapes>& open) {
   const std::size_t channels = diagnosis_channels().size();
-  const auto deviations = deviations_from_repeats(features, residuals, repeats_of(observations));
+  const auto deviations = deviations_from_repeats(features, residuals, repeats);
   const std::vector<std::size_t> full = full_bins(features);
-  NoiseFloor floor{std::vector<double>(channels, 0), {}, false};
+  NoiseFloor floor{std::vector<double>(channels, 0), {}, {}, false};
   std::vector<std::vector<double>> jumps(channels);
   for (std::size_t r = 0; r < features.size(); ++r) {
     floor.from_repeats |= deviations[r].size() > 0;
@@ -121,10 +85,11 @@ NoiseFloor noise_floor(const Observations& observations, const std::vector<Featu
       floor.sigma[c] = std::max(diagnosis_channels()[c].resolution, jumps[c].empty() ? 0 : kMadToSigma * median(jumps[c]));
 
   const auto whiten = [&] {
+    floor.sigma_of_bin.clear();
     floor.whiteners.clear();
     for (std::size_t r = 0; r < features.size(); ++r) {
-      const VectorXd noise = sigma_of_bins(features[r], floor.sigma, full);
-      floor.whiteners.emplace_back((noise.array().square() + open[r].roughness.array().square()).sqrt(), open[r].shapes);
+      floor.sigma_of_bin.push_back(hypot(sigma_of_bins(features[r], floor.sigma, full), open[r].roughness));
+      floor.whiteners.emplace_back(floor.sigma_of_bin.back(), open[r].shapes);
     }
   };
   whiten();
@@ -149,10 +114,19 @@ NoiseFloor noise_floor(const Observations& observations, const std::vector<Featu
   return floor;
 }
 
-std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, const std::vector<VectorXd>& nominal,
-                                    Predictor& predictor, double start_sigma_m, double start_sigma_rad) {
+NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShapes>& open) {
+  NoiseFloor result = floor;
+  for (std::size_t r = 0; r < open.size(); ++r) {
+    result.sigma_of_bin[r] = result.sigma_of_bin[r].cwiseMax(hypot(floor.sigma_of_bin[r], open[r].roughness));
+    result.whiteners[r] = Whitener(result.sigma_of_bin[r], open[r].shapes);
+  }
+  return result;
+}
+
+std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Predictor& predictor,
+                                    const Variation& model, double start_sigma_m, double start_sigma_rad) {
   constexpr std::size_t kOpen = 6;
-  std::vector<Variation> variations(2 * kOpen, predictor.nominal());
+  std::vector<Variation> variations(2 * kOpen + 1, model);
   for (const bool minus : {false, true}) {
     Variation* v = variations.data() + (minus ? kOpen : 0);
     const double sign = minus ? -1 : 1, factor = minus ? 0.5 : 2;
@@ -163,17 +137,18 @@ std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, con
     v[4].physics.contact_stiffness_npm *= factor;
     v[5].physics.contact_damping_nspm *= factor;
   }
-  const auto predicted = predictor.predict(variations);
+  const std::vector<Shift> shifts = predictor.shifts(variations, Fidelity::representatives);
   std::vector<OpenShapes> open;
-  for (std::size_t r = 0; r < nominal.size(); ++r) {
+  for (std::size_t r = 0; r < features.size(); ++r) {
+    const auto size = static_cast<Index>(features[r].bins().size());
     const auto channels = static_cast<Index>(diagnosis_channels().size());
-    open.push_back({Eigen::MatrixXd::Zero(nominal[r].size(), kOpen + channels), VectorXd::Zero(nominal[r].size())});
+    open.push_back({Eigen::MatrixXd::Zero(size, kOpen + channels), VectorXd::Zero(size)});
     for (std::size_t b = 0; b < features[r].bins().size(); ++b) {
       const std::size_t channel = features[r].bins()[b].channel;
       open[r].shapes(static_cast<Index>(b), static_cast<Index>(kOpen + channel)) = diagnosis_channels()[channel].resolution;
     }
     for (std::size_t i = 0; i < kOpen; ++i) {
-      const VectorXd plus = predicted[i][r] - nominal[r], minus = predicted[i + kOpen][r] - nominal[r];
+      const VectorXd plus = shifts[i][r] - shifts.back()[r], minus = shifts[i + kOpen][r] - shifts.back()[r];
       open[r].shapes.col(static_cast<Index>(i)) = (plus - minus) / 2;
       open[r].roughness.array() += ((plus + minus) / 2).array().square();
     }

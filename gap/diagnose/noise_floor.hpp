@@ -13,17 +13,9 @@
 #include "gap/diagnose/features.hpp"
 #include "gap/diagnose/observation.hpp"
 #include "gap/diagnose/prediction.hpp"
+#include "gap/diagnose/repeats.hpp"
 
 namespace kenaf::gap {
-
-// Runs that repeat one manoeuvre in one world, in the order in which each comes first.
-std::vector<std::vector<std::size_t>> repeats_of(const Observations& observations);
-
-// How each run deviates from the mean of its repeats, by bins at the same time; scaled so that its variance is that of
-// one run. Empty for a run without repeats.
-std::vector<Eigen::VectorXd> deviations_from_repeats(const std::vector<FeatureMap>& features,
-                                                     const std::vector<Eigen::VectorXd>& residuals,
-                                                     const std::vector<std::vector<std::size_t>>& repeats);
 
 // Turns differences of one run into numbers that are independent with standard deviation 1 where there is no gap.
 class Whitener {
@@ -40,7 +32,8 @@ class Whitener {
 };
 
 struct NoiseFloor {
-  std::vector<double> sigma;       // of a full bin of each channel, all of what is independent; 0: never measured
+  std::vector<double> sigma;        // of a full bin of each channel, all of what is independent; 0: never measured
+  std::vector<Eigen::VectorXd> sigma_of_bin;  // of each run, with roughness
   std::vector<Whitener> whiteners;  // of each run
   bool from_repeats = false;       // otherwise from the residuals alone, which a gap makes larger
 };
@@ -55,12 +48,15 @@ struct OpenShapes {
 // Start pose by its uncertainty (`start_sigma_m`, `start_sigma_rad`); time step, contact stiffness and damping by a factor
 // of 2 either way; and for each channel an offset of its resolution: a count more or less lasts as long as the robot
 // rolls on.
-std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features,
-                                    const std::vector<Eigen::VectorXd>& nominal, Predictor& predictor,
-                                    double start_sigma_m, double start_sigma_rad);
+// Around `model`: where an event falls is open around where that model has it.
+std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Predictor& predictor,
+                                    const Variation& model, double start_sigma_m, double start_sigma_rad);
 
 // `residuals`: measured minus nominal, of each run.
-NoiseFloor noise_floor(const Observations& observations, const std::vector<FeatureMap>& features,
-                       const std::vector<Eigen::VectorXd>& residuals, const std::vector<OpenShapes>& open);
+NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vector<Eigen::VectorXd>& residuals,
+                       const std::vector<std::vector<std::size_t>>& repeats, const std::vector<OpenShapes>& open);
+
+// The same noise with open shapes of another model: bins are as rough as the rougher one of the two has them.
+NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShapes>& open);
 
 }  // namespace kenaf::gap

@@ -1,12 +1,26 @@
 #include "gap/diagnose/prediction.hpp"
 
+#include <map>
+#include <utility>
+
+#include "gap/diagnose/repeats.hpp"
 #include "gap/parallel.hpp"
 #include "rollout/roll_out.hpp"
 
 namespace kenaf::gap {
 
-Predictor::Predictor(const Observations& observations, const std::vector<FeatureMap>& features, unsigned threads)
-    : observations_(observations), features_(features), threads_(threads) {}
+using Eigen::Index;
+using Eigen::VectorXd;
+
+Predictor::Predictor(const Observations& observations, const std::vector<FeatureMap>& features,
+                     std::vector<std::vector<std::size_t>> repeats, unsigned threads)
+    : observations_(observations), features_(features), repeats_(std::move(repeats)), threads_(threads) {
+  for (const std::vector<std::size_t>& group : repeats_)
+    representatives_.push_back(representative(observations_, group));
+  nominal_.resize(observations_.runs.size());
+  for_each_job(nominal_.size(), threads_, [&](std::size_t run) { nominal_[run] = features_of(run, unvaried()); });
+  roll_outs_ += nominal_.size();
+}
 
 runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const {
   const Observation& observed = observations_.runs[run];
@@ -23,14 +37,51 @@ runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const
   return rollout::roll_out(robot, observations_.worlds[observed.world], replay, options).run;
 }
 
-std::vector<std::vector<Eigen::VectorXd>> Predictor::predict(const std::vector<Variation>& variations) {
-  const std::size_t runs = observations_.runs.size();
-  std::vector<std::vector<Eigen::VectorXd>> result(variations.size(), std::vector<Eigen::VectorXd>(runs));
-  for_each_job(variations.size() * runs, threads_, [&](std::size_t job) {
-    const std::size_t variation = job / runs, run = job % runs;
-    result[variation][run] = features_[run].of(simulate(run, variations[variation]));
+VectorXd Predictor::features_of(std::size_t run, const Variation& variation) const {
+  return features_[run].of(simulate(run, variation));
+}
+
+// Bins at times that the other run does not have keep what the last one before them has: a run that lasts longer rests.
+VectorXd Predictor::alike(std::size_t from, const VectorXd& shift, std::size_t to) const {
+  if (from == to) return shift;
+  const auto from_bins = features_[from].bins(), to_bins = features_[to].bins();
+  std::map<std::pair<std::size_t, std::size_t>, double> known;
+  for (std::size_t b = 0; b < from_bins.size(); ++b)
+    known[{from_bins[b].channel, from_bins[b].span}] = shift[static_cast<Index>(b)];
+  VectorXd result = VectorXd::Zero(static_cast<Index>(to_bins.size()));
+  for (std::size_t b = 0; b < to_bins.size(); ++b) {
+    auto after = known.upper_bound({to_bins[b].channel, to_bins[b].span});
+    if (after != known.begin() && std::prev(after)->first.first == to_bins[b].channel)
+      result[static_cast<Index>(b)] = std::prev(after)->second;
+  }
+  return result;
+}
+
+std::vector<Shift> Predictor::shifts(std::span<const Variation> variations, Fidelity fidelity) {
+  std::vector<std::size_t> simulated;
+  if (fidelity == Fidelity::representatives)
+    simulated = representatives_;
+  else
+    for (std::size_t r = 0; r < nominal_.size(); ++r) simulated.push_back(r);
+  std::vector<Shift> result(variations.size(), Shift(nominal_.size()));
+  for_each_job(variations.size() * simulated.size(), threads_, [&](std::size_t job) {
+    const std::size_t variation = job / simulated.size(), run = simulated[job % simulated.size()];
+    result[variation][run] = features_of(run, variations[variation]) - nominal_[run];
   });
-  roll_outs_ += variations.size() * runs;
+  roll_outs_ += variations.size() * simulated.size();
+  if (fidelity == Fidelity::representatives)
+    for (Shift& shift : result)
+      for (std::size_t g = 0; g < repeats_.size(); ++g)
+        for (const std::size_t r : repeats_[g])
+          if (r != representatives_[g]) shift[r] = alike(representatives_[g], shift[representatives_[g]], r);
+  return result;
+}
+
+Shift Predictor::shift_of_each(std::span<const Variation> variations) {
+  Shift result(nominal_.size());
+  for_each_job(nominal_.size(), threads_,
+               [&](std::size_t run) { result[run] = features_of(run, variations[run]) - nominal_[run]; });
+  roll_outs_ += nominal_.size();
   return result;
 }
 

@@ -1,9 +1,10 @@
-// Simulated counterparts of observed runs: the same commands from the same place, with a given model.
+// What the simulator says of the observed runs: the same commands from the same place, with the nominal model or another.
 //
 // Deterministic, on any number of threads.
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "gap/diagnose/features.hpp"
@@ -19,24 +20,42 @@ struct Variation {
   double start_x_m = 0, start_y_m = 0, start_yaw_rad = 0;  // added to the observed start
 };
 
+// Shifts of features, varied minus nominal, of every run.
+using Shift = std::vector<Eigen::VectorXd>;
+
+enum class Fidelity {
+  every_run,        // each run is simulated
+  representatives,  // one run of each group of repeats is; the others shift alike, at the same times
+};
+
 class Predictor {
  public:
-  // Both must outlive this; `features` has one map for each run.
-  Predictor(const Observations& observations, const std::vector<FeatureMap>& features, unsigned threads);
+  // Both must outlive this; `features` has one map for each run. Simulates all runs once.
+  Predictor(const Observations& observations, const std::vector<FeatureMap>& features,
+            std::vector<std::vector<std::size_t>> repeats, unsigned threads);
 
-  // Noiseless features of every run under every variation: result[variation][run].
-  std::vector<std::vector<Eigen::VectorXd>> predict(const std::vector<Variation>& variations);
-  // Nothing varied.
-  Variation nominal() const { return {observations_.robot.effects, {}}; }
-  // One run alone, as a run.
+  const std::vector<Eigen::VectorXd>& nominal() const { return nominal_; }
+  const std::vector<std::vector<std::size_t>>& repeats() const { return repeats_; }
+  Variation unvaried() const { return {observations_.robot.effects, {}}; }
+
+  std::vector<Shift> shifts(std::span<const Variation> variations, Fidelity fidelity);
+  // Run r alone with variation r of `variations`, one for each run.
+  Shift shift_of_each(std::span<const Variation> variations);
+  // One run alone, without noise, as a run.
   runs::Run simulate(std::size_t run, const Variation& variation) const;
 
   std::size_t roll_outs() const { return roll_outs_; }
 
  private:
+  Eigen::VectorXd features_of(std::size_t run, const Variation& variation) const;
+  Eigen::VectorXd alike(std::size_t from, const Eigen::VectorXd& shift, std::size_t to) const;
+
   const Observations& observations_;
   const std::vector<FeatureMap>& features_;
+  std::vector<std::vector<std::size_t>> repeats_;
+  std::vector<std::size_t> representatives_;  // of each group
   unsigned threads_;
+  std::vector<Eigen::VectorXd> nominal_;
   std::size_t roll_outs_ = 0;
 };
 

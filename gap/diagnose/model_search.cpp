@@ -1,0 +1,202 @@
+#include "gap/diagnose/model_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kenaf::gap {
+namespace {
+
+using Eigen::VectorXd;
+
+// In floors: a fit that moves less than this from a simulated point has nothing to learn from another one.
+constexpr double kSamePoint = 0.5;
+// Pairs that are simulated, for each contender: sums of curves rank roughly.
+constexpr std::size_t kPairsForAContender = 2;
+
+Shift shift_of(const EffectCurves& curves, std::span<const OnCurve> places) {
+  Shift shift;
+  for (std::size_t r = 0; r < curves.gap.size(); ++r) shift.push_back(shift_at(curves.raw_shifts[r], places));
+  return shift;
+}
+
+struct Singles {
+  Products products;
+  std::vector<CurveFit> fits;  // best first
+};
+
+Singles fit_singles(const EffectCurves& curves) {
+  Singles singles{products_of(curves, curves.gap), {}};
+  for (std::size_t c = 0; c < curves.curves.size(); ++c)
+    singles.fits.push_back(fit_one(singles.products, curves.curves, c));
+  std::ranges::stable_sort(singles.fits, {}, &CurveFit::left);
+  return singles;
+}
+
+// Whether the place is at a point of its curve that was simulated like this.
+bool at_point(const EffectCurve& curve, const OnCurve& place, const Products& products, Fidelity fidelity) {
+  const auto dot = [&](int i, int j) { return i < 0 || j < 0 ? 0 : products.shift_shift(i, j); };
+  const int a = place.column[0], b = place.column[1];
+  const double segment = std::sqrt(std::max(0.0, dot(a, a) - 2 * dot(a, b) + dot(b, b)));
+  return std::ranges::any_of(curve.points, [&](const CurvePoint& point) {
+    if (fidelity == Fidelity::every_run && !point.exact) return false;
+    return (point.column == a && place.weight[1] * segment <= kSamePoint) ||
+           (point.column == b && place.weight[0] * segment <= kSamePoint);
+  });
+}
+
+// How many of the first ones are near enough to the best one to overtake it.
+std::size_t near_best(const std::vector<CurveFit>& fits, double nothing_explained, const SearchSettings& settings) {
+  const double limit = fits.front().left + settings.near * (nothing_explained - fits.front().left);
+  std::size_t count = 0;
+  while (count < std::min(settings.finalists, fits.size()) && fits[count].left <= limit) ++count;
+  return count;
+}
+
+// Points where the first `count` of them fit; false: all of these are there.
+bool refine(EffectCurves& curves, const Singles& singles, std::size_t count, Fidelity fidelity,
+            const Simulator& simulator) {
+  std::vector<NewPoint> points;
+  for (std::size_t i = 0; i < std::min(count, singles.fits.size()); ++i) {
+    const OnCurve& place = singles.fits[i].places.front();
+    if (!at_point(curves.curves[place.curve], place, singles.products, fidelity))
+      points.push_back({place.curve, place.value});
+  }
+  if (!points.empty()) simulator.add_points(curves, points, fidelity);
+  return !points.empty();
+}
+
+// Fits of pairs, each with what the last simulation of it lacked to the sum of its curves.
+class Pairs {
+ public:
+  Pairs(const EffectCurves& curves, std::size_t count) : curves_(curves) {
+    const Products products = products_of(curves, curves.gap);
+    for (std::size_t a = 0; a < curves.curves.size(); ++a)
+      for (std::size_t b = a + 1; b < curves.curves.size(); ++b)
+        // two parameters of one effect are no pair of effects
+        if (curves.curves[a].visible > 1 && curves.curves[b].visible > 1 &&
+            curves.curves[a].effect != curves.curves[b].effect)
+          fits_.push_back({fit_two(products, curves.curves, a, b), {}});
+    keep_best(count);
+  }
+
+  void keep_best(std::size_t count) {
+    std::ranges::stable_sort(fits_, {}, &Candidate::left);
+    fits_.resize(std::min(fits_.size(), count));
+  }
+
+  // Simulates all at the values where they fit, and fits them again.
+  void simulate(Fidelity fidelity, const Simulator& simulator) {
+    std::vector<std::vector<NewPoint>> asked;
+    for (const Candidate& candidate : fits_) asked.push_back(values_of(candidate.fit.places));
+    std::vector<Shift> shifts = simulator.shifts(asked, fidelity);
+    for (std::size_t i = 0; i < fits_.size(); ++i) {
+      Candidate& candidate = fits_[i];
+      Model simulated{candidate.fit.places, shifts[i], true};
+      simulated.left = squared_length(whitened_difference(curves_, curves_.residual, shifts[i]));
+      if (fidelity == Fidelity::every_run && (!candidate.best.exact || simulated.left < candidate.best.left))
+        candidate.best = std::move(simulated);
+      Whitened target = whitened_difference(curves_, shifts[i], shift_of(curves_, candidate.fit.places));
+      for (std::size_t r = 0; r < target.size(); ++r) target[r] = curves_.gap[r] - target[r];
+      candidate.fit = fit_two(products_of(curves_, target), curves_.curves, candidate.fit.places[0].curve,
+                              candidate.fit.places[1].curve);
+    }
+  }
+
+  std::size_t near_best(double nothing_explained, const SearchSettings& settings) {
+    std::vector<CurveFit> fits;
+    for (const Candidate& candidate : fits_) fits.push_back(candidate.fit);
+    return fits.empty() ? 0 : gap::near_best(fits, nothing_explained, settings);
+  }
+
+  std::vector<Model> models() const {
+    std::vector<Model> models;
+    for (const Candidate& candidate : fits_)
+      if (candidate.best.exact) models.push_back(candidate.best);
+    return models;
+  }
+
+ private:
+  struct Candidate {
+    CurveFit fit;
+    Model best;  // of those simulated
+    double left() const { return fit.left; }
+  };
+  const EffectCurves& curves_;
+  std::vector<Candidate> fits_;
+};
+
+}  // namespace
+
+std::vector<NewPoint> values_of(const std::vector<OnCurve>& places) {
+  std::vector<NewPoint> values;
+  for (const OnCurve& place : places) values.push_back({place.curve, place.value});
+  return values;
+}
+
+double squared_length(const Whitened& runs) {
+  double sum = 0;
+  for (const VectorXd& run : runs) sum += run.squaredNorm();
+  return sum;
+}
+
+Whitened whitened_difference(const EffectCurves& curves, const std::vector<VectorXd>& a, const Shift& b) {
+  Whitened result(a.size());
+  for (std::size_t r = 0; r < a.size(); ++r) result[r] = curves.whiteners[r](a[r] - b[r]);
+  return result;
+}
+
+void measure(Model& model, const EffectCurves& curves, const Coherence& coherence) {
+  const Whitened left = whitened_difference(curves, curves.residual, model.shift);
+  model.left = squared_length(left);
+  model.coherent = coherence.energy(left);
+}
+
+Products products_of(const EffectCurves& curves, const Whitened& gap) {
+  const auto columns = curves.shifts.front().cols();
+  Products sum{0, VectorXd::Zero(columns), Eigen::MatrixXd::Zero(columns, columns), 0};
+  for (std::size_t r = 0; r < gap.size(); ++r) {
+    sum.gap_gap += gap[r].squaredNorm();
+    sum.shift_gap.noalias() += curves.shifts[r].transpose() * gap[r];
+    sum.shift_shift.noalias() += curves.shifts[r].transpose() * curves.shifts[r];
+    sum.bins += static_cast<double>(gap[r].size());
+  }
+  return sum;
+}
+
+std::vector<Model> search_singles(EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
+                                  const SearchSettings& settings) {
+  Singles singles = fit_singles(curves);
+  for (int round = 0; round < settings.rounds; ++round) {
+    if (!refine(curves, singles, settings.contenders, Fidelity::representatives, simulator)) break;
+    singles = fit_singles(curves);
+  }
+  const double nothing_explained = squared_length(curves.gap);
+  for (int round = 0; round < settings.exact_rounds; ++round) {
+    const std::size_t finalists = near_best(singles.fits, nothing_explained, settings);
+    if (!refine(curves, singles, finalists, Fidelity::every_run, simulator)) break;
+    singles = fit_singles(curves);
+  }
+  std::vector<Model> models;
+  for (const CurveFit& fit : singles.fits) {
+    const OnCurve& place = fit.places.front();
+    models.push_back({fit.places, shift_of(curves, fit.places),
+                      at_point(curves.curves[place.curve], place, singles.products, Fidelity::every_run)});
+    measure(models.back(), curves, coherence);
+  }
+  return models;
+}
+
+std::vector<Model> search_pairs(const EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
+                                const SearchSettings& settings) {
+  Pairs pairs(curves, kPairsForAContender * settings.contenders);
+  for (int round = 0; round < settings.rounds; ++round) pairs.simulate(Fidelity::representatives, simulator);
+  pairs.keep_best(settings.contenders);
+  pairs.keep_best(pairs.near_best(squared_length(curves.gap), settings));
+  for (int round = 0; round < settings.rounds; ++round) pairs.simulate(Fidelity::every_run, simulator);
+  std::vector<Model> models = pairs.models();
+  for (Model& model : models) measure(model, curves, coherence);
+  std::ranges::stable_sort(models, {}, &Model::left);
+  return models;
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,60 @@
+// Models of a gap, that is one effect or two at fitted values, from curves to exact simulations.
+//
+// Cheap before dear: curves of representatives rank all effects and all pairs; the best ones get points where they fit
+// best, then every run simulated.
+// Thread safety: pure functions apart from what the simulator callbacks do.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "gap/diagnose/coherence.hpp"
+#include "gap/diagnose/curve_fit.hpp"
+#include "gap/diagnose/effect_curves.hpp"
+
+namespace kenaf::gap {
+
+using Whitened = std::vector<Eigen::VectorXd>;  // of each run
+
+struct Model {
+  std::vector<OnCurve> places;  // none: nominal
+  Shift shift;                  // by all its effects together
+  bool exact = false;           // every run was simulated with all effects at these values
+  double left = 0;              // squared length of what it does not explain, of all runs, whitened
+  double coherent = 0;          // energy of that
+};
+// Sets `left` and `coherent` with the whiteners that the curves have now.
+void measure(Model& model, const EffectCurves& curves, const Coherence& coherence);
+
+// What the search needs of the simulator.
+struct Simulator {
+  std::function<void(EffectCurves&, std::span<const NewPoint>, Fidelity)> add_points;
+  // Shifts by effects together.
+  std::function<std::vector<Shift>(std::span<const std::vector<NewPoint>>, Fidelity)> shifts;
+  // Whiteners of the floor around a model.
+  std::function<std::vector<Whitener>(std::span<const NewPoint>)> whiteners_around;
+};
+
+struct SearchSettings {
+  std::size_t contenders = 8;   // single effects, and pairs, that are refined by representatives
+  std::size_t finalists = 5;    // of these, how many are refined by all runs
+  int rounds = 2;               // of refining by representatives
+  int exact_rounds = 4;         // at most, of refining by all runs
+  double near = 0.1;            // share of what the best one explains by which a finalist may be worse
+};
+
+std::vector<NewPoint> values_of(const std::vector<OnCurve>& places);
+double squared_length(const Whitened& runs);
+Whitened whitened_difference(const EffectCurves& curves, const std::vector<Eigen::VectorXd>& a, const Shift& b);
+// Inner products of all runs together.
+Products products_of(const EffectCurves& curves, const Whitened& gap);
+
+// Best first: finalists exact, all others as their curves have them.
+std::vector<Model> search_singles(EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
+                                  const SearchSettings& settings);
+std::vector<Model> search_pairs(const EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
+                                const SearchSettings& settings);
+
+}  // namespace kenaf::gap
