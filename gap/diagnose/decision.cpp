@@ -64,19 +64,25 @@ Decision decide(EffectCurves& curves, const Coherence& coherence, double inflati
   };
   // a second effect must earn more than the luckiest of all pairs does by chance
   const double luck = 2 * chance.improvement[chance.improvement.size() * 99 / 100];
+  const auto to_earn = [&](const Model& single) { return std::max(luck * inflation, margin(single)); };
   const auto second_is_needed = [&](const Model& single, const Model& pair) {
-    return single.left - pair.left > std::max(luck * inflation, margin(single)) &&
+    return single.left - pair.left > to_earn(single) &&
            (p_left(single) <= settings.surprise || p_left(pair) > settings.surprise);
+  };
+  const auto pairs_beyond = [&](const Model& single) {
+    // sums of curves are rough: half of what a second effect must earn is promising
+    return search_pairs(curves, coherence, simulator, settings.search, single.left - to_earn(single) / 2);
   };
 
   decision.best = decision.singles.front();
-  decision.pairs = search_pairs(curves, coherence, simulator, settings.search);
+  decision.pairs = pairs_beyond(decision.best);
   if (!decision.pairs.empty() && second_is_needed(decision.best, decision.pairs.front())) {
     look_around(decision.pairs.front());
-    decision.pairs = search_pairs(curves, coherence, simulator, settings.search);
     decision.singles = search_singles(curves, coherence, simulator, settings.search);
-    decision.best = second_is_needed(decision.singles.front(), decision.pairs.front()) ? decision.pairs.front()
-                                                                                        : decision.singles.front();
+    decision.pairs = pairs_beyond(decision.singles.front());
+    decision.best = !decision.pairs.empty() && second_is_needed(decision.singles.front(), decision.pairs.front())
+                        ? decision.pairs.front()
+                        : decision.singles.front();
   }
   decision.p_left = p_left(decision.best);
   if (decision.p_left <= settings.surprise) {

@@ -7,7 +7,7 @@ namespace kenaf::gap {
 namespace {
 
 // Parts of the way from neutral to an end of the range.
-constexpr double kSpread[] = {0.06, 0.3, 1};
+constexpr double kSpread[] = {0.25, 1};
 
 bool has_obstacles(const Observations& observations) {
   return std::ranges::any_of(observations.worlds, [](const physics::WorldDescription& world) {
@@ -94,7 +94,7 @@ EffectCurves scan_effects(std::vector<EffectCurve> candidates, const std::vector
       for (const double part : kSpread)
         if (end != neutral) points.push_back({c, neutral + part * (end - neutral)});
   }
-  add_points(curves, points, Fidelity::representatives, predictor);
+  add_points(curves, points, Fidelity::coarse, predictor);
   return curves;
 }
 

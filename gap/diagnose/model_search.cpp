@@ -68,14 +68,15 @@ bool refine(EffectCurves& curves, const Singles& singles, std::size_t count, Fid
 // Fits of pairs, each with what the last simulation of it lacked to the sum of its curves.
 class Pairs {
  public:
-  Pairs(const EffectCurves& curves, std::size_t count) : curves_(curves) {
+  Pairs(const EffectCurves& curves, std::size_t count, double to_beat) : curves_(curves) {
     const Products products = products_of(curves, curves.gap);
     for (std::size_t a = 0; a < curves.curves.size(); ++a)
       for (std::size_t b = a + 1; b < curves.curves.size(); ++b)
         // two parameters of one effect are no pair of effects
         if (curves.curves[a].visible > 1 && curves.curves[b].visible > 1 &&
             curves.curves[a].effect != curves.curves[b].effect)
-          fits_.push_back({fit_two(products, curves.curves, a, b), {}});
+          if (CurveFit fit = fit_two(products, curves.curves, a, b); fit.left < to_beat)
+            fits_.push_back({std::move(fit), {}});
     keep_best(count);
   }
 
@@ -167,7 +168,7 @@ std::vector<Model> search_singles(EffectCurves& curves, const Coherence& coheren
                                   const SearchSettings& settings) {
   Singles singles = fit_singles(curves);
   for (int round = 0; round < settings.rounds; ++round) {
-    if (!refine(curves, singles, settings.contenders, Fidelity::representatives, simulator)) break;
+    if (!refine(curves, singles, settings.contenders, Fidelity::coarse, simulator)) break;
     singles = fit_singles(curves);
   }
   const double nothing_explained = squared_length(curves.gap);
@@ -187,9 +188,9 @@ std::vector<Model> search_singles(EffectCurves& curves, const Coherence& coheren
 }
 
 std::vector<Model> search_pairs(const EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
-                                const SearchSettings& settings) {
-  Pairs pairs(curves, kPairsForAContender * settings.contenders);
-  for (int round = 0; round < settings.rounds; ++round) pairs.simulate(Fidelity::representatives, simulator);
+                                const SearchSettings& settings, double to_beat) {
+  Pairs pairs(curves, kPairsForAContender * settings.contenders, to_beat);
+  for (int round = 0; round < settings.rounds; ++round) pairs.simulate(Fidelity::coarse, simulator);
   pairs.keep_best(settings.contenders);
   pairs.keep_best(pairs.near_best(squared_length(curves.gap), settings));
   for (int round = 0; round < settings.rounds; ++round) pairs.simulate(Fidelity::every_run, simulator);

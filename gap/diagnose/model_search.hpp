@@ -40,7 +40,7 @@ struct Simulator {
 struct SearchSettings {
   std::size_t contenders = 8;   // single effects, and pairs, that are refined by representatives
   std::size_t finalists = 5;    // of these, how many are refined by all runs
-  int rounds = 2;               // of refining by representatives
+  int rounds = 3;               // of refining by representatives
   int exact_rounds = 4;         // at most, of refining by all runs
   double near = 0.1;            // share of what the best one explains by which a finalist may be worse
 };
@@ -54,7 +54,8 @@ Products products_of(const EffectCurves& curves, const Whitened& gap);
 // Best first: finalists exact, all others as their curves have them.
 std::vector<Model> search_singles(EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
                                   const SearchSettings& settings);
+// Only pairs that, by their curves, leave less than `to_beat` are simulated; no other one is returned.
 std::vector<Model> search_pairs(const EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
-                                const SearchSettings& settings);
+                                const SearchSettings& settings, double to_beat);
 
 }  // namespace kenaf::gap

@@ -69,6 +69,16 @@ VectorXd Whitener::operator()(const VectorXd& difference) const {
   return scaled - directions_ * shrink_.cwiseProduct(directions_.transpose() * scaled);
 }
 
+double NoiseFloor::rms(const std::vector<VectorXd>& differences) const {
+  double sum = 0, count = 0;
+  for (std::size_t r = 0; r < differences.size(); ++r) {
+    if (differences[r].size() == 0) continue;
+    sum += differences[r].cwiseQuotient(sigma_of_bin[r]).squaredNorm();
+    count += static_cast<double>(differences[r].size());
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0;
+}
+
 NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vector<VectorXd>& residuals,
                        const std::vector<std::vector<std::size_t>>& repeats, const std::vector<OpenShapes>& open) {
   const std::size_t channels = diagnosis_channels().size();

@@ -35,7 +35,10 @@ struct NoiseFloor {
   std::vector<double> sigma;        // of a full bin of each channel, all of what is independent; 0: never measured
   std::vector<Eigen::VectorXd> sigma_of_bin;  // of each run, with roughness
   std::vector<Whitener> whiteners;  // of each run
-  bool from_repeats = false;       // otherwise from the residuals alone, which a gap makes larger
+  bool from_repeats = false;        // otherwise from the residuals alone, which a gap makes larger
+
+  // Of all bins of all runs that are not empty, in units of sigma_of_bin.
+  double rms(const std::vector<Eigen::VectorXd>& differences) const;
 };
 
 // What the simulation leaves open in one run. A variation by +1 and by -1 sigma shifts the prediction by a shape, up to sign,

@@ -12,6 +12,10 @@ namespace kenaf::gap {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+namespace {
+constexpr double kCoarse = 2;  // time steps: a shift, the difference of two simulations with the same step, hardly changes
+}
+
 Predictor::Predictor(const Observations& observations, const std::vector<FeatureMap>& features,
                      std::vector<std::vector<std::size_t>> repeats, unsigned threads)
     : observations_(observations), features_(features), repeats_(std::move(repeats)), threads_(threads) {
@@ -57,23 +61,44 @@ VectorXd Predictor::alike(std::size_t from, const VectorXd& shift, std::size_t t
   return result;
 }
 
-std::vector<Shift> Predictor::shifts(std::span<const Variation> variations, Fidelity fidelity) {
-  std::vector<std::size_t> simulated;
-  if (fidelity == Fidelity::representatives)
-    simulated = representatives_;
-  else
-    for (std::size_t r = 0; r < nominal_.size(); ++r) simulated.push_back(r);
+std::vector<Shift> Predictor::shifts_of_representatives(std::span<const Variation> variations,
+                                                        const std::vector<VectorXd>& nominal) {
+  const std::size_t groups = representatives_.size();
   std::vector<Shift> result(variations.size(), Shift(nominal_.size()));
-  for_each_job(variations.size() * simulated.size(), threads_, [&](std::size_t job) {
-    const std::size_t variation = job / simulated.size(), run = simulated[job % simulated.size()];
+  for_each_job(variations.size() * groups, threads_, [&](std::size_t job) {
+    const std::size_t variation = job / groups, run = representatives_[job % groups];
+    result[variation][run] = features_of(run, variations[variation]) - nominal[run];
+  });
+  roll_outs_ += variations.size() * groups;
+  for (Shift& shift : result)
+    for (std::size_t g = 0; g < groups; ++g)
+      for (const std::size_t r : repeats_[g])
+        if (r != representatives_[g]) shift[r] = alike(representatives_[g], shift[representatives_[g]], r);
+  return result;
+}
+
+std::vector<Shift> Predictor::shifts(std::span<const Variation> variations, Fidelity fidelity) {
+  if (fidelity == Fidelity::representatives) return shifts_of_representatives(variations, nominal_);
+  if (fidelity == Fidelity::coarse) {
+    std::vector<Variation> coarse(variations.begin(), variations.end());
+    for (Variation& variation : coarse) variation.physics.time_step_s *= kCoarse;
+    if (coarse_nominal_.empty()) {
+      coarse_nominal_.resize(nominal_.size());
+      Variation unvaried_coarse = unvaried();
+      unvaried_coarse.physics.time_step_s *= kCoarse;
+      for_each_job(representatives_.size(), threads_, [&](std::size_t g) {
+        coarse_nominal_[representatives_[g]] = features_of(representatives_[g], unvaried_coarse);
+      });
+      roll_outs_ += representatives_.size();
+    }
+    return shifts_of_representatives(coarse, coarse_nominal_);
+  }
+  std::vector<Shift> result(variations.size(), Shift(nominal_.size()));
+  for_each_job(variations.size() * nominal_.size(), threads_, [&](std::size_t job) {
+    const std::size_t variation = job / nominal_.size(), run = job % nominal_.size();
     result[variation][run] = features_of(run, variations[variation]) - nominal_[run];
   });
-  roll_outs_ += variations.size() * simulated.size();
-  if (fidelity == Fidelity::representatives)
-    for (Shift& shift : result)
-      for (std::size_t g = 0; g < repeats_.size(); ++g)
-        for (const std::size_t r : repeats_[g])
-          if (r != representatives_[g]) shift[r] = alike(representatives_[g], shift[representatives_[g]], r);
+  roll_outs_ += variations.size() * nominal_.size();
   return result;
 }
 

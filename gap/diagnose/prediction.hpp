@@ -26,6 +26,7 @@ using Shift = std::vector<Eigen::VectorXd>;
 enum class Fidelity {
   every_run,        // each run is simulated
   representatives,  // one run of each group of repeats is; the others shift alike, at the same times
+  coarse,           // likewise, with twice the time step
 };
 
 class Predictor {
@@ -48,6 +49,8 @@ class Predictor {
 
  private:
   Eigen::VectorXd features_of(std::size_t run, const Variation& variation) const;
+  std::vector<Shift> shifts_of_representatives(std::span<const Variation> variations,
+                                               const std::vector<Eigen::VectorXd>& nominal);
   Eigen::VectorXd alike(std::size_t from, const Eigen::VectorXd& shift, std::size_t to) const;
 
   const Observations& observations_;
@@ -55,7 +58,7 @@ class Predictor {
   std::vector<std::vector<std::size_t>> repeats_;
   std::vector<std::size_t> representatives_;  // of each group
   unsigned threads_;
-  std::vector<Eigen::VectorXd> nominal_;
+  std::vector<Eigen::VectorXd> nominal_, coarse_nominal_;  // the latter of representatives, once asked for
   std::size_t roll_outs_ = 0;
 };
 

@@ -1,0 +1,267 @@
+#include "gap/challenge/make_case.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "gap/challenge/foreign.hpp"
+#include "gap/diagnose/noise_floor.hpp"
+#include "gap/diagnose/observation.hpp"
+#include "gap/diagnose/prediction.hpp"
+#include "gap/parallel.hpp"
+#include "physics/effects.hpp"
+#include "rollout/roll_out.hpp"
+#include "runs/dataset.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::VectorXd;
+
+constexpr const char* kRobot = "kenaf";
+constexpr double kStartScatter_m = 0.005, kStartScatter_rad = 0.01;
+constexpr double kOpenStart_m = 0.001, kOpenStart_rad = 0.002;
+constexpr int kHalvings = 9;
+constexpr double kFurthest = 0.95;  // of the way to the end of a parameter's range
+constexpr double kCloseToPlanned = 0.9;
+
+struct Recipe {
+  physics::Effects effects;
+  std::string foreign;
+  double foreign_amount = 0;
+};
+
+std::uint64_t mixed(std::uint64_t seed, std::uint64_t with) {
+  std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+                         static_cast<std::uint32_t>(with)};
+  std::uint32_t words[2];
+  sequence.generate(words, words + 2);
+  return std::uint64_t{words[0]} << 32 | words[1];
+}
+
+// Noise that remembers itself, on top of the white one: pose estimates are filtered.
+void add_coloured_noise(runs::Run& run, const CasePlan& plan, std::uint64_t seed) {
+  if (plan.noise_memory_s == 0) return;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  const std::span<const double> time = run.column("t_s");
+  const double period_s = (time.back() - time.front()) / static_cast<double>(time.size() - 1);
+  const double keep = std::exp(-period_s / plan.noise_memory_s);
+  const rollout::RollOutOptions usual;
+  for (const auto& [name, sigma] : {std::pair{"x_m", usual.mocap_noise_m}, std::pair{"y_m", usual.mocap_noise_m},
+                                    std::pair{"z_m", usual.mocap_noise_m}, std::pair{"yaw_rad", usual.mocap_noise_rad}})
+    for (std::size_t c = 0; c < run.columns.size(); ++c) {
+      if (run.columns[c] != name) continue;
+      double wander = normal(random);
+      for (double& value : run.values[c]) {
+        value += plan.noise_scale * sigma * wander;
+        wander = keep * wander + std::sqrt(1 - keep * keep) * normal(random);
+      }
+    }
+}
+
+runs::Run make_run(const CasePlan& plan, const Recipe& recipe, const std::string& name, std::uint64_t seed) {
+  physics::RobotDescription robot = with_foreign(physics::load_robot(kRobot), recipe.foreign, recipe.foreign_amount);
+  robot.effects = recipe.effects;
+  rollout::Manoeuvre manoeuvre = rollout::load_manoeuvre(name);
+  std::vector<std::string> unsupported;
+  const physics::WorldDescription world = physics::load_world(manoeuvre.world, unsupported);
+  rollout::RollOutOptions options;
+  options.physics = plan.physics;
+  options.seed = seed;
+  options.noise_scale = plan.noise_scale;
+  options.mocap_noise_m *= plan.noise_scale;
+  options.mocap_noise_rad *= plan.noise_scale;
+  options.start_scatter_m = kStartScatter_m;
+  options.start_scatter_rad = kStartScatter_rad;
+
+  runs::Run run;
+  rollout::Manoeuvre obeyed = manoeuvre;
+  obey_foreign(obeyed, recipe.foreign, recipe.foreign_amount);
+  const bool changes_commands = recipe.foreign == "left_drive_lag" || recipe.foreign == "command_dead_band";
+  if (changes_commands) {
+    rollout::RollOutOptions exact = options;
+    exact.noise_scale = exact.mocap_noise_m = exact.mocap_noise_rad = 0;
+    const runs::Run asked = rollout::roll_out(robot, world, manoeuvre, exact).run;
+    rollout::Manoeuvre replay = rollout::replay_of(asked, name);
+    obey_foreign(replay, recipe.foreign, recipe.foreign_amount);
+    run = rollout::roll_out(robot, world, replay, options).run;
+    for (std::size_t c = 0; c < run.columns.size(); ++c)
+      if (run.columns[c].starts_with("cmd_"))
+        for (std::size_t i = 0; i < run.row_count(); ++i)
+          run.values[c][i] = asked.column(run.columns[c])[std::min(i, asked.row_count() - 1)];
+  } else {
+    run = rollout::roll_out(robot, world, manoeuvre, options).run;
+  }
+  record_foreign(run, recipe.foreign, recipe.foreign_amount);
+  add_coloured_noise(run, plan, mixed(seed, 1));
+  return run;
+}
+
+void write_cases_runs(const CasePlan& plan, const Recipe& recipe, const std::vector<std::string>& manoeuvres,
+                      std::uint64_t seed, const fs::path& folder, unsigned jobs) {
+  fs::create_directories(folder);
+  runs::Dataset dataset{
+      .source = "real", .robot = kRobot, .world = "flat", .description = plan.name, .noise = {}, .runs = {}};
+  const auto repeats = static_cast<std::size_t>(plan.repeats);
+  for (std::size_t i = 0; i < manoeuvres.size() * repeats; ++i) {
+    const rollout::Manoeuvre manoeuvre = rollout::load_manoeuvre(manoeuvres[i / repeats]);
+    dataset.runs.push_back({fmt::format("run-{:03}.csv", i), manoeuvre.name, manoeuvre.world});
+  }
+  for_each_job(dataset.runs.size(), jobs, [&](std::size_t i) {
+    runs::write_run(folder / dataset.runs[i].file,
+                    make_run(plan, recipe, dataset.runs[i].manoeuvre, mixed(seed, i + 2)));
+  });
+  runs::write_dataset(folder, dataset);
+}
+
+struct TemporaryFolder {
+  fs::path path;
+  TemporaryFolder() {
+    std::string name = (fs::temp_directory_path() / "kenaf-case-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for temporary files can be made");
+    path = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+};
+
+// How large gaps look beside the noise of runs in which nothing is hidden.
+class Scale {
+ public:
+  Scale(const CasePlan& plan, unsigned jobs) : jobs_(jobs) {
+    const TemporaryFolder folder;
+    write_cases_runs(plan, {}, plan.manoeuvres, mixed(plan.seed, 0), folder.path, jobs);
+    observations_ = observe(folder.path, "", "");
+    for (const Observation& run : observations_.runs) features_.emplace_back(run.run, kSpan_s);
+    predictor_.emplace(observations_, features_, repeats_of(observations_), jobs);
+    std::vector<VectorXd> residuals;
+    for (std::size_t r = 0; r < features_.size(); ++r)
+      residuals.push_back(features_[r].measured() - predictor_->nominal()[r]);
+    floor_ = noise_floor(features_, residuals, predictor_->repeats(),
+                         open_shapes(features_, *predictor_, predictor_->unvaried(), kOpenStart_m, kOpenStart_rad));
+    floor_rms_ = floor_.rms(deviations_from_repeats(features_, residuals, predictor_->repeats()));
+  }
+
+  double floors_of(const physics::Effects& effects) {
+    Variation variation = predictor_->unvaried();
+    variation.effects = effects;
+    return floor_.rms(predictor_->shifts({&variation, 1}, Fidelity::coarse).front()) / floor_rms_;
+  }
+
+  double floors_of_foreign(const std::string& foreign, double amount) {
+    Shift shift(features_.size());
+    for_each_job(features_.size(), jobs_, [&](std::size_t r) {
+      const physics::RobotDescription robot = with_foreign(observations_.robot, foreign, amount);
+      rollout::Manoeuvre replay = observations_.runs[r].replay;
+      obey_foreign(replay, foreign, amount);
+      rollout::RollOutOptions options;
+      options.noise_scale = options.mocap_noise_m = options.mocap_noise_rad = 0;
+      runs::Run run = rollout::roll_out(robot, observations_.worlds[observations_.runs[r].world], replay, options).run;
+      record_foreign(run, foreign, amount);
+      shift[r] = features_[r].of(run) - predictor_->nominal()[r];
+    });
+    return floor_.rms(shift) / floor_rms_;
+  }
+
+ private:
+  static constexpr double kSpan_s = 0.25;
+  unsigned jobs_;
+  Observations observations_;
+  std::vector<FeatureMap> features_;
+  std::optional<Predictor> predictor_;
+  NoiseFloor floor_;
+  double floor_rms_ = 1;
+};
+
+// The share of the way at which `size_at` is as large as `wanted`, and its size there; all of the way where it is not
+// reached.
+template <class SizeAt>
+std::pair<double, double> share_for(double wanted, SizeAt&& size_at) {
+  const double most = size_at(1);
+  if (!(most > wanted)) return {1, most};
+  double below = 0, above = 1, size = most;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = (below + above) / 2, at_middle = size_at(middle);
+    if (at_middle < wanted)
+      below = middle;
+    else
+      above = middle, size = at_middle;
+  }
+  return {above, size};
+}
+
+const physics::EffectParameter& parameter_of(const HiddenEffect& hidden) {
+  return *physics::find_parameter(*physics::find_effect(hidden.effect), hidden.parameter);
+}
+
+// Sets the value so that the effect is as large as planned; returns its size over what was planned.
+double size_effect(HiddenEffect& hidden, Scale& scale, bool upward) {
+  const physics::EffectParameter& parameter = parameter_of(hidden);
+  if (parameter.min == parameter.neutral) upward = true;
+  if (parameter.max == parameter.neutral) upward = false;
+  const double end = upward ? parameter.max : parameter.min;
+  const auto value_at = [&](double share) { return parameter.neutral + kFurthest * share * (end - parameter.neutral); };
+  const auto [share, floors] = share_for(hidden.floors, [&](double part) {
+    physics::Effects effects;
+    effects.*parameter.value = value_at(part);
+    return scale.floors_of(effects);
+  });
+  const double reached = floors / hidden.floors;
+  hidden.value = value_at(share);
+  hidden.floors = floors;
+  return reached;
+}
+
+Recipe recipe_of(const CasePlan& plan) {
+  Recipe recipe{{}, plan.foreign, plan.foreign_amount};
+  for (const HiddenEffect& hidden : plan.effects) recipe.effects.*parameter_of(hidden).value = hidden.value;
+  return recipe;
+}
+
+}  // namespace
+
+void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs) {
+  std::mt19937_64 random(mixed(plan.seed, 1));
+  const bool upward = (random() & 1) != 0;
+  std::vector<std::vector<std::string>> sets{plan.manoeuvres};
+  for (const auto& set : manoeuvre_sets())
+    if (set != plan.manoeuvres) sets.push_back(set);
+  CasePlan best = plan;
+  double best_reached = -1;
+  for (const auto& set : sets) {
+    if (plan.stratum == Stratum::none) break;
+    CasePlan candidate = plan;
+    candidate.manoeuvres = set;
+    if (std::ranges::count(set, candidate.unseen) > 0) continue;
+    Scale scale(candidate, jobs);
+    double reached = 1e9;
+    for (HiddenEffect& hidden : candidate.effects) reached = std::min(reached, size_effect(hidden, scale, upward));
+    if (!plan.foreign.empty()) {
+      std::tie(candidate.foreign_amount, candidate.foreign_floors) =
+          share_for(plan.foreign_floors, [&](double amount) { return scale.floors_of_foreign(plan.foreign, amount); });
+      reached = candidate.foreign_floors / plan.foreign_floors;
+    }
+    if (reached > best_reached) {
+      best_reached = reached;
+      best = std::move(candidate);
+    }
+    if (best_reached >= kCloseToPlanned) break;
+  }
+  plan = best;
+  write_cases_runs(plan, recipe_of(plan), plan.manoeuvres, mixed(plan.seed, 2), folder, jobs);
+}
+
+void make_unseen(const CasePlan& plan, const fs::path& folder, unsigned jobs) {
+  write_cases_runs(plan, recipe_of(plan), {plan.unseen}, mixed(plan.seed, 3), folder, jobs);
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,19 @@
+// Makes the data of a case: effects of the size that is planned, and runs of a robot that has them.
+// Deterministic for a plan, on any number of threads.
+#pragma once
+
+#include <filesystem>
+
+#include "gap/challenge/plan.hpp"
+
+namespace kenaf::gap {
+
+// Writes the dataset to `folder`, which must not exist, as that of a real robot, and sets the effects' values in `plan`.
+// Where these manoeuvres cannot show an effect as large as planned, they are exchanged for others that can; where none
+// can, the effect is as large as they show it.
+void make_case(CasePlan& plan, const std::filesystem::path& folder, unsigned jobs);
+
+// Runs of the same robot in the manoeuvre that the dataset does not have.
+void make_unseen(const CasePlan& plan, const std::filesystem::path& folder, unsigned jobs);
+
+}  // namespace kenaf::gap

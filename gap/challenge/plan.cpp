@@ -1,0 +1,138 @@
+#include "gap/challenge/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "physics/effects.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+using Random = std::mt19937_64;
+
+// Not std::uniform_real_distribution, whose numbers depend on the standard library.
+double uniform(Random& random, double from, double to) {
+  return from + (to - from) * (static_cast<double>(random() >> 11) * 0x1p-53);
+}
+std::size_t below(Random& random, std::size_t count) {
+  return static_cast<std::size_t>(uniform(random, 0, static_cast<double>(count)));
+}
+double log_uniform(Random& random, double from, double to) {
+  return std::exp(uniform(random, std::log(from), std::log(to)));
+}
+template <class T>
+void shuffle(std::vector<T>& values, Random& random) {
+  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(random, i)]);
+}
+
+// Shares of the strata, in the order of Stratum.
+constexpr double kShare[] = {0.3, 0.28, 0.14, 0.2, 0.08};
+
+struct Named {
+  std::string effect, parameter;
+};
+
+// Each parameter once in a turn, each turn in another order. Chance has no size that could be fitted.
+class Turns {
+ public:
+  explicit Turns(Random& random) : random_(random) {}
+  Named next() {
+    if (left_.empty()) {
+      for (const physics::EffectInfo& effect : physics::effect_catalogue())
+        for (const physics::EffectParameter& parameter : effect.parameters)
+          if (effect.name != "command_loss") left_.push_back({std::string(effect.name), std::string(parameter.name)});
+      shuffle(left_, random_);
+    }
+    const Named named = left_.back();
+    left_.pop_back();
+    return named;
+  }
+
+ private:
+  Random& random_;
+  std::vector<Named> left_;
+};
+
+std::vector<Stratum> strata(std::size_t cases, Random& random) {
+  std::vector<Stratum> result;
+  double sum = 0;
+  for (std::size_t s = 0; s < std::size(kShare); ++s) {
+    sum += kShare[s];
+    while (result.size() < static_cast<std::size_t>(std::llround(sum * static_cast<double>(cases))))
+      result.push_back(static_cast<Stratum>(s));
+  }
+  shuffle(result, random);
+  return result;
+}
+
+}  // namespace
+
+std::string_view stratum_name(Stratum stratum) {
+  constexpr std::string_view kNames[] = {"none", "single", "pair", "withheld", "foreign"};
+  return kNames[static_cast<std::size_t>(stratum)];
+}
+
+std::vector<std::vector<std::string>> manoeuvre_sets() {
+  return {{"straight", "speed-steps", "turn-in-place", "step-150-flippers"},
+          {"straight-fast", "arc", "flipper-sweep", "trench-200"},
+          {"speed-steps", "turn-in-place", "drop", "step-100-flippers"},
+          {"arc", "drop", "ramp", "step-200-flippers"},
+          {"straight", "turn-in-place", "flipper-sweep", "tilted-box"}};
+}
+
+std::vector<ForeignEffect> foreign_effects() {
+  return {{"track_gauge", "the tracks lie further apart"},
+          {"servo_speed", "the flipper servos turn slower than thought"},
+          {"flipper_length", "the flippers are longer"},
+          {"pose_scale", "motion capture's scale is wrong"},
+          {"pose_delay", "motion capture is late"},
+          {"left_drive_lag", "one track's drive follows later than the other's"},
+          {"command_dead_band", "slow track commands are not obeyed"},
+          {"gyro_scale", "the gyro's scale is wrong"}};
+}
+
+std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed) {
+  Random random(seed);
+  Turns singles(random), withheld(random), pairs(random);
+  const auto sets = manoeuvre_sets();
+  const auto foreign = foreign_effects();
+  std::vector<CasePlan> plans;
+  for (const Stratum stratum : strata(cases, random)) {
+    CasePlan plan;
+    plan.name = fmt::format("case-{:03}", plans.size());
+    plan.stratum = stratum;
+    const auto hide = [&](Turns& turns, double from, double to) {
+      const Named named = turns.next();
+      plan.effects.push_back({named.effect, named.parameter, log_uniform(random, from, to), 0});
+    };
+    if (stratum == Stratum::single) hide(singles, 0.5, 5);
+    if (stratum == Stratum::withheld) hide(withheld, 2, 5);
+    if (stratum == Stratum::pair) {
+      hide(pairs, 2, 5);
+      hide(pairs, 2, 5);
+    }
+    if (stratum == Stratum::foreign) {
+      plan.foreign = foreign[below(random, foreign.size())].name;
+      plan.foreign_floors = log_uniform(random, 2, 5);
+    }
+    plan.manoeuvres = sets[below(random, sets.size())];
+    const std::vector<std::string>& other = sets[below(random, sets.size())];
+    const auto unseen = std::ranges::find_if(
+        other, [&](const std::string& name) { return std::ranges::count(plan.manoeuvres, name) == 0; });
+    plan.unseen = unseen != other.end() ? *unseen : "hills";
+    plan.physics.time_step_s *= 0.5;
+    plan.physics.solver_iterations *= 2;
+    plan.physics.contact_stiffness_npm *= log_uniform(random, 0.6, 1.7);
+    plan.physics.contact_damping_nspm *= log_uniform(random, 0.6, 1.7);
+    plan.noise_scale = log_uniform(random, 0.7, 1.5);
+    plan.noise_memory_s = uniform(random, 0, 1) < 0.5 ? 0 : log_uniform(random, 0.02, 0.2);
+    plan.seed = random();
+    plans.push_back(std::move(plan));
+  }
+  return plans;
+}
+
+}  // namespace kenaf::gap

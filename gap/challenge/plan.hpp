@@ -1,0 +1,56 @@
+// What the cases of a challenge are: which effects are hidden in them, how large, in which manoeuvres, and how the "real"
+// side differs from the model besides, so that a fit is no tautology.
+// Thread safety: pure functions; deterministic for a seed.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "physics/world.hpp"
+
+namespace kenaf::gap {
+
+enum class Stratum {
+  none,      // nothing hidden
+  single,    // one effect of the catalogue
+  pair,      // two
+  withheld,  // one, and the diagnosis has a catalogue without it
+  foreign,   // something that the catalogue never had
+};
+std::string_view stratum_name(Stratum stratum);
+
+struct HiddenEffect {
+  std::string effect, parameter;
+  double floors = 0;  // size: how large the gap by it alone is, in noise floors, over all channels
+  double value = 0;   // that makes it so large; known once the case is made
+};
+
+struct CasePlan {
+  std::string name;  // "case-017"
+  Stratum stratum = Stratum::none;
+  std::vector<HiddenEffect> effects;
+  std::string foreign;                  // one of foreign_effects(), or empty
+  double foreign_floors = 0, foreign_amount = 0;
+  std::vector<std::string> manoeuvres;  // of the dataset
+  std::string unseen;                   // another one, to try the diagnosis' robot.toml on
+  int repeats = 2;
+  physics::PhysicsSettings physics;     // of the "real" side
+  double noise_scale = 1, noise_memory_s = 0;  // of the pose; 0: white
+  std::uint64_t seed = 0;
+};
+
+// Nothing hidden in three of ten; of the rest each effect of the catalogue alone in turn, each withheld in turn, pairs
+// and foreign ones by chance. In an order that says nothing.
+std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed);
+
+// Sets of manoeuvres that a case may have, for when an effect does not show in those it was given.
+std::vector<std::vector<std::string>> manoeuvre_sets();
+
+struct ForeignEffect {
+  std::string_view name, summary;
+};
+std::vector<ForeignEffect> foreign_effects();
+
+}  // namespace kenaf::gap
