@@ -143,6 +143,7 @@ class Scale {
     observations_ = observe(folder.path, "", "");
     for (const Observation& run : observations_.runs) features_.emplace_back(run.run, kSpan_s);
     predictor_.emplace(observations_, features_, repeats_of(observations_), jobs);
+    predictor_->simulate_nominal();
     std::vector<VectorXd> residuals;
     for (std::size_t r = 0; r < features_.size(); ++r)
       residuals.push_back(features_[r].measured() - predictor_->nominal()[r]);

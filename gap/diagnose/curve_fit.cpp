@@ -38,7 +38,8 @@ OnCurve on_segment(std::size_t curve, const Segment& segment, double share) {
   return {curve,
           segment.a.value + share * (segment.b.value - segment.a.value),
           {segment.a.column, segment.b.column},
-          {1 - share, share}};
+          {1 - share, share},
+          segment.b.value - segment.a.value};
 }
 
 }  // namespace

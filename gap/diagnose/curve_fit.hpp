@@ -30,6 +30,7 @@ struct OnCurve {
   double value;  // of the parameter
   std::array<int, 2> column{-1, -1};
   std::array<double, 2> weight{0, 0};
+  double segment = 1;  // by how much the value grows from the first column to the second
 };
 OnCurve at_value(const std::vector<EffectCurve>& curves, std::size_t curve, double value);
 

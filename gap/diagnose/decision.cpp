@@ -39,8 +39,9 @@ Decision decide(EffectCurves& curves, const Coherence& coherence, double inflati
 
   decision.singles = search_singles(curves, coherence, simulator, settings.search);
   decision.p_left = p_of_energy(chance, decision.nominal_coherent / inflation);
+  const double improvement = nominal_left - decision.singles.front().left - settings.rival_margin;
   decision.p_gap =
-      std::min(1.0, 2 * std::min(p_of_improvement(chance, (nominal_left - decision.singles.front().left) / inflation), decision.p_left));
+      std::min(1.0, 2 * std::min(p_of_improvement(chance, improvement / inflation), decision.p_left));
   Model nominal{{}, {}, true};
   for (const Eigen::VectorXd& run : curves.residual) nominal.shift.push_back(Eigen::VectorXd::Zero(run.size()));
   measure(nominal, curves, coherence);

@@ -18,7 +18,8 @@ enum class Verdict { none, named, ambiguous, unknown };
 struct DecisionSettings {
   double false_alarm = 0.005;       // chance of a verdict other than none where there is no gap
   double surprise = 0.005;          // chance to call a gap unexplained that the right effect is fitted to
-  double rival_margin = 9;          // squared floors by which a rival must be worse to be ruled out: 3 sigma at worst
+  double rival_margin = 9;          // squared floors by which a model must be better than another one, or than none, to
+                                    // count as better at all: 3 sigma at worst
   double model_share = 0.03;        // of a gap's length that even the right effect leaves: numerics differ
   std::size_t null_draws = 1000;
   SearchSettings search;

@@ -1,6 +1,14 @@
 #include "gap/diagnose/diagnosis.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/repeats.hpp"
 
 namespace kenaf::gap {
 namespace {
@@ -9,47 +17,214 @@ using Eigen::VectorXd;
 
 // Of the start pose, where the log has no rows at rest to average (chosen: as good as motion capture).
 constexpr double kStart_m = 0.001, kStart_rad = 0.002;
+// Models that a next manoeuvre is to tell apart, at most.
+constexpr std::size_t kRivals = 4;
+constexpr double kAtBound = 1e-3;  // of the range
 
-std::vector<VectorXd> residuals_of(const std::vector<FeatureMap>& features, const std::vector<VectorXd>& nominal) {
-  std::vector<VectorXd> residuals;
-  for (std::size_t r = 0; r < features.size(); ++r) residuals.push_back(features[r].measured() - nominal[r]);
-  return residuals;
+class Diagnoser {
+ public:
+  Diagnoser(Diagnosis& d, const DiagnosisOptions& options)
+      : d_(d),
+        options_(options),
+        predictor_(d.observations, d.features, repeats_of(d.observations), options.jobs, options.stop) {}
+
+  void run() {
+    say("simulating the nominal robot", 0.01);
+    predictor_.simulate_nominal();
+    d_.repeats = predictor_.repeats();
+    d_.nominal = predictor_.nominal();
+    for (std::size_t r = 0; r < d_.features.size(); ++r)
+      residuals_.push_back(d_.features[r].measured() - d_.nominal[r]);
+    say("measuring the noise floor", 0.03);
+    d_.nominal_floor = noise_floor(d_.features, residuals_, d_.repeats, open_at(predictor_.unvaried()));
+    d_.floor = d_.nominal_floor;
+    deviations_ = deviations_from_repeats(d_.features, residuals_, d_.repeats);
+    coherence_.emplace(d_.features, d_.repeats, options_.stretch_s);
+    d_.where = places(residuals_);
+
+    say("comparing effects", 0.1);
+    d_.curves = scan_effects(candidate_curves(d_.observations, options_.without), residuals_, d_.floor, predictor_);
+    say("fitting effects", 0.5);
+    const double inflation =
+        inflation_from_repeats(d_.features, d_.floor, deviations_, options_.stretch_s);
+    d_.decision = decide(d_.curves, *coherence_, inflation, simulator(), options_.decision, options_.seed);
+    say("holding runs out", 0.85);
+    weigh();
+    d_.isolability = isolability(d_.curves);
+    say("looking for the next manoeuvre", 0.93);
+    propose();
+    say("done", 1);
+  }
+
+  void finish() { d_.roll_outs = predictor_.roll_outs(); }
+  std::string_view doing() const { return doing_; }
+
+ private:
+  void say(std::string_view doing, double done) {
+    doing_ = doing;
+    if (options_.progress) options_.progress({doing, done});
+  }
+
+  std::vector<OpenShapes> open_at(const Variation& model) {
+    return open_shapes(d_.features, predictor_, model, kStart_m, kStart_rad);
+  }
+
+  GapPlaces places(const std::vector<VectorXd>& residuals) const {
+    return locate(d_.observations, d_.features, d_.nominal_floor, d_.repeats, *coherence_, residuals);
+  }
+
+  Simulator simulator() {
+    return {[this](EffectCurves& curves, std::span<const NewPoint> points, Fidelity fidelity) {
+              add_points(curves, points, fidelity, predictor_);
+            },
+            [this](std::span<const std::vector<NewPoint>> asked, Fidelity fidelity) {
+              std::vector<Variation> variations;
+              for (const std::vector<NewPoint>& effects : asked)
+                variations.push_back(varied(d_.curves, effects, predictor_));
+              return predictor_.shifts(variations, fidelity);
+            },
+            [this](std::span<const NewPoint> effects) {
+              d_.floor = with_open_shapes(d_.nominal_floor, open_at(varied(d_.curves, effects, predictor_)));
+              return d_.floor.whiteners;
+            }};
+  }
+
+  double floor_rms() const {
+    return d_.floor.from_repeats ? d_.floor.rms(deviations_) : 1;
+  }
+
+  double p_of_chance(double explained) const {
+    const double beyond = std::sqrt(std::max(0.0, explained / d_.decision.inflation / 2));
+    return std::min(1.0, std::erfc(beyond) * static_cast<double>(d_.curves.curves.size()));
+  }
+
+  // `explained`: squared length by which it leaves less than the model without it.
+  EffectEvidence evidence(const OnCurve& place, const Interval& value, double explained, const Interval& shrink) const {
+    const physics::EffectParameter& parameter = *d_.curves.curves[place.curve].parameter;
+    const double same = kAtBound * (parameter.max - parameter.min);
+    const double gap = squared_length(d_.curves.gap);
+    return {place.curve, value, gap > 0 ? explained / gap : 0, shrink, p_of_chance(explained),
+            std::abs(place.value - parameter.min) < same || std::abs(place.value - parameter.max) < same};
+  }
+
+  void weigh() {
+    const double nominal_left = squared_length(d_.curves.gap);
+    const Folds by_repeat = folds_by_repeat(d_.repeats), by_manoeuvre = folds_by_manoeuvre(d_.observations);
+    const double share = options_.decision.model_share;
+    for (const Model& model : d_.decision.singles) {
+      if (d_.curves.curves[model.places[0].curve].visible < 1) continue;
+      const auto shift = [&](const auto& places_of_run) { return by_curves(d_.curves, model, places_of_run); };
+      const HeldOut held = hold_out(d_.curves, d_.floor, model, by_repeat, floor_rms(), options_.seed, shift);
+      const Interval value =
+          value_intervals(d_.curves, model, share, d_.decision.inflation, options_.seed).front();
+      d_.ranking.push_back(evidence(model.places[0], value, nominal_left - model.left, held.shrink));
+    }
+    std::ranges::stable_sort(d_.ranking, std::ranges::greater{},
+                             [](const EffectEvidence& e) { return e.heldout_shrink.value; });
+
+    const Model& best = d_.decision.best;
+    if (best.places.empty()) {
+      d_.gap.before = d_.gap.after = d_.floor.rms(residuals_);
+      d_.gap.floor = std::min(floor_rms(), d_.gap.before);
+      d_.gap.before_si = d_.gap.after_si = rms_si(residuals_);
+      d_.where_left = d_.where;
+      return;
+    }
+    const HeldOut held = hold_out(d_.curves, d_.floor, best, by_repeat, floor_rms(), options_.seed,
+                                  [this](const std::vector<std::vector<OnCurve>>& places_of_run) {
+                                    std::vector<Variation> variations;
+                                    for (const std::vector<OnCurve>& places : places_of_run)
+                                      variations.push_back(varied(d_.curves, values_of(places), predictor_));
+                                    return predictor_.shift_of_each(variations);
+                                  });
+    d_.gap = {held.before, held.after, held.floor, held.shrink, {}, rms_si(residuals_), rms_si(held.left)};
+    if (by_manoeuvre.size() > 1)
+      d_.gap.shrink_by_manoeuvre =
+          hold_out(d_.curves, d_.floor, best, by_manoeuvre, floor_rms(), options_.seed, [&](const auto& places_of_run) {
+            return by_curves(d_.curves, best, places_of_run);
+          }).shrink;
+    d_.where_left = places(held.left);
+    const std::vector<Interval> values = value_intervals(d_.curves, best, share, d_.decision.inflation, options_.seed);
+    for (std::size_t i = 0; i < best.places.size(); ++i) {
+      double without = nominal_left;
+      if (best.places.size() > 1)
+        for (const Model& single : d_.decision.singles)
+          if (single.places[0].curve == best.places[1 - i].curve) without = single.left;
+      d_.best.push_back(evidence(best.places[i], values[i], without - best.left, held.shrink));
+    }
+  }
+
+  std::vector<double> rms_si(const std::vector<VectorXd>& differences) const {
+    std::vector<double> squares(diagnosis_channels().size(), 0), bins(squares.size(), 0);
+    for (std::size_t r = 0; r < differences.size(); ++r)
+      for (std::size_t b = 0; b < d_.features[r].bins().size(); ++b) {
+        const double value = differences[r][static_cast<Eigen::Index>(b)];
+        squares[d_.features[r].bins()[b].channel] += value * value;
+        ++bins[d_.features[r].bins()[b].channel];
+      }
+    for (std::size_t c = 0; c < squares.size(); ++c)
+      squares[c] = bins[c] > 0 ? std::sqrt(squares[c] / bins[c]) : std::numeric_limits<double>::quiet_NaN();
+    return squares;
+  }
+
+  // Where the verdict leaves a choice, the models between which it is.
+  void propose() {
+    const Decision& decision = d_.decision;
+    std::vector<Model> rivals;
+    if (decision.verdict == Verdict::ambiguous) {
+      const bool pair = decision.best.places.size() > 1;
+      for (const Model& model : pair ? decision.pairs : decision.singles) {
+        const bool is_rival = std::ranges::all_of(model.places, [&](const OnCurve& place) {
+          return std::ranges::any_of(decision.rivals, [&](const std::vector<std::size_t>& set) {
+            return std::ranges::count(set, place.curve) > 0;
+          });
+        });
+        if (is_rival && rivals.size() < kRivals) rivals.push_back(model);
+      }
+    } else if (decision.verdict == Verdict::unknown) {
+      rivals.assign(decision.singles.begin(),
+                    decision.singles.begin() + std::min(std::ssize(decision.singles), std::ptrdiff_t{kRivals}));
+    }
+    d_.next = rank_manoeuvres(d_.observations.robot, d_.curves, rivals, d_.floor, options_.span_s, options_.jobs);
+  }
+
+  Diagnosis& d_;
+  const DiagnosisOptions& options_;
+  Predictor predictor_;
+  std::vector<VectorXd> residuals_, deviations_;
+  std::optional<Coherence> coherence_;
+  std::string_view doing_ = "reading the runs";
+};
+
+void check_names(const std::vector<std::string>& without) {
+  for (const std::string& name : without)
+    if (physics::find_effect(name) == nullptr)
+      throw std::invalid_argument(
+          fmt::format("--without {}: no such effect; `kenaf-gap effects` lists them", name));
 }
 
 }  // namespace
 
 Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& options) {
+  check_names(options.without);
   Diagnosis d;
   d.observations = observe(folder, options.robot, options.world);
   for (const Observation& run : d.observations.runs) d.features.emplace_back(run.run, options.span_s);
-  Predictor predictor(d.observations, d.features, repeats_of(d.observations), options.jobs);
-
-  const std::vector<VectorXd> residuals = residuals_of(d.features, predictor.nominal());
-  d.floor = noise_floor(d.features, residuals, predictor.repeats(),
-                        open_shapes(d.features, predictor, predictor.unvaried(), kStart_m, kStart_rad));
-  const NoiseFloor nominal_floor = d.floor;
-  const double inflation = inflation_from_repeats(
-      d.features, d.floor, deviations_from_repeats(d.features, residuals, predictor.repeats()), options.stretch_s);
-  const Coherence coherence(d.features, predictor.repeats(), options.stretch_s);
-
-  d.curves = scan_effects(candidate_curves(d.observations, options.without), residuals, d.floor, predictor);
-  const Simulator simulator{
-      [&](EffectCurves& curves, std::span<const NewPoint> points, Fidelity fidelity) {
-        add_points(curves, points, fidelity, predictor);
-      },
-      [&](std::span<const std::vector<NewPoint>> asked, Fidelity fidelity) {
-        std::vector<Variation> variations;
-        for (const std::vector<NewPoint>& effects : asked) variations.push_back(varied(d.curves, effects, predictor));
-        return predictor.shifts(variations, fidelity);
-      },
-      [&](std::span<const NewPoint> effects) {
-        d.floor = with_open_shapes(nominal_floor, open_shapes(d.features, predictor, varied(d.curves, effects, predictor),
-                                                              kStart_m, kStart_rad));
-        return d.floor.whiteners;
-      }};
-  d.decision = decide(d.curves, coherence, inflation, simulator, options.decision, options.seed);
-  d.roll_outs = predictor.roll_outs();
+  Diagnoser diagnoser(d, options);
+  try {
+    diagnoser.run();
+  } catch (const Stopped&) {
+    d.interrupted = diagnoser.doing();
+  }
+  diagnoser.finish();
   return d;
+}
+
+physics::Effects corrected_effects(const Diagnosis& d) {
+  physics::Effects effects = d.observations.robot.effects;
+  for (const OnCurve& place : d.decision.best.places)
+    effects.*d.curves.curves[place.curve].parameter->value = place.value;
+  return effects;
 }
 
 }  // namespace kenaf::gap

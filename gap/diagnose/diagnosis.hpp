@@ -1,7 +1,9 @@
-// From a dataset to a verdict: the whole diagnosis, without its reports.
+// From a dataset to a verdict with its evidence: the whole diagnosis, without its reports.
+//
 // Deterministic: the same dataset, options and seed give the same result, on any number of threads.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -9,41 +11,69 @@
 #include <vector>
 
 #include "gap/diagnose/decision.hpp"
+#include "gap/diagnose/evidence.hpp"
+#include "gap/diagnose/isolability.hpp"
 #include "gap/diagnose/observation.hpp"
+#include "gap/diagnose/where.hpp"
 
 namespace kenaf::gap {
 
+struct Progress {
+  std::string_view doing;  // "comparing effects"
+  double done;             // share of everything, as far as it can be foreseen; never falls
+};
+
 struct DiagnosisOptions {
   std::string robot, world;           // instead of the dataset's; empty: its own
-  std::vector<std::string> without;   // effects taken out of the catalogue
+  std::vector<std::string> without;   // effects taken out of the catalogue; throws std::invalid_argument for others
   unsigned jobs = 0;                  // threads; 0: one a core
   std::uint64_t seed = 1;
   double span_s = 0.25;               // of a bin (chosen: four to a manoeuvre's quickest event)
   double stretch_s = 1;               // of a cell
   DecisionSettings decision;
+  std::function<void(const Progress&)> progress;   // called from this thread; may be empty
+  const std::atomic<bool>* stop = nullptr;         // once true, what is known by then is returned
 };
 
-// The fit of one effect, for the ranking.
+// What one effect explains, by itself or as one of the best model.
 struct EffectEvidence {
-  const physics::EffectInfo* effect;
-  const physics::EffectParameter* parameter;
-  double value, ci95_from, ci95_to;
-  double explains;      // share of the gap beyond the floor, of all runs
-  double heldout_shrink, heldout_shrink_from, heldout_shrink_to;
-  double p_value;       // of as much explained by chance
-  bool at_bound;
+  std::size_t curve;       // of Diagnosis::curves
+  Interval value;          // of its parameter
+  double explains;         // share of the gap beyond the floor, on the runs it was fitted to
+  Interval heldout_shrink;
+  double p_value;          // of as much explained by chance
+  bool at_bound;           // the fit ended at the end of the parameter's range
+};
+
+// The gap on runs held out of the fit, in floors and in units.
+struct GapMeasure {
+  double before = 0, after = 0, floor = 0;
+  Interval shrink;
+  Interval shrink_by_manoeuvre;  // with all repeats of a manoeuvre held out together; of curves
+  std::vector<double> before_si, after_si;  // of each of diagnosis_channels(); NaN: never measured
 };
 
 struct Diagnosis {
   Observations observations;
   std::vector<FeatureMap> features;
-  NoiseFloor floor;
+  std::vector<std::vector<std::size_t>> repeats;
+  std::vector<Eigen::VectorXd> nominal;   // simulated features of each run
+  NoiseFloor nominal_floor, floor;        // around the nominal model; around the best one
+  GapPlaces where, where_left;            // before, and after the best model
   EffectCurves curves;
   Decision decision;
-  std::vector<EffectEvidence> effects;   // of `decision.best` first, then the other single effects, best first
+  GapMeasure gap;
+  std::vector<EffectEvidence> best;       // of the effects of decision.best
+  std::vector<EffectEvidence> ranking;    // of all effects that these runs show, each alone, best first
+  Isolability isolability;
+  std::vector<NextManoeuvre> next;        // where something is ambiguous or unknown
   std::size_t roll_outs = 0;
+  std::string interrupted;                // what was under way when it was stopped; empty: it is complete
 };
 
 Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& options);
+
+// The effects of the best model on top of those of the robot.
+physics::Effects corrected_effects(const Diagnosis& diagnosis);
 
 }  // namespace kenaf::gap

@@ -17,10 +17,18 @@ constexpr double kCoarse = 2;  // time steps: a shift, the difference of two sim
 }
 
 Predictor::Predictor(const Observations& observations, const std::vector<FeatureMap>& features,
-                     std::vector<std::vector<std::size_t>> repeats, unsigned threads)
-    : observations_(observations), features_(features), repeats_(std::move(repeats)), threads_(threads) {
+                     std::vector<std::vector<std::size_t>> repeats, unsigned threads,
+                     const std::atomic<bool>* stop)
+    : observations_(observations),
+      features_(features),
+      repeats_(std::move(repeats)),
+      threads_(threads),
+      stop_(stop) {
   for (const std::vector<std::size_t>& group : repeats_)
     representatives_.push_back(representative(observations_, group));
+}
+
+void Predictor::simulate_nominal() {
   nominal_.resize(observations_.runs.size());
   for_each_job(nominal_.size(), threads_, [&](std::size_t run) { nominal_[run] = features_of(run, unvaried()); });
   roll_outs_ += nominal_.size();
@@ -42,6 +50,7 @@ runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const
 }
 
 VectorXd Predictor::features_of(std::size_t run, const Variation& variation) const {
+  if (stop_ != nullptr && *stop_) throw Stopped();
   return features_[run].of(simulate(run, variation));
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <span>
 #include <vector>
 
@@ -29,12 +30,18 @@ enum class Fidelity {
   coarse,           // likewise, with twice the time step
 };
 
+// Thrown by a simulation that was asked to stop.
+struct Stopped {};
+
 class Predictor {
  public:
-  // Both must outlive this; `features` has one map for each run. Simulates all runs once.
+  // Both must outlive this; `features` has one map for each run. Once `stop`, if there is one, is true, simulations throw
+  // Stopped.
   Predictor(const Observations& observations, const std::vector<FeatureMap>& features,
-            std::vector<std::vector<std::size_t>> repeats, unsigned threads);
+            std::vector<std::vector<std::size_t>> repeats, unsigned threads, const std::atomic<bool>* stop = nullptr);
 
+  // All runs once; comes first.
+  void simulate_nominal();
   const std::vector<Eigen::VectorXd>& nominal() const { return nominal_; }
   const std::vector<std::vector<std::size_t>>& repeats() const { return repeats_; }
   Variation unvaried() const { return {observations_.robot.effects, {}}; }
@@ -58,6 +65,7 @@ class Predictor {
   std::vector<std::vector<std::size_t>> repeats_;
   std::vector<std::size_t> representatives_;  // of each group
   unsigned threads_;
+  const std::atomic<bool>* stop_;
   std::vector<Eigen::VectorXd> nominal_, coarse_nominal_;  // the latter of representatives, once asked for
   std::size_t roll_outs_ = 0;
 };

@@ -1,0 +1,59 @@
+// How sure a fit is and what it is worth on runs that it has not seen.
+// Thread safety: values and pure functions; deterministic for a seed.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "gap/diagnose/model_search.hpp"
+#include "gap/diagnose/noise_floor.hpp"
+
+namespace kenaf::gap {
+
+// Runs that are held out together: each run once.
+using Folds = std::vector<std::vector<std::size_t>>;
+// The first repeats of all manoeuvres, then the second ones, ...; runs without repeats are dealt out in turn.
+Folds folds_by_repeat(const std::vector<std::vector<std::size_t>>& repeats);
+// All repeats of a manoeuvre together.
+Folds folds_by_manoeuvre(const Observations& observations);
+
+struct Interval {
+  double value = 0, from = 0, to = 0;  // 95 %
+};
+
+// 1 - (after - floor) / (before - floor) of rms values in floors; 0 where there is nothing to shrink.
+double shrink(double before, double after, double floor);
+
+// One model on runs held out of its fit.
+struct HeldOut {
+  std::vector<Eigen::VectorXd> left;  // of each run: measured minus what the model fitted to the other folds says
+  double before = 0, after = 0, floor = 0;  // rms, in units of sigma
+  Interval shrink;
+};
+
+// Values of a model's effects fitted to weighted runs. `lacking`: what a simulation of the model had beyond the sum of
+// its curves, raw; may be empty.
+class Refit {
+ public:
+  Refit(const EffectCurves& curves, const Model& model);
+  std::vector<OnCurve> operator()(std::span<const double> weights) const;
+
+ private:
+  const EffectCurves& curves_;
+  const Model& model_;
+  std::vector<Products> runs_;
+};
+
+// `shift_of` gives the raw shift of every run for the values of its own fold; by curves, or by simulation.
+HeldOut hold_out(const EffectCurves& curves, const NoiseFloor& floor, const Model& model, const Folds& folds,
+                 double floor_rms, std::uint64_t seed,
+                 const std::function<Shift(const std::vector<std::vector<OnCurve>>& places_of_run)>& shift_of);
+Shift by_curves(const EffectCurves& curves, const Model& model, const std::vector<std::vector<OnCurve>>& places_of_run);
+
+// 95 % intervals of the values: of resampled runs, of the floor, and of the share of a shift that numerics may change.
+std::vector<Interval> value_intervals(const EffectCurves& curves, const Model& model, double model_share,
+                                      double inflation, std::uint64_t seed);
+
+}  // namespace kenaf::gap

@@ -1,0 +1,38 @@
+// Where the gap is: which channels show it, and at which times and places of each manoeuvre.
+// Thread safety: pure functions.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gap/diagnose/coherence.hpp"
+#include "gap/diagnose/noise_floor.hpp"
+#include "gap/diagnose/phases.hpp"
+
+namespace kenaf::gap {
+
+struct ChannelGap {
+  std::size_t channel;   // of diagnosis_channels()
+  double rms, floor;     // of a bin's residual, and of its noise, in the channel's unit
+  double share;          // of all that is beyond chance
+};
+
+struct PhaseGap {
+  std::string manoeuvre;
+  std::string_view phase;
+  double from_s, to_s, x_m, y_m;
+  double share;          // of all that is beyond chance
+};
+
+struct GapPlaces {
+  std::vector<ChannelGap> channels;  // that were measured, largest share first
+  std::vector<PhaseGap> phases;      // of one run of each group of repeats, largest share first
+};
+
+// `residual` in the channels' units; both of every run.
+GapPlaces locate(const Observations& observations, const std::vector<FeatureMap>& features, const NoiseFloor& floor,
+                 const std::vector<std::vector<std::size_t>>& repeats, const Coherence& coherence,
+                 const std::vector<Eigen::VectorXd>& residual);
+
+}  // namespace kenaf::gap
