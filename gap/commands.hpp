@@ -18,6 +18,7 @@ struct RunsWentWrong : std::runtime_error {
 void add_check_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_dataset_command(CLI::App& program);
+void add_diagnose_command(CLI::App& program);
 void add_effects_command(CLI::App& program);
 void add_manoeuvres_command(CLI::App& program);
 void add_merge_command(CLI::App& program);

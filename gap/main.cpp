@@ -23,6 +23,7 @@ constexpr void (*kCommands[])(CLI::App&) = {
     kenaf::gap::add_check_command,
     kenaf::gap::add_compare_command,
     kenaf::gap::add_dataset_command,
+    kenaf::gap::add_diagnose_command,
     kenaf::gap::add_effects_command,
     kenaf::gap::add_manoeuvres_command,
     kenaf::gap::add_merge_command,

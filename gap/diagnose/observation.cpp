@@ -46,8 +46,8 @@ void start_at_mean(Observation& observation) {
 Observations observe(const std::filesystem::path& folder, const std::string& robot, const std::string& world) {
   Observations result;
   result.dataset = runs::read_dataset(folder);
-  result.robot =
-      physics::load_robot(robot.empty() ? runs::resolve_beside(folder, result.dataset.robot, ".toml") : robot);
+  result.robot_name = robot.empty() ? runs::resolve_beside(folder, result.dataset.robot, ".toml") : robot;
+  result.robot = physics::load_robot(result.robot_name);
   std::map<std::string, std::size_t> worlds;
   for (const runs::DatasetRun& entry : result.dataset.runs) {
     Observation observation{entry.file, entry.manoeuvre, 0, {}, {}, 0};

@@ -23,6 +23,7 @@ struct Observation {
 
 struct Observations {
   runs::Dataset dataset;
+  std::string robot_name;           // as physics::load_robot() takes it
   physics::RobotDescription robot;  // the nominal model
   std::vector<physics::WorldDescription> worlds;
   std::vector<Observation> runs;

@@ -1,0 +1,85 @@
+// kenaf-gap diagnose: where simulation and runs part, which effect causes it, how far the gap shrinks with it.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include "gap/commands.hpp"
+#include "gap/diagnose/report.hpp"
+#include "gap/option_checks.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+constexpr std::uint64_t kMostJobs = 1000;
+
+std::atomic<bool> interrupted = false;  // what a signal handler may write is global
+
+void interrupt(int) {
+  interrupted = true;
+}
+
+// One line that is written over, on a terminal only.
+class ProgressLine {
+ public:
+  void operator()(const Progress& progress) {
+    if (!terminal_) return;
+    const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const std::string left =
+        progress.done > 0.05 ? fmt::format(", about {:.0f} s left", passed_s * (1 / progress.done - 1)) : "";
+    std::fputs(fmt::format("\r\033[K{:3.0f} %  {}{}", progress.done * 100, progress.doing, left).c_str(), stderr);
+    if (progress.done >= 1) std::fputs("\r\033[K", stderr);
+  }
+
+ private:
+  bool terminal_ = isatty(STDERR_FILENO) != 0;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+void add_diagnose_command(CLI::App& program) {
+  struct Options {
+    std::string dataset, out;
+    DiagnosisOptions diagnosis;
+  };
+  const auto options = std::make_shared<Options>();
+  DiagnosisOptions& diagnosis = options->diagnosis;
+  CLI::App* command = program.add_subcommand("diagnose", "names the effect by which simulation and runs part, if any");
+  command->add_option("DATASET", options->dataset, "the runs, a folder; required")->type_name("");
+  command->add_option("--out", options->out, "folder for report.json, report.html and robot.toml; required")
+      ->type_name("DIR");
+  command->add_option("--robot", diagnosis.robot, "a shipped name or a TOML file [the dataset's]");
+  command->add_option("--world", diagnosis.world, "a shipped name or an SDF file, for all runs [each run's own]");
+  command
+      ->add_option("--without", diagnosis.without, "takes effects out of the catalogue, by name, parted by commas")
+      ->delimiter(',')
+      ->type_name("EFFECT");
+  command->add_option("--jobs", diagnosis.jobs, "threads; 0: one a core")
+      ->check(whole_number(kMostJobs))
+      ->capture_default_str();
+  command->add_option("--seed", diagnosis.seed, "of resampling")
+      ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
+      ->capture_default_str();
+  command->callback([options] {
+    for (const auto& [name, text] : {std::pair{"DATASET", &options->dataset}, {"--out", &options->out}})
+      if (text->empty()) throw CLI::RequiredError(name);
+    options->diagnosis.stop = &interrupted;
+    options->diagnosis.progress = ProgressLine();
+    const auto before = std::signal(SIGINT, interrupt);
+    const Diagnosis result = diagnose(options->dataset, options->diagnosis);
+    std::signal(SIGINT, before);
+    write_diagnosis(result, options->out);
+    std::fputs(diagnosis_text(result).c_str(), stdout);
+    std::printf("\n%s/report.html has the figures\n", options->out.c_str());
+  });
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,34 @@
+// What a diagnosis is told by: one screen of text, report.json (docs/gap-report.md), report.html, robot.toml.
+// Thread safety: pure functions, but for write_diagnosis().
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "gap/diagnose/diagnosis.hpp"
+
+namespace kenaf::gap {
+
+std::string_view verdict_name(Verdict verdict);
+// The stage at which the gap comes in: that of the named effect; otherwise that of the first channels, on the way from
+// command to sensor, that show it.
+std::string_view gap_stage(const Diagnosis& diagnosis);
+// "pitch_inertia", or "pitch_inertia:scale" of an effect with several parameters.
+std::string name_of(const EffectCurve& curve);
+
+// At most 40 lines of at most 100 columns; the first one is the verdict.
+std::string diagnosis_text(const Diagnosis& diagnosis);
+// Of the format kenaf-gap-report/1.
+std::string diagnosis_json(const Diagnosis& diagnosis);
+// A page without scripts or anything that is not in it.
+std::string diagnosis_html(const Diagnosis& diagnosis);
+// The nominal description, with the effects of the best model switched on. Comments stay, but for a description that
+// has one of these effects already.
+std::string corrected_robot_toml(const Diagnosis& diagnosis, const std::string& robot_name_or_path);
+
+// Writes report.json, report.html and, where an effect was named, robot.toml into `folder`, each whole or not at all.
+// Throws std::runtime_error where that cannot be done.
+void write_diagnosis(const Diagnosis& diagnosis, const std::filesystem::path& folder);
+
+}  // namespace kenaf::gap

@@ -1,0 +1,33 @@
+#include <fmt/format.h>
+
+#include <sstream>
+#include <toml++/toml.h>
+
+#include "gap/diagnose/report.hpp"
+#include "physics/description_file.hpp"
+
+namespace kenaf::gap {
+
+std::string corrected_robot_toml(const Diagnosis& d, const std::string& robot_name_or_path) {
+  std::string text = physics::read_description_file("robot", robot_name_or_path, ".toml").text;
+  if (!text.ends_with('\n')) text += '\n';
+  toml::table root = toml::parse(text);
+  bool replaces = false;
+  std::string added;
+  for (const OnCurve& place : d.decision.best.places) {
+    const EffectCurve& curve = d.curves.curves[place.curve];
+    if (!root.contains("effects")) root.insert("effects", toml::table{});
+    toml::table& effects = *root["effects"].as_table();
+    replaces |= effects.contains(curve.effect->name);
+    if (!effects.contains(curve.effect->name)) effects.insert(curve.effect->name, toml::table{});
+    effects[curve.effect->name].as_table()->insert_or_assign(curve.parameter->name, place.value);
+    added += fmt::format("\n[effects.{}]                # found by a diagnosis of runs\n{} = {}\n", curve.effect->name,
+                         curve.parameter->name, place.value);
+  }
+  if (!replaces) return text + added;
+  std::ostringstream out;
+  out << root << '\n';
+  return out.str();
+}
+
+}  // namespace kenaf::gap
