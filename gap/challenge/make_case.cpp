@@ -25,7 +25,8 @@ using Eigen::VectorXd;
 constexpr const char* kRobot = "kenaf";
 constexpr double kStartScatter_m = 0.005, kStartScatter_rad = 0.01;
 constexpr double kOpenStart_m = 0.001, kOpenStart_rad = 0.002;
-constexpr int kHalvings = 9;
+constexpr int kHalvings = 12;
+constexpr double kSmallestShare = 1e-5, kCloseEnough = 1.05;
 constexpr double kFurthest = 0.95;  // of the way to the end of a parameter's range
 constexpr double kCloseToPlanned = 0.9;
 
@@ -184,14 +185,14 @@ class Scale {
 };
 
 // The share of the way at which `size_at` is as large as `wanted`, and its size there; all of the way where it is not
-// reached.
+// reached. By ratios: effects of a thousandth of their range can be seen.
 template <class SizeAt>
 std::pair<double, double> share_for(double wanted, SizeAt&& size_at) {
   const double most = size_at(1);
   if (!(most > wanted)) return {1, most};
-  double below = 0, above = 1, size = most;
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = (below + above) / 2, at_middle = size_at(middle);
+  double below = kSmallestShare, above = 1, size = most;
+  for (int i = 0; i < kHalvings && size > kCloseEnough * wanted; ++i) {
+    const double middle = std::sqrt(below * above), at_middle = size_at(middle);
     if (at_middle < wanted)
       below = middle;
     else

@@ -28,10 +28,11 @@ std::vector<std::size_t> rivals_of(const OnCurve& place, const Model& chosen, co
 
 }  // namespace
 
-Decision decide(EffectCurves& curves, const Coherence& coherence, double inflation, const Simulator& simulator,
+Decision decide(EffectCurves& curves, const Coherence& coherence, const Spread& spread, const Simulator& simulator,
                 const DecisionSettings& settings, std::uint64_t seed) {
   Decision decision;
-  decision.inflation = inflation;
+  const double inflation = decision.inflation = spread.inflation;
+  const double negligible = settings.negligible * settings.negligible * spread.squared_length;
   const Chance chance = draw_chance(curves, coherence, settings.null_draws, seed);
   decision.chance_coherent = static_cast<double>(coherence.cell_count());
   decision.nominal_coherent = coherence.energy(curves.gap);
@@ -47,6 +48,8 @@ Decision decide(EffectCurves& curves, const Coherence& coherence, double inflati
   measure(nominal, curves, coherence);
   decision.best = nominal;
   if (decision.p_gap > settings.false_alarm) return decision;
+  const bool unexplained = decision.p_left <= settings.false_alarm / 2;
+  if (!unexplained && nominal_left - decision.singles.front().left < negligible) return decision;
 
   // from here on, what the simulation leaves open is taken around what fits best, no longer around the nominal model
   const auto look_around = [&](const Model& model) {
@@ -65,7 +68,7 @@ Decision decide(EffectCurves& curves, const Coherence& coherence, double inflati
   };
   // a second effect must earn more than the luckiest of all pairs does by chance
   const double luck = 2 * chance.improvement[chance.improvement.size() * 99 / 100];
-  const auto to_earn = [&](const Model& single) { return std::max(luck * inflation, margin(single)); };
+  const auto to_earn = [&](const Model& single) { return std::max({luck * inflation, margin(single), negligible}); };
   const auto second_is_needed = [&](const Model& single, const Model& pair) {
     return single.left - pair.left > to_earn(single) &&
            (p_left(single) <= settings.surprise || p_left(pair) > settings.surprise);

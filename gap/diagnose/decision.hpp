@@ -17,6 +17,7 @@ enum class Verdict { none, named, ambiguous, unknown };
 
 struct DecisionSettings {
   double false_alarm = 0.005;       // chance of a verdict other than none where there is no gap
+  double negligible = 0.25;         // of the noise's length: what explains less is no gap that anybody would see (chosen)
   double surprise = 0.005;          // chance to call a gap unexplained that the right effect is fitted to
   double rival_margin = 9;          // squared floors by which a model must be better than another one, or than none, to
                                     // count as better at all: 3 sigma at worst
@@ -36,7 +37,13 @@ struct Decision {
   double nominal_coherent = 0, chance_coherent = 0;
 };
 
-Decision decide(EffectCurves& curves, const Coherence& coherence, double inflation, const Simulator& simulator,
+// What noise and spread of repeats alone amount to.
+struct Spread {
+  double inflation = 1;       // inflation_from_repeats()
+  double squared_length = 0;  // of all runs, whitened
+};
+
+Decision decide(EffectCurves& curves, const Coherence& coherence, const Spread& spread, const Simulator& simulator,
                 const DecisionSettings& settings, std::uint64_t seed);
 
 }  // namespace kenaf::gap

@@ -45,9 +45,7 @@ class Diagnoser {
     say("comparing effects", 0.1);
     d_.curves = scan_effects(candidate_curves(d_.observations, options_.without), residuals_, d_.floor, predictor_);
     say("fitting effects", 0.5);
-    const double inflation =
-        inflation_from_repeats(d_.features, d_.floor, deviations_, options_.stretch_s);
-    d_.decision = decide(d_.curves, *coherence_, inflation, simulator(), options_.decision, options_.seed);
+    d_.decision = decide(d_.curves, *coherence_, spread(), simulator(), options_.decision, options_.seed);
     say("holding runs out", 0.85);
     weigh();
     d_.isolability = isolability(d_.curves);
@@ -87,6 +85,19 @@ class Diagnoser {
               d_.floor = with_open_shapes(d_.nominal_floor, open_at(varied(d_.curves, effects, predictor_)));
               return d_.floor.whiteners;
             }};
+  }
+
+  Spread spread() const {
+    Spread spread{inflation_from_repeats(d_.features, d_.floor, deviations_, options_.stretch_s), 0};
+    double bins = 0, all_bins = 0;
+    for (std::size_t r = 0; r < residuals_.size(); ++r) {
+      all_bins += static_cast<double>(residuals_[r].size());
+      if (deviations_[r].size() == 0) continue;
+      spread.squared_length += d_.floor.whiteners[r](deviations_[r]).squaredNorm();
+      bins += static_cast<double>(deviations_[r].size());
+    }
+    spread.squared_length = bins > 0 ? spread.squared_length * all_bins / bins : all_bins;
+    return spread;
   }
 
   double floor_rms() const {
