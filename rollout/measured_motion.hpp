@@ -32,7 +32,8 @@ struct MeasuredMotion {
 // Tracks: the measured speed, empty cells interpolated. Where travel is measured too, speed gives the shape and travel
 // the mean, since a speed's noise adds up over time and that of travel does not: over every 0.1 s (chosen: several
 // samples of most logs) a constant is added to the speed, so that it comes as far as the travel says. Where there is travel
-// alone: the mean speeds of each 0.05 s, joined at their middles.
+// alone: the mean speeds of each 0.05 s, joined at their middles; so a run that drives off at once begins at that of
+// its first 0.05 s.
 MeasuredMotion measured_motion(const runs::Run& run);
 
 // How a robot on the ground moves when a run begins.
