@@ -90,10 +90,11 @@ TEST_CASE("A run cut while it drives goes on where it was cut, not from rest") {
     const RollOut whole = roll_out(robot, flat(), drive({{now.left_mps, now.right_mps}}, 2), exact());
     const RollOut rest = roll_out(robot, flat(), replay_of(cut(whole.run, 100), "cut"), exact());
     const Apart off = apart(whole.run, 100, rest.run);
-    // From rest it would lag by 0.05 s: 15 mm. What is left is how the robot had leaned and how its contact points
-    // were loaded, as it settles at rest first: about 1 mm at 0.3 m/s, and as much at the tracks' ends in yaw.
-    CHECK(off.m < 3e-3);
-    CHECK(off.rad < 10e-3);
+    // From rest it would lag by 0.05 s: 15 mm. What is missing is how the robot leaned and how its contact points were
+    // loaded, as it settles at rest first: with 0.04 mm of give, parts of a millimetre, and of that over the track's
+    // length.
+    CHECK(off.m < 1e-3);
+    CHECK(off.rad < 2e-3);
     CHECK(rest.run.column("track_left_mps").front() == Approx(now.left_mps).margin(2e-3));
   }
 }
