@@ -25,6 +25,7 @@ using Eigen::VectorXd;
 constexpr const char* kRobot = "kenaf";
 constexpr double kStartScatter_m = 0.005, kStartScatter_rad = 0.01;
 constexpr double kOpenStart_m = 0.001, kOpenStart_rad = 0.002;
+constexpr std::size_t kMostRuns = 100;
 constexpr int kHalvings = 12;
 constexpr double kSmallestShare = 1e-5, kCloseEnough = 1.05;
 constexpr double kFurthest = 0.95;  // of the way to the end of a parameter's range
@@ -141,7 +142,7 @@ class Scale {
   Scale(const CasePlan& plan, unsigned jobs) : jobs_(jobs) {
     const TemporaryFolder folder;
     write_cases_runs(plan, {}, plan.manoeuvres, mixed(plan.seed, 0), folder.path, jobs);
-    observations_ = observe(folder.path, "", "");
+    observations_ = observe(folder.path, "", "", kMostRuns);
     for (const Observation& run : observations_.runs) features_.emplace_back(run.run, kSpan_s);
     predictor_.emplace(observations_, features_, repeats_of(observations_), jobs);
     predictor_->simulate_nominal();

@@ -41,6 +41,8 @@ class Diagnoser {
     deviations_ = deviations_from_repeats(d_.features, residuals_, d_.repeats);
     coherence_.emplace(d_.features, d_.repeats, options_.stretch_s);
     d_.where = places(residuals_);
+    d_.stages = stage_gaps(d_.features, d_.nominal_floor, *coherence_, residuals_,
+                           predictor_.nominal_with_measured_drives());
 
     say("comparing effects", 0.1);
     d_.curves = scan_effects(candidate_curves(d_.observations, options_.without), residuals_, d_.floor, predictor_);
@@ -219,7 +221,7 @@ void check_names(const std::vector<std::string>& without) {
 Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& options) {
   check_names(options.without);
   Diagnosis d;
-  d.observations = observe(folder, options.robot, options.world);
+  d.observations = observe(folder, options.robot, options.world, options.most_runs);
   for (const Observation& run : d.observations.runs) d.features.emplace_back(run.run, options.span_s);
   Diagnoser diagnoser(d, options);
   try {

@@ -14,6 +14,7 @@
 #include "gap/diagnose/evidence.hpp"
 #include "gap/diagnose/isolability.hpp"
 #include "gap/diagnose/observation.hpp"
+#include "gap/diagnose/stages.hpp"
 #include "gap/diagnose/where.hpp"
 
 namespace kenaf::gap {
@@ -26,6 +27,7 @@ struct Progress {
 struct DiagnosisOptions {
   std::string robot, world;           // instead of the dataset's; empty: its own
   std::vector<std::string> without;   // effects taken out of the catalogue; throws std::invalid_argument for others
+  std::size_t most_runs = 60;         // that are used of a larger dataset
   unsigned jobs = 0;                  // threads; 0: one a core
   std::uint64_t seed = 1;
   double span_s = 0.25;               // of a bin (chosen: four to a manoeuvre's quickest event)
@@ -60,6 +62,7 @@ struct Diagnosis {
   std::vector<Eigen::VectorXd> nominal;   // simulated features of each run
   NoiseFloor nominal_floor, floor;        // around the nominal model; around the best one
   GapPlaces where, where_left;            // before, and after the best model
+  std::vector<StageGap> stages;           // from command to sensor
   EffectCurves curves;
   Decision decision;
   GapMeasure gap;

@@ -2,11 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
+
+#include "gap/plausibility.hpp"
+#include "rollout/measured_motion.hpp"
 
 namespace kenaf::gap {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr double kMoves_mps = 1e-6, kShortest_s = 0.5;
 
@@ -33,31 +40,66 @@ double mean_of_first(std::span<const double> column, std::size_t rows, double ot
 }
 
 // A log's single first pose has the whole noise of its sensor; the rows before the first order have less together.
-void start_at_mean(Observation& observation) {
-  rollout::Start& start = *observation.replay.start;
+void start_at_mean(const Observation& observation, rollout::Manoeuvre& replay) {
+  rollout::Start& start = *replay.start;
   const std::size_t rows = observation.resting_rows;
   start.x_m = mean_of_first(observation.run.column("x_m"), rows, start.x_m);
   start.y_m = mean_of_first(observation.run.column("y_m"), rows, start.y_m);
   start.yaw_rad = mean_of_first(observation.run.column("yaw_rad"), rows, start.yaw_rad);
 }
 
+// Throws where something is certainly wrong.
+void check(const runs::Run& run, const std::string& file, const fs::path& folder, Observations& result) {
+  const std::vector<Finding> findings = check_run(run, file, &result.robot);
+  for (const Finding& finding : findings)
+    if (finding.severity == Finding::Severity::refuse)
+      throw runs::RunFileError(fmt::format("{}/{}", folder.string(), in_words(finding)));
+    else
+      result.warnings.push_back(in_words(finding));
+}
+
+// At most `most` of them, from every manoeuvre as many as possible, spread over the dataset.
+std::vector<runs::DatasetRun> drawn_evenly(const std::vector<runs::DatasetRun>& all, std::size_t most) {
+  if (all.size() <= most) return all;
+  std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> of_manoeuvre;
+  for (std::size_t i = 0; i < all.size(); ++i) of_manoeuvre[{all[i].manoeuvre, all[i].world}].push_back(i);
+  std::vector<std::vector<std::size_t>> groups;
+  for (auto& [name, runs] : of_manoeuvre) groups.push_back(std::move(runs));
+  std::ranges::stable_sort(groups, {}, &std::vector<std::size_t>::size);
+  std::vector<std::size_t> drawn;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::size_t share = std::min(groups[g].size(), (most - drawn.size()) / (groups.size() - g));
+    for (std::size_t i = 0; i < share; ++i) drawn.push_back(groups[g][i * groups[g].size() / share]);
+  }
+  std::ranges::sort(drawn);
+  std::vector<runs::DatasetRun> result;
+  for (const std::size_t i : drawn) result.push_back(all[i]);
+  return result;
+}
+
 }  // namespace
 
-Observations observe(const std::filesystem::path& folder, const std::string& robot, const std::string& world) {
+Observations observe(const fs::path& folder, const std::string& robot, const std::string& world,
+                     std::size_t most_runs) {
   Observations result;
   result.dataset = runs::read_dataset(folder);
   result.robot_name = robot.empty() ? runs::resolve_beside(folder, result.dataset.robot, ".toml") : robot;
   result.robot = physics::load_robot(result.robot_name);
+  const std::vector<runs::DatasetRun> entries = drawn_evenly(result.dataset.runs, most_runs);
+  if (entries.size() < result.dataset.runs.size())
+    result.warnings.push_back(fmt::format("{} of {} runs are used, drawn evenly from all manoeuvres", entries.size(),
+                                          result.dataset.runs.size()));
   std::map<std::string, std::size_t> worlds;
-  for (const runs::DatasetRun& entry : result.dataset.runs) {
-    Observation observation{entry.file, entry.manoeuvre, 0, {}, {}, 0};
-    try {
-      observation.run = runs::read_run(folder / entry.file);
-      observation.replay = rollout::replay_of(observation.run, entry.file);
-    } catch (const runs::RunFileError& error) {
-      result.warnings.push_back(error.what());
+  for (const runs::DatasetRun& entry : entries) {
+    if (!entry.fault.empty()) {
+      result.warnings.push_back(fmt::format("{}: its simulation went wrong; left out", entry.file));
       continue;
     }
+    Observation observation{entry.file, entry.manoeuvre, 0, {}, {}, {}, 0};
+    observation.run = runs::read_run(folder / entry.file);
+    check(observation.run, entry.file, folder, result);
+    const std::string path = (folder / entry.file).string();
+    observation.replay = rollout::replay_of(observation.run, path);
     if (observation.replay.at_most_s() < kShortest_s) {
       result.warnings.push_back(fmt::format("{}: lasts less than {} s; left out", entry.file, kShortest_s));
       continue;
@@ -69,7 +111,11 @@ Observations observe(const std::filesystem::path& folder, const std::string& rob
     if (is_new) result.worlds.push_back(physics::load_world(name, result.warnings));
     observation.world = known->second;
     observation.resting_rows = resting_rows(observation.replay);
-    start_at_mean(observation);
+    start_at_mean(observation, observation.replay);
+    if (!rollout::measured_motion(observation.run).track_mps[0].empty()) {
+      observation.measured = rollout::replay_measured_of(observation.run, path);
+      start_at_mean(observation, *observation.measured);
+    }
     result.runs.push_back(std::move(observation));
   }
   if (result.runs.empty())

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct Observation {
   std::size_t world;            // of Observations::worlds
   runs::Run run;                // as measured; t_s from 0
   rollout::Manoeuvre replay;    // its commands, from where it stood
+  std::optional<rollout::Manoeuvre> measured;  // its tracks and flippers as they were measured, where they were
   std::size_t resting_rows;     // from the first row on, before it was told to move: their mean is the start
 };
 
@@ -30,9 +32,12 @@ struct Observations {
   std::vector<std::string> warnings;  // what was left out and why, in words
 };
 
-// Reads a whole dataset. `robot` and `world` are used instead of the dataset's own where they are not empty. Throws
-// runs::RunFileError or physics::DescriptionError with file, line and column where nothing can be made of it; a single
-// run that is no use is left out with a warning.
-Observations observe(const std::filesystem::path& folder, const std::string& robot, const std::string& world);
+// Reads a dataset, but no more than `most_runs` of it, drawn evenly from all manoeuvres: more runs would take longer and
+// tell little more. `robot` and `world` are used instead of the dataset's own where they are not empty. A run that is too
+// short, or whose simulation went wrong, is left out with a warning. Throws runs::RunFileError or
+// physics::DescriptionError with file, line and column where one cannot be read or cannot be what it says it is
+// (gap/plausibility.hpp), or none is left.
+Observations observe(const std::filesystem::path& folder, const std::string& robot, const std::string& world,
+                     std::size_t most_runs);
 
 }  // namespace kenaf::gap

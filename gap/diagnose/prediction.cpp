@@ -34,11 +34,12 @@ void Predictor::simulate_nominal() {
   roll_outs_ += nominal_.size();
 }
 
-runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const {
-  const Observation& observed = observations_.runs[run];
+runs::Run Predictor::simulate(const rollout::Manoeuvre& as_recorded, std::size_t run,
+                              const Variation& variation) const {
+  if (stop_ != nullptr && *stop_) throw Stopped();
   physics::RobotDescription robot = observations_.robot;
   robot.effects = variation.effects;
-  rollout::Manoeuvre replay = observed.replay;
+  rollout::Manoeuvre replay = as_recorded;
   replay.start->x_m += variation.start_x_m;
   replay.start->y_m += variation.start_y_m;
   replay.start->yaw_rad += variation.start_yaw_rad;
@@ -46,11 +47,24 @@ runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const
   options.physics = variation.physics;
   options.noise_scale = 0;
   options.mocap_noise_m = options.mocap_noise_rad = 0;
-  return rollout::roll_out(robot, observations_.worlds[observed.world], replay, options).run;
+  return rollout::roll_out(robot, observations_.worlds[observations_.runs[run].world], replay, options).run;
+}
+
+runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const {
+  return simulate(observations_.runs[run].replay, run, variation);
+}
+
+std::vector<VectorXd> Predictor::nominal_with_measured_drives() {
+  std::vector<VectorXd> result(observations_.runs.size());
+  for_each_job(result.size(), threads_, [&](std::size_t run) {
+    if (const auto& measured = observations_.runs[run].measured)
+      result[run] = features_[run].of(simulate(*measured, run, unvaried()));
+  });
+  roll_outs_ += result.size();
+  return result;
 }
 
 VectorXd Predictor::features_of(std::size_t run, const Variation& variation) const {
-  if (stop_ != nullptr && *stop_) throw Stopped();
   return features_[run].of(simulate(run, variation));
 }
 

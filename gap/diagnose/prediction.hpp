@@ -44,6 +44,8 @@ class Predictor {
   void simulate_nominal();
   const std::vector<Eigen::VectorXd>& nominal() const { return nominal_; }
   const std::vector<std::vector<std::size_t>>& repeats() const { return repeats_; }
+  // Of all runs with belts and flippers that turn as they were measured; empty for a run in which they were not.
+  std::vector<Eigen::VectorXd> nominal_with_measured_drives();
   Variation unvaried() const { return {observations_.robot.effects, {}}; }
 
   std::vector<Shift> shifts(std::span<const Variation> variations, Fidelity fidelity);
@@ -55,6 +57,7 @@ class Predictor {
   std::size_t roll_outs() const { return roll_outs_; }
 
  private:
+  runs::Run simulate(const rollout::Manoeuvre& replay, std::size_t run, const Variation& variation) const;
   Eigen::VectorXd features_of(std::size_t run, const Variation& variation) const;
   std::vector<Shift> shifts_of_representatives(std::span<const Variation> variations,
                                                const std::vector<Eigen::VectorXd>& nominal);
