@@ -42,7 +42,7 @@ class Diagnoser {
     coherence_.emplace(d_.features, d_.repeats, options_.stretch_s);
     d_.where = places(residuals_);
     d_.stages = stage_gaps(d_.features, d_.nominal_floor, *coherence_, residuals_,
-                           predictor_.nominal_with_measured_drives());
+                           predictor_.nominal_with_measured_drives(), d_.observations);
 
     say("comparing effects", 0.1);
     d_.curves = scan_effects(candidate_curves(d_.observations, options_.without), residuals_, d_.floor, predictor_);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/repeats.hpp"
@@ -11,6 +13,8 @@ namespace {
 
 using Eigen::VectorXd;
 
+constexpr std::pair<std::string_view, std::string_view> kGyroOfAngle[] = {
+    {"gyro_x_radps", "roll_rad"}, {"gyro_y_radps", "pitch_rad"}, {"gyro_z_radps", "yaw_rad"}};
 constexpr double kLevel_rad = 0.2;  // within it rates of roll, pitch and yaw are those of the gyro's axes, to 2 %
 
 bool is_drive(std::size_t channel) {
@@ -48,32 +52,54 @@ StageGap measure(Passage passage, const std::vector<FeatureMap>& features, const
   return stage;
 }
 
-// The gyro's bins minus the mean rate of the angle that was measured, where the robot is about level; NaN elsewhere.
-VectorXd gyro_against_angles(const FeatureMap& features, const VectorXd& measured) {
+// What the gyro turned in all since the start, in the columns of the angles.
+runs::Run integrated(const runs::Run& run) {
+  const auto time = run.column("t_s");
+  runs::Run result{{"t_s"}, {{time.begin(), time.end()}}};
+  for (const auto& [gyro, angle] : kGyroOfAngle) {
+    const auto rate = run.column(gyro);
+    if (rate.empty()) continue;
+    std::vector<double> turned(rate.size(), std::numeric_limits<double>::quiet_NaN());
+    std::ptrdiff_t last = -1;
+    for (std::ptrdiff_t i = 0; i < std::ssize(turned); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (std::isnan(rate[k])) continue;
+      const auto l = static_cast<std::size_t>(last);
+      turned[k] = last < 0 ? 0 : turned[l] + (rate[l] + rate[k]) / 2 * (time[k] - time[l]);
+      last = i;
+    }
+    result.columns.emplace_back(angle);
+    result.values.push_back(std::move(turned));
+  }
+  return result;
+}
+
+// By how much faster the gyro says that the robot turned than its angles do, from the span before each one to the span
+// after it, where it is about level; in the gyros' bins, NaN elsewhere.
+VectorXd gyro_against_angles(const FeatureMap& features, const runs::Run& run) {
+  const runs::Run turned_by_gyro = integrated(run);
+  const VectorXd turned = features.of(turned_by_gyro);
+  const VectorXd& measured = features.measured();
   const auto bins = features.bins();
-  const auto bin_of = [&](std::string_view column, std::size_t span) -> std::ptrdiff_t {
-    for (std::size_t b = 0; b < bins.size(); ++b)
-      if (bins[b].span == span && diagnosis_channels()[bins[b].channel].column == column)
-        return static_cast<std::ptrdiff_t>(b);
-    return -1;
+  std::map<std::pair<std::string_view, std::size_t>, Eigen::Index> place;
+  for (std::size_t b = 0; b < bins.size(); ++b)
+    place[{diagnosis_channels()[bins[b].channel].column, bins[b].span}] = static_cast<Eigen::Index>(b);
+  const auto level = [&](std::string_view angle, std::size_t span) {
+    const auto found = place.find({angle, span});
+    return found == place.end() || std::abs(measured[found->second]) < kLevel_rad;
   };
-  VectorXd result = VectorXd::Constant(static_cast<Eigen::Index>(bins.size()), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t b = 0; b < bins.size(); ++b) {
-    if (!is_gyro(bins[b].channel) || bins[b].span == 0) continue;
-    const std::string_view gyro = diagnosis_channels()[bins[b].channel].column;
-    const std::string_view angle = gyro[5] == 'x' ? "roll_rad" : gyro[5] == 'y' ? "pitch_rad" : "yaw_rad";
-    const auto before = bin_of(angle, bins[b].span - 1), after = bin_of(angle, bins[b].span + 1);
-    const auto roll = bin_of("roll_rad", bins[b].span), pitch = bin_of("pitch_rad", bins[b].span);
-    if (before < 0 || after < 0) continue;
-    if ((roll >= 0 && std::abs(measured[roll]) > kLevel_rad) || (pitch >= 0 && std::abs(measured[pitch]) > kLevel_rad))
-      continue;
-    // means over neighbouring spans differ by the rate's mean over both, with triangular weights: as the gyro's own,
-    // weighted likewise
-    const auto gyro_before = bin_of(gyro, bins[b].span - 1), gyro_after = bin_of(gyro, bins[b].span + 1);
-    if (gyro_before < 0 || gyro_after < 0) continue;
-    const auto i = static_cast<Eigen::Index>(b);
-    const double weighted = (measured[gyro_before] + 2 * measured[i] + measured[gyro_after]) / 4;
-    result[i] = weighted - (measured[after] - measured[before]) / (2 * features.span_s());
+  VectorXd result = VectorXd::Constant(turned.size(), std::numeric_limits<double>::quiet_NaN());
+  for (const auto& [gyro, angle] : kGyroOfAngle) {
+    if (turned_by_gyro.column(angle).empty()) continue;
+    for (std::size_t b = 0; b < bins.size(); ++b) {
+      const std::size_t span = bins[b].span;
+      if (diagnosis_channels()[bins[b].channel].column != gyro || span == 0) continue;
+      const auto before = place.find({angle, span - 1}), after = place.find({angle, span + 1});
+      if (before == place.end() || after == place.end() || !level("roll_rad", span) || !level("pitch_rad", span)) continue;
+      const double by_gyro = turned[after->second] - turned[before->second];
+      const double by_angle = measured[after->second] - measured[before->second];
+      result[static_cast<Eigen::Index>(b)] = (by_gyro - by_angle) / (2 * features.span_s());
+    }
   }
   return result;
 }
@@ -82,11 +108,11 @@ VectorXd gyro_against_angles(const FeatureMap& features, const VectorXd& measure
 
 std::vector<StageGap> stage_gaps(const std::vector<FeatureMap>& features, const NoiseFloor& floor,
                                  const Coherence& coherence, const std::vector<VectorXd>& residuals,
-                                 const std::vector<VectorXd>& with_measured_drives) {
+                                 const std::vector<VectorXd>& with_measured_drives, const Observations& observations) {
   std::vector<VectorXd> of_body(features.size()), of_sensor(features.size());
   for (std::size_t r = 0; r < features.size(); ++r) {
     if (with_measured_drives[r].size() > 0) of_body[r] = features[r].measured() - with_measured_drives[r];
-    of_sensor[r] = gyro_against_angles(features[r], features[r].measured());
+    of_sensor[r] = gyro_against_angles(features[r], observations.runs[r].run);
   }
   return {measure(Passage::command_to_drive, features, floor, coherence, residuals, is_drive),
           measure(Passage::drive_to_body, features, floor, coherence, of_body,

@@ -9,6 +9,7 @@
 
 #include "gap/diagnose/coherence.hpp"
 #include "gap/diagnose/noise_floor.hpp"
+#include "gap/diagnose/observation.hpp"
 
 namespace kenaf::gap {
 
@@ -26,6 +27,7 @@ inline constexpr double kStageChance = 2;
 // In the order of Passage. `residuals`: measured minus nominal; `with_measured_drives` as Predictor has it.
 std::vector<StageGap> stage_gaps(const std::vector<FeatureMap>& features, const NoiseFloor& floor,
                                  const Coherence& coherence, const std::vector<Eigen::VectorXd>& residuals,
-                                 const std::vector<Eigen::VectorXd>& with_measured_drives);
+                                 const std::vector<Eigen::VectorXd>& with_measured_drives,
+                                 const Observations& observations);
 
 }  // namespace kenaf::gap
