@@ -50,6 +50,8 @@ constexpr P kPostureBias[] = {{"pitch_rad", "rad", 0, -0.1, 0.1, &E::posture_bia
 constexpr P kPostureScale[] = {{"scale", "1", 1, 0.7, 1.3, &E::posture_scale}};
 constexpr P kPostureDelay[] = {{"delay_s", "s", 0, 0, 0.5, &E::posture_delay_s}};
 constexpr P kPostureMount[] = {{"yaw_rad", "rad", 0, -0.3, 0.3, &E::posture_mount_rad}};
+constexpr P kTrackingDelay[] = {{"delay_s", "s", 0, 0, 0.5, &E::tracking_delay_s}};
+constexpr P kTrackingScale[] = {{"scale", "1", 1, 0.8, 1.2, &E::tracking_scale}};
 
 constexpr EffectInfo kCatalogue[] = {
     {"command_delay", Stage::command, "commands reach the drives late", kCommandDelay},
@@ -91,6 +93,8 @@ constexpr EffectInfo kCatalogue[] = {
     {"posture_scale", Stage::sensor, "the posture sensor's roll and pitch are multiplied", kPostureScale},
     {"posture_delay", Stage::sensor, "the posture sensor reports late", kPostureDelay},
     {"posture_mount", Stage::sensor, "the posture sensor is mounted turned about the vertical", kPostureMount},
+    {"tracking_delay", Stage::sensor, "motion capture or lidar reports the pose late", kTrackingDelay},
+    {"tracking_scale", Stage::sensor, "motion capture or lidar reports distances multiplied", kTrackingScale},
 };
 
 template <typename Range>

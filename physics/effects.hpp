@@ -55,6 +55,8 @@ struct Effects {
   double posture_scale = 1;     // of reported roll and pitch
   double posture_delay_s = 0;
   double posture_mount_rad = 0;  // the posture sensor is mounted turned about z
+  double tracking_delay_s = 0;   // of the pose that motion capture or lidar reports; no sensor of the robot
+  double tracking_scale = 1;     // of its x, y from the first pose on
 
   bool operator==(const Effects&) const = default;
 };

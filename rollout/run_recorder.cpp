@@ -92,7 +92,8 @@ RunRecorder::RunRecorder(const RobotDescription& robot, const RollOutOptions& op
     : robot_(robot),
       mocap_noise_m_(options.mocap_noise_m * options.noise_scale),
       mocap_noise_rad_(options.mocap_noise_rad * options.noise_scale),
-      mocap_noise_(options.seed, "world", "motion capture") {
+      mocap_noise_(options.seed, "world", "motion capture"),
+      tracking_(robot.effects) {
   const bool flippers = robot.has_flippers(), drives = has(robot, SensorType::drives);
   time_ = add_group(true, {"t_s"});
   cmd_track_ = add_group(true, {"cmd_track_left_mps", "cmd_track_right_mps"});
@@ -159,9 +160,10 @@ void RunRecorder::add(double t_s, const physics::RobotCommand& command, const ph
   const auto& flipper = command.flipper;
   put(cmd_flipper_,
       {flipper[kFrontLeft].value, flipper[kFrontRight].value, flipper[kRearLeft].value, flipper[kRearRight].value});
-  const Eigen::Vector3d p_WB = truth.X_WB.p + mocap_noise_.normal3(mocap_noise_m_);
+  const TrackedPose tracked = tracking_.report(t_s, {truth.X_WB.p, physics::roll_pitch_yaw(truth.X_WB.q).z()});
+  const Eigen::Vector3d p_WB = tracked.p_WB_m + mocap_noise_.normal3(mocap_noise_m_);
   put(position_, {p_WB.x(), p_WB.y(), p_WB.z()});
-  put(yaw_, {frames::wrap_angle(physics::roll_pitch_yaw(truth.X_WB.q).z() + mocap_noise_.normal(mocap_noise_rad_))});
+  put(yaw_, {frames::wrap_angle(tracked.yaw_rad + mocap_noise_.normal(mocap_noise_rad_))});
   for (const physics::SensorSample& sample : samples)
     std::visit([this](const auto& reading) { put_reading(reading); }, sample.reading);
 }

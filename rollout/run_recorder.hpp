@@ -7,6 +7,7 @@
 
 #include "physics/sensors/noise.hpp"
 #include "rollout/roll_out.hpp"
+#include "rollout/tracking.hpp"
 
 namespace kenaf::rollout {
 
@@ -42,6 +43,7 @@ class RunRecorder {
   const physics::RobotDescription& robot_;
   double mocap_noise_m_, mocap_noise_rad_;
   physics::NoiseSource mocap_noise_;
+  Tracking tracking_;
   runs::Run run_;
   Group time_, cmd_track_, cmd_flipper_, track_speed_, track_travel_, flipper_, track_current_, flipper_current_,
       battery_, position_, tilt_, yaw_, gyro_, acceleration_;

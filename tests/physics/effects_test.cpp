@@ -72,7 +72,8 @@ TEST_CASE("E1: at its neutral value no effect changes a bit") {
   }
 }
 
-TEST_CASE("E2: at any other value every effect changes what the robot does or measures") {
+// Motion capture is no sensor of the robot: what tracking does is in tests/rollout/tracking_test.cpp.
+TEST_CASE("E2: at any other value every effect but those of tracking changes what the robot does or measures") {
   const std::uint64_t nominal = drive_with({}).hash;
   for (const EffectInfo& effect : effect_catalogue()) {
     for (const EffectParameter& parameter : effect.parameters) {
@@ -81,7 +82,7 @@ TEST_CASE("E2: at any other value every effect changes what the robot does or me
         Effects effects;
         effects.*(parameter.value) = value;
         INFO(effect.name << ", " << parameter.name << " = " << value);
-        CHECK(drive_with(effects).hash != nominal);
+        CHECK((drive_with(effects).hash != nominal) == !effect.name.starts_with("tracking_"));
       }
     }
   }

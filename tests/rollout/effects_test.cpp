@@ -134,6 +134,8 @@ const std::map<std::string_view, Shows> kShows{
     {"posture_scale", {lifting, "pitch_rad"}},
     {"posture_delay", {lifting, "pitch_rad"}},
     {"posture_mount", {lifting, "roll_rad"}},
+    {"tracking_delay", {turning, "x_m"}},
+    {"tracking_scale", {turning, "x_m"}},
 };
 
 }  // namespace
