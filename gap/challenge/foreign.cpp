@@ -13,35 +13,26 @@ std::vector<double>* column_of(runs::Run& run, std::string_view name) {
   return nullptr;
 }
 
-// As it was `delay_s` before, the first value before that.
-void delay(std::vector<double>& column, const std::vector<double>& time_s, double delay_s) {
-  std::vector<double> known_t_s, known;
-  for (std::size_t i = 0; i < column.size(); ++i)
-    if (!std::isnan(column[i])) known_t_s.push_back(time_s[i]), known.push_back(column[i]);
-  if (known.empty()) return;
-  for (std::size_t i = 0; i < column.size(); ++i) {
-    if (std::isnan(column[i])) continue;
-    const double at_s = time_s[i] - delay_s;
-    const auto after = std::ranges::upper_bound(known_t_s, at_s) - known_t_s.begin();
-    if (after == 0) {
-      column[i] = known.front();
-      continue;
-    }
-    const auto k = static_cast<std::size_t>(after);
-    if (k == known.size()) continue;
-    const double share = (at_s - known_t_s[k - 1]) / (known_t_s[k] - known_t_s[k - 1]);
-    column[i] = known[k - 1] + share * (known[k] - known[k - 1]);
+// A first-order lag of what `value_of` picks of each command, from `at_start` on.
+template <class ValueOf>
+void follow_late(rollout::Manoeuvre& replay, double lag_s, double at_start, ValueOf&& value_of) {
+  double followed = at_start, last_s = 0;
+  for (rollout::TimedCommand& timed : replay.timed) {
+    double& value = value_of(timed.command);
+    // with no lag, what was asked to the last bit
+    followed = lag_s > 0 ? followed + (value - followed) * -std::expm1(-(timed.t_s - last_s) / lag_s) : value;
+    last_s = timed.t_s;
+    value = followed;
   }
 }
 
-void follow_late(rollout::Manoeuvre& replay, std::size_t track, double lag_s) {
-  double followed_mps = 0, last_s = 0;
-  for (rollout::TimedCommand& timed : replay.timed) {
-    double& command_mps = timed.command.track_speed_mps[track];
-    followed_mps += (command_mps - followed_mps) * -std::expm1(-(timed.t_s - last_s) / lag_s);
-    last_s = timed.t_s;
-    command_mps = followed_mps;
-  }
+// Of the right track, for a fifth of a second in every 1.3, which is no multiple of anything a manoeuvre does.
+constexpr double kCutOutEvery_s = 1.3, kCutOut_s = 0.2;
+
+void cut_out(rollout::Manoeuvre& replay, double share) {
+  for (rollout::TimedCommand& timed : replay.timed)
+    if (std::fmod(timed.t_s, kCutOutEvery_s) >= kCutOutEvery_s - kCutOut_s)
+      timed.command.track_speed_mps[physics::kRight] *= 1 - share;
 }
 
 }  // namespace
@@ -54,8 +45,25 @@ physics::RobotDescription with_foreign(physics::RobotDescription robot, std::str
   return robot;
 }
 
+bool is_of_commands(std::string_view foreign) {
+  return foreign == "left_drive_lag" || foreign == "right_flipper_lag" || foreign == "right_drive_cuts_out" ||
+         foreign == "command_dead_band";
+}
+
 void obey_foreign(rollout::Manoeuvre& replay, std::string_view foreign, double amount) {
-  if (foreign == "left_drive_lag") follow_late(replay, 0, 0.3 * amount);
+  if (foreign == "left_drive_lag")
+    follow_late(replay, 0.3 * amount, 0,
+                [](physics::RobotCommand& command) -> double& { return command.track_speed_mps[physics::kLeft]; });
+  if (foreign == "right_flipper_lag" && !replay.timed.empty()) {
+    const auto angle_of = [](physics::RobotCommand& command) -> double& {
+      return command.flipper[physics::kFrontRight].value;
+    };
+    const bool known = replay.start && replay.start->flipper_rad;
+    follow_late(replay, 0.5 * amount,
+                known ? (*replay.start->flipper_rad)[physics::kFrontRight] : angle_of(replay.timed.front().command),
+                angle_of);
+  }
+  if (foreign == "right_drive_cuts_out") cut_out(replay, amount);
   if (foreign == "command_dead_band")
     for (rollout::TimedCommand& timed : replay.timed)
       for (double& speed_mps : timed.command.track_speed_mps)
@@ -63,22 +71,10 @@ void obey_foreign(rollout::Manoeuvre& replay, std::string_view foreign, double a
 }
 
 void record_foreign(runs::Run& run, std::string_view foreign, double amount) {
-  const std::vector<double> time_s = *column_of(run, "t_s");
-  const auto each = [&](std::initializer_list<const char*> names, auto&& change) {
-    for (const char* name : names)
-      if (std::vector<double>* column = column_of(run, name)) change(*column);
-  };
-  if (foreign == "pose_scale")
-    each({"x_m", "y_m"}, [&](std::vector<double>& column) {
-      const double origin = column.front();
-      for (double& value : column) value = origin + (value - origin) * (1 + 0.1 * amount);
-    });
-  if (foreign == "pose_delay")
-    each({"x_m", "y_m", "z_m", "yaw_rad"}, [&](std::vector<double>& column) { delay(column, time_s, 0.3 * amount); });
   if (foreign == "gyro_scale")
-    each({"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"}, [&](std::vector<double>& column) {
-      for (double& value : column) value *= 1 + 0.2 * amount;
-    });
+    for (const char* name : {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"})
+      if (std::vector<double>* column = column_of(run, name))
+        for (double& value : *column) value *= 1 + 0.2 * amount;
 }
 
 }  // namespace kenaf::gap

@@ -12,7 +12,8 @@ namespace kenaf::gap {
 
 // `amount`: 0 changes nothing, 1 is as much as is credible.
 physics::RobotDescription with_foreign(physics::RobotDescription robot, std::string_view foreign, double amount);
-// What of the commands of a replay arrives.
+// What of the commands of a replay arrives, of one that changes commands at all.
+bool is_of_commands(std::string_view foreign);
 void obey_foreign(rollout::Manoeuvre& replay, std::string_view foreign, double amount);
 // What is recorded of a run.
 void record_foreign(runs::Run& run, std::string_view foreign, double amount);

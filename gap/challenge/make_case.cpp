@@ -82,10 +82,7 @@ runs::Run make_run(const CasePlan& plan, const Recipe& recipe, const std::string
   options.start_scatter_rad = kStartScatter_rad;
 
   runs::Run run;
-  rollout::Manoeuvre obeyed = manoeuvre;
-  obey_foreign(obeyed, recipe.foreign, recipe.foreign_amount);
-  const bool changes_commands = recipe.foreign == "left_drive_lag" || recipe.foreign == "command_dead_band";
-  if (changes_commands) {
+  if (is_of_commands(recipe.foreign)) {
     rollout::RollOutOptions exact = options;
     exact.noise_scale = exact.mocap_noise_m = exact.mocap_noise_rad = 0;
     const runs::Run asked = rollout::roll_out(robot, world, manoeuvre, exact).run;

@@ -87,8 +87,8 @@ std::vector<ForeignEffect> foreign_effects() {
   return {{"track_gauge", "the tracks lie further apart"},
           {"servo_speed", "the flipper servos turn slower than thought"},
           {"flipper_length", "the flippers are longer"},
-          {"pose_scale", "motion capture's scale is wrong"},
-          {"pose_delay", "motion capture is late"},
+          {"right_drive_cuts_out", "a loose contact stops one track's drive now and then"},
+          {"right_flipper_lag", "one of the front flippers follows later than the other"},
           {"left_drive_lag", "one track's drive follows later than the other's"},
           {"command_dead_band", "slow track commands are not obeyed"},
           {"gyro_scale", "the gyro's scale is wrong"}};

@@ -1,0 +1,73 @@
+// Deviations that the catalogue has no effect for.
+#include "gap/challenge/foreign.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "gap/challenge/plan.hpp"
+#include "physics/effects.hpp"
+
+using namespace kenaf;
+using namespace kenaf::gap;
+
+namespace {
+
+// Both tracks at 0.3 m/s, all flippers at 1 rad, from flippers at 0 on.
+rollout::Manoeuvre drive() {
+  rollout::Manoeuvre replay;
+  replay.start = rollout::Start{
+      .x_m = 0, .y_m = 0, .yaw_rad = 0, .z_m = {}, .flipper_rad = std::array{0.0, 0.0, 0.0, 0.0}, .motion = {}};
+  physics::RobotCommand command;
+  command.track_speed_mps = {0.3, 0.3};
+  for (auto& flipper : command.flipper) flipper = {physics::JointMode::angle, 1};
+  for (int i = 0; i <= 300; ++i) replay.timed.push_back({i * 0.01, command});
+  return replay;
+}
+
+const physics::RobotCommand& at(const rollout::Manoeuvre& replay, double t_s) {
+  return replay.timed[static_cast<std::size_t>(std::lround(t_s / 0.01))].command;
+}
+
+}  // namespace
+
+TEST_CASE("A foreign deviation is none of the catalogue's, changes nothing at 0, and one of commands does at 1") {
+  for (const ForeignEffect& foreign : foreign_effects()) {
+    INFO(foreign.name);
+    CHECK(physics::find_effect(foreign.name) == nullptr);
+    rollout::Manoeuvre none = drive(), all = drive();
+    obey_foreign(none, foreign.name, 0);
+    obey_foreign(all, foreign.name, 1);
+    const auto same = [](const rollout::Manoeuvre& a, const rollout::Manoeuvre& b) {
+      for (std::size_t i = 0; i < a.timed.size(); ++i) {
+        if (a.timed[i].command.track_speed_mps != b.timed[i].command.track_speed_mps) return false;
+        for (std::size_t f = 0; f < physics::kFlipperCount; ++f)
+          if (a.timed[i].command.flipper[f].value != b.timed[i].command.flipper[f].value) return false;
+      }
+      return true;
+    };
+    CHECK(same(none, drive()));
+    CHECK(same(all, drive()) == !is_of_commands(foreign.name));
+  }
+}
+
+TEST_CASE("One flipper that lags by half a second is 1 - 1/e of its way after that, the others are there") {
+  rollout::Manoeuvre replay = drive();
+  obey_foreign(replay, "right_flipper_lag", 1);
+  const physics::RobotCommand& command = at(replay, 0.5);
+  CHECK(command.flipper[physics::kFrontRight].value == Approx(1 - std::exp(-1)));
+  for (const std::size_t other : {physics::kFrontLeft, physics::kRearLeft, physics::kRearRight})
+    CHECK(command.flipper[other].value == 1);
+  CHECK(command.track_speed_mps[physics::kRight] == 0.3);
+}
+
+TEST_CASE("A loose contact stops the right track for the last 0.2 s of each 1.3 s; half of it halves the speed then") {
+  rollout::Manoeuvre replay = drive(), half = drive();
+  obey_foreign(replay, "right_drive_cuts_out", 1);
+  obey_foreign(half, "right_drive_cuts_out", 0.5);
+  for (const double t_s : {0.0, 1.05, 1.35, 2.35, 2.7}) CHECK(at(replay, t_s).track_speed_mps[physics::kRight] == 0.3);
+  for (const double t_s : {1.15, 1.25, 2.45}) {
+    CHECK(at(replay, t_s).track_speed_mps[physics::kRight] == 0);
+    CHECK(at(half, t_s).track_speed_mps[physics::kRight] == Approx(0.15));
+    CHECK(at(replay, t_s).track_speed_mps[physics::kLeft] == 0.3);
+  }
+}
