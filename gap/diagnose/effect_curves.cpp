@@ -9,6 +9,12 @@ namespace {
 // Parts of the way from neutral to an end of the range.
 constexpr double kSpread[] = {0.25, 1};
 
+constexpr double kRoughReach = 2;
+
+std::size_t neutral_point(const EffectCurve& curve) {
+  return static_cast<std::size_t>(std::ranges::find(curve.points, -1, &CurvePoint::column) - curve.points.begin());
+}
+
 bool has_obstacles(const Observations& observations) {
   return std::ranges::any_of(observations.worlds, [](const physics::WorldDescription& world) {
     return !world.boxes.empty() || !world.meshes.empty();
@@ -20,6 +26,15 @@ bool applies(const physics::EffectInfo& effect, const Observations& observations
   if (effect.name.starts_with("flipper_")) return observations.robot.has_flippers();
   if (effect.name.starts_with("obstacle_")) return has_obstacles(observations);
   return true;
+}
+
+// A straight line between an exact point and a rough one near it would lead anywhere.
+void forget_rough_points(EffectCurve& curve, double exact_value) {
+  const double neutral = curve.points[neutral_point(curve)].value, reach = kRoughReach * (exact_value - neutral);
+  std::erase_if(curve.points, [&](const CurvePoint& point) {
+    const double from_neutral = point.value - neutral;
+    return !point.exact && from_neutral * reach > 0 && std::abs(from_neutral) < std::abs(reach);
+  });
 }
 
 }  // namespace
@@ -70,6 +85,7 @@ void add_points(EffectCurves& curves, std::span<const NewPoint> points, Fidelity
   for (std::size_t p = 0; p < points.size(); ++p) {
     EffectCurve& curve = curves.curves[points[p].curve];
     const CurvePoint added{points[p].value, first + static_cast<int>(p), fidelity == Fidelity::every_run};
+    if (added.exact) forget_rough_points(curve, added.value);
     const auto place = std::ranges::lower_bound(curve.points, added.value, {}, &CurvePoint::value);
     if (place != curve.points.end() && place->value == added.value)
       *place = added;

@@ -112,8 +112,8 @@ HeldOut hold_out(const EffectCurves& curves, const NoiseFloor& floor, const Mode
   std::vector<double> before, after, bins;
   for (std::size_t r = 0; r < runs; ++r) {
     result.left.push_back(curves.residual[r] - shift[r]);
-    before.push_back(curves.residual[r].cwiseQuotient(floor.sigma_of_bin[r]).squaredNorm());
-    after.push_back(result.left[r].cwiseQuotient(floor.sigma_of_bin[r]).squaredNorm());
+    before.push_back(floor.whiteners[r](curves.residual[r]).squaredNorm());
+    after.push_back(floor.whiteners[r](result.left[r]).squaredNorm());
     bins.push_back(static_cast<double>(curves.residual[r].size()));
   }
   const auto rms = [&](const std::vector<double>& squares, std::span<const double> weights) {

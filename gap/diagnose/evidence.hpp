@@ -29,7 +29,7 @@ double shrink(double before, double after, double floor);
 // One model on runs held out of its fit.
 struct HeldOut {
   std::vector<Eigen::VectorXd> left;  // of each run: measured minus what the model fitted to the other folds says
-  double before = 0, after = 0, floor = 0;  // rms, in units of sigma
+  double before = 0, after = 0, floor = 0;  // rms, whitened
   Interval shrink;
 };
 

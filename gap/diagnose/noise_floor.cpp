@@ -73,7 +73,7 @@ double NoiseFloor::rms(const std::vector<VectorXd>& differences) const {
   double sum = 0, count = 0;
   for (std::size_t r = 0; r < differences.size(); ++r) {
     if (differences[r].size() == 0) continue;
-    sum += differences[r].cwiseQuotient(sigma_of_bin[r]).squaredNorm();
+    sum += whiteners[r](differences[r]).squaredNorm();
     count += static_cast<double>(differences[r].size());
   }
   return count > 0 ? std::sqrt(sum / count) : 0;

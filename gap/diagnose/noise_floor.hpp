@@ -37,7 +37,7 @@ struct NoiseFloor {
   std::vector<Whitener> whiteners;  // of each run
   bool from_repeats = false;        // otherwise from the residuals alone, which a gap makes larger
 
-  // Of all bins of all runs that are not empty, in units of sigma_of_bin.
+  // Of all bins of all runs that are not empty, whitened: 1 is the floor, whatever its shapes.
   double rms(const std::vector<Eigen::VectorXd>& differences) const;
 };
 

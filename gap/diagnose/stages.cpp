@@ -36,10 +36,10 @@ StageGap measure(Passage passage, const std::vector<FeatureMap>& features, const
       const auto i = static_cast<Eigen::Index>(b);
       if (residual[r].size() == 0 || std::isnan(residual[r][i]) || !chosen(features[r].bins()[b].channel)) continue;
       kept[i] = residual[r][i];
-      stage.rms += std::pow(kept[i] / floor.sigma_of_bin[r][i], 2);
       ++stage.bins;
     }
     whitened.push_back(floor.whiteners[r](kept));
+    stage.rms += whitened.back().squaredNorm();
   }
   std::size_t cells = 0;
   for (const Cell& cell : coherence.cells(whitened)) {

@@ -17,7 +17,7 @@ enum class Passage { command_to_drive, drive_to_body, body_to_sensor };
 
 struct StageGap {
   Passage passage;
-  double rms;         // of its channels' residual, in units of sigma
+  double rms;         // of its channels' residual, whitened
   double chance;      // energy of its cells over their number; near 1 or below without a gap
   std::size_t bins;   // 0: these runs do not measure it
 };
