@@ -38,17 +38,6 @@ Line joined_pairs(const ComparedRun& run) {
   return line;
 }
 
-void add_world(Chart& chart, const physics::WorldDescription& world, double y_m, const Point& low, const Point& high) {
-  const WorldSection section = world_section(world, y_m, low, high);
-  for (const auto& solid : section.solids) chart.areas.push_back({solid, Ink::ground});
-  std::vector<Point> meshes;
-  for (const auto& [a, b] : section.surfaces) {
-    const bool seen = std::max(a.x(), b.x()) > low.x() && std::min(a.x(), b.x()) < high.x();
-    if (seen) meshes.insert(meshes.end(), {a, b, kBreak});
-  }
-  if (!meshes.empty()) chart.areas.push_back({std::move(meshes), Ink::ground, false});
-}
-
 double degrees(double rad) {
   return kDegrees * rad;
 }
@@ -100,7 +89,7 @@ Chart path_figure(const ComparedRun& run, const physics::WorldDescription* world
   // The view may grow to keep its scale; the section reaches beyond whatever it grows to.
   const double beyond_m = 10 * (1 + (high - low).maxCoeff());
   const double y_m = std::isnan(run.real.front().y_m) ? 0 : run.real.front().y_m;
-  if (world != nullptr) add_world(chart, *world, y_m, low.array() - beyond_m, high.array() + beyond_m);
+  if (world != nullptr) draw_section(chart, *world, y_m, low.array() - beyond_m, high.array() + beyond_m);
   chart.lines = {joined_pairs(run), std::move(real), std::move(sim)};
   return chart;
 }

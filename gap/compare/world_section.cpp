@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace kenaf::gap {
 
@@ -83,6 +84,19 @@ WorldSection world_section(const physics::WorldDescription& world, double y_m, c
     }
   }
   return section;
+}
+
+void draw_section(plot::Chart& chart, const physics::WorldDescription& world, double y_m, const Vector2d& low,
+                  const Vector2d& high) {
+  const WorldSection section = world_section(world, y_m, low, high);
+  for (const auto& solid : section.solids) chart.areas.push_back({solid, plot::Ink::ground});
+  const Vector2d line_break{std::numeric_limits<double>::quiet_NaN(), 0};
+  std::vector<Vector2d> meshes;
+  for (const auto& [a, b] : section.surfaces) {
+    const bool seen = std::max(a.x(), b.x()) > low.x() && std::min(a.x(), b.x()) < high.x();
+    if (seen) meshes.insert(meshes.end(), {a, b, line_break});
+  }
+  if (!meshes.empty()) chart.areas.push_back({std::move(meshes), plot::Ink::ground, false});
 }
 
 }  // namespace kenaf::gap

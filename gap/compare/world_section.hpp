@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "gap/plot/chart.hpp"
 #include "physics/world_description.hpp"
 
 namespace kenaf::gap {
@@ -18,5 +19,9 @@ struct WorldSection {
 // move are left out. low < high in both.
 WorldSection world_section(const physics::WorldDescription& world, double y_m, const Eigen::Vector2d& low,
                            const Eigen::Vector2d& high);
+
+// Puts that section behind what a chart in (x, z) shows.
+void draw_section(plot::Chart& chart, const physics::WorldDescription& world, double y_m, const Eigen::Vector2d& low,
+                  const Eigen::Vector2d& high);
 
 }  // namespace kenaf::gap

@@ -221,6 +221,9 @@ void check_names(const std::vector<std::string>& without) {
 Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& options) {
   check_names(options.without);
   Diagnosis d;
+  d.options = options;
+  d.options.progress = {};
+  d.options.stop = nullptr;
   d.observations = observe(folder, options.robot, options.world, options.most_runs);
   for (const Observation& run : d.observations.runs) d.features.emplace_back(run.run, options.span_s);
   Diagnoser diagnoser(d, options);

@@ -56,6 +56,7 @@ struct GapMeasure {
 };
 
 struct Diagnosis {
+  DiagnosisOptions options;               // that it was made with, without `progress` and `stop`
   Observations observations;
   std::vector<FeatureMap> features;
   std::vector<std::vector<std::size_t>> repeats;

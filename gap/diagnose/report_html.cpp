@@ -1,13 +1,56 @@
+// The page of a diagnosis: one file that opens offline.
 #include <fmt/format.h>
 
+#include "gap/diagnose/page/sections.hpp"
 #include "gap/diagnose/report.hpp"
 #include "gap/plot/chart.hpp"
 
 namespace kenaf::gap {
+namespace {
+
+constexpr std::string_view kPageStyle = R"(body { background: var(--paper); color: var(--ink); max-width: 1060px;
+  margin: 24px auto; padding: 0 16px; font: 15px/1.45 system-ui, "DejaVu Sans", "Liberation Sans", Arial, sans-serif; }
+h1 { font-size: 25px; line-height: 1.25; margin: 2px 0 10px; } h2 { font-size: 19px; margin: 44px 0 4px; }
+h3 { font-size: 15px; margin: 22px 0 2px; } h3 .soft { font-weight: 400; }
+p { margin: 6px 0; max-width: 88ch; } ul { margin: 6px 0; padding-left: 22px; max-width: 88ch; }
+.soft { color: var(--soft); } a { color: var(--real); }
+nav { margin: 14px 0; font-size: 13px; } nav a { margin-right: 14px; white-space: nowrap; }
+.verdict { border-left: 5px solid var(--real); padding: 4px 0 4px 18px; margin: 16px 0; }
+.word { text-transform: uppercase; letter-spacing: 0.08em; font-size: 13px; font-weight: 600; color: var(--real); }
+.warning { border-left: 5px solid var(--sim); padding-left: 12px; } ul.warning { padding-left: 28px; }
+.tables { overflow-x: auto; } .tables svg.chart { max-width: none; }
+table { border-collapse: collapse; font-size: 13px; margin: 12px 0; font-variant-numeric: tabular-nums; }
+th, td { padding: 3px 9px; text-align: right; border-bottom: 1px solid var(--grid); white-space: nowrap; }
+th { font-weight: 600; color: var(--soft); }
+th.text, td.text { text-align: left; } th:first-child, td:first-child { padding-left: 0; }
+.figures { display: flex; flex-wrap: wrap; gap: 12px 12px; margin: 8px 0; }
+@media print { body { max-width: none; } nav { display: none; } svg.chart, tr, .verdict { break-inside: avoid; }
+  h2, h3 { break-after: avoid; } .tables svg.chart { max-width: 100%; } }
+)";
+
+constexpr std::string_view kContents =
+    "<nav><a href=\"#overlay\">Runs</a><a href=\"#residuals\">Residuals</a><a href=\"#where\">Where</a>"
+    "<a href=\"#ranking\">Effects</a><a href=\"#confusability\">Confusability</a><a href=\"#next\">Next</a>"
+    "<a href=\"#used\">Used</a><a href=\"#method\">Method</a></nav>\n";
+
+}  // namespace
+
+std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays) {
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>Gap diagnosis: {}</title>\n"
+      "<style>\n{}{}</style>\n</head>\n<body>\n<p class=\"soft\">Diagnosis of the gap between a robot and its "
+      "simulation. {}</p>\n",
+      d.interrupted.empty() ? verdict_name(d.decision.verdict) : "unfinished", plot::style_sheet(), kPageStyle,
+      plot::escaped(d.observations.dataset.description));
+  html += verdict_section(d) + kContents.data();
+  html += overlay_section(d, overlays) + residual_section(d) + where_section(d, overlays);
+  html += ranking_section(d) + confusability_section(d) + next_section(d);
+  return html + used_section(d, overlays) + method_section(d) + "</body>\n</html>\n";
+}
 
 std::string diagnosis_html(const Diagnosis& d) {
-  return fmt::format("<!doctype html><meta charset=\"utf-8\"><title>Diagnosis</title><pre>{}</pre>\n",
-                     plot::escaped(diagnosis_text(d)));
+  return diagnosis_page(d, simulate_overlays(d));
 }
 
 }  // namespace kenaf::gap

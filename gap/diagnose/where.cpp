@@ -45,7 +45,7 @@ GapPlaces locate(const Observations& observations, const std::vector<FeatureMap>
   double total = 0;
   for (const Cell& cell : cells) total += beyond_chance(cell);
 
-  GapPlaces places{channels_of(features, floor, residual), {}};
+  GapPlaces places{channels_of(features, floor, residual), {}, total};
   for (const Cell& cell : cells)
     if (total > 0) places.channels[cell.channel].share += beyond_chance(cell) / total;
   std::erase_if(places.channels, [](const ChannelGap& channel) { return channel.floor == 0; });
@@ -55,7 +55,7 @@ GapPlaces locate(const Observations& observations, const std::vector<FeatureMap>
     const Observation& run = observations.runs[representative(observations, repeats[g])];
     std::vector<PhaseGap> phases;
     for (const PhaseSpan& span : phases_of(run))
-      phases.push_back({run.manoeuvre, span.name, span.from_s, span.to_s, span.x_m, span.y_m, 0});
+      phases.push_back({run.manoeuvre, span.name, span.from_s, span.to_s, span.x_m, span.y_m, 0, g});
     for (const Cell& cell : cells) {
       if (cell.group != g || total == 0) continue;
       // a stretch that spans two phases is shared between them by time

@@ -23,11 +23,13 @@ struct PhaseGap {
   std::string_view phase;
   double from_s, to_s, x_m, y_m;
   double share;          // of all that is beyond chance
+  std::size_t group;     // of repeats_of()
 };
 
 struct GapPlaces {
   std::vector<ChannelGap> channels;  // that were measured, largest share first
   std::vector<PhaseGap> phases;      // of one run of each group of repeats, largest share first
+  double beyond_chance = 0;          // what the shares are of: the sum over cells of squared floors
 };
 
 // `residual` in the channels' units; both of every run.

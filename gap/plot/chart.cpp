@@ -21,13 +21,8 @@ constexpr double kPixelsPerTick_x = 60, kPixelsPerTick_y = 30;
 constexpr double kTolerance_px = 0.15;                        // by which a drawn line may differ from its points
 constexpr double kLeastHeight_px = 90, kMostHeight_px = 340;  // of the plot, where the scales are equal
 
-std::string_view ink_class(Ink ink) {
-  constexpr std::string_view kClasses[] = {"real", "sim", "third", "fourth", "faint", "ground"};
-  return kClasses[static_cast<std::size_t>(ink)];
-}
-
 std::string_view stroke_class(Stroke stroke) {
-  constexpr std::string_view kClasses[] = {"solid", "dashed", "dotted", "hair"};
+  constexpr std::string_view kClasses[] = {"solid", "dashed", "dotted", "hair", "wide"};
   return kClasses[static_cast<std::size_t>(stroke)];
 }
 
@@ -107,6 +102,15 @@ std::string legend(const Chart& chart) {
                    escaped(line.legend));
     x += kLetter_px * static_cast<double>(line.legend.size()) + 16;
   }
+  for (const Disc& disc : chart.discs) {
+    if (disc.legend.empty()) continue;
+    fmt::format_to(std::back_inserter(svg), "<circle class=\"{} {}\" cx=\"{:.1f}\" cy=\"{}\" r=\"5\"/>",
+                   disc.filled ? "disc" : "ring", ink_class(disc.ink), x + 5, kLegendBase_px - 4);
+    x += 16;
+    fmt::format_to(std::back_inserter(svg), "<text x=\"{:.1f}\" y=\"{}\">{}</text>\n", x, kLegendBase_px,
+                   escaped(disc.legend));
+    x += kLetter_px * static_cast<double>(disc.legend.size()) + 16;
+  }
   return svg;
 }
 
@@ -136,6 +140,22 @@ std::string axes(const Chart& chart, const View& view) {
   return svg;
 }
 
+std::string discs(const Chart& chart, const View& view) {
+  std::string svg;
+  const auto out = std::back_inserter(svg);
+  for (const Disc& disc : chart.discs) {
+    if (!disc.at.allFinite()) continue;
+    const Point at = view(disc.at);
+    fmt::format_to(out, "<circle class=\"{} {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>\n",
+                   disc.filled ? "disc" : "ring", ink_class(disc.ink), at.x(), at.y(), disc.radius_px);
+    if (disc.label.empty()) continue;
+    const bool left = at.x() > view.width_px / 2;
+    fmt::format_to(out, "<text class=\"halo{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left ? " end" : "",
+                   at.x() + (left ? -1 : 1) * (disc.radius_px + 4), at.y() + 4.5, escaped(disc.label));
+  }
+  return svg;
+}
+
 std::string contents(const Chart& chart, const View& view) {
   std::string svg;
   const auto out = std::back_inserter(svg);
@@ -149,6 +169,7 @@ std::string contents(const Chart& chart, const View& view) {
     fmt::format_to(out, "<path class=\"line {} {}\" d=\"{}\"/>\n", ink_class(line.ink), stroke_class(line.stroke),
                    path_data(line.points, view));
   }
+  svg += discs(chart, view);
   fmt::format_to(out, "</svg>\n<path class=\"frame\" d=\"M0 0h{0:.1f}v{1:.1f}h-{0:.1f}z\"/>\n", view.width_px,
                  view.height_px);
   return svg;
@@ -156,18 +177,23 @@ std::string contents(const Chart& chart, const View& view) {
 
 }  // namespace
 
+std::string_view ink_class(Ink ink) {
+  constexpr std::string_view kClasses[] = {"real", "sim", "third", "fourth", "faint", "ground"};
+  return kClasses[static_cast<std::size_t>(ink)];
+}
+
 std::string_view style_sheet() {
   return R"(:root { color-scheme: light dark;
   --paper: #fff; --ink: #1b2430; --soft: #5d6875; --grid: #e3e7ec; --frame: #9aa4b0;
   --real: #0072b2; --sim: #d55e00; --third: #009e73; --fourth: #cc79a7; --faint: #7d8792;
-  --ground: #e2dccf; --ground-edge: #8b8272; }
+  --ground: #e2dccf; --ground-edge: #8b8272; --shade: #0072b2; }
 @media (prefers-color-scheme: dark) { :root {
   --paper: #14181d; --ink: #e4e8ed; --soft: #a2acb8; --grid: #2a313a; --frame: #68727e;
   --real: #56b4e9; --sim: #f0913c; --third: #2ec79b; --fourth: #e39cc4; --faint: #8b95a1;
-  --ground: #37332b; --ground-edge: #958b79; } }
+  --ground: #37332b; --ground-edge: #958b79; --shade: #3f9fdc; } }
 @media print { :root { color-scheme: light; --paper: #fff; --ink: #000; --soft: #333; --grid: #ddd; --frame: #777;
   --real: #0072b2; --sim: #d55e00; --third: #009e73; --fourth: #cc79a7; --faint: #777;
-  --ground: #e2dccf; --ground-edge: #8b8272; } }
+  --ground: #e2dccf; --ground-edge: #8b8272; --shade: #0072b2; } }
 svg.chart { font: 13px system-ui, "DejaVu Sans", "Liberation Sans", Arial, sans-serif; max-width: 100%; height: auto; }
 svg.chart text { fill: var(--soft); }
 svg.chart text.title { fill: var(--ink); font-weight: 600; font-size: 14px; }
@@ -178,14 +204,30 @@ svg.chart .grid { stroke: var(--grid); }
 svg.chart .frame { stroke: var(--frame); }
 svg.chart .line { stroke-width: 1.8; stroke-linejoin: round; stroke-linecap: round; }
 svg.chart .line.dashed { stroke-dasharray: 7 5; stroke-linecap: butt; }
-svg.chart .line.dotted { stroke-dasharray: 2 3; stroke-width: 1.3; stroke-linecap: butt; }
+svg.chart .line.dotted { stroke-dasharray: 2 3; stroke-width: 2; stroke-linecap: butt; }
 svg.chart .line.hair { stroke-width: 0.7; }
+svg.chart .line.wide { stroke-width: 5; stroke-opacity: 0.4; stroke-linecap: butt; }
 svg.chart .line.real { stroke: var(--real); }
 svg.chart .line.sim { stroke: var(--sim); }
 svg.chart .line.third { stroke: var(--third); }
 svg.chart .line.fourth { stroke: var(--fourth); }
 svg.chart .line.faint { stroke: var(--faint); }
 svg.chart .line.ground { stroke: var(--ground-edge); }
+svg.chart .disc { fill-opacity: 0.75; }
+svg.chart .whisker { stroke: var(--ink); stroke-width: 1.3; }
+svg.chart .ring { fill: none; stroke-width: 1.8; }
+svg.chart .disc.real { fill: var(--real); }
+svg.chart .disc.sim, svg.chart .bar.sim { fill: var(--sim); }
+svg.chart .disc.third, svg.chart .bar.third { fill: var(--third); }
+svg.chart .bar.real { fill: var(--real); }
+svg.chart .ring.sim { stroke: var(--sim); }
+svg.chart .ring.real { stroke: var(--real); }
+svg.chart .ring.third { stroke: var(--third); }
+svg.chart .mark { fill-opacity: 1; }
+svg.chart .shade { fill: var(--shade); stroke: var(--frame); stroke-width: 0.6; }
+svg.chart text.dark { fill: var(--ink); }
+svg.chart text.small { font-size: 11px; }
+svg.chart text.halo { fill: var(--ink); paint-order: stroke; stroke: var(--paper); stroke-width: 3px; }
 svg.chart .area.ground { fill: var(--ground); stroke: var(--ground-edge); }
 )";
 }
@@ -234,7 +276,11 @@ std::string escaped(std::string_view text) {
         out += "&quot;";
         break;
       default:
-        out += c;
+        // control characters may stand in no XML, not even escaped
+        if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t')
+          out += "\uFFFD";
+        else
+          out += c;
     }
   }
   return out;

@@ -17,7 +17,8 @@ using Point = Eigen::Vector2d;
 // simulated differ in brightness too, for grey prints.
 enum class Ink { real, sim, third, fourth, faint, ground };
 
-enum class Stroke { solid, dashed, dotted, hair };
+// Wide is pale, for what others are drawn over.
+enum class Stroke { solid, dashed, dotted, hair, wide };
 
 struct Line {
   std::vector<Point> points;  // in the axes' units; a point that is not finite breaks the line
@@ -33,10 +34,21 @@ struct Area {
   bool filled = true;         // and closed; false: only its line, which may have breaks
 };
 
+// A place with an amount, which the circle's area shows.
+struct Disc {
+  Point at;
+  double radius_px;
+  Ink ink = Ink::real;
+  bool filled = true;         // otherwise a ring
+  std::string label = {};     // beside it
+  std::string legend = {};    // empty: not in the legend
+};
+
 struct Chart {
   std::string title, x_label, y_label;  // labels with their unit: "x (m)"
   std::vector<Area> areas;              // the first is the lowest; all are under the lines
   std::vector<Line> lines;
+  std::vector<Disc> discs;              // over the lines, clipped like areas; one that is not finite is left out
   std::vector<Point> include;           // what the view shows beside all points of the lines; areas are clipped
   bool equal_scales = false;            // as long on paper in both directions; the height follows
   double width_px = 540, height_px = 280;
@@ -44,6 +56,9 @@ struct Chart {
 
 // The style sheet that to_svg() relies on; a page has it once, in <style>.
 std::string_view style_sheet();
+
+// The names of its classes.
+std::string_view ink_class(Ink ink);
 
 // One <svg> element. A chart without any finite point says "not measured" in its place.
 std::string to_svg(const Chart& chart);

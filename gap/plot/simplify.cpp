@@ -1,6 +1,8 @@
 #include "gap/plot/simplify.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
@@ -44,6 +46,27 @@ std::vector<Vector2d> simplified(std::span<const Vector2d> points, double tolera
   std::vector<Vector2d> kept;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (stays[i]) kept.push_back(points[i]);
+  }
+  return kept;
+}
+
+std::vector<Vector2d> envelope(std::span<const Vector2d> points, std::size_t columns) {
+  if (points.size() <= 4 * columns) return {points.begin(), points.end()};
+  const double first_x = points.front().x(), width = (points.back().x() - first_x) / static_cast<double>(columns);
+  const auto column_of = [&](const Vector2d& p) { return std::floor((p.x() - first_x) / width); };
+  const auto by_y = [](const Vector2d& a, const Vector2d& b) { return a.y() < b.y(); };
+  std::vector<Vector2d> kept;
+  for (std::size_t begin = 0; begin < points.size();) {
+    std::size_t end = begin + 1;
+    while (end < points.size() && column_of(points[end]) == column_of(points[begin])) ++end;
+    const auto [low, high] = std::minmax_element(points.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                 points.begin() + static_cast<std::ptrdiff_t>(end), by_y);
+    std::array<std::size_t, 4> corners{begin, static_cast<std::size_t>(low - points.begin()),
+                                       static_cast<std::size_t>(high - points.begin()), end - 1};
+    std::ranges::sort(corners);
+    const auto last = std::unique(corners.begin(), corners.end());
+    for (auto corner = corners.begin(); corner != last; ++corner) kept.push_back(points[*corner]);
+    begin = end;
   }
   return kept;
 }

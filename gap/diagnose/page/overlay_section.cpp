@@ -1,0 +1,38 @@
+#include <fmt/format.h>
+
+#include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/page/figures.hpp"
+#include "gap/diagnose/page/sections.hpp"
+#include "gap/diagnose/page/words.hpp"
+
+namespace kenaf::gap {
+
+std::string overlay_section(const Diagnosis& d, std::span<const Overlay> overlays) {
+  std::string html = section_head("overlay", "Real, nominal and corrected runs");
+  if (overlays.empty()) return html + paragraph("No run was simulated before the diagnosis ended.");
+  html += paragraph(
+      fmt::format(
+          "Of each manoeuvre one run, and the channels that show most of its gap. Real is what was measured; nominal "
+          "is the simulated robot as it is described, told the same commands from the same place; {}. Differences are "
+          "averaged over {} s each.",
+          d.decision.best.places.empty() ? "there is no corrected one, as no effect was fitted"
+                                         : "corrected is that robot with the effects fitted to all runs",
+          d.options.span_s),
+      "soft");
+  if (overlays.size() < d.repeats.size())
+    html += paragraph(
+        fmt::format("Shown are the {} of {} manoeuvres with most of the gap.", overlays.size(), d.repeats.size()),
+        "soft");
+  for (const Overlay& overlay : overlays) {
+    html += fmt::format("<h3>{} <span class=\"soft\">{}, one of {}</span></h3>\n<div class=\"figures\">\n",
+                        plot::escaped(group_title(d, overlay.group)),
+                        plot::escaped(d.observations.runs[overlay.run].file), d.repeats[overlay.group].size());
+    html += to_svg(path_figure(d, overlay)) + to_svg(residual_figure(d, overlay));
+    for (std::size_t i = 0; i < overlay.channels.size(); ++i)
+      html += to_svg(channel_figure(d, overlay, i)) + to_svg(channel_residual_figure(d, overlay, i));
+    html += "</div>\n";
+  }
+  return html;
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,130 @@
+#include "gap/diagnose/page/overlays.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <string>
+
+#include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/prediction.hpp"
+#include "gap/diagnose/repeats.hpp"
+#include "gap/parallel.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+constexpr std::size_t kMostGroups = 8, kLeastChannels = 2, kMostChannels = 4;
+constexpr double kWorthShowing = 0.03;  // of a manoeuvre's gap, of a third channel and a fourth
+constexpr double kLongGap_s = 0.5;
+// What is shown where no channel stands out.
+constexpr std::string_view kTelling[] = {"pitch_rad", "yaw_rad", "x_m", "track_left_mps", "track_right_mps"};
+
+// "track_mps" of track_left_mps, "flipper_rad" of flipper_fl_rad.
+std::string without_side(std::string_view column) {
+  std::string family(column);
+  for (const std::string_view side : {"_left", "_right", "_fl", "_fr", "_rl", "_rr"})
+    if (const std::size_t at = family.find(std::string(side) + "_"); at != std::string::npos)
+      family.erase(at, side.size());
+  return family;
+}
+
+// [group][channel], of what is beyond chance in the group; all 0 where nothing is, or nothing is known.
+std::vector<std::vector<double>> shares_by_group(const Diagnosis& d) {
+  std::vector<std::vector<double>> shares(d.repeats.size(), std::vector<double>(diagnosis_channels().size(), 0));
+  if (d.nominal.size() != d.features.size() || d.nominal_floor.whiteners.size() != d.features.size()) return shares;
+  std::vector<Eigen::VectorXd> whitened;
+  for (std::size_t r = 0; r < d.features.size(); ++r)
+    whitened.push_back(d.nominal_floor.whiteners[r](d.features[r].measured() - d.nominal[r]));
+  for (const Cell& cell : Coherence(d.features, d.repeats, d.options.stretch_s).cells(whitened))
+    shares[cell.group][cell.channel] += std::max(0.0, cell.z * cell.z - 1);
+  for (std::vector<double>& group : shares) {
+    const double total = std::accumulate(group.begin(), group.end(), 0.0);
+    for (double& share : group) share = total > 0 ? share / total : 0;
+  }
+  return shares;
+}
+
+bool measured(const runs::Run& run, std::size_t channel) {
+  const std::span<const double> column = run.column(diagnosis_channels()[channel].column);
+  return !std::ranges::all_of(column, [](double value) { return std::isnan(value); });
+}
+
+std::vector<std::size_t> telling_channels(const runs::Run& run, const std::vector<double>& shares) {
+  std::vector<std::size_t> sorted;
+  for (std::size_t c = 0; c < shares.size(); ++c)
+    if (measured(run, c)) sorted.push_back(c);
+  const auto preference = [](std::size_t c) {
+    return std::ranges::find(kTelling, diagnosis_channels()[c].column) - std::begin(kTelling);
+  };
+  std::ranges::stable_sort(sorted, [&](std::size_t a, std::size_t b) {
+    return shares[a] != shares[b] ? shares[a] > shares[b] : preference(a) < preference(b);
+  });
+  std::vector<std::size_t> chosen;
+  for (const std::size_t c : sorted) {
+    if (chosen.size() == kMostChannels || (chosen.size() >= kLeastChannels && shares[c] < kWorthShowing)) break;
+    const std::string family = without_side(diagnosis_channels()[c].column);
+    if (std::ranges::none_of(
+            chosen, [&](std::size_t other) { return without_side(diagnosis_channels()[other].column) == family; }))
+      chosen.push_back(c);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<std::size_t> shown_groups(const Diagnosis& d) {
+  std::vector<double> share(d.repeats.size(), 0);
+  for (const PhaseGap& phase : d.where.phases) share[phase.group] += phase.share;
+  std::vector<std::size_t> groups(d.repeats.size());
+  std::iota(groups.begin(), groups.end(), std::size_t{0});
+  std::ranges::stable_sort(groups, [&](std::size_t a, std::size_t b) { return share[a] > share[b]; });
+  groups.resize(std::min(groups.size(), kMostGroups));
+  std::ranges::sort(groups);
+  return groups;
+}
+
+void choose_channels(const Diagnosis& d, std::vector<Overlay>& overlays) {
+  const std::vector<std::vector<double>> shares = shares_by_group(d);
+  for (Overlay& overlay : overlays) {
+    overlay.channels = telling_channels(d.observations.runs[overlay.run].run, shares[overlay.group]);
+    overlay.shares.clear();
+    for (const std::size_t c : overlay.channels) overlay.shares.push_back(shares[overlay.group][c]);
+  }
+}
+
+std::vector<Overlay> simulate_overlays(const Diagnosis& d) {
+  std::vector<Overlay> overlays;
+  for (const std::size_t group : shown_groups(d))
+    overlays.push_back({group, representative(d.observations, d.repeats[group]), {}, {}, {}, std::nullopt});
+  const Predictor predictor(d.observations, d.features, d.repeats, 1);
+  Variation corrected = predictor.unvaried();
+  corrected.effects = corrected_effects(d);
+  const bool has_model = !d.decision.best.places.empty();
+  for_each_job(overlays.size(), d.options.jobs, [&](std::size_t i) {
+    overlays[i].nominal = predictor.simulate(overlays[i].run, predictor.unvaried());
+    if (has_model) overlays[i].corrected = predictor.simulate(overlays[i].run, corrected);
+  });
+  choose_channels(d, overlays);
+  return overlays;
+}
+
+std::vector<plot::Point> over_time(const runs::Run& run, std::size_t channel) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const std::span<const double> time = run.column("t_s"), column = run.column(diagnosis_channels()[channel].column);
+  std::vector<plot::Point> points;
+  double last_t_s = std::numeric_limits<double>::infinity(), last = 0;
+  for (std::size_t i = 0; i < column.size(); ++i) {
+    if (std::isnan(column[i])) continue;
+    double value = column[i];
+    if (diagnosis_channels()[channel].angle && !points.empty()) value -= kTurn * std::round((value - last) / kTurn);
+    if (time[i] - last_t_s > kLongGap_s) points.emplace_back(time[i], std::numeric_limits<double>::quiet_NaN());
+    points.emplace_back(time[i], value);
+    last_t_s = time[i];
+    last = value;
+  }
+  return points;
+}
+
+}  // namespace kenaf::gap

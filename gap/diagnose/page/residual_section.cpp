@@ -1,0 +1,88 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/page/figures.hpp"
+#include "gap/diagnose/page/sections.hpp"
+#include "gap/diagnose/page/words.hpp"
+#include "gap/plot/row_chart.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+constexpr double kLeastShown = 0.1;  // of noise: what is less is drawn at this edge
+
+struct ChannelResidual {
+  const Channel* channel;
+  double share, before, after, floor;  // the last three in the channel's unit; after: NaN where there is no model
+};
+
+std::vector<ChannelResidual> residuals_of(const Diagnosis& d) {
+  std::vector<ChannelResidual> result;
+  for (const ChannelGap& gap : d.where.channels) {
+    const bool has_after = !d.best.empty() && gap.channel < d.gap.after_si.size();
+    result.push_back({&diagnosis_channels()[gap.channel], gap.share, gap.rms,
+                      has_after ? d.gap.after_si[gap.channel] : kNaN, gap.floor});
+  }
+  return result;
+}
+
+std::string channel_figure(const std::vector<ChannelResidual>& residuals) {
+  plot::RowChart chart;
+  chart.title = "Residual of each channel in noise units, largest share of the gap first";
+  chart.x_label = "rms of measured minus simulated, over rms of noise (1: noise alone)";
+  chart.legend = {{plot::Shape::ring, plot::Ink::sim, "before"}};
+  for (const ChannelResidual& r : residuals) {
+    plot::Row row{std::string(r.channel->column), {{r.before / r.floor, plot::Shape::ring, plot::Ink::sim}}, {}};
+    if (!std::isnan(r.after)) row.marks.push_back({r.after / r.floor, plot::Shape::disc, plot::Ink::third});
+    row.note = std::isnan(r.after) ? figure(r.before / r.floor)
+                                   : fmt::format("{} to {}", figure(r.before / r.floor), figure(r.after / r.floor));
+    chart.rows.push_back(std::move(row));
+  }
+  if (std::ranges::any_of(residuals, [](const ChannelResidual& r) { return !std::isnan(r.after); }))
+    chart.legend.push_back({plot::Shape::disc, plot::Ink::third, "after, on runs held out of the fit"});
+  chart.guides = {{1, "noise"}};
+  chart.logarithmic = true;
+  double most = 1;
+  for (const ChannelResidual& r : residuals)
+    most = std::max({most, r.before / r.floor, std::isnan(r.after) ? 0 : r.after / r.floor});
+  chart.view = plot::Range{kLeastShown, 1.2 * most};
+  chart.label_px = 140;
+  chart.note_px = 130;
+  chart.width_px = kWide_px;
+  return to_svg(chart);
+}
+
+std::string table_of(const std::vector<ChannelResidual>& residuals) {
+  Table table{{"channel", "unit", "before", "after", "noise", "before / noise", "after / noise", "share of the gap"},
+              {},
+              {0, 1}};
+  for (const ChannelResidual& r : residuals)
+    table.rows.push_back({std::string(r.channel->column), std::string(r.channel->unit), figure(r.before),
+                          figure(r.after), figure(r.floor), figure(r.before / r.floor), figure(r.after / r.floor),
+                          percent(r.share)});
+  return to_html(table);
+}
+
+}  // namespace
+
+std::string residual_section(const Diagnosis& d) {
+  std::string html = section_head("residuals", "Residuals before and after");
+  const std::vector<ChannelResidual> residuals = residuals_of(d);
+  if (residuals.empty()) return html + paragraph("They were not measured before the diagnosis ended.");
+  html += paragraph(
+      fmt::format(
+          "Measured minus simulated, averaged over {} s each. Noise is what repeats and sensors leave open, and what "
+          "the simulation does. Before: nominal. After: with the best model fitted to other runs than the one it "
+          "is compared with.",
+          d.options.span_s),
+      "soft");
+  return html + channel_figure(residuals) + table_of(residuals);
+}
+
+}  // namespace kenaf::gap

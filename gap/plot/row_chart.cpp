@@ -1,0 +1,146 @@
+#include "gap/plot/row_chart.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "gap/plot/svg.hpp"
+
+namespace kenaf::gap::plot {
+
+namespace {
+
+constexpr double kTitle_px = 26, kLegend_px = 22, kGuide_px = 16, kRow_px = 24, kBottom_px = 44;
+constexpr double kRadius_px = 5, kBarHalf_px = 7, kWhiskerEnd_px = 4;
+constexpr double kPixelsPerTick = 70;
+
+// From values to pixels, at the edge where they are beyond it.
+struct Scale {
+  Range range;  // of the logarithm where that is drawn
+  bool logarithmic;
+  double width_px;
+  double operator()(double value) const {
+    if (logarithmic) value = value > 0 ? std::log10(value) : -std::numeric_limits<double>::infinity();
+    return std::clamp((value - range.low) / range.span(), 0.0, 1.0) * width_px;
+  }
+};
+
+Range range_of(const RowChart& chart) {
+  if (chart.view)
+    return chart.logarithmic ? Range{std::log10(chart.view->low), std::log10(chart.view->high)} : *chart.view;
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  const auto add = [&](double value) {
+    if (!std::isfinite(value) || (chart.logarithmic && value <= 0)) return;
+    if (chart.logarithmic) value = std::log10(value);
+    range = {std::min(range.low, value), std::max(range.high, value)};
+  };
+  for (const Row& row : chart.rows)
+    for (const RowMark& mark : row.marks) {
+      add(mark.value);
+      if (mark.shape == Shape::bar && !chart.logarithmic) add(0);
+      if (mark.interval) add(mark.interval->low), add(mark.interval->high);
+    }
+  for (const auto& guide : chart.guides) add(guide.first);
+  if (range.low > range.high) range = {0, 1};
+  range = with_extent(range);
+  const double margin = 0.04 * range.span();
+  return {range.low == 0 && !chart.logarithmic ? 0 : range.low - margin, range.high + margin};
+}
+
+Ticks ticks_of(const Scale& scale) {
+  const int at_most = std::max(2, static_cast<int>(scale.width_px / kPixelsPerTick));
+  if (!scale.logarithmic) return round_ticks(scale.range, at_most);
+  Ticks ticks;
+  const double factors[] = {1, 2, 5};
+  const bool few = scale.range.span() > 2.5;
+  for (int power = static_cast<int>(std::floor(scale.range.low)); power <= scale.range.high; ++power)
+    for (const double factor : factors) {
+      const double value = factor * std::pow(10, power), at = std::log10(value);
+      if (at < scale.range.low || at > scale.range.high || (few && factor > 1)) continue;
+      ticks.at.push_back(value);
+      ticks.labels.push_back(fmt::format("{:g}", value));
+    }
+  return ticks;
+}
+
+std::string shape_at(Shape shape, Ink ink, double x, double y, double from_x) {
+  const std::string_view colour = ink_class(ink);
+  switch (shape) {
+    case Shape::bar:
+      return fmt::format("<rect class=\"bar {}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>",
+                         colour, std::min(x, from_x), y - kBarHalf_px, std::abs(x - from_x), 2 * kBarHalf_px);
+    case Shape::ring:
+      return fmt::format("<circle class=\"ring {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>", colour, x, y, kRadius_px);
+    case Shape::disc:
+      return fmt::format("<circle class=\"disc mark {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>", colour, x, y,
+                         kRadius_px);
+  }
+  return {};
+}
+
+std::string legend_of(const RowChart& chart) {
+  std::string svg;
+  double x = chart.label_px;
+  for (const RowLegend& entry : chart.legend) {
+    svg += shape_at(entry.shape, entry.ink, x + 8, kTitle_px + 10, x - 2);
+    svg += text_at(x + 20, kTitle_px + 14, entry.text);
+    x += 20 + text_width_px(entry.text) + 18;
+  }
+  return svg;
+}
+
+std::string row_of(const Row& row, const Scale& scale, double y) {
+  std::string svg = text_at(-10, y + 4.5, row.label, "end dark");
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const RowMark& mark : row.marks)
+    if (std::isfinite(mark.value)) low = std::min(low, scale(mark.value)), high = std::max(high, scale(mark.value));
+  if (row.marks.size() > 1 && low < high)
+    svg += fmt::format("<path class=\"line faint solid\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", low, y, high);
+  for (const RowMark& mark : row.marks) {
+    if (!std::isfinite(mark.value)) continue;
+    svg += shape_at(mark.shape, mark.ink, scale(mark.value), y, scale(0));
+    if (mark.interval)
+      svg += fmt::format(
+          "<path class=\"frame whisker\" d=\"M{0:.1f} {1:.1f}H{2:.1f}M{0:.1f} {3:.1f}v{4}M{2:.1f} {3:.1f}v{4}\"/>",
+          scale(mark.interval->low), y, scale(mark.interval->high), y - kWhiskerEnd_px, 2 * kWhiskerEnd_px);
+  }
+  return svg + text_at(scale.width_px + 12, y + 4.5, row.note, "") + "\n";
+}
+
+}  // namespace
+
+std::string to_svg(const RowChart& chart) {
+  const double top_px =
+      kTitle_px + (chart.legend.empty() ? 0 : kLegend_px) + (chart.guides.empty() ? 0 : kGuide_px) + 4;
+  const double rows_px = kRow_px * static_cast<double>(chart.rows.size());
+  const Scale scale{range_of(chart), chart.logarithmic, chart.width_px - chart.label_px - chart.note_px - 14};
+  if (chart.rows.empty())
+    return svg_begin(chart.title, chart.width_px, kTitle_px + 24) + text_at(0, kTitle_px + 12, "nothing to show") +
+           "</svg>\n";
+  std::string svg = svg_begin(chart.title, chart.width_px, top_px + rows_px + kBottom_px) + legend_of(chart);
+  const auto out = std::back_inserter(svg);
+  fmt::format_to(out, "\n<g transform=\"translate({:.1f} {:.1f})\">\n", chart.label_px, top_px);
+  const Ticks ticks = ticks_of(scale);
+  std::string grid;
+  for (std::size_t i = 0; i < ticks.at.size(); ++i) {
+    const double x = scale(ticks.at[i]);
+    fmt::format_to(std::back_inserter(grid), "M{:.1f} 0v{:.1f}", x, rows_px);
+    svg += text_at(x, rows_px + 17, ticks.labels[i], "middle");
+  }
+  fmt::format_to(out, "\n<path class=\"grid\" d=\"{}\"/>", grid);
+  svg += text_at(scale.width_px / 2, rows_px + 36, chart.x_label, "middle");
+  for (const auto& [value, words] : chart.guides) {
+    fmt::format_to(out, "<path class=\"line faint dashed\" d=\"M{:.1f} -4v{:.1f}\"/>", scale(value), rows_px + 4);
+    svg += text_at(scale(value), -7, words, scale(value) > 0.8 * scale.width_px ? "end" : "middle");
+  }
+  svg += "\n";
+  for (std::size_t i = 0; i < chart.rows.size(); ++i)
+    svg += row_of(chart.rows[i], scale, kRow_px * (static_cast<double>(i) + 0.5));
+  fmt::format_to(out, "<path class=\"frame\" d=\"M0 0h{0:.1f}v{1:.1f}h-{0:.1f}z\"/>\n</g>\n", scale.width_px, rows_px);
+  return svg + "</svg>\n";
+}
+
+}  // namespace kenaf::gap::plot

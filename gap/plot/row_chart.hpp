@@ -1,0 +1,49 @@
+// Named quantities one below the other, each a mark with its interval on one common axis.
+// Thread safety: values and pure functions.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gap/plot/axis.hpp"
+#include "gap/plot/chart.hpp"
+
+namespace kenaf::gap::plot {
+
+// Shapes, so that nobody needs the colours.
+enum class Shape { ring, disc, bar };
+
+struct RowMark {
+  double value;                   // what is not finite is left out
+  Shape shape = Shape::disc;
+  Ink ink = Ink::real;
+  std::optional<Range> interval{};  // a whisker
+};
+
+struct Row {
+  std::string label;              // left of the axis
+  std::vector<RowMark> marks;     // several are joined by a line
+  std::string note;               // right of the axis
+};
+
+struct RowLegend {
+  Shape shape;
+  Ink ink;
+  std::string text;
+};
+
+struct RowChart {
+  std::string title, x_label;
+  std::vector<Row> rows;
+  std::vector<RowLegend> legend;
+  std::vector<std::pair<double, std::string>> guides;  // dashed upright lines with their words
+  std::optional<Range> view;      // empty: of all values and intervals; what is beyond is drawn at its edge
+  bool logarithmic = false;       // all that is not positive is drawn at the left edge
+  double label_px = 190, note_px = 0, width_px = 1060;
+};
+
+// One <svg> element, for the style sheet of chart.hpp. Without rows it says "nothing to show".
+std::string to_svg(const RowChart& chart);
+
+}  // namespace kenaf::gap::plot

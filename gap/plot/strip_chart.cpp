@@ -1,0 +1,74 @@
+#include "gap/plot/strip_chart.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "gap/plot/axis.hpp"
+#include "gap/plot/svg.hpp"
+
+namespace kenaf::gap::plot {
+
+namespace {
+
+constexpr double kTop_px = 54, kStrip_px = 38, kGap_px = 8, kBottom_px = 42, kRight_px = 14;
+constexpr double kSmallLetter = 0.85;  // of the width of a letter of full size
+constexpr int kScaleSteps = 6;
+constexpr double kScaleStep_px = 26;
+
+bool has_room(std::string_view text, double width_px) {
+  return kSmallLetter * text_width_px(text) + 4 < width_px;
+}
+
+// The scale of shades, after the words of the legend.
+std::string scale_of(const StripChart& chart) {
+  std::string svg = text_at(0, 38, chart.legend);
+  double x = text_width_px(chart.legend) + 12;
+  svg += text_at(x, 38, chart.least);
+  x += text_width_px(chart.least) + 6;
+  for (int i = 0; i < kScaleSteps; ++i, x += kScaleStep_px)
+    svg += shaded_box(x, 27, kScaleStep_px, 14, static_cast<double>(i) / (kScaleSteps - 1));
+  return svg + text_at(x + 6, 38, chart.most) + "\n";
+}
+
+std::string span_of(const StripSpan& span, double x_px, double width_px, double y_px) {
+  std::string svg = shaded_box(x_px, y_px, width_px, kStrip_px, span.strength,
+                               fmt::format("{} {}, {:.1f} to {:.1f}", span.name, span.note, span.from, span.to));
+  const double middle = x_px + width_px / 2;
+  const bool name = has_room(span.name, width_px), note = has_room(span.note, width_px);
+  if (name) svg += text_at(middle, y_px + (note ? 16 : 23), span.name, "middle dark small");
+  if (note) svg += text_at(middle, y_px + (name ? 31 : 23), span.note, "middle dark small");
+  return svg + "\n";
+}
+
+}  // namespace
+
+std::string to_svg(const StripChart& chart) {
+  Range range{0, 0};
+  for (const Strip& strip : chart.strips)
+    for (const StripSpan& span : strip.spans) range = {std::min(range.low, span.from), std::max(range.high, span.to)};
+  if (range.span() <= 0)
+    return svg_begin(chart.title, chart.width_px, kTop_px) + text_at(0, 38, "nothing to show") + "</svg>\n";
+  const double width_px = chart.width_px - chart.label_px - kRight_px;
+  const double height_px = (kStrip_px + kGap_px) * static_cast<double>(chart.strips.size());
+  const auto at = [&](double value) { return (value - range.low) / range.span() * width_px; };
+  std::string svg = svg_begin(chart.title, chart.width_px, kTop_px + height_px + kBottom_px) + scale_of(chart);
+  const auto out = std::back_inserter(svg);
+  fmt::format_to(out, "<g transform=\"translate({:.1f} {:.1f})\">\n", chart.label_px, kTop_px);
+  const Ticks ticks = round_ticks(range, 14);
+  for (std::size_t i = 0; i < ticks.at.size(); ++i) {
+    fmt::format_to(out, "<path class=\"grid\" d=\"M{:.1f} 0v{:.1f}\"/>", at(ticks.at[i]), height_px);
+    svg += text_at(at(ticks.at[i]), height_px + 15, ticks.labels[i], "middle");
+  }
+  svg += text_at(width_px / 2, height_px + 34, chart.x_label, "middle") + "\n";
+  for (std::size_t s = 0; s < chart.strips.size(); ++s) {
+    const double y = (kStrip_px + kGap_px) * static_cast<double>(s) + kGap_px / 2;
+    svg += text_at(-10, y + kStrip_px / 2 + 4.5, chart.strips[s].label, "end dark");
+    for (const StripSpan& span : chart.strips[s].spans)
+      svg += span_of(span, at(span.from), at(span.to) - at(span.from), y);
+  }
+  return svg + "</g>\n</svg>\n";
+}
+
+}  // namespace kenaf::gap::plot

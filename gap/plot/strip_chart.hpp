@@ -1,0 +1,33 @@
+// Time spans with names, one strip for each row over one common axis, each span darker where more is.
+// Thread safety: values and pure functions.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace kenaf::gap::plot {
+
+struct StripSpan {
+  double from, to;
+  double strength;         // of its shade, 0 to 1
+  std::string name, note;  // in the span, one below the other, where they have room
+};
+
+struct Strip {
+  std::string label;       // left of the axis
+  std::vector<StripSpan> spans;
+};
+
+struct StripChart {
+  std::string title, x_label;
+  std::vector<Strip> strips;
+  std::string legend;                    // what the shade means
+  std::string least, most;               // at the ends of the scale of shades
+  double label_px = 190, width_px = 1060;
+};
+
+// One <svg> element, for the style sheet of chart.hpp. Without strips it says "nothing to show". A name without room in its
+// span shows under the pointer.
+std::string to_svg(const StripChart& chart);
+
+}  // namespace kenaf::gap::plot
