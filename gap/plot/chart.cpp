@@ -14,10 +14,10 @@ namespace kenaf::gap::plot {
 
 namespace {
 
-constexpr double kLeft_px = 62, kRight_px = 14, kTop_px = 50, kBottom_px = 42;
+constexpr double kLeft_px = 70, kRight_px = 14, kTop_px = 50, kBottom_px = 42;
 constexpr double kTitleBase_px = 16, kLegendBase_px = 38, kLegendSample_px = 24;
 constexpr double kLetter_px = 7.5;  // about the width of a letter at the font size of 13
-constexpr double kPixelsPerTick_x = 60, kPixelsPerTick_y = 30;
+constexpr double kPixelsPerTick_x = 60, kPixelsPerTick_y = 26;
 constexpr double kTolerance_px = 0.15;                        // by which a drawn line may differ from its points
 constexpr double kLeastHeight_px = 90, kMostHeight_px = 340;  // of the plot, where the scales are equal
 
@@ -134,7 +134,7 @@ std::string axes(const Chart& chart, const View& view) {
   }
   fmt::format_to(out, "\n<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", view.width_px / 2,
                  view.height_px + 35, escaped(chart.x_label));
-  fmt::format_to(out, "<text class=\"middle\" transform=\"translate(-48 {:.1f}) rotate(-90)\">{}</text>",
+  fmt::format_to(out, "<text class=\"middle\" transform=\"translate(-57 {:.1f}) rotate(-90)\">{}</text>",
                  view.height_px / 2, escaped(chart.y_label));
   fmt::format_to(out, "\n<path class=\"grid\" d=\"{}\"/>\n", grid);
   return svg;

@@ -26,6 +26,7 @@ constexpr std::size_t kPathPoints = 4000;  // likewise of a path
 constexpr double kChannelHeight_px = 240;
 constexpr double kClimbs_m = 0.05;   // of height: seen from the side
 constexpr double kAround_m = 0.2;    // of the body's centre: the robot is about 0.5 m long
+constexpr double kBeside_m = 0.1;          // likewise, of a path seen from above
 constexpr double kWholeGap_px = 50;  // radius of a disc that has all of the gap
 constexpr double kLabelled = 0.05;   // share of the gap of a phase that has a label
 constexpr std::size_t kMostLabels = 4;
@@ -80,7 +81,8 @@ Chart place_chart(const Diagnosis& d, const Overlay& overlay, std::vector<Line> 
       if (p.allFinite()) low = low.cwiseMin(p), high = high.cwiseMax(p);
   chart.lines = std::move(lines);
   if (low.x() > high.x()) return chart;
-  chart.include = {low.array() - kAround_m, high.array() + kAround_m};
+  const Point around_m(kAround_m, from_side ? kAround_m : kBeside_m);
+  chart.include = {low - around_m, high + around_m};
   if (!from_side) return chart;
   const double beyond_m = 10 * (1 + (high - low).maxCoeff());
   const Observation& run = d.observations.runs[overlay.run];
