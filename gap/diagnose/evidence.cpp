@@ -71,8 +71,7 @@ double shrink(double before, double after, double floor) {
 Refit::Refit(const EffectCurves& curves, const Model& model) : curves_(curves), model_(model) {
   for (std::size_t r = 0; r < curves.gap.size(); ++r) {
     // what a simulation of effects together has beyond the sum of their curves stays as it is
-    const VectorXd lacking =
-        curves.whiteners[r](model.shift[r] - shift_at(curves.raw_shifts[r], model.places));
+    const VectorXd lacking = curves.whiteners[r](model.shift[r] - shift_at(curves.raw_shifts[r], model.places));
     const VectorXd target = curves.gap[r] - lacking;
     runs_.push_back({target.squaredNorm(), curves.shifts[r].transpose() * target,
                      curves.shifts[r].transpose() * curves.shifts[r], static_cast<double>(target.size())});
@@ -163,7 +162,8 @@ std::vector<Interval> value_intervals(const EffectCurves& curves, const Model& m
     const auto i = static_cast<Eigen::Index>(e);
     const double of_runs = (quantile(resampled[e], 0.84) - quantile(resampled[e], 0.16)) / 2;
     const double of_model = model_share / 2 * (value - neutral);
-    const double sigma = std::sqrt(covariance(i, i) + of_runs * of_runs + of_model * of_model);
+    // resampled runs differ by the floor's noise too: with both, it would count twice
+    const double sigma = std::sqrt(std::max(covariance(i, i), of_runs * of_runs) + of_model * of_model);
     intervals.push_back({value, std::max(curve.parameter->min, value - kTwoSided95 * sigma),
                          std::min(curve.parameter->max, value + kTwoSided95 * sigma)});
   }

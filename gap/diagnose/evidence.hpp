@@ -52,7 +52,8 @@ HeldOut hold_out(const EffectCurves& curves, const NoiseFloor& floor, const Mode
                  const std::function<Shift(const std::vector<std::vector<OnCurve>>& places_of_run)>& shift_of);
 Shift by_curves(const EffectCurves& curves, const Model& model, const std::vector<std::vector<OnCurve>>& places_of_run);
 
-// 95 % intervals of the values: of resampled runs, of the floor, and of the share of a shift that numerics may change.
+// 95 % intervals of the values: of the floor or of resampled runs, whichever is wider, and of the share of a shift that
+// numerics may change.
 std::vector<Interval> value_intervals(const EffectCurves& curves, const Model& model, double model_share,
                                       double inflation, std::uint64_t seed);
 
