@@ -22,10 +22,11 @@ double median(std::vector<double>& values) {
 }
 
 // Of bins in a row a second difference leaves what changes slowly out, and with it most of a gap.
-void add_second_differences(const FeatureMap& features, const VectorXd& values,
+void add_second_differences(const FeatureMap& features, const VectorXd& values, const std::vector<bool>& known,
                             std::vector<std::vector<double>>& by_channel) {
   const auto bins = features.bins();
   for (std::size_t b = 2; b < bins.size(); ++b) {
+    if (!known[b - 2] || !known[b - 1] || !known[b]) continue;
     if (bins[b].channel != bins[b - 2].channel || bins[b].span != bins[b - 2].span + 2) continue;
     const auto i = static_cast<Index>(b);
     by_channel[bins[b].channel].push_back(std::abs(values[i - 2] - 2 * values[i - 1] + values[i]) / std::sqrt(6.0));
@@ -84,15 +85,20 @@ NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vecto
   const std::size_t channels = diagnosis_channels().size();
   const auto deviations = deviations_from_repeats(features, residuals, repeats);
   const std::vector<std::size_t> full = full_bins(features);
+  const std::vector<std::vector<bool>> shared = shared_bins(features, repeats);
   NoiseFloor floor{std::vector<double>(channels, 0), {}, {}, false};
   std::vector<std::vector<double>> jumps(channels);
   for (std::size_t r = 0; r < features.size(); ++r) {
     floor.from_repeats |= deviations[r].size() > 0;
-    add_second_differences(features[r], deviations[r].size() > 0 ? deviations[r] : residuals[r], jumps);
+    if (deviations[r].size() > 0)
+      add_second_differences(features[r], deviations[r], shared[r], jumps);
+    else
+      add_second_differences(features[r], residuals[r], std::vector<bool>(features[r].bins().size(), true), jumps);
   }
   for (std::size_t c = 0; c < channels; ++c)
     if (full[c] > 0)
-      floor.sigma[c] = std::max(diagnosis_channels()[c].resolution, jumps[c].empty() ? 0 : kMadToSigma * median(jumps[c]));
+      floor.sigma[c] =
+          std::max(diagnosis_channels()[c].resolution, jumps[c].empty() ? 0 : kMadToSigma * median(jumps[c]));
 
   const auto whiten = [&] {
     floor.sigma_of_bin.clear();
@@ -110,7 +116,8 @@ NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vecto
     if (deviations[r].size() == 0) continue;
     const VectorXd white = floor.whiteners[r](deviations[r]);
     for (std::size_t b = 0; b < features[r].bins().size(); ++b)
-      squares[features[r].bins()[b].channel].push_back(white[static_cast<Index>(b)] * white[static_cast<Index>(b)]);
+      if (shared[r][b])
+        squares[features[r].bins()[b].channel].push_back(white[static_cast<Index>(b)] * white[static_cast<Index>(b)]);
   }
   for (std::size_t c = 0; c < channels; ++c) {
     if (squares[c].empty()) continue;
@@ -155,7 +162,8 @@ std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Pre
     open.push_back({Eigen::MatrixXd::Zero(size, kOpen + channels), VectorXd::Zero(size)});
     for (std::size_t b = 0; b < features[r].bins().size(); ++b) {
       const std::size_t channel = features[r].bins()[b].channel;
-      open[r].shapes(static_cast<Index>(b), static_cast<Index>(kOpen + channel)) = diagnosis_channels()[channel].resolution;
+      open[r].shapes(static_cast<Index>(b), static_cast<Index>(kOpen + channel)) =
+          diagnosis_channels()[channel].resolution;
     }
     for (std::size_t i = 0; i < kOpen; ++i) {
       const VectorXd plus = shifts[i][r] - shifts.back()[r], minus = shifts[i + kOpen][r] - shifts.back()[r];

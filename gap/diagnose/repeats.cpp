@@ -21,8 +21,8 @@ struct Differing {
 };
 
 // Both as they hold at the times of `a`; after the end of the shorter one nothing is compared.
-void compare(const std::vector<rollout::TimedCommand>& a, const std::vector<rollout::TimedCommand>& b, Differing& tracks,
-             Differing& flippers) {
+void compare(const std::vector<rollout::TimedCommand>& a, const std::vector<rollout::TimedCommand>& b,
+             Differing& tracks, Differing& flippers) {
   std::size_t at_b = 0;
   const double end_s = std::min(a.back().t_s, b.back().t_s);
   for (std::size_t i = 0; i + 1 < a.size() && a[i].t_s < end_s; ++i) {
@@ -96,6 +96,19 @@ std::vector<VectorXd> deviations_from_repeats(const std::vector<FeatureMap>& fea
     });
   }
   return result;
+}
+
+std::vector<std::vector<bool>> shared_bins(const std::vector<FeatureMap>& features,
+                                           const std::vector<std::vector<std::size_t>>& repeats) {
+  std::vector<std::vector<bool>> shared(features.size());
+  for (const std::vector<std::size_t>& group : repeats) {
+    std::map<std::pair<std::size_t, std::size_t>, int> count;
+    for (const std::size_t r : group)
+      for (const Bin& bin : features[r].bins()) ++count[{bin.channel, bin.span}];
+    for (const std::size_t r : group)
+      for (const Bin& bin : features[r].bins()) shared[r].push_back(count[{bin.channel, bin.span}] > 1);
+  }
+  return shared;
 }
 
 }  // namespace kenaf::gap

@@ -20,9 +20,13 @@ std::vector<std::vector<std::size_t>> repeats_of(const Observations& observation
 std::size_t representative(const Observations& observations, const std::vector<std::size_t>& group);
 
 // How each run deviates from the mean of its repeats, by bins at the same time; scaled so that its variance is that of
-// one run. Empty for a run without repeats.
+// one run. Empty for a run without repeats; 0 where one repeat alone goes on.
 std::vector<Eigen::VectorXd> deviations_from_repeats(const std::vector<FeatureMap>& features,
                                                      const std::vector<Eigen::VectorXd>& residuals,
                                                      const std::vector<std::vector<std::size_t>>& repeats);
+
+// The bins of a group's runs that more than one of them has.
+std::vector<std::vector<bool>> shared_bins(const std::vector<FeatureMap>& features,
+                                           const std::vector<std::vector<std::size_t>>& repeats);
 
 }  // namespace kenaf::gap
