@@ -10,14 +10,14 @@ namespace {
 using Column = std::span<const double>;
 
 constexpr double kStep_s = 0.05, kShortest_s = 0.1;
-constexpr double kMoves_mps = 0.01;       // of a belt
-constexpr double kTurns = 0.3;            // of the larger belt's speed, by which the belts differ
-constexpr double kSettling_s = 0.3;       // after a command has changed
+constexpr double kMoves_mps = 0.01;         // of a belt
+constexpr double kTurns = 0.3;              // of the larger belt's speed, by which the belts differ
+constexpr double kSettling_s = 0.3;         // after a command has changed
 constexpr double kFlipperMoves_rad = 0.02;  // from its command
-constexpr double kInclined_rad = 0.06;    // against the pitch at the start
+constexpr double kInclined_rad = 0.06;      // against the pitch at the start
 constexpr double kTips_radps = 0.6;
-constexpr double kFalls_mps = 0.25;       // of height lost
-constexpr double kLands_s = 0.4;          // after a tip or a fall
+constexpr double kFalls_mps = 0.25;  // of height lost
+constexpr double kLands_s = 0.4;     // after a tip or a fall
 
 // A column on an even grid of times, the last measured value holding.
 std::vector<double> on_grid(Column time, Column column, std::size_t count) {
@@ -54,11 +54,23 @@ Signals signals_of(const Observation& observation, std::size_t count) {
   const runs::Run& run = observation.run;
   const Column time = run.column("t_s");
   const auto grid = [&](std::string_view name) { return on_grid(time, run.column(name), count); };
-  Signals s{grid("cmd_track_left_mps"), grid("cmd_track_right_mps"), grid("x_m"), grid("y_m"), grid("z_m"),
-            grid("pitch_rad"), std::vector<bool>(count, false), std::vector<bool>(count, false)};
-  std::size_t last_change = count;
-  for (std::size_t i = 1; i < count; ++i) {
-    if (std::abs(s.left_mps[i] - s.left_mps[i - 1]) + std::abs(s.right_mps[i] - s.right_mps[i - 1]) > kMoves_mps)
+  Signals s{grid("cmd_track_left_mps"),
+            grid("cmd_track_right_mps"),
+            grid("x_m"),
+            grid("y_m"),
+            grid("z_m"),
+            grid("pitch_rad"),
+            std::vector<bool>(count, false),
+            std::vector<bool>(count, false)};
+  // an order to go with which the log begins is a change, unless the belts are about as fast as it says
+  const auto obeyed = [&](double asked_mps, std::string_view track) {
+    return !(std::abs(grid(track).front()) < std::abs(asked_mps) / 2);
+  };
+  std::size_t last_change =
+      obeyed(s.left_mps[0], "track_left_mps") && obeyed(s.right_mps[0], "track_right_mps") ? count : 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i > 0 &&
+        std::abs(s.left_mps[i] - s.left_mps[i - 1]) + std::abs(s.right_mps[i] - s.right_mps[i - 1]) > kMoves_mps)
       last_change = i;
     s.changed[i] = last_change < count && static_cast<double>(i - last_change) * kStep_s <= kSettling_s;
   }
@@ -112,11 +124,13 @@ std::vector<PhaseSpan> phases_of(const Observation& observation) {
     }
     spans.back().to_s = std::max(spans.back().to_s, std::min(from_s + kStep_s, duration_s));
   }
-  // what is too short belongs to the phase before it
+  // what is too short belongs to the phase before it, or as the first one to that after it
   std::vector<PhaseSpan> result;
   for (const PhaseSpan& span : spans) {
     if (!result.empty() && (span.to_s - span.from_s < kShortest_s || span.name == result.back().name))
       result.back().to_s = std::max(result.back().to_s, span.to_s);
+    else if (result.size() == 1 && result.back().to_s - result.back().from_s < kShortest_s)
+      result.back() = {span.name, result.back().from_s, span.to_s, 0, 0};
     else if (span.to_s > span.from_s)
       result.push_back(span);
   }

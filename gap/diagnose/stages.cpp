@@ -75,8 +75,9 @@ runs::Run integrated(const runs::Run& run) {
 }
 
 // By how much faster the gyro says that the robot turned than its angles do, from the span before each one to the span
-// after it, where it is about level; in the gyros' bins, NaN elsewhere.
-VectorXd gyro_against_angles(const FeatureMap& features, const runs::Run& run) {
+// after it, where it is about level; in the gyros' bins, NaN elsewhere. Less by as much as the angles' noise makes this
+// comparison worse than the gyro's own `sigma`, against which it will be held.
+VectorXd gyro_against_angles(const FeatureMap& features, const runs::Run& run, const VectorXd& sigma) {
   const runs::Run turned_by_gyro = integrated(run);
   const VectorXd turned = features.of(turned_by_gyro);
   const VectorXd& measured = features.measured();
@@ -95,10 +96,13 @@ VectorXd gyro_against_angles(const FeatureMap& features, const runs::Run& run) {
       const std::size_t span = bins[b].span;
       if (diagnosis_channels()[bins[b].channel].column != gyro || span == 0) continue;
       const auto before = place.find({angle, span - 1}), after = place.find({angle, span + 1});
-      if (before == place.end() || after == place.end() || !level("roll_rad", span) || !level("pitch_rad", span)) continue;
+      if (before == place.end() || after == place.end() || !level("roll_rad", span) || !level("pitch_rad", span))
+        continue;
       const double by_gyro = turned[after->second] - turned[before->second];
       const double by_angle = measured[after->second] - measured[before->second];
-      result[static_cast<Eigen::Index>(b)] = (by_gyro - by_angle) / (2 * features.span_s());
+      const double of_angles = std::hypot(sigma[before->second], sigma[after->second]) / (2 * features.span_s());
+      const auto i = static_cast<Eigen::Index>(b);
+      result[i] = (by_gyro - by_angle) / (2 * features.span_s()) / std::hypot(1.0, of_angles / sigma[i]);
     }
   }
   return result;
@@ -112,7 +116,7 @@ std::vector<StageGap> stage_gaps(const std::vector<FeatureMap>& features, const 
   std::vector<VectorXd> of_body(features.size()), of_sensor(features.size());
   for (std::size_t r = 0; r < features.size(); ++r) {
     if (with_measured_drives[r].size() > 0) of_body[r] = features[r].measured() - with_measured_drives[r];
-    of_sensor[r] = gyro_against_angles(features[r], observations.runs[r].run);
+    of_sensor[r] = gyro_against_angles(features[r], observations.runs[r].run, floor.sigma_of_bin[r]);
   }
   return {measure(Passage::command_to_drive, features, floor, coherence, residuals, is_drive),
           measure(Passage::drive_to_body, features, floor, coherence, of_body,
