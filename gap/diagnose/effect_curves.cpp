@@ -63,15 +63,18 @@ void set_whiteners(EffectCurves& curves, std::vector<Whitener> whiteners) {
 
 Variation varied(const EffectCurves& curves, std::span<const NewPoint> effects, const Predictor& predictor) {
   Variation variation = predictor.unvaried();
-  for (const NewPoint& effect : effects)
-    variation.effects.*curves.curves[effect.curve].parameter->value = effect.value;
+  for (const NewPoint& effect : effects) variation.effects.*curves.curves[effect.curve].parameter->value = effect.value;
   return variation;
 }
 
 void add_points(EffectCurves& curves, std::span<const NewPoint> points, Fidelity fidelity, Predictor& predictor) {
   std::vector<Variation> variations;
   for (const NewPoint& point : points) variations.push_back(varied(curves, {&point, 1}, predictor));
-  const std::vector<Shift> shifts = predictor.shifts(variations, fidelity);
+  insert_points(curves, points, predictor.shifts(variations, fidelity), fidelity);
+}
+
+void insert_points(EffectCurves& curves, std::span<const NewPoint> points, const std::vector<Shift>& shifts,
+                   Fidelity fidelity) {
   const auto first = static_cast<int>(curves.shifts.front().cols());
   for (std::size_t r = 0; r < curves.shifts.size(); ++r) {
     for (auto* matrix : {&curves.raw_shifts[r], &curves.shifts[r]})

@@ -56,6 +56,10 @@ struct NewPoint {
 };
 void add_points(EffectCurves& curves, std::span<const NewPoint> points, Fidelity fidelity, Predictor& predictor);
 
+// The same where the shifts of each point are known already.
+void insert_points(EffectCurves& curves, std::span<const NewPoint> points, const std::vector<Shift>& shifts,
+                   Fidelity fidelity);
+
 // Effects at their values, on top of the nominal ones.
 Variation varied(const EffectCurves& curves, std::span<const NewPoint> effects, const Predictor& predictor);
 

@@ -1,0 +1,165 @@
+// Verdicts in a world whose effects are fixed vectors: tests/gap/linear_world.hpp.
+#include "gap/diagnose/decision.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "tests/gap/linear_world.hpp"
+
+using namespace kenaf;
+using namespace kenaf::gap;
+using test::LinearWorld;
+using test::Whole;
+
+namespace {
+
+const LinearWorld world;
+constexpr std::size_t kEffects = 8;
+constexpr double kLength = 40;  // of an effect's shift at the end of its range, in sigma
+
+std::vector<Whole> orthogonal_effects() {
+  std::vector<Whole> effects;
+  for (std::size_t i = 0; i < kEffects; ++i) effects.push_back(kLength * world.direction(i));
+  return effects;
+}
+
+// Draws enough for probabilities down to 0.0025, and no more.
+DecisionSettings quick() {
+  DecisionSettings settings;
+  settings.null_draws = 500;
+  return settings;
+}
+
+bool holds(const Decision& decision, std::size_t place, std::size_t curve) {
+  return std::ranges::count(decision.rivals.at(place), curve) > 0;
+}
+
+}  // namespace
+
+TEST_CASE("Pure noise is called none, but as often as the chance of a false alarm says") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  const auto alarms_at = [&](double false_alarm) {
+    DecisionSettings settings = quick();
+    settings.false_alarm = false_alarm;
+    if (false_alarm > 0.01) settings.null_draws = 200;
+    int alarms = 0;
+    for (std::uint64_t seed = 0; seed < 200; ++seed)
+      alarms += world.decide(effects, LinearWorld::noise(1000 + seed), settings).verdict != Verdict::none;
+    return alarms;
+  };
+  // one in 200 expected at most; five or more have a chance of 0.4 %
+  CHECK(alarms_at(DecisionSettings{}.false_alarm) <= 4);
+  // 20 expected at most, with a sigma of 4.2; most of the chance is not used, for what is small is not reported at all
+  CHECK(alarms_at(0.1) <= 32);
+}
+
+TEST_CASE("One effect of 10 sigma is named alone, at its value") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const double value = seed % 2 == 0 ? 0.25 : -0.25;
+    const Decision decision = world.decide(effects, value * effects[3] + LinearWorld::noise(seed), quick());
+    REQUIRE(decision.verdict == Verdict::named);
+    REQUIRE(decision.best.places.size() == 1);
+    CHECK(decision.best.places[0].curve == 3);
+    CHECK(decision.rivals[0].size() == 1);
+    CHECK(decision.best.exact);
+    // its sigma is 1 / 40, of which 4 are allowed
+    CHECK(decision.best.places[0].value == Approx(value).margin(0.1));
+  }
+}
+
+TEST_CASE("Two effects that look alike to one degree are not told apart, but both are named as possible") {
+  std::vector<Whole> effects = orthogonal_effects();
+  const double degree = 0.017453;
+  effects[5] = std::cos(degree) * effects[2] + std::sin(degree) * kLength * world.direction(kEffects);
+  for (const std::size_t truth : {2u, 5u})
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+      const Decision decision = world.decide(effects, 0.5 * effects[truth] + LinearWorld::noise(seed), quick());
+      REQUIRE(decision.verdict == Verdict::ambiguous);
+      REQUIRE(decision.rivals.size() == 1);
+      CHECK(decision.rivals[0].size() == 2);
+      CHECK(holds(decision, 0, 2));
+      CHECK(holds(decision, 0, 5));
+    }
+}
+
+TEST_CASE("At 60 degrees they are told apart") {
+  std::vector<Whole> effects = orthogonal_effects();
+  effects[5] = 0.5 * effects[2] + std::sqrt(0.75) * kLength * world.direction(kEffects);
+  const Decision decision = world.decide(effects, 0.5 * effects[5] + LinearWorld::noise(1), quick());
+  CHECK(decision.verdict == Verdict::named);
+  CHECK(decision.best.places.at(0).curve == 5);
+}
+
+TEST_CASE("A gap that no effect goes along is unknown, also where one goes along a part of it") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  const Whole elsewhere = world.direction(kEffects + 1);
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const Whole noise = LinearWorld::noise(seed);
+    CHECK(world.decide(effects, 20 * elsewhere + noise, quick()).verdict == Verdict::unknown);
+    const Decision part = world.decide(effects, 20 * elsewhere + 0.5 * effects[1] + noise, quick());
+    CHECK(part.verdict == Verdict::unknown);
+    CHECK(part.best.places.at(0).curve == 1);  // and says what it explains
+  }
+}
+
+TEST_CASE("An effect beyond the end of its range is not named for what it cannot do") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  // half of its length is left: 20 sigma
+  CHECK(world.decide(effects, 1.5 * effects[0] + LinearWorld::noise(1), quick()).verdict == Verdict::unknown);
+}
+
+TEST_CASE("Two effects together are both named") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const Decision decision =
+        world.decide(effects, 0.5 * effects[1] - 0.4 * effects[6] + LinearWorld::noise(seed), quick());
+    REQUIRE(decision.verdict == Verdict::named);
+    REQUIRE(decision.best.places.size() == 2);
+    CHECK(decision.best.places[0].curve == 1);
+    CHECK(decision.best.places[0].value == Approx(0.5).margin(0.1));
+    CHECK(decision.best.places[1].curve == 6);
+    CHECK(decision.best.places[1].value == Approx(-0.4).margin(0.1));
+  }
+}
+
+TEST_CASE("Of two effects one has a look-alike: the other one is sure all the same") {
+  std::vector<Whole> effects = orthogonal_effects();
+  const double degree = 0.017453;
+  effects[5] = std::cos(degree) * effects[2] + std::sin(degree) * kLength * world.direction(kEffects);
+  const Decision decision = world.decide(effects, 0.5 * effects[2] + 0.5 * effects[7] + LinearWorld::noise(2), quick());
+  REQUIRE(decision.verdict == Verdict::ambiguous);
+  REQUIRE(decision.best.places.size() == 2);
+  const std::size_t sure = decision.best.places[0].curve == 7 ? 0 : 1;
+  CHECK(decision.best.places[sure].curve == 7);
+  CHECK(decision.rivals[sure].size() == 1);
+  CHECK(holds(decision, 1 - sure, 2));
+  CHECK(holds(decision, 1 - sure, 5));
+}
+
+TEST_CASE("What explains less than the negligible share of the noise is none, however sure it is") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  // without any noise 5 sigma along one effect explain 25. The noise's squared length would be 192: a quarter of its
+  // length has a square of 12, a half 48.
+  const Whole gap = effects[4] * 5 / kLength;
+  DecisionSettings settings = quick();
+  CHECK(world.decide(effects, gap, settings).verdict == Verdict::named);
+  settings.negligible = 0.5;
+  const Decision decision = world.decide(effects, gap, settings);
+  CHECK(decision.verdict == Verdict::none);
+  CHECK(decision.best.places.empty());
+  CHECK(decision.p_gap <= settings.false_alarm);
+}
+
+TEST_CASE("Repeats that differ more than the floor says make a verdict harder to get") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  EffectCurves curves = world.curves(effects, effects[4] * 7 / kLength);
+  const auto verdict = [&](double inflation) {
+    return decide(curves, world.coherence(), {inflation, static_cast<double>(LinearWorld::kBins)},
+                  world.simulator(effects), quick(), 1)
+        .verdict;
+  };
+  // 49 explained, against 13 as the luckiest of eight effects in 400 draws, and a margin of 9
+  CHECK(verdict(1) == Verdict::named);
+  CHECK(verdict(9) == Verdict::none);
+}

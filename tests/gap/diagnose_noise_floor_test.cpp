@@ -1,0 +1,162 @@
+// The noise floor: what the data say of noise, and numbers that are standard normal where there is no gap.
+#include "gap/diagnose/noise_floor.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "gap/diagnose/chance.hpp"
+#include "gap/diagnose/channels.hpp"
+#include "tests/gap/made_run.hpp"
+
+using namespace kenaf;
+using namespace kenaf::gap;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+// A run of x alone, 1000 bins of 0.25 s with two samples each.
+constexpr std::size_t kBins = 1000;
+const FeatureMap& long_map() {
+  static const FeatureMap map(test::made_run(250, 0.125, {{"x_m", [](double) { return 0.0; }}}), 0.25);
+  return map;
+}
+
+VectorXd white(double sigma, std::mt19937_64& random) {
+  std::normal_distribution<double> normal(0, sigma);
+  return VectorXd::NullaryExpr(kBins, [&] { return normal(random); });
+}
+
+// With nothing left open by the simulation.
+NoiseFloor floor_of(const std::vector<VectorXd>& residuals, const std::vector<std::vector<std::size_t>>& repeats) {
+  const std::vector<FeatureMap> features(residuals.size(), long_map());
+  const OpenShapes closed{MatrixXd::Zero(kBins, 1), VectorXd::Zero(kBins)};
+  return noise_floor(features, residuals, repeats, std::vector<OpenShapes>(residuals.size(), closed));
+}
+double sigma_of_x(const NoiseFloor& floor) {
+  return floor.sigma[long_map().bins()[0].channel];
+}
+
+MatrixXd as_matrix(const Whitener& whitener, Eigen::Index size) {
+  MatrixXd result(size, size);
+  for (Eigen::Index i = 0; i < size; ++i) result.col(i) = whitener(VectorXd::Unit(size, i));
+  return result;
+}
+
+}  // namespace
+
+// A median of absolute values knows sigma to 1.17 / sqrt(n); that neighbouring second differences share bins makes it
+// about 1.6 / sqrt(n): 2.6 % of 4000 bins, so 10 % is nearly four sigma.
+TEST_CASE("White noise is found again, from residuals and from repeats, also under a gap that changes slowly") {
+  std::mt19937_64 random(3);
+  const double sigma = 0.02;
+  std::vector<VectorXd> residuals;
+  for (int r = 0; r < 4; ++r) residuals.push_back(white(sigma, random));
+  CHECK(sigma_of_x(floor_of(residuals, {{0}, {1}, {2}, {3}})) == Approx(sigma).epsilon(0.1));
+  CHECK_FALSE(floor_of(residuals, {{0}, {1}, {2}, {3}}).from_repeats);
+  CHECK(sigma_of_x(floor_of(residuals, {{0, 1}, {2, 3}})) == Approx(sigma).epsilon(0.1));
+  CHECK(floor_of(residuals, {{0, 1}, {2, 3}}).from_repeats);
+  // of a sine with a period of 100 bins a second difference leaves (2 pi / 100)^2 = 0.4 %
+  for (VectorXd& run : residuals)
+    for (Eigen::Index i = 0; i < run.size(); ++i) run[i] += 10 * sigma * std::sin(0.0628 * static_cast<double>(i));
+  CHECK(sigma_of_x(floor_of(residuals, {{0}, {1}, {2}, {3}})) == Approx(sigma).epsilon(0.1));
+}
+
+TEST_CASE("A twentieth of the bins at which something happens does not count as noise") {
+  std::mt19937_64 random(4);
+  std::vector<VectorXd> residuals{white(0.02, random), white(0.02, random)};
+  // three second differences of each event, so a sixth of all: the median is then the quantile 0.5 / (5 / 6) = 0.6 of
+  // the noise's, 0.84 sigma where half is 0.67 sigma
+  for (Eigen::Index i = 0; i < residuals[0].size(); i += 20) residuals[0][i] += 5;
+  const double sigma = sigma_of_x(floor_of(residuals, {{0}, {1}}));
+  CHECK(sigma < 0.02 * 0.84 / 0.67 * 1.1);
+}
+
+TEST_CASE("Nothing is known finer than a channel's resolution; what was never measured has no sigma") {
+  const NoiseFloor floor = floor_of({VectorXd::Zero(kBins), VectorXd::Zero(kBins)}, {{0, 1}});
+  for (std::size_t c = 0; c < diagnosis_channels().size(); ++c)
+    CHECK(floor.sigma[c] == (c == long_map().bins()[0].channel ? diagnosis_channels()[c].resolution : 0));
+}
+
+TEST_CASE("A wander too slow to show from bin to bin shows in repeats") {
+  // two repeats that lie 1.5 sigma x sqrt(2) above and below their mean: as one run's, a variance of 2 x 4.5 sigma^2,
+  // with the noise 10 sigma^2. Leaving the largest 5 % of squares out costs 4 % of its root, the draw 3 %.
+  std::mt19937_64 random(5);
+  const double sigma = 0.02, apart = 1.5 * std::sqrt(2) * sigma;
+  std::vector<VectorXd> residuals{white(sigma, random), white(sigma, random)};
+  residuals[0].array() += apart;
+  residuals[1].array() -= apart;
+  CHECK(sigma_of_x(floor_of(residuals, {{0, 1}})) == Approx(std::sqrt(10) * sigma).epsilon(0.1));
+  CHECK(sigma_of_x(floor_of(residuals, {{0}, {1}})) == Approx(sigma).epsilon(0.15));  // unseen: half the bins of above
+}
+
+TEST_CASE("Where one repeat goes on alone nothing is learnt of noise, and nothing is lost") {
+  const FeatureMap half(test::made_run(125, 0.125, {{"x_m", [](double) { return 0.0; }}}), 0.25);
+  std::mt19937_64 random(7);
+  const VectorXd whole = white(0.02, random), first = white(0.02, random).head(kBins / 2);
+  const auto closed = [](Eigen::Index bins) { return OpenShapes{MatrixXd::Zero(bins, 1), VectorXd::Zero(bins)}; };
+  const NoiseFloor floor =
+      noise_floor({long_map(), half}, {whole, first}, {{0, 1}}, {closed(kBins), closed(kBins / 2)});
+  // 500 pairs: 1.6 / sqrt(500) = 7 %, of which 3 are allowed
+  CHECK(sigma_of_x(floor) == Approx(0.02).epsilon(0.21));
+}
+
+TEST_CASE("A bin with half the samples has sqrt(2) of the noise; roughness adds to it") {
+  const FeatureMap map(test::made_run(1, 0.125, {{"x_m", [](double t_s) { return t_s > 0.8 ? NAN : 0.0; }}}), 0.25);
+  REQUIRE(map.bins().back().samples == 1);
+  const VectorXd none = VectorXd::Zero(4);
+  OpenShapes open{MatrixXd::Zero(4, 1), none};
+  open.roughness[0] = 5e-4 * std::sqrt(3);
+  const NoiseFloor floor = noise_floor({map}, {none}, {{0}}, {open});
+  CHECK(floor.sigma_of_bin[0][3] == Approx(5e-4 * std::sqrt(2)));
+  CHECK(floor.sigma_of_bin[0][0] == Approx(5e-4 * 2));  // sqrt(1 + 3)
+  CHECK(floor.rms({VectorXd(floor.sigma_of_bin[0] * 3)}) == Approx(3));
+}
+
+TEST_CASE("Whitened, noise with shapes of unknown amount has the covariance of independent standard normals") {
+  const VectorXd sigma = (VectorXd(4) << 1, 2, 0.5, 3).finished();
+  MatrixXd shapes(4, 3);
+  shapes << 1, 0, 2, -3, 1, 4, 0.5, 0.2, 1, 2, 2, 4;  // a column that nearly repeats another one too
+  const MatrixXd covariance = MatrixXd(sigma.cwiseAbs2().asDiagonal()) + shapes * shapes.transpose();
+  const MatrixXd whiten = as_matrix(Whitener(sigma, shapes), 4);
+  CHECK((whiten * covariance * whiten.transpose() - MatrixXd::Identity(4, 4)).norm() < 1e-12);
+}
+
+TEST_CASE("A shift along a shape s sigma long shrinks to 1 / sqrt(1 + s^2), one across it stays") {
+  const VectorXd sigma = VectorXd::Constant(4, 0.1);
+  const MatrixXd shape = (MatrixXd(4, 1) << 0.3, 0, 0.4, 0).finished();  // 5 sigma long
+  const Whitener whitener(sigma, shape);
+  CHECK(whitener(shape.col(0)).norm() == Approx(5 / std::sqrt(26.0)));
+  CHECK(whitener((VectorXd(4) << 0, 0.2, 0, 0).finished()).norm() == Approx(2));
+  CHECK(whitener((VectorXd(4) << 0.4, 0, -0.3, 0).finished()).norm() == Approx(5));
+}
+
+TEST_CASE("Around another model bins are as rough as the rougher one has them") {
+  const FeatureMap map(test::made_run(0.5, 0.125, {{"x_m", [](double) { return 0.0; }}}), 0.25);
+  const VectorXd none = VectorXd::Zero(2);
+  const NoiseFloor nominal = noise_floor({map}, {none}, {{0}}, {{MatrixXd::Zero(2, 1), none}});
+  const NoiseFloor around = with_open_shapes(nominal, {{MatrixXd::Zero(2, 1), (VectorXd(2) << 0, 5e-4).finished()}});
+  CHECK(around.sigma_of_bin[0][0] == Approx(5e-4));
+  CHECK(around.sigma_of_bin[0][1] == Approx(5e-4 * std::sqrt(2)));
+}
+
+TEST_CASE("Repeats that differ as the floor says inflate nothing; a second of wander does") {
+  std::mt19937_64 random(6);
+  const std::vector<FeatureMap> features(2, long_map());
+  const double sigma = 0.02;
+  std::vector<VectorXd> residuals{white(sigma, random), white(sigma, random)};
+  const auto inflation = [&] {
+    const NoiseFloor floor = floor_of(residuals, {{0, 1}});
+    return inflation_from_repeats(features, floor, deviations_from_repeats(features, residuals, {{0, 1}}), 1);
+  };
+  // 250 cells, each in both runs with opposite signs: sigma of their mean square sqrt(2 / 250) = 9 %
+  CHECK(inflation() < 1.3);
+  // whole seconds, four bins, that are off together by sigma: their mean's variance is 1/4 + 1 instead of 1/4 of
+  // sigma^2, while a bin's is twice what it was: 2.5 times. A wander at a bin's own pace is seen by the floor in part.
+  std::normal_distribution<double> normal(0, sigma);
+  for (VectorXd& run : residuals)
+    for (Eigen::Index i = 0; i < run.size(); i += 4) run.segment(i, 4).array() += normal(random);
+  CHECK(inflation() > 2);
+  CHECK(inflation() < 4);
+}

@@ -1,0 +1,121 @@
+// Which runs repeat each other, and how repeats differ.
+#include "gap/diagnose/repeats.hpp"
+
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "tests/gap/made_run.hpp"
+
+using namespace kenaf;
+using namespace kenaf::gap;
+
+namespace {
+
+using Groups = std::vector<std::vector<std::size_t>>;
+
+// Told to go at `speed_mps` from `from_s` on, for 4 s in all.
+Observation told(const std::string& manoeuvre, double speed_mps, double from_s = 0, double duration_s = 4) {
+  Observation observation{};
+  observation.manoeuvre = manoeuvre;
+  for (int i = 0; i <= static_cast<int>(duration_s / 0.1 + 0.5); ++i) {
+    physics::RobotCommand command;
+    if (i * 0.1 >= from_s) command.track_speed_mps = {speed_mps, speed_mps};
+    observation.replay.timed.push_back({i * 0.1, command});
+  }
+  return observation;
+}
+
+Groups groups_of(std::vector<Observation> runs) {
+  Observations observations;
+  observations.runs = std::move(runs);
+  return repeats_of(observations);
+}
+
+std::vector<FeatureMap> maps(std::initializer_list<double> durations_s) {
+  std::vector<FeatureMap> maps;
+  for (const double duration_s : durations_s)
+    maps.emplace_back(test::made_run(duration_s, 0.1, {{"x_m", [](double) { return 0.0; }}}), 0.25);
+  return maps;
+}
+
+}  // namespace
+
+TEST_CASE("Runs of one name with the same commands repeat each other") {
+  CHECK(groups_of({told("a", 0.3), told("b", 0.3), told("a", 0.3)}) == Groups{{0, 2}, {1}});
+}
+
+TEST_CASE("Runs of one name with other commands do not") {
+  CHECK(groups_of({told("log", 0.3), told("log", -0.3), told("log", 0.1), told("log", 0.3)}) ==
+        Groups{{0, 3}, {1}, {2}});
+}
+
+TEST_CASE("An order that comes a little later is the same order") {
+  // 0.2 s of 4 s are 5 % of the commands; 2 s are half of them
+  CHECK(groups_of({told("a", 0.3), told("a", 0.3, 0.2)}) == Groups{{0, 1}});
+  CHECK(groups_of({told("a", 0.3), told("a", 0.3, 2)}) == Groups{{0}, {1}});
+}
+
+TEST_CASE("The same commands on another world are another group") {
+  Observation elsewhere = told("a", 0.3);
+  elsewhere.world = 1;
+  CHECK(groups_of({told("a", 0.3), elsewhere}) == Groups{{0}, {1}});
+}
+
+TEST_CASE("Flippers that are told otherwise make another group") {
+  Observation folded = told("a", 0.3), flat = told("a", 0.3);
+  for (auto& timed : folded.replay.timed)
+    for (auto& flipper : timed.command.flipper) flipper.value = 1;
+  CHECK(groups_of({folded, flat, folded}) == Groups{{0, 2}, {1}});
+}
+
+TEST_CASE("A run that was cut short repeats as far as it goes") {
+  CHECK(groups_of({told("a", 0.3, 0, 4), told("a", 0.3, 0, 2)}) == Groups{{0, 1}});
+}
+
+TEST_CASE("Deviations are from the mean of the repeats, with the variance of one run") {
+  const auto features = maps({0.5, 0.5, 0.5});
+  const std::vector<Eigen::VectorXd> residuals{Eigen::Vector2d(1, 5), Eigen::Vector2d(3, 5), Eigen::Vector2d(7, 7)};
+  // of 1 and 3: mean 2, deviations -1 and 1, their variance 1; that of one run is n / (n - 1) = 2 times it
+  const auto of_two = deviations_from_repeats(features, residuals, {{0, 1}, {2}});
+  CHECK(of_two[0][0] == Approx(-std::sqrt(2.0)));
+  CHECK(of_two[1][0] == Approx(std::sqrt(2.0)));
+  CHECK(of_two[1][1] == 0);
+  CHECK(of_two[2].size() == 0);
+  const auto of_three = deviations_from_repeats(features, residuals, {{0, 1, 2}});
+  CHECK(of_three[2][0] == Approx((7 - 11.0 / 3) * std::sqrt(1.5)));
+}
+
+TEST_CASE("Deviations of noise have the noise's variance, for any number of repeats") {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal(0, 2);
+  for (const std::size_t count : {2u, 3u, 5u}) {
+    std::vector<FeatureMap> features;
+    std::vector<Eigen::VectorXd> residuals;
+    Groups group(1);
+    double square = 0, bins = 0;
+    for (std::size_t r = 0; r < count; ++r) {
+      features.push_back(maps({250}).front());
+      residuals.push_back(Eigen::VectorXd::NullaryExpr(1000, [&] { return normal(random); }));
+      group[0].push_back(r);
+    }
+    for (const Eigen::VectorXd& run : deviations_from_repeats(features, residuals, group)) {
+      square += run.squaredNorm();
+      bins += static_cast<double>(run.size());
+    }
+    // at least 1000 numbers that are free: sigma of a variance sqrt(2 / 1000) = 4.5 %, three of them
+    CHECK(square / bins == Approx(4).epsilon(0.135));
+  }
+}
+
+TEST_CASE("Where one repeat alone goes on there is no deviation") {
+  const auto deviations =
+      deviations_from_repeats(maps({0.5, 1}), {Eigen::Vector2d(1, 1), Eigen::Vector4d(3, 3, 9, 9)}, {{0, 1}});
+  CHECK(deviations[1][0] == Approx(std::sqrt(2.0)));
+  CHECK(deviations[1][3] == 0);
+}
+
+TEST_CASE("A group is represented by the run of middle duration") {
+  Observations observations;
+  observations.runs = {told("a", 0.3, 0, 1), told("a", 0.3, 0, 9), told("a", 0.3, 0, 4)};
+  CHECK(representative(observations, {0, 1, 2}) == 2);
+}
