@@ -11,8 +11,8 @@
 namespace kenaf::gap {
 
 std::string_view verdict_name(Verdict verdict);
-// The stage at which the gap comes in: that of the named effect; otherwise that of the first channels, on the way from
-// command to sensor, that show it.
+// The stage at which the gap comes in: that of the named effect; otherwise the first passage, on the way from command
+// to sensor, that has a gap of its own.
 std::string_view gap_stage(const Diagnosis& diagnosis);
 // "pitch_inertia", or "pitch_inertia:scale" of an effect with several parameters.
 std::string name_of(const EffectCurve& curve);

@@ -21,7 +21,12 @@ Json names_of(const Diagnosis& d, const std::vector<std::size_t>& curves) {
 }
 
 Json where_json(const Diagnosis& d) {
-  Json where{{"stage", gap_stage(d)}, {"channels", Json::array()}, {"phases", Json::array()}};
+  Json where{{"stage", gap_stage(d)}, {"stages", Json::array()}, {"channels", Json::array()}, {"phases", Json::array()}};
+  for (const StageGap& stage : d.stages)
+    if (stage.bins > 0)
+      where["stages"].push_back({{"passage", passage_name(stage.passage)},
+                                 {"rms", number(stage.rms)},
+                                 {"energy_over_chance", number(stage.chance)}});
   for (const ChannelGap& gap : d.where.channels) {
     const Channel& channel = diagnosis_channels()[gap.channel];
     where["channels"].push_back({{"channel", channel.column},

@@ -13,8 +13,6 @@ namespace kenaf::gap {
 namespace {
 
 constexpr std::size_t kChannels = 5, kPhases = 4, kRanking = 6, kNext = 3, kWarnings = 3;
-// Shares that together count as where a gap is.
-constexpr double kFirstStage = 0.2;
 
 std::string value_text(const Diagnosis& d, const EffectEvidence& e) {
   const EffectCurve& curve = d.curves.curves[e.curve];
@@ -63,12 +61,9 @@ std::string_view gap_stage(const Diagnosis& d) {
   const Verdict verdict = d.decision.verdict;
   if ((verdict == Verdict::named || verdict == Verdict::ambiguous) && !d.decision.best.places.empty())
     return physics::stage_name(d.curves.curves[d.decision.best.places.front().curve].effect->stage);
-  for (const physics::Stage stage : {physics::Stage::drive, physics::Stage::body, physics::Stage::sensor}) {
-    double share = 0;
-    for (const ChannelGap& channel : d.where.channels)
-      if (diagnosis_channels()[channel.channel].measured == stage) share += channel.share;
-    if (share >= kFirstStage) return physics::stage_name(stage);
-  }
+  constexpr physics::Stage kOfPassage[] = {physics::Stage::drive, physics::Stage::body, physics::Stage::sensor};
+  for (const StageGap& stage : d.stages)
+    if (stage.chance > kStageChance) return physics::stage_name(kOfPassage[static_cast<std::size_t>(stage.passage)]);
   return physics::stage_name(physics::Stage::body);
 }
 
@@ -93,6 +88,10 @@ std::string diagnosis_text(const Diagnosis& d) {
   }
   if (d.decision.verdict != Verdict::none || !d.interrupted.empty()) {
     fmt::format_to(out, "\nWhere: {}\n", gap_stage(d));
+    for (const StageGap& stage : d.stages)
+      if (stage.bins > 0)
+        fmt::format_to(out, "  {:<17} {:>6.2f} floors rms, {:.1f} times chance\n", passage_name(stage.passage), stage.rms,
+                       stage.chance);
     for (std::size_t i = 0; i < std::min(kChannels, d.where.channels.size()); ++i) {
       const ChannelGap& gap = d.where.channels[i];
       const Channel& channel = diagnosis_channels()[gap.channel];

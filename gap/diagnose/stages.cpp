@@ -110,6 +110,11 @@ VectorXd gyro_against_angles(const FeatureMap& features, const runs::Run& run, c
 
 }  // namespace
 
+std::string_view passage_name(Passage passage) {
+  constexpr std::string_view kNames[] = {"command to drive", "drive to body", "body to sensor"};
+  return kNames[static_cast<std::size_t>(passage)];
+}
+
 std::vector<StageGap> stage_gaps(const std::vector<FeatureMap>& features, const NoiseFloor& floor,
                                  const Coherence& coherence, const std::vector<VectorXd>& residuals,
                                  const std::vector<VectorXd>& with_measured_drives, const Observations& observations) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string_view>
 #include <vector>
 
 #include "gap/diagnose/coherence.hpp"
@@ -14,6 +15,8 @@
 namespace kenaf::gap {
 
 enum class Passage { command_to_drive, drive_to_body, body_to_sensor };
+
+std::string_view passage_name(Passage passage);  // "command to drive"
 
 struct StageGap {
   Passage passage;
