@@ -12,6 +12,7 @@ find_package(EXPAT 2.5 REQUIRED)
 find_package(PNG 1.6 REQUIRED)
 pkg_check_modules(assimp REQUIRED IMPORTED_TARGET assimp>=5.2)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
+pkg_check_modules(nettle REQUIRED IMPORTED_TARGET nettle>=3.8)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
 
 # The double precision flavour of Bullet. Mixing its headers with the single precision libraries is an error that no

@@ -1,10 +1,6 @@
 // kenaf-gap diagnose: where simulation and runs part, which effect causes it, how far the gap shrinks with it.
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <atomic>
-#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -14,6 +10,7 @@
 #include "gap/commands.hpp"
 #include "gap/diagnose/report.hpp"
 #include "gap/option_checks.hpp"
+#include "gap/progress_line.hpp"
 
 namespace kenaf::gap {
 namespace {
@@ -25,23 +22,6 @@ std::atomic<bool> interrupted = false;  // what a signal handler may write is gl
 void interrupt(int) {
   interrupted = true;
 }
-
-// One line that is written over, on a terminal only.
-class ProgressLine {
- public:
-  void operator()(const Progress& progress) {
-    if (!terminal_) return;
-    const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    const std::string left =
-        progress.done > 0.05 ? fmt::format(", about {:.0f} s left", passed_s * (1 / progress.done - 1)) : "";
-    std::fputs(fmt::format("\r\033[K{:3.0f} %  {}{}", progress.done * 100, progress.doing, left).c_str(), stderr);
-    if (progress.done >= 1) std::fputs("\r\033[K", stderr);
-  }
-
- private:
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace
 
@@ -72,7 +52,9 @@ void add_diagnose_command(CLI::App& program) {
     for (const auto& [name, text] : {std::pair{"DATASET", &options->dataset}, {"--out", &options->out}})
       if (text->empty()) throw CLI::RequiredError(name);
     options->diagnosis.stop = &interrupted;
-    options->diagnosis.progress = ProgressLine();
+    options->diagnosis.progress = [line = ProgressLine()](const Progress& progress) {
+      line.show(progress.doing, progress.done);
+    };
     const auto before = std::signal(SIGINT, interrupt);
     const Diagnosis result = diagnose(options->dataset, options->diagnosis);
     std::signal(SIGINT, before);

@@ -15,6 +15,7 @@ struct RunsWentWrong : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+void add_challenge_command(CLI::App& program);
 void add_check_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_dataset_command(CLI::App& program);
@@ -22,6 +23,7 @@ void add_diagnose_command(CLI::App& program);
 void add_effects_command(CLI::App& program);
 void add_manoeuvres_command(CLI::App& program);
 void add_merge_command(CLI::App& program);
+void add_score_command(CLI::App& program);
 void add_simulate_command(CLI::App& program);
 
 }  // namespace kenaf::gap

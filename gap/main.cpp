@@ -20,6 +20,7 @@ namespace {
 constexpr int kWentWrong = 1, kBadInput = 2;
 
 constexpr void (*kCommands[])(CLI::App&) = {
+    kenaf::gap::add_challenge_command,
     kenaf::gap::add_check_command,
     kenaf::gap::add_compare_command,
     kenaf::gap::add_dataset_command,
@@ -27,6 +28,7 @@ constexpr void (*kCommands[])(CLI::App&) = {
     kenaf::gap::add_effects_command,
     kenaf::gap::add_manoeuvres_command,
     kenaf::gap::add_merge_command,
+    kenaf::gap::add_score_command,
     kenaf::gap::add_simulate_command,
 };
 

@@ -8,8 +8,6 @@ namespace kenaf {
 
 namespace fs = std::filesystem;
 
-namespace {
-
 std::vector<fs::path> data_roots() {
   std::vector<fs::path> roots;
   if (const char* set = std::getenv("KENAF_DATA_DIR"); set != nullptr && *set != '\0') roots.emplace_back(set);
@@ -20,8 +18,6 @@ std::vector<fs::path> data_roots() {
   roots.emplace_back(KENAF_SOURCE_DATA_DIR);
   return roots;
 }
-
-}  // namespace
 
 fs::path find_data_file(std::string_view folder, const std::string& name, std::string_view extension) {
   if (name.find('/') != std::string::npos || name.ends_with(extension)) return name;

@@ -8,6 +8,9 @@
 
 namespace kenaf {
 
+// All places where they are looked for, in that order, whether they exist or not.
+std::vector<std::filesystem::path> data_roots();
+
 // The path of `name` + `extension` in `folder` ("robots", "worlds"): first below $KENAF_DATA_DIR, then below the
 // install prefix's share/kenaf (found relative to the running program), then below the source tree this was built
 // from. Where `name` contains a '/' or ends in `extension` it is a path and is returned as it is.

@@ -9,7 +9,7 @@ set -euo pipefail
 packages=(
   cmake g++ ninja-build pkg-config
   libassimp-dev libboost-dev libboost-system-dev libbullet-dev libcairo2-dev libcli11-dev libeigen3-dev libexpat1-dev libfmt-dev
-  libpng-dev libsdformat-dev libspdlog-dev libtomlplusplus-dev nlohmann-json3-dev
+  libpng-dev libsdformat-dev libspdlog-dev libtomlplusplus-dev nettle-dev nlohmann-json3-dev
 )
 mode=${1:-all}
 case $mode in

@@ -1,7 +1,6 @@
 #include "gap/challenge/make_case.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "gap/diagnose/observation.hpp"
 #include "gap/diagnose/prediction.hpp"
 #include "gap/parallel.hpp"
+#include "gap/temporary_folder.hpp"
 #include "physics/effects.hpp"
 #include "rollout/roll_out.hpp"
 #include "runs/dataset.hpp"
@@ -118,21 +118,6 @@ void write_cases_runs(const CasePlan& plan, const Recipe& recipe, const std::vec
   runs::write_dataset(folder, dataset);
 }
 
-struct TemporaryFolder {
-  fs::path path;
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "kenaf-case-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no folder for temporary files can be made");
-    path = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
-
 // How large gaps look beside the noise of runs in which nothing is hidden.
 class Scale {
  public:
@@ -222,12 +207,16 @@ double size_effect(HiddenEffect& hidden, Scale& scale, bool upward) {
 }
 
 Recipe recipe_of(const CasePlan& plan) {
-  Recipe recipe{{}, plan.foreign, plan.foreign_amount};
-  for (const HiddenEffect& hidden : plan.effects) recipe.effects.*parameter_of(hidden).value = hidden.value;
-  return recipe;
+  return {hidden_effects(plan), plan.foreign, plan.foreign_amount};
 }
 
 }  // namespace
+
+physics::Effects hidden_effects(const CasePlan& plan) {
+  physics::Effects effects;
+  for (const HiddenEffect& hidden : plan.effects) effects.*parameter_of(hidden).value = hidden.value;
+  return effects;
+}
 
 void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs) {
   std::mt19937_64 random(mixed(plan.seed, 1));

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "gap/challenge/plan.hpp"
+#include "physics/effects.hpp"
 
 namespace kenaf::gap {
 
@@ -12,6 +13,9 @@ namespace kenaf::gap {
 // Where these manoeuvres cannot show an effect as large as planned, they are exchanged for others that can; where none
 // can, the effect is as large as they show it.
 void make_case(CasePlan& plan, const std::filesystem::path& folder, unsigned jobs);
+
+// What of the catalogue is hidden in a case that is made.
+physics::Effects hidden_effects(const CasePlan& plan);
 
 // Runs of the same robot in the manoeuvre that the dataset does not have.
 void make_unseen(const CasePlan& plan, const std::filesystem::path& folder, unsigned jobs);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "physics/effects.hpp"
 
@@ -28,8 +29,10 @@ void shuffle(std::vector<T>& values, Random& random) {
   for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(random, i)]);
 }
 
+constexpr std::string_view kStratumNames[] = {"none", "single", "pair", "withheld", "foreign"};  // as Stratum
 // Shares of the strata, in the order of Stratum.
 constexpr double kShare[] = {0.3, 0.28, 0.14, 0.2, 0.08};
+constexpr double kRounding = 1e-6;
 
 struct Named {
   std::string effect, parameter;
@@ -61,7 +64,7 @@ std::vector<Stratum> strata(std::size_t cases, Random& random) {
   double sum = 0;
   for (std::size_t s = 0; s < std::size(kShare); ++s) {
     sum += kShare[s];
-    while (result.size() < static_cast<std::size_t>(std::llround(sum * static_cast<double>(cases))))
+    while (static_cast<double>(result.size()) < sum * static_cast<double>(cases) - kRounding)
       result.push_back(static_cast<Stratum>(s));
   }
   shuffle(result, random);
@@ -71,8 +74,13 @@ std::vector<Stratum> strata(std::size_t cases, Random& random) {
 }  // namespace
 
 std::string_view stratum_name(Stratum stratum) {
-  constexpr std::string_view kNames[] = {"none", "single", "pair", "withheld", "foreign"};
-  return kNames[static_cast<std::size_t>(stratum)];
+  return kStratumNames[static_cast<std::size_t>(stratum)];
+}
+
+Stratum stratum_of(std::string_view name) {
+  const auto* found = std::ranges::find(kStratumNames, name);
+  if (found == std::end(kStratumNames)) throw std::invalid_argument(fmt::format("\"{}\" is no stratum", name));
+  return static_cast<Stratum>(found - kStratumNames);
 }
 
 std::vector<std::vector<std::string>> manoeuvre_sets() {

@@ -20,6 +20,7 @@ enum class Stratum {
   foreign,   // something that the catalogue never had
 };
 std::string_view stratum_name(Stratum stratum);
+Stratum stratum_of(std::string_view name);  // throws std::invalid_argument
 
 struct HiddenEffect {
   std::string effect, parameter;

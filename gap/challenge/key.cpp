@@ -1,0 +1,123 @@
+#include "gap/challenge/key.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "gap/challenge/sha256.hpp"
+#include "runs/whole_file.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kFormat = "kenaf-gap-key/1";
+
+Json case_json(const SealedCase& sealed) {
+  const CasePlan& plan = sealed.plan;
+  Json json{{"name", plan.name}, {"stratum", stratum_name(plan.stratum)}, {"effects", Json::array()}};
+  for (const HiddenEffect& hidden : plan.effects)
+    json["effects"].push_back({{"effect", hidden.effect},
+                               {"parameter", hidden.parameter},
+                               {"value", hidden.value},
+                               {"floors", hidden.floors}});
+  if (!plan.foreign.empty())
+    json["foreign"] = {{"name", plan.foreign}, {"amount", plan.foreign_amount}, {"floors", plan.foreign_floors}};
+  json["manoeuvres"] = plan.manoeuvres;
+  json["unseen"] = plan.unseen;
+  json["repeats"] = plan.repeats;
+  json["physics"] = {{"time_step_s", plan.physics.time_step_s},
+                     {"solver_iterations", plan.physics.solver_iterations},
+                     {"contact_stiffness_npm", plan.physics.contact_stiffness_npm},
+                     {"contact_damping_nspm", plan.physics.contact_damping_nspm}};
+  json["noise_scale"] = plan.noise_scale;
+  json["noise_memory_s"] = plan.noise_memory_s;
+  json["seed"] = plan.seed;
+  json["data_sha256"] = sealed.data_sha256;
+  return json;
+}
+
+SealedCase case_of(const Json& json) {
+  SealedCase sealed;
+  CasePlan& plan = sealed.plan;
+  json.at("name").get_to(plan.name);
+  plan.stratum = stratum_of(json.at("stratum").get<std::string>());
+  for (const Json& effect : json.at("effects"))
+    plan.effects.push_back({effect.at("effect"), effect.at("parameter"), effect.at("floors"), effect.at("value")});
+  if (json.contains("foreign")) {
+    const Json& foreign = json["foreign"];
+    foreign.at("name").get_to(plan.foreign);
+    foreign.at("amount").get_to(plan.foreign_amount);
+    foreign.at("floors").get_to(plan.foreign_floors);
+  }
+  json.at("manoeuvres").get_to(plan.manoeuvres);
+  json.at("unseen").get_to(plan.unseen);
+  json.at("repeats").get_to(plan.repeats);
+  const Json& physics = json.at("physics");
+  physics.at("time_step_s").get_to(plan.physics.time_step_s);
+  physics.at("solver_iterations").get_to(plan.physics.solver_iterations);
+  physics.at("contact_stiffness_npm").get_to(plan.physics.contact_stiffness_npm);
+  physics.at("contact_damping_nspm").get_to(plan.physics.contact_damping_nspm);
+  json.at("noise_scale").get_to(plan.noise_scale);
+  json.at("noise_memory_s").get_to(plan.noise_memory_s);
+  json.at("seed").get_to(plan.seed);
+  json.at("data_sha256").get_to(sealed.data_sha256);
+  return sealed;
+}
+
+}  // namespace
+
+std::string key_text(const ChallengeKey& key) {
+  Json json{{"format", kFormat},
+            {"seed", key.seed},
+            {"salt", sha256(fmt::format("salt of a kenaf-gap challenge, seed {}", key.seed))},
+            {"cases", Json::array()}};
+  for (const SealedCase& sealed : key.cases) json["cases"].push_back(case_json(sealed));
+  return json.dump(1) + "\n";
+}
+
+ChallengeKey read_key(const std::string& text) try {
+  const Json json = Json::parse(text);
+  if (json.at("format") != kFormat) throw std::runtime_error(fmt::format("its format is not {}", kFormat));
+  ChallengeKey key{json.at("seed"), {}};
+  for (const Json& sealed : json.at("cases")) key.cases.push_back(case_of(sealed));
+  return key;
+} catch (const std::exception& error) {
+  throw std::runtime_error(fmt::format("key.json is no key of a challenge: {}", error.what()));
+}
+
+std::string commitment_text(const std::string& key_text) {
+  return "# SHA-256 of the key of this challenge, made before its first case was diagnosed.\n"
+         "# Once key.json is here: sha256sum --check commitment.txt\n" +
+         sha256(key_text) + "  key.json\n";
+}
+
+ChallengeKey open_key(const fs::path& folder) {
+  if (!fs::exists(folder / "commitment.txt"))
+    throw std::runtime_error(fmt::format("{}: is no challenge, there is no commitment.txt", folder.string()));
+  if (!fs::exists(folder / "key.json"))
+    throw std::runtime_error(
+        fmt::format("{}: not all of its cases are diagnosed; the key comes only then", folder.string()));
+  const std::string text = runs::read_whole_file(folder / "key.json");
+  if (runs::read_whole_file(folder / "commitment.txt") != commitment_text(text))
+    throw std::runtime_error(fmt::format(
+        "{}: key.json is not the key that commitment.txt was made from; one of them was changed", folder.string()));
+  ChallengeKey key = read_key(text);
+  for (const SealedCase& sealed : key.cases)
+    if (const fs::path data = case_folder(folder, sealed.plan.name); sha256_of_dataset(data) != sealed.data_sha256)
+      throw std::runtime_error(fmt::format("{}: is not the data that was sealed; it was changed", data.string()));
+  return key;
+}
+
+fs::path case_folder(const fs::path& folder, const std::string& name) {
+  return folder / "cases" / name;
+}
+
+fs::path report_folder(const fs::path& folder, const std::string& name) {
+  return folder / "reports" / name;
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,43 @@
+// What is hidden in the cases of a challenge, and how it is sealed: the key is in no file until all cases are diagnosed,
+// but its hash is, so that it cannot become another one.
+//
+// The key holds a salt of 256 bits, without which its hash could be found by trying what may be hidden. The salt is made
+// from the challenge's seed, so that a challenge that was interrupted has the same key when it goes on.
+// Thread safety: values; functions that touch files only those that they are given.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gap/challenge/plan.hpp"
+
+namespace kenaf::gap {
+
+struct SealedCase {
+  CasePlan plan;
+  std::string data_sha256;  // of its dataset
+};
+
+struct ChallengeKey {
+  std::uint64_t seed = 0;
+  std::vector<SealedCase> cases;
+};
+
+// key.json, of the format kenaf-gap-key/1. The same key gives the same bytes.
+std::string key_text(const ChallengeKey& key);
+// Throws std::runtime_error in words where it is none.
+ChallengeKey read_key(const std::string& text);
+
+// commitment.txt, which `sha256sum --check` reads.
+std::string commitment_text(const std::string& key_text);
+
+// Reads DIR/key.json. Throws std::runtime_error in words where it is not there yet, is not the one that
+// DIR/commitment.txt was made from, or a case's data is no longer that which was diagnosed.
+ChallengeKey open_key(const std::filesystem::path& folder);
+
+std::filesystem::path case_folder(const std::filesystem::path& folder, const std::string& name);    // DIR/cases/NAME
+std::filesystem::path report_folder(const std::filesystem::path& folder, const std::string& name);  // DIR/reports/NAME
+
+}  // namespace kenaf::gap

@@ -1,0 +1,174 @@
+#include "gap/challenge/score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+
+namespace kenaf::gap {
+namespace {
+
+constexpr double kTwoSided95 = 1.96;
+constexpr double kShrinkWithin = 0.05;
+// Beside a gap that is hardly there, a share of it says nothing (chosen).
+constexpr double kGapToShrink = 1.5;  // floors
+
+struct Count {
+  std::size_t hits = 0, cases = 0;
+  void add(bool hit) {
+    hits += hit ? 1 : 0;
+    ++cases;
+  }
+};
+
+Figure share_figure(std::string_view id, std::string_view what, std::string_view target, const Count& count,
+                    double least, double most) {
+  const Share share = wilson(count.hits, count.cases);
+  return {id,          what,       target,   count.cases,
+          share.value, share.from, share.to, count.cases > 0 && share.value >= least && share.value <= most};
+}
+
+// Of the mean of absolute differences.
+Figure difference_figure(std::string_view id, std::string_view what, std::string_view target,
+                         const std::vector<double>& differences) {
+  Figure figure{id, what, target, differences.size()};
+  if (differences.empty()) return figure;
+  const auto n = static_cast<double>(differences.size());
+  double sum = 0, squares = 0;
+  for (const double d : differences) sum += std::abs(d);
+  figure.value = sum / n;
+  for (const double d : differences) squares += (std::abs(d) - figure.value) * (std::abs(d) - figure.value);
+  const double half = n > 1 ? kTwoSided95 * std::sqrt(squares / (n - 1) / n) : figure.value;
+  figure.from = std::max(0.0, figure.value - half);
+  figure.to = figure.value + half;
+  figure.met = figure.value <= kShrinkWithin;
+  return figure;
+}
+
+bool is_large(const std::optional<Shrinks>& shrinks) {
+  return shrinks && shrinks->before >= kGapToShrink * shrinks->floor;
+}
+
+void count_intervals(const ScoredCase& scored, Count& covered) {
+  for (const HiddenEffect& hidden : scored.sealed.plan.effects) {
+    if (std::ranges::count(scored.told->named, reported_name(hidden.effect, hidden.parameter)) == 0) continue;
+    for (const ToldEffect& told : scored.told->effects)
+      if (told.effect == hidden.effect && told.parameter == hidden.parameter)
+        covered.add(told.from <= hidden.value && hidden.value <= told.to);
+  }
+}
+
+}  // namespace
+
+Share wilson(std::size_t hits, std::size_t cases) {
+  if (cases == 0) return {0, 0, 1};
+  const double n = static_cast<double>(cases), p = static_cast<double>(hits) / n, z2 = kTwoSided95 * kTwoSided95;
+  const double middle = (p + z2 / (2 * n)) / (1 + z2 / n);
+  const double half = kTwoSided95 / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
+  return {p, std::max(0.0, middle - half), std::min(1.0, middle + half)};
+}
+
+std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
+  Count singles, alone, pairs, outside, none, wrong, covered, close, close_unseen;
+  std::vector<double> heldout, unseen;
+  for (const ScoredCase& scored : cases) {
+    const Judgement judgement = judge(scored.sealed.plan, scored.told);
+    const Stratum stratum = scored.sealed.plan.stratum;
+    wrong.add(judgement.names_wrong);
+    if (stratum == Stratum::none) none.add(judgement.right);
+    if (!judgement.hidden.empty() && scored.told) count_intervals(scored, covered);
+    if (judgement.is_small) continue;
+    if (stratum == Stratum::single) singles.add(judgement.right);
+    if (stratum == Stratum::single && judgement.can_be_told_apart) alone.add(judgement.named_alone);
+    if (stratum == Stratum::pair) pairs.add(judgement.right);
+    if (stratum == Stratum::withheld || stratum == Stratum::foreign) outside.add(judgement.right);
+    if (const auto& s = scored.shrinks.heldout; is_large(s)) {
+      heldout.push_back(s->told - s->hidden);
+      close.add(std::abs(heldout.back()) <= kShrinkWithin);
+    }
+    if (const auto& s = scored.shrinks.unseen; is_large(s)) {
+      unseen.push_back(s->told - s->hidden);
+      close_unseen.add(std::abs(unseen.back()) <= kShrinkWithin);
+    }
+  }
+  return {
+      share_figure("single_found", "singles named alone, or in the one ambiguity set", ">= 95 %", singles, 0.95, 1),
+      share_figure("single_named", "singles that can be told apart, named alone", ">= 90 %", alone, 0.90, 1),
+      share_figure("pair_found", "pairs, both named or each in a set", ">= 80 %", pairs, 0.80, 1),
+      share_figure("outside_unknown", "withheld and foreign called unknown", ">= 90 %", outside, 0.90, 1),
+      share_figure("none_none", "nothing hidden, called none", ">= 99 %", none, 0.99, 1),
+      share_figure("wrong_name", "reports that name what is not hidden", "<= 2 %", wrong, 0, 0.02),
+      share_figure("interval_covers", "95 % intervals of named effects that hold the value", "90 to 98 %", covered,
+                   0.90, 0.98),
+      difference_figure("shrink_heldout", "held-out shrink beside the true effect's, mean difference", "<= 0.05",
+                        heldout),
+      difference_figure("shrink_unseen", "the same on a manoeuvre that was not seen", "<= 0.05", unseen),
+      share_figure("shrink_heldout_close", "held-out shrinks within 0.05 of it", "", close, 0, 1),
+      share_figure("shrink_unseen_close", "the same on a manoeuvre that was not seen", "", close_unseen, 0, 1),
+  };
+}
+
+std::vector<EffectScore> scores_by_effect(const std::vector<ScoredCase>& cases) {
+  std::map<std::string, EffectScore> scores;
+  for (const ScoredCase& scored : cases) {
+    const Judgement judgement = judge(scored.sealed.plan, scored.told);
+    for (std::size_t i = 0; i < judgement.hidden.size(); ++i) {
+      EffectScore& score = scores[judgement.hidden[i]];
+      score.name = judgement.hidden[i];
+      ++score.hidden;
+      const Found found = judgement.found[i];
+      score.named += found == Found::named;
+      score.ambiguous += found == Found::ambiguous;
+      score.missed += found == Found::missed;
+      score.wrong += found == Found::wrong;
+      const double floors = scored.sealed.plan.effects[i].floors;
+      if ((found == Found::named || found == Found::ambiguous) &&
+          (score.smallest_found_floors == 0 || floors < score.smallest_found_floors))
+        score.smallest_found_floors = floors;
+    }
+  }
+  std::vector<EffectScore> result;
+  for (auto& [name, score] : scores) result.push_back(std::move(score));
+  return result;
+}
+
+std::vector<OutsideScore> scores_outside(const std::vector<ScoredCase>& cases) {
+  std::map<std::string, OutsideScore> scores;
+  for (const ScoredCase& scored : cases) {
+    const CasePlan& plan = scored.sealed.plan;
+    if (plan.stratum != Stratum::withheld && plan.stratum != Stratum::foreign) continue;
+    const std::string name = plan.foreign.empty() ? "without " + plan.effects.front().effect : plan.foreign;
+    OutsideScore& score = scores[name];
+    score.name = name;
+    ++score.cases;
+    const std::string verdict = scored.told ? scored.told->verdict : "";
+    score.unknown += verdict == "unknown";
+    score.none += verdict == "none";
+    score.ambiguous += verdict == "ambiguous";
+    score.named += verdict == "named";
+  }
+  std::vector<OutsideScore> result;
+  for (auto& [name, score] : scores) result.push_back(std::move(score));
+  return result;
+}
+
+std::vector<SizeScore> scores_by_size(const std::vector<ScoredCase>& cases) {
+  // sizes are made up to a twentieth larger than planned, and smaller ones where a larger one cannot be
+  std::vector<SizeScore> scores{{0, 0.5}, {0.5, 1}, {1, 2}, {2, 3.5}, {3.5, 5.25}};
+  for (const ScoredCase& scored : cases) {
+    if (scored.sealed.plan.stratum != Stratum::single) continue;
+    const double floors = scored.sealed.plan.effects.front().floors;
+    const auto band = std::ranges::find_if(scores, [&](const SizeScore& s) { return floors < s.to_floors; });
+    SizeScore& score = band == scores.end() ? scores.back() : *band;
+    const Judgement judgement = judge(scored.sealed.plan, scored.told);
+    ++score.cases;
+    score.seen += scored.told && scored.told->verdict != "none";
+    score.found += judgement.right;
+    score.named_alone += judgement.named_alone;
+    score.names_wrong += judgement.names_wrong;
+  }
+  return scores;
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,130 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+
+#include "gap/challenge/score.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string truth_text(const CasePlan& plan) {
+  if (!plan.foreign.empty())
+    return fmt::format("{} by {:.2g} ({:.1f} floors)", plan.foreign, plan.foreign_amount, plan.foreign_floors);
+  if (plan.effects.empty()) return "nothing";
+  std::vector<std::string> texts;
+  for (const HiddenEffect& hidden : plan.effects)
+    texts.push_back(
+        fmt::format("{}:{}={:.3g} ({:.1f} floors)", hidden.effect, hidden.parameter, hidden.value, hidden.floors));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+std::string told_text(const std::optional<Told>& told) {
+  if (!told) return "no report";
+  std::string text = told->verdict;
+  if (!told->named.empty()) text += fmt::format(": {}", fmt::join(told->named, ", "));
+  for (const std::vector<std::string>& set : told->ambiguous_sets) text += fmt::format(" [{}]", fmt::join(set, " or "));
+  return text;
+}
+
+std::string value_text(const Figure& figure, double value) {
+  const bool is_share = !figure.id.starts_with("shrink") || figure.id.ends_with("close");
+  return is_share ? fmt::format("{:.1f} %", 100 * value) : fmt::format("{:.3f}", value);
+}
+
+const char* met_text(const Figure& figure) {
+  if (figure.target.empty()) return "";
+  if (figure.cases == 0) return "no cases";
+  return figure.met ? "met" : "**missed**";
+}
+
+std::string case_rows(const std::vector<ScoredCase>& cases, bool small) {
+  std::string rows;
+  for (const ScoredCase& scored : cases) {
+    const Judgement judgement = judge(scored.sealed.plan, scored.told);
+    const bool quiet = scored.told && scored.told->verdict == "none";
+    if (judgement.right || (judgement.is_small && quiet) != small) continue;
+    rows += fmt::format("| {} | {} | {} | {} | {} |\n", scored.sealed.plan.name,
+                        stratum_name(scored.sealed.plan.stratum), truth_text(scored.sealed.plan),
+                        fmt::join(scored.sealed.plan.manoeuvres, ", "), told_text(scored.told));
+  }
+  return rows.empty() ? "none\n" : "| case | stratum | hidden | manoeuvres | report |\n|---|---|---|---|---|\n" + rows;
+}
+
+Json shrinks_json(const std::optional<Shrinks>& shrinks) {
+  if (!shrinks) return nullptr;
+  return {
+      {"before", shrinks->before}, {"floor", shrinks->floor}, {"report", shrinks->told}, {"truth", shrinks->hidden}};
+}
+
+Json case_json(const ScoredCase& scored) {
+  const CasePlan& plan = scored.sealed.plan;
+  const Judgement judgement = judge(plan, scored.told);
+  return {{"name", plan.name},
+          {"stratum", stratum_name(plan.stratum)},
+          {"hidden", truth_text(plan)},
+          {"report", told_text(scored.told)},
+          {"small", judgement.is_small},
+          {"right", judgement.right},
+          {"named_alone", judgement.named_alone},
+          {"can_be_told_apart", judgement.can_be_told_apart},
+          {"names_wrong", judgement.names_wrong},
+          {"shrink_heldout", shrinks_json(scored.shrinks.heldout)},
+          {"shrink_unseen", shrinks_json(scored.shrinks.unseen)}};
+}
+
+}  // namespace
+
+std::string score_markdown(const std::vector<ScoredCase>& cases) {
+  std::string text =
+      "Singles, pairs, withheld and foreign ones count in the figures where what is hidden is at least 2 noise "
+      "floors.\n\n"
+      "| figure | cases | value | 95 % interval | target | |\n|---|---|---|---|---|---|\n";
+  for (const Figure& figure : figures(cases)) {
+    if (figure.cases == 0)
+      text += fmt::format("| {} | 0 | | | {} | {} |\n", figure.what, figure.target, met_text(figure));
+    else
+      text += fmt::format("| {} | {} | {} | {} to {} | {} | {} |\n", figure.what, figure.cases,
+                          value_text(figure, figure.value), value_text(figure, figure.from),
+                          value_text(figure, figure.to), figure.target, met_text(figure));
+  }
+  text +=
+      "\n### Singles by size\n\n| floors | cases | gap seen | found | named alone | wrong name "
+      "|\n|---|---|---|---|---|---|\n";
+  for (const SizeScore& size : scores_by_size(cases))
+    text += fmt::format("| {} to {} | {} | {} | {} | {} | {} |\n", size.from_floors, size.to_floors, size.cases,
+                        size.seen, size.found, size.named_alone, size.names_wrong);
+  text +=
+      "\n### By effect, singles and pairs of all sizes\n\n| effect | hidden | named | in a set | missed | wrong name | "
+      "smallest found, floors |\n|---|---|---|---|---|---|---|\n";
+  for (const EffectScore& effect : scores_by_effect(cases))
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", effect.name, effect.hidden, effect.named,
+                        effect.ambiguous, effect.missed, effect.wrong,
+                        effect.smallest_found_floors > 0 ? fmt::format("{:.1f}", effect.smallest_found_floors) : "");
+  text +=
+      "\n### Outside the catalogue, all sizes\n\n| hidden | cases | unknown | none | ambiguous | named |\n"
+      "|---|---|---|---|---|---|\n";
+  for (const OutsideScore& outside : scores_outside(cases))
+    text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", outside.name, outside.cases, outside.unknown, outside.none,
+                        outside.ambiguous, outside.named);
+  text += "\n### Reports that are not right\n\n" + case_rows(cases, false);
+  text += "\n### Smaller than 2 floors and called none: no error\n\n" + case_rows(cases, true);
+  return text;
+}
+
+std::string score_json(const std::vector<ScoredCase>& cases) {
+  Json json{{"format", "kenaf-gap-score/1"}, {"figures", Json::array()}, {"cases", Json::array()}};
+  for (const Figure& figure : figures(cases)) {
+    Json line{{"id", figure.id}, {"what", figure.what}, {"cases", figure.cases}};
+    if (figure.cases > 0) line.update({{"value", figure.value}, {"ci95", {figure.from, figure.to}}});
+    if (!figure.target.empty()) line["target"] = figure.target;
+    if (!figure.target.empty() && figure.cases > 0) line["met"] = figure.met;
+    json["figures"].push_back(std::move(line));
+  }
+  for (const ScoredCase& scored : cases) json["cases"].push_back(case_json(scored));
+  return json.dump(1) + "\n";
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,50 @@
+#include "gap/challenge/sha256.hpp"
+
+#include <fmt/format.h>
+#include <nettle/sha2.h>
+
+#include <span>
+
+#include "runs/dataset.hpp"
+#include "runs/whole_file.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+class Hash {
+ public:
+  Hash() { sha256_init(&state_); }
+  void add(std::string_view bytes) {
+    sha256_update(&state_, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
+  }
+  std::string hex() {
+    std::uint8_t digest[SHA256_DIGEST_SIZE];
+    sha256_digest(&state_, sizeof digest, digest);
+    std::string text;
+    for (const std::uint8_t byte : digest) text += fmt::format("{:02x}", byte);
+    return text;
+  }
+
+ private:
+  sha256_ctx state_;
+};
+
+}  // namespace
+
+std::string sha256(std::string_view bytes) {
+  Hash hash;
+  hash.add(bytes);
+  return hash.hex();
+}
+
+std::string sha256_of_dataset(const std::filesystem::path& folder) {
+  Hash hash;
+  const auto add = [&](const std::string& file) {
+    runs::read_in_chunks(folder / file, [&](std::string_view bytes) { hash.add(bytes); });
+  };
+  add("dataset.toml");
+  for (const runs::DatasetRun& run : runs::read_dataset(folder).runs) add(run.file);
+  return hash.hex();
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,189 @@
+// kenaf-gap challenge: cases with something hidden in them, sealed, and diagnosed by processes that cannot know it.
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/random.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+
+#include "gap/challenge/confinement.hpp"
+#include "gap/challenge/diagnose_cases.hpp"
+#include "gap/challenge/key.hpp"
+#include "gap/challenge/make_case.hpp"
+#include "gap/challenge/sha256.hpp"
+#include "gap/commands.hpp"
+#include "gap/option_checks.hpp"
+#include "gap/parallel.hpp"
+#include "gap/progress_line.hpp"
+#include "runs/whole_file.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMostCases = 10000, kMostJobs = 1000;
+constexpr double kMakingShare = 0.3;  // of the time, for the time left
+
+std::atomic<bool> interrupted = false;  // what a signal handler may write is global
+
+void interrupt(int signal) {
+  interrupted = true;
+  std::signal(signal, SIG_DFL);  // a second one ends the program at once
+}
+
+struct Interrupted {};
+
+struct Options {
+  std::string out;
+  std::size_t cases = 150;
+  std::optional<std::uint64_t> seed;
+  unsigned jobs = 0;
+};
+
+std::uint64_t seed_from_system() {
+  std::uint64_t seed = 0;
+  if (::getrandom(&seed, sizeof seed, 0) != sizeof seed)
+    throw std::runtime_error("the operating system gives no random seed; give one with --seed");
+  return seed;
+}
+
+void check_folder(const fs::path& folder, bool seed_given) {
+  if (fs::exists(folder / "key.json"))
+    throw std::runtime_error(
+        fmt::format("{}: this challenge is finished, its key is there; `kenaf-gap score` scores it", folder.string()));
+  if (fs::exists(folder) && !fs::is_empty(folder) && !seed_given)
+    throw std::runtime_error(
+        fmt::format("{}: is not empty; give another folder, or the --seed of the challenge that is to go on there",
+                    folder.string()));
+}
+
+class Teller {
+ public:
+  explicit Teller(std::size_t cases) : cases_(static_cast<double>(cases)) {}
+  void made() {
+    const std::lock_guard lock(mutex_);
+    ++made_;
+    tell("making cases", kMakingShare * made_ / cases_, made_);
+  }
+  void diagnosed(const std::string& name, bool could) {
+    ++diagnosed_;
+    if (!could)
+      std::fprintf(stderr, "%s%s: could not be diagnosed\n", line_.on_terminal() ? "\r\033[K" : "", name.c_str());
+    tell("diagnosing", kMakingShare + (1 - kMakingShare) * diagnosed_ / cases_, diagnosed_);
+  }
+
+ private:
+  void tell(std::string_view doing, double done, double count) {
+    line_.show(fmt::format("{} ({} of {})", doing, count, cases_), done);
+    if (!line_.on_terminal()) std::fputs(fmt::format("{}: {} of {}\n", doing, count, cases_).c_str(), stderr);
+  }
+  std::mutex mutex_;
+  ProgressLine line_;
+  double cases_, made_ = 0, diagnosed_ = 0;
+};
+
+// The data of all cases, whole or not at all; returns their key.
+ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller) {
+  ChallengeKey key{seed, {}};
+  for (CasePlan& plan : plan_challenge(options.cases, seed)) key.cases.push_back({std::move(plan), {}});
+  for_each_job(key.cases.size(), options.jobs, [&](std::size_t i) {
+    if (interrupted) throw Interrupted();
+    SealedCase& sealed = key.cases[i];
+    const fs::path data = folder / sealed.plan.name;
+    make_case(sealed.plan, data, 1);
+    sealed.data_sha256 = sha256_of_dataset(data);
+    teller.made();
+  });
+  return key;
+}
+
+void run(const Options& options, std::uint64_t seed) {
+  const fs::path folder = fs::absolute(options.out).lexically_normal();
+  Teller teller(options.cases);
+  const fs::path part = folder / "cases.part";
+  fs::remove_all(part);
+  fs::create_directories(part);
+  const ChallengeKey key = make_cases(options, seed, part, teller);
+  const std::string text = key_text(key), commitment = commitment_text(text);
+  if (fs::exists(folder / "commitment.txt") && runs::read_whole_file(folder / "commitment.txt") != commitment) {
+    fs::remove_all(part);
+    throw std::runtime_error(
+        fmt::format("{}: what --cases {} --seed {} makes is not what was sealed there; the same program with the same "
+                    "numbers would",
+                    folder.string(), options.cases, seed));
+  }
+  fs::remove_all(folder / "cases");
+  fs::rename(part, folder / "cases");
+  runs::write_whole_file(folder / "commitment.txt", commitment);
+
+  std::vector<CaseToDiagnose> left;
+  std::vector<std::string> names;
+  for (const SealedCase& sealed : key.cases) {
+    const CasePlan& plan = sealed.plan;
+    CaseToDiagnose one{case_folder(folder, plan.name), report_folder(folder, plan.name), {}};
+    if (plan.stratum == Stratum::withheld) {
+      for (const HiddenEffect& hidden : plan.effects) one.without.push_back(hidden.effect);
+      runs::write_whole_file(one.data / "without.txt", one.without.front() + "\n");
+    }
+    if (fs::exists(one.report / "report.json")) {
+      teller.diagnosed(plan.name, true);
+    } else {
+      left.push_back(std::move(one));
+      names.push_back(plan.name);
+    }
+  }
+  if (!can_confine())
+    std::fputs("this kernel has no Landlock: the diagnosis has no key, but could read files beside its case\n", stderr);
+  diagnose_cases(left, options.jobs, interrupted,
+                 [&](std::size_t i, bool could) { teller.diagnosed(names[i], could); });
+  if (interrupted) throw Interrupted();
+  runs::write_whole_file(folder / "key.json", text);
+}
+
+}  // namespace
+
+void add_challenge_command(CLI::App& program) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "challenge", "diagnoses cases with hidden effects, of which the key is sealed until all are diagnosed");
+  command->add_option("--out", options->out, "folder for the cases, their reports and the key; required")
+      ->type_name("DIR");
+  command->add_option("--cases", options->cases, "how many")->check(whole_number(kMostCases))->capture_default_str();
+  command->add_option("--seed", options->seed, "of everything, to repeat a challenge or to go on with one [chance]")
+      ->check(whole_number(std::numeric_limits<std::uint64_t>::max()));
+  command->add_option("--jobs", options->jobs, "cases at once; 0: one a core")
+      ->check(whole_number(kMostJobs))
+      ->capture_default_str();
+  command->callback([options] {
+    if (options->out.empty()) throw CLI::RequiredError("--out");
+    if (options->cases == 0) throw CLI::ValidationError("--cases", "0 cases are no challenge");
+    check_folder(options->out, options->seed.has_value());
+    ::prctl(PR_SET_DUMPABLE, 0);  // no other process of this user may read the key out of this one's memory
+    const std::uint64_t seed = options->seed ? *options->seed : seed_from_system();
+    std::signal(SIGINT, interrupt);
+    std::signal(SIGTERM, interrupt);
+    try {
+      run(*options, seed);
+    } catch (const Interrupted&) {
+      throw std::runtime_error(
+          fmt::format("interrupted; `kenaf-gap challenge --out {} --cases {} --seed {}` goes on with it", options->out,
+                      options->cases, seed));
+    }
+    fmt::print(
+        "all {0} cases are diagnosed, and {1}/key.json says what was hidden in them\n`kenaf-gap score {1}` "
+        "compares\n",
+        options->cases, options->out);
+  });
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,83 @@
+// kenaf-gap score: the reports of a challenge beside its key.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+
+#include "gap/challenge/make_case.hpp"
+#include "gap/challenge/score.hpp"
+#include "gap/commands.hpp"
+#include "gap/option_checks.hpp"
+#include "gap/parallel.hpp"
+#include "gap/progress_line.hpp"
+#include "gap/temporary_folder.hpp"
+#include "physics/robot_description.hpp"
+#include "runs/whole_file.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMostJobs = 1000;
+
+// Where a report has a corrected robot, and the truth is in the catalogue, so that both can be simulated.
+CaseShrinks measure_shrinks(const fs::path& folder, const ScoredCase& scored) {
+  const CasePlan& plan = scored.sealed.plan;
+  const fs::path robot = report_folder(folder, plan.name) / "robot.toml";
+  if (judge(plan, scored.told).hidden.empty() || !scored.told || !fs::exists(robot)) return {};
+  const physics::Effects told = physics::load_robot(robot.string()).effects;
+  CaseShrinks shrinks;
+  shrinks.heldout = shrinks_on(case_folder(folder, plan.name), told, hidden_effects(plan), 1);
+  shrinks.heldout->told = scored.told->shrink;
+  const TemporaryFolder unseen;
+  make_unseen(plan, unseen.path, 1);
+  shrinks.unseen = shrinks_on(unseen.path, told, hidden_effects(plan), 1);
+  return shrinks;
+}
+
+}  // namespace
+
+void add_score_command(CLI::App& program) {
+  struct Options {
+    std::string folder;
+    bool shrinks = true;
+    unsigned jobs = 0;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand("score", "compares the reports of a challenge with its key");
+  command->add_option("DIR", options->folder, "the folder of a challenge that is finished; required")->type_name("");
+  command->add_flag("!--no-shrinks", options->shrinks, "leave out the figures that take simulations");
+  command->add_option("--jobs", options->jobs, "threads; 0: one a core")
+      ->check(whole_number(kMostJobs))
+      ->capture_default_str();
+  command->callback([options] {
+    if (options->folder.empty()) throw CLI::RequiredError("DIR");
+    const fs::path folder = options->folder;
+    std::vector<ScoredCase> cases;
+    for (SealedCase& sealed : open_key(folder).cases) {
+      std::optional<Told> told = read_told(report_folder(folder, sealed.plan.name) / "report.json");
+      cases.push_back({std::move(sealed), std::move(told), {}});
+    }
+    const ProgressLine line;
+    std::mutex mutex;
+    double done = 0;
+    if (options->shrinks)
+      for_each_job(cases.size(), options->jobs, [&](std::size_t i) {
+        cases[i].shrinks = measure_shrinks(folder, cases[i]);
+        const std::lock_guard lock(mutex);
+        line.show("simulating what was named, and what was hidden", ++done / static_cast<double>(cases.size()));
+      });
+    const std::string text = score_markdown(cases);
+    runs::write_whole_file(folder / "score.json", score_json(cases));
+    runs::write_whole_file(folder / "score.md", text);
+    std::fputs(text.c_str(), stdout);
+  });
+}
+
+}  // namespace kenaf::gap

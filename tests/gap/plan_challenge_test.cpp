@@ -1,0 +1,97 @@
+// What the cases of a challenge are.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+#include <set>
+
+#include "gap/challenge/plan.hpp"
+#include "physics/effects.hpp"
+
+using namespace kenaf;
+using gap::CasePlan;
+using gap::plan_challenge;
+using gap::Stratum;
+
+namespace {
+
+bool same(const CasePlan& a, const CasePlan& b) {
+  const auto same_effect = [](const gap::HiddenEffect& x, const gap::HiddenEffect& y) {
+    return x.effect == y.effect && x.parameter == y.parameter && x.floors == y.floors;
+  };
+  return a.name == b.name && a.stratum == b.stratum && a.foreign == b.foreign && a.foreign_floors == b.foreign_floors &&
+         std::ranges::equal(a.effects, b.effects, same_effect) && a.manoeuvres == b.manoeuvres &&
+         a.unseen == b.unseen && a.seed == b.seed && a.noise_scale == b.noise_scale &&
+         a.noise_memory_s == b.noise_memory_s && a.physics.contact_stiffness_npm == b.physics.contact_stiffness_npm;
+}
+
+}  // namespace
+
+TEST_CASE("The same seed plans the same challenge, another one another") {
+  const auto one = plan_challenge(40, 7), again = plan_challenge(40, 7), other = plan_challenge(40, 8);
+  REQUIRE(one.size() == 40);
+  CHECK(std::ranges::equal(one, again, same));
+  CHECK_FALSE(std::ranges::equal(one, other, same));
+}
+
+TEST_CASE("Of every number of cases at least three of ten hide nothing, and all strata are there") {
+  for (const std::size_t cases : {20U, 150U, 151U, 500U}) {
+    std::map<Stratum, double> count;
+    for (const CasePlan& plan : plan_challenge(cases, 3)) ++count[plan.stratum];
+    const auto share = [&](Stratum stratum) { return count[stratum] / static_cast<double>(cases); };
+    CHECK(share(Stratum::none) >= 0.3);
+    CHECK(share(Stratum::none) < 0.3 + 1.0 / static_cast<double>(cases));
+    for (const Stratum stratum : {Stratum::single, Stratum::pair, Stratum::withheld, Stratum::foreign})
+      CHECK(count[stratum] >= 1);
+  }
+}
+
+TEST_CASE("The order of cases says nothing of what they hide") {
+  const auto plans = plan_challenge(100, 4);
+  std::size_t changes = 0;
+  for (std::size_t i = 1; i < plans.size(); ++i) changes += plans[i].stratum != plans[i - 1].stratum;
+  CHECK(changes > 50);  // sorted by stratum there would be 4
+  for (std::size_t i = 0; i < plans.size(); ++i) CHECK(plans[i].name.size() == std::string("case-000").size());
+}
+
+TEST_CASE("In a large plan each effect of the catalogue is hidden alone, and withheld") {
+  std::map<Stratum, std::set<std::string>> hidden;
+  for (const CasePlan& plan : plan_challenge(400, 5))
+    for (const gap::HiddenEffect& effect : plan.effects) hidden[plan.stratum].insert(effect.effect);
+  // 28 % of 400 are singles and 20 % withheld: more than the 37 parameters that take turns
+  for (const physics::EffectInfo& effect : physics::effect_catalogue()) {
+    const bool is_chance = effect.name == "command_loss";  // has no size that could be made
+    CHECK(hidden[Stratum::single].contains(std::string(effect.name)) == !is_chance);
+    CHECK(hidden[Stratum::withheld].contains(std::string(effect.name)) == !is_chance);
+  }
+}
+
+TEST_CASE("Each case hides what its stratum says, as large as it says, and differs from the model besides") {
+  std::set<std::string> foreign;
+  for (const gap::ForeignEffect& effect : gap::foreign_effects()) foreign.insert(std::string(effect.name));
+  double smallest = 10, largest = 0;
+  for (const CasePlan& plan : plan_challenge(300, 6)) {
+    const std::map<Stratum, std::size_t> effects{
+        {Stratum::none, 0}, {Stratum::single, 1}, {Stratum::pair, 2}, {Stratum::withheld, 1}, {Stratum::foreign, 0}};
+    CHECK(plan.effects.size() == effects.at(plan.stratum));
+    CHECK(plan.foreign.empty() == (plan.stratum != Stratum::foreign));
+    if (!plan.foreign.empty()) {
+      CHECK(foreign.contains(plan.foreign));
+      CHECK((plan.foreign_floors >= 2 && plan.foreign_floors <= 5));
+    }
+    for (const gap::HiddenEffect& hidden : plan.effects) {
+      REQUIRE(physics::find_effect(hidden.effect) != nullptr);
+      CHECK(physics::find_parameter(*physics::find_effect(hidden.effect), hidden.parameter) != nullptr);
+      CHECK((hidden.floors >= (plan.stratum == Stratum::single ? 0.5 : 2) && hidden.floors <= 5));
+      if (plan.stratum != Stratum::single) continue;
+      smallest = std::min(smallest, hidden.floors);
+      largest = std::max(largest, hidden.floors);
+    }
+    if (plan.effects.size() == 2) CHECK(plan.effects[0].effect != plan.effects[1].effect);
+    CHECK(std::ranges::count(plan.manoeuvres, plan.unseen) == 0);
+    CHECK(plan.physics.time_step_s != physics::PhysicsSettings{}.time_step_s);
+    CHECK(plan.physics.contact_stiffness_npm != physics::PhysicsSettings{}.contact_stiffness_npm);
+  }
+  // 84 of them, evenly over a factor of ten by their logarithm
+  CHECK(smallest < 0.7);
+  CHECK(largest > 4);
+}
