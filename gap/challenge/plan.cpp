@@ -30,8 +30,8 @@ void shuffle(std::vector<T>& values, Random& random) {
 }
 
 constexpr std::string_view kStratumNames[] = {"none", "single", "pair", "withheld", "foreign"};  // as Stratum
-// Shares of the strata, in the order of Stratum.
-constexpr double kShare[] = {0.3, 0.28, 0.14, 0.2, 0.08};
+// Shares of the strata, in the order of Stratum: of 150 cases there is a single and a withheld one for each effect.
+constexpr double kShare[] = {0.3, 0.26, 0.11, 0.26, 0.07};
 constexpr double kRounding = 1e-6;
 
 struct Named {
@@ -120,7 +120,10 @@ std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed) {
     if (stratum == Stratum::withheld) hide(withheld, 2, 5);
     if (stratum == Stratum::pair) {
       hide(pairs, 2, 5);
-      hide(pairs, 2, 5);
+      do {
+        plan.effects.resize(1);
+        hide(pairs, 2, 5);
+      } while (plan.effects[0].effect == plan.effects[1].effect);
     }
     if (stratum == Stratum::foreign) {
       plan.foreign = foreign[below(random, foreign.size())].name;
