@@ -28,10 +28,13 @@ bool applies(const physics::EffectInfo& effect, const Observations& observations
   return true;
 }
 
-// A straight line between an exact point and a rough one near it would lead anywhere.
+// A straight line between an exact point and a rough one near it would lead anywhere. But the ends of a curve stay: without
+// them no fit could go beyond the exact point.
 void forget_rough_points(EffectCurve& curve, double exact_value) {
   const double neutral = curve.points[neutral_point(curve)].value, reach = kRoughReach * (exact_value - neutral);
+  const double first = curve.points.front().value, last = curve.points.back().value;
   std::erase_if(curve.points, [&](const CurvePoint& point) {
+    if (point.value == first || point.value == last) return false;
     const double from_neutral = point.value - neutral;
     return !point.exact && from_neutral * reach > 0 && std::abs(from_neutral) < std::abs(reach);
   });

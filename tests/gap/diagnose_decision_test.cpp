@@ -109,6 +109,20 @@ TEST_CASE("An effect beyond the end of its range is not named for what it cannot
   CHECK(world.decide(effects, 1.5 * effects[0] + LinearWorld::noise(1), quick()).verdict == Verdict::unknown);
 }
 
+TEST_CASE("Exact simulations correct what coarse ones said of an effect's size, anywhere in its range") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  for (const double rough : {0.8, 1.25})
+    for (const double value : {-0.9, -0.3, 0.2, 0.6, 0.75, 0.95}) {
+      const Decision decision = world.decide(effects, value * effects[3] + LinearWorld::noise(1), quick(), rough);
+      INFO("coarse simulations say " << rough << " times as much of " << value);
+      CHECK(decision.verdict == Verdict::named);
+      REQUIRE(decision.best.places.size() == 1);
+      CHECK(decision.best.places[0].curve == 3);
+      // 4 sigma of 1 / 40, and half a sigma within which a simulated point is taken as the same
+      CHECK(decision.best.places[0].value == Approx(value).margin(0.1125));
+    }
+}
+
 TEST_CASE("Two effects together are both named") {
   const std::vector<Whole> effects = orthogonal_effects();
   for (std::uint64_t seed = 0; seed < 5; ++seed) {

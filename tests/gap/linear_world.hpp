@@ -58,7 +58,8 @@ class LinearWorld {
 
   // Curves of effects that shift by `per_value[i]` for each unit of their parameter beyond neutral. Their catalogue entries
   // only lend names and ranges: each from -1 to 1, neutral at 0.
-  gap::EffectCurves curves(const std::vector<Whole>& per_value, const Whole& gap) const {
+  // Coarse simulations say `rough` times as much.
+  gap::EffectCurves curves(const std::vector<Whole>& per_value, const Whole& gap, double rough = 1) const {
     gap::EffectCurves curves;
     curves.residual = curves.gap = by_run(gap);
     for (std::size_t r = 0; r < kRuns; ++r) curves.raw_shifts.emplace_back(kBinsOfRun, 0);
@@ -69,24 +70,25 @@ class LinearWorld {
       curves.curves.push_back({&physics::effect_catalogue()[i], &kParameter, {{0, -1, true}}, 0});
       for (const double value : {-1.0, -0.25, 0.25, 1.0}) points.push_back({i, value});
     }
-    simulator(per_value).add_points(curves, points, gap::Fidelity::coarse);
+    simulator(per_value, rough).add_points(curves, points, gap::Fidelity::coarse);
     return curves;
   }
 
-  gap::Simulator simulator(const std::vector<Whole>& per_value) const {
-    const auto shift_of = [per_value](std::span<const gap::NewPoint> effects) {
+  gap::Simulator simulator(const std::vector<Whole>& per_value, double rough = 1) const {
+    const auto shift_of = [per_value, rough](std::span<const gap::NewPoint> effects, gap::Fidelity fidelity) {
+      const double factor = fidelity == gap::Fidelity::coarse ? rough : 1;
       Whole whole = Whole::Zero(kBins);
-      for (const gap::NewPoint& effect : effects) whole += effect.value * per_value[effect.curve];
+      for (const gap::NewPoint& effect : effects) whole += factor * effect.value * per_value[effect.curve];
       return by_run(whole);
     };
     return {[shift_of](gap::EffectCurves& curves, std::span<const gap::NewPoint> points, gap::Fidelity fidelity) {
               std::vector<gap::Shift> shifts;
-              for (const gap::NewPoint& point : points) shifts.push_back(shift_of({&point, 1}));
+              for (const gap::NewPoint& point : points) shifts.push_back(shift_of({&point, 1}, fidelity));
               gap::insert_points(curves, points, shifts, fidelity);
             },
-            [shift_of](std::span<const std::vector<gap::NewPoint>> asked, gap::Fidelity) {
+            [shift_of](std::span<const std::vector<gap::NewPoint>> asked, gap::Fidelity fidelity) {
               std::vector<gap::Shift> shifts;
-              for (const std::vector<gap::NewPoint>& effects : asked) shifts.push_back(shift_of(effects));
+              for (const std::vector<gap::NewPoint>& effects : asked) shifts.push_back(shift_of(effects, fidelity));
               return shifts;
             },
             [this](std::span<const gap::NewPoint>) { return whiteners(); }};
@@ -100,9 +102,9 @@ class LinearWorld {
   }
 
   gap::Decision decide(const std::vector<Whole>& per_value, const Whole& gap,
-                       const gap::DecisionSettings& settings) const {
-    gap::EffectCurves known = curves(per_value, gap);
-    return gap::decide(known, coherence(), spread(), simulator(per_value), settings, 1);
+                       const gap::DecisionSettings& settings, double rough = 1) const {
+    gap::EffectCurves known = curves(per_value, gap, rough);
+    return gap::decide(known, coherence(), spread(), simulator(per_value, rough), settings, 1);
   }
 
   // The best fit of these effects, as a model that was simulated.
