@@ -36,7 +36,7 @@ bool holds(const Decision& decision, std::size_t place, std::size_t curve) {
 
 }  // namespace
 
-TEST_CASE("Pure noise is called none, but as often as the chance of a false alarm says") {
+TEST_CASE("Pure noise is called none, except as often as the chance of a false alarm says") {
   const std::vector<Whole> effects = orthogonal_effects();
   const auto alarms_at = [&](double false_alarm) {
     DecisionSettings settings = quick();
