@@ -144,9 +144,15 @@ void run(const Options& options, std::uint64_t seed) {
   }
   if (!can_confine())
     std::fputs("this kernel has no Landlock: the diagnosis has no key, but could read files beside its case\n", stderr);
-  diagnose_cases(left, options.jobs, interrupted,
-                 [&](std::size_t i, bool could) { teller.diagnosed(names[i], could); });
+  std::size_t diagnosed = key.cases.size() - left.size();
+  diagnose_cases(left, options.jobs, interrupted, [&](std::size_t i, bool could) {
+    teller.diagnosed(names[i], could);
+    diagnosed += could ? 1 : 0;
+  });
   if (interrupted) throw Interrupted();
+  if (diagnosed == 0)
+    throw std::runtime_error(
+        fmt::format("no case could be diagnosed; why is in {}", (left[0].report / "diagnose.log").string()));
   runs::write_whole_file(folder / "key.json", text);
 }
 

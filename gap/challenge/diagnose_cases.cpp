@@ -11,7 +11,9 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <map>
 #include <stdexcept>
 #include <system_error>
@@ -80,6 +82,7 @@ pid_t start(const CaseToDiagnose& one, int program) {
   ::dup2(out.value, STDOUT_FILENO);
   ::dup2(out.value, STDERR_FILENO);
   if (!confinement.confines() || confinement.enter()) ::fexecve(program, argv.data(), envp.data());
+  ::dprintf(STDERR_FILENO, "the diagnosis cannot be started: %s\n", std::strerror(errno));
   ::_exit(kCannotStart);
 }
 

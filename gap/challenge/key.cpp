@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "gap/challenge/sha256.hpp"
+#include "physics/effects.hpp"
 #include "runs/whole_file.hpp"
 
 namespace kenaf::gap {
@@ -40,6 +41,20 @@ Json case_json(const SealedCase& sealed) {
   return json;
 }
 
+// Throws where a case does not hide what its stratum says.
+void check(const CasePlan& plan) {
+  const std::size_t effects = plan.stratum == Stratum::pair                                          ? 2
+                              : plan.stratum == Stratum::single || plan.stratum == Stratum::withheld ? 1
+                                                                                                     : 0;
+  if (plan.effects.size() != effects || plan.foreign.empty() == (plan.stratum == Stratum::foreign))
+    throw std::runtime_error(fmt::format("{} does not hide what its stratum says", plan.name));
+  for (const HiddenEffect& hidden : plan.effects)
+    if (const auto* effect = physics::find_effect(hidden.effect);
+        effect == nullptr || physics::find_parameter(*effect, hidden.parameter) == nullptr)
+      throw std::runtime_error(fmt::format("{} hides {}:{}, which this program's catalogue does not have", plan.name,
+                                           hidden.effect, hidden.parameter));
+}
+
 SealedCase case_of(const Json& json) {
   SealedCase sealed;
   CasePlan& plan = sealed.plan;
@@ -65,6 +80,7 @@ SealedCase case_of(const Json& json) {
   json.at("noise_memory_s").get_to(plan.noise_memory_s);
   json.at("seed").get_to(plan.seed);
   json.at("data_sha256").get_to(sealed.data_sha256);
+  check(plan);
   return sealed;
 }
 

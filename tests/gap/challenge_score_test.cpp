@@ -310,6 +310,10 @@ TEST_CASE("A key is read back as it was written") {
   CHECK(key_text(key) == text);
   CHECK(key_text({18, key.cases}) != text);
   CHECK_THROWS_WITH(read_key("{\"format\": 1}"), Catch::Contains("key.json is no key"));
+  const auto with = [](CasePlan other) { return key_text({17, {{std::move(other), ""}}}); };
+  CHECK_THROWS_WITH(read_key(with(plan_of(Stratum::single))), Catch::Contains("does not hide what its stratum says"));
+  CHECK_THROWS_WITH(read_key(with(plan_of(Stratum::single, {{"mess", "scale", 3, 1.2}}))),
+                    Catch::Contains("mess:scale"));
 }
 
 TEST_CASE("A finished challenge is scored; a key or data that were changed are refused") {

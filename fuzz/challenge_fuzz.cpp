@@ -1,0 +1,28 @@
+// Any key and report, one after the other with a zero byte between, are scored or it is said why not.
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "gap/challenge/score.hpp"
+
+using namespace kenaf;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::size_t between = text.find('\0');
+  if (between == text.npos) return 0;
+  std::vector<gap::ScoredCase> cases;
+  try {
+    const gap::Told told = gap::told_by(std::string(text.substr(between + 1)));
+    for (const gap::SealedCase& sealed : gap::read_key(std::string(text.substr(0, between))).cases)
+      cases.push_back({sealed, told, {}});
+  } catch (const std::runtime_error&) {
+    return 0;
+  }
+  for (const gap::Figure& figure : gap::figures(cases))
+    if (figure.cases > 2 * cases.size()) __builtin_trap();
+  if (gap::score_markdown(cases).empty() || gap::score_json(cases).empty()) __builtin_trap();
+  return 0;
+}
