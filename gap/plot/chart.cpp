@@ -149,9 +149,10 @@ std::string discs(const Chart& chart, const View& view) {
     fmt::format_to(out, "<circle class=\"{} {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>\n",
                    disc.filled ? "disc" : "ring", ink_class(disc.ink), at.x(), at.y(), disc.radius_px);
     if (disc.label.empty()) continue;
-    const bool left = at.x() > view.width_px / 2;
-    fmt::format_to(out, "<text class=\"halo{}\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", left ? " end" : "",
-                   at.x() + (left ? -1 : 1) * (disc.radius_px + 4), at.y() + 4.5, escaped(disc.label));
+    const double half_px = kLetter_px * static_cast<double>(disc.label.size()) / 2, above = at.y() - disc.radius_px - 5;
+    fmt::format_to(out, "<text class=\"halo middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n",
+                   std::max(half_px, std::min(at.x(), view.width_px - half_px)),
+                   above < 14 ? at.y() + disc.radius_px + 16 : above, escaped(disc.label));
   }
   return svg;
 }
@@ -206,7 +207,7 @@ svg.chart .line { stroke-width: 1.8; stroke-linejoin: round; stroke-linecap: rou
 svg.chart .line.dashed { stroke-dasharray: 7 5; stroke-linecap: butt; }
 svg.chart .line.dotted { stroke-dasharray: 2 3; stroke-width: 2; stroke-linecap: butt; }
 svg.chart .line.hair { stroke-width: 0.7; }
-svg.chart .line.wide { stroke-width: 5; stroke-opacity: 0.4; stroke-linecap: butt; }
+svg.chart .line.wide { stroke-width: 3.6; stroke-opacity: 0.55; stroke-linecap: butt; }
 svg.chart .line.real { stroke: var(--real); }
 svg.chart .line.sim { stroke: var(--sim); }
 svg.chart .line.third { stroke: var(--third); }

@@ -40,7 +40,7 @@ struct Disc {
   double radius_px;
   Ink ink = Ink::real;
   bool filled = true;         // otherwise a ring
-  std::string label = {};     // beside it
+  std::string label = {};     // above it, or below where there is no room
   std::string legend = {};    // empty: not in the legend
 };
 

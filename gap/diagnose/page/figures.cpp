@@ -26,10 +26,10 @@ constexpr std::size_t kPathPoints = 4000;  // likewise of a path
 constexpr double kChannelHeight_px = 240;
 constexpr double kClimbs_m = 0.05;   // of height: seen from the side
 constexpr double kAround_m = 0.2;    // of the body's centre: the robot is about 0.5 m long
-constexpr double kBeside_m = 0.1;          // likewise, of a path seen from above
+constexpr double kBeside_m = 0.1;    // likewise, of a path seen from above
 constexpr double kWholeGap_px = 50;  // radius of a disc that has all of the gap
-constexpr double kLabelled = 0.05;   // share of the gap of a phase that has a label
-constexpr std::size_t kMostLabels = 4;
+constexpr double kLabelled = 0.01;   // share of the gap of a phase that has a label
+constexpr double kApart = 0.2;       // of the path's extent, from label to label
 
 std::vector<Point> drawn_over_time(const runs::Run& run, std::size_t channel) {
   return plot::envelope(over_time(run, channel), kColumns);
@@ -216,10 +216,13 @@ Chart places_figure(const Diagnosis& d, const Overlay& overlay) {
   const std::vector<Place> places = places_of(real);
   Chart chart =
       place_chart(d, overlay, {{path_of(real, from_side), Ink::faint, Stroke::solid, "real path"}}, from_side);
+  if (places.empty()) return chart;
   chart.title =
       fmt::format("{}: gap by place, seen from {}", group_title(d, overlay.group), from_side ? "the right" : "above");
   const double left = d.where.beyond_chance > 0 ? d.where_left.beyond_chance / d.where.beyond_chance : 0;
-  std::size_t labels = 0;
+  const auto [west, east] = std::ranges::minmax(places, {}, &Place::x_m);
+  const double width_m = east.x_m - west.x_m;
+  std::vector<Point> labelled;
   const auto add = [&](const GapPlaces& where, double scale, bool before) {
     bool first = true;
     for (const PhaseGap& phase : where.phases) {
@@ -230,8 +233,12 @@ Chart places_figure(const Diagnosis& d, const Overlay& overlay) {
                       !before,
                       {},
                       std::exchange(first, false) ? (before ? "before" : "after") : ""};
-      if (before && phase.share >= kLabelled && labels++ < kMostLabels)
+      const bool has_room = std::ranges::none_of(
+          labelled, [&](const Point& other) { return std::abs(other.x() - disc.at.x()) < kApart * width_m; });
+      if (before && phase.share >= kLabelled && disc.at.allFinite() && has_room) {
         disc.label = fmt::format("{} {}", phase.phase, percent(phase.share));
+        labelled.push_back(disc.at);
+      }
       chart.discs.push_back(std::move(disc));
     }
   };

@@ -63,7 +63,8 @@ std::string noise_table(const Diagnosis& d) {
   }
   if (table.rows.empty()) return {};
   return paragraph(fmt::format(
-             "Noise of a mean over {} s, 1 sigma, {}:", d.options.span_s,
+             "Noise of a mean over {} s, 1 sigma, {}; never less than a resolution chosen for each channel:",
+             d.options.span_s,
              d.nominal_floor.from_repeats
                  ? "from how repeats differ"
                  : "from the runs themselves, as none repeats another (less sure: a gap makes it larger)")) +

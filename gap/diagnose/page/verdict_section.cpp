@@ -144,7 +144,7 @@ std::string gap_figure(const Diagnosis& d) {
   const auto row = [](std::string_view label, double value, Ink ink) {
     return plot::Row{std::string(label), {{value, Shape::bar, ink}}, fmt::format("{:.2f}", value)};
   };
-  chart.rows = {row("before", d.gap.before, Ink::sim)};
+  chart.rows = {row(d.best.empty() ? "nominal" : "before", d.gap.before, Ink::sim)};
   if (!d.best.empty()) chart.rows.push_back(row("after", d.gap.after, Ink::third));
   chart.guides = {{d.gap.floor, fmt::format("floor {:.2f}", d.gap.floor)}};
   chart.label_px = 80;

@@ -7,6 +7,7 @@
 #include "gap/diagnose/page/sections.hpp"
 #include "gap/diagnose/page/words.hpp"
 #include "gap/diagnose/report.hpp"
+#include "gap/plot/row_chart.hpp"
 #include "gap/plot/strip_chart.hpp"
 
 namespace kenaf::gap {
@@ -61,6 +62,37 @@ std::string phase_table(const Diagnosis& d) {
   return to_html(table);
 }
 
+std::string stages_figure(const Diagnosis& d) {
+  plot::RowChart chart;
+  chart.title = "The gap of each passage from command to sensor, without the passages before it";
+  chart.x_label = "squared difference over what chance gives (1: chance)";
+  std::vector<std::string> unmeasured;
+  for (const StageGap& stage : d.stages) {
+    if (stage.bins == 0) {
+      unmeasured.emplace_back(passage_name(stage.passage));
+      continue;
+    }
+    const bool beyond = stage.chance > kStageChance;
+    chart.rows.push_back({std::string(passage_name(stage.passage)),
+                          {{stage.chance, beyond ? plot::Shape::disc : plot::Shape::ring, plot::Ink::sim}},
+                          figure(stage.chance)});
+  }
+  std::string html;
+  if (!chart.rows.empty()) {
+    chart.legend = {{plot::Shape::disc, plot::Ink::sim, "has a gap of its own"},
+                    {plot::Shape::ring, plot::Ink::sim, "has none beyond chance"}};
+    chart.guides = {{kStageChance, "beyond chance"}};
+    chart.logarithmic = true;
+    chart.label_px = 140;
+    chart.note_px = 80;
+    chart.width_px = kWide_px;
+    html += to_svg(chart);
+  }
+  if (!unmeasured.empty())
+    html += paragraph(fmt::format("Not measured by these runs: {}.", enumeration(unmeasured)), "soft");
+  return html;
+}
+
 bool moves(const plot::Chart& chart) {
   plot::Point low(1e9, 1e9), high = -low;
   for (const plot::Line& line : chart.lines)
@@ -101,8 +133,9 @@ std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays)
     return html + paragraph("Nothing was located before the diagnosis ended.");
   if (d.where.beyond_chance <= 0) return html + paragraph("Nowhere: no stretch of any channel is beyond chance.");
   const bool none = d.interrupted.empty() && d.decision.verdict == Verdict::none;
-  html += paragraph(none ? "There is no gap; this is where the little is that differs beyond the average of chance."
+  html += paragraph(none ? "There is no gap; shares are of the little that differs beyond the average of chance."
                          : fmt::format("Stage at which it comes in: {}.", gap_stage(d)));
+  html += stages_figure(d);
   html += paragraph(
       fmt::format("Phases are found from the data. The gap is counted in stretches of {} s of each channel, so "
                   "a shorter phase takes part of its neighbours' gap.",

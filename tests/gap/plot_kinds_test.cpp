@@ -1,0 +1,119 @@
+// Rows with intervals, heat maps, strips of time, discs, and dense lines: what is drawn where.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <regex>
+
+#include "gap/plot/chart.hpp"
+#include "gap/plot/heat_map.hpp"
+#include "gap/plot/row_chart.hpp"
+#include "gap/plot/simplify.hpp"
+#include "gap/plot/strip_chart.hpp"
+#include "tests/gap/well_formed.hpp"
+
+using namespace kenaf::gap::plot;
+using kenaf::test::fault_of_xml;
+
+namespace {
+
+// The numbers that the first group of each match of `pattern` holds.
+std::vector<double> all(const std::string& svg, const std::string& pattern) {
+  const std::regex regex(pattern);
+  std::vector<double> numbers;
+  for (auto i = std::sregex_iterator(svg.begin(), svg.end(), regex); i != std::sregex_iterator(); ++i)
+    numbers.push_back(std::stod((*i)[1]));
+  return numbers;
+}
+
+}  // namespace
+
+TEST_CASE("Rows lie on one axis: marks at their values, beyond the view at its edge") {
+  RowChart chart;
+  chart.label_px = 86;
+  chart.width_px = 1100;  // 1000 for the plot
+  chart.view = Range{0, 100};
+  chart.rows = {
+      {"a", {{25, Shape::disc, Ink::real, Range{10, 40}}}, "25 %"}, {"b & c", {{150}}, ""}, {"d", {{-7}}, ""}};
+  const std::string svg = to_svg(chart);
+  CHECK(fault_of_xml(svg).empty());
+  CHECK(all(svg, "cx=\"([0-9.]+)\"") == std::vector<double>{250, 1000, 0});
+  CHECK_THAT(svg, Catch::Contains("M100.0 12.0H400.0") && Catch::Contains("b &amp; c") && Catch::Contains("25 %"));
+}
+
+TEST_CASE("On a logarithmic axis a factor of ten is as long everywhere, and what is not positive is at the left") {
+  RowChart chart;
+  chart.label_px = 86;
+  chart.width_px = 1100;
+  chart.logarithmic = true;
+  chart.view = Range{0.1, 100};  // three factors of ten on 1000 px
+  chart.rows = {{"a", {{1}, {10}}, ""}, {"b", {{0}}, ""}};
+  const std::vector<double> at = all(to_svg(chart), "cx=\"([0-9.]+)\"");
+  REQUIRE(at.size() == 3);
+  CHECK(at[0] == Approx(1000 / 3.0).margin(0.06));  // written with one decimal
+  CHECK(at[1] == Approx(2000 / 3.0).margin(0.06));
+  CHECK(at[2] == 0);
+}
+
+TEST_CASE("Rows without a number, and no rows at all") {
+  RowChart chart;
+  chart.title = "nothing <yet>";
+  CHECK_THAT(to_svg(chart), Catch::Contains("nothing to show") && Catch::Contains("nothing &lt;yet&gt;"));
+  chart.rows = {{"a", {{std::numeric_limits<double>::quiet_NaN()}}, "-"}};
+  const std::string svg = to_svg(chart);
+  CHECK(fault_of_xml(svg).empty());
+  CHECK_THAT(svg, !Catch::Contains("nan") && !Catch::Contains("inf"));
+}
+
+TEST_CASE("A heat map has a number in each cell and shades it by strength") {
+  HeatMap map;
+  map.rows = map.columns = {"one", "two"};
+  map.cells = {{{}, {"7", 1, "one and two"}}, {{"7", 0.5, ""}, {}}};
+  const std::string svg = to_svg(map);
+  CHECK(fault_of_xml(svg).empty());
+  const std::vector<double> shades = all(svg, "fill-opacity=\"([0-9.]+)\"");
+  REQUIRE(shades.size() == 2);
+  CHECK(shades[0] == Approx(2 * shades[1]));
+  CHECK(shades[0] < 0.7);  // text on it stays readable
+  CHECK_THAT(svg, Catch::Contains(">7</text>") && Catch::Contains("<title>one and two</title>"));
+  CHECK_THAT(to_svg(HeatMap{}), Catch::Contains("nothing to show"));
+}
+
+TEST_CASE("Strips share their axis; a name without room is still found under the pointer") {
+  StripChart chart;
+  chart.label_px = 86;
+  chart.width_px = 1100;
+  chart.strips = {{"first", {{0, 5, 1, "cruise", "90 %"}, {5, 5.1, 0.1, "contact", "10 %"}}},
+                  {"second", {{0, 10, 0, "stand", "0 %"}}}};
+  const std::string svg = to_svg(chart);
+  CHECK(fault_of_xml(svg).empty());
+  CHECK_THAT(svg, Catch::Contains("width=\"500.0\"") && Catch::Contains("width=\"10.0\"") &&
+                      Catch::Contains("width=\"1000.0\""));
+  CHECK_THAT(svg, Catch::Contains(">cruise</text>") && !Catch::Contains(">contact</text>") &&
+                      Catch::Contains("<title>contact 10 %, 5.0 to 5.1</title>"));
+  CHECK_THAT(to_svg(StripChart{}), Catch::Contains("nothing to show"));
+}
+
+TEST_CASE("Discs stand at their places with their words; one without a place is left out") {
+  Chart chart;
+  chart.lines = {{{{0, 0}, {1, 1}}, Ink::faint, Stroke::solid, ""}};
+  chart.discs = {{{0.5, 0.5}, 9, Ink::sim, false, "tip", "before"},
+                 {{std::numeric_limits<double>::quiet_NaN(), 0}, 7, Ink::third, true, "nowhere", ""}};
+  const std::string svg = to_svg(chart);
+  CHECK(fault_of_xml(svg).empty());
+  CHECK_THAT(svg, Catch::Contains("class=\"ring sim\"") && Catch::Contains("r=\"9.0\"") && Catch::Contains(">tip<") &&
+                      Catch::Contains(">before<"));
+  CHECK_THAT(svg, !Catch::Contains("nan") && !Catch::Contains("nowhere"));
+}
+
+TEST_CASE("A dense line keeps what a picture shows of it: the extremes of every column") {
+  std::vector<Point> noise;
+  for (int i = 0; i <= 10000; ++i) noise.emplace_back(i, i % 2 == 0 ? 1 : -1);
+  noise[5000].y() = 50;  // a single spike
+  const auto few = envelope(noise, 100);
+  CHECK(few.size() <= 4 * 101);
+  CHECK(few.front() == noise.front());
+  CHECK(few.back() == noise.back());
+  CHECK(std::ranges::count(few, 50, [](const Point& p) { return p.y(); }) == 1);
+  CHECK(std::ranges::is_sorted(few, {}, [](const Point& p) { return p.x(); }));
+  CHECK(envelope(std::span(noise).first(50), 100).size() == 50);
+}
