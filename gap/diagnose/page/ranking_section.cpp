@@ -17,7 +17,7 @@ std::string ranking_figure(const Diagnosis& d) {
   plot::RowChart chart;
   chart.title = "What each effect alone takes off the gap on runs held out, with 95 % interval";
   chart.x_label = "shrink of what is beyond the floor (%)";
-  double lowest = 0;
+  double lowest = 0, highest = 0;
   for (std::size_t i = 0; i < std::min(kMostRows, d.ranking.size()); ++i) {
     const EffectEvidence& e = d.ranking[i];
     const bool in_best = std::ranges::any_of(d.best, [&](const EffectEvidence& b) { return b.curve == e.curve; });
@@ -28,11 +28,12 @@ std::string ranking_figure(const Diagnosis& d) {
            in_best ? plot::Ink::third : plot::Ink::real, plot::Range{shrink.from * 100, shrink.to * 100}}},
          percent_interval(shrink)});
     lowest = std::min(lowest, shrink.from * 100);
+    highest = std::max(highest, shrink.to * 100);
   }
   if (!d.best.empty())
     chart.legend = {{plot::Shape::disc, plot::Ink::third, "in the best model"},
                     {plot::Shape::ring, plot::Ink::real, "not in it"}};
-  chart.view = plot::Range{std::max(lowest, -50.0) - 3, 105};
+  chart.view = plot::Range{std::max(lowest, -50.0) - 3, std::clamp(highest + 3, 105.0, 150.0)};
   chart.guides = {{0, "nothing"}, {100, "all"}};
   chart.label_px = 230;
   chart.note_px = 140;

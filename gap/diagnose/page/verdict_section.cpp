@@ -165,8 +165,9 @@ std::string shrink_figure(const Diagnosis& d) {
   };
   add("repeats held out", d.gap.shrink);
   if (folds_by_manoeuvre(d.observations).size() > 1) add("manoeuvres held out", d.gap.shrink_by_manoeuvre);
-  chart.view =
-      plot::Range{std::clamp(std::min(d.gap.shrink.from, d.gap.shrink_by_manoeuvre.from) * 100, -50.0, 0.0), 105};
+  const Interval &repeats = d.gap.shrink, &manoeuvres = d.gap.shrink_by_manoeuvre;
+  chart.view = plot::Range{std::clamp(std::min(repeats.from, manoeuvres.from) * 100, -50.0, 0.0),
+                           std::clamp(std::max(repeats.to, manoeuvres.to) * 100 + 3, 105.0, 150.0)};
   chart.guides = {{100, "all"}};
   chart.label_px = 160;
   chart.note_px = 60;
