@@ -159,7 +159,7 @@ std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Pre
   for (std::size_t r = 0; r < features.size(); ++r) {
     const auto size = static_cast<Index>(features[r].bins().size());
     const auto channels = static_cast<Index>(diagnosis_channels().size());
-    open.push_back({Eigen::MatrixXd::Zero(size, kOpen + channels), VectorXd::Zero(size)});
+    open.push_back({Eigen::MatrixXd::Zero(size, static_cast<Index>(kOpen) + channels), VectorXd::Zero(size)});
     for (std::size_t b = 0; b < features[r].bins().size(); ++b) {
       const std::size_t channel = features[r].bins()[b].channel;
       open[r].shapes(static_cast<Index>(b), static_cast<Index>(kOpen + channel)) =
