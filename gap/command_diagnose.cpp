@@ -25,13 +25,14 @@ void interrupt(int) {
 
 }  // namespace
 
-void add_diagnose_command(CLI::App& program) {
+void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
   struct Options {
     std::string dataset, out;
     DiagnosisOptions diagnosis;
   };
   const auto options = std::make_shared<Options>();
   DiagnosisOptions& diagnosis = options->diagnosis;
+  diagnosis.ranks = ranks;
   CLI::App* command = program.add_subcommand("diagnose", "names the effect by which simulation and runs part, if any");
   command->add_option("DATASET", options->dataset, "the runs, a folder; required")->type_name("");
   command->add_option("--out", options->out, "folder for report.json, report.html and robot.toml; required")
@@ -52,12 +53,15 @@ void add_diagnose_command(CLI::App& program) {
     for (const auto& [name, text] : {std::pair{"DATASET", &options->dataset}, {"--out", &options->out}})
       if (text->empty()) throw CLI::RequiredError(name);
     options->diagnosis.stop = &interrupted;
-    options->diagnosis.progress = [line = ProgressLine()](const Progress& progress) {
-      line.show(progress.doing, progress.done);
-    };
+    const bool reports = options->diagnosis.ranks.rank == 0;
+    if (reports)
+      options->diagnosis.progress = [line = ProgressLine()](const Progress& progress) {
+        line.show(progress.doing, progress.done);
+      };
     const auto before = std::signal(SIGINT, interrupt);
     const Diagnosis result = diagnose(options->dataset, options->diagnosis);
     std::signal(SIGINT, before);
+    if (!reports) return;
     write_diagnosis(result, options->out);
     std::fputs(diagnosis_text(result).c_str(), stdout);
     std::printf("\n%s/report.html has the figures\n", options->out.c_str());

@@ -10,6 +10,8 @@ class App;
 
 namespace kenaf::gap {
 
+struct Ranks;
+
 // Everything was done as asked, but runs are no use: status 1.
 struct RunsWentWrong : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -19,7 +21,8 @@ void add_challenge_command(CLI::App& program);
 void add_check_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_dataset_command(CLI::App& program);
-void add_diagnose_command(CLI::App& program);
+// `ranks`: processes that do it together; the first one writes and prints.
+void add_diagnose_command(CLI::App& program, const Ranks& ranks);
 void add_effects_command(CLI::App& program);
 void add_manoeuvres_command(CLI::App& program);
 void add_merge_command(CLI::App& program);

@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "gap/commands.hpp"
+#include "gap/ranks.hpp"
 
 namespace {
 
@@ -24,7 +25,7 @@ constexpr void (*kCommands[])(CLI::App&) = {
     kenaf::gap::add_check_command,
     kenaf::gap::add_compare_command,
     kenaf::gap::add_dataset_command,
-    kenaf::gap::add_diagnose_command,
+    [](CLI::App& program) { kenaf::gap::add_diagnose_command(program, {}); },
     kenaf::gap::add_effects_command,
     kenaf::gap::add_manoeuvres_command,
     kenaf::gap::add_merge_command,

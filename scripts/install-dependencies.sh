@@ -20,6 +20,8 @@ case $mode in
       abigail-tools binutils catch2 clang iproute2 libclang-rt-14-dev llvm
       # the CAN tests
       busybox-static can-utils cpio kmod qemu-system-x86 xz-utils
+      # a diagnosis by several processes
+      libopenmpi-dev openmpi-bin
       # the package
       dpkg-dev file
     )

@@ -26,7 +26,7 @@ class Diagnoser {
   Diagnoser(Diagnosis& d, const DiagnosisOptions& options)
       : d_(d),
         options_(options),
-        predictor_(d.observations, d.features, repeats_of(d.observations), options.jobs, options.stop) {}
+        predictor_(d.observations, d.features, repeats_of(d.observations), options.jobs, options.stop, options.ranks) {}
 
   void run() {
     say("simulating the nominal robot", 0.01);

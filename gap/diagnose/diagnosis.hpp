@@ -35,6 +35,7 @@ struct DiagnosisOptions {
   DecisionSettings decision;
   std::function<void(const Progress&)> progress;   // called from this thread; may be empty
   const std::atomic<bool>* stop = nullptr;         // once true, what is known by then is returned
+  Ranks ranks;                                     // that make this diagnosis together
 };
 
 // What one effect explains, by itself or as one of the best model.

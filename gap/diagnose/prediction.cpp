@@ -18,25 +18,39 @@ constexpr double kCoarse = 2;  // time steps: a shift, the difference of two sim
 
 Predictor::Predictor(const Observations& observations, const std::vector<FeatureMap>& features,
                      std::vector<std::vector<std::size_t>> repeats, unsigned threads,
-                     const std::atomic<bool>* stop)
+                     const std::atomic<bool>* stop, Ranks ranks)
     : observations_(observations),
       features_(features),
       repeats_(std::move(repeats)),
       threads_(threads),
-      stop_(stop) {
+      stop_(stop),
+      ranks_(std::move(ranks)) {
   for (const std::vector<std::size_t>& group : repeats_)
     representatives_.push_back(representative(observations_, group));
 }
 
+std::vector<VectorXd> Predictor::all_of(std::size_t count, const std::function<VectorXd(std::size_t)>& job) {
+  const auto ranks = static_cast<std::size_t>(ranks_.count), rank = static_cast<std::size_t>(ranks_.rank);
+  const bool stop = stop_ != nullptr && *stop_;
+  if (ranks > 1 ? ranks_.any(stop) : stop) throw Stopped();
+  std::vector<VectorXd> results(count);
+  const std::size_t own = count / ranks + (rank < count % ranks ? 1 : 0);
+  for_each_job(own, threads_, [&](std::size_t i) {
+    // one rank alone may end at once; of several all end together
+    if (ranks == 1 && stop_ != nullptr && *stop_) throw Stopped();
+    results[rank + i * ranks] = job(rank + i * ranks);
+  });
+  if (ranks > 1) ranks_.share(results);
+  roll_outs_ += count;
+  return results;
+}
+
 void Predictor::simulate_nominal() {
-  nominal_.resize(observations_.runs.size());
-  for_each_job(nominal_.size(), threads_, [&](std::size_t run) { nominal_[run] = features_of(run, unvaried()); });
-  roll_outs_ += nominal_.size();
+  nominal_ = all_of(observations_.runs.size(), [&](std::size_t run) { return features_of(run, unvaried()); });
 }
 
 runs::Run Predictor::simulate(const rollout::Manoeuvre& as_recorded, std::size_t run,
                               const Variation& variation) const {
-  if (stop_ != nullptr && *stop_) throw Stopped();
   physics::RobotDescription robot = observations_.robot;
   robot.effects = variation.effects;
   rollout::Manoeuvre replay = as_recorded;
@@ -55,13 +69,10 @@ runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const
 }
 
 std::vector<VectorXd> Predictor::nominal_with_measured_drives() {
-  std::vector<VectorXd> result(observations_.runs.size());
-  for_each_job(result.size(), threads_, [&](std::size_t run) {
-    if (const auto& measured = observations_.runs[run].measured)
-      result[run] = features_[run].of(simulate(*measured, run, unvaried()));
+  return all_of(observations_.runs.size(), [&](std::size_t run) {
+    const auto& measured = observations_.runs[run].measured;
+    return measured ? features_[run].of(simulate(*measured, run, unvaried())) : VectorXd();
   });
-  roll_outs_ += result.size();
-  return result;
 }
 
 VectorXd Predictor::features_of(std::size_t run, const Variation& variation) const {
@@ -87,12 +98,14 @@ VectorXd Predictor::alike(std::size_t from, const VectorXd& shift, std::size_t t
 std::vector<Shift> Predictor::shifts_of_representatives(std::span<const Variation> variations,
                                                         const std::vector<VectorXd>& nominal) {
   const std::size_t groups = representatives_.size();
-  std::vector<Shift> result(variations.size(), Shift(nominal_.size()));
-  for_each_job(variations.size() * groups, threads_, [&](std::size_t job) {
-    const std::size_t variation = job / groups, run = representatives_[job % groups];
-    result[variation][run] = features_of(run, variations[variation]) - nominal[run];
+  const std::vector<VectorXd> simulated = all_of(variations.size() * groups, [&](std::size_t job) {
+    return features_of(representatives_[job % groups], variations[job / groups]);
   });
-  roll_outs_ += variations.size() * groups;
+  std::vector<Shift> result(variations.size(), Shift(nominal_.size()));
+  for (std::size_t job = 0; job < simulated.size(); ++job) {
+    const std::size_t run = representatives_[job % groups];
+    result[job / groups][run] = simulated[job] - nominal[run];
+  }
   for (Shift& shift : result)
     for (std::size_t g = 0; g < groups; ++g)
       for (const std::size_t r : repeats_[g])
@@ -109,27 +122,24 @@ std::vector<Shift> Predictor::shifts(std::span<const Variation> variations, Fide
       coarse_nominal_.resize(nominal_.size());
       Variation unvaried_coarse = unvaried();
       unvaried_coarse.physics.time_step_s *= kCoarse;
-      for_each_job(representatives_.size(), threads_, [&](std::size_t g) {
-        coarse_nominal_[representatives_[g]] = features_of(representatives_[g], unvaried_coarse);
-      });
-      roll_outs_ += representatives_.size();
+      const std::vector<VectorXd> simulated = all_of(
+          representatives_.size(), [&](std::size_t g) { return features_of(representatives_[g], unvaried_coarse); });
+      for (std::size_t g = 0; g < simulated.size(); ++g) coarse_nominal_[representatives_[g]] = simulated[g];
     }
     return shifts_of_representatives(coarse, coarse_nominal_);
   }
-  std::vector<Shift> result(variations.size(), Shift(nominal_.size()));
-  for_each_job(variations.size() * nominal_.size(), threads_, [&](std::size_t job) {
-    const std::size_t variation = job / nominal_.size(), run = job % nominal_.size();
-    result[variation][run] = features_of(run, variations[variation]) - nominal_[run];
-  });
-  roll_outs_ += variations.size() * nominal_.size();
+  const std::size_t runs = nominal_.size();
+  const std::vector<VectorXd> simulated = all_of(
+      variations.size() * runs, [&](std::size_t job) { return features_of(job % runs, variations[job / runs]); });
+  std::vector<Shift> result(variations.size(), Shift(runs));
+  for (std::size_t job = 0; job < simulated.size(); ++job)
+    result[job / runs][job % runs] = simulated[job] - nominal_[job % runs];
   return result;
 }
 
 Shift Predictor::shift_of_each(std::span<const Variation> variations) {
-  Shift result(nominal_.size());
-  for_each_job(nominal_.size(), threads_,
-               [&](std::size_t run) { result[run] = features_of(run, variations[run]) - nominal_[run]; });
-  roll_outs_ += nominal_.size();
+  Shift result = all_of(nominal_.size(), [&](std::size_t run) { return features_of(run, variations[run]); });
+  for (std::size_t run = 0; run < result.size(); ++run) result[run] -= nominal_[run];
   return result;
 }
 

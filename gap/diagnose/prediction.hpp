@@ -1,15 +1,17 @@
 // What the simulator says of the observed runs: the same commands from the same place, with the nominal model or another.
 //
-// Deterministic, on any number of threads.
+// Deterministic, on any number of threads and of processes.
 #pragma once
 
 #include <Eigen/Core>
 #include <atomic>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "gap/diagnose/features.hpp"
 #include "gap/diagnose/observation.hpp"
+#include "gap/ranks.hpp"
 #include "physics/world.hpp"
 
 namespace kenaf::gap {
@@ -38,7 +40,8 @@ class Predictor {
   // Both must outlive this; `features` has one map for each run. Once `stop`, if there is one, is true, simulations throw
   // Stopped.
   Predictor(const Observations& observations, const std::vector<FeatureMap>& features,
-            std::vector<std::vector<std::size_t>> repeats, unsigned threads, const std::atomic<bool>* stop = nullptr);
+            std::vector<std::vector<std::size_t>> repeats, unsigned threads,
+            const std::atomic<bool>* stop = nullptr, Ranks ranks = {});
 
   // All runs once; comes first.
   void simulate_nominal();
@@ -59,6 +62,8 @@ class Predictor {
  private:
   runs::Run simulate(const rollout::Manoeuvre& replay, std::size_t run, const Variation& variation) const;
   Eigen::VectorXd features_of(std::size_t run, const Variation& variation) const;
+  // job(0) ... job(count - 1), by all ranks and threads together.
+  std::vector<Eigen::VectorXd> all_of(std::size_t count, const std::function<Eigen::VectorXd(std::size_t)>& job);
   std::vector<Shift> shifts_of_representatives(std::span<const Variation> variations,
                                                const std::vector<Eigen::VectorXd>& nominal);
   Eigen::VectorXd alike(std::size_t from, const Eigen::VectorXd& shift, std::size_t to) const;
@@ -69,6 +74,7 @@ class Predictor {
   std::vector<std::size_t> representatives_;  // of each group
   unsigned threads_;
   const std::atomic<bool>* stop_;
+  Ranks ranks_;
   std::vector<Eigen::VectorXd> nominal_, coarse_nominal_;  // the latter of representatives, once asked for
   std::size_t roll_outs_ = 0;
 };

@@ -1,0 +1,16 @@
+#!/bin/bash
+# Two processes make the same diagnosis as one, bit for bit.
+# usage: mpi_test.sh KENAF_GAP KENAF_GAP_MPI
+set -euo pipefail
+gap=$1 gap_mpi=$2
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+"$gap" simulate --manoeuvre straight-fast --manoeuvre drop --repeats 2 --effect drive_lag:lag_s=0.05 --out "$folder/real" >/dev/null
+"$gap" diagnose "$folder/real" --out "$folder/one" --jobs 1 >"$folder/one.txt"
+# as root, in a container and on fewer cores than processes too
+OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+    mpirun --oversubscribe -n 2 "$gap_mpi" diagnose "$folder/real" --out "$folder/two" --jobs 1 >"$folder/two.txt"
+cmp "$folder/one/report.json" "$folder/two/report.json"
+cmp "$folder/one/report.html" "$folder/two/report.html"
+head -n 1 "$folder/one.txt"
+[ "$(head -n 1 "$folder/one.txt")" = "$(head -n 1 "$folder/two.txt")" ]
