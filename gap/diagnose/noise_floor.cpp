@@ -59,6 +59,8 @@ VectorXd sigma_of_bins(const FeatureMap& features, const std::vector<double>& si
 }  // namespace
 
 Whitener::Whitener(const VectorXd& sigma, const Eigen::MatrixXd& shapes) : inverse_sigma_(sigma.cwiseInverse()) {
+  directions_.resize(sigma.size(), 0);
+  if (shapes.cols() == 0 || sigma.size() == 0) return;
   // covariance in units of sigma: 1 + S S^T; along its direction u_i the variance is 1 + s_i^2
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(inverse_sigma_.asDiagonal() * shapes, Eigen::ComputeThinU);
   directions_ = svd.matrixU();
