@@ -26,6 +26,14 @@ std::vector<std::size_t> rivals_of(const OnCurve& place, const Model& chosen, co
   return rivals;
 }
 
+bool at_an_end(const Model& model, const EffectCurves& curves) {
+  return std::ranges::any_of(model.places, [&](const OnCurve& place) {
+    const physics::EffectParameter& parameter = *curves.curves[place.curve].parameter;
+    return (place.value <= parameter.min && parameter.min != parameter.neutral) ||
+           (place.value >= parameter.max && parameter.max != parameter.neutral);
+  });
+}
+
 }  // namespace
 
 Decision decide(EffectCurves& curves, const Coherence& coherence, const Spread& spread, const Simulator& simulator,
@@ -89,7 +97,8 @@ Decision decide(EffectCurves& curves, const Coherence& coherence, const Spread& 
                         : decision.singles.front();
   }
   decision.p_left = p_left(decision.best);
-  if (decision.p_left <= settings.surprise) {
+  // a value at the end of its range stands for something that the effect cannot do
+  if (decision.p_left <= settings.surprise || at_an_end(decision.best, curves)) {
     decision.verdict = Verdict::unknown;
     for (const OnCurve& place : decision.best.places) decision.rivals.push_back({place.curve});
     return decision;

@@ -12,37 +12,56 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Of the mean size of the commands, how much repeats may differ on the average (chosen: a decision of an operator that
-// comes half a second later changes 5 % of a climb, another step of speed all of it).
-constexpr double kSameCommands = 0.2;
+// Chosen: an operator decides that much earlier or later in a repeat, and a log's numbers are rounded that much; in the
+// rest of the time he may have done otherwise.
+constexpr double kSooner_s = 0.5, kRounded = 0.02, kOtherwise = 0.1;
 
-struct Differing {
-  double difference = 0, size = 0;
+using Timed = std::vector<rollout::TimedCommand>;
+
+struct Largest {
+  double track_mps = 0, flipper_rad = 0;
 };
 
-// Both as they hold at the times of `a`; after the end of the shorter one nothing is compared.
-void compare(const std::vector<rollout::TimedCommand>& a, const std::vector<rollout::TimedCommand>& b,
-             Differing& tracks, Differing& flippers) {
-  std::size_t at_b = 0;
-  const double end_s = std::min(a.back().t_s, b.back().t_s);
-  for (std::size_t i = 0; i + 1 < a.size() && a[i].t_s < end_s; ++i) {
-    while (at_b + 1 < b.size() && b[at_b + 1].t_s <= a[i].t_s) ++at_b;
-    const double duration_s = a[i + 1].t_s - a[i].t_s;
-    const auto add = [&](Differing& sum, double one, double two) {
-      sum.difference += duration_s * std::abs(one - two);
-      sum.size += duration_s * (std::abs(one) + std::abs(two)) / 2;
-    };
-    for (std::size_t t = 0; t < a[i].command.track_speed_mps.size(); ++t)
-      add(tracks, a[i].command.track_speed_mps[t], b[at_b].command.track_speed_mps[t]);
-    for (std::size_t f = 0; f < a[i].command.flipper.size(); ++f)
-      add(flippers, a[i].command.flipper[f].value, b[at_b].command.flipper[f].value);
+void widen(Largest& largest, const Timed& commands) {
+  for (const rollout::TimedCommand& timed : commands) {
+    for (const double speed_mps : timed.command.track_speed_mps)
+      largest.track_mps = std::max(largest.track_mps, std::abs(speed_mps));
+    for (const auto& flipper : timed.command.flipper)
+      largest.flipper_rad = std::max(largest.flipper_rad, std::abs(flipper.value));
   }
 }
 
+bool alike(const physics::RobotCommand& a, const physics::RobotCommand& b, const Largest& largest) {
+  for (std::size_t t = 0; t < a.track_speed_mps.size(); ++t)
+    if (std::abs(a.track_speed_mps[t] - b.track_speed_mps[t]) > kRounded * largest.track_mps) return false;
+  for (std::size_t f = 0; f < a.flipper.size(); ++f)
+    if (std::abs(a.flipper[f].value - b.flipper[f].value) > kRounded * largest.flipper_rad) return false;
+  return true;
+}
+
+// For how long `b` has no command about then that is like that of `a`; after the end of the shorter one nothing counts.
+double otherwise_s(const Timed& a, const Timed& b, const Largest& largest) {
+  const double end_s = std::min(a.back().t_s, b.back().t_s);
+  double sum_s = 0;
+  for (std::size_t i = 0; i + 1 < a.size() && a[i].t_s < end_s; ++i) {
+    // with the command that is in force when the time about then begins
+    auto near = std::ranges::upper_bound(b, a[i].t_s - kSooner_s, {}, &rollout::TimedCommand::t_s);
+    if (near != b.begin()) --near;
+    bool found = false;
+    for (; !found && near != b.end() && near->t_s <= a[i].t_s + kSooner_s; ++near)
+      found = alike(a[i].command, near->command, largest);
+    if (!found) sum_s += a[i + 1].t_s - a[i].t_s;
+  }
+  return sum_s;
+}
+
 bool same_commands(const Observation& a, const Observation& b) {
-  Differing tracks, flippers;
-  compare(a.replay.timed, b.replay.timed, tracks, flippers);
-  return tracks.difference <= kSameCommands * tracks.size && flippers.difference <= kSameCommands * flippers.size;
+  const Timed &one = a.replay.timed, &two = b.replay.timed;
+  Largest largest;
+  widen(largest, one);
+  widen(largest, two);
+  const double allowed_s = kOtherwise * std::min(one.back().t_s, two.back().t_s);
+  return otherwise_s(one, two, largest) <= allowed_s && otherwise_s(two, one, largest) <= allowed_s;
 }
 
 }  // namespace
