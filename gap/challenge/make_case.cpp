@@ -133,7 +133,8 @@ class Scale {
       residuals.push_back(features_[r].measured() - predictor_->nominal()[r]);
     floor_ = noise_floor(features_, residuals, predictor_->repeats(),
                          open_shapes(features_, *predictor_, predictor_->unvaried(), kOpenStart_m, kOpenStart_rad));
-    floor_rms_ = floor_.rms(deviations_from_repeats(features_, residuals, predictor_->repeats()));
+    floor_rms_ = rms_of_repeats(floor_, features_, deviations_from_repeats(features_, residuals, predictor_->repeats()),
+                                predictor_->repeats());
   }
 
   double floors_of(const physics::Effects& effects) {

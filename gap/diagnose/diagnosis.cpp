@@ -90,21 +90,13 @@ class Diagnoser {
   }
 
   Spread spread() const {
-    Spread spread{inflation_from_repeats(d_.features, d_.floor, deviations_, options_.stretch_s), 0};
-    double bins = 0, all_bins = 0;
-    for (std::size_t r = 0; r < residuals_.size(); ++r) {
-      all_bins += static_cast<double>(residuals_[r].size());
-      if (deviations_[r].size() == 0) continue;
-      spread.squared_length += d_.floor.whiteners[r](deviations_[r]).squaredNorm();
-      bins += static_cast<double>(deviations_[r].size());
-    }
-    spread.squared_length = bins > 0 ? spread.squared_length * all_bins / bins : all_bins;
-    return spread;
+    double bins = 0;
+    for (const VectorXd& run : residuals_) bins += static_cast<double>(run.size());
+    return {inflation_from_repeats(d_.features, d_.floor, deviations_, options_.stretch_s),
+            floor_rms() * floor_rms() * bins};
   }
 
-  double floor_rms() const {
-    return d_.floor.from_repeats ? d_.floor.rms(deviations_) : 1;
-  }
+  double floor_rms() const { return rms_of_repeats(d_.floor, d_.features, deviations_, d_.repeats); }
 
   double p_of_chance(double explained) const {
     const double beyond = std::sqrt(std::max(0.0, explained / d_.decision.inflation / 2));

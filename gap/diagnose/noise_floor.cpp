@@ -133,6 +133,18 @@ NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vecto
   return floor;
 }
 
+double rms_of_repeats(const NoiseFloor& floor, const std::vector<FeatureMap>& features,
+                      const std::vector<VectorXd>& deviations, const std::vector<std::vector<std::size_t>>& repeats) {
+  const std::vector<std::vector<bool>> shared = shared_bins(features, repeats);
+  double sum = 0, count = 0;
+  for (std::size_t r = 0; r < deviations.size(); ++r) {
+    if (deviations[r].size() == 0) continue;
+    sum += floor.whiteners[r](deviations[r]).squaredNorm();
+    count += static_cast<double>(std::ranges::count(shared[r], true));
+  }
+  return count > 0 ? std::sqrt(sum / count) : 1;
+}
+
 NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShapes>& open) {
   NoiseFloor result = floor;
   for (std::size_t r = 0; r < open.size(); ++r) {

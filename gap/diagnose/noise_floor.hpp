@@ -59,6 +59,11 @@ std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Pre
 NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vector<Eigen::VectorXd>& residuals,
                        const std::vector<std::vector<std::size_t>>& repeats, const std::vector<OpenShapes>& open);
 
+// The rms of what repeats differ by, whitened, over the bins that more than one of them has; 1 without repeats.
+double rms_of_repeats(const NoiseFloor& floor, const std::vector<FeatureMap>& features,
+                      const std::vector<Eigen::VectorXd>& deviations,
+                      const std::vector<std::vector<std::size_t>>& repeats);
+
 // The same noise with open shapes of another model: bins are as rough as the rougher one of the two has them.
 NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShapes>& open);
 
