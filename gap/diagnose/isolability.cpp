@@ -133,7 +133,11 @@ std::vector<NextManoeuvre> rank_manoeuvres(const physics::RobotDescription& robo
   std::vector<NextManoeuvre> ranking;
   if (rivals.size() < 2) return ranking;
   std::vector<rollout::Manoeuvre> manoeuvres = rollout::shipped_manoeuvres();
-  std::erase_if(manoeuvres, [](const rollout::Manoeuvre& manoeuvre) { return manoeuvre.at_most_s() > kLongest_s; });
+  std::erase_if(manoeuvres, [&](const rollout::Manoeuvre& manoeuvre) {
+    const bool moves_flippers =
+        std::ranges::any_of(manoeuvre.phases, [](const rollout::Phase& phase) { return phase.flipper_rad.has_value(); });
+    return manoeuvre.at_most_s() > kLongest_s || (moves_flippers && !robot.has_flippers());
+  });
   std::vector<std::size_t> separates;
   for (const Model& rival : rivals)
     for (const OnCurve& place : rival.places)

@@ -24,7 +24,7 @@ struct NextManoeuvre {
   std::vector<std::size_t> separates;  // curves
   double expected_score;  // floors by which the two that are hardest to tell apart would differ in one run of it
 };
-// Of the shipped manoeuvres that last at most 40 s, best first. `rivals`: models that are to be told apart, each at the
+// Of the shipped manoeuvres that last at most 40 s and that the robot can drive, best first. `rivals`: models that are to be told apart, each at the
 // values that fit; what a change of their own values could take back does not count.
 std::vector<NextManoeuvre> rank_manoeuvres(const physics::RobotDescription& robot, const EffectCurves& curves,
                                            std::span<const Model> rivals, const NoiseFloor& floor, double span_s,
