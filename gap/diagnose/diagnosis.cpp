@@ -219,6 +219,7 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
   d.observations = observe(folder, options.robot, options.world, options.most_runs);
   for (const Observation& run : d.observations.runs) d.features.emplace_back(run.run, options.span_s);
   Diagnoser diagnoser(d, options);
+  d.decision.verdict = Verdict::unknown;  // until it is known
   try {
     diagnoser.run();
   } catch (const Stopped&) {
