@@ -24,7 +24,6 @@ using Eigen::VectorXd;
 
 constexpr const char* kRobot = "kenaf";
 constexpr double kStartScatter_m = 0.005, kStartScatter_rad = 0.01;
-constexpr double kOpenStart_m = 0.001, kOpenStart_rad = 0.002;
 constexpr std::size_t kMostRuns = 100;
 constexpr int kHalvings = 12;
 constexpr double kSmallestShare = 1e-5, kCloseEnough = 1.05;

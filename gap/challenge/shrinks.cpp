@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 
 // As a diagnosis has them.
 constexpr std::size_t kMostRuns = 60;
-constexpr double kSpan_s = 0.25, kStart_m = 0.001, kStart_rad = 0.002;
+constexpr double kSpan_s = 0.25;
 
 std::vector<VectorXd> difference(const std::vector<VectorXd>& a, const std::vector<VectorXd>& b) {
   std::vector<VectorXd> result;
@@ -38,7 +38,7 @@ Shrinks shrinks_on(const std::filesystem::path& dataset, const physics::Effects&
   models[0].effects = told;
   models[1].effects = hidden;
   const NoiseFloor floor = noise_floor(features, residuals, predictor.repeats(),
-                                       open_shapes(features, predictor, models[1], kStart_m, kStart_rad));
+                                       open_shapes(features, predictor, models[1], kOpenStart_m, kOpenStart_rad));
   const std::vector<Shift> shifts = predictor.shifts(models, Fidelity::every_run);
   Shrinks result;
   result.before = floor.rms(residuals);

@@ -15,8 +15,6 @@ namespace {
 
 using Eigen::VectorXd;
 
-// Of the start pose, where the log has no rows at rest to average (chosen: as good as motion capture).
-constexpr double kStart_m = 0.001, kStart_rad = 0.002;
 // Models that a next manoeuvre is to tell apart, at most.
 constexpr std::size_t kRivals = 4;
 constexpr double kAtBound = 1e-3;  // of the range
@@ -66,7 +64,7 @@ class Diagnoser {
   }
 
   std::vector<OpenShapes> open_at(const Variation& model) {
-    return open_shapes(d_.features, predictor_, model, kStart_m, kStart_rad);
+    return open_shapes(d_.features, predictor_, model, kOpenStart_m, kOpenStart_rad);
   }
 
   GapPlaces places(const std::vector<VectorXd>& residuals) const {

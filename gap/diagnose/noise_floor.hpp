@@ -41,6 +41,9 @@ struct NoiseFloor {
   double rms(const std::vector<Eigen::VectorXd>& differences) const;
 };
 
+// Of the start pose, where the log has no rows at rest to average, 1 sigma (chosen: as good as motion capture).
+inline constexpr double kOpenStart_m = 0.001, kOpenStart_rad = 0.002;
+
 // What the simulation leaves open in one run. A variation by +1 and by -1 sigma shifts the prediction by a shape, up to sign,
 // as long as all is smooth. What of it is not up to sign (a fall that begins earlier either way) has no shape that could be
 // known, so it counts as noise of those bins.
