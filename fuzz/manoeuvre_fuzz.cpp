@@ -10,8 +10,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const auto all = kenaf::rollout::parse_manoeuvres({reinterpret_cast<const char*>(data), size}, "fuzz.toml");
     if (all.empty()) __builtin_trap();
-    for (const auto& manoeuvre : all)
+    for (const auto& manoeuvre : all) {
       if (!(manoeuvre.at_most_s() > 0 && manoeuvre.at_most_s() <= 3600)) __builtin_trap();
+      if (manoeuvre.phases.front().only_if_x_above_m || manoeuvre.phases.back().only_if_x_above_m) __builtin_trap();
+    }
   } catch (const kenaf::physics::DescriptionError&) {
   }
   return 0;

@@ -28,7 +28,8 @@ void print(const SimulatedDataset& dataset) {
                           : !run.succeeded   ? ""
                           : *run.succeeded   ? ", done"
                                              : ", not done";
-    std::printf("%s: %s, %.2f s%s\n", run.file.c_str(), run.manoeuvre.c_str(), run.duration_s, outcome);
+    std::printf("%s: %s, %.2f s%s%s\n", run.file.c_str(), run.manoeuvre.c_str(), run.duration_s, outcome,
+                run.gave_up ? ", given up" : "");
     if (run.fault.empty()) continue;
     ++faults;
     std::fprintf(stderr, "kenaf-gap: %s: the simulation went wrong: %s\n", run.file.c_str(), run.fault.c_str());

@@ -102,6 +102,7 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
            .manoeuvre = of.manoeuvre.name,
            .duration_s = out.run.column("t_s").back(),
            .succeeded = of.manoeuvre.success ? std::optional(out.succeeded) : std::nullopt,
+           .gave_up = out.gave_up,
            .fault = out.fault};
     dataset.runs[i].fault = out.fault;
   });

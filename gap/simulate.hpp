@@ -33,6 +33,7 @@ struct SimulatedRun {
   std::string file, manoeuvre;
   double duration_s = 0;
   std::optional<bool> succeeded;         // by the manoeuvre's own measure, where it has one
+  bool gave_up = false;                  // the operator did: rollout::RollOut
   std::string fault;                     // why it ended early; empty: it did not
 };
 

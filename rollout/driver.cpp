@@ -28,6 +28,15 @@ bool Driver::ended(const Phase& phase, double t_s, const physics::Pose& X_WB) co
          (end.turned_rad && std::abs(turned_rad_) >= *end.turned_rad);
 }
 
+std::size_t Driver::next_phase(const physics::Pose& X_WB) {
+  const std::size_t next = phase_ + 1, last = manoeuvre_.phases.size() - 1;
+  if (next >= last) return next;
+  const std::optional<double>& needed_x_m = manoeuvre_.phases[next].only_if_x_above_m;
+  if (!needed_x_m || X_WB.p.x() > *needed_x_m) return next;
+  gave_up_ = true;
+  return last;
+}
+
 std::optional<physics::RobotCommand> Driver::command(double t_s, const physics::Pose& X_WB) {
   if (!manoeuvre_.timed.empty()) return timed_command(t_s);
 
@@ -35,7 +44,7 @@ std::optional<physics::RobotCommand> Driver::command(double t_s, const physics::
   if (last_yaw_rad_) turned_rad_ += frames::wrap_angle(yaw_rad - *last_yaw_rad_);
   last_yaw_rad_ = yaw_rad;
   while (phase_ < manoeuvre_.phases.size() && ended(manoeuvre_.phases[phase_], t_s, X_WB)) {
-    ++phase_;
+    phase_ = next_phase(X_WB);
     phase_began_s_ = t_s;
     turned_rad_ = 0;
   }

@@ -25,6 +25,7 @@ constexpr Range kTrackSpeed{.min = -10, .max = 10};
 constexpr Range kFlipperAngle{.min = -2 * kPi, .max = 2 * kPi};
 constexpr Range kPitch{.min = -kPi, .max = kPi};
 constexpr double kLongest_s = 3600;
+constexpr std::string_view kOnlyIf = "only_if_x_above_m";
 constexpr std::string_view kReplay = "replay:", kReplayMeasured = "replay-measured:";
 
 std::optional<double> optional_number(TomlReader& table, std::string_view key, Range range = physics::kAny) {
@@ -49,13 +50,21 @@ Phase read_phase(TomlReader& table) {
                .x_below_m = optional_number(table, "x_below_m"),
                .z_above_m = optional_number(table, "z_above_m"),
                .turned_rad = optional_number(table, "turned_rad", physics::kPositive)};
+  phase.only_if_x_above_m = optional_number(table, kOnlyIf);
   table.finish();
   return phase;
 }
 
 std::vector<Phase> read_phases(TomlReader& table) {
   std::vector<Phase> phases;
-  for (TomlReader& phase : table.tables("phase")) phases.push_back(read_phase(phase));
+  std::vector<TomlReader> tables = table.tables("phase");
+  for (TomlReader& phase : tables) {
+    phases.push_back(read_phase(phase));
+    if (phases.back().only_if_x_above_m && (phases.size() == 1 || phases.size() == tables.size()))
+      phase.fail(
+          kOnlyIf,
+          "is of no use in the first phase, which always begins, and in the last, with which the operator gives up");
+  }
   return phases;
 }
 

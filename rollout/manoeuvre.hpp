@@ -33,6 +33,9 @@ struct Phase {
   std::optional<std::array<double, physics::kFlipperCount>> flipper_rad;  // empty: as before
   double at_most_s = 0;
   PhaseEnd end;
+  // Where its turn comes and x is not above this, the operator gives up: the last phase follows. Not of the first phase,
+  // which always begins, nor of the last.
+  std::optional<double> only_if_x_above_m{};
 };
 
 // When the manoeuvre counts as done: where the robot is at its end.

@@ -186,6 +186,7 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
   }
   out.run = recorder.take();
   out.succeeded = out.fault.empty() && succeeded(manoeuvre, out.end.X_WB);
+  out.gave_up = driver.gave_up();
   out.steps = scene.world.step_count();
   out.contacts_per_step = static_cast<double>(scene.contacts) / static_cast<double>(out.steps);
   return out;

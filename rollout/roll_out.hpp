@@ -29,9 +29,10 @@ struct RollOutOptions {
 struct RollOut {
   runs::Run run;           // columns of docs/run-format.md
   bool succeeded = false;  // by the manoeuvre's own measure; false without one
+  bool gave_up = false;    // a phase must not begin where the robot was (Phase::only_if_x_above_m)
   std::string fault;       // why the simulation was ended early, as World::fault() says it; empty: it was not
   physics::RobotTruth end{};
-  std::vector<double> phase_began_s;  // of each phase that was reached
+  std::vector<double> phase_began_s;  // of each phase that was reached; of one passed over: of the next
   double contacts_per_step = 0;
   std::uint64_t steps = 0;  // with those in which the robot settled before the first row
 };
