@@ -1,5 +1,7 @@
 // The published evaluation's 12 experiments, simulated, as a user runs them: by manoeuvre and shipped world.
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "rollout/published_experiments.hpp"
 
@@ -35,6 +37,29 @@ TEST_CASE("Table I, real row: 12 of 12 with the body's centre of mass further ah
   physics::RobotDescription robot = rollout::robot_of_the_experiments();
   physics::set_effect(robot.effects, "com_forward:offset_m=0.07");
   check_row(robot, 0.001, &PublishedExperiment::real);
+}
+
+// At the pitch at which the front flippers let go of the step's face the edge must be under the straight run of the
+// belts. It reaches to the axle of the end wheels, and the belly is one wheel's radius below that: in the body's frame
+// (length / 2 - radius, height of the track - radius), turned by the pitch, and the edge is at x = 1 m.
+TEST_CASE("The operator of the steps goes on where the robot's belts have reached over the edge") {
+  const physics::RobotDescription robot = physics::load_robot("kenaf");
+  const std::vector<rollout::Phase> phases = rollout::load_manoeuvre("step-300-flippers").phases;
+  const auto hook = std::ranges::find(phases, "hook", &rollout::Phase::name);
+  REQUIRE(hook != phases.end());
+  const double axle_x_m = robot.track.length_m / 2 - robot.track.end_radius_m,
+               belly_z_m = robot.track.p_BT_m.z() - robot.track.end_radius_m,
+               nose_up_rad = -std::prev(hook)->end.pitch_below_rad.value();
+  const double x_m = 1 - (axle_x_m * std::cos(nose_up_rad) - belly_z_m * std::sin(nose_up_rad));
+  CHECK(hook->only_if_x_above_m.value() == Approx(x_m).margin(0.005));  // the file has two decimals
+}
+
+TEST_CASE("He gives up at the step of 350 mm, and not at that of 300 mm") {
+  for (const double height_m : {0.3, 0.35}) {
+    const auto run = rollout::attempt(rollout::Obstacle::step, height_m, rollout::robot_of_the_experiments(), 0.001);
+    INFO(height_m << " m, ended at x = " << run.end.X_WB.p.x());
+    CHECK(run.gave_up == (height_m > 0.3));
+  }
 }
 
 TEST_CASE("An obstacle of a published size is the shipped one, to the last bit") {

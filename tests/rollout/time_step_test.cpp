@@ -26,11 +26,9 @@ struct Apart {
   double most_m = 0, at_s = 0;
 };
 
-// Up to the first row, if there is one, that has the nose further up than `nose_up_rad`.
-Apart apart(const runs::Run& a, const runs::Run& b, double nose_up_rad = 4) {
+Apart apart(const runs::Run& a, const runs::Run& b) {
   Apart out;
   for (std::size_t row = 0; row < std::min(a.row_count(), b.row_count()); ++row) {
-    if (a.column("pitch_rad")[row] < -nose_up_rad) break;
     double square = 0;
     for (const char* column : {"x_m", "y_m", "z_m"})
       square += std::pow(a.column(column)[row] - b.column(column)[row], 2);
@@ -46,6 +44,7 @@ void check(Robot robot, std::initializer_list<const char*> manoeuvres) {
     INFO(name << ": " << apart_m.most_m * 1e3 << " mm apart at " << apart_m.at_s << " s");
     CHECK(apart_m.most_m < 0.005);
     CHECK(whole.succeeded == half.succeeded);
+    CHECK(whole.gave_up == half.gave_up);
     // an operator who watches decides at most one sample earlier or later
     CHECK(half.run.column("t_s").back() == Approx(whole.run.column("t_s").back()).margin(0.011));
   }
@@ -67,30 +66,9 @@ TEST_CASE("Half the time step, ramp, stairs, hills and tilted box") {
 
 TEST_CASE("Half the time step, the steps of Table I") {
   check(Robot::of_the_experiments, {"step-50-flippers", "step-100-flippers", "step-150-flippers", "step-200-flippers",
-                                    "step-250-flippers", "step-300-flippers"});
+                                    "step-250-flippers", "step-300-flippers", "step-350-flippers"});
 }
 
 TEST_CASE("Half the time step, the trenches of Table I") {
   check(Robot::of_the_experiments, {"trench-100", "trench-200", "trench-300", "trench-350", "trench-400"});
-}
-
-// Pressed against a wall that it cannot pass, the robot turns away from straight ahead, to the side that the rounding
-// of numbers chooses, as anything does that is pushed from behind: so 5 mm is missed. The runs are each other's mirror
-// image until the robot stands upright on its tail and falls back, which multiplies what is left.
-TEST_CASE(
-    "Half the time step, the step of Table I that is not climbed: alike, or mirrored, until the robot falls back") {
-  const char* name = "step-350-flippers";
-  const rollout::RollOut whole = drive(name, Robot::of_the_experiments, 0.001),
-                         half = drive(name, Robot::of_the_experiments, 0.0005);
-  runs::Run mirrored = half.run;
-  for (std::size_t c = 0; c < mirrored.columns.size(); ++c)
-    if (mirrored.columns[c] == "y_m")
-      for (double& y_m : mirrored.values[c]) y_m = -y_m;
-  constexpr double kUpright_rad = 1.4;
-  const Apart alike = apart(whole.run, half.run, kUpright_rad), mirror = apart(whole.run, mirrored, kUpright_rad);
-  INFO(name << ": " << alike.most_m * 1e3 << " mm apart, mirrored " << mirror.most_m * 1e3
-            << " mm, before it falls; in all "
-            << std::min(apart(whole.run, half.run).most_m, apart(whole.run, mirrored).most_m) * 1e3 << " mm");
-  CHECK(std::min(alike.most_m, mirror.most_m) < 0.005);
-  CHECK(whole.succeeded == half.succeeded);
 }
