@@ -42,13 +42,23 @@ OnCurve on_segment(std::size_t curve, const Segment& segment, double share) {
           segment.b.value - segment.a.value};
 }
 
+// The products of what is left of the gap once these places are taken off.
+Products without_places(const Products& p, std::span<const OnCurve> places) {
+  Products rest = p;
+  rest.gap_gap = left_with(p, places);
+  for (const OnCurve& place : places)
+    for (std::size_t i = 0; i < 2; ++i)
+      if (place.column[i] >= 0) rest.shift_gap -= place.weight[i] * p.shift_shift.col(place.column[i]);
+  return rest;
+}
+
 }  // namespace
 
-std::vector<Products> products_of_runs(const EffectCurves& curves) {
+std::vector<Products> products_of_runs(const EffectCurves& curves, const std::vector<Eigen::VectorXd>& gap) {
   std::vector<Products> products;
-  for (std::size_t r = 0; r < curves.gap.size(); ++r)
-    products.push_back({curves.gap[r].squaredNorm(), curves.shifts[r].transpose() * curves.gap[r],
-                        curves.shifts[r].transpose() * curves.shifts[r], static_cast<double>(curves.gap[r].size())});
+  for (std::size_t r = 0; r < gap.size(); ++r)
+    products.push_back({gap[r].squaredNorm(), curves.shifts[r].transpose() * gap[r],
+                        curves.shifts[r].transpose() * curves.shifts[r], static_cast<double>(gap[r].size())});
   return products;
 }
 
@@ -127,6 +137,34 @@ CurveFit fit_two(const Products& p, const std::vector<EffectCurve>& curves, std:
       }
     }
   return best;
+}
+
+CurveFit fit_together(const Products& p, const std::vector<EffectCurve>& curves, std::span<const std::size_t> effects) {
+  constexpr int kMostTurns = 50;
+  constexpr double kGained = 1e-6;  // share of what is left that a turn must gain to be followed by another one
+  if (effects.size() == 1) return fit_one(p, curves, effects[0]);
+  CurveFit fit = fit_two(p, curves, effects[0], effects[1]);
+  if (effects.size() == 2) return fit;
+  for (std::size_t e = 2; e < effects.size(); ++e) {
+    fit.places.push_back(fit_one(without_places(p, fit.places), curves, effects[e]).places.front());
+    fit.left = left_with(p, fit.places);
+  }
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    const double before = fit.left;
+    for (std::size_t a = 0; a < effects.size(); ++a)
+      for (std::size_t b = a + 1; b < effects.size(); ++b) {
+        std::vector<OnCurve> others;
+        for (std::size_t e = 0; e < effects.size(); ++e)
+          if (e != a && e != b) others.push_back(fit.places[e]);
+        const CurveFit two = fit_two(without_places(p, others), curves, effects[a], effects[b]);
+        if (two.left >= fit.left) continue;
+        fit.places[a] = two.places[0];
+        fit.places[b] = two.places[1];
+        fit.left = two.left;
+      }
+    if (before - fit.left <= kGained * before) break;
+  }
+  return fit;
 }
 
 double left_with(const Products& p, std::span<const OnCurve> places) {

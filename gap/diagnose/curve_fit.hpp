@@ -1,7 +1,7 @@
-// Least squares on effect curves: the value of one effect, or of two together, that explains most of a gap.
+// Least squares on effect curves: the values of effects, alone or together, that explain most of a gap.
 //
 // Only inner products are needed, so a fit to any selection or weighting of runs costs next to nothing.
-// Two effects are taken to add: that holds for small ones, and is corrected where a fit is confirmed by simulation.
+// Effects are taken to add: that holds for small ones, and is corrected where a fit is confirmed by simulation.
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -21,7 +21,8 @@ struct Products {
   Eigen::MatrixXd shift_shift;
   double bins = 0;
 };
-std::vector<Products> products_of_runs(const EffectCurves& curves);
+// Of the curves with `gap`, whitened, of each run.
+std::vector<Products> products_of_runs(const EffectCurves& curves, const std::vector<Eigen::VectorXd>& gap);
 Products weighted_sum(const std::vector<Products>& runs, std::span<const double> weights);
 
 // A place on a curve, as weights of at most two of its columns.
@@ -41,6 +42,10 @@ struct CurveFit {
 CurveFit fit_one(const Products& products, const std::vector<EffectCurve>& curves, std::size_t curve);
 CurveFit fit_two(const Products& products, const std::vector<EffectCurve>& curves, std::size_t first,
                  std::size_t second);
+// Any number of effects: the optimum of one and of two; of more, from where the first two fit, two at a time in turn
+// until nothing is gained.
+CurveFit fit_together(const Products& products, const std::vector<EffectCurve>& curves,
+                      std::span<const std::size_t> effects);
 
 // Squared length of what is left with effects at given places.
 double left_with(const Products& products, std::span<const OnCurve> places);

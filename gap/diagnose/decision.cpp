@@ -49,8 +49,7 @@ Decision decide(EffectCurves& curves, const Coherence& coherence, const Spread& 
   decision.singles = search_singles(curves, coherence, simulator, settings.search);
   decision.p_left = p_of_energy(chance, decision.nominal_coherent / inflation);
   const double improvement = nominal_left - decision.singles.front().left - settings.rival_margin;
-  decision.p_gap =
-      std::min(1.0, 2 * std::min(p_of_improvement(chance, improvement / inflation), decision.p_left));
+  decision.p_gap = std::min(1.0, 2 * std::min(p_of_improvement(chance, improvement / inflation), decision.p_left));
   Model nominal{{}, {}, true};
   for (const Eigen::VectorXd& run : curves.residual) nominal.shift.push_back(Eigen::VectorXd::Zero(run.size()));
   measure(nominal, curves, coherence);
@@ -74,37 +73,53 @@ Decision decide(EffectCurves& curves, const Coherence& coherence, const Spread& 
   const auto p_left = [&](const Model& model) {
     return p_of_energy(chance, (model.coherent - share * nominal.coherent) / inflation);
   };
-  // a second effect must earn more than the luckiest of all pairs does by chance
+  // another effect must earn more than the luckiest of all pairs does by chance
   const double luck = 2 * chance.improvement[chance.improvement.size() * 99 / 100];
-  const auto to_earn = [&](const Model& single) { return std::max({luck * inflation, margin(single), negligible}); };
-  const auto second_is_needed = [&](const Model& single, const Model& pair) {
-    return single.left - pair.left > to_earn(single) &&
-           (p_left(single) <= settings.surprise || p_left(pair) > settings.surprise);
+  const auto to_earn = [&](const Model& model) { return std::max({luck * inflation, margin(model), negligible}); };
+  const auto is_needed = [&](const Model& fewer, const Model& more) {
+    return fewer.left - more.left > to_earn(fewer) &&
+           (p_left(fewer) <= settings.surprise || p_left(more) > settings.surprise);
   };
-  const auto pairs_beyond = [&](const Model& single) {
-    // sums of curves are rough: half of what a second effect must earn is promising
-    return search_pairs(curves, coherence, simulator, settings.search, single.left - to_earn(single) / 2);
+  const auto with_another = [&](const Model& model) {
+    // sums of curves are rough: half of what another effect must earn is promising
+    return search_sets(curves, coherence, simulator, settings.search,
+                       model.places.size() == 1 ? all_pairs(curves) : with_one_more(curves, model),
+                       model.left - to_earn(model) / 2);
   };
 
   decision.best = decision.singles.front();
-  decision.pairs = pairs_beyond(decision.best);
-  if (!decision.pairs.empty() && second_is_needed(decision.best, decision.pairs.front())) {
-    look_around(decision.pairs.front());
+  std::vector<Model> more = with_another(decision.best);
+  while (!more.empty() && is_needed(decision.best, more.front())) {
+    look_around(more.front());
     decision.singles = search_singles(curves, coherence, simulator, settings.search);
-    decision.pairs = pairs_beyond(decision.singles.front());
-    decision.best = !decision.pairs.empty() && second_is_needed(decision.singles.front(), decision.pairs.front())
-                        ? decision.pairs.front()
-                        : decision.singles.front();
+    Model fewer = decision.best.places.size() == 1 ? decision.singles.front() : decision.best;
+    measure(fewer, curves, coherence);
+    more = with_another(fewer);
+    if (more.empty() || !is_needed(fewer, more.front())) {
+      decision.best = fewer;
+      for (Model& model : decision.together) measure(model, curves, coherence);
+      break;
+    }
+    decision.best = more.front();
+    decision.together = more;
+    if (decision.best.places.size() == settings.most_effects || p_left(decision.best) > settings.surprise) break;
+    more = with_another(decision.best);
   }
   decision.p_left = p_left(decision.best);
+  const auto is_due = [&](std::size_t place) {
+    return left_without(curves, decision.best, place) - decision.best.left >
+           settings.due_share * (nominal.left - decision.best.left);
+  };
+  bool all_due = true;
+  for (std::size_t i = 0; decision.best.places.size() > 2 && i < decision.best.places.size(); ++i) all_due &= is_due(i);
   // a value at the end of its range stands for something that the effect cannot do
-  if (decision.p_left <= settings.surprise || at_an_end(decision.best, curves)) {
+  if (decision.p_left <= settings.surprise || !all_due || at_an_end(decision.best, curves)) {
     decision.verdict = Verdict::unknown;
     for (const OnCurve& place : decision.best.places) decision.rivals.push_back({place.curve});
     return decision;
   }
   decision.verdict = Verdict::named;
-  const std::vector<Model>& alternatives = decision.best.places.size() == 1 ? decision.singles : decision.pairs;
+  const std::vector<Model>& alternatives = decision.best.places.size() == 1 ? decision.singles : decision.together;
   for (const OnCurve& place : decision.best.places) {
     decision.rivals.push_back(rivals_of(place, decision.best, alternatives, margin(decision.best)));
     if (decision.rivals.back().size() > 1) decision.verdict = Verdict::ambiguous;

@@ -1,4 +1,4 @@
-// Which effect explains the gap: none, one, two, a set that these runs cannot tell apart, or none of the catalogue.
+// Which effect explains the gap: none, one or several, a set that these runs cannot tell apart, or none of the catalogue.
 //
 // All thresholds are stated in floors, and the chance of a false alarm is read off draws of the floor itself.
 // docs/gap-method.md has the reasoning. Deterministic for a seed.
@@ -22,6 +22,9 @@ struct DecisionSettings {
   double rival_margin = 9;          // squared floors by which a model must be better than another one, or than none, to
                                     // count as better at all: 3 sigma at worst
   double model_share = 0.03;        // of a gap's length that even the right effect leaves: numerics differ
+  std::size_t most_effects = 4;
+  double due_share = 0.1;           // of what a model of three or more effects explains, that each of them must: with enough
+                                    // effects anything can be explained (chosen)
   std::size_t null_draws = 1000;
   SearchSettings search;
 };
@@ -29,7 +32,8 @@ struct DecisionSettings {
 struct Decision {
   Verdict verdict = Verdict::none;
   Model best;                                     // no places: nominal
-  std::vector<Model> singles, pairs;              // that were tried, best first
+  std::vector<Model> singles;                     // best first
+  std::vector<Model> together;                    // of several effects that were tried, of the largest number, best first
   std::vector<std::vector<std::size_t>> rivals;   // for each place of `best`: curves that fit as well, itself first
   double p_gap = 1;                               // of a gap that large by chance
   double p_left = 1;                              // of as much left by chance

@@ -106,7 +106,11 @@ class Diagnoser {
     const physics::EffectParameter& parameter = *d_.curves.curves[place.curve].parameter;
     const double same = kAtBound * (parameter.max - parameter.min);
     const double gap = squared_length(d_.curves.gap);
-    return {place.curve, value, gap > 0 ? explained / gap : 0, shrink, p_of_chance(explained),
+    return {place.curve,
+            value,
+            gap > 0 ? explained / gap : 0,
+            shrink,
+            p_of_chance(explained),
             std::abs(place.value - parameter.min) < same || std::abs(place.value - parameter.max) < same};
   }
 
@@ -118,8 +122,7 @@ class Diagnoser {
       if (d_.curves.curves[model.places[0].curve].visible < 1) continue;
       const auto shift = [&](const auto& places_of_run) { return by_curves(d_.curves, model, places_of_run); };
       const HeldOut held = hold_out(d_.curves, d_.floor, model, by_repeat, floor_rms(), options_.seed, shift);
-      const Interval value =
-          value_intervals(d_.curves, model, share, d_.decision.inflation, options_.seed).front();
+      const Interval value = value_intervals(d_.curves, model, share, d_.decision.inflation, options_.seed).front();
       d_.ranking.push_back(evidence(model.places[0], value, nominal_left - model.left, held.shrink));
     }
     std::ranges::stable_sort(d_.ranking, std::ranges::greater{},
@@ -149,10 +152,7 @@ class Diagnoser {
     d_.where_left = places(held.left);
     const std::vector<Interval> values = value_intervals(d_.curves, best, share, d_.decision.inflation, options_.seed);
     for (std::size_t i = 0; i < best.places.size(); ++i) {
-      double without = nominal_left;
-      if (best.places.size() > 1)
-        for (const Model& single : d_.decision.singles)
-          if (single.places[0].curve == best.places[1 - i].curve) without = single.left;
+      const double without = best.places.size() == 1 ? nominal_left : left_without(d_.curves, best, i);
       d_.best.push_back(evidence(best.places[i], values[i], without - best.left, held.shrink));
     }
   }
@@ -175,8 +175,8 @@ class Diagnoser {
     const Decision& decision = d_.decision;
     std::vector<Model> rivals;
     if (decision.verdict == Verdict::ambiguous) {
-      const bool pair = decision.best.places.size() > 1;
-      for (const Model& model : pair ? decision.pairs : decision.singles) {
+      const bool alone = decision.best.places.size() == 1;
+      for (const Model& model : alone ? decision.singles : decision.together) {
         const bool is_rival = std::ranges::all_of(model.places, [&](const OnCurve& place) {
           return std::ranges::any_of(decision.rivals, [&](const std::vector<std::size_t>& set) {
             return std::ranges::count(set, place.curve) > 0;
@@ -202,8 +202,7 @@ class Diagnoser {
 void check_names(const std::vector<std::string>& without) {
   for (const std::string& name : without)
     if (physics::find_effect(name) == nullptr)
-      throw std::invalid_argument(
-          fmt::format("--without {}: no such effect; `kenaf-gap effects` lists them", name));
+      throw std::invalid_argument(fmt::format("--without {}: no such effect; `kenaf-gap effects` lists them", name));
 }
 
 }  // namespace

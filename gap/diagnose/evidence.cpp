@@ -68,20 +68,13 @@ double shrink(double before, double after, double floor) {
   return before > floor ? 1 - (after - floor) / (before - floor) : 0;
 }
 
-Refit::Refit(const EffectCurves& curves, const Model& model) : curves_(curves), model_(model) {
-  for (std::size_t r = 0; r < curves.gap.size(); ++r) {
-    // what a simulation of effects together has beyond the sum of their curves stays as it is
-    const VectorXd lacking = curves.whiteners[r](model.shift[r] - shift_at(curves.raw_shifts[r], model.places));
-    const VectorXd target = curves.gap[r] - lacking;
-    runs_.push_back({target.squaredNorm(), curves.shifts[r].transpose() * target,
-                     curves.shifts[r].transpose() * curves.shifts[r], static_cast<double>(target.size())});
-  }
+Refit::Refit(const EffectCurves& curves, const Model& model)
+    : curves_(curves), runs_(products_of_runs_around(curves, model)) {
+  for (const OnCurve& place : model.places) effects_.push_back(place.curve);
 }
 
 std::vector<OnCurve> Refit::operator()(std::span<const double> weights) const {
-  const Products products = weighted_sum(runs_, weights);
-  if (model_.places.size() == 1) return fit_one(products, curves_.curves, model_.places[0].curve).places;
-  return fit_two(products, curves_.curves, model_.places[0].curve, model_.places[1].curve).places;
+  return fit_together(weighted_sum(runs_, weights), curves_.curves, effects_).places;
 }
 
 Shift by_curves(const EffectCurves& curves, const Model& model,

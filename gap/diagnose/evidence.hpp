@@ -33,8 +33,7 @@ struct HeldOut {
   Interval shrink;
 };
 
-// Values of a model's effects fitted to weighted runs. `lacking`: what a simulation of the model had beyond the sum of
-// its curves, raw; may be empty.
+// Values of a model's effects fitted to weighted runs.
 class Refit {
  public:
   Refit(const EffectCurves& curves, const Model& model);
@@ -42,8 +41,8 @@ class Refit {
 
  private:
   const EffectCurves& curves_;
-  const Model& model_;
   std::vector<Products> runs_;
+  EffectSet effects_;
 };
 
 // `shift_of` gives the raw shift of every run for the values of its own fold; by curves, or by simulation.

@@ -10,8 +10,8 @@ using Eigen::VectorXd;
 
 // In floors: a fit that moves less than this from a simulated point has nothing to learn from another one.
 constexpr double kSamePoint = 0.5;
-// Pairs that are simulated, for each contender: sums of curves rank roughly.
-constexpr std::size_t kPairsForAContender = 2;
+// Sets that are simulated, for each contender: sums of curves rank roughly.
+constexpr std::size_t kSetsForAContender = 2;
 
 Shift shift_of(const EffectCurves& curves, std::span<const OnCurve> places) {
   Shift shift;
@@ -65,18 +65,18 @@ bool refine(EffectCurves& curves, const Singles& singles, std::size_t count, Fid
   return !points.empty();
 }
 
-// Fits of pairs, each with what the last simulation of it lacked to the sum of its curves.
-class Pairs {
+bool is_visible(const EffectCurve& curve) {
+  return curve.visible > 1;
+}
+
+// Fits of sets, each with what the last simulation of it lacked to the sum of its curves.
+class Sets {
  public:
-  Pairs(const EffectCurves& curves, std::size_t count, double to_beat) : curves_(curves) {
+  Sets(const EffectCurves& curves, std::vector<EffectSet> sets, std::size_t count, double to_beat) : curves_(curves) {
     const Products products = products_of(curves, curves.gap);
-    for (std::size_t a = 0; a < curves.curves.size(); ++a)
-      for (std::size_t b = a + 1; b < curves.curves.size(); ++b)
-        // two parameters of one effect are no pair of effects
-        if (curves.curves[a].visible > 1 && curves.curves[b].visible > 1 &&
-            curves.curves[a].effect != curves.curves[b].effect)
-          if (CurveFit fit = fit_two(products, curves.curves, a, b); fit.left < to_beat)
-            fits_.push_back({std::move(fit), {}});
+    for (EffectSet& set : sets)
+      if (CurveFit fit = fit_together(products, curves.curves, set); fit.left < to_beat)
+        fits_.push_back({std::move(set), std::move(fit), {}});
     keep_best(count);
   }
 
@@ -98,8 +98,7 @@ class Pairs {
         candidate.best = std::move(simulated);
       Whitened target = whitened_difference(curves_, shifts[i], shift_of(curves_, candidate.fit.places));
       for (std::size_t r = 0; r < target.size(); ++r) target[r] = curves_.gap[r] - target[r];
-      candidate.fit = fit_two(products_of(curves_, target), curves_.curves, candidate.fit.places[0].curve,
-                              candidate.fit.places[1].curve);
+      candidate.fit = fit_together(products_of(curves_, target), curves_.curves, candidate.set);
     }
   }
 
@@ -118,6 +117,7 @@ class Pairs {
 
  private:
   struct Candidate {
+    EffectSet set;
     CurveFit fit;
     Model best;  // of those simulated
     double left() const { return fit.left; }
@@ -187,17 +187,57 @@ std::vector<Model> search_singles(EffectCurves& curves, const Coherence& coheren
   return models;
 }
 
-std::vector<Model> search_pairs(const EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
-                                const SearchSettings& settings, double to_beat) {
-  Pairs pairs(curves, kPairsForAContender * settings.contenders, to_beat);
-  for (int round = 0; round < settings.rounds; ++round) pairs.simulate(Fidelity::coarse, simulator);
-  pairs.keep_best(settings.contenders);
-  pairs.keep_best(pairs.near_best(squared_length(curves.gap), settings));
-  for (int round = 0; round < settings.rounds; ++round) pairs.simulate(Fidelity::every_run, simulator);
-  std::vector<Model> models = pairs.models();
+std::vector<EffectSet> all_pairs(const EffectCurves& curves) {
+  std::vector<EffectSet> pairs;
+  for (std::size_t a = 0; a < curves.curves.size(); ++a)
+    for (std::size_t b = a + 1; b < curves.curves.size(); ++b)
+      // two parameters of one effect are no pair of effects
+      if (is_visible(curves.curves[a]) && is_visible(curves.curves[b]) &&
+          curves.curves[a].effect != curves.curves[b].effect)
+        pairs.push_back({a, b});
+  return pairs;
+}
+
+std::vector<EffectSet> with_one_more(const EffectCurves& curves, const Model& model) {
+  EffectSet set;
+  for (const OnCurve& place : model.places) set.push_back(place.curve);
+  std::vector<EffectSet> sets;
+  for (std::size_t c = 0; c < curves.curves.size(); ++c) {
+    const bool is_in = std::ranges::any_of(
+        set, [&](std::size_t member) { return curves.curves[member].effect == curves.curves[c].effect; });
+    if (is_in || !is_visible(curves.curves[c])) continue;
+    sets.push_back(set);
+    sets.back().push_back(c);
+  }
+  return sets;
+}
+
+std::vector<Model> search_sets(const EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
+                               const SearchSettings& settings, std::vector<EffectSet> all, double to_beat) {
+  Sets sets(curves, std::move(all), kSetsForAContender * settings.contenders, to_beat);
+  for (int round = 0; round < settings.rounds; ++round) sets.simulate(Fidelity::coarse, simulator);
+  sets.keep_best(settings.contenders);
+  sets.keep_best(sets.near_best(squared_length(curves.gap), settings));
+  for (int round = 0; round < settings.rounds; ++round) sets.simulate(Fidelity::every_run, simulator);
+  std::vector<Model> models = sets.models();
   for (Model& model : models) measure(model, curves, coherence);
   std::ranges::stable_sort(models, {}, &Model::left);
   return models;
+}
+
+std::vector<Products> products_of_runs_around(const EffectCurves& curves, const Model& model) {
+  Whitened target = whitened_difference(curves, model.shift, shift_of(curves, model.places));
+  for (std::size_t r = 0; r < target.size(); ++r) target[r] = curves.gap[r] - target[r];
+  return products_of_runs(curves, target);
+}
+
+double left_without(const EffectCurves& curves, const Model& model, std::size_t place) {
+  EffectSet others;
+  for (std::size_t i = 0; i < model.places.size(); ++i)
+    if (i != place) others.push_back(model.places[i].curve);
+  const std::vector<Products> runs = products_of_runs_around(curves, model);
+  const Products products = weighted_sum(runs, std::vector<double>(runs.size(), 1));
+  return others.empty() ? products.gap_gap : fit_together(products, curves.curves, others).left;
 }
 
 }  // namespace kenaf::gap

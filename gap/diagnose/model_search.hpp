@@ -1,7 +1,7 @@
-// Models of a gap, that is one effect or two at fitted values, from curves to exact simulations.
+// Models of a gap, that is effects at fitted values, from curves to exact simulations.
 //
-// Cheap before dear: curves of representatives rank all effects and all pairs; the best ones get points where they fit
-// best, then every run simulated.
+// Cheap before dear: curves of representatives rank all effects and all sets of them; the best ones get points where they
+// fit best, then every run simulated.
 // Thread safety: pure functions apart from what the simulator callbacks do.
 #pragma once
 
@@ -38,7 +38,7 @@ struct Simulator {
 };
 
 struct SearchSettings {
-  std::size_t contenders = 8;   // single effects, and pairs, that are refined by representatives
+  std::size_t contenders = 8;   // single effects, and sets, that are refined by representatives
   std::size_t finalists = 5;    // of these, how many are refined by all runs
   int rounds = 3;               // of refining by representatives
   int exact_rounds = 4;         // at most, of refining by all runs
@@ -54,8 +54,19 @@ Products products_of(const EffectCurves& curves, const Whitened& gap);
 // Best first: finalists exact, all others as their curves have them.
 std::vector<Model> search_singles(EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
                                   const SearchSettings& settings);
-// Only pairs that, by their curves, leave less than `to_beat` are simulated; no other one is returned.
-std::vector<Model> search_pairs(const EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
-                                const SearchSettings& settings, double to_beat);
+
+// Curves of different effects that may explain a gap together.
+using EffectSet = std::vector<std::size_t>;
+// Of those that these runs show.
+std::vector<EffectSet> all_pairs(const EffectCurves& curves);
+std::vector<EffectSet> with_one_more(const EffectCurves& curves, const Model& model);
+// Best first. Only sets that, by their curves, leave less than `to_beat` are simulated; no other one is returned.
+std::vector<Model> search_sets(const EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
+                               const SearchSettings& settings, std::vector<EffectSet> sets, double to_beat);
+
+// `model` fitted again: what it had in simulation beyond the sum of its curves stays as it is.
+std::vector<Products> products_of_runs_around(const EffectCurves& curves, const Model& model);
+// Squared length that is left when one effect of the model is taken out and the others are fitted again; by curves.
+double left_without(const EffectCurves& curves, const Model& model, std::size_t place);
 
 }  // namespace kenaf::gap

@@ -40,7 +40,7 @@ std::string verdict_line(const Diagnosis& d) {
     case Verdict::ambiguous:
       return fmt::format("AMBIGUOUS: {}; these runs cannot tell them apart", fmt::join(sets, " and "));
     case Verdict::unknown:
-      return fmt::format("UNKNOWN: a gap that no effect of the catalogue, nor two together, explain");
+      return "UNKNOWN: a gap that the effects of the catalogue do not explain, alone or together";
   }
   return {};
 }
@@ -70,9 +70,9 @@ std::string_view gap_stage(const Diagnosis& d) {
 std::string diagnosis_text(const Diagnosis& d) {
   std::string text = verdict_line(d) + "\n";
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "{} runs of {} manoeuvres; noise {}\n", d.observations.runs.size(), d.repeats.size(),
-                 d.floor.from_repeats ? "from their repeats"
-                                      : "from the runs themselves, as none repeats another: less sure");
+  fmt::format_to(
+      out, "{} runs of {} manoeuvres; noise {}\n", d.observations.runs.size(), d.repeats.size(),
+      d.floor.from_repeats ? "from their repeats" : "from the runs themselves, as none repeats another: less sure");
   for (std::size_t i = 0; i < std::min(kWarnings, d.observations.warnings.size()); ++i)
     fmt::format_to(out, "warning: {}\n", d.observations.warnings[i]);
   if (d.observations.warnings.size() > kWarnings)
@@ -90,8 +90,8 @@ std::string diagnosis_text(const Diagnosis& d) {
     fmt::format_to(out, "\nWhere: {}\n", gap_stage(d));
     for (const StageGap& stage : d.stages)
       if (stage.bins > 0)
-        fmt::format_to(out, "  {:<17} {:>6.2f} floors rms, {:.1f} times chance\n", passage_name(stage.passage), stage.rms,
-                       stage.chance);
+        fmt::format_to(out, "  {:<17} {:>6.2f} floors rms, {:.1f} times chance\n", passage_name(stage.passage),
+                       stage.rms, stage.chance);
     for (std::size_t i = 0; i < std::min(kChannels, d.where.channels.size()); ++i) {
       const ChannelGap& gap = d.where.channels[i];
       const Channel& channel = diagnosis_channels()[gap.channel];

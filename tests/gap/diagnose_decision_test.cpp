@@ -137,6 +137,24 @@ TEST_CASE("Two effects together are both named") {
   }
 }
 
+TEST_CASE("Three effects of a size are all named; with a third one that is a trifle of the gap the rest is not") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  const Whole two = 0.5 * effects[1] - 0.4 * effects[6];
+  const Decision all = world.decide(effects, two + 0.3 * effects[4] + LinearWorld::noise(1), quick());
+  CHECK(all.verdict == Verdict::named);
+  REQUIRE(all.best.places.size() == 3);
+  std::vector<std::size_t> named;
+  for (const OnCurve& place : all.best.places) named.push_back(place.curve);
+  CHECK_THAT(named, Catch::Matchers::UnorderedEquals(std::vector<std::size_t>{1, 4, 6}));
+  for (const OnCurve& place : all.best.places)
+    CHECK(place.value == Approx(place.curve == 1 ? 0.5 : place.curve == 4 ? 0.3 : -0.4).margin(0.1));
+
+  // of 20^2 + 16^2 = 656 and what the third one adds, 6.4^2 = 41 are 6 %; a tenth is due
+  const Decision most = world.decide(effects, two + 0.16 * effects[4] + LinearWorld::noise(2), quick());
+  CHECK(most.verdict == Verdict::unknown);
+  CHECK(most.best.places.size() == 3);  // but says what it explains
+}
+
 TEST_CASE("Of two effects one has a look-alike: the other one is sure all the same") {
   std::vector<Whole> effects = orthogonal_effects();
   const double degree = 0.017453;

@@ -167,8 +167,9 @@ TEST_CASE("Each verdict says what it means and what to do next") {
                              Contains(">straight<"));
 
   d.decision.verdict = Verdict::unknown;
-  CHECK_THAT(page_of(d), Contains("<h1>A gap that no effect of the catalogue explains, nor two together</h1>") &&
-                             Contains("No robot.toml was written"));
+  CHECK_THAT(page_of(d),
+             Contains("<h1>A gap that the effects of the catalogue do not explain, alone or together</h1>") &&
+                 Contains("No robot.toml was written"));
 
   d.decision = {};
   d.best.clear();

@@ -57,14 +57,15 @@ std::string ranking_table(const Diagnosis& d) {
 }
 
 std::string together(const Diagnosis& d) {
-  Table table{{"effect", "parameter", "fitted value (95 %)", "explains, beyond the other", "p", "note"}, {}, {0, 1, 5}};
+  Table table{
+      {"effect", "parameter", "fitted value (95 %)", "explains, beyond the others", "p", "note"}, {}, {0, 1, 5}};
   for (const EffectEvidence& e : d.best) {
     const EffectCurve& curve = d.curves.curves[e.curve];
     table.rows.push_back({std::string(curve.effect->name), std::string(curve.parameter->name),
                           interval_text(e.value, curve.parameter->unit), percent(e.explains), probability(e.p_value),
                           e.at_bound ? "end of range" : ""});
   }
-  return paragraph(fmt::format("The best model has two effects. Together they take {} off runs held out.",
+  return paragraph(fmt::format("The best model has {} effects. Together they take {} off runs held out.", d.best.size(),
                                percent_interval(d.gap.shrink))) +
          to_html(table);
 }

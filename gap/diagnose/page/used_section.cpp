@@ -125,9 +125,10 @@ std::string method_section(const Diagnosis& d) {
                                "units of noise, which "
                                "comes from repeats, and of what the simulation itself leaves open: the exact start, "
                                "the contact's stiffness "
-                               "and damping, the time step. Each effect of the catalogue, and each pair, is simulated "
+                               "and damping, the time step. Each effect of the catalogue is simulated "
                                "along its range and "
-                               "fitted. How much a fit is worth is measured on runs that it has not seen. What chance "
+                               "fitted, alone and together with others. How much a fit is worth is measured on runs "
+                               "that it has not seen. What chance "
                                "alone does is drawn "
                                "from the noise.",
                                d.options.span_s)) +

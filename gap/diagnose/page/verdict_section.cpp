@@ -36,7 +36,7 @@ std::string headline(const Diagnosis& d) {
     case Verdict::ambiguous:
       return fmt::format("The gap is explained by {}, which these runs cannot tell apart", explanation(d));
     case Verdict::unknown:
-      return "A gap that no effect of the catalogue explains, nor two together";
+      return "A gap that the effects of the catalogue do not explain, alone or together";
   }
   return {};
 }
