@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (all.empty()) __builtin_trap();
     for (const auto& manoeuvre : all) {
       if (!(manoeuvre.at_most_s() > 0 && manoeuvre.at_most_s() <= 3600)) __builtin_trap();
-      if (manoeuvre.phases.front().only_if_x_above_m || manoeuvre.phases.back().only_if_x_above_m) __builtin_trap();
+      if (manoeuvre.phases.front().give_up || manoeuvre.phases.back().give_up) __builtin_trap();
     }
   } catch (const kenaf::physics::DescriptionError&) {
   }

@@ -10,6 +10,11 @@ namespace {
 
 constexpr double kSameTime_s = 1e-9;  // sample times are multiples of a step that is no binary fraction
 
+bool holds(const GiveUp& give_up, const physics::Pose& X_WB) {
+  return !(give_up.x_below_m && X_WB.p.x() >= *give_up.x_below_m) &&
+         !(give_up.pitch_below_rad && physics::roll_pitch_yaw(X_WB.q).y() >= *give_up.pitch_below_rad);
+}
+
 }  // namespace
 
 Driver::Driver(const Manoeuvre& manoeuvre, const std::array<double, physics::kFlipperCount>& flipper_rad)
@@ -31,8 +36,8 @@ bool Driver::ended(const Phase& phase, double t_s, const physics::Pose& X_WB) co
 std::size_t Driver::next_phase(const physics::Pose& X_WB) {
   const std::size_t next = phase_ + 1, last = manoeuvre_.phases.size() - 1;
   if (next >= last) return next;
-  const std::optional<double>& needed_x_m = manoeuvre_.phases[next].only_if_x_above_m;
-  if (!needed_x_m || X_WB.p.x() > *needed_x_m) return next;
+  const std::optional<GiveUp>& give_up = manoeuvre_.phases[next].give_up;
+  if (!give_up || !holds(*give_up, X_WB)) return next;
   gave_up_ = true;
   return last;
 }

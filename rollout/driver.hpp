@@ -17,15 +17,15 @@ class Driver {
   Driver(const Manoeuvre& manoeuvre, const std::array<double, physics::kFlipperCount>& flipper_rad);
 
   // What to command from `t_s` on, which never goes back; empty: the manoeuvre is over, the command before holds. A
-  // phase ends at the first call at which its end holds, and the next one begins with it, or the last one where the
-  // next one must not begin there.
+  // phase ends at the first call at which its end holds, and the next one begins with it, or the last one where
+  // the next one is given up.
   std::optional<physics::RobotCommand> command(double t_s, const physics::Pose& X_WB);
 
   // When a replay's next command is due; infinity otherwise: phases are as quick as they are asked.
   double next_due_s() const;
   // Of the phase that runs now; as many as there are when the manoeuvre is over.
   std::size_t phase() const { return phase_; }
-  // A phase must not begin where the robot was.
+  // Whether a phase was given up.
   bool gave_up() const { return gave_up_; }
 
  private:

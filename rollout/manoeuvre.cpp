@@ -25,7 +25,6 @@ constexpr Range kTrackSpeed{.min = -10, .max = 10};
 constexpr Range kFlipperAngle{.min = -2 * kPi, .max = 2 * kPi};
 constexpr Range kPitch{.min = -kPi, .max = kPi};
 constexpr double kLongest_s = 3600;
-constexpr std::string_view kOnlyIf = "only_if_x_above_m";
 constexpr std::string_view kReplay = "replay:", kReplayMeasured = "replay-measured:";
 
 std::optional<double> optional_number(TomlReader& table, std::string_view key, Range range = physics::kAny) {
@@ -34,6 +33,16 @@ std::optional<double> optional_number(TomlReader& table, std::string_view key, R
 
 std::string optional_text(TomlReader& table, std::string_view key) {
   return table.has(key) ? table.text(key) : std::string();
+}
+
+GiveUp read_give_up(TomlReader& phase) {
+  TomlReader table = phase.table("give_up");
+  const GiveUp give_up{.x_below_m = optional_number(table, "x_below_m"),
+                       .pitch_below_rad = optional_number(table, "pitch_below_rad", kPitch)};
+  table.finish();
+  if (!give_up.x_below_m && !give_up.pitch_below_rad)
+    phase.fail("give_up", "must state x_below_m, pitch_below_rad or both");
+  return give_up;
 }
 
 Phase read_phase(TomlReader& table) {
@@ -50,7 +59,7 @@ Phase read_phase(TomlReader& table) {
                .x_below_m = optional_number(table, "x_below_m"),
                .z_above_m = optional_number(table, "z_above_m"),
                .turned_rad = optional_number(table, "turned_rad", physics::kPositive)};
-  phase.only_if_x_above_m = optional_number(table, kOnlyIf);
+  if (table.has("give_up")) phase.give_up = read_give_up(table);
   table.finish();
   return phase;
 }
@@ -60,10 +69,8 @@ std::vector<Phase> read_phases(TomlReader& table) {
   std::vector<TomlReader> tables = table.tables("phase");
   for (TomlReader& phase : tables) {
     phases.push_back(read_phase(phase));
-    if (phases.back().only_if_x_above_m && (phases.size() == 1 || phases.size() == tables.size()))
-      phase.fail(
-          kOnlyIf,
-          "is of no use in the first phase, which always begins, and in the last, with which the operator gives up");
+    if (phases.back().give_up && (phases.size() == 1 || phases.size() == tables.size()))
+      phase.fail("give_up", "must not be in the first phase, which always begins, nor in the last, which follows it");
   }
   return phases;
 }

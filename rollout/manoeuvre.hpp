@@ -27,15 +27,20 @@ struct PhaseEnd {
   std::optional<double> turned_rad{};  // |yaw| since the phase began, at least
 };
 
+// Where and how a robot stands that gets no further; all that is stated must hold, and something is.
+struct GiveUp {
+  std::optional<double> x_below_m{}, pitch_below_rad{};
+};
+
 struct Phase {
   std::string name;  // may be empty
   std::array<double, physics::kTrackCount> track_mps{};
   std::optional<std::array<double, physics::kFlipperCount>> flipper_rad;  // empty: as before
   double at_most_s = 0;
   PhaseEnd end;
-  // Where its turn comes and x is not above this, the operator gives up: the last phase follows. Not of the first phase,
-  // which always begins, nor of the last.
-  std::optional<double> only_if_x_above_m{};
+  // Where this holds when the phase's turn comes, the operator gives up: the last phase follows instead. Not of the
+  // first phase, which always begins, nor of the last.
+  std::optional<GiveUp> give_up{};
 };
 
 // When the manoeuvre counts as done: where the robot is at its end.

@@ -29,7 +29,7 @@ struct RollOutOptions {
 struct RollOut {
   runs::Run run;           // columns of docs/run-format.md
   bool succeeded = false;  // by the manoeuvre's own measure; false without one
-  bool gave_up = false;    // a phase must not begin where the robot was (Phase::only_if_x_above_m)
+  bool gave_up = false;    // the operator did (Phase::give_up)
   std::string fault;       // why the simulation was ended early, as World::fault() says it; empty: it was not
   physics::RobotTruth end{};
   std::vector<double> phase_began_s;  // of each phase that was reached; of one passed over: of the next

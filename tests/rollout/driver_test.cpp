@@ -92,13 +92,13 @@ TEST_CASE("What holds already is passed over at once, as an operator would") {
   CHECK(driver.phase() == 1);
 }
 
-TEST_CASE("Where a phase must not begin the operator gives up: the last phase follows") {
+TEST_CASE("A phase that is given up: the last one follows instead") {
   Manoeuvre manoeuvre = of({lasting(1, 0.1), lasting(1, 0.2), lasting(1, 0.3), lasting(1, 0)});
-  manoeuvre.phases[1].only_if_x_above_m = 0.5;
+  manoeuvre.phases[1].give_up = GiveUp{.x_below_m = 0.5, .pitch_below_rad = -0.3};
   Driver driver(manoeuvre, kFolded);
-  CHECK(driver.command(0, at(0.4))->track_speed_mps[physics::kLeft] == 0.1);  // not its turn yet
-  SECTION("at that x, not beyond it") {
-    CHECK(driver.command(1, at(0.5))->track_speed_mps[physics::kLeft] == 0);
+  CHECK(driver.command(0, at(0.4, 0, -0.4))->track_speed_mps[physics::kLeft] == 0.1);  // not its turn yet
+  SECTION("where all that is stated holds") {
+    CHECK(driver.command(1, at(0.49, 0, -0.31))->track_speed_mps[physics::kLeft] == 0);
     CHECK(driver.phase() == 3);
     CHECK(driver.gave_up());
     CHECK(driver.command(1.99, at(0.6)));  // the last phase has its time; nothing is taken up again
@@ -106,18 +106,19 @@ TEST_CASE("Where a phase must not begin the operator gives up: the last phase fo
     CHECK_FALSE(driver.command(2, at(0.6)));
     CHECK(driver.phase() == 4);
   }
-  SECTION("beyond it") {
-    CHECK(driver.command(1, at(0.51))->track_speed_mps[physics::kLeft] == 0.2);
-    CHECK(driver.command(1.5, at(0.4))->track_speed_mps[physics::kLeft] == 0.2);  // begun is begun
-    CHECK(driver.command(2, at(0.4))->track_speed_mps[physics::kLeft] == 0.3);
+  SECTION("not where one does not, at its value or beyond") {
+    const Pose goes_on = GENERATE(at(0.5, 0, -0.4), at(0.4, 0, -0.29));
+    CHECK(driver.command(1, goes_on)->track_speed_mps[physics::kLeft] == 0.2);
+    CHECK(driver.command(1.5, at(0.4, 0, -0.4))->track_speed_mps[physics::kLeft] == 0.2);  // begun is begun
+    CHECK(driver.command(2, at(0.4, 0, -0.4))->track_speed_mps[physics::kLeft] == 0.3);
     CHECK_FALSE(driver.gave_up());
   }
 }
 
-TEST_CASE("Whether a phase may begin is asked before whether it is passed over") {
+TEST_CASE("Whether to give a phase up is asked before whether it is passed over") {
   Manoeuvre manoeuvre =
       of({lasting(1, 0.1), lasting(1, 0.2, {.pitch_above_rad = 0.1}), lasting(1, 0.3), lasting(1, 0)});
-  manoeuvre.phases[1].only_if_x_above_m = 0.5;
+  manoeuvre.phases[1].give_up = GiveUp{.x_below_m = 0.5};
   const double x_m = GENERATE(0.4, 0.6);
   Driver driver(manoeuvre, kFolded);
   driver.command(0, at(x_m));

@@ -36,12 +36,12 @@ start_lift_m = 0.05
 phase = [{ track_mps = [0.0, 0.0], at_most_s = 1.0 }, { track_mps = [-0.1, -0.1], at_most_s = 0.5, x_below_m = -1 }]
 )";
 
-// A manoeuvre of three phases, one of which may not begin everywhere.
-std::string only_if_in_phase(int number) {
+// A manoeuvre of three phases, one of which may be given up.
+std::string give_up_in_phase(int number, const std::string& what = "{ x_below_m = 0.5, pitch_below_rad = -0.3 }") {
   std::string text = "[[manoeuvre]]\nname = \"a\"\nsummary = \"\"\nworld = \"flat\"\n";
   for (int i = 0; i < 3; ++i)
     text += std::string("[[manoeuvre.phase]]\ntrack_mps = [0, 0]\nat_most_s = 1\n") +
-            (i == number ? "only_if_x_above_m = 0.5\n" : "");
+            (i == number ? "give_up = " + what + "\n" : "");
   return text;
 }
 
@@ -84,18 +84,26 @@ TEST_CASE("Manoeuvres of a file share its phases, or have their own") {
   CHECK(all[1].at_most_s() == 1.5);
 }
 
-TEST_CASE("A phase that may not begin everywhere: any but the first and the last") {
-  const auto phases = parse_manoeuvres(only_if_in_phase(1), "my.toml").front().phases;
-  CHECK_FALSE(phases[0].only_if_x_above_m);
-  CHECK(phases[1].only_if_x_above_m == 0.5);
-  CHECK_FALSE(phases[2].only_if_x_above_m);
-  CHECK_THAT(error_of(only_if_in_phase(0)),
-             Contains("my.toml:8:21: manoeuvre[0].phase[0].only_if_x_above_m is of no use in the first phase"));
-  CHECK_THAT(error_of(only_if_in_phase(2)),
-             Contains("my.toml:14:21: manoeuvre[0].phase[2].only_if_x_above_m is of no"));
-  CHECK_THAT(error_with("turned_rad", "only_if_x_above_m"), Contains("my.toml:7:21: phase[0].only_if_x_above_m is of"));
-  CHECK_THAT(error_with("x_below_m = -1", "only_if_x_above_m = \"far\""),
-             Contains("manoeuvre[1].phase[1].only_if_x_above_m must be a number"));
+TEST_CASE("A phase that may be given up: any but the first and the last") {
+  const auto phases = parse_manoeuvres(give_up_in_phase(1), "my.toml").front().phases;
+  CHECK_FALSE(phases[0].give_up);
+  REQUIRE(phases[1].give_up);
+  CHECK(phases[1].give_up->x_below_m == 0.5);
+  CHECK(phases[1].give_up->pitch_below_rad == -0.3);
+  CHECK_FALSE(phases[2].give_up);
+  CHECK_FALSE(
+      parse_manoeuvres(give_up_in_phase(1, "{ x_below_m = 0.5 }"), "").front().phases[1].give_up->pitch_below_rad);
+
+  CHECK_THAT(error_of(give_up_in_phase(0)),
+             Contains("my.toml:8:11: manoeuvre[0].phase[0].give_up must not be in the first phase"));
+  CHECK_THAT(error_of(give_up_in_phase(2)), Contains("my.toml:14:11: manoeuvre[0].phase[2].give_up must not be in"));
+  CHECK_THAT(error_of(give_up_in_phase(1, "{}")),
+             Contains("my.toml:11:11: manoeuvre[0].phase[1].give_up must state x_below_m, pitch_below_rad or both"));
+  CHECK_THAT(error_of(give_up_in_phase(1, "{ x_above_m = 1 }")),
+             Contains("my.toml:11:13: manoeuvre[0].phase[1].give_up.x_above_m is not a known key"));
+  CHECK_THAT(error_of(give_up_in_phase(1, "{ pitch_below_rad = -4 }")),
+             Contains("my.toml:11:31: manoeuvre[0].phase[1].give_up.pitch_below_rad is -4"));
+  CHECK_THAT(error_of(give_up_in_phase(1, "0.5")), Contains("manoeuvre[0].phase[1].give_up must be a table"));
 }
 
 TEST_CASE("What is wrong in a manoeuvre is named with its place") {

@@ -97,10 +97,10 @@ TEST_CASE("An operator who gives up stops the robot where it is") {
   Manoeuvre manoeuvre = straight(0.2, 2);
   const Phase drive = manoeuvre.phases[0];
   manoeuvre.phases = {drive, drive, drive};
-  manoeuvre.phases[1].only_if_x_above_m = GENERATE(0.1, 1.0);
+  const bool gives_up = GENERATE(true, false);
+  manoeuvre.phases[1].give_up = GiveUp{.x_below_m = gives_up ? 1.0 : 0.1};  // 0.4 m are driven by then
   manoeuvre.phases[2].track_mps = {0, 0};
   const RollOut out = roll_out(physics::load_robot("kenaf"), flat(), manoeuvre, exact());
-  const bool gives_up = manoeuvre.phases[1].only_if_x_above_m == 1.0;  // 0.4 m are driven by then
   CHECK(out.gave_up == gives_up);
   CHECK(out.phase_began_s == (gives_up ? std::vector<double>{0, 2, 2} : std::vector<double>{0, 2, 4}));
   CHECK(out.end.X_WB.p.x() == Approx(gives_up ? 0.4 : 0.8).margin(0.02));  // the drive's lag, before and after

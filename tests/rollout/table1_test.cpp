@@ -51,7 +51,9 @@ TEST_CASE("The operator of the steps goes on where the robot's belts have reache
                belly_z_m = robot.track.p_BT_m.z() - robot.track.end_radius_m,
                nose_up_rad = -std::prev(hook)->end.pitch_below_rad.value();
   const double x_m = 1 - (axle_x_m * std::cos(nose_up_rad) - belly_z_m * std::sin(nose_up_rad));
-  CHECK(hook->only_if_x_above_m.value() == Approx(x_m).margin(0.005));  // the file has two decimals
+  REQUIRE(hook->give_up);
+  CHECK(hook->give_up->pitch_below_rad == -nose_up_rad);
+  CHECK(hook->give_up->x_below_m.value() == Approx(x_m).margin(0.005));  // the file has two decimals
 }
 
 TEST_CASE("He gives up at the step of 350 mm, and not at that of 300 mm") {
