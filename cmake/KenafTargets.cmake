@@ -36,6 +36,17 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
   endif()
 endif()
 
+# kenaf_precompile(NAME headers...): those headers of other projects, and the standard ones, are parsed once for the
+# whole target. For targets of many files only. Every file names what it includes all the same: users build without.
+function(kenaf_precompile name)
+  if(KENAF_PRECOMPILE_HEADERS)
+    list(TRANSFORM ARGN REPLACE "(.+)" "<\\1>" OUTPUT_VARIABLE headers)
+    target_precompile_headers(${name} PRIVATE
+      <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory> <numbers> <optional>
+      <span> <stdexcept> <string> <string_view> <utility> <vector> ${headers})
+  endif()
+endfunction()
+
 # kenaf_room(NAME sources...): the static library of one room. Includes are written from the root: "protocol/frames.hpp".
 function(kenaf_room name)
   add_library(${name} STATIC ${ARGN})
@@ -50,10 +61,10 @@ function(kenaf_program name)
   install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT programs)
 endfunction()
 
-# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [TIMEOUT s] [COST c]): one Catch2 program; ctest sees each of
-# its test cases, and starts those of the highest cost first.
+# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [PRECOMPILE h...] [TIMEOUT s] [COST c]): one Catch2 program;
+# ctest sees each of its test cases, and starts those of the highest cost first.
 function(kenaf_test name)
-  cmake_parse_arguments(TEST "" "TIMEOUT;COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  cmake_parse_arguments(TEST "" "TIMEOUT;COST" "SOURCES;LIBRARIES;LABELS;PRECOMPILE" ${ARGN})
   if(NOT TEST_TIMEOUT)
     set(TEST_TIMEOUT 120)
   endif()
@@ -63,6 +74,10 @@ function(kenaf_test name)
   add_executable(${name} ${TEST_SOURCES})
   target_link_libraries(${name} PRIVATE Catch2::Catch2WithMain ${TEST_LIBRARIES} kenaf_warnings)
   target_compile_definitions(${name} PRIVATE KENAF_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  list(LENGTH TEST_SOURCES files)
+  if(files GREATER 4)
+    kenaf_precompile(${name} catch2/catch.hpp ${TEST_PRECOMPILE})
+  endif()
   catch_discover_tests(${name}
     TEST_PREFIX "${name}: "
     PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT} COST ${TEST_COST})
