@@ -39,27 +39,35 @@ bool acts(const EffectInfo& effect) {
 // Sizes in millimetres between which the outcome changes. A search by bisection alone would miss a second change.
 struct Critical {
   int largest_passed_mm = 0, smallest_failed_mm = 0;
+  bool gave_up = false;    // at the smallest failed one: the operator did
   bool one_change = true;  // on the grid nothing above fails and passes again
 };
 
 Critical critical_size(Obstacle obstacle, const RobotDescription& robot, double time_step_s, int grid_mm) {
   const bool step = obstacle == Obstacle::step;
   const int from_mm = step ? 50 : 100, to_mm = step ? 450 : 500;
-  const auto passes = [&](int size_mm) {
-    return rollout::attempt(obstacle, size_mm * 1e-3, robot, time_step_s).succeeded;
+  Critical found{from_mm - grid_mm, to_mm + grid_mm};
+  const auto try_at = [&](int size_mm) { return rollout::attempt(obstacle, size_mm * 1e-3, robot, time_step_s); };
+  const auto set_failed = [&](int size_mm, const rollout::RollOut& attempt) {
+    found.smallest_failed_mm = size_mm;
+    found.gave_up = attempt.gave_up;
   };
-  Critical found{from_mm - grid_mm, to_mm + grid_mm, true};
   bool failed = false;
   for (int size_mm = from_mm; size_mm <= to_mm; size_mm += grid_mm) {
-    const bool pass = passes(size_mm);
+    const rollout::RollOut attempt = try_at(size_mm);
+    const bool pass = attempt.succeeded;
     if (pass && !failed) found.largest_passed_mm = size_mm;
-    if (!pass && !failed) found.smallest_failed_mm = size_mm;
+    if (!pass && !failed) set_failed(size_mm, attempt);
     found.one_change &= !(pass && failed);
     failed |= !pass;
   }
   while (found.smallest_failed_mm - found.largest_passed_mm > 1) {
     const int middle_mm = (found.largest_passed_mm + found.smallest_failed_mm) / 2;
-    (passes(middle_mm) ? found.largest_passed_mm : found.smallest_failed_mm) = middle_mm;
+    const rollout::RollOut attempt = try_at(middle_mm);
+    if (attempt.succeeded)
+      found.largest_passed_mm = middle_mm;
+    else
+      set_failed(middle_mm, attempt);
   }
   return found;
 }
@@ -187,11 +195,12 @@ void write_critical_sizes(const std::filesystem::path& file, unsigned jobs) {
     cases[i].found = critical_size(cases[i].obstacle, robot, cases[i].time_step_s, cases[i].parameter ? 20 : 5);
   });
   std::ofstream out(file);
-  out << "obstacle,time_step_s,effect,parameter,value,largest_passed_mm,smallest_failed_mm,one_change\n";
+  out << "obstacle,time_step_s,effect,parameter,value,largest_passed_mm,smallest_failed_mm,gave_up,one_change\n";
   for (const Case& c : cases)
-    out << fmt::format("{},{:g},{},{},{:g},{},{},{}\n", c.obstacle == Obstacle::step ? "step" : "trench", c.time_step_s,
-                       c.effect ? c.effect->name : "none", c.parameter ? c.parameter->name : "", c.value,
-                       c.found.largest_passed_mm, c.found.smallest_failed_mm, c.found.one_change ? "yes" : "no");
+    out << fmt::format("{},{:g},{},{},{:g},{},{},{},{}\n", c.obstacle == Obstacle::step ? "step" : "trench",
+                       c.time_step_s, c.effect ? c.effect->name : "none", c.parameter ? c.parameter->name : "", c.value,
+                       c.found.largest_passed_mm, c.found.smallest_failed_mm, c.found.gave_up ? "yes" : "no",
+                       c.found.one_change ? "yes" : "no");
 }
 
 void write_effects(const std::filesystem::path& file, unsigned jobs) {
