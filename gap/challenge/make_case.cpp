@@ -27,7 +27,8 @@ constexpr double kStartScatter_m = 0.005, kStartScatter_rad = 0.01;
 constexpr std::size_t kMostRuns = 100;
 constexpr int kHalvings = 12;
 constexpr double kSmallestShare = 1e-5, kCloseEnough = 1.05;
-constexpr double kFurthest = 0.95;  // of the way to the end of a parameter's range
+constexpr double kSmallestPlay = 0.01;  // 3 mrad of backlash: of less there is little but the give of the teeth
+constexpr double kFurthest = 0.95;      // of the way to the end of a parameter's range
 constexpr double kCloseToPlanned = 0.9;
 
 struct Recipe {
@@ -170,10 +171,10 @@ class Scale {
 // The share of the way at which `size_at` is as large as `wanted`, and its size there; all of the way where it is not
 // reached. By ratios: effects of a thousandth of their range can be seen.
 template <class SizeAt>
-std::pair<double, double> share_for(double wanted, SizeAt&& size_at) {
+std::pair<double, double> share_for(double wanted, double smallest_share, SizeAt&& size_at) {
   const double most = size_at(1);
   if (!(most > wanted)) return {1, most};
-  double below = kSmallestShare, above = 1, size = most;
+  double below = smallest_share, above = 1, size = most;
   for (int i = 0; i < kHalvings && size > kCloseEnough * wanted; ++i) {
     const double middle = std::sqrt(below * above), at_middle = size_at(middle);
     if (at_middle < wanted)
@@ -188,22 +189,30 @@ const physics::EffectParameter& parameter_of(const HiddenEffect& hidden) {
   return *physics::find_parameter(*physics::find_effect(hidden.effect), hidden.parameter);
 }
 
-// Sets the value so that the effect is as large as planned; returns its size over what was planned.
-double size_effect(HiddenEffect& hidden, Scale& scale, bool upward) {
+// Sets the value so that the effect is as large as planned; returns its size over what was planned. Where it cannot be
+// so large to one side of neutral, it is sought on the other one.
+double size_effect(HiddenEffect& hidden, Scale& scale, bool upward_first) {
   const physics::EffectParameter& parameter = parameter_of(hidden);
-  if (parameter.min == parameter.neutral) upward = true;
-  if (parameter.max == parameter.neutral) upward = false;
-  const double end = upward ? parameter.max : parameter.min;
-  const auto value_at = [&](double share) { return parameter.neutral + kFurthest * share * (end - parameter.neutral); };
-  const auto [share, floors] = share_for(hidden.floors, [&](double part) {
-    physics::Effects effects;
-    effects.*parameter.value = value_at(part);
-    return scale.floors_of(effects);
-  });
-  const double reached = floors / hidden.floors;
-  hidden.value = value_at(share);
-  hidden.floors = floors;
-  return reached;
+  const double planned = hidden.floors;
+  double best = -1;
+  for (const bool upward : {upward_first, !upward_first}) {
+    const double end = upward ? parameter.max : parameter.min;
+    if (end == parameter.neutral || best >= kCloseToPlanned) continue;
+    const auto value_at = [&](double share) {
+      return parameter.neutral + kFurthest * share * (end - parameter.neutral);
+    };
+    const double smallest = parameter.value == &physics::Effects::flipper_backlash_rad ? kSmallestPlay : kSmallestShare;
+    const auto [share, floors] = share_for(planned, smallest, [&](double part) {
+      physics::Effects effects;
+      effects.*parameter.value = value_at(part);
+      return scale.floors_of(effects);
+    });
+    if (floors / planned <= best) continue;
+    best = floors / planned;
+    hidden.value = value_at(share);
+    hidden.floors = floors;
+  }
+  return best;
 }
 
 Recipe recipe_of(const CasePlan& plan) {
@@ -236,7 +245,8 @@ void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs) {
     for (HiddenEffect& hidden : candidate.effects) reached = std::min(reached, size_effect(hidden, scale, upward));
     if (!plan.foreign.empty()) {
       std::tie(candidate.foreign_amount, candidate.foreign_floors) =
-          share_for(plan.foreign_floors, [&](double amount) { return scale.floors_of_foreign(plan.foreign, amount); });
+          share_for(plan.foreign_floors, kSmallestShare,
+                    [&](double amount) { return scale.floors_of_foreign(plan.foreign, amount); });
       reached = candidate.foreign_floors / plan.foreign_floors;
     }
     if (reached > best_reached) {

@@ -15,6 +15,7 @@ struct Channel {
   bool angle;                // wraps
   physics::Stage measured;   // where on the way from command to sensor it is seen: drive, body or sensor
   double resolution;         // finer than this no difference counts, in `unit` (chosen)
+  bool level = false;        // says little where the nose points up or down: small turns of the body turn it far
 };
 
 // Not among them: acceleration. Between contacts it says what posture and gyro say, and at a contact it is a spike whose

@@ -24,6 +24,7 @@ class Coherence {
  public:
   Coherence(const std::vector<FeatureMap>& features, std::vector<std::vector<std::size_t>> groups, double stretch_s);
 
+  const std::vector<std::vector<std::size_t>>& groups() const { return groups_; }
   std::size_t cell_count() const { return cells_.size(); }
   double stretch_s() const { return stretch_s_; }
   std::vector<Cell> cells(const std::vector<Eigen::VectorXd>& whitened) const;
@@ -31,6 +32,7 @@ class Coherence {
   double energy(const std::vector<Eigen::VectorXd>& whitened) const;
 
  private:
+  std::vector<std::vector<std::size_t>> groups_;
   double stretch_s_;
   std::vector<Cell> cells_;                         // with z = 0
   std::vector<double> scale_;                       // 1 / sqrt of the bins in a cell

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "gap/diagnose/agreement.hpp"
+
 namespace kenaf::gap {
 namespace {
 
@@ -32,6 +34,14 @@ bool at_an_end(const Model& model, const EffectCurves& curves) {
     return (place.value <= parameter.min && parameter.min != parameter.neutral) ||
            (place.value >= parameter.max && parameter.max != parameter.neutral);
   });
+}
+
+// With enough effects anything can be explained: of three or more each must account for a share.
+bool has_trifle(const Model& model, const EffectCurves& curves, double due) {
+  if (model.places.size() <= 2) return false;
+  for (std::size_t i = 0; i < model.places.size(); ++i)
+    if (left_without(curves, model, i) - model.left <= due) return true;
+  return false;
 }
 
 }  // namespace
@@ -106,14 +116,17 @@ Decision decide(EffectCurves& curves, const Coherence& coherence, const Spread& 
     more = with_another(decision.best);
   }
   decision.p_left = p_left(decision.best);
-  const auto is_due = [&](std::size_t place) {
-    return left_without(curves, decision.best, place) - decision.best.left >
-           settings.due_share * (nominal.left - decision.best.left);
+  const Agreement agree = agreement(curves, decision.best, coherence.groups(), settings.rival_margin);
+  decision.p_agree =
+      p_of_squares((agree.gained - share * (nominal.left - decision.best.left)) / inflation, agree.freedom);
+  const auto doubt = [&](bool holds, Doubt which) {
+    if (holds) decision.doubts.push_back(which);
   };
-  bool all_due = true;
-  for (std::size_t i = 0; decision.best.places.size() > 2 && i < decision.best.places.size(); ++i) all_due &= is_due(i);
-  // a value at the end of its range stands for something that the effect cannot do
-  if (decision.p_left <= settings.surprise || !all_due || at_an_end(decision.best, curves)) {
+  doubt(decision.p_left <= settings.surprise, Doubt::much_left);
+  doubt(decision.p_agree <= settings.surprise, Doubt::disagreement);
+  doubt(at_an_end(decision.best, curves), Doubt::end_of_range);
+  doubt(has_trifle(decision.best, curves, settings.due_share * (nominal.left - decision.best.left)), Doubt::trifle);
+  if (!decision.doubts.empty()) {
     decision.verdict = Verdict::unknown;
     for (const OnCurve& place : decision.best.places) decision.rivals.push_back({place.curve});
     return decision;

@@ -15,6 +15,14 @@ namespace kenaf::gap {
 
 enum class Verdict { none, named, ambiguous, unknown };
 
+// Why the best model is not believed, each of which makes the verdict unknown.
+enum class Doubt {
+  much_left,     // more than chance leaves
+  disagreement,  // manoeuvres want different values
+  end_of_range,  // a value stands for something that its effect cannot do
+  trifle,        // one of three effects or more accounts for too little
+};
+
 struct DecisionSettings {
   double false_alarm = 0.005;       // chance of a verdict other than none where there is no gap
   double negligible = 0.25;         // of the noise's length: what explains less is no gap that anybody would see (chosen)
@@ -34,9 +42,11 @@ struct Decision {
   Model best;                                     // no places: nominal
   std::vector<Model> singles;                     // best first
   std::vector<Model> together;                    // of several effects that were tried, of the largest number, best first
+  std::vector<Doubt> doubts;                      // where it is unknown, at least one
   std::vector<std::vector<std::size_t>> rivals;   // for each place of `best`: curves that fit as well, itself first
   double p_gap = 1;                               // of a gap that large by chance
   double p_left = 1;                              // of as much left by chance
+  double p_agree = 1;                             // that manoeuvres differ as much about the best model's values
   double inflation = 1;                           // of variances: how repeats differ beyond the floor
   double nominal_coherent = 0, chance_coherent = 0;
 };

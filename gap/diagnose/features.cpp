@@ -9,23 +9,34 @@ namespace kenaf::gap {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
+// 74 degrees: beyond, a turn of the body turns roll and yaw by four times as much and more (chosen).
+constexpr double kUpright_rad = 1.3;
+
+// Rows in which the nose points up or down, by the last pitch that was measured.
+std::vector<bool> upright_rows(const runs::Run& measured) {
+  std::vector<bool> upright(measured.row_count(), false);
+  const std::span<const double> pitch_rad = measured.column("pitch_rad");
+  for (std::size_t i = 0; i < pitch_rad.size(); ++i)
+    upright[i] = std::isnan(pitch_rad[i]) ? i > 0 && upright[i - 1] : std::abs(pitch_rad[i]) > kUpright_rad;
+  return upright;
+}
 
 void unwrap(std::vector<double>& angles) {
-  for (std::size_t i = 1; i < angles.size(); ++i)
-    angles[i] -= kTurn * std::round((angles[i] - angles[i - 1]) / kTurn);
+  for (std::size_t i = 1; i < angles.size(); ++i) angles[i] -= kTurn * std::round((angles[i] - angles[i - 1]) / kTurn);
 }
 
 }  // namespace
 
 FeatureMap::FeatureMap(const runs::Run& measured, double span_s) : span_s_(span_s) {
   const std::span<const double> time = measured.column("t_s");
+  const std::vector<bool> upright = upright_rows(measured);
   std::vector<double> means;
   for (std::size_t c = 0; c < diagnosis_channels().size(); ++c) {
     const Channel& channel = diagnosis_channels()[c];
     const std::span<const double> column = measured.column(channel.column);
     Series series{c, {}, {}};
     for (std::size_t i = 0; i < column.size(); ++i) {
-      if (std::isnan(column[i])) continue;
+      if (std::isnan(column[i]) || (channel.level && upright[i])) continue;
       series.t_s.push_back(time[i] - time.front());
       series.value.push_back(column[i]);
     }

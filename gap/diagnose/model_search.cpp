@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace kenaf::gap {
 namespace {
@@ -10,6 +11,8 @@ using Eigen::VectorXd;
 
 // In floors: a fit that moves less than this from a simulated point has nothing to learn from another one.
 constexpr double kSamePoint = 0.5;
+// Of the way from neutral: a curve is known on either side of a fit at this factor, so that its bend there is.
+constexpr double kBracket = 1.5;
 // Sets that are simulated, for each contender: sums of curves rank roughly.
 constexpr std::size_t kSetsForAContender = 2;
 
@@ -32,6 +35,14 @@ Singles fit_singles(const EffectCurves& curves) {
   return singles;
 }
 
+// Of the shift at a place.
+double length_of(const Products& products, const OnCurve& place) {
+  Products nothing = products;
+  nothing.gap_gap = 0;
+  nothing.shift_gap.setZero();
+  return std::sqrt(std::max(0.0, left_with(nothing, {&place, 1})));
+}
+
 // Whether the place is at a point of its curve that was simulated like this.
 bool at_point(const EffectCurve& curve, const OnCurve& place, const Products& products, Fidelity fidelity) {
   const auto dot = [&](int i, int j) { return i < 0 || j < 0 ? 0 : products.shift_shift(i, j); };
@@ -52,14 +63,48 @@ std::size_t near_best(const std::vector<CurveFit>& fits, double nothing_explaine
   return count;
 }
 
-// Points where the first `count` of them fit; false: all of these are there.
+// Between neighbours that were simulated in every run a rough point would only disturb.
+bool is_between_exact(const EffectCurve& curve, double value) {
+  const auto above = std::ranges::lower_bound(curve.points, value, {}, &CurvePoint::value);
+  return above != curve.points.begin() && above != curve.points.end() && above->exact && std::prev(above)->exact;
+}
+
+// The value of the simulated point that is nearest to a place.
+double nearest_point(const EffectCurve& curve, const OnCurve& place) {
+  const int column = place.column[place.weight[1] > place.weight[0] ? 1 : 0];
+  return std::ranges::find(curve.points, column, &CurvePoint::column)->value;
+}
+
+// Values on either side of a point at which an effect fits: a curve may bend, and a straight line to a point far away
+// would hide where it goes. Only where there is no point yet.
+std::vector<double> bracket(const EffectCurve& curve, double value, Fidelity fidelity) {
+  const double neutral = std::ranges::find(curve.points, -1, &CurvePoint::column)->value;
+  std::vector<double> values;
+  for (const double factor : {1 / kBracket, kBracket}) {
+    const double wanted = std::clamp(neutral + factor * (value - neutral), curve.parameter->min, curve.parameter->max);
+    const double low = std::min(value, wanted), high = std::max(value, wanted);
+    const bool is_known = std::ranges::any_of(curve.points, [&](const CurvePoint& point) {
+      return (point.exact || fidelity != Fidelity::every_run) && point.value != value && point.value >= low &&
+             point.value <= high;
+    });
+    if (!is_known && high > low) values.push_back(wanted);
+  }
+  return values;
+}
+
+// Points where the first `count` of them fit, and on either side of it; false: all of these are there.
 bool refine(EffectCurves& curves, const Singles& singles, std::size_t count, Fidelity fidelity,
             const Simulator& simulator) {
   std::vector<NewPoint> points;
   for (std::size_t i = 0; i < std::min(count, singles.fits.size()); ++i) {
     const OnCurve& place = singles.fits[i].places.front();
-    if (!at_point(curves.curves[place.curve], place, singles.products, fidelity))
+    const EffectCurve& curve = curves.curves[place.curve];
+    if (fidelity != Fidelity::every_run && is_between_exact(curve, place.value)) continue;
+    if (!at_point(curve, place, singles.products, fidelity))
       points.push_back({place.curve, place.value});
+    else if (length_of(singles.products, place) > kSamePoint)
+      for (const double value : bracket(curve, nearest_point(curve, place), fidelity))
+        points.push_back({place.curve, value});
   }
   if (!points.empty()) simulator.add_points(curves, points, fidelity);
   return !points.empty();
@@ -215,10 +260,10 @@ std::vector<EffectSet> with_one_more(const EffectCurves& curves, const Model& mo
 std::vector<Model> search_sets(const EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
                                const SearchSettings& settings, std::vector<EffectSet> all, double to_beat) {
   Sets sets(curves, std::move(all), kSetsForAContender * settings.contenders, to_beat);
-  for (int round = 0; round < settings.rounds; ++round) sets.simulate(Fidelity::coarse, simulator);
+  for (int round = 0; round < settings.together_rounds; ++round) sets.simulate(Fidelity::coarse, simulator);
   sets.keep_best(settings.contenders);
   sets.keep_best(sets.near_best(squared_length(curves.gap), settings));
-  for (int round = 0; round < settings.rounds; ++round) sets.simulate(Fidelity::every_run, simulator);
+  for (int round = 0; round < settings.together_rounds; ++round) sets.simulate(Fidelity::every_run, simulator);
   std::vector<Model> models = sets.models();
   for (Model& model : models) measure(model, curves, coherence);
   std::ranges::stable_sort(models, {}, &Model::left);

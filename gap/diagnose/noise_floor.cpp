@@ -56,6 +56,49 @@ VectorXd sigma_of_bins(const FeatureMap& features, const std::vector<double>& si
   return result;
 }
 
+// What repeats differ by, beyond noise from bin to bin: slow wander, and events that are not quite at the same time.
+// Variances of each channel, whitened; 0 where nothing is known.
+using Spreads = std::vector<double>;
+
+std::vector<Spreads> spreads_of_groups(const std::vector<FeatureMap>& features, const std::vector<Whitener>& whiteners,
+                                       const std::vector<VectorXd>& deviations,
+                                       const std::vector<std::vector<bool>>& shared,
+                                       const std::vector<std::vector<std::size_t>>& groups) {
+  std::vector<Spreads> spreads;
+  for (const std::vector<std::size_t>& group : groups) {
+    std::vector<std::vector<double>> squares(diagnosis_channels().size());
+    for (const std::size_t r : group) {
+      if (deviations[r].size() == 0) continue;
+      const VectorXd white = whiteners[r](deviations[r]);
+      for (std::size_t b = 0; b < features[r].bins().size(); ++b)
+        if (shared[r][b])
+          squares[features[r].bins()[b].channel].push_back(white[static_cast<Index>(b)] * white[static_cast<Index>(b)]);
+    }
+    spreads.emplace_back(squares.size(), 0.0);
+    for (std::size_t c = 0; c < squares.size(); ++c) {
+      if (squares[c].empty()) continue;
+      std::ranges::sort(squares[c]);
+      const auto kept = static_cast<std::size_t>(std::ceil(static_cast<double>(squares[c].size()) * (1 - kTrimmed)));
+      double sum = 0;
+      for (std::size_t i = 0; i < kept; ++i) sum += squares[c][i];
+      spreads.back()[c] = sum / static_cast<double>(kept);
+    }
+  }
+  return spreads;
+}
+
+// The median of all groups that know one.
+Spreads usual_spread(const std::vector<Spreads>& spreads) {
+  Spreads usual(diagnosis_channels().size(), 0);
+  for (std::size_t c = 0; c < usual.size(); ++c) {
+    std::vector<double> known;
+    for (const Spreads& group : spreads)
+      if (group[c] > 0) known.push_back(group[c]);
+    if (!known.empty()) usual[c] = median(known);
+  }
+  return usual;
+}
+
 }  // namespace
 
 Whitener::Whitener(const VectorXd& sigma, const Eigen::MatrixXd& shapes) : inverse_sigma_(sigma.cwiseInverse()) {
@@ -102,33 +145,24 @@ NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vecto
       floor.sigma[c] =
           std::max(diagnosis_channels()[c].resolution, jumps[c].empty() ? 0 : kMadToSigma * median(jumps[c]));
 
+  std::vector<std::vector<double>> sigma_of_run(features.size(), floor.sigma);
   const auto whiten = [&] {
     floor.sigma_of_bin.clear();
     floor.whiteners.clear();
     for (std::size_t r = 0; r < features.size(); ++r) {
-      floor.sigma_of_bin.push_back(hypot(sigma_of_bins(features[r], floor.sigma, full), open[r].roughness));
+      floor.sigma_of_bin.push_back(hypot(sigma_of_bins(features[r], sigma_of_run[r], full), open[r].roughness));
       floor.whiteners.emplace_back(floor.sigma_of_bin.back(), open[r].shapes);
     }
   };
   whiten();
   if (!floor.from_repeats) return floor;
-  // what repeats differ by, beyond noise from bin to bin: slow wander, and events that are not quite at the same time
-  std::vector<std::vector<double>> squares(channels);
-  for (std::size_t r = 0; r < features.size(); ++r) {
-    if (deviations[r].size() == 0) continue;
-    const VectorXd white = floor.whiteners[r](deviations[r]);
-    for (std::size_t b = 0; b < features[r].bins().size(); ++b)
-      if (shared[r][b])
-        squares[features[r].bins()[b].channel].push_back(white[static_cast<Index>(b)] * white[static_cast<Index>(b)]);
-  }
-  for (std::size_t c = 0; c < channels; ++c) {
-    if (squares[c].empty()) continue;
-    std::ranges::sort(squares[c]);
-    const auto kept = static_cast<std::size_t>(std::ceil(static_cast<double>(squares[c].size()) * (1 - kTrimmed)));
-    double sum = 0;
-    for (std::size_t i = 0; i < kept; ++i) sum += squares[c][i];
-    floor.sigma[c] *= std::sqrt(std::max(1.0, sum / static_cast<double>(kept)));
-  }
+  const std::vector<Spreads> spreads = spreads_of_groups(features, floor.whiteners, deviations, shared, repeats);
+  const Spreads usual = usual_spread(spreads);
+  for (std::size_t g = 0; g < repeats.size(); ++g)
+    for (const std::size_t r : repeats[g])
+      for (std::size_t c = 0; c < channels; ++c)
+        sigma_of_run[r][c] *= std::sqrt(std::max({1.0, usual[c], spreads[g][c]}));
+  for (std::size_t c = 0; c < channels; ++c) floor.sigma[c] *= std::sqrt(std::max(1.0, usual[c]));
   whiten();
   return floor;
 }
@@ -173,16 +207,18 @@ std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Pre
   for (std::size_t r = 0; r < features.size(); ++r) {
     const auto size = static_cast<Index>(features[r].bins().size());
     const auto channels = static_cast<Index>(diagnosis_channels().size());
-    open.push_back({Eigen::MatrixXd::Zero(size, static_cast<Index>(kOpen) + channels), VectorXd::Zero(size)});
+    open.push_back({Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOpen) + channels), VectorXd::Zero(size)});
     for (std::size_t b = 0; b < features[r].bins().size(); ++b) {
       const std::size_t channel = features[r].bins()[b].channel;
-      open[r].shapes(static_cast<Index>(b), static_cast<Index>(kOpen + channel)) =
+      open[r].shapes(static_cast<Index>(b), static_cast<Index>(2 * kOpen + channel)) =
           diagnosis_channels()[channel].resolution;
     }
     for (std::size_t i = 0; i < kOpen; ++i) {
       const VectorXd plus = shifts[i][r] - shifts.back()[r], minus = shifts[i + kOpen][r] - shifts.back()[r];
-      open[r].shapes.col(static_cast<Index>(i)) = (plus - minus) / 2;
-      open[r].roughness.array() += ((plus + minus) / 2).array().square();
+      const VectorXd odd = (plus - minus) / 2, even = (plus + minus) / 2;
+      open[r].shapes.col(static_cast<Index>(2 * i)) = odd;
+      open[r].shapes.col(static_cast<Index>(2 * i + 1)) = even;
+      open[r].roughness.array() += even.array().square();
     }
     open[r].roughness = open[r].roughness.cwiseSqrt();
   }

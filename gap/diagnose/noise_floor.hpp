@@ -32,7 +32,8 @@ class Whitener {
 };
 
 struct NoiseFloor {
-  std::vector<double> sigma;        // of a full bin of each channel, all of what is independent; 0: never measured
+  std::vector<double> sigma;        // of a full bin of each channel, all of what is independent; 0: never measured. In the
+                                    // middle one of all manoeuvres: where repeats differ by more, their bins have more
   std::vector<Eigen::VectorXd> sigma_of_bin;  // of each run, with roughness
   std::vector<Whitener> whiteners;  // of each run
   bool from_repeats = false;        // otherwise from the residuals alone, which a gap makes larger
@@ -45,10 +46,10 @@ struct NoiseFloor {
 inline constexpr double kOpenStart_m = 0.001, kOpenStart_rad = 0.002;
 
 // What the simulation leaves open in one run. A variation by +1 and by -1 sigma shifts the prediction by a shape, up to sign,
-// as long as all is smooth. What of it is not up to sign (a fall that begins earlier either way) has no shape that could be
-// known, so it counts as noise of those bins.
+// as long as all is smooth. What of it is not up to sign (a fall that begins earlier either way, a landing that has two ways
+// to go on) is a shape too; but there is no knowing where it falls next time, so it counts as noise of those bins as well.
 struct OpenShapes {
-  Eigen::MatrixXd shapes;     // one column for each variation
+  Eigen::MatrixXd shapes;     // in columns
   Eigen::VectorXd roughness;  // of each bin, 1 sigma
 };
 // Start pose by its uncertainty (`start_sigma_m`, `start_sigma_rad`); time step, contact stiffness and damping by a factor

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gap/diagnose/diagnosis.hpp"
 
@@ -16,6 +17,9 @@ std::string_view verdict_name(Verdict verdict);
 std::string_view gap_stage(const Diagnosis& diagnosis);
 // "pitch_inertia", or "pitch_inertia:scale" of an effect with several parameters.
 std::string name_of(const EffectCurve& curve);
+
+// Of each doubt a clause: "manoeuvres want different values (p < 0.0001)".
+std::vector<std::string> doubts_in_words(const Decision& decision);
 
 // At most 40 lines of at most 100 columns; the first one is the verdict.
 std::string diagnosis_text(const Diagnosis& diagnosis);

@@ -21,7 +21,8 @@ Json names_of(const Diagnosis& d, const std::vector<std::size_t>& curves) {
 }
 
 Json where_json(const Diagnosis& d) {
-  Json where{{"stage", gap_stage(d)}, {"stages", Json::array()}, {"channels", Json::array()}, {"phases", Json::array()}};
+  Json where{
+      {"stage", gap_stage(d)}, {"stages", Json::array()}, {"channels", Json::array()}, {"phases", Json::array()}};
   for (const StageGap& stage : d.stages)
     if (stage.bins > 0)
       where["stages"].push_back({{"passage", passage_name(stage.passage)},
@@ -104,6 +105,8 @@ std::string diagnosis_json(const Diagnosis& d) {
   json["gap"] = gap_json(d);
   json["p_gap"] = d.decision.p_gap;
   json["p_left"] = d.decision.p_left;
+  json["p_agree"] = d.decision.p_agree;
+  json["doubts"] = doubts_in_words(d.decision);
   Json angles = Json::array();
   for (Eigen::Index i = 0; i < d.isolability.angle_deg.rows(); ++i) {
     angles.push_back(Json::array());

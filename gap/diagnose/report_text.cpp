@@ -67,6 +67,26 @@ std::string_view gap_stage(const Diagnosis& d) {
   return physics::stage_name(physics::Stage::body);
 }
 
+std::vector<std::string> doubts_in_words(const Decision& decision) {
+  const auto chance = [](double p) { return p < 1e-4 ? std::string("p < 0.0001") : fmt::format("p = {:.2g}", p); };
+  std::vector<std::string> words;
+  for (const Doubt doubt : decision.doubts) switch (doubt) {
+      case Doubt::much_left:
+        words.push_back(fmt::format("more is left than chance leaves ({})", chance(decision.p_left)));
+        break;
+      case Doubt::disagreement:
+        words.push_back(fmt::format("manoeuvres want different values ({})", chance(decision.p_agree)));
+        break;
+      case Doubt::end_of_range:
+        words.push_back("a value at the end of its range stands for something that its effect cannot do");
+        break;
+      case Doubt::trifle:
+        words.push_back("of so many effects one accounts for too little");
+        break;
+    }
+  return words;
+}
+
 std::string diagnosis_text(const Diagnosis& d) {
   std::string text = verdict_line(d) + "\n";
   const auto out = std::back_inserter(text);
@@ -79,6 +99,7 @@ std::string diagnosis_text(const Diagnosis& d) {
     fmt::format_to(out, "and {} more warnings\n", d.observations.warnings.size() - kWarnings);
   for (const EffectEvidence& e : d.best)
     fmt::format_to(out, "  {}{}\n", value_text(d, e), e.at_bound ? "  AT THE END OF ITS RANGE" : "");
+  for (const std::string& doubt : doubts_in_words(d.decision)) fmt::format_to(out, "  no name: {}\n", doubt);
   if (d.interrupted.empty()) {
     fmt::format_to(out, "\nGap on runs held out, in noise floors: {:.2f} before", d.gap.before);
     if (!d.best.empty())

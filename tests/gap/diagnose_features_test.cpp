@@ -56,6 +56,15 @@ TEST_CASE("Time counts from the first row, wherever a log's clock began") {
   CHECK(map.measured()[1] == Approx(1.4));
 }
 
+TEST_CASE("Roll and yaw say nothing while the nose points up; what else is measured then counts") {
+  const auto rears = [](double t_s) { return t_s > 0.45 && t_s < 0.95 ? -1.5 : -0.2; };
+  const FeatureMap map(made_run(1.5, 0.1, {{"pitch_rad", rears}, {"roll_rad", ramp}, {"z_m", ramp}}), 0.5);
+  std::vector<std::size_t> roll, others;
+  for (const Bin& bin : map.bins()) (column_of(bin) == "roll_rad" ? roll : others).push_back(bin.span);
+  CHECK(roll == std::vector<std::size_t>{0, 2});
+  CHECK(others == std::vector<std::size_t>{0, 1, 2, 0, 1, 2});
+}
+
 TEST_CASE("An angle goes on across half a turn, and a simulated one is taken on the same turn") {
   const auto turning = [](double t_s) { return std::remainder(3 + t_s, 2 * std::numbers::pi); };
   const FeatureMap map(made_run(1, 0.1, {{"yaw_rad", turning}}), 0.5);

@@ -91,6 +91,19 @@ TEST_CASE("A wander too slow to show from bin to bin shows in repeats") {
   CHECK(sigma_of_x(floor_of(residuals, {{0}, {1}})) == Approx(sigma).epsilon(0.15));  // unseen: half the bins of above
 }
 
+TEST_CASE("One manoeuvre whose repeats differ by chance is no noise of the others") {
+  std::mt19937_64 random(9);
+  const double sigma = 0.02;
+  std::vector<VectorXd> residuals;
+  for (int r = 0; r < 6; ++r) residuals.push_back(white(sigma, random));
+  residuals[4].array() += 1;  // stuck a metre from where the other one got to
+  const NoiseFloor floor = floor_of(residuals, {{0, 1}, {2, 3}, {4, 5}});
+  CHECK(sigma_of_x(floor) == Approx(sigma).epsilon(0.1));
+  CHECK(floor.sigma_of_bin[0][7] == Approx(sigma).epsilon(0.1));
+  // half a metre each from their mean, as one run's variance twice that
+  CHECK(floor.sigma_of_bin[5][7] == Approx(std::sqrt(0.5)).epsilon(0.1));
+}
+
 TEST_CASE("Where one repeat goes on alone nothing is learnt of noise, and nothing is lost") {
   const FeatureMap half(test::made_run(125, 0.125, {{"x_m", [](double) { return 0.0; }}}), 0.25);
   std::mt19937_64 random(7);

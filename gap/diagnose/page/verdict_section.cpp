@@ -1,5 +1,6 @@
 // The headline: what was found, what that means, what to do with it, and how far the gap shrinks.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -68,10 +69,8 @@ std::string meaning(const Diagnosis& d) {
              "The values below are those of the best fit among them.";
     case Verdict::unknown:
       return fmt::format(
-          "{} After the best fit of the catalogue more is left than chance leaves ({}). Values below say what part "
-          "such a "
-          "fit takes away; they are not a cause.",
-          by_chance, p_text(d.decision.p_left));
+          "{} No effect is named: {}. Values below say what part the best fit takes away; they are not a cause.",
+          by_chance, fmt::join(doubts_in_words(d.decision), "; "));
   }
   return {};
 }

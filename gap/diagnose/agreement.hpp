@@ -1,0 +1,27 @@
+// Whether the manoeuvres agree on a model's values. The right effect has one value; a combination that only looks like it
+// needs another one in each manoeuvre.
+//
+// Stronger than what is left in all cells together: few degrees of freedom, in the direction in which a wrong model errs.
+// Thread safety: pure functions.
+#pragma once
+
+#include <vector>
+
+#include "gap/diagnose/model_search.hpp"
+
+namespace kenaf::gap {
+
+struct Agreement {
+  double gained = 0;   // squared length that manoeuvres would explain beyond, each with values of its own
+  double freedom = 0;  // how many values that are
+};
+// `groups`: of repeats, as repeats_of() has them. A value counts as a group's own where its effect moves that group by at
+// least `visible` squared floors. By curves.
+Agreement agreement(const EffectCurves& curves, const Model& model,
+                    const std::vector<std::vector<std::size_t>>& groups, double visible);
+
+// Chance that a sum of `freedom` squared standard normals is larger (Wilson and Hilferty 1931: to 0.001 from three on); 1
+// without freedom.
+double p_of_squares(double sum, double freedom);
+
+}  // namespace kenaf::gap

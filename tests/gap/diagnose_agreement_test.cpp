@@ -1,0 +1,66 @@
+// Whether manoeuvres agree on a value: answers that geometry gives.
+#include "gap/diagnose/agreement.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/gap/linear_world.hpp"
+
+using namespace kenaf;
+using namespace kenaf::gap;
+using test::LinearWorld;
+using test::Whole;
+
+namespace {
+
+const LinearWorld world;
+constexpr double kLength = 40;
+constexpr Eigen::Index kBinsOfManoeuvre = LinearWorld::kBins / 2;
+
+// 0.5 of an effect in the first manoeuvre, `second` of it in the other one.
+Whole two_values(const Whole& effect, double second) {
+  Whole gap = 0.5 * effect;
+  gap.tail(kBinsOfManoeuvre) *= second / 0.5;
+  return gap;
+}
+
+}  // namespace
+
+TEST_CASE("What manoeuvres would gain by values of their own is what the common one costs them") {
+  const Whole effect = kLength * world.direction(0);
+  const EffectCurves curves = world.curves({effect}, two_values(effect, 0.3));
+  const Agreement found = agreement(curves, world.fitted(curves, {0}), LinearWorld::repeats, 9);
+  // of two springs a and b that want values 0.2 apart: a b / (a + b) 0.2^2
+  const double a = effect.head(kBinsOfManoeuvre).squaredNorm(), b = effect.tail(kBinsOfManoeuvre).squaredNorm();
+  CHECK(found.gained == Approx(a * b / (a + b) * 0.04));
+  CHECK(found.freedom == 1);
+  const EffectCurves same = world.curves({effect}, two_values(effect, 0.5));
+  CHECK(agreement(same, world.fitted(same, {0}), LinearWorld::repeats, 9).gained == Approx(0).margin(1e-9));
+}
+
+TEST_CASE("A manoeuvre that does not show an effect has no value of its own for it") {
+  Whole effect = kLength * world.direction(0);
+  effect.tail(kBinsOfManoeuvre).setZero();
+  const EffectCurves curves = world.curves({effect, kLength * world.direction(1)}, effect / 2);
+  CHECK(agreement(curves, world.fitted(curves, {0}), LinearWorld::repeats, 9).freedom == 0);
+  CHECK(p_of_squares(100, 0) == 1);
+}
+
+TEST_CASE("The chance of a sum of squares, against the tables of chi-squared") {
+  CHECK(p_of_squares(7.815, 3) == Approx(0.05).margin(0.001));
+  CHECK(p_of_squares(12.838, 3) == Approx(0.005).margin(0.001));
+  CHECK(p_of_squares(18.307, 10) == Approx(0.05).margin(0.001));
+  CHECK(p_of_squares(9.342, 10) == Approx(0.5).margin(0.001));
+}
+
+TEST_CASE("An effect that would need another value in each manoeuvre is not named") {
+  std::vector<Whole> effects;
+  for (std::size_t i = 0; i < 4; ++i) effects.push_back(kLength * world.direction(i));
+  const Decision one = world.decide(effects, two_values(effects[2], 0.5), {});
+  CHECK(one.verdict == Verdict::named);
+  CHECK(one.p_agree > 0.5);
+  // without noise what is left in all cells, about 400 x 0.2^2 = 16, is less than chance has there: 24
+  const Decision two = world.decide(effects, two_values(effects[2], 0.3), {});
+  CHECK(two.verdict == Verdict::unknown);
+  CHECK(two.p_agree < 0.005);
+  CHECK(two.p_left > 0.1);
+}
