@@ -131,10 +131,11 @@ class Scale {
     std::vector<VectorXd> residuals;
     for (std::size_t r = 0; r < features_.size(); ++r)
       residuals.push_back(features_[r].measured() - predictor_->nominal()[r]);
-    floor_ = noise_floor(features_, residuals, predictor_->repeats(),
+    const auto same_orders = same_orders_of(observations_);
+    floor_ = noise_floor(features_, residuals, same_orders,
                          open_shapes(features_, *predictor_, predictor_->unvaried(), kOpenStart_m, kOpenStart_rad));
-    floor_rms_ = rms_of_repeats(floor_, features_, deviations_from_repeats(features_, residuals, predictor_->repeats()),
-                                predictor_->repeats());
+    floor_rms_ =
+        rms_of_repeats(floor_, features_, deviations_from_repeats(features_, residuals, same_orders), same_orders);
   }
 
   double floors_of(const physics::Effects& effects) {

@@ -37,12 +37,13 @@ Shrinks shrinks_on(const std::filesystem::path& dataset, const physics::Effects&
   std::vector<Variation> models(2, predictor.unvaried());
   models[0].effects = told;
   models[1].effects = hidden;
-  const NoiseFloor floor = noise_floor(features, residuals, predictor.repeats(),
+  const auto same_orders = same_orders_of(observations);
+  const NoiseFloor floor = noise_floor(features, residuals, same_orders,
                                        open_shapes(features, predictor, models[1], kOpenStart_m, kOpenStart_rad));
   const std::vector<Shift> shifts = predictor.shifts(models, Fidelity::every_run);
   Shrinks result;
   result.before = floor.rms(residuals);
-  result.floor = floor.from_repeats ? floor.rms(deviations_from_repeats(features, residuals, predictor.repeats())) : 1;
+  result.floor = floor.from_repeats ? floor.rms(deviations_from_repeats(features, residuals, same_orders)) : 1;
   result.told = shrink(result.before, floor.rms(difference(residuals, shifts[0])), result.floor);
   result.hidden = shrink(result.before, floor.rms(difference(residuals, shifts[1])), result.floor);
   return result;

@@ -75,6 +75,12 @@ Decision decide(EffectCurves& curves, const Coherence& coherence, const Spread& 
   };
   look_around(decision.singles.front());
   decision.singles = search_singles(curves, coherence, simulator, settings.search);
+  // and a gap is one only if it is beyond that floor too
+  decision.p_left = p_of_energy(chance, nominal.coherent / inflation);
+  if (decision.p_left > settings.false_alarm / 2 && nominal.left - decision.singles.front().left < negligible) {
+    decision.best = nominal;
+    return decision;
+  }
 
   const double share = settings.model_share * settings.model_share;
   const auto margin = [&](const Model& model) {

@@ -30,13 +30,14 @@ class Diagnoser {
     say("simulating the nominal robot", 0.01);
     predictor_.simulate_nominal();
     d_.repeats = predictor_.repeats();
+    d_.same_orders = same_orders_of(d_.observations);
     d_.nominal = predictor_.nominal();
     for (std::size_t r = 0; r < d_.features.size(); ++r)
       residuals_.push_back(d_.features[r].measured() - d_.nominal[r]);
     say("measuring the noise floor", 0.03);
-    d_.nominal_floor = noise_floor(d_.features, residuals_, d_.repeats, open_at(predictor_.unvaried()));
+    d_.nominal_floor = noise_floor(d_.features, residuals_, d_.same_orders, open_at(predictor_.unvaried()));
     d_.floor = d_.nominal_floor;
-    deviations_ = deviations_from_repeats(d_.features, residuals_, d_.repeats);
+    deviations_ = deviations_from_repeats(d_.features, residuals_, d_.same_orders);
     coherence_.emplace(d_.features, d_.repeats, options_.stretch_s);
     d_.where = places(residuals_);
     d_.stages = stage_gaps(d_.features, d_.nominal_floor, *coherence_, residuals_,
@@ -94,7 +95,7 @@ class Diagnoser {
             floor_rms() * floor_rms() * bins};
   }
 
-  double floor_rms() const { return rms_of_repeats(d_.floor, d_.features, deviations_, d_.repeats); }
+  double floor_rms() const { return rms_of_repeats(d_.floor, d_.features, deviations_, d_.same_orders); }
 
   double p_of_chance(double explained) const {
     const double beyond = std::sqrt(std::max(0.0, explained / d_.decision.inflation / 2));

@@ -60,7 +60,7 @@ struct Diagnosis {
   DiagnosisOptions options;               // that it was made with, without `progress` and `stop`
   Observations observations;
   std::vector<FeatureMap> features;
-  std::vector<std::vector<std::size_t>> repeats;
+  std::vector<std::vector<std::size_t>> repeats, same_orders;
   std::vector<Eigen::VectorXd> nominal;   // simulated features of each run
   NoiseFloor nominal_floor, floor;        // around the nominal model; around the best one
   GapPlaces where, where_left;            // before, and after the best model

@@ -75,8 +75,8 @@ double nearest_point(const EffectCurve& curve, const OnCurve& place) {
   return std::ranges::find(curve.points, column, &CurvePoint::column)->value;
 }
 
-// Values on either side of a point at which an effect fits: a curve may bend, and a straight line to a point far away
-// would hide where it goes. Only where there is no point yet.
+// Values on either side of one at which an effect fits: a curve may bend, and a straight line to a point far away would
+// hide where it goes, so that fits creep along it. Only where there is no point yet.
 std::vector<double> bracket(const EffectCurve& curve, double value, Fidelity fidelity) {
   const double neutral = std::ranges::find(curve.points, -1, &CurvePoint::column)->value;
   std::vector<double> values;
@@ -99,12 +99,12 @@ bool refine(EffectCurves& curves, const Singles& singles, std::size_t count, Fid
   for (std::size_t i = 0; i < std::min(count, singles.fits.size()); ++i) {
     const OnCurve& place = singles.fits[i].places.front();
     const EffectCurve& curve = curves.curves[place.curve];
+    if (length_of(singles.products, place) <= kSamePoint) continue;  // as good as neutral
     if (fidelity != Fidelity::every_run && is_between_exact(curve, place.value)) continue;
-    if (!at_point(curve, place, singles.products, fidelity))
-      points.push_back({place.curve, place.value});
-    else if (length_of(singles.products, place) > kSamePoint)
-      for (const double value : bracket(curve, nearest_point(curve, place), fidelity))
-        points.push_back({place.curve, value});
+    const bool stands = at_point(curve, place, singles.products, fidelity);
+    const double at = stands ? nearest_point(curve, place) : place.value;
+    if (!stands) points.push_back({place.curve, at});
+    for (const double value : bracket(curve, at, fidelity)) points.push_back({place.curve, value});
   }
   if (!points.empty()) simulator.add_points(curves, points, fidelity);
   return !points.empty();

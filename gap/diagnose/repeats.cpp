@@ -64,17 +64,35 @@ bool same_commands(const Observation& a, const Observation& b) {
   return otherwise_s(one, two, largest) <= allowed_s && otherwise_s(two, one, largest) <= allowed_s;
 }
 
-}  // namespace
+// Each order once, whatever its duration.
+std::vector<physics::RobotCommand> orders_of(const Timed& commands, const Largest& largest) {
+  std::vector<physics::RobotCommand> orders;
+  for (const rollout::TimedCommand& timed : commands)
+    if (orders.empty() || !alike(orders.back(), timed.command, largest)) orders.push_back(timed.command);
+  return orders;
+}
 
-std::vector<std::vector<std::size_t>> repeats_of(const Observations& observations) {
+bool same_orders(const Observation& a, const Observation& b) {
+  Largest largest;
+  widen(largest, a.replay.timed);
+  widen(largest, b.replay.timed);
+  std::vector<physics::RobotCommand> fewer = orders_of(a.replay.timed, largest),
+                                     more = orders_of(b.replay.timed, largest);
+  if (fewer.size() > more.size()) std::swap(fewer, more);
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < more.size() && found < fewer.size(); ++i) found += alike(fewer[found], more[i], largest);
+  return found == fewer.size() && more.size() <= 2 * fewer.size();
+}
+
+template <class Same>
+std::vector<std::vector<std::size_t>> groups_of(const Observations& observations, Same&& same) {
   std::vector<std::vector<std::size_t>> groups;
   std::map<std::pair<std::string, std::size_t>, std::vector<std::size_t>> groups_of_name;
   for (std::size_t r = 0; r < observations.runs.size(); ++r) {
     const Observation& run = observations.runs[r];
     std::vector<std::size_t>& candidates = groups_of_name[{run.manoeuvre, run.world}];
-    const auto group = std::ranges::find_if(candidates, [&](std::size_t candidate) {
-      return same_commands(observations.runs[groups[candidate].front()], run);
-    });
+    const auto group = std::ranges::find_if(
+        candidates, [&](std::size_t candidate) { return same(observations.runs[groups[candidate].front()], run); });
     if (group != candidates.end()) {
       groups[*group].push_back(r);
     } else {
@@ -83,6 +101,17 @@ std::vector<std::vector<std::size_t>> repeats_of(const Observations& observation
     }
   }
   return groups;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::size_t>> repeats_of(const Observations& observations) {
+  return groups_of(observations, same_commands);
+}
+
+std::vector<std::vector<std::size_t>> same_orders_of(const Observations& observations) {
+  return groups_of(observations,
+                   [](const Observation& a, const Observation& b) { return same_commands(a, b) || same_orders(a, b); });
 }
 
 std::size_t representative(const Observations& observations, const std::vector<std::size_t>& group) {

@@ -16,6 +16,10 @@ namespace kenaf::gap {
 // commands of its own has as many groups as runs.
 std::vector<std::vector<std::size_t>> repeats_of(const Observations& observations);
 
+// The same, and with them the runs of that manoeuvre in which the operator gave the same orders at other times, or left one
+// out: he saw another outcome. How such runs differ is spread, as between repeats.
+std::vector<std::vector<std::size_t>> same_orders_of(const Observations& observations);
+
 // The run of a group whose duration is the middle one.
 std::size_t representative(const Observations& observations, const std::vector<std::size_t>& group);
 

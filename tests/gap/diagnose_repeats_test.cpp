@@ -31,6 +31,23 @@ Groups groups_of(std::vector<Observation> runs) {
   return repeats_of(observations);
 }
 
+Groups same_orders(std::vector<Observation> runs) {
+  Observations observations;
+  observations.runs = std::move(runs);
+  return same_orders_of(observations);
+}
+
+// Each order for a second.
+Observation ordered(std::initializer_list<double> speeds_mps) {
+  Observation observation{};
+  observation.manoeuvre = "a";
+  for (const double speed_mps : speeds_mps)
+    for (int i = 0; i < 10; ++i)
+      observation.replay.timed.push_back(
+          {0.1 * static_cast<double>(observation.replay.timed.size()), {.track_speed_mps = {speed_mps, speed_mps}}});
+  return observation;
+}
+
 std::vector<FeatureMap> maps(std::initializer_list<double> durations_s) {
   std::vector<FeatureMap> maps;
   for (const double duration_s : durations_s)
@@ -53,6 +70,17 @@ TEST_CASE("An order that comes a little later is the same order") {
   // 0.2 s of 4 s are 5 % of the commands; 2 s are half of them
   CHECK(groups_of({told("a", 0.3), told("a", 0.3, 0.2)}) == Groups{{0, 1}});
   CHECK(groups_of({told("a", 0.3), told("a", 0.3, 2)}) == Groups{{0}, {1}});
+}
+
+TEST_CASE("The same orders at other times, or one of them left out, are another outcome of the same manoeuvre") {
+  CHECK(same_orders({told("a", 0.3), told("a", 0.3, 2)}) == Groups{{0, 1}});
+  CHECK(same_orders({ordered({0, 0.2, 0.5, 0.1}), ordered({0, 0.5, 0.1}), ordered({0, 0, 0, 0.2, 0.5, 0.1})}) ==
+        Groups{{0, 1, 2}});
+  // in another order, or with an order that the other one never gave
+  CHECK(same_orders({ordered({0, 0.2, 0.5}), ordered({0, 0.5, 0.2})}) == Groups{{0}, {1}});
+  CHECK(same_orders({ordered({0, 0.2, 0.5}), ordered({0, 0.3, 0.5})}) == Groups{{0}, {1}});
+  // a short log is not part of everything
+  CHECK(same_orders({ordered({0, 0.2, 0.5, 0.1, 0.4}), ordered({0, 0.4})}) == Groups{{0}, {1}});
 }
 
 TEST_CASE("The same commands on another world are another group") {
