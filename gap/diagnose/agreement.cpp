@@ -6,7 +6,7 @@
 namespace kenaf::gap {
 
 Agreement agreement(const EffectCurves& curves, const Model& model, const std::vector<std::vector<std::size_t>>& groups,
-                    double visible) {
+                    double visible, double numerics) {
   EffectSet effects;
   for (const OnCurve& place : model.places) effects.push_back(place.curve);
   const std::vector<Products> runs = products_of_runs_around(curves, model);
@@ -18,14 +18,15 @@ Agreement agreement(const EffectCurves& curves, const Model& model, const std::v
     std::vector<double> weights(runs.size(), 0);
     for (const std::size_t run : group) weights[run] = 1;
     const Products products = weighted_sum(runs, weights);
-    result.gained += left_with(products, common) - fit_together(products, curves.curves, effects).left;
+    const double left = left_with(products, common);
+    const double gained = left - fit_together(products, curves.curves, effects).left;
+    result.gained += std::max(0.0, gained - numerics * std::max(0.0, products.gap_gap - left));
     for (std::size_t e = 0; e < effects.size(); ++e) {
       double moved = 0;
       for (const std::size_t run : group) moved += shift_at(curves.shifts[run], {&common[e], 1}).squaredNorm();
       if (moved >= visible) ++own_values[e];
     }
   }
-  result.gained = std::max(0.0, result.gained);
   for (const double values : own_values) result.freedom += std::max(0.0, values - 1);
   return result;
 }

@@ -16,9 +16,9 @@ struct Agreement {
   double freedom = 0;  // how many values that are
 };
 // `groups`: of repeats, as repeats_of() has them. A value counts as a group's own where its effect moves that group by at
-// least `visible` squared floors. By curves.
+// least `visible` squared floors. Of what the model explains in a group, `numerics` may be gained without counting. By curves.
 Agreement agreement(const EffectCurves& curves, const Model& model,
-                    const std::vector<std::vector<std::size_t>>& groups, double visible);
+                    const std::vector<std::vector<std::size_t>>& groups, double visible, double numerics);
 
 // Chance that a sum of `freedom` squared standard normals is larger (Wilson and Hilferty 1931: to 0.001 from three on); 1
 // without freedom.

@@ -1,6 +1,7 @@
 #include "gap/diagnose/decision.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "gap/diagnose/agreement.hpp"
 
@@ -44,106 +45,140 @@ bool has_trifle(const Model& model, const EffectCurves& curves, double due) {
   return false;
 }
 
+// The steps of docs/gap-method.md, section 4, in their order.
+class Decider {
+ public:
+  Decider(EffectCurves& curves, const Coherence& coherence, const Spread& spread, const Simulator& simulator,
+          const DecisionSettings& settings, std::uint64_t seed)
+      : curves_(curves),
+        coherence_(coherence),
+        simulator_(simulator),
+        settings_(settings),
+        chance_(draw_chance(curves, coherence, settings.null_draws, seed)),
+        inflation_(spread.inflation),
+        negligible_(settings.negligible * settings.negligible * spread.squared_length),
+        numerics_(settings.model_share * settings.model_share),
+        nominal_{{}, {}, true} {
+    for (const Eigen::VectorXd& run : curves.residual) nominal_.shift.push_back(Eigen::VectorXd::Zero(run.size()));
+    measure(nominal_, curves_, coherence_);
+  }
+
+  Decision decide() {
+    d_.inflation = inflation_;
+    d_.chance_coherent = static_cast<double>(coherence_.cell_count());
+    d_.nominal_coherent = nominal_.coherent;
+    d_.best = nominal_;
+    d_.singles = singles();
+    d_.p_gap = std::min(1.0, 2 * std::min(p_of_best_single(), p_of_nominal()));
+    if (d_.p_gap > settings_.false_alarm || !is_noticed()) return d_;
+    // from here on, what the simulation leaves open is taken around what fits best, no longer around the nominal model
+    look_around(d_.singles.front());
+    if (!is_noticed()) return d_;  // a gap is one only if it is beyond that floor too
+    take_effects();
+    doubt();
+    if (d_.doubts.empty())
+      name();
+    else
+      d_.verdict = Verdict::unknown;
+    return d_;
+  }
+
+ private:
+  std::vector<Model> singles() { return search_singles(curves_, coherence_, simulator_, settings_.search); }
+
+  void look_around(const Model& model) {
+    set_whiteners(curves_, simulator_.whiteners_around(values_of(model.places)));
+    measure(nominal_, curves_, coherence_);
+    d_.singles = singles();
+  }
+
+  double p_of_nominal() const { return p_of_energy(chance_, nominal_.coherent / inflation_); }
+  double p_of_best_single() const {
+    const double improvement = nominal_.left - d_.singles.front().left - settings_.rival_margin;
+    return p_of_improvement(chance_, improvement / inflation_);
+  }
+  // Beyond chance, or at least so large that somebody would see it.
+  bool is_noticed() {
+    d_.p_left = p_of_nominal();
+    return d_.p_left <= settings_.false_alarm / 2 || nominal_.left - d_.singles.front().left >= negligible_;
+  }
+
+  double of_numerics(const Model& model) const { return numerics_ * std::max(0.0, nominal_.left - model.left); }
+  double margin(const Model& model) const { return settings_.rival_margin * inflation_ + of_numerics(model); }
+  double p_left(const Model& model) const {
+    return p_of_energy(chance_, (model.coherent - numerics_ * nominal_.coherent) / inflation_);
+  }
+  // Another effect must earn more than the luckiest of all pairs does by chance.
+  double to_earn(const Model& model) const {
+    const double luck = 2 * chance_.improvement[chance_.improvement.size() * 99 / 100];
+    return std::max({luck * inflation_, margin(model), negligible_});
+  }
+  bool is_needed(const Model& fewer, const std::vector<Model>& more) const {
+    return !more.empty() && fewer.left - more.front().left > to_earn(fewer) &&
+           (p_left(fewer) <= settings_.surprise || p_left(more.front()) > settings_.surprise);
+  }
+  std::vector<Model> with_another(const Model& model) const {
+    // sums of curves are rough: half of what another effect must earn is promising
+    return search_sets(curves_, coherence_, simulator_, settings_.search,
+                       model.places.size() == 1 ? all_pairs(curves_) : with_one_more(curves_, model),
+                       model.left - to_earn(model) / 2);
+  }
+
+  void take_effects() {
+    d_.best = d_.singles.front();
+    std::vector<Model> more = with_another(d_.best);
+    while (is_needed(d_.best, more)) {
+      look_around(more.front());
+      if (d_.best.places.size() == 1) d_.best = d_.singles.front();
+      measure(d_.best, curves_, coherence_);
+      for (Model& model : d_.together) measure(model, curves_, coherence_);
+      more = with_another(d_.best);
+      if (!is_needed(d_.best, more)) return;
+      d_.best = more.front();
+      d_.together = std::move(more);
+      if (d_.best.places.size() == settings_.most_effects || p_left(d_.best) > settings_.surprise) return;
+      more = with_another(d_.best);
+    }
+  }
+
+  void doubt() {
+    const auto doubt = [&](bool holds, Doubt which) {
+      if (holds) d_.doubts.push_back(which);
+    };
+    d_.p_left = p_left(d_.best);
+    const Agreement agree = agreement(curves_, d_.best, coherence_.groups(), settings_.rival_margin, numerics_);
+    d_.p_agree = p_of_squares(agree.gained / inflation_, agree.freedom);
+    doubt(d_.p_left <= settings_.surprise, Doubt::much_left);
+    doubt(d_.p_agree <= settings_.surprise, Doubt::disagreement);
+    doubt(at_an_end(d_.best, curves_), Doubt::end_of_range);
+    doubt(has_trifle(d_.best, curves_, settings_.due_share * (nominal_.left - d_.best.left)), Doubt::trifle);
+    for (const OnCurve& place : d_.best.places) d_.rivals.push_back({place.curve});
+  }
+
+  void name() {
+    d_.verdict = Verdict::named;
+    const std::vector<Model>& alternatives = d_.best.places.size() == 1 ? d_.singles : d_.together;
+    for (std::size_t i = 0; i < d_.best.places.size(); ++i) {
+      d_.rivals[i] = rivals_of(d_.best.places[i], d_.best, alternatives, margin(d_.best));
+      if (d_.rivals[i].size() > 1) d_.verdict = Verdict::ambiguous;
+    }
+  }
+
+  EffectCurves& curves_;
+  const Coherence& coherence_;
+  const Simulator& simulator_;
+  const DecisionSettings& settings_;
+  const Chance chance_;
+  const double inflation_, negligible_, numerics_;
+  Model nominal_;
+  Decision d_;
+};
+
 }  // namespace
 
 Decision decide(EffectCurves& curves, const Coherence& coherence, const Spread& spread, const Simulator& simulator,
                 const DecisionSettings& settings, std::uint64_t seed) {
-  Decision decision;
-  const double inflation = decision.inflation = spread.inflation;
-  const double negligible = settings.negligible * settings.negligible * spread.squared_length;
-  const Chance chance = draw_chance(curves, coherence, settings.null_draws, seed);
-  decision.chance_coherent = static_cast<double>(coherence.cell_count());
-  decision.nominal_coherent = coherence.energy(curves.gap);
-  const double nominal_left = squared_length(curves.gap);
-
-  decision.singles = search_singles(curves, coherence, simulator, settings.search);
-  decision.p_left = p_of_energy(chance, decision.nominal_coherent / inflation);
-  const double improvement = nominal_left - decision.singles.front().left - settings.rival_margin;
-  decision.p_gap = std::min(1.0, 2 * std::min(p_of_improvement(chance, improvement / inflation), decision.p_left));
-  Model nominal{{}, {}, true};
-  for (const Eigen::VectorXd& run : curves.residual) nominal.shift.push_back(Eigen::VectorXd::Zero(run.size()));
-  measure(nominal, curves, coherence);
-  decision.best = nominal;
-  if (decision.p_gap > settings.false_alarm) return decision;
-  const bool unexplained = decision.p_left <= settings.false_alarm / 2;
-  if (!unexplained && nominal_left - decision.singles.front().left < negligible) return decision;
-
-  // from here on, what the simulation leaves open is taken around what fits best, no longer around the nominal model
-  const auto look_around = [&](const Model& model) {
-    set_whiteners(curves, simulator.whiteners_around(values_of(model.places)));
-    measure(nominal, curves, coherence);
-  };
-  look_around(decision.singles.front());
-  decision.singles = search_singles(curves, coherence, simulator, settings.search);
-  // and a gap is one only if it is beyond that floor too
-  decision.p_left = p_of_energy(chance, nominal.coherent / inflation);
-  if (decision.p_left > settings.false_alarm / 2 && nominal.left - decision.singles.front().left < negligible) {
-    decision.best = nominal;
-    return decision;
-  }
-
-  const double share = settings.model_share * settings.model_share;
-  const auto margin = [&](const Model& model) {
-    return settings.rival_margin * inflation + share * std::max(0.0, nominal.left - model.left);
-  };
-  const auto p_left = [&](const Model& model) {
-    return p_of_energy(chance, (model.coherent - share * nominal.coherent) / inflation);
-  };
-  // another effect must earn more than the luckiest of all pairs does by chance
-  const double luck = 2 * chance.improvement[chance.improvement.size() * 99 / 100];
-  const auto to_earn = [&](const Model& model) { return std::max({luck * inflation, margin(model), negligible}); };
-  const auto is_needed = [&](const Model& fewer, const Model& more) {
-    return fewer.left - more.left > to_earn(fewer) &&
-           (p_left(fewer) <= settings.surprise || p_left(more) > settings.surprise);
-  };
-  const auto with_another = [&](const Model& model) {
-    // sums of curves are rough: half of what another effect must earn is promising
-    return search_sets(curves, coherence, simulator, settings.search,
-                       model.places.size() == 1 ? all_pairs(curves) : with_one_more(curves, model),
-                       model.left - to_earn(model) / 2);
-  };
-
-  decision.best = decision.singles.front();
-  std::vector<Model> more = with_another(decision.best);
-  while (!more.empty() && is_needed(decision.best, more.front())) {
-    look_around(more.front());
-    decision.singles = search_singles(curves, coherence, simulator, settings.search);
-    Model fewer = decision.best.places.size() == 1 ? decision.singles.front() : decision.best;
-    measure(fewer, curves, coherence);
-    more = with_another(fewer);
-    if (more.empty() || !is_needed(fewer, more.front())) {
-      decision.best = fewer;
-      for (Model& model : decision.together) measure(model, curves, coherence);
-      break;
-    }
-    decision.best = more.front();
-    decision.together = more;
-    if (decision.best.places.size() == settings.most_effects || p_left(decision.best) > settings.surprise) break;
-    more = with_another(decision.best);
-  }
-  decision.p_left = p_left(decision.best);
-  const Agreement agree = agreement(curves, decision.best, coherence.groups(), settings.rival_margin);
-  decision.p_agree =
-      p_of_squares((agree.gained - share * (nominal.left - decision.best.left)) / inflation, agree.freedom);
-  const auto doubt = [&](bool holds, Doubt which) {
-    if (holds) decision.doubts.push_back(which);
-  };
-  doubt(decision.p_left <= settings.surprise, Doubt::much_left);
-  doubt(decision.p_agree <= settings.surprise, Doubt::disagreement);
-  doubt(at_an_end(decision.best, curves), Doubt::end_of_range);
-  doubt(has_trifle(decision.best, curves, settings.due_share * (nominal.left - decision.best.left)), Doubt::trifle);
-  if (!decision.doubts.empty()) {
-    decision.verdict = Verdict::unknown;
-    for (const OnCurve& place : decision.best.places) decision.rivals.push_back({place.curve});
-    return decision;
-  }
-  decision.verdict = Verdict::named;
-  const std::vector<Model>& alternatives = decision.best.places.size() == 1 ? decision.singles : decision.together;
-  for (const OnCurve& place : decision.best.places) {
-    decision.rivals.push_back(rivals_of(place, decision.best, alternatives, margin(decision.best)));
-    if (decision.rivals.back().size() > 1) decision.verdict = Verdict::ambiguous;
-  }
-  return decision;
+  return Decider(curves, coherence, spread, simulator, settings, seed).decide();
 }
 
 }  // namespace kenaf::gap

@@ -11,8 +11,9 @@ using Eigen::VectorXd;
 
 // In floors: a fit that moves less than this from a simulated point has nothing to learn from another one.
 constexpr double kSamePoint = 0.5;
-// Of the way from neutral: a curve is known on either side of a fit at this factor, so that its bend there is.
-constexpr double kBracket = 1.5;
+// Of the way from neutral: a curve is known on either side of a fit at these factors, one after the other, so that its
+// bend there is.
+constexpr double kBrackets[] = {1.5, 1.1};
 // Sets that are simulated, for each contender: sums of curves rank roughly.
 constexpr std::size_t kSetsForAContender = 2;
 
@@ -79,15 +80,21 @@ double nearest_point(const EffectCurve& curve, const OnCurve& place) {
 // hide where it goes, so that fits creep along it. Only where there is no point yet.
 std::vector<double> bracket(const EffectCurve& curve, double value, Fidelity fidelity) {
   const double neutral = std::ranges::find(curve.points, -1, &CurvePoint::column)->value;
-  std::vector<double> values;
-  for (const double factor : {1 / kBracket, kBracket}) {
-    const double wanted = std::clamp(neutral + factor * (value - neutral), curve.parameter->min, curve.parameter->max);
-    const double low = std::min(value, wanted), high = std::max(value, wanted);
-    const bool is_known = std::ranges::any_of(curve.points, [&](const CurvePoint& point) {
+  const auto is_known = [&](double low, double high) {
+    return std::ranges::any_of(curve.points, [&](const CurvePoint& point) {
       return (point.exact || fidelity != Fidelity::every_run) && point.value != value && point.value >= low &&
              point.value <= high;
     });
-    if (!is_known && high > low) values.push_back(wanted);
+  };
+  std::vector<double> values;
+  for (const double bracket : kBrackets) {
+    for (const double factor : {1 / bracket, bracket}) {
+      const double wanted =
+          std::clamp(neutral + factor * (value - neutral), curve.parameter->min, curve.parameter->max);
+      const double low = std::min(value, wanted), high = std::max(value, wanted);
+      if (high > low && !is_known(low, high)) values.push_back(wanted);
+    }
+    if (!values.empty() || fidelity != Fidelity::every_run) break;
   }
   return values;
 }
