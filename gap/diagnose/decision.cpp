@@ -29,12 +29,24 @@ std::vector<std::size_t> rivals_of(const OnCurve& place, const Model& chosen, co
   return rivals;
 }
 
-bool at_an_end(const Model& model, const EffectCurves& curves) {
-  return std::ranges::any_of(model.places, [&](const OnCurve& place) {
+// Values at the end of a range, of effects that would go on there: one that does no more by then has as good a fit well
+// inside.
+bool at_an_end(const Model& model, const EffectCurves& curves, double margin) {
+  constexpr double kInside = 0.9;  // of the way from neutral
+  const std::vector<Products> runs = products_of_runs_around(curves, model);
+  const Products products = weighted_sum(runs, std::vector<double>(runs.size(), 1));
+  const double left = left_with(products, model.places);
+  for (std::size_t i = 0; i < model.places.size(); ++i) {
+    const OnCurve& place = model.places[i];
     const physics::EffectParameter& parameter = *curves.curves[place.curve].parameter;
-    return (place.value <= parameter.min && parameter.min != parameter.neutral) ||
-           (place.value >= parameter.max && parameter.max != parameter.neutral);
-  });
+    const bool at_min = place.value <= parameter.min && parameter.min != parameter.neutral;
+    const bool at_max = place.value >= parameter.max && parameter.max != parameter.neutral;
+    if (!at_min && !at_max) continue;
+    std::vector<OnCurve> inside = model.places;
+    inside[i] = at_value(curves.curves, place.curve, parameter.neutral + kInside * (place.value - parameter.neutral));
+    if (left_with(products, inside) - left > margin) return true;
+  }
+  return false;
 }
 
 // With enough effects anything can be explained: of three or more each must account for a share.
@@ -150,7 +162,7 @@ class Decider {
     d_.p_agree = p_of_squares(agree.gained / inflation_, agree.freedom);
     doubt(d_.p_left <= settings_.surprise, Doubt::much_left);
     doubt(d_.p_agree <= settings_.surprise, Doubt::disagreement);
-    doubt(at_an_end(d_.best, curves_), Doubt::end_of_range);
+    doubt(at_an_end(d_.best, curves_, settings_.rival_margin * inflation_), Doubt::end_of_range);
     doubt(has_trifle(d_.best, curves_, settings_.due_share * (nominal_.left - d_.best.left)), Doubt::trifle);
     for (const OnCurve& place : d_.best.places) d_.rivals.push_back({place.curve});
   }
