@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 constexpr double kSamePoint = 0.5;
 // Of the way from neutral: a curve is known on either side of a fit at these factors, one after the other, so that its
 // bend there is.
-constexpr double kBrackets[] = {1.5, 1.1};
+constexpr double kBrackets[] = {1.5, 1.1, 1.03};
 // Sets that are simulated, for each contender: sums of curves rank roughly.
 constexpr std::size_t kSetsForAContender = 2;
 

@@ -41,7 +41,7 @@ struct SearchSettings {
   std::size_t contenders = 8;   // single effects, and sets, that are refined by representatives
   std::size_t finalists = 5;    // of these, how many are refined by all runs
   int rounds = 5;               // at most, of refining by representatives
-  int exact_rounds = 6;         // at most, of refining by all runs
+  int exact_rounds = 8;         // at most, of refining by all runs
   int together_rounds = 3;      // of refining sets, by representatives and then by all runs
   double near = 0.1;            // share of what the best one explains by which a finalist may be worse
 };
