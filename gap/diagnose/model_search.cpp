@@ -14,6 +14,7 @@ constexpr double kSamePoint = 0.5;
 // Of the way from neutral: a curve is known on either side of a fit at these factors, one after the other, so that its
 // bend there is.
 constexpr double kBrackets[] = {1.5, 1.1, 1.03};
+constexpr double kNear = 0.3;  // of the way to one of these
 // Sets that are simulated, for each contender: sums of curves rank roughly.
 constexpr std::size_t kSetsForAContender = 2;
 
@@ -80,10 +81,12 @@ double nearest_point(const EffectCurve& curve, const OnCurve& place) {
 // hide where it goes, so that fits creep along it. Only where there is no point yet.
 std::vector<double> bracket(const EffectCurve& curve, double value, Fidelity fidelity) {
   const double neutral = std::ranges::find(curve.points, -1, &CurvePoint::column)->value;
-  const auto is_known = [&](double low, double high) {
+  // a point next to the value says nothing of where the curve goes
+  const auto is_known = [&](double wanted) {
+    const double near = value + kNear * (wanted - value);
     return std::ranges::any_of(curve.points, [&](const CurvePoint& point) {
-      return (point.exact || fidelity != Fidelity::every_run) && point.value != value && point.value >= low &&
-             point.value <= high;
+      return (point.exact || fidelity != Fidelity::every_run) && point.value >= std::min(near, wanted) &&
+             point.value <= std::max(near, wanted);
     });
   };
   std::vector<double> values;
@@ -91,8 +94,7 @@ std::vector<double> bracket(const EffectCurve& curve, double value, Fidelity fid
     for (const double factor : {1 / bracket, bracket}) {
       const double wanted =
           std::clamp(neutral + factor * (value - neutral), curve.parameter->min, curve.parameter->max);
-      const double low = std::min(value, wanted), high = std::max(value, wanted);
-      if (high > low && !is_known(low, high)) values.push_back(wanted);
+      if (wanted != value && !is_known(wanted)) values.push_back(wanted);
     }
     if (!values.empty() || fidelity != Fidelity::every_run) break;
   }

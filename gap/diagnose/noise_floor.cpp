@@ -202,7 +202,7 @@ std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Pre
     v[4].physics.contact_stiffness_npm *= factor;
     v[5].physics.contact_damping_nspm *= factor;
   }
-  const std::vector<Shift> shifts = predictor.shifts(variations, Fidelity::representatives);
+  const std::vector<Shift> shifts = predictor.shifts(variations, Fidelity::every_run);
   std::vector<OpenShapes> open;
   for (std::size_t r = 0; r < features.size(); ++r) {
     const auto size = static_cast<Index>(features[r].bins().size());

@@ -55,7 +55,8 @@ struct OpenShapes {
 // Start pose by its uncertainty (`start_sigma_m`, `start_sigma_rad`); time step, contact stiffness and damping by a factor
 // of 2 either way; and for each channel an offset of its resolution: a count more or less lasts as long as the robot
 // rolls on.
-// Around `model`: where an event falls is open around where that model has it.
+// Around `model`: where an event falls is open around where that model has it. Every run by itself: of two repeats one may
+// be about to slip.
 std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Predictor& predictor,
                                     const Variation& model, double start_sigma_m, double start_sigma_rad);
 
