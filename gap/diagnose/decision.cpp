@@ -79,13 +79,12 @@ class Decider {
     d_.inflation = inflation_;
     d_.chance_coherent = static_cast<double>(coherence_.cell_count());
     d_.nominal_coherent = nominal_.coherent;
-    d_.best = nominal_;
     d_.singles = singles();
-    d_.p_gap = std::min(1.0, 2 * std::min(p_of_best_single(), p_of_nominal()));
-    if (d_.p_gap > settings_.false_alarm || !is_noticed()) return d_;
-    // from here on, what the simulation leaves open is taken around what fits best, no longer around the nominal model
+    if (!is_gap()) return d_;
+    // from here on, what the simulation leaves open is taken around what fits best, no longer around the nominal model;
+    // and a gap is one only if it is beyond that floor too
     look_around(d_.singles.front());
-    if (!is_noticed()) return d_;  // a gap is one only if it is beyond that floor too
+    if (!is_gap()) return d_;
     take_effects();
     doubt();
     if (d_.doubts.empty())
@@ -109,10 +108,13 @@ class Decider {
     const double improvement = nominal_.left - d_.singles.front().left - settings_.rival_margin;
     return p_of_improvement(chance_, improvement / inflation_);
   }
-  // Beyond chance, or at least so large that somebody would see it.
-  bool is_noticed() {
+  // Beyond chance, and either in many places at once or so large that somebody would see it.
+  bool is_gap() {
+    d_.best = nominal_;
     d_.p_left = p_of_nominal();
-    return d_.p_left <= settings_.false_alarm / 2 || nominal_.left - d_.singles.front().left >= negligible_;
+    d_.p_gap = std::min(1.0, 2 * std::min(p_of_best_single(), d_.p_left));
+    return d_.p_gap <= settings_.false_alarm &&
+           (d_.p_left <= settings_.false_alarm / 2 || nominal_.left - d_.singles.front().left >= negligible_);
   }
 
   double of_numerics(const Model& model) const { return numerics_ * std::max(0.0, nominal_.left - model.left); }
