@@ -32,8 +32,9 @@ target_compile_options(kenaf_warnings INTERFACE -Wall -Wextra -Wconversion -Wsha
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(kenaf_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict>)
   if(KENAF_PRECOMPILE_HEADERS)
-    # the same of a moved std::string, where its header was precompiled
-    target_compile_options(kenaf_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-array-bounds>)
+    # likewise of a moved std::string, once its header is precompiled
+    target_compile_options(kenaf_warnings INTERFACE
+      $<$<COMPILE_LANGUAGE:CXX>:-Wno-array-bounds$<SEMICOLON>-Wno-stringop-overread$<SEMICOLON>-Wno-stringop-overflow>)
   endif()
   if(KENAF_SANITIZE)
     target_compile_options(kenaf_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-maybe-uninitialized>)
