@@ -33,8 +33,7 @@ std::vector<std::size_t> rivals_of(const OnCurve& place, const Model& chosen, co
 // inside.
 bool at_an_end(const Model& model, const EffectCurves& curves, double margin) {
   constexpr double kInside = 0.9;  // of the way from neutral
-  const std::vector<Products> runs = products_of_runs_around(curves, model);
-  const Products products = weighted_sum(runs, std::vector<double>(runs.size(), 1));
+  const Products products = products_around(curves, model);
   const double left = left_with(products, model.places);
   for (std::size_t i = 0; i < model.places.size(); ++i) {
     const OnCurve& place = model.places[i];

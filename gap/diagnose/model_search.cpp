@@ -24,6 +24,13 @@ Shift shift_of(const EffectCurves& curves, std::span<const OnCurve> places) {
   return shift;
 }
 
+// The gap less what a simulation of the model had beyond the sum of its curves.
+Whitened gap_around(const EffectCurves& curves, const Model& model) {
+  Whitened gap = whitened_difference(curves, model.shift, shift_of(curves, model.places));
+  for (std::size_t r = 0; r < gap.size(); ++r) gap[r] = curves.gap[r] - gap[r];
+  return gap;
+}
+
 struct Singles {
   Products products;
   std::vector<CurveFit> fits;  // best first
@@ -148,11 +155,10 @@ class Sets {
       Candidate& candidate = fits_[i];
       Model simulated{candidate.fit.places, shifts[i], true};
       simulated.left = squared_length(whitened_difference(curves_, curves_.residual, shifts[i]));
+      const Products around = products_around(curves_, simulated);
       if (fidelity == Fidelity::every_run && (!candidate.best.exact || simulated.left < candidate.best.left))
         candidate.best = std::move(simulated);
-      Whitened target = whitened_difference(curves_, shifts[i], shift_of(curves_, candidate.fit.places));
-      for (std::size_t r = 0; r < target.size(); ++r) target[r] = curves_.gap[r] - target[r];
-      candidate.fit = fit_together(products_of(curves_, target), curves_.curves, candidate.set);
+      candidate.fit = fit_together(around, curves_.curves, candidate.set);
     }
   }
 
@@ -280,17 +286,18 @@ std::vector<Model> search_sets(const EffectCurves& curves, const Coherence& cohe
 }
 
 std::vector<Products> products_of_runs_around(const EffectCurves& curves, const Model& model) {
-  Whitened target = whitened_difference(curves, model.shift, shift_of(curves, model.places));
-  for (std::size_t r = 0; r < target.size(); ++r) target[r] = curves.gap[r] - target[r];
-  return products_of_runs(curves, target);
+  return products_of_runs(curves, gap_around(curves, model));
+}
+
+Products products_around(const EffectCurves& curves, const Model& model) {
+  return products_of(curves, gap_around(curves, model));
 }
 
 double left_without(const EffectCurves& curves, const Model& model, std::size_t place) {
   EffectSet others;
   for (std::size_t i = 0; i < model.places.size(); ++i)
     if (i != place) others.push_back(model.places[i].curve);
-  const std::vector<Products> runs = products_of_runs_around(curves, model);
-  const Products products = weighted_sum(runs, std::vector<double>(runs.size(), 1));
+  const Products products = products_around(curves, model);
   return others.empty() ? products.gap_gap : fit_together(products, curves.curves, others).left;
 }
 

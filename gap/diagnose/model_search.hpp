@@ -67,6 +67,7 @@ std::vector<Model> search_sets(const EffectCurves& curves, const Coherence& cohe
 
 // `model` fitted again: what it had in simulation beyond the sum of its curves stays as it is.
 std::vector<Products> products_of_runs_around(const EffectCurves& curves, const Model& model);
+Products products_around(const EffectCurves& curves, const Model& model);  // of all runs together
 // Squared length that is left when one effect of the model is taken out and the others are fitted again; by curves.
 double left_without(const EffectCurves& curves, const Model& model, std::size_t place);
 
