@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 
+#include "gap/challenge/compared_runs.hpp"
 #include "gap/challenge/foreign.hpp"
-#include "gap/diagnose/noise_floor.hpp"
-#include "gap/diagnose/observation.hpp"
-#include "gap/diagnose/prediction.hpp"
 #include "gap/parallel.hpp"
 #include "gap/temporary_folder.hpp"
 #include "physics/effects.hpp"
@@ -20,11 +19,9 @@ namespace kenaf::gap {
 namespace {
 
 namespace fs = std::filesystem;
-using Eigen::VectorXd;
 
 constexpr const char* kRobot = "kenaf";
 constexpr double kStartScatter_m = 0.005, kStartScatter_rad = 0.01;
-constexpr std::size_t kMostRuns = 100;
 constexpr int kHalvings = 12;
 constexpr double kSmallestShare = 1e-5, kCloseEnough = 1.05;
 constexpr double kSmallestPlay = 0.01;  // 3 mrad of backlash: of less there is little but the give of the teeth
@@ -124,47 +121,36 @@ class Scale {
   Scale(const CasePlan& plan, unsigned jobs) : jobs_(jobs) {
     const TemporaryFolder folder;
     write_cases_runs(plan, {}, plan.manoeuvres, mixed(plan.seed, 0), folder.path, jobs);
-    observations_ = observe(folder.path, "", "", kMostRuns);
-    for (const Observation& run : observations_.runs) features_.emplace_back(run.run, kSpan_s);
-    predictor_.emplace(observations_, features_, repeats_of(observations_), jobs);
-    predictor_->simulate_nominal();
-    std::vector<VectorXd> residuals;
-    for (std::size_t r = 0; r < features_.size(); ++r)
-      residuals.push_back(features_[r].measured() - predictor_->nominal()[r]);
-    const auto same_orders = same_orders_of(observations_);
-    floor_ = noise_floor(features_, residuals, same_orders,
-                         open_shapes(features_, *predictor_, predictor_->unvaried(), kOpenStart_m, kOpenStart_rad));
-    floor_rms_ =
-        rms_of_repeats(floor_, features_, deviations_from_repeats(features_, residuals, same_orders), same_orders);
+    runs_.emplace(folder.path, jobs);
+    floor_ = floor_around(*runs_, runs_->predictor.unvaried());
+    floor_rms_ = rms_of_repeats(*runs_, floor_);
   }
 
   double floors_of(const physics::Effects& effects) {
-    Variation variation = predictor_->unvaried();
+    Variation variation = runs_->predictor.unvaried();
     variation.effects = effects;
-    return floor_.rms(predictor_->shifts({&variation, 1}, Fidelity::coarse).front()) / floor_rms_;
+    return floor_.rms(runs_->predictor.shifts({&variation, 1}, Fidelity::coarse).front()) / floor_rms_;
   }
 
   double floors_of_foreign(const std::string& foreign, double amount) {
-    Shift shift(features_.size());
-    for_each_job(features_.size(), jobs_, [&](std::size_t r) {
-      const physics::RobotDescription robot = with_foreign(observations_.robot, foreign, amount);
-      rollout::Manoeuvre replay = observations_.runs[r].replay;
+    const Observations& observed = runs_->observations;
+    Shift shift(runs_->features.size());
+    for_each_job(shift.size(), jobs_, [&](std::size_t r) {
+      const physics::RobotDescription robot = with_foreign(observed.robot, foreign, amount);
+      rollout::Manoeuvre replay = observed.runs[r].replay;
       obey_foreign(replay, foreign, amount);
       rollout::RollOutOptions options;
       options.noise_scale = options.mocap_noise_m = options.mocap_noise_rad = 0;
-      runs::Run run = rollout::roll_out(robot, observations_.worlds[observations_.runs[r].world], replay, options).run;
+      runs::Run run = rollout::roll_out(robot, observed.worlds[observed.runs[r].world], replay, options).run;
       record_foreign(run, foreign, amount);
-      shift[r] = features_[r].of(run) - predictor_->nominal()[r];
+      shift[r] = runs_->features[r].of(run) - runs_->predictor.nominal()[r];
     });
     return floor_.rms(shift) / floor_rms_;
   }
 
  private:
-  static constexpr double kSpan_s = 0.25;
   unsigned jobs_;
-  Observations observations_;
-  std::vector<FeatureMap> features_;
-  std::optional<Predictor> predictor_;
+  std::optional<ComparedRuns> runs_;
   NoiseFloor floor_;
   double floor_rms_ = 1;
 };

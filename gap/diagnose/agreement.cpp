@@ -7,8 +7,7 @@ namespace kenaf::gap {
 
 Agreement agreement(const EffectCurves& curves, const Model& model, const std::vector<std::vector<std::size_t>>& groups,
                     double visible, double numerics) {
-  EffectSet effects;
-  for (const OnCurve& place : model.places) effects.push_back(place.curve);
+  const EffectSet effects = effects_of(model);
   const std::vector<Products> runs = products_of_runs_around(curves, model);
   const std::vector<OnCurve> common =
       fit_together(weighted_sum(runs, std::vector<double>(runs.size(), 1)), curves.curves, effects).places;

@@ -17,7 +17,7 @@ namespace kenaf::gap {
 struct CurvePoint {
   double value;     // of the parameter
   int column;       // of EffectCurves::shifts; -1: the neutral value, which shifts nothing
-  bool exact;       // every run was simulated, not only representatives
+  bool exact;       // every run was simulated, not only one of each group of repeats
 };
 
 struct EffectCurve {
@@ -45,7 +45,7 @@ void set_whiteners(EffectCurves& curves, std::vector<Whitener> whiteners);
 // without, in a world with obstacles or without. What is random (command_loss) is not among them.
 std::vector<EffectCurve> candidate_curves(const Observations& observations, std::span<const std::string> without);
 
-// Simulates points spread over each candidate's range, denser near neutral, by representatives.
+// Simulates points spread over each candidate's range, denser near neutral; coarse.
 EffectCurves scan_effects(std::vector<EffectCurve> candidates, const std::vector<Eigen::VectorXd>& residuals,
                           const NoiseFloor& floor, Predictor& predictor);
 

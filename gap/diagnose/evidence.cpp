@@ -69,9 +69,7 @@ double shrink(double before, double after, double floor) {
 }
 
 Refit::Refit(const EffectCurves& curves, const Model& model)
-    : curves_(curves), runs_(products_of_runs_around(curves, model)) {
-  for (const OnCurve& place : model.places) effects_.push_back(place.curve);
-}
+    : curves_(curves), effects_(effects_of(model)), runs_(products_of_runs_around(curves, model)) {}
 
 std::vector<OnCurve> Refit::operator()(std::span<const double> weights) const {
   return fit_together(weighted_sum(runs_, weights), curves_.curves, effects_).places;

@@ -41,8 +41,8 @@ class Refit {
 
  private:
   const EffectCurves& curves_;
-  std::vector<Products> runs_;
   EffectSet effects_;
+  std::vector<Products> runs_;
 };
 
 // `shift_of` gives the raw shift of every run for the values of its own fold; by curves, or by simulation.

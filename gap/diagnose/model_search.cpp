@@ -194,6 +194,12 @@ std::vector<NewPoint> values_of(const std::vector<OnCurve>& places) {
   return values;
 }
 
+EffectSet effects_of(const Model& model) {
+  EffectSet effects;
+  for (const OnCurve& place : model.places) effects.push_back(place.curve);
+  return effects;
+}
+
 double squared_length(const Whitened& runs) {
   double sum = 0;
   for (const VectorXd& run : runs) sum += run.squaredNorm();
@@ -259,8 +265,7 @@ std::vector<EffectSet> all_pairs(const EffectCurves& curves) {
 }
 
 std::vector<EffectSet> with_one_more(const EffectCurves& curves, const Model& model) {
-  EffectSet set;
-  for (const OnCurve& place : model.places) set.push_back(place.curve);
+  const EffectSet set = effects_of(model);
   std::vector<EffectSet> sets;
   for (std::size_t c = 0; c < curves.curves.size(); ++c) {
     const bool is_in = std::ranges::any_of(
@@ -294,9 +299,8 @@ Products products_around(const EffectCurves& curves, const Model& model) {
 }
 
 double left_without(const EffectCurves& curves, const Model& model, std::size_t place) {
-  EffectSet others;
-  for (std::size_t i = 0; i < model.places.size(); ++i)
-    if (i != place) others.push_back(model.places[i].curve);
+  EffectSet others = effects_of(model);
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(place));
   const Products products = products_around(curves, model);
   return others.empty() ? products.gap_gap : fit_together(products, curves.curves, others).left;
 }

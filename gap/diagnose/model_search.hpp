@@ -1,6 +1,6 @@
 // Models of a gap, that is effects at fitted values, from curves to exact simulations.
 //
-// Cheap before dear: curves of representatives rank all effects and all sets of them; the best ones get points where they
+// Cheap before dear: coarse curves rank all effects and all sets of them; the best ones get points where they
 // fit best, then every run simulated.
 // Thread safety: pure functions apart from what the simulator callbacks do.
 #pragma once
@@ -38,15 +38,18 @@ struct Simulator {
 };
 
 struct SearchSettings {
-  std::size_t contenders = 8;   // single effects, and sets, that are refined by representatives
+  std::size_t contenders = 8;   // single effects, and sets, that are refined, coarse
   std::size_t finalists = 5;    // of these, how many are refined by all runs
-  int rounds = 5;               // at most, of refining by representatives
+  int rounds = 5;               // at most, of refining, coarse
   int exact_rounds = 8;         // at most, of refining by all runs
-  int together_rounds = 3;      // of refining sets, by representatives and then by all runs
+  int together_rounds = 3;      // of refining sets, coarse and then by all runs
   double near = 0.1;            // share of what the best one explains by which a finalist may be worse
 };
 
 std::vector<NewPoint> values_of(const std::vector<OnCurve>& places);
+// Curves of different effects that may explain a gap together.
+using EffectSet = std::vector<std::size_t>;
+EffectSet effects_of(const Model& model);
 double squared_length(const Whitened& runs);
 Whitened whitened_difference(const EffectCurves& curves, const std::vector<Eigen::VectorXd>& a, const Shift& b);
 // Inner products of all runs together.
@@ -56,9 +59,7 @@ Products products_of(const EffectCurves& curves, const Whitened& gap);
 std::vector<Model> search_singles(EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
                                   const SearchSettings& settings);
 
-// Curves of different effects that may explain a gap together.
-using EffectSet = std::vector<std::size_t>;
-// Of those that these runs show.
+// Sets of effects that these runs show.
 std::vector<EffectSet> all_pairs(const EffectCurves& curves);
 std::vector<EffectSet> with_one_more(const EffectCurves& curves, const Model& model);
 // Best first. Only sets that, by their curves, leave less than `to_beat` are simulated; no other one is returned.

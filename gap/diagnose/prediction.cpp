@@ -13,12 +13,13 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
-constexpr double kCoarse = 2;  // time steps: a shift, the difference of two simulations with the same step, hardly changes
+constexpr double kCoarse =
+    2;  // time steps: a shift, the difference of two simulations with the same step, hardly changes
 }
 
 Predictor::Predictor(const Observations& observations, const std::vector<FeatureMap>& features,
-                     std::vector<std::vector<std::size_t>> repeats, unsigned threads,
-                     const std::atomic<bool>* stop, Ranks ranks)
+                     std::vector<std::vector<std::size_t>> repeats, unsigned threads, const std::atomic<bool>* stop,
+                     Ranks ranks)
     : observations_(observations),
       features_(features),
       repeats_(std::move(repeats)),
@@ -95,39 +96,33 @@ VectorXd Predictor::alike(std::size_t from, const VectorXd& shift, std::size_t t
   return result;
 }
 
-std::vector<Shift> Predictor::shifts_of_representatives(std::span<const Variation> variations,
-                                                        const std::vector<VectorXd>& nominal) {
+std::vector<VectorXd> Predictor::simulate_coarse(std::span<const Variation> variations) {
+  std::vector<Variation> coarse(variations.begin(), variations.end());
+  for (Variation& variation : coarse) variation.physics.time_step_s *= kCoarse;
   const std::size_t groups = representatives_.size();
-  const std::vector<VectorXd> simulated = all_of(variations.size() * groups, [&](std::size_t job) {
-    return features_of(representatives_[job % groups], variations[job / groups]);
-  });
+  return all_of(coarse.size() * groups,
+                [&](std::size_t job) { return features_of(representatives_[job % groups], coarse[job / groups]); });
+}
+
+std::vector<Shift> Predictor::coarse_shifts(std::span<const Variation> variations) {
+  if (coarse_nominal_.empty()) {
+    const Variation nominal = unvaried();
+    coarse_nominal_ = simulate_coarse({&nominal, 1});
+  }
+  const std::vector<VectorXd> simulated = simulate_coarse(variations);
+  const std::size_t groups = representatives_.size();
   std::vector<Shift> result(variations.size(), Shift(nominal_.size()));
   for (std::size_t job = 0; job < simulated.size(); ++job) {
-    const std::size_t run = representatives_[job % groups];
-    result[job / groups][run] = simulated[job] - nominal[run];
+    const std::size_t group = job % groups;
+    const VectorXd shift = simulated[job] - coarse_nominal_[group];
+    for (const std::size_t run : repeats_[group])
+      result[job / groups][run] = alike(representatives_[group], shift, run);
   }
-  for (Shift& shift : result)
-    for (std::size_t g = 0; g < groups; ++g)
-      for (const std::size_t r : repeats_[g])
-        if (r != representatives_[g]) shift[r] = alike(representatives_[g], shift[representatives_[g]], r);
   return result;
 }
 
 std::vector<Shift> Predictor::shifts(std::span<const Variation> variations, Fidelity fidelity) {
-  if (fidelity == Fidelity::representatives) return shifts_of_representatives(variations, nominal_);
-  if (fidelity == Fidelity::coarse) {
-    std::vector<Variation> coarse(variations.begin(), variations.end());
-    for (Variation& variation : coarse) variation.physics.time_step_s *= kCoarse;
-    if (coarse_nominal_.empty()) {
-      coarse_nominal_.resize(nominal_.size());
-      Variation unvaried_coarse = unvaried();
-      unvaried_coarse.physics.time_step_s *= kCoarse;
-      const std::vector<VectorXd> simulated = all_of(
-          representatives_.size(), [&](std::size_t g) { return features_of(representatives_[g], unvaried_coarse); });
-      for (std::size_t g = 0; g < simulated.size(); ++g) coarse_nominal_[representatives_[g]] = simulated[g];
-    }
-    return shifts_of_representatives(coarse, coarse_nominal_);
-  }
+  if (fidelity == Fidelity::coarse) return coarse_shifts(variations);
   const std::size_t runs = nominal_.size();
   const std::vector<VectorXd> simulated = all_of(
       variations.size() * runs, [&](std::size_t job) { return features_of(job % runs, variations[job / runs]); });

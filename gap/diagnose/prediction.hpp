@@ -27,9 +27,8 @@ struct Variation {
 using Shift = std::vector<Eigen::VectorXd>;
 
 enum class Fidelity {
-  every_run,        // each run is simulated
-  representatives,  // one run of each group of repeats is; the others shift alike, at the same times
-  coarse,           // likewise, with twice the time step
+  every_run,  // each run is simulated
+  coarse,     // one run of each group of repeats is, with twice the time step; the others shift alike, at the same times
 };
 
 // Thrown by a simulation that was asked to stop.
@@ -64,8 +63,9 @@ class Predictor {
   Eigen::VectorXd features_of(std::size_t run, const Variation& variation) const;
   // job(0) ... job(count - 1), by all ranks and threads together.
   std::vector<Eigen::VectorXd> all_of(std::size_t count, const std::function<Eigen::VectorXd(std::size_t)>& job);
-  std::vector<Shift> shifts_of_representatives(std::span<const Variation> variations,
-                                               const std::vector<Eigen::VectorXd>& nominal);
+  std::vector<Shift> coarse_shifts(std::span<const Variation> variations);
+  // Of each group's representative.
+  std::vector<Eigen::VectorXd> simulate_coarse(std::span<const Variation> variations);
   Eigen::VectorXd alike(std::size_t from, const Eigen::VectorXd& shift, std::size_t to) const;
 
   const Observations& observations_;
@@ -75,7 +75,8 @@ class Predictor {
   unsigned threads_;
   const std::atomic<bool>* stop_;
   Ranks ranks_;
-  std::vector<Eigen::VectorXd> nominal_, coarse_nominal_;  // the latter of representatives, once asked for
+  std::vector<Eigen::VectorXd> nominal_;
+  std::vector<Eigen::VectorXd> coarse_nominal_;  // of each group's representative, once asked for
   std::size_t roll_outs_ = 0;
 };
 
