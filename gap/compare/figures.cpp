@@ -22,18 +22,19 @@ using plot::Stroke;
 constexpr std::size_t kJoinedPairs = 60;
 // What is shown around the paths of the body's centre: the robot is about 0.5 m long, its centre 0.1 m above ground.
 constexpr double kAround_m = 0.2, kBelow_m = 0.2;
+constexpr double kAside_m = 0.1;  // less than that beside a line along x is seen better in numbers
 constexpr double kTimeHeight_px = 270;
 const Point kBreak{std::numeric_limits<double>::quiet_NaN(), 0};
 
-// About kJoinedPairs of the matched pairs, evenly over the real run.
-Line joined_pairs(const ComparedRun& run) {
+// About kJoinedPairs of the matched pairs, evenly over the real run, at `x_m` and `height`.
+Line joined_pairs(const ComparedRun& run, double PoseFrame::*height) {
   Line line{{}, Ink::faint, Stroke::hair, "matched frames"};
   const std::size_t every = std::max<std::size_t>(1, run.real.size() / kJoinedPairs);
   for (std::size_t next = 0; const FramePair& pair : run.matching.pairs) {
     if (pair.real < next) continue;
     next = pair.real + every;
     const PoseFrame &real = run.real[pair.real], &sim = run.sim[pair.sim];
-    line.points.insert(line.points.end(), {{real.x_m, real.z_m}, {sim.x_m, sim.z_m}, kBreak});
+    line.points.insert(line.points.end(), {{real.x_m, real.*height}, {sim.x_m, sim.*height}, kBreak});
   }
   return line;
 }
@@ -90,7 +91,31 @@ Chart path_figure(const ComparedRun& run, const physics::WorldDescription* world
   const double beyond_m = 10 * (1 + (high - low).maxCoeff());
   const double y_m = std::isnan(run.real.front().y_m) ? 0 : run.real.front().y_m;
   if (world != nullptr) draw_section(chart, *world, y_m, low.array() - beyond_m, high.array() + beyond_m);
-  chart.lines = {joined_pairs(run), std::move(real), std::move(sim)};
+  chart.lines = {joined_pairs(run, &PoseFrame::z_m), std::move(real), std::move(sim)};
+  return chart;
+}
+
+std::optional<Chart> plan_figure(const ComparedRun& run, double width_px) {
+  Chart chart;
+  chart.title = "Paths of the body's centre from above, to scale";
+  chart.x_label = "x (m)";
+  chart.y_label = "y (m)";
+  chart.equal_scales = true;
+  chart.width_px = width_px;
+  Line real{{}, Ink::real, Stroke::solid, "real"}, sim{{}, Ink::sim, Stroke::dashed, "simulated"};
+  for (const PoseFrame& frame : run.real) real.points.emplace_back(frame.x_m, frame.y_m);
+  for (const PoseFrame& frame : run.sim) sim.points.emplace_back(frame.x_m, frame.y_m);
+  Point low = real.points.front(), high = low;
+  for (const Line* line : {&real, &sim}) {
+    for (const Point& p : line->points) {
+      if (std::isnan(p.y())) return std::nullopt;
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+  }
+  if (high.y() - low.y() < kAside_m) return std::nullopt;
+  chart.include = {low.array() - kAround_m, high.array() + kAround_m};
+  chart.lines = {joined_pairs(run, &PoseFrame::y_m), std::move(real), std::move(sim)};
   return chart;
 }
 

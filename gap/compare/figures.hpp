@@ -3,6 +3,8 @@
 // Thread safety: pure functions.
 #pragma once
 
+#include <optional>
+
 #include "gap/compare/comparison.hpp"
 #include "gap/plot/chart.hpp"
 #include "physics/world_description.hpp"
@@ -11,6 +13,8 @@ namespace kenaf::gap {
 
 // To scale, with the world's section behind; `world` may be null.
 plot::Chart path_figure(const ComparedRun& run, const physics::WorldDescription* world, double width_px);
+// Seen from above, to scale. Nothing where the robots stay near a line along x, or y was not measured.
+std::optional<plot::Chart> plan_figure(const ComparedRun& run, double width_px);
 // The simulated pitch stands at the time of the real frame that it is matched with.
 plot::Chart pitch_figure(const ComparedRun& run, double width_px);
 plot::Chart position_error_figure(const ComparedRun& run, double width_px);

@@ -124,8 +124,9 @@ std::string run_section(const Comparison& comparison, std::size_t index, Worlds&
       escaped(run.real_file), run.real.size(), escaped(run.sim_file), run.sim.size(),
       escaped(run.real_world == run.sim_world ? run.real_world : run.real_world + ", simulated in " + run.sim_world),
       start_sentence(run, comparison.options), matched_file_name(index));
-  html += "<div class=\"figures\">\n" + to_svg(path_figure(run, worlds.find(run.real_world), kWide_px)) +
-          to_svg(pitch_figure(run, kWide_px)) + to_svg(position_error_figure(run, kHalf_px)) +
+  html += "<div class=\"figures\">\n" + to_svg(path_figure(run, worlds.find(run.real_world), kWide_px));
+  if (const auto plan = plan_figure(run, kWide_px)) html += to_svg(*plan);
+  html += to_svg(pitch_figure(run, kWide_px)) + to_svg(position_error_figure(run, kHalf_px)) +
           to_svg(angle_error_figure(run, kHalf_px)) + "</div>\n";
   return html + quantities_table(run.errors);
 }

@@ -31,7 +31,7 @@ struct HeldOut {
   std::vector<Eigen::VectorXd> left;  // of each run: measured minus what the model fitted to the other folds says
   double before = 0, after = 0, floor = 0;  // rms, whitened
   Interval shrink;
-};
+};  // with a single fold nothing can be held out: it is of the runs that the model was fitted to
 
 // Values of a model's effects fitted to weighted runs.
 class Refit {

@@ -101,7 +101,9 @@ std::string diagnosis_text(const Diagnosis& d) {
     fmt::format_to(out, "  {}{}\n", value_text(d, e), e.at_bound ? "  AT THE END OF ITS RANGE" : "");
   for (const std::string& doubt : doubts_in_words(d.decision)) fmt::format_to(out, "  no name: {}\n", doubt);
   if (d.interrupted.empty()) {
-    fmt::format_to(out, "\nGap on runs held out, in noise floors: {:.2f} before", d.gap.before);
+    fmt::format_to(out, "\nGap on {}, in noise floors: {:.2f} before",
+                   d.observations.runs.size() > 1 ? "runs held out" : "the run fitted to, as there is no other",
+                   d.gap.before);
     if (!d.best.empty())
       fmt::format_to(out, ", {:.2f} after; {:.0f} % of what is beyond {:.2f} is gone ({:.0f} to {:.0f} %)", d.gap.after,
                      d.gap.shrink.value * 100, d.gap.floor, d.gap.shrink.from * 100, d.gap.shrink.to * 100);

@@ -23,6 +23,7 @@ struct TestRun {
   std::string manoeuvre;
   double delay_s = 0, lift_m = 0, ahead_m = 0;
   std::string columns = "t_s,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad";
+  double aside = 0;  // of the way ahead
 };
 
 // 4 s at 20 Hz; after 1 s and the delay it drives 0.4 m at 0.2 m/s, its pitch a tenth of its place.
@@ -30,8 +31,8 @@ std::string csv(const TestRun& run) {
   std::string text = run.columns + "\n";
   for (int i = 0; i <= 80; ++i) {
     const double t = 0.05 * i, s = std::min(0.4, std::max(0.0, 0.2 * (t - 1 - run.delay_s)));
-    text += std::to_string(t) + "," + std::to_string(run.ahead_m + s) + ",0," + std::to_string(0.1 + run.lift_m) +
-            ",0," + std::to_string(0.1 * s) + ",0\n";
+    text += std::to_string(t) + "," + std::to_string(run.ahead_m + s) + "," + std::to_string(run.aside * s) + "," +
+            std::to_string(0.1 + run.lift_m) + ",0," + std::to_string(0.1 * s) + ",0\n";
   }
   return text;
 }
@@ -103,6 +104,17 @@ TEST_CASE("The page needs nothing beside itself: four figures a run, the ground 
   CHECK(count(page, "class=\"area ground\"") == 4);  // level ground and step, for two runs
   CHECK_THAT(page, !Catch::Contains("<script") && !Catch::Contains("<link") && !Catch::Contains("href=\"http") &&
                        !Catch::Contains("src=") && !Catch::Contains("nan"));
+}
+
+TEST_CASE("Paths that leave the vertical plane are shown from above too; less than 0.1 m beside a line is not") {
+  const TemporaryFolder folder;
+  make_dataset(folder / "real",
+               {{"curve", 0, 0, 0, TestRun().columns, 0.5}, {"drive", 0, 0, 0, TestRun().columns, 0.2}});
+  make_dataset(folder / "sim", {{"curve"}, {"drive"}});
+  REQUIRE(kenaf_gap(folder, "compare real sim --out out").status == 0);
+  const std::string page = read_file(folder / "out/compare.html");
+  CHECK_THAT(page, Catch::Contains("from above, to scale"));
+  CHECK(count(page, "<svg class=\"chart\"") == 9);
 }
 
 TEST_CASE("The start is aligned unless told otherwise, and the offset is reported") {
