@@ -31,8 +31,9 @@ NoiseFloor floor_around(ComparedRuns& runs, const Variation& model) {
                      open_shapes(runs.features, runs.predictor, model, kOpenStart_m, kOpenStart_rad));
 }
 
-double rms_of_repeats(const ComparedRuns& runs, const NoiseFloor& floor) {
-  return rms_of_repeats(floor, runs.features, deviations_from_repeats(runs.features, runs.residuals, runs.same_orders),
+double rms_of_repeats(const ComparedRuns& runs, const NoiseFloor& floor,
+                      const std::vector<Eigen::VectorXd>& residuals) {
+  return rms_of_repeats(floor, runs.features, deviations_from_repeats(runs.features, residuals, runs.same_orders),
                         runs.same_orders);
 }
 

@@ -27,7 +27,7 @@ struct ComparedRuns {
 };
 
 NoiseFloor floor_around(ComparedRuns& runs, const Variation& model);
-// The rms of what repeats differ by, in floors.
-double rms_of_repeats(const ComparedRuns& runs, const NoiseFloor& floor);
+// The rms of what repeats differ by, in floors. `residuals`: measured minus what a model says, of each run.
+double rms_of_repeats(const ComparedRuns& runs, const NoiseFloor& floor, const std::vector<Eigen::VectorXd>& residuals);
 
 }  // namespace kenaf::gap

@@ -123,7 +123,7 @@ class Scale {
     write_cases_runs(plan, {}, plan.manoeuvres, mixed(plan.seed, 0), folder.path, jobs);
     runs_.emplace(folder.path, jobs);
     floor_ = floor_around(*runs_, runs_->predictor.unvaried());
-    floor_rms_ = rms_of_repeats(*runs_, floor_);
+    floor_rms_ = rms_of_repeats(*runs_, floor_, runs_->residuals);
   }
 
   double floors_of(const physics::Effects& effects) {

@@ -24,11 +24,12 @@ Shrinks shrinks_on(const std::filesystem::path& dataset, const physics::Effects&
   models[1].effects = hidden;
   const NoiseFloor floor = floor_around(runs, models[1]);
   const std::vector<Shift> shifts = runs.predictor.shifts(models, Fidelity::every_run);
+  const std::vector<VectorXd> left = difference(runs.residuals, shifts[1]);
   Shrinks result;
   result.before = floor.rms(runs.residuals);
-  result.floor = rms_of_repeats(runs, floor);
+  result.floor = rms_of_repeats(runs, floor, left);
   result.told = shrink(result.before, floor.rms(difference(runs.residuals, shifts[0])), result.floor);
-  result.hidden = shrink(result.before, floor.rms(difference(runs.residuals, shifts[1])), result.floor);
+  result.hidden = shrink(result.before, floor.rms(left), result.floor);
   return result;
 }
 

@@ -92,10 +92,16 @@ class Diagnoser {
     double bins = 0;
     for (const VectorXd& run : residuals_) bins += static_cast<double>(run.size());
     return {inflation_from_repeats(d_.features, d_.floor, deviations_, options_.stretch_s),
-            floor_rms() * floor_rms() * bins};
+            std::pow(rms_of_repeats(d_.floor, d_.features, deviations_, d_.same_orders), 2) * bins};
   }
 
-  double floor_rms() const { return rms_of_repeats(d_.floor, d_.features, deviations_, d_.same_orders); }
+  // Around the best model: where the nominal robot falls in one repeat and not in the other, the real one need not.
+  double floor_rms() const {
+    std::vector<VectorXd> left = residuals_;
+    for (std::size_t r = 0; r < left.size(); ++r) left[r] -= d_.decision.best.shift[r];
+    return rms_of_repeats(d_.floor, d_.features, deviations_from_repeats(d_.features, left, d_.same_orders),
+                          d_.same_orders);
+  }
 
   double p_of_chance(double explained) const {
     const double beyond = std::sqrt(std::max(0.0, explained / d_.decision.inflation / 2));
@@ -118,11 +124,11 @@ class Diagnoser {
   void weigh() {
     const double nominal_left = squared_length(d_.curves.gap);
     const Folds by_repeat = folds_by_repeat(d_.repeats), by_manoeuvre = folds_by_manoeuvre(d_.observations);
-    const double share = options_.decision.model_share;
+    const double share = options_.decision.model_share, floor = floor_rms();
     for (const Model& model : d_.decision.singles) {
       if (d_.curves.curves[model.places[0].curve].visible < 1) continue;
       const auto shift = [&](const auto& places_of_run) { return by_curves(d_.curves, model, places_of_run); };
-      const HeldOut held = hold_out(d_.curves, d_.floor, model, by_repeat, floor_rms(), options_.seed, shift);
+      const HeldOut held = hold_out(d_.curves, d_.floor, model, by_repeat, floor, options_.seed, shift);
       const Interval value = value_intervals(d_.curves, model, share, d_.decision.inflation, options_.seed).front();
       d_.ranking.push_back(evidence(model.places[0], value, nominal_left - model.left, held.shrink));
     }
@@ -132,12 +138,12 @@ class Diagnoser {
     const Model& best = d_.decision.best;
     if (best.places.empty()) {
       d_.gap.before = d_.gap.after = d_.floor.rms(residuals_);
-      d_.gap.floor = std::min(floor_rms(), d_.gap.before);
+      d_.gap.floor = std::min(floor, d_.gap.before);
       d_.gap.before_si = d_.gap.after_si = rms_si(residuals_);
       d_.where_left = d_.where;
       return;
     }
-    const HeldOut held = hold_out(d_.curves, d_.floor, best, by_repeat, floor_rms(), options_.seed,
+    const HeldOut held = hold_out(d_.curves, d_.floor, best, by_repeat, floor, options_.seed,
                                   [this](const std::vector<std::vector<OnCurve>>& places_of_run) {
                                     std::vector<Variation> variations;
                                     for (const std::vector<OnCurve>& places : places_of_run)
@@ -147,7 +153,7 @@ class Diagnoser {
     d_.gap = {held.before, held.after, held.floor, held.shrink, {}, rms_si(residuals_), rms_si(held.left)};
     if (by_manoeuvre.size() > 1)
       d_.gap.shrink_by_manoeuvre =
-          hold_out(d_.curves, d_.floor, best, by_manoeuvre, floor_rms(), options_.seed, [&](const auto& places_of_run) {
+          hold_out(d_.curves, d_.floor, best, by_manoeuvre, floor, options_.seed, [&](const auto& places_of_run) {
             return by_curves(d_.curves, best, places_of_run);
           }).shrink;
     d_.where_left = places(held.left);
