@@ -11,6 +11,9 @@
 
 #include <Eigen/Geometry>
 #include <assimp/Importer.hpp>
+#include <charconv>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <set>
 #include <vector>
@@ -53,26 +56,71 @@ void keep_only_loader(Assimp::Importer& importer, const std::string& extension) 
   }
 }
 
-// Assimp's Collada reader follows elements and instances of nodes by recursion, without a limit, and takes anything
-// with a directory of a ZIP archive at its end for one. Expat, which has limits, looks at the file first.
+// Assimp's Collada reader follows elements and instances of nodes by recursion, without a limit, takes anything with a
+// directory of a ZIP archive at its end for one, and believes accessors what they say of their arrays' lengths. Expat,
+// which has limits, looks at the file first.
 struct ColladaCheck {
   static constexpr int kMostNested = 100;
+  struct Accessor {
+    std::string array;
+    std::uint64_t reach;  // values of the array that it goes over
+    std::uint64_t stride;
+    XML_Size line;
+  };
   int depth = 0;
+  bool in_accessor = false;
+  std::uint64_t parameters = 0;  // of this accessor
   const char* refusal = nullptr;
+  std::map<std::string, std::uint64_t> array_lengths;
+  std::vector<Accessor> accessors;
   XML_Parser parser = nullptr;
 };
 
-void collada_start(void* user, const XML_Char* name, const XML_Char**) {
+std::string_view attribute(const XML_Char** attributes, std::string_view name) {
+  for (; *attributes; attributes += 2)
+    if (attributes[0] == name) return attributes[1];
+  return {};
+}
+
+// 32 bits, so that a count times a stride has room in 64.
+std::uint64_t count_in(ColladaCheck& check, std::string_view text, std::uint32_t otherwise) {
+  std::uint32_t count = otherwise;
+  if (text.empty()) return count;
+  if (const auto [end, error] = std::from_chars(text.begin(), text.end(), count);
+      error != std::errc() || end != text.end())
+    check.refusal = "has a count, stride or offset that is not a whole number";
+  return count;
+}
+
+void collada_start(void* user, const XML_Char* element, const XML_Char** attributes) {
   auto& check = *static_cast<ColladaCheck*>(user);
+  const std::string_view name = element;
   if (++check.depth > ColladaCheck::kMostNested) check.refusal = "has elements nested more than 100 deep";
-  if (std::string_view(name) == "instance_node")
+  if (name == "instance_node")
     check.refusal =
         "has an <instance_node>, which is not supported; export the nodes themselves, or an OBJ or STL file";
+  const std::string_view count = attribute(attributes, "count");
+  if (name.ends_with("_array")) {
+    check.array_lengths[std::string(attribute(attributes, "id"))] = count_in(check, count, 0);
+  } else if (name == "accessor") {
+    const std::uint64_t offset = count_in(check, attribute(attributes, "offset"), 0);
+    const std::uint64_t stride = count_in(check, attribute(attributes, "stride"), 1);
+    std::string_view source = attribute(attributes, "source");
+    if (source.starts_with('#')) source.remove_prefix(1);
+    check.accessors.push_back({std::string(source), offset + stride * count_in(check, count, 0), stride,
+                               XML_GetCurrentLineNumber(check.parser)});
+    check.in_accessor = true;
+    check.parameters = 0;
+  } else if (name == "param" && check.in_accessor && ++check.parameters > check.accessors.back().stride) {
+    check.refusal = "has an <accessor> with more parameters than its stride";
+  }
   if (check.refusal) XML_StopParser(check.parser, XML_FALSE);
 }
 
-void collada_end(void* user, const XML_Char*) {
-  --static_cast<ColladaCheck*>(user)->depth;
+void collada_end(void* user, const XML_Char* element) {
+  auto& check = *static_cast<ColladaCheck*>(user);
+  --check.depth;
+  if (std::string_view(element) == "accessor") check.in_accessor = false;
 }
 
 void check_collada(std::string_view bytes) {
@@ -81,7 +129,15 @@ void check_collada(std::string_view bytes) {
   check.parser = parser.get();
   XML_SetUserData(parser.get(), &check);
   XML_SetElementHandler(parser.get(), collada_start, collada_end);
-  if (XML_Parse(parser.get(), bytes.data(), static_cast<int>(bytes.size()), 1) == XML_STATUS_OK) return;
+  if (XML_Parse(parser.get(), bytes.data(), static_cast<int>(bytes.size()), 1) == XML_STATUS_OK) {
+    for (const ColladaCheck::Accessor& accessor : check.accessors) {
+      const auto array = check.array_lengths.find(accessor.array);
+      if (array != check.array_lengths.end() && accessor.reach > array->second)
+        throw DescriptionError(fmt::format("has an <accessor> of {} values of an array of {} (line {})", accessor.reach,
+                                           array->second, accessor.line));
+    }
+    return;
+  }
   if (check.refusal)
     throw DescriptionError(fmt::format("{} (line {})", check.refusal, XML_GetCurrentLineNumber(parser.get())));
   throw DescriptionError(fmt::format("is not a well-formed Collada file: {} (line {})",

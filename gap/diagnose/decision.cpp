@@ -121,10 +121,12 @@ class Decider {
   double p_left(const Model& model) const {
     return p_of_energy(chance_, (model.coherent - numerics_ * nominal_.coherent) / inflation_);
   }
+  // Of three or more effects each must account for this.
+  double due(const Model& model) const { return settings_.due_share * (nominal_.left - model.left); }
   // Another effect must earn more than the luckiest of all pairs does by chance.
   double to_earn(const Model& model) const {
     const double luck = 2 * chance_.improvement[chance_.improvement.size() * 99 / 100];
-    return std::max({luck * inflation_, margin(model), negligible_});
+    return std::max({luck * inflation_, margin(model), negligible_, model.places.size() > 1 ? due(model) : 0});
   }
   bool is_needed(const Model& fewer, const std::vector<Model>& more) const {
     return !more.empty() && fewer.left - more.front().left > to_earn(fewer) &&
@@ -164,7 +166,7 @@ class Decider {
     doubt(d_.p_left <= settings_.surprise, Doubt::much_left);
     doubt(d_.p_agree <= settings_.surprise, Doubt::disagreement);
     doubt(at_an_end(d_.best, curves_, settings_.rival_margin * inflation_), Doubt::end_of_range);
-    doubt(has_trifle(d_.best, curves_, settings_.due_share * (nominal_.left - d_.best.left)), Doubt::trifle);
+    doubt(has_trifle(d_.best, curves_, due(d_.best)), Doubt::trifle);
     for (const OnCurve& place : d_.best.places) d_.rivals.push_back({place.curve});
   }
 

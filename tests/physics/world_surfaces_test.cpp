@@ -351,6 +351,15 @@ TEST_CASE("U5: what would eat memory or stack is refused first") {
   std::string nested;
   for (int i = 0; i < 1000; ++i) nested = "<node>" + nested + "</node>";
   CHECK(error("nested.dae", collada(nested)).find("nested more than 100 deep") != std::string::npos);
+  const auto with = [&](const std::string& was, const std::string& is) {
+    std::string text = collada(node("a", "0 0 0"));
+    return text.replace(text.find(was), was.size(), is);
+  };
+  CHECK_THAT(error("short.dae", with("count=\"9\"", "count=\"0\"")),
+             Catch::Contains("9 values of an array of 0 (line 6)"));
+  CHECK(error("wide.dae", with("stride=\"3\"", "stride=\"2\"")).find("more parameters than its stride") !=
+        std::string::npos);
+  CHECK(error("words.dae", with("count=\"3\"", "count=\"three\"")).find("not a whole number") != std::string::npos);
   // a picture that says it is 60000 x 60000
   std::string png = kGrey8;
   png.replace(16, 8, std::string("\0\0\xea\x60\0\0\xea\x60", 8));
