@@ -12,7 +12,10 @@ using test::Whole;
 
 namespace {
 
-const LinearWorld world;
+const LinearWorld& world() {
+  static const LinearWorld world;  // every test case is a process: only those that use it pay
+  return world;
+}
 constexpr double kLength = 40;
 constexpr Eigen::Index kBinsOfManoeuvre = LinearWorld::kBins / 2;
 
@@ -26,24 +29,24 @@ Whole two_values(const Whole& effect, double second) {
 }  // namespace
 
 TEST_CASE("What manoeuvres would gain by values of their own is what the common one costs them") {
-  const Whole effect = kLength * world.direction(0);
-  const EffectCurves curves = world.curves({effect}, two_values(effect, 0.3));
-  const Agreement found = agreement(curves, world.fitted(curves, {0}), LinearWorld::repeats, 9, 0);
+  const Whole effect = kLength * world().direction(0);
+  const EffectCurves curves = world().curves({effect}, two_values(effect, 0.3));
+  const Agreement found = agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0);
   // of two springs a and b that want values 0.2 apart: a b / (a + b) 0.2^2
   const double a = effect.head(kBinsOfManoeuvre).squaredNorm(), b = effect.tail(kBinsOfManoeuvre).squaredNorm();
   CHECK(found.gained == Approx(a * b / (a + b) * 0.04));
   CHECK(found.freedom == 1);
   // what numerics may change of a gap does not count: here a tenth of some 400 x 0.17
-  CHECK(agreement(curves, world.fitted(curves, {0}), LinearWorld::repeats, 9, 0.1).gained < found.gained - 10);
-  const EffectCurves same = world.curves({effect}, two_values(effect, 0.5));
-  CHECK(agreement(same, world.fitted(same, {0}), LinearWorld::repeats, 9, 0).gained == Approx(0).margin(1e-9));
+  CHECK(agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0.1).gained < found.gained - 10);
+  const EffectCurves same = world().curves({effect}, two_values(effect, 0.5));
+  CHECK(agreement(same, world().fitted(same, {0}), LinearWorld::repeats, 9, 0).gained == Approx(0).margin(1e-9));
 }
 
 TEST_CASE("A manoeuvre that does not show an effect has no value of its own for it") {
-  Whole effect = kLength * world.direction(0);
+  Whole effect = kLength * world().direction(0);
   effect.tail(kBinsOfManoeuvre).setZero();
-  const EffectCurves curves = world.curves({effect, kLength * world.direction(1)}, effect / 2);
-  CHECK(agreement(curves, world.fitted(curves, {0}), LinearWorld::repeats, 9, 0).freedom == 0);
+  const EffectCurves curves = world().curves({effect, kLength * world().direction(1)}, effect / 2);
+  CHECK(agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0).freedom == 0);
   CHECK(p_of_squares(100, 0) == 1);
 }
 
@@ -56,12 +59,12 @@ TEST_CASE("The chance of a sum of squares, against the tables of chi-squared") {
 
 TEST_CASE("An effect that would need another value in each manoeuvre is not named") {
   std::vector<Whole> effects;
-  for (std::size_t i = 0; i < 4; ++i) effects.push_back(kLength * world.direction(i));
-  const Decision one = world.decide(effects, two_values(effects[2], 0.5), {});
+  for (std::size_t i = 0; i < 4; ++i) effects.push_back(kLength * world().direction(i));
+  const Decision one = world().decide(effects, two_values(effects[2], 0.5), {});
   CHECK(one.verdict == Verdict::named);
   CHECK(one.p_agree > 0.5);
   // without noise what is left in all cells, about 400 x 0.2^2 = 16, is less than chance has there: 24
-  const Decision two = world.decide(effects, two_values(effects[2], 0.3), {});
+  const Decision two = world().decide(effects, two_values(effects[2], 0.3), {});
   CHECK(two.verdict == Verdict::unknown);
   CHECK(two.p_agree < 0.005);
   CHECK(two.p_left > 0.1);

@@ -14,7 +14,10 @@ using test::Whole;
 
 namespace {
 
-const LinearWorld world;
+const LinearWorld& world() {
+  static const LinearWorld world;  // every test case is a process: only those that use it pay
+  return world;
+}
 
 Products products(const EffectCurves& curves) {
   return products_of(curves, curves.gap);
@@ -40,9 +43,9 @@ EffectCurves bent(const std::vector<std::pair<double, Eigen::Vector2d>>& points,
 }  // namespace
 
 TEST_CASE("One effect alone is found exactly, with nothing left") {
-  const Whole shift = 20 * world.direction(0);
+  const Whole shift = 20 * world().direction(0);
   for (const double value : {-0.9, -0.1, 0.0, 0.25, 0.7}) {
-    const EffectCurves curves = world.curves({shift}, value * shift);
+    const EffectCurves curves = world().curves({shift}, value * shift);
     const CurveFit fit = fit_one(products(curves), curves.curves, 0);
     CHECK(fit.places[0].value == Approx(value).margin(1e-12));
     CHECK(fit.left == Approx(0).margin(1e-9));
@@ -52,15 +55,16 @@ TEST_CASE("One effect alone is found exactly, with nothing left") {
 }
 
 TEST_CASE("What is across an effect is left") {
-  const EffectCurves curves = world.curves({20 * world.direction(0)}, 10 * world.direction(0) + 3 * world.direction(1));
+  const EffectCurves curves =
+      world().curves({20 * world().direction(0)}, 10 * world().direction(0) + 3 * world().direction(1));
   const CurveFit fit = fit_one(products(curves), curves.curves, 0);
   CHECK(fit.places[0].value == Approx(0.5));
   CHECK(fit.left == Approx(9));
 }
 
 TEST_CASE("A value stays within the parameter's range") {
-  const Whole shift = 20 * world.direction(0);
-  const EffectCurves curves = world.curves({shift}, -1.5 * shift);
+  const Whole shift = 20 * world().direction(0);
+  const EffectCurves curves = world().curves({shift}, -1.5 * shift);
   const CurveFit fit = fit_one(products(curves), curves.curves, 0);
   CHECK(fit.places[0].value == Approx(-1));
   CHECK(fit.left == Approx(100));  // (0.5 x 20)^2
@@ -86,8 +90,8 @@ TEST_CASE("A bent curve: the nearest place on it") {
 }
 
 TEST_CASE("Two effects at 60 degrees are told apart by both inner products") {
-  const Whole a = world.direction(0), b = world.direction(0) / 2 + std::sqrt(0.75) * world.direction(1);
-  const EffectCurves curves = world.curves({20 * a, 20 * b}, 6 * a - 8 * b + 2 * world.direction(2));
+  const Whole a = world().direction(0), b = world().direction(0) / 2 + std::sqrt(0.75) * world().direction(1);
+  const EffectCurves curves = world().curves({20 * a, 20 * b}, 6 * a - 8 * b + 2 * world().direction(2));
   const CurveFit fit = fit_two(products(curves), curves.curves, 0, 1);
   CHECK(fit.places[0].value == Approx(0.3));
   CHECK(fit.places[1].value == Approx(-0.4));
@@ -98,8 +102,8 @@ TEST_CASE("Two effects at 60 degrees are told apart by both inner products") {
 }
 
 TEST_CASE("Two effects of which one is at its bound: the other makes up for it") {
-  const Whole a = world.direction(0), b = world.direction(0) / 2 + std::sqrt(0.75) * world.direction(1);
-  const EffectCurves curves = world.curves({20 * a, 20 * b}, 30 * a);
+  const Whole a = world().direction(0), b = world().direction(0) / 2 + std::sqrt(0.75) * world().direction(1);
+  const EffectCurves curves = world().curves({20 * a, 20 * b}, 30 * a);
   const CurveFit fit = fit_two(products(curves), curves.curves, 0, 1);
   CHECK(fit.places[0].value == Approx(1));
   CHECK(fit.places[1].value == Approx(0.25));  // 10 a . b = 5 of 20
@@ -107,8 +111,8 @@ TEST_CASE("Two effects of which one is at its bound: the other makes up for it")
 }
 
 TEST_CASE("Two effects that do the same share one explanation") {
-  const Whole a = 20 * world.direction(0);
-  const EffectCurves curves = world.curves({a, a}, 0.8 * a);
+  const Whole a = 20 * world().direction(0);
+  const EffectCurves curves = world().curves({a, a}, 0.8 * a);
   const CurveFit fit = fit_two(products(curves), curves.curves, 0, 1);
   CHECK(fit.left == Approx(0).margin(1e-9));
   CHECK(fit.places[0].value + fit.places[1].value == Approx(0.8));
@@ -118,11 +122,11 @@ TEST_CASE("Four effects, each at 60 degrees to the others, are told apart") {
   // edges of a simplex: inner products of 1/2
   std::vector<Whole> effects;
   for (std::size_t i = 0; i < 4; ++i)
-    effects.push_back(20 * (world.direction(4) + world.direction(i)) / std::sqrt(2.0));
+    effects.push_back(20 * (world().direction(4) + world().direction(i)) / std::sqrt(2.0));
   const double values[] = {0.3, -0.4, 0.1, 0.6};
-  Whole gap = 2 * world.direction(5);
+  Whole gap = 2 * world().direction(5);
   for (std::size_t i = 0; i < 4; ++i) gap += values[i] * effects[i];
-  const EffectCurves curves = world.curves(effects, gap);
+  const EffectCurves curves = world().curves(effects, gap);
   for (const std::vector<std::size_t>& order : {std::vector<std::size_t>{0, 1, 2, 3}, {3, 1, 0, 2}}) {
     const CurveFit fit = fit_together(products(curves), curves.curves, order);
     REQUIRE(fit.places.size() == 4);
@@ -136,10 +140,10 @@ TEST_CASE("Four effects, each at 60 degrees to the others, are told apart") {
 }
 
 TEST_CASE("Weights of runs: a run counts as often as it is drawn") {
-  const Whole shift = 20 * world.direction(0);
+  const Whole shift = 20 * world().direction(0);
   Whole gap = 0.2 * shift;
   gap.head(2 * LinearWorld::kBinsOfRun) = 0.6 * shift.head(2 * LinearWorld::kBinsOfRun);  // runs 0 and 1
-  const EffectCurves curves = world.curves({shift}, gap);
+  const EffectCurves curves = world().curves({shift}, gap);
   const std::vector<Products> runs = products_of_runs(curves, curves.gap);
   const auto value = [&](std::vector<double> weights) {
     return fit_one(weighted_sum(runs, weights), curves.curves, 0).places[0].value;
@@ -153,7 +157,7 @@ TEST_CASE("Weights of runs: a run counts as often as it is drawn") {
 }
 
 TEST_CASE("Energy of cells: of noise near their count, of a constant gap growing with the bins of a cell") {
-  const Coherence coherence = world.coherence();
+  const Coherence coherence = world().coherence();
   REQUIRE(coherence.cell_count() == LinearWorld::kCells);
   // a sum of 24 squares of standard normals has a sigma of sqrt(48) = 7; of the mean of 100 of them 0.7
   double sum = 0;
@@ -164,7 +168,7 @@ TEST_CASE("Energy of cells: of noise near their count, of a constant gap growing
   const Whole constant = Whole::Constant(LinearWorld::kBins, 0.5);
   CHECK(coherence.energy(LinearWorld::by_run(constant)) == Approx(24 * 8 * 0.25));
   // in spans half as long it is half as much in each of twice as many cells
-  const Coherence finer(world.features, LinearWorld::repeats, 0.5);
+  const Coherence finer(world().features, LinearWorld::repeats, 0.5);
   CHECK(finer.cell_count() == 48);
   CHECK(finer.energy(LinearWorld::by_run(constant)) == Approx(48 * 4 * 0.25));
   // what repeats do not share, or what alternates within a cell, is no coherent gap
@@ -178,7 +182,7 @@ TEST_CASE("A cell says which group, channel and second it is") {
   Whole gap = Whole::Zero(LinearWorld::kBins);
   gap.segment(2 * LinearWorld::kBinsOfRun + 12 + 4, 4)
       .setConstant(3);  // run 2: the second group; y_m; the second second
-  for (const Cell& cell : world.coherence().cells(LinearWorld::by_run(gap))) {
+  for (const Cell& cell : world().coherence().cells(LinearWorld::by_run(gap))) {
     const bool here = cell.group == 1 && diagnosis_channels()[cell.channel].column == "y_m" && cell.stretch == 1;
     CHECK(cell.z == Approx(here ? 12 / std::sqrt(8.0) : 0).margin(1e-12));
   }

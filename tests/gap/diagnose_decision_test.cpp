@@ -13,13 +13,16 @@ using test::Whole;
 
 namespace {
 
-const LinearWorld world;
+const LinearWorld& world() {
+  static const LinearWorld world;  // every test case is a process: only those that use it pay
+  return world;
+}
 constexpr std::size_t kEffects = 8;
 constexpr double kLength = 40;  // of an effect's shift at the end of its range, in sigma
 
 std::vector<Whole> orthogonal_effects() {
   std::vector<Whole> effects;
-  for (std::size_t i = 0; i < kEffects; ++i) effects.push_back(kLength * world.direction(i));
+  for (std::size_t i = 0; i < kEffects; ++i) effects.push_back(kLength * world().direction(i));
   return effects;
 }
 
@@ -44,7 +47,7 @@ TEST_CASE("Pure noise is called none, except as often as the chance of a false a
     if (false_alarm > 0.01) settings.null_draws = 200;
     int alarms = 0;
     for (std::uint64_t seed = 0; seed < 200; ++seed)
-      alarms += world.decide(effects, LinearWorld::noise(1000 + seed), settings).verdict != Verdict::none;
+      alarms += world().decide(effects, LinearWorld::noise(1000 + seed), settings).verdict != Verdict::none;
     return alarms;
   };
   // one in 200 expected at most; five or more have a chance of 0.4 %
@@ -57,7 +60,7 @@ TEST_CASE("One effect of 10 sigma is named alone, at its value") {
   const std::vector<Whole> effects = orthogonal_effects();
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const double value = seed % 2 == 0 ? 0.25 : -0.25;
-    const Decision decision = world.decide(effects, value * effects[3] + LinearWorld::noise(seed), quick());
+    const Decision decision = world().decide(effects, value * effects[3] + LinearWorld::noise(seed), quick());
     REQUIRE(decision.verdict == Verdict::named);
     REQUIRE(decision.best.places.size() == 1);
     CHECK(decision.best.places[0].curve == 3);
@@ -71,10 +74,10 @@ TEST_CASE("One effect of 10 sigma is named alone, at its value") {
 TEST_CASE("Two effects that look alike to one degree are not told apart, but both are named as possible") {
   std::vector<Whole> effects = orthogonal_effects();
   const double degree = 0.017453;
-  effects[5] = std::cos(degree) * effects[2] + std::sin(degree) * kLength * world.direction(kEffects);
+  effects[5] = std::cos(degree) * effects[2] + std::sin(degree) * kLength * world().direction(kEffects);
   for (const std::size_t truth : {2u, 5u})
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
-      const Decision decision = world.decide(effects, 0.5 * effects[truth] + LinearWorld::noise(seed), quick());
+      const Decision decision = world().decide(effects, 0.5 * effects[truth] + LinearWorld::noise(seed), quick());
       REQUIRE(decision.verdict == Verdict::ambiguous);
       REQUIRE(decision.rivals.size() == 1);
       CHECK(decision.rivals[0].size() == 2);
@@ -85,19 +88,19 @@ TEST_CASE("Two effects that look alike to one degree are not told apart, but bot
 
 TEST_CASE("At 60 degrees they are told apart") {
   std::vector<Whole> effects = orthogonal_effects();
-  effects[5] = 0.5 * effects[2] + std::sqrt(0.75) * kLength * world.direction(kEffects);
-  const Decision decision = world.decide(effects, 0.5 * effects[5] + LinearWorld::noise(1), quick());
+  effects[5] = 0.5 * effects[2] + std::sqrt(0.75) * kLength * world().direction(kEffects);
+  const Decision decision = world().decide(effects, 0.5 * effects[5] + LinearWorld::noise(1), quick());
   CHECK(decision.verdict == Verdict::named);
   CHECK(decision.best.places.at(0).curve == 5);
 }
 
 TEST_CASE("A gap that no effect goes along is unknown, also where one goes along a part of it") {
   const std::vector<Whole> effects = orthogonal_effects();
-  const Whole elsewhere = world.direction(kEffects + 1);
+  const Whole elsewhere = world().direction(kEffects + 1);
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const Whole noise = LinearWorld::noise(seed);
-    CHECK(world.decide(effects, 20 * elsewhere + noise, quick()).verdict == Verdict::unknown);
-    const Decision part = world.decide(effects, 20 * elsewhere + 0.5 * effects[1] + noise, quick());
+    CHECK(world().decide(effects, 20 * elsewhere + noise, quick()).verdict == Verdict::unknown);
+    const Decision part = world().decide(effects, 20 * elsewhere + 0.5 * effects[1] + noise, quick());
     CHECK(part.verdict == Verdict::unknown);
     CHECK(part.best.places.at(0).curve == 1);  // and says what it explains
   }
@@ -106,7 +109,7 @@ TEST_CASE("A gap that no effect goes along is unknown, also where one goes along
 TEST_CASE("An effect beyond the end of its range is not named for what it cannot do") {
   const std::vector<Whole> effects = orthogonal_effects();
   // half of its length is left: 20 sigma
-  CHECK(world.decide(effects, 1.5 * effects[0] + LinearWorld::noise(1), quick()).verdict == Verdict::unknown);
+  CHECK(world().decide(effects, 1.5 * effects[0] + LinearWorld::noise(1), quick()).verdict == Verdict::unknown);
 }
 
 TEST_CASE("At the end of the range of an effect that does no more by then it is named all the same") {
@@ -124,7 +127,7 @@ TEST_CASE("At the end of the range of an effect that does no more by then it is 
     for (const NewPoint& effect : asked) whole += amount(effect) * effects[effect.curve];
     return LinearWorld::by_run(whole);
   };
-  EffectCurves curves = world.curves(effects, gap);
+  EffectCurves curves = world().curves(effects, gap);
   std::vector<NewPoint> known;
   std::vector<Shift> shifts_of_known;
   for (const double value : {-1.0, -0.25, 0.25, 0.6, 1.0}) {
@@ -132,7 +135,7 @@ TEST_CASE("At the end of the range of an effect that does no more by then it is 
     shifts_of_known.push_back(saturated({&known.back(), 1}));
   }
   insert_points(curves, known, shifts_of_known, Fidelity::every_run);
-  Simulator simulator = world.simulator(effects);
+  Simulator simulator = world().simulator(effects);
   simulator.add_points = [&](EffectCurves& to, std::span<const NewPoint> points, Fidelity fidelity) {
     std::vector<Shift> shifts;
     for (const NewPoint& point : points) shifts.push_back(saturated({&point, 1}));
@@ -143,7 +146,7 @@ TEST_CASE("At the end of the range of an effect that does no more by then it is 
     for (const std::vector<NewPoint>& effects_asked : asked) shifts.push_back(saturated(effects_asked));
     return shifts;
   };
-  const Decision decision = decide(curves, world.coherence(), LinearWorld::spread(), simulator, quick(), 1);
+  const Decision decision = decide(curves, world().coherence(), LinearWorld::spread(), simulator, quick(), 1);
   CHECK(decision.verdict == Verdict::named);
   CHECK(decision.best.places.at(0).curve == 0);
   CHECK(decision.best.places.at(0).value == 1);
@@ -153,7 +156,7 @@ TEST_CASE("Exact simulations correct what coarse ones said of an effect's size, 
   const std::vector<Whole> effects = orthogonal_effects();
   for (const double rough : {0.8, 1.25})
     for (const double value : {-0.9, -0.3, 0.2, 0.6, 0.75, 0.95}) {
-      const Decision decision = world.decide(effects, value * effects[3] + LinearWorld::noise(1), quick(), rough);
+      const Decision decision = world().decide(effects, value * effects[3] + LinearWorld::noise(1), quick(), rough);
       INFO("coarse simulations say " << rough << " times as much of " << value);
       CHECK(decision.verdict == Verdict::named);
       REQUIRE(decision.best.places.size() == 1);
@@ -167,7 +170,7 @@ TEST_CASE("Two effects together are both named") {
   const std::vector<Whole> effects = orthogonal_effects();
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const Decision decision =
-        world.decide(effects, 0.5 * effects[1] - 0.4 * effects[6] + LinearWorld::noise(seed), quick());
+        world().decide(effects, 0.5 * effects[1] - 0.4 * effects[6] + LinearWorld::noise(seed), quick());
     REQUIRE(decision.verdict == Verdict::named);
     REQUIRE(decision.best.places.size() == 2);
     CHECK(decision.best.places[0].curve == 1);
@@ -180,7 +183,7 @@ TEST_CASE("Two effects together are both named") {
 TEST_CASE("Three effects of a size are all named; with a third one that is a trifle of the gap the rest is not") {
   const std::vector<Whole> effects = orthogonal_effects();
   const Whole two = 0.5 * effects[1] - 0.4 * effects[6];
-  const Decision all = world.decide(effects, two + 0.3 * effects[4] + LinearWorld::noise(1), quick());
+  const Decision all = world().decide(effects, two + 0.3 * effects[4] + LinearWorld::noise(1), quick());
   CHECK(all.verdict == Verdict::named);
   REQUIRE(all.best.places.size() == 3);
   std::vector<std::size_t> named;
@@ -190,7 +193,7 @@ TEST_CASE("Three effects of a size are all named; with a third one that is a tri
     CHECK(place.value == Approx(place.curve == 1 ? 0.5 : place.curve == 4 ? 0.3 : -0.4).margin(0.1));
 
   // of 20^2 + 16^2 = 656 and what the third one adds, 6.4^2 = 41 are 6 %; a tenth is due
-  const Decision most = world.decide(effects, two + 0.16 * effects[4] + LinearWorld::noise(2), quick());
+  const Decision most = world().decide(effects, two + 0.16 * effects[4] + LinearWorld::noise(2), quick());
   CHECK(most.verdict == Verdict::unknown);
   CHECK(most.best.places.size() == 3);  // but says what it explains
 }
@@ -198,8 +201,9 @@ TEST_CASE("Three effects of a size are all named; with a third one that is a tri
 TEST_CASE("Of two effects one has a look-alike: the other one is sure all the same") {
   std::vector<Whole> effects = orthogonal_effects();
   const double degree = 0.017453;
-  effects[5] = std::cos(degree) * effects[2] + std::sin(degree) * kLength * world.direction(kEffects);
-  const Decision decision = world.decide(effects, 0.5 * effects[2] + 0.5 * effects[7] + LinearWorld::noise(2), quick());
+  effects[5] = std::cos(degree) * effects[2] + std::sin(degree) * kLength * world().direction(kEffects);
+  const Decision decision =
+      world().decide(effects, 0.5 * effects[2] + 0.5 * effects[7] + LinearWorld::noise(2), quick());
   REQUIRE(decision.verdict == Verdict::ambiguous);
   REQUIRE(decision.best.places.size() == 2);
   const std::size_t sure = decision.best.places[0].curve == 7 ? 0 : 1;
@@ -215,9 +219,9 @@ TEST_CASE("What explains less than the negligible share of the noise is none, ho
   // length has a square of 12, a half 48.
   const Whole gap = effects[4] * 5 / kLength;
   DecisionSettings settings = quick();
-  CHECK(world.decide(effects, gap, settings).verdict == Verdict::named);
+  CHECK(world().decide(effects, gap, settings).verdict == Verdict::named);
   settings.negligible = 0.5;
-  const Decision decision = world.decide(effects, gap, settings);
+  const Decision decision = world().decide(effects, gap, settings);
   CHECK(decision.verdict == Verdict::none);
   CHECK(decision.best.places.empty());
   CHECK(decision.p_gap <= settings.false_alarm);
@@ -225,10 +229,10 @@ TEST_CASE("What explains less than the negligible share of the noise is none, ho
 
 TEST_CASE("Repeats that differ more than the floor says make a verdict harder to get") {
   const std::vector<Whole> effects = orthogonal_effects();
-  EffectCurves curves = world.curves(effects, effects[4] * 7 / kLength);
+  EffectCurves curves = world().curves(effects, effects[4] * 7 / kLength);
   const auto verdict = [&](double inflation) {
-    return decide(curves, world.coherence(), {inflation, static_cast<double>(LinearWorld::kBins)},
-                  world.simulator(effects), quick(), 1)
+    return decide(curves, world().coherence(), {inflation, static_cast<double>(LinearWorld::kBins)},
+                  world().simulator(effects), quick(), 1)
         .verdict;
   };
   // 49 explained, against 13 as the luckiest of eight effects in 400 draws, and a margin of 9

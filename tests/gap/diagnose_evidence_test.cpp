@@ -14,7 +14,10 @@ using test::Whole;
 
 namespace {
 
-const LinearWorld world;
+const LinearWorld& world() {
+  static const LinearWorld world;  // every test case is a process: only those that use it pay
+  return world;
+}
 
 void check_whole(const Folds& folds, std::size_t runs) {
   std::multiset<std::size_t> held;
@@ -25,7 +28,7 @@ void check_whole(const Folds& folds, std::size_t runs) {
 }
 
 HeldOut held_out(const EffectCurves& curves, const Model& model) {
-  return hold_out(curves, world.floor(), model, folds_by_repeat(LinearWorld::repeats), 1, 1,
+  return hold_out(curves, world().floor(), model, folds_by_repeat(LinearWorld::repeats), 1, 1,
                   [&](const auto& places_of_run) { return by_curves(curves, model, places_of_run); });
 }
 
@@ -66,10 +69,10 @@ TEST_CASE("Shrink: the share of what was beyond the floor that is gone") {
 }
 
 TEST_CASE("The true effect takes all of a gap away on runs it was not fitted to, another one nothing") {
-  const std::vector<Whole> effects{60 * world.direction(0), 60 * world.direction(1)};
+  const std::vector<Whole> effects{60 * world().direction(0), 60 * world().direction(1)};
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const EffectCurves curves = world.curves(effects, 0.8 * effects[0] + LinearWorld::noise(seed));
-    const HeldOut right = held_out(curves, world.fitted(curves, {0}));
+    const EffectCurves curves = world().curves(effects, 0.8 * effects[0] + LinearWorld::noise(seed));
+    const HeldOut right = held_out(curves, world().fitted(curves, {0}));
     // before: sqrt(1 + 48^2 / 192) = 3.6 floors. Of the root mean square of 192 bins of noise sigma is 0.05, over 2.6:
     // 0.02
     CHECK(right.before == Approx(3.6).margin(0.2));
@@ -80,20 +83,20 @@ TEST_CASE("The true effect takes all of a gap away on runs it was not fitted to,
     CHECK(right.shrink.to >= right.shrink.value);
     CHECK(right.shrink.from > 0.85);
     // what a fit to noise takes away of other runs is less than nothing
-    const HeldOut wrong = held_out(curves, world.fitted(curves, {1}));
+    const HeldOut wrong = held_out(curves, world().fitted(curves, {1}));
     CHECK(wrong.shrink.value == Approx(0).margin(0.02));
   }
 }
 
 TEST_CASE("A value that is held out is fitted without the runs it is for") {
   // run 0 alone shows 0.8, all others 0.2: by repeats, run 0 is held out with run 2, and gets the value of 1 and 3
-  const Whole effect = 60 * world.direction(0);
+  const Whole effect = 60 * world().direction(0);
   Whole gap = 0.2 * effect;
   gap.head(LinearWorld::kBinsOfRun) = 0.8 * effect.head(LinearWorld::kBinsOfRun);
-  const EffectCurves curves = world.curves({effect}, gap);
-  const Model model = world.fitted(curves, {0});
+  const EffectCurves curves = world().curves({effect}, gap);
+  const Model model = world().fitted(curves, {0});
   std::vector<std::vector<OnCurve>> asked;
-  hold_out(curves, world.floor(), model, folds_by_repeat(LinearWorld::repeats), 1, 1, [&](const auto& places_of_run) {
+  hold_out(curves, world().floor(), model, folds_by_repeat(LinearWorld::repeats), 1, 1, [&](const auto& places_of_run) {
     asked = places_of_run;
     return by_curves(curves, model, places_of_run);
   });
@@ -103,10 +106,11 @@ TEST_CASE("A value that is held out is fitted without the runs it is for") {
 }
 
 TEST_CASE("What a simulation of two effects has beyond their sum stays where they are fitted again") {
-  const std::vector<Whole> effects{40 * world.direction(0), 40 * world.direction(1)};
-  const Whole beyond = 6 * world.direction(0);  // looks like more of the first effect, but belongs to the two together
-  const EffectCurves curves = world.curves(effects, 0.5 * effects[0] + 0.5 * effects[1] + beyond);
-  Model model = world.fitted(curves, {0, 1});
+  const std::vector<Whole> effects{40 * world().direction(0), 40 * world().direction(1)};
+  const Whole beyond =
+      6 * world().direction(0);  // looks like more of the first effect, but belongs to the two together
+  const EffectCurves curves = world().curves(effects, 0.5 * effects[0] + 0.5 * effects[1] + beyond);
+  Model model = world().fitted(curves, {0, 1});
   model.places = {at_value(curves.curves, 0, 0.5), at_value(curves.curves, 1, 0.5)};
   const auto parts = LinearWorld::by_run(0.5 * effects[0] + 0.5 * effects[1] + beyond);
   model.shift = parts;
@@ -116,17 +120,17 @@ TEST_CASE("What a simulation of two effects has beyond their sum stays where the
 }
 
 TEST_CASE("Intervals of 95 % cover the true value in 95 % of draws") {
-  const std::vector<Whole> effects{40 * world.direction(0),
-                                   40 * (0.5 * world.direction(0) + std::sqrt(0.75) * world.direction(1))};
+  const std::vector<Whole> effects{40 * world().direction(0),
+                                   40 * (0.5 * world().direction(0) + std::sqrt(0.75) * world().direction(1))};
   const std::array<double, 2> truth{0.4, -0.3};
   int covered = 0, one_covered = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const Whole noise = LinearWorld::noise(5000 + seed);
-    const EffectCurves curves = world.curves(effects, truth[0] * effects[0] + truth[1] * effects[1] + noise);
-    const std::vector<Interval> both = value_intervals(curves, world.fitted(curves, {0, 1}), 0, 1, seed);
+    const EffectCurves curves = world().curves(effects, truth[0] * effects[0] + truth[1] * effects[1] + noise);
+    const std::vector<Interval> both = value_intervals(curves, world().fitted(curves, {0, 1}), 0, 1, seed);
     for (std::size_t e = 0; e < 2; ++e) covered += both[e].from <= truth[e] && truth[e] <= both[e].to;
-    const EffectCurves alone = world.curves({effects[0]}, truth[0] * effects[0] + noise);
-    const Interval one = value_intervals(alone, world.fitted(alone, {0}), 0, 1, seed)[0];
+    const EffectCurves alone = world().curves({effects[0]}, truth[0] * effects[0] + noise);
+    const Interval one = value_intervals(alone, world().fitted(alone, {0}), 0, 1, seed)[0];
     one_covered += one.from <= truth[0] && truth[0] <= one.to;
   }
   INFO("both " << covered << " of 400, one alone " << one_covered << " of 200");
@@ -139,9 +143,9 @@ TEST_CASE("Intervals of 95 % cover the true value in 95 % of draws") {
 }
 
 TEST_CASE("An interval is wider by what numerics may change of a shift, and stays in range") {
-  const Whole effect = 1000 * world.direction(0);
-  const EffectCurves curves = world.curves({effect}, 0.5 * effect);
-  const Model model = world.fitted(curves, {0});
+  const Whole effect = 1000 * world().direction(0);
+  const EffectCurves curves = world().curves({effect}, 0.5 * effect);
+  const Model model = world().fitted(curves, {0});
   const Interval sharp = value_intervals(curves, model, 0, 1, 1)[0];
   // sigma 1 / 1000
   CHECK(sharp.to - sharp.value == Approx(1.96e-3).epsilon(0.02));
@@ -150,9 +154,9 @@ TEST_CASE("An interval is wider by what numerics may change of a shift, and stay
   // half of 10 % of 0.5, twice
   const Interval wide = value_intervals(curves, model, 0.1, 1, 1)[0];
   CHECK(wide.to - wide.value == Approx(1.96 * 0.025).epsilon(0.01));
-  const Whole faint = 1e-3 * world.direction(0);
-  const EffectCurves unseen = world.curves({faint}, 0.5 * faint);
-  const Interval open = value_intervals(unseen, world.fitted(unseen, {0}), 0, 1, 1)[0];
+  const Whole faint = 1e-3 * world().direction(0);
+  const EffectCurves unseen = world().curves({faint}, 0.5 * faint);
+  const Interval open = value_intervals(unseen, world().fitted(unseen, {0}), 0, 1, 1)[0];
   CHECK(open.from == -1);
   CHECK(open.to == 1);
 }
