@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -68,54 +69,56 @@ Chart over_time(const ComparedRun& run, std::string title, std::string y_label, 
   return chart;
 }
 
+Line path_line(const std::vector<PoseFrame>& frames, double PoseFrame::*height, Ink ink, Stroke stroke,
+               std::string legend) {
+  Line line{{}, ink, stroke, std::move(legend)};
+  for (const PoseFrame& frame : frames) line.points.emplace_back(frame.x_m, frame.*height);
+  return line;
+}
+
+struct PathsChart {
+  Chart chart;
+  Eigen::AlignedBox2d bounds;  // of both paths
+};
+
+PathsChart paths_to_scale(const ComparedRun& run, double PoseFrame::*height, double width_px) {
+  PathsChart paths;
+  paths.chart.x_label = "x (m)";
+  paths.chart.equal_scales = true;
+  paths.chart.width_px = width_px;
+  paths.chart.lines = {joined_pairs(run, height), path_line(run.real, height, Ink::real, Stroke::solid, "real"),
+                       path_line(run.sim, height, Ink::sim, Stroke::dashed, "simulated")};
+  for (const std::size_t line : {1u, 2u})
+    for (const Point& p : paths.chart.lines[line].points) paths.bounds.extend(p);
+  return paths;
+}
+
+bool has_y(const std::vector<PoseFrame>& frames) {
+  return std::ranges::none_of(frames, [](const PoseFrame& frame) { return std::isnan(frame.y_m); });
+}
+
 }  // namespace
 
 Chart path_figure(const ComparedRun& run, const physics::WorldDescription* world, double width_px) {
-  Chart chart;
+  auto [chart, bounds] = paths_to_scale(run, &PoseFrame::z_m, width_px);
   chart.title = "Paths of the body's centre in the vertical plane, to scale";
-  chart.x_label = "x (m)";
   chart.y_label = "z (m)";
-  chart.equal_scales = true;
-  chart.width_px = width_px;
-  Line real{vertical_path(run.real), Ink::real, Stroke::solid, "real"};
-  Line sim{vertical_path(run.sim), Ink::sim, Stroke::dashed, "simulated"};
-  Point low = real.points.front(), high = low;
-  for (const Line* line : {&real, &sim}) {
-    for (const Point& p : line->points) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-  }
-  chart.include = {low - Point(kAround_m, kBelow_m), high + Point(kAround_m, kAround_m / 2)};
+  chart.include = {bounds.min() - Point(kAround_m, kBelow_m), bounds.max() + Point(kAround_m, kAround_m / 2)};
   // The view may grow to keep its scale; the section reaches beyond whatever it grows to.
-  const double beyond_m = 10 * (1 + (high - low).maxCoeff());
+  const double beyond_m = 10 * (1 + bounds.sizes().maxCoeff());
   const double y_m = std::isnan(run.real.front().y_m) ? 0 : run.real.front().y_m;
-  if (world != nullptr) draw_section(chart, *world, y_m, low.array() - beyond_m, high.array() + beyond_m);
-  chart.lines = {joined_pairs(run, &PoseFrame::z_m), std::move(real), std::move(sim)};
+  if (world != nullptr)
+    draw_section(chart, *world, y_m, bounds.min().array() - beyond_m, bounds.max().array() + beyond_m);
   return chart;
 }
 
 std::optional<Chart> plan_figure(const ComparedRun& run, double width_px) {
-  Chart chart;
+  if (!has_y(run.real) || !has_y(run.sim)) return std::nullopt;
+  auto [chart, bounds] = paths_to_scale(run, &PoseFrame::y_m, width_px);
+  if (bounds.sizes().y() < kAside_m) return std::nullopt;
   chart.title = "Paths of the body's centre from above, to scale";
-  chart.x_label = "x (m)";
   chart.y_label = "y (m)";
-  chart.equal_scales = true;
-  chart.width_px = width_px;
-  Line real{{}, Ink::real, Stroke::solid, "real"}, sim{{}, Ink::sim, Stroke::dashed, "simulated"};
-  for (const PoseFrame& frame : run.real) real.points.emplace_back(frame.x_m, frame.y_m);
-  for (const PoseFrame& frame : run.sim) sim.points.emplace_back(frame.x_m, frame.y_m);
-  Point low = real.points.front(), high = low;
-  for (const Line* line : {&real, &sim}) {
-    for (const Point& p : line->points) {
-      if (std::isnan(p.y())) return std::nullopt;
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-  }
-  if (high.y() - low.y() < kAside_m) return std::nullopt;
-  chart.include = {low.array() - kAround_m, high.array() + kAround_m};
-  chart.lines = {joined_pairs(run, &PoseFrame::y_m), std::move(real), std::move(sim)};
+  chart.include = {bounds.min().array() - kAround_m, bounds.max().array() + kAround_m};
   return chart;
 }
 
