@@ -95,6 +95,7 @@ struct NumberFormat {
   int decimals = 4;
   bool truncate = false;  // cut off (UDK) instead of rounding (UT2004)
 };
+constexpr NumberFormat kExactNumber{12, false};  // of what Kenaf's own programs send
 
 // Appends messages to a buffer that keeps its capacity, so that a steady stream allocates nothing.
 class MessageWriter {

@@ -5,6 +5,7 @@
 // Thread safety: values and pure functions; a RunWriter belongs to one thread.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -14,6 +15,10 @@
 #include <vector>
 
 namespace kenaf::runs {
+
+// As in the columns' names: flipper_fl_rad, ...
+inline constexpr std::array<std::string_view, 4> kFlippers{"fl", "fr", "rl", "rr"};
+inline constexpr double kSameTime_s = 1e-9;  // apart: sample times are multiples of a step that is no binary fraction
 
 // What is wrong with a file, with file, line and column (both from 1) in its text.
 class RunFileError : public std::runtime_error {

@@ -63,7 +63,7 @@ TEST_CASE("F4 a USARSim robot that looks down a slope to its right") {
   CHECK(nose[1] < 0);  // to the right
 }
 
-TEST_CASE("F5 angles are wrapped into (-pi, pi]") {
+TEST_CASE("F5 angles are wrapped to more than -pi and at most pi") {
   CHECK(wrap_angle(0) == 0);
   CHECK(wrap_angle(pi) == pi);
   CHECK(wrap_angle(-pi) == pi);

@@ -51,7 +51,7 @@ TEST_CASE("Cut into packets at every place, the lines are the same") {
   }
 }
 
-TEST_CASE("An unfinished line is not given out; a line may wait for the next push") {
+TEST_CASE("An unfinished line is not given out, a line may wait for the next push") {
   LineSplitter splitter;
   splitter.push("one\ntwo\nthr");
   CHECK(splitter.next() == "one");

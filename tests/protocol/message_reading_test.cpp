@@ -55,7 +55,7 @@ TEST_CASE("A byte order mark before the first line and a NUL after a line are bl
   CHECK(parsed(std::string_view("\0DRIVE {Left 1}\0", 16)).is("DRIVE"));
 }
 
-TEST_CASE("Repeated keys keep their order; find() gives the first") {
+TEST_CASE("Repeated keys keep their order, find() gives the first") {
   const MessageView view = parsed("MISPKG {Name CameraPanTilt} {Link 1} {Value 0.5} {Order 0} {Link 2} {Value -0.25}");
   REQUIRE(view.group_count == 6);
   CHECK(view.groups[1].value == "1");

@@ -48,7 +48,7 @@ std::string changed(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-TEST_CASE("The example is read; keys it does not know are ignored") {
+TEST_CASE("The example is read, keys it does not know are ignored") {
   const Dataset dataset = parse_dataset(kExample, "dataset.toml");
   CHECK(dataset.source == "real");
   CHECK(dataset.robot == "kenaf");

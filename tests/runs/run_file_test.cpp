@@ -47,7 +47,7 @@ TEST_CASE("Blanks, line ends of Windows, a byte order mark, a plus and empty lin
   CHECK(values(run.column("x_m")) == std::vector<double>{1.5, 2});
 }
 
-TEST_CASE("A last line without its end is a row; a header alone is a run without rows") {
+TEST_CASE("A last line without its end is a row, a header alone is a run without rows") {
   CHECK(parse_run("t_s\n0\n1", "run.csv").row_count() == 2);
   CHECK(parse_run("t_s,x_m", "run.csv").row_count() == 0);
 }
@@ -100,7 +100,7 @@ TEST_CASE("What is written reads back as the same bits, and empty cells stay emp
   CHECK(read_file(folder / "run.csv").starts_with("t_s,x_m,y_m\n0,0.1,-0\n0.01,0.3333333333333333,\n"));
 }
 
-TEST_CASE("The file is whole or absent; an interrupted run leaves its rows in the part file") {
+TEST_CASE("The file is whole or absent, an interrupted run leaves its rows in the part file") {
   const TemporaryFolder folder;
   {
     RunWriter writer(folder / "run.csv", {"t_s"});

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "protocol/data_files.hpp"
+#include "description/data_files.hpp"
 
 namespace fs = std::filesystem;
 using kenaf::find_data_file;

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace kenaf::physics {
+namespace kenaf {
 
 struct DescriptionFile {
   std::string path;  // for errors
@@ -16,4 +16,4 @@ struct DescriptionFile {
 DescriptionFile read_description_file(std::string_view kind, const std::string& name_or_path,
                                       std::string_view extension);
 
-}  // namespace kenaf::physics
+}  // namespace kenaf

@@ -1,4 +1,4 @@
-#include "physics/description_file.hpp"
+#include "description/description_file.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,10 +9,10 @@
 #include <system_error>
 #include <vector>
 
-#include "physics/robot_description.hpp"
-#include "protocol/data_files.hpp"
+#include "description/data_files.hpp"
+#include "description/description_error.hpp"
 
-namespace kenaf::physics {
+namespace kenaf {
 namespace {
 
 std::string shipped_names(const std::string& folder, std::string_view extension) {
@@ -42,4 +42,4 @@ DescriptionFile read_description_file(std::string_view kind, const std::string& 
   return {path.string(), text.str()};
 }
 
-}  // namespace kenaf::physics
+}  // namespace kenaf

@@ -1,4 +1,6 @@
-#include "protocol/data_files.hpp"
+#include "description/data_files.hpp"
+
+#include <dlfcn.h>
 
 #include <cstdlib>
 #include <map>
@@ -8,12 +10,33 @@ namespace kenaf {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// Of an install prefix, a library is in lib/ or, on Debian, in lib/x86_64-linux-gnu/.
+constexpr int kDepthOfLibraries = 2;
+
+// The shared library or program that holds this code.
+fs::path own_file() {
+  Dl_info info{};
+  return dladdr(reinterpret_cast<const void*>(&data_roots), &info) != 0 ? fs::path(info.dli_fname) : fs::path();
+}
+
+}  // namespace
+
 std::vector<fs::path> data_roots() {
   std::vector<fs::path> roots;
   if (const char* set = std::getenv("KENAF_DATA_DIR"); set != nullptr && *set != '\0') roots.emplace_back(set);
   std::error_code ignored;
   if (const fs::path program = fs::read_symlink("/proc/self/exe", ignored); !program.empty()) {
     roots.push_back(program.parent_path().parent_path() / "share" / "kenaf");
+  }
+  // libkenaf_real in a user's program, which may be anywhere
+  if (const fs::path library = fs::weakly_canonical(own_file(), ignored); !library.empty()) {
+    fs::path prefix = library.parent_path();
+    for (int up = 0; up < kDepthOfLibraries; ++up) {
+      prefix = prefix.parent_path();
+      roots.push_back(prefix / "share" / "kenaf");
+    }
   }
   roots.emplace_back(KENAF_SOURCE_DATA_DIR);
   return roots;

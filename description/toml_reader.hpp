@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "physics/robot_description.hpp"
+#include "description/description_error.hpp"
 
-namespace kenaf::physics {
+namespace kenaf {
 
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
@@ -42,6 +42,8 @@ class TomlReader {
   TomlReader table(std::string_view key);
   std::vector<TomlReader> tables(std::string_view key);  // an array of tables; empty where the key is missing
 
+  // Whatever the key holds, it is another reader's.
+  void leave(std::string_view key) { read_.emplace_back(key); }
   // Throws where the file holds a key that was not read.
   void finish() const;
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
@@ -58,4 +60,4 @@ class TomlReader {
   std::vector<std::string> read_;
 };
 
-}  // namespace kenaf::physics
+}  // namespace kenaf

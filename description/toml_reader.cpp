@@ -1,11 +1,11 @@
-#include "physics/toml_reader.hpp"
+#include "description/toml_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace kenaf::physics {
+namespace kenaf {
 namespace {
 
 std::string range_text(Range range) {
@@ -126,4 +126,4 @@ void TomlReader::finish() const {
   }
 }
 
-}  // namespace kenaf::physics
+}  // namespace kenaf

@@ -12,8 +12,8 @@ namespace kenaf {
 std::vector<std::filesystem::path> data_roots();
 
 // The path of `name` + `extension` in `folder` ("robots", "worlds"): first below $KENAF_DATA_DIR, then below the
-// install prefix's share/kenaf (found relative to the running program), then below the source tree this was built
-// from. Where `name` contains a '/' or ends in `extension` it is a path and is returned as it is.
+// install prefix's share/kenaf (found relative to the running program, and to the shared library that asks), then below the
+// source tree this was built from. Where `name` contains a '/' or ends in `extension` it is a path and is returned as it is.
 // Empty: not found anywhere.
 std::filesystem::path find_data_file(std::string_view folder, const std::string& name, std::string_view extension);
 
