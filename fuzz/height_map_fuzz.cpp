@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (surface.triangles.size() != 2 * std::size_t{picture.width - 1} * (picture.height - 1)) __builtin_trap();
     for (const Eigen::Vector3d& p : surface.vertices)
       if (!(p.z() >= 5 && p.z() <= 6)) __builtin_trap();
-  } catch (const DescriptionError&) {
+  } catch (const kenaf::DescriptionError&) {
   }
   return 0;
 }

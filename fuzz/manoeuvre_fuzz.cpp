@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (!(manoeuvre.at_most_s() > 0 && manoeuvre.at_most_s() <= 3600)) __builtin_trap();
       if (manoeuvre.phases.front().give_up || manoeuvre.phases.back().give_up) __builtin_trap();
     }
-  } catch (const kenaf::physics::DescriptionError&) {
+  } catch (const kenaf::DescriptionError&) {
   }
   return 0;
 }

@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (const std::uint32_t corner : triangle)
         if (corner >= mesh.surface.vertices.size()) __builtin_trap();
     if (tidy(mesh.surface).closed && volume_m3(mesh.surface) < -1e-3) __builtin_trap();
-  } catch (const DescriptionError&) {
+  } catch (const kenaf::DescriptionError&) {
   }
   return 0;
 }

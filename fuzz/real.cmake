@@ -1,1 +1,1 @@
-kenaf_fuzzer(heartbeat_fuzz SOURCE heartbeat_fuzz.cpp LIBRARIES kenaf_real_transport)
+kenaf_fuzzer(robot_on_bus_fuzz SOURCE robot_on_bus_fuzz.cpp LIBRARIES kenaf_real_transport kenaf_hrt_config kenaf_test_bus)

@@ -9,7 +9,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const auto robot = kenaf::physics::parse_robot({reinterpret_cast<const char*>(data), size}, "fuzz.toml");
     if (!(robot.total_mass_kg() > 0) || !(robot.track_gauge_m() > 0)) __builtin_trap();
-  } catch (const kenaf::physics::DescriptionError&) {
+  } catch (const kenaf::DescriptionError&) {
   }
   return 0;
 }

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (world.start_poses.empty()) __builtin_trap();
     for (const auto& box : world.boxes)
       if (!(box.size_m.minCoeff() > 0) || !box.X_WBox.p.allFinite()) __builtin_trap();
-  } catch (const kenaf::physics::DescriptionError&) {
+  } catch (const kenaf::DescriptionError&) {
   }
   return 0;
 }

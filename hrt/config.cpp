@@ -13,9 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
-#include <set>
 #include <span>
-#include <vector>
 
 #include "hrt/error.hpp"
 
@@ -31,7 +29,7 @@ struct NumberKey {
 };
 constexpr NumberKey kNumberKeys[] = {
     {"period_s", &hrt_config::period_s, 0.001, 1, 0.01},
-    {"command_timeout_s", &hrt_config::command_timeout_s, 0.01, 10, 0.2},
+    {"command_timeout_s", &hrt_config::command_timeout_s, 0.01, 10, 0.1},
     {"link_timeout_s", &hrt_config::link_timeout_s, 0.05, 10, 0.5},
     {"connect_timeout_s", &hrt_config::connect_timeout_s, 0.05, 60, 3},
     {"max_speed_mmps", &hrt_config::max_speed_mmps, 1, 2000, 200},
@@ -45,7 +43,7 @@ constexpr NumberKey kNumberKeys[] = {
     {"track_gauge_mm", &hrt_config::track_gauge_mm, 50, 5000, 200},
     {"turn_efficiency", &hrt_config::turn_efficiency, 0.1, 2, 1},
     {"hold_s", &hrt_config::hold_s, 0, 0.2, 0.05},
-    {"can_timeout_s", &hrt_config::can_timeout_s, 0.05, 60, 2},
+    {"can_timeout_s", &hrt_config::can_timeout_s, 0.05, 60, 5},
 };
 
 struct FlagKey {
@@ -62,12 +60,10 @@ struct TextKey {
 };
 constexpr TextKey kTextKeys[] = {
     {"relay", [](hrt_config& c) { return std::span<char>(c.relay); }, false},
-    {"can_interface", [](hrt_config& c) { return std::span<char>(c.can_interface); }, false},
+    {"can_interface", [](hrt_config& c) { return std::span<char>(c.can_interface); }, true},
+    {"robot", [](hrt_config& c) { return std::span<char>(c.robot); }, false},
     {"record", [](hrt_config& c) { return std::span<char>(c.record); }, true},
 };
-
-constexpr const char* kNodesKey = "can_nodes";
-constexpr std::size_t kNodeCount = std::size(hrt_config{}.can_nodes);
 
 // Each set_... returns what is wrong with the value, or an empty string once it is set.
 
@@ -91,16 +87,6 @@ std::string set_text(const TextKey& key, std::string_view value, hrt_config& con
   return {};
 }
 
-std::string set_nodes(std::span<const std::int64_t> nodes, hrt_config& config) {
-  const bool in_range = std::ranges::all_of(nodes, [](std::int64_t node) { return node >= 1 && node <= 127; });
-  const std::set<std::int64_t> different(nodes.begin(), nodes.end());
-  if (nodes.size() != kNodeCount || !in_range || different.size() != kNodeCount) {
-    return fmt::format("{} must be {} different node ids from 1 to 127", kNodesKey, kNodeCount);
-  }
-  std::ranges::transform(nodes, config.can_nodes, [](std::int64_t node) { return static_cast<std::uint8_t>(node); });
-  return {};
-}
-
 // One key of the file. Returns what is wrong with it, or an empty string.
 std::string set_from_toml(std::string_view name, const toml::node& node, hrt_config& config) {
   for (const NumberKey& key : kNumberKeys) {
@@ -119,14 +105,6 @@ std::string set_from_toml(std::string_view name, const toml::node& node, hrt_con
     if (!node.is_string()) return fmt::format("{} must be a string in quotes", name);
     return set_text(key, *node.value<std::string_view>(), config);
   }
-  if (name == kNodesKey) {
-    std::vector<std::int64_t> nodes;
-    if (const toml::array* array = node.as_array()) {
-      for (const toml::node& element : *array)
-        nodes.push_back(element.is_integer() ? *element.value<std::int64_t>() : 0);
-    }
-    return set_nodes(nodes, config);
-  }
   return fmt::format("unknown key '{}'; the keys are the members of hrt_config in hrt.h", name);
 }
 
@@ -142,16 +120,6 @@ std::optional<bool> flag_from(std::string_view text) {
   if (text == "true" || text == "1") return true;
   if (text == "false" || text == "0") return false;
   return std::nullopt;
-}
-
-std::vector<std::int64_t> nodes_from(std::string_view text) {
-  std::vector<std::int64_t> nodes;
-  while (!text.empty()) {
-    const std::size_t comma = std::min(text.find(','), text.size());
-    nodes.push_back(number_from<std::int64_t>(text.substr(0, comma)).value_or(0));
-    text.remove_prefix(std::min(comma + 1, text.size()));
-  }
-  return nodes;
 }
 
 std::string variable_name(const char* key) {
@@ -180,8 +148,7 @@ hrt_config default_config() {
   for (const NumberKey& key : kNumberKeys) config.*key.member = key.standard;
   for (const FlagKey& key : kFlagKeys) config.*key.member = 1;
   std::strcpy(config.relay, "127.0.0.1:45454");
-  std::strcpy(config.can_interface, "can0");
-  for (std::size_t i = 0; i < kNodeCount; ++i) config.can_nodes[i] = static_cast<std::uint8_t>(i + 1);
+  std::strcpy(config.robot, "kenaf");
   return config;
 }
 
@@ -230,7 +197,6 @@ void apply_environment(const Environment& environment, hrt_config& config) {
   for (const TextKey& key : kTextKeys) {
     if (const auto text = value_of(key.name)) check(key.name, set_text(key, *text, changed));
   }
-  if (const auto text = value_of(kNodesKey)) check(kNodesKey, set_nodes(nodes_from(*text), changed));
   config = changed;
 }
 
@@ -264,8 +230,6 @@ void check_config(const hrt_config& config) {
     if (end == text.end()) check(fmt::format("{} has no terminating zero", key.name));
     check(end == text.begin() && !key.may_be_empty ? fmt::format("{} must not be empty", key.name) : "");
   }
-  const std::vector<std::int64_t> nodes(std::begin(config.can_nodes), std::end(config.can_nodes));
-  check(set_nodes(nodes, copy));
 }
 
 }  // namespace kenaf::hrt

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "protocol/frames.hpp"
 
@@ -14,6 +15,9 @@ constexpr double kHeadingSmoothing_s = 0.05;
 
 // Thirty years: in nanoseconds, a difference of two such times still fits 64 bits.
 constexpr double kLongest_s = 1e9;
+
+// A posture sensor that is silent for longer is lost, not slow.
+constexpr double kPostureLost_s = 0.25;
 
 // Travel below this is the encoder's resolution, not motion.
 constexpr double kStillTravel_m = 0.00025;
@@ -50,20 +54,29 @@ const Estimate& Estimator::update(const relay::State& state) {
 
   // Heading: the posture sensor's, unwrapped step by step and smoothed, else the encoders'.
   const double before_rad = now.heading_rad;
+  const double turned_rad =
+      (moved_m[relay::kRight] - moved_m[relay::kLeft]) / settings_.track_gauge_m * settings_.turn_efficiency;
   if ((state.fields & relay::kHasPosture) != 0) {
-    const double yaw_rad = state.posture_rad[2];
     if (!has_posture_) {
-      has_posture_ = true;
-      raw_heading_rad_ = yaw_rad;
-      now.heading_rad = yaw_rad;
-      start_heading_rad_ += yaw_rad - before_rad;  // odometry does not jump where the sensor begins late
+      raw_heading_rad_ = now.heading_rad = state.posture_rad[2];
+      start_heading_rad_ += now.heading_rad - before_rad;  // odometry does not jump where the sensor begins late
+    } else if (posture_gap_s_ > kPostureLost_s) {
+      // it may have begun anew, from any heading: the robot's goes on from where the encoders brought it
+      posture_offset_rad_ = before_rad - state.posture_rad[2];
+      raw_heading_rad_ = before_rad;
     } else {
-      raw_heading_rad_ += frames::wrap_angle(yaw_rad - raw_heading_rad_);
+      raw_heading_rad_ += frames::wrap_angle(state.posture_rad[2] + posture_offset_rad_ - raw_heading_rad_);
       now.heading_rad += (raw_heading_rad_ - now.heading_rad) * -std::expm1(-now.dt_s / kHeadingSmoothing_s);
     }
+    has_posture_ = true;
+    posture_gap_s_ = gap_turn_rad_ = 0;
   } else if (!has_posture_) {
-    now.heading_rad +=
-        (moved_m[relay::kRight] - moved_m[relay::kLeft]) / settings_.track_gauge_m * settings_.turn_efficiency;
+    now.heading_rad += turned_rad;
+  } else {
+    // a sensor slower than the cycle leaves short gaps, over which the heading is held
+    posture_gap_s_ += now.dt_s;
+    gap_turn_rad_ += turned_rad;
+    if (posture_gap_s_ > kPostureLost_s) now.heading_rad += std::exchange(gap_turn_rad_, 0);
   }
 
   // Odometry along the mean heading of the step and, with a posture sensor, up and down the slope.

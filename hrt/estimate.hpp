@@ -36,7 +36,9 @@ class Estimator {
   Estimate estimate_;
   std::int64_t start_ns_ = 0, t_ns_ = 0;  // the robot's clock in the first and in the newest cycle
   bool started_ = false;
-  bool has_posture_ = false;  // once seen, the heading is never the encoders' again
+  bool has_posture_ = false;  // was ever seen: the heading is the encoders' before, and while it is lost
+  double posture_gap_s_ = 0, gap_turn_rad_ = 0;  // since it was last seen; what the encoders turned and is not counted yet
+  double posture_offset_rad_ = 0;                // heading minus the sensor's yaw
   bool has_travel_ = false;
   double raw_heading_rad_ = 0;  // unwrapped, not smoothed
   double start_heading_rad_ = 0;

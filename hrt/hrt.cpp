@@ -284,12 +284,22 @@ int hrt_wait_cycle(hrt_state* state) {
   });
 }
 
+int hrt_get_warning(char* text, size_t size) {
+  return guarded([&] {
+    require(text != nullptr && size > 0, "hrt_get_warning: text is null or size is 0");
+    Snapshot snapshot;
+    open_robot()->snapshot(snapshot);
+    text[snapshot.warning.copy(text, size - 1)] = '\0';
+  });
+}
+
 int hrt_show_status(void) {
   return guarded([] {
     const std::shared_ptr<Robot> robot = open_robot();
     Snapshot snapshot;
     const int code = guarded([&] { robot->snapshot(snapshot); });
-    const std::string text = kenaf::hrt::status_text(kenaf::hrt::state_from(snapshot), kenaf::hrt::kLibraryName);
+    std::string text = kenaf::hrt::status_text(kenaf::hrt::state_from(snapshot), kenaf::hrt::kLibraryName);
+    if (!snapshot.warning.empty()) text += "  without   " + snapshot.warning + "\n";
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
     if (code != HRT_OK) throw Error(code, std::string(last_error));

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
+
+#include "hrt/presentation.hpp"
 
 namespace kenaf::hrt {
 namespace {
@@ -12,8 +13,7 @@ constexpr double kTurnGain_per_s = 4;
 // Slow enough that the heading's smoothing and the drive's lag keep within half of the tolerance.
 constexpr double kMinTrackSpeed_mps = 0.003;
 // The smoothed heading has to follow before it is believed: several of its time constants.
-constexpr double kSettled_s = 0.15;
-constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kTurnSettled_s = 0.15;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ MotionStep TurnInPlace::step(const Estimate& now) {
   if (holding_) {
     turn_radps_ = 0;
     watch_.rest(now);
-    result.finished = now.still_s >= kSettled_s;
+    result.finished = now.still_s >= kTurnSettled_s;
     return result;
   }
   switch (watch_.look(remaining_rad, now)) {

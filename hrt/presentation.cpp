@@ -31,7 +31,8 @@ hrt_state state_from(const Snapshot& snapshot) {
   const auto flag = [](bool on, std::uint32_t bit) { return on ? bit : 0u; };
   state.activity = flag(snapshot.motion_active, HRT_MOTION_ACTIVE) | flag(snapshot.paused, HRT_PAUSED) |
                    flag((measured.events & relay::kStoppedBySilence) != 0, HRT_STOPPED_BY_SILENCE) |
-                   flag(snapshot.recording, HRT_RECORDING) | flag(snapshot.lockstep, HRT_IN_LOCKSTEP);
+                   flag(snapshot.recording, HRT_RECORDING) | flag(snapshot.lockstep, HRT_IN_LOCKSTEP) |
+                   flag(!snapshot.warning.empty(), HRT_DEGRADED);
   state.flippers_commanded = snapshot.commanded.flipper_mask;
   state.cycle = measured.frame;
   state.time_s = measured.robot_time_s;
@@ -72,9 +73,10 @@ hrt_state state_from(const Snapshot& snapshot) {
 std::string status_text(const hrt_state& state, const std::string& library) {
   const auto has = [&](std::uint32_t bit) { return (state.valid & bit) != 0; };
   std::string text = fmt::format("Kenaf ({})  t = {:.3f} s  cycle {}", library, state.time_s, state.cycle);
-  for (const auto& [bit, words] : {std::pair{HRT_MOTION_ACTIVE, "in motion"}, std::pair{HRT_PAUSED, "paused"},
-                                   std::pair{HRT_STOPPED_BY_SILENCE, "stopped by silence"},
-                                   std::pair{HRT_RECORDING, "recording"}, std::pair{HRT_IN_LOCKSTEP, "lock step"}}) {
+  for (const auto& [bit, words] :
+       {std::pair{HRT_MOTION_ACTIVE, "in motion"}, std::pair{HRT_PAUSED, "paused"},
+        std::pair{HRT_STOPPED_BY_SILENCE, "stopped by silence"}, std::pair{HRT_RECORDING, "recording"},
+        std::pair{HRT_IN_LOCKSTEP, "lock step"}, std::pair{HRT_DEGRADED, "degraded"}}) {
     if ((state.activity & static_cast<std::uint32_t>(bit)) != 0) text += fmt::format("  [{}]", words);
   }
   text += '\n';

@@ -42,6 +42,7 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
     // The first cycle is known before the caller goes on.
     measured_ = *first;
     estimate_ = estimator_.update(*first);
+    warning_ = transport_->warning();
     last_call_t_s_ = estimate_.t_s;
     due_.push_back({gettid()});
     if (config_.record[0] != '\0') recorder_ = std::make_unique<Recorder>(config_.record, connection_.lockstep);
@@ -213,6 +214,7 @@ void Robot::snapshot(Snapshot& out) {
   out.estimate = estimate_;
   out.commanded = command_;
   out.lost_cycles = lost_cycles_;
+  out.warning = warning_;
   out.round_trip_s = transport_->round_trip_s();
   out.motion_active = motion_active();
   out.paused = transport_->is_paused();
@@ -298,6 +300,7 @@ std::optional<DriveCommand> Robot::answer(const relay::State& state) {
     lost_cycles_ += state.frame - estimate_.frame - 1;
     measured_ = state;
     estimate_ = estimator_.update(state);
+    warning_ = transport_->warning();
     if (recorder_) recorder_->add(state, command_);
   }
   step_calls();

@@ -34,6 +34,7 @@ struct Snapshot {
   DriveCommand commanded;
   std::uint64_t lost_cycles = 0;
   double round_trip_s = 0;
+  std::string warning;
   bool motion_active = false, paused = false, recording = false, lockstep = false;
 };
 
@@ -122,6 +123,7 @@ class Robot {
   Estimator estimator_;
   Estimate estimate_;
   std::uint64_t lost_cycles_ = 0;
+  std::string warning_;
   DriveCommand command_;  // the newest answer, in force from the next cycle on
   std::array<double, kTrackCount> user_track_mps_{};
   std::array<double, kTrackCount> motion_track_mps_{};

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "kenaf/hrt.h"
 #include "protocol/relay_datagram.hpp"
@@ -52,6 +53,9 @@ class Transport {
 
   // Stops the robot and gives it back. Does not throw.
   virtual void close() = 0;
+
+  // What the robot goes on without, in words; "" where nothing is missing. As of the newest state, for the thread that waits for it.
+  virtual std::string warning() const { return {}; }
 
   virtual double round_trip_s() const = 0;  // newest, wall clock; 0: not known yet
   virtual bool is_paused() const = 0;       // somebody has stopped robot time

@@ -1,73 +1,139 @@
 #include "libkenaf_real/can_transport.hpp"
 
 #include <fmt/format.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <chrono>
-#include <cstring>
+#include <atomic>
 
+#include "canbus/bus_layout.hpp"
+#include "canbus/robot_bus.hpp"
+#include "canbus/socket_bus.hpp"
+#include "description/description_error.hpp"
 #include "hrt/error.hpp"
-#include "libkenaf_real/heartbeat.hpp"
+#include "libkenaf_real/bus_cycle.hpp"
+#include "libkenaf_real/commissioning.hpp"
+#include "libkenaf_real/drive_targets.hpp"
+#include "libkenaf_real/measured_state.hpp"
+#include "libkenaf_real/power.hpp"
 
 namespace kenaf::real {
 namespace {
 
 using hrt::Error;
 
-constexpr const char* kDriveNames[] = {"track left",          "track right",       "flipper front left",
-                                       "flipper front right", "flipper rear left", "flipper rear right"};
+// The heading's bias is learnt in this time, while the robot stands; also what "standing" needs to be believed.
+constexpr double kStand_s = 0.5;
+constexpr canopen::Time kEmergencyFollows = std::chrono::milliseconds(20);
+
+canbus::RobotBus read_description(const hrt_config& config) {
+  try {
+    canbus::RobotBus bus = canbus::load_robot_bus(config.robot);
+    if (config.can_interface[0] != '\0') bus.interface = config.can_interface;
+    return bus;
+  } catch (const DescriptionError& error) {
+    throw Error(HRT_E_CONFIG, error.what());
+  }
+}
 
 }  // namespace
 
-CanTransport::CanTransport() : interrupt_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  if (interrupt_ < 0) throw Error(HRT_E_INTERNAL, fmt::format("eventfd: {}", std::strerror(errno)));
+struct CanTransport::Session {
+  Session(const hrt_config& config, const OpenBus& open_bus)
+      : robot(read_description(config)),
+        period_s(config.period_s),
+        bus(open_bus(robot.interface, canbus::ids_to_hear(robot))),
+        master(*bus, robot.master, to_time(robot.master_heartbeat_s), to_time(robot.answer_s)),
+        cycle(master, robot, period_s) {}
+
+  canbus::RobotBus robot;
+  double period_s;
+  std::unique_ptr<canopen::Bus> bus;
+  Master master;
+  BusCycle cycle;
+  std::optional<MeasuredState> measured;
+  std::optional<DriveTargets> targets;
+  std::uint32_t answered = 0, newest = 0;  // beats
+  bool lost = false;
+  std::atomic<double> round_trip_s = 0;
+};
+
+CanTransport::CanTransport(OpenBus open_bus) : open_bus_(std::move(open_bus)) {}
+CanTransport::~CanTransport() = default;
+
+hrt::Connection CanTransport::open(const hrt_config& config) try {
+  session_ = std::make_unique<Session>(config, open_bus_);
+  Session& s = *session_;
+  s.lost = true;  // until all are enabled there is nothing to stop in an orderly way
+  const NodeFacts facts = commission(s.master, s.robot, s.period_s, config.can_timeout_s);
+  s.cycle.start();
+  power_up(s.cycle);
+  s.measured.emplace(s.robot, facts, s.period_s);
+  s.targets.emplace(s.robot, s.cycle.image());
+  s.lost = false;
+  for (double t_s = 0; t_s < kStand_s; t_s += s.period_s) {
+    if (!wait_state()) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");
+    send({});
+  }
+  return {.period_s = s.period_s, .lockstep = false};
+} catch (const canbus::NoBus& error) {
+  throw Error(HRT_E_DEVICE, error.what());
+} catch (const canopen::BusError& error) {
+  throw Error(HRT_E_LINK, error.what());
 }
 
-CanTransport::~CanTransport() {
-  ::close(interrupt_);
+std::optional<relay::State> CanTransport::wait_state() try {
+  Session& s = *session_;
+  const std::optional<Beat> beat = s.cycle.wait();
+  if (!beat) return std::nullopt;
+  if (const std::optional<std::size_t> drive = s.cycle.lost_drive()) lose(*drive);
+  s.newest = beat->number;
+  s.round_trip_s = s.cycle.round_trip_s();
+  return s.measured->update(s.cycle, *beat);
+} catch (const canopen::BusError& error) {
+  session_->lost = true;
+  throw Error(HRT_E_LINK, error.what());
 }
 
-hrt::Connection CanTransport::open(const hrt_config& config) {
-  const std::span<const std::uint8_t> nodes(config.can_nodes);
-  socket_ = std::make_unique<CanSocket>(config.can_interface, nodes);
-  const auto patience =
-      std::chrono::round<std::chrono::milliseconds>(std::chrono::duration<double>(config.can_timeout_s));
-  const NodesHeard heard = listen_for(nodes, socket_->descriptor(), interrupt_, patience);
-  std::string missing;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (heard.state.contains(nodes[i])) continue;
-    missing += fmt::format("{}{} (node {})", missing.empty() ? "" : ", ", kDriveNames[i], nodes[i]);
-  }
-  if (!missing.empty()) {
-    throw Error(HRT_E_DEVICE,
-                fmt::format("no heartbeat on {} within {} s from: {}{}{}; are they powered, is the bit rate "
-                            "right, are can_nodes theirs?",
-                            config.can_interface, config.can_timeout_s, missing,
-                            heard.bus_error.empty() ? "" : "; the bus reports: ", heard.bus_error));
-  }
+// One drive does not obey any more: the others stop before anything else is done.
+void CanTransport::lose(std::size_t drive) {
+  Session& s = *session_;
+  s.lost = true;
+  quick_stop(s.cycle);
+  const std::string loss = s.cycle.loss_of(drive);
+  s.master.wait_until(s.master.now() + kEmergencyFollows, [&] { return !s.cycle.emergency_of(drive).empty(); });
+  const std::string emergency = s.cycle.emergency_of(drive);
   throw Error(HRT_E_DEVICE,
-              fmt::format("all drives answer on {}, but this release of libkenaf_real does not drive them "
-                          "yet; nothing was sent, nothing moves",
-                          config.can_interface));
+              fmt::format("{}{}{}; all drives were told to stop; hrt_close() and hrt_kenaf_init() start them again",
+                          loss, emergency.empty() ? "" : ": ", emergency));
 }
 
-std::optional<relay::State> CanTransport::wait_state() {
-  throw Error(HRT_E_DEVICE, "the drives are not open");
-}
-
-void CanTransport::send(const hrt::DriveCommand&) {
-  throw Error(HRT_E_DEVICE, "the drives are not open");
+void CanTransport::send(const hrt::DriveCommand& command) try {
+  Session& s = *session_;
+  const double elapsed_s = (s.newest - s.answered) * s.period_s;
+  s.answered = s.newest;
+  s.cycle.send(s.targets->step(command, s.cycle.image(), elapsed_s));
+} catch (const canopen::BusError& error) {
+  session_->lost = true;
+  throw Error(HRT_E_LINK, error.what());
 }
 
 void CanTransport::interrupt() {
-  const std::uint64_t one = 1;
-  [[maybe_unused]] const ssize_t written = write(interrupt_, &one, sizeof one);
+  if (session_) session_->bus->interrupt();
 }
 
 void CanTransport::close() {
-  socket_.reset();
+  if (!session_) return;
+  if (!session_->lost) power_down(session_->cycle);
+  session_->master.stop_heartbeat();
+  session_->cycle.stop();
+  session_.reset();
+}
+
+std::string CanTransport::warning() const {
+  return session_ && session_->measured ? session_->measured->warning() : std::string();
+}
+
+double CanTransport::round_trip_s() const {
+  return session_ ? session_->round_trip_s.load() : 0;
 }
 
 }  // namespace kenaf::real

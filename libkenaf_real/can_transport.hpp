@@ -1,17 +1,24 @@
-// The real robot: its CAN bus. In this release open() looks for the drives and then ends with HRT_E_DEVICE, because
-// they are not driven yet; so nothing that follows open() is ever reached with an open bus.
+// The real robot: CiA 402 drives on a CAN bus. Beat by beat, all in the one thread that waits for states and answers them.
+//
+// Who loses control stops the robot: a program that ends or hangs sends no heartbeat any more, and the drives stop by
+// themselves after master_silence_s; a drive that is silent, in fault or restarted ends the loop with a quick stop for all
+// others; so does a bus that is down or off.
 #pragma once
 
+#include <functional>
 #include <memory>
 
+#include "canopen/bus.hpp"
 #include "hrt/transport.hpp"
-#include "libkenaf_real/can_socket.hpp"
 
 namespace kenaf::real {
 
+// The bus that `config` and description name; throws canopen::BusError.
+using OpenBus = std::function<std::unique_ptr<canopen::Bus>(const std::string& interface, std::span<const std::uint16_t> ids)>;
+
 class CanTransport final : public hrt::Transport {
  public:
-  CanTransport();
+  explicit CanTransport(OpenBus open_bus);
   ~CanTransport() override;
   CanTransport(const CanTransport&) = delete;
   CanTransport& operator=(const CanTransport&) = delete;
@@ -21,12 +28,16 @@ class CanTransport final : public hrt::Transport {
   void send(const hrt::DriveCommand& command) override;
   void interrupt() override;
   void close() override;
-  double round_trip_s() const override { return 0; }
+  std::string warning() const override;
+  double round_trip_s() const override;
   bool is_paused() const override { return false; }
 
  private:
-  std::unique_ptr<CanSocket> socket_;
-  int interrupt_;
+  struct Session;  // an open robot
+  [[noreturn]] void lose(std::size_t drive);
+
+  OpenBus open_bus_;
+  std::unique_ptr<Session> session_;
 };
 
 }  // namespace kenaf::real

@@ -114,7 +114,7 @@ enum { HRT_LEFT = 0, HRT_RIGHT = 1 };
  *   2. a TOML file: the one that the environment variable KENAF_CONFIG names, else ./kenaf.toml, else
  *      ~/.config/kenaf/kenaf.toml; its keys are the member names below; one that does not exist there is an error,
  *   3. environment variables: KENAF_ and the member's name in capitals, such as KENAF_RELAY=127.0.0.1:45454 or
- *      KENAF_PERIOD_S=0.02; true and false, or 1 and 0; can_nodes as 1,2,3,4,5,6.
+ *      KENAF_PERIOD_S=0.02; true and false, or 1 and 0.
  * Both libraries read all keys, so that one file serves both; each uses its own. */
 typedef struct hrt_config {
   uint32_t size;   /* sizeof(hrt_config) of the program, so that the struct can grow */
@@ -122,7 +122,7 @@ typedef struct hrt_config {
 
   /* Cycle and link. */
   double period_s;          /* one cycle, robot time: 0.001 to 1, default 0.01 */
-  double command_timeout_s; /* silence after which the tracks stop, robot time: 0.01 to 10, default 0.2 */
+  double command_timeout_s; /* silence after which the tracks stop, robot time: 0.01 to 10, default 0.1 */
   double link_timeout_s;    /* silence of the link that is an error, wall clock: 0.05 to 10, default 0.5 */
   double connect_timeout_s; /* how long init waits for the robot, wall clock: 0.05 to 60, default 3 */
 
@@ -146,11 +146,11 @@ typedef struct hrt_config {
   char relay[128];        /* HOST:PORT of kenaf-relayd, default 127.0.0.1:45454 */
 
   /* libkenaf_real. */
-  double can_timeout_s;   /* how long init waits for the drives' heartbeats, wall clock: 0.05 to 60, default 2 */
-  char can_interface[16]; /* default can0 */
-  uint8_t can_nodes[6];   /* CANopen node ids, 1 to 127, all different, default 1 to 6: track left, track right,
-                             flippers front left, front right, rear left, rear right */
-  char reserved[2];       /* 0 */
+  double can_timeout_s;   /* how long init waits until all nodes of the bus have started, wall clock: 0.05 to 60,
+                             default 5 */
+  char can_interface[16]; /* default "": the one that the robot's description names */
+  char robot[256];        /* the robot's description, whose table [can] says what is on its bus: a name that ships or the
+                             path of a TOML file; default "kenaf" */
 
   /* Recording. */
   char record[1024];      /* a file: hrt_kenaf_init starts a recording into it, see hrt_record_start; "" = none */
@@ -177,15 +177,16 @@ static inline hrt_config hrt_config_default(void) {
 /* ---- Beginning and end ---- */
 
 /* Opens the robot, with the configuration of file and environment, and waits until its first state arrived. The robot
- * does not move; with reset_robot a simulated one is back at its start pose. Odometry begins at 0.
- * Blocks up to connect_timeout_s (can_timeout_s) of wall-clock time.
+ * does not move, but for flippers whose description asks for a homing that moves them; with reset_robot a simulated one is
+ * back at its start pose. Odometry begins at 0.
+ * Blocks up to connect_timeout_s of wall-clock time; libkenaf_real: can_timeout_s until all nodes have started, a second
+ * or two to set them up, and the homing.
  * HRT_E_BUSY: the robot is open already (one whose link was lost is closed and opened anew), or is being opened;
  * HRT_E_CONFIG; HRT_E_LINK: nobody answers, hrt_last_error() says what to start; HRT_E_REFUSED: another program has
  * the robot, or the relay has no world server; HRT_E_DEVICE: (libkenaf_real) no SocketCAN in the kernel, no such
- * interface, interface down, or drives that do not answer, by name; HRT_E_RECORD: the recording asked for by the
- * configuration cannot be begun.
- * In this release libkenaf_real ends with HRT_E_DEVICE even where all drives answer: it opens the bus and looks for
- * the drives' heartbeats, but does not drive them yet. It sends nothing; nothing moves. */
+ * interface, interface down, or a node that does not start, is not what it should be, refuses a value or does not get
+ * enabled: by name, and why; HRT_E_RECORD: the recording asked for by the
+ * configuration cannot be begun. */
 int hrt_kenaf_init(void);
 
 /* The same with *config alone; file and environment are not read (hrt_config_load does that).
@@ -269,7 +270,8 @@ enum {
   HRT_PAUSED = 1 << 1,             /* somebody has stopped the simulation's clock */
   HRT_STOPPED_BY_SILENCE = 1 << 2, /* the tracks were stopped because commands were too late */
   HRT_RECORDING = 1 << 3,          /* a recording is under way */
-  HRT_IN_LOCKSTEP = 1 << 4         /* robot time waits for this program */
+  HRT_IN_LOCKSTEP = 1 << 4,        /* robot time waits for this program */
+  HRT_DEGRADED = 1 << 5            /* the robot goes on without something: hrt_get_warning says what */
 };
 
 /* What is known of the robot as of one cycle. */
@@ -327,6 +329,11 @@ int hrt_get_state(hrt_state* state);
 /* Waits for the next cycle and copies its state: the beat of a control loop. `state` may be null.
  * Returns as hrt_sleep and hrt_get_state do. */
 int hrt_wait_cycle(hrt_state* state);
+
+/* What the robot goes on without, one line of English such as "inclinometer (node 7) is silent: no posture, and the heading
+ * is that of the tracks"; "" where nothing is missing. At most size - 1 bytes of it and a zero.
+ * HRT_E_NOT_INITIALISED; HRT_E_ARGUMENT: null or size 0. */
+int hrt_get_warning(char* text, size_t size);
 
 /* Prints the newest state to standard output, for people, in a few lines. HRT_E_NOT_INITIALISED; HRT_E_LINK: printed
  * all the same, with the last state that arrived. */

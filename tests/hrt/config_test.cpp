@@ -52,11 +52,11 @@ TEST_CASE("the defaults are the ones the header states, and valid") {
   const hrt_config config = hrt_config_default();
   CHECK_NOTHROW(check_config(config));
   CHECK(config.period_s == 0.01);
-  CHECK(config.command_timeout_s == 0.2);
+  CHECK(config.command_timeout_s == 0.1);
   CHECK(config.lockstep == 1);
   CHECK(std::string(config.relay) == "127.0.0.1:45454");
-  CHECK(std::string(config.can_interface) == "can0");
-  CHECK(config.can_nodes[5] == 6);
+  CHECK(std::string(config.can_interface).empty());
+  CHECK(std::string(config.robot) == "kenaf");
   CHECK(config.record[0] == '\0');
 }
 
@@ -68,7 +68,7 @@ period_s = 0.02
 max_speed_mmps = 150          # an integer is a number
 lockstep = false
 relay = "10.0.0.2:5000"
-can_nodes = [11, 12, 13, 14, 15, 16]
+robot = "./my-robot.toml"
 record = "/tmp/run.csv"
 )",
              "kenaf.toml", config);
@@ -77,7 +77,7 @@ record = "/tmp/run.csv"
   CHECK(config.lockstep == 0);
   CHECK(config.reset_robot == 1);
   CHECK(std::string(config.relay) == "10.0.0.2:5000");
-  CHECK(config.can_nodes[0] == 11);
+  CHECK(std::string(config.robot) == "./my-robot.toml");
   CHECK(std::string(config.record) == "/tmp/run.csv");
 }
 
@@ -91,9 +91,7 @@ TEST_CASE("what is wrong in a file is named with line and column, and nothing is
   CHECK_THAT(toml_error("relay = 45454"), Catch::StartsWith("kenaf.toml:1:9: relay must be a string"));
   CHECK_THAT(toml_error("relay = \"\""), Catch::Contains("relay must not be empty"));
   CHECK_THAT(toml_error("can_interface = \"a-name-that-is-too-long\""), Catch::Contains("at most 15 bytes"));
-  CHECK_THAT(toml_error("can_nodes = [1, 2, 3, 4, 5]"), Catch::Contains("6 different node ids"));
-  CHECK_THAT(toml_error("can_nodes = [1, 2, 3, 4, 5, 128]"), Catch::Contains("6 different node ids"));
-  CHECK_THAT(toml_error("can_nodes = [1, 2, 3, 4, 5, 5]"), Catch::Contains("6 different node ids"));
+  CHECK_THAT(toml_error("robot = \"\""), Catch::Contains("robot must not be empty"));
   CHECK_THAT(toml_error("[motion]\nmax_speed_mmps = 3"), Catch::Contains("unknown key 'motion'"));
   CHECK_THAT(toml_error("period_s = nan"), Catch::Contains("period_s must be from"));
   CHECK_THAT(toml_error("period_s = = 3"), Catch::StartsWith("kenaf.toml:1:12: "));
@@ -109,14 +107,14 @@ TEST_CASE("the environment overrides the file") {
                               {"KENAF_LOCKSTEP", "false"},
                               {"KENAF_RESET_ROBOT", "0"},
                               {"KENAF_RELAY", "127.0.0.1:1"},
-                              {"KENAF_CAN_NODES", "6,5,4,3,2,1"}}),
+                              {"KENAF_ROBOT", "marmotte"}}),
               config);
   CHECK(config.period_s == 0.005);
   CHECK(config.command_timeout_s == 1);
   CHECK(config.lockstep == 0);
   CHECK(config.reset_robot == 0);
   CHECK(std::string(config.relay) == "127.0.0.1:1");
-  CHECK(config.can_nodes[0] == 6);
+  CHECK(std::string(config.robot) == "marmotte");
 }
 
 TEST_CASE("a personal file applies where nothing else does, and a named file must be there") {
@@ -136,7 +134,7 @@ TEST_CASE("what is wrong in the environment is named by its variable") {
   CHECK_THAT(environment_error({{"KENAF_PERIOD_S", "0.01s"}}), Catch::Contains("'0.01s' is not a number"));
   CHECK_THAT(environment_error({{"KENAF_PERIOD_S", ""}}), Catch::Contains("'' is not a number"));
   CHECK_THAT(environment_error({{"KENAF_LOCKSTEP", "maybe"}}), Catch::Contains("'maybe' is neither true nor false"));
-  CHECK_THAT(environment_error({{"KENAF_CAN_NODES", "1,2,3,4,5,"}}), Catch::Contains("KENAF_CAN_NODES"));
+  CHECK_THAT(environment_error({{"KENAF_ROBOT", ""}}), Catch::Contains("KENAF_ROBOT: robot must not be empty"));
   CHECK_THAT(environment_error({{"KENAF_RELAY", std::string(500, 'x')}}), Catch::Contains("at most 127 bytes"));
 }
 
@@ -150,7 +148,7 @@ TEST_CASE("a config that a program made up is refused, member by member") {
   CHECK(hrt_kenaf_init_with(&config) == HRT_E_ARGUMENT);
   CHECK_THAT(hrt_last_error(), Catch::Contains("relay has no terminating zero"));
   config = hrt_config_default();
-  config.can_nodes[3] = 1;
+  config.robot[0] = '\0';
   CHECK(hrt_kenaf_init_with(&config) == HRT_E_ARGUMENT);
   hrt_config zero;
   std::memset(&zero, 0, sizeof zero);

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "hrt/estimate.hpp"
 #include "protocol/frames.hpp"
@@ -78,6 +79,29 @@ TEST_CASE("a sensor that begins late or pauses makes nothing jump") {
   CHECK(now.odometry_yaw_rad == 0);
   now = estimator.update(state_at(3, 5.1, 5.3));  // no posture: the heading stays, it does not become the encoders'
   CHECK(now.heading_rad == 1);
+}
+
+TEST_CASE("a posture sensor that is lost leaves the heading to the encoders, and one that comes back makes it not jump") {
+  Estimator estimator({0.2, 1});
+  const auto state = [](std::uint32_t cycle, double right_m, std::optional<double> yaw_rad) {
+    relay::State out = state_at(cycle, 0, right_m);
+    if (yaw_rad) out.fields |= relay::kHasPosture;
+    out.posture_rad[2] = yaw_rad.value_or(0);
+    return out;
+  };
+  (void)estimator.update(state(1, 0, 1.0));
+  // the right track runs 1 mm a cycle: 0.005 rad at a gauge of 0.2 m. Lost after 0.25 s; then what was missed counts too
+  Estimate now;
+  for (std::uint32_t i = 1; i <= 24; ++i) now = estimator.update(state(1 + i, 1e-3 * i, {}));
+  CHECK(now.heading_rad == 1.0);
+  for (std::uint32_t i = 25; i <= 100; ++i) now = estimator.update(state(1 + i, 1e-3 * i, {}));
+  CHECK(now.heading_rad == Approx(1.5));
+  // it began anew, at another zero: from here on its changes count
+  now = estimator.update(state(102, 0.1, -2.0));
+  CHECK(now.heading_rad == Approx(1.5));
+  for (std::uint32_t i = 0; i < 100; ++i) now = estimator.update(state(103 + i, 0.1, -1.8));
+  CHECK(now.heading_rad == Approx(1.7));
+  CHECK(now.odometry_yaw_rad == Approx(0.7));
 }
 
 TEST_CASE("the tracks stand while they move less than the encoders resolve") {

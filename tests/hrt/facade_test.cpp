@@ -57,7 +57,7 @@ hrt_config unhurried() {
 
 }  // namespace
 
-TEST_CASE("F1 forward is x, left is y, a left turn raises yaw; millimetres and degrees") {
+TEST_CASE("F1 forward is x, left is y, a left turn raises yaw, millimetres and degrees") {
   const auto robot = use_fake_robot();
   const Open open;
   REQUIRE(hrt_go_forward(200) == HRT_OK);

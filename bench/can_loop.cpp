@@ -1,0 +1,80 @@
+// The control loop of libkenaf_real on a bus: how regular its cycles are, how long the nodes take to answer, how many
+// cycles were late or lost.
+//
+//   scripts/with-vcan.sh build/release/bin/can_loop [--interface vcan0] [--cycles 1000] [--period 0.01]
+//
+// Starts kenaf-candrives with ideal motors on the interface, opens the robot, commands both tracks in each cycle, and
+// prints by wall clock: the time between two cycles as the program sees them, and from SYNC to the last node's answer.
+// No limit: what it prints is the machine's, and in an emulated one some 14 times more than on a real one.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "kenaf/hrt.h"
+#include "tests/support/process.hpp"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double at_share(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+void print(const char* what, const std::vector<double>& values_ms) {
+  fmt::print("{:<44} {:9.3f} {:9.3f} {:9.3f} ms\n", what, at_share(values_ms, 0.5), at_share(values_ms, 0.99),
+             at_share(values_ms, 1));
+}
+
+int fail(const char* what, int code) {
+  fmt::print(stderr, "can_loop: {}: {}: {}\n", what, hrt_error_name(code), hrt_last_error());
+  return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Jitter of libkenaf_real's cycles on a CAN bus"};
+  std::string interface = "vcan0";
+  int cycles = 1000;
+  double period_s = 0.01;
+  app.add_option("--interface", interface)->capture_default_str();
+  app.add_option("--cycles", cycles)->capture_default_str()->check(CLI::Range(10, 1'000'000));
+  app.add_option("--period", period_s)->capture_default_str()->check(CLI::Range(0.001, 1.0));
+  CLI11_PARSE(app, argc, argv);
+
+  const kenaf::support::TemporaryFolder folder;
+  const kenaf::support::Process drives({KENAF_BIN_DIR "/kenaf-candrives", "--interface", interface, "--ideal"},
+                                       folder.path() / "drives.log");
+  hrt_config config = hrt_config_default();
+  config.period_s = period_s;
+  interface.copy(config.can_interface, sizeof config.can_interface - 1);
+  if (const int code = hrt_kenaf_init_with(&config); code != HRT_OK) return fail("init", code);
+
+  std::vector<double> irregular_ms, answer_ms;
+  hrt_state state = hrt_state_init();
+  if (const int code = hrt_wait_cycle(&state); code != HRT_OK) return fail("wait_cycle", code);
+  const hrt_state first = state;
+  Clock::time_point before{};
+  for (int i = 0; i < cycles; ++i) {
+    if (int code = hrt_set_tracks(100, 100); code != HRT_OK) return fail("set_tracks", code);
+    if (int code = hrt_wait_cycle(&state); code != HRT_OK) return fail("wait_cycle", code);
+    const Clock::time_point now = Clock::now();
+    if (i > 0) irregular_ms.push_back(1e3 * std::abs(std::chrono::duration<double>(now - before).count() - period_s));
+    before = now;
+    answer_ms.push_back(state.round_trip_ms);
+  }
+  hrt_close();
+  fmt::print("{} cycles of {:g} ms on {}{:>17} {:>9} {:>9}\n", cycles, 1e3 * period_s, interface, "median", "99 %",
+             "max");
+  print("a cycle is longer or shorter than it should by", irregular_ms);
+  print("from SYNC to the last node's answer", answer_ms);
+  fmt::print("late answers: {}, lost cycles: {}\n", state.late_cycles - first.late_cycles,
+             state.lost_cycles - first.lost_cycles);
+}

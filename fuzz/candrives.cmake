@@ -1,0 +1,1 @@
+kenaf_fuzzer(candrives_fuzz SOURCE ${CMAKE_CURRENT_LIST_DIR}/candrives_fuzz.cpp LIBRARIES kenaf_candrives)

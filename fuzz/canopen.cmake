@@ -1,0 +1,4 @@
+kenaf_fuzzer(candump_line_fuzz SOURCE candump_line_fuzz.cpp LIBRARIES kenaf_canopen)
+kenaf_fuzzer(canopen_frame_fuzz SOURCE canopen_frame_fuzz.cpp LIBRARIES kenaf_canopen)
+kenaf_fuzzer(sdo_client_fuzz SOURCE sdo_client_fuzz.cpp LIBRARIES kenaf_canopen)
+kenaf_fuzzer(sdo_server_fuzz SOURCE sdo_server_fuzz.cpp LIBRARIES kenaf_canopen)

@@ -1,0 +1,1 @@
+kenaf_fuzzer(view_request_fuzz SOURCE view_request_fuzz.cpp LIBRARIES kenaf_live)

@@ -1,0 +1,118 @@
+#include "libkenaf_real/bus_cycle.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hrt/error.hpp"
+#include "libkenaf_real/commissioning.hpp"
+
+namespace kenaf::real {
+namespace {
+
+using canopen::PowerState;
+using canopen::Time;
+using hrt::Error;
+
+// The answers' share of a period; the rest is for the commands to the drives.
+constexpr double kAnswerShare = 0.6;
+// SYNC is the kernel's: so long without one means that the interface is gone. Three periods where those are longer.
+constexpr Time kLongestSync = std::chrono::milliseconds(100);
+
+double seconds(Time duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+}  // namespace
+
+BusCycle::BusCycle(Master& master, const canbus::RobotBus& bus, double period_s)
+    : master_(master), bus_(bus), period_(to_time(period_s)), image_(bus) {
+  for (std::size_t i = 0; i < pdos_.size(); ++i) pdos_[i] = canbus::pdos_of(i, bus.drives[i].mode);
+  master_.watch([this](const canopen::ReceivedFrame& frame) { image_.on_frame(frame); });
+}
+
+BusCycle::~BusCycle() {
+  master_.watch({});
+}
+
+void BusCycle::start() {
+  master_.bus().start_sync(period_);
+}
+
+void BusCycle::stop() {
+  master_.bus().stop_sync();
+}
+
+std::optional<Beat> BusCycle::wait() {
+  const auto is_new = [this] { return image_.sync_at() && image_.sync_at() != answered_sync_at_; };
+  if (!master_.wait_until(master_.now() + std::max(kLongestSync, 3 * period_), is_new)) {
+    if (master_.was_interrupted()) return std::nullopt;
+    throw Error(HRT_E_LINK,
+                fmt::format("no SYNC on {} any more: is the interface still up? (`ip -details link show {}`)",
+                            bus_.interface, bus_.interface));
+  }
+  const Time answers_until = *image_.sync_at() + std::chrono::round<Time>(kAnswerShare * period_);
+  if (master_.wait_until(answers_until, [this] { return image_.is_complete(); })) {
+    round_trip_s_ = seconds(master_.now() - *image_.sync_at());
+  } else if (master_.was_interrupted()) {
+    return std::nullopt;
+  }
+  // a later SYNC may have come meanwhile; the newest counts
+  const Time at = *image_.sync_at();
+  if (!first_sync_at_) first_sync_at_ = at;
+  const auto on_grid = 1 + std::lround(seconds(at - *first_sync_at_) / seconds(period_));
+  number_ = std::max(number_ + 1, static_cast<std::uint32_t>(on_grid));
+  answered_sync_at_ = at;
+  return Beat{number_, at};
+}
+
+void BusCycle::send(const DriveOrders& orders) {
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    const std::array<std::int64_t, 2> values{orders[i].controlword, orders[i].target};
+    master_.send(pack(pdos_[i].command, bus_.drives[i].node, values));
+  }
+  if (answered_sync_at_ && master_.now() > *answered_sync_at_ + period_) ++late_;
+  sent_ = orders;
+}
+
+// By the newest SYNC, not by the clock: a master that was held up finds the answers waiting, with the times at which they came.
+bool BusCycle::is_silent(const std::optional<Time>& at, double limit_s) const {
+  return !at || (image_.sync_at() && *image_.sync_at() - *at > std::max(to_time(limit_s), 3 * period_));
+}
+
+std::optional<std::size_t> BusCycle::lost_drive() const {
+  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+    const DriveInput& drive = image_.drive(i);
+    if (drive.restarted || is_silent(drive.state_at, kSilentDrive_s) ||
+        canopen::power_state_of(drive.statusword) != PowerState::operation_enabled)
+      return i;
+  }
+  return std::nullopt;
+}
+
+std::string BusCycle::loss_of(std::size_t i) const {
+  const DriveInput& drive = image_.drive(i);
+  const std::string name = to_string(drive_node(bus_, i));
+  if (drive.restarted) return fmt::format("{} has restarted: was its supply interrupted?", name);
+  if (!drive.state_at) return fmt::format("{} sends no process data", name);
+  if (is_silent(drive.state_at, kSilentDrive_s))
+    return fmt::format("{} is silent since {:.2f} s", name, seconds(*image_.sync_at() - *drive.state_at));
+  return fmt::format("{} is not enabled any more: its state is \"{}\" (statusword {:#06x})", name,
+                     describe(canopen::power_state_of(drive.statusword)), drive.statusword);
+}
+
+std::string BusCycle::emergency_of(std::size_t i) const {
+  const DriveInput& drive = image_.drive(i);
+  return drive.emergency ? describe(*drive.emergency) : std::string();
+}
+
+bool BusCycle::slope_is_silent() const {
+  return bus_.inclinometer && is_silent(image_.slope().at, kSilentSensor_s);
+}
+
+bool BusCycle::gyro_is_silent() const {
+  return bus_.gyro && is_silent(image_.gyro().at, kSilentSensor_s);
+}
+
+}  // namespace kenaf::real

@@ -1,0 +1,78 @@
+// The beat of the bus: SYNC by SYNC, what the nodes measured, what the drives are told, and who has fallen silent.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "canbus/robot_bus.hpp"
+#include "libkenaf_real/master.hpp"
+#include "libkenaf_real/process_image.hpp"
+
+namespace kenaf::real {
+
+// A drive that sent nothing for so long is lost; so is a sensor, without which the robot goes on.
+inline constexpr double kSilentDrive_s = 0.05, kSilentSensor_s = 0.1;
+
+struct DriveOrder {
+  std::uint16_t controlword = 0;
+  std::int32_t target = 0;  // position or velocity, by the drive's mode, in its units
+};
+using DriveOrders = std::array<DriveOrder, canbus::kDriveCount>;
+
+struct Beat {
+  std::uint32_t number;  // 1 = the first SYNC; more than one more than the last: SYNCs that never came
+  canopen::Time sync_at;
+};
+
+class BusCycle {
+ public:
+  // Both must outlive this.
+  BusCycle(Master& master, const canbus::RobotBus& bus, double period_s);
+  ~BusCycle();
+  BusCycle(const BusCycle&) = delete;
+  BusCycle& operator=(const BusCycle&) = delete;
+
+  Master& master() { return master_; }
+  const canbus::RobotBus& bus() const { return bus_; }
+  const ProcessImage& image() const { return image_; }
+
+  // SYNC begins; it ends with stop() or with the program.
+  void start();
+  void stop();
+
+  // Waits for the next SYNC, and then until all nodes have answered it or 0.6 periods are over. nullopt: interrupted.
+  // Throws hrt::Error(HRT_E_LINK): no SYNC comes any more.
+  std::optional<Beat> wait();
+  // In force from the next SYNC on. `late`: it has come already.
+  void send(const DriveOrders& orders);
+  const DriveOrders& sent() const { return sent_; }
+  std::uint32_t late_orders() const { return late_; }
+  double round_trip_s() const { return round_trip_s_; }  // newest SYNC to its last answer
+
+  // From now on a boot-up message counts as a restart.
+  void watch_restarts() { image_.watch_restarts(); }
+  // The first drive that is not under control: restarted, silent, or not enabled.
+  std::optional<std::size_t> lost_drive() const;
+  // What is wrong with it at this moment, in words that name it. Its emergency message, where it sends one, may come some
+  // milliseconds after its statusword: emergency_of, "" where there is none.
+  std::string loss_of(std::size_t drive) const;
+  std::string emergency_of(std::size_t drive) const;
+  bool slope_is_silent() const, gyro_is_silent() const;
+
+ private:
+  bool is_silent(const std::optional<canopen::Time>& at, double limit_s) const;
+
+  Master& master_;
+  const canbus::RobotBus& bus_;
+  const canopen::Time period_;
+  ProcessImage image_;
+  std::array<canbus::DrivePdos, canbus::kDriveCount> pdos_;
+  DriveOrders sent_{};
+  std::optional<canopen::Time> first_sync_at_, answered_sync_at_;
+  std::uint32_t number_ = 0, late_ = 0;
+  double round_trip_s_ = 0;
+};
+
+}  // namespace kenaf::real

@@ -1,0 +1,67 @@
+#include "libkenaf_real/drive_targets.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kenaf::real {
+
+using canbus::DriveOnBus;
+using canopen::DriveMode;
+
+void PositionRamp::step(double target, double max_speed, double acceleration, double dt_s) {
+  // The fastest speed from which it can still stop at the target, one step ahead: v dt / 2 + v^2 / (2 a) = way left.
+  // Where v is no whole number of speed steps, stopping takes up to dv dt / 8 more.
+  const double left = target - position, way = std::abs(left), dv = acceleration * dt_s;
+  const double reachable =
+      way <= dv * dt_s ? way / dt_s : std::sqrt(dv * dv / 4 + 2 * acceleration * (way - dv * dt_s / 8)) - dv / 2;
+  const double wanted = std::copysign(std::min(max_speed, reachable), left);
+  speed = std::clamp(wanted, speed - dv, speed + dv);
+  position += speed * dt_s;
+}
+
+DriveTargets::DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image) : bus_(bus) {
+  for (std::size_t f = 0; f < relay::kFlipperCount; ++f) {
+    const std::size_t drive = relay::kTrackCount + f;
+    hold_rad_[f] = ramps_[f].position = position_from_drive(bus.drives[drive].units, image.drive(drive).position);
+  }
+}
+
+DriveOrders DriveTargets::step(const hrt::DriveCommand& command, const ProcessImage& image, double elapsed_s) {
+  DriveOrders orders;
+  for (std::size_t t = 0; t < relay::kTrackCount; ++t) orders[t] = track(t, command.track_speed_mps[t], elapsed_s);
+  for (std::size_t f = 0; f < relay::kFlipperCount; ++f) {
+    const std::size_t drive = relay::kTrackCount + f;
+    const bool told = (command.flipper_mask >> f & 1) != 0;
+    if (told) hold_rad_[f] = command.flipper_rad[f];
+    orders[drive] = flipper(drive, told, image.drive(drive), elapsed_s);
+  }
+  return orders;
+}
+
+DriveOrder DriveTargets::track(std::size_t i, double speed_mps, double elapsed_s) {
+  const DriveOnBus& drive = bus_.drives[i];
+  const double wanted_mps = std::clamp(speed_mps, -drive.max_speed, drive.max_speed);
+  // In cyclic velocity mode the drive follows each target at once: the ramp is the master's.
+  const bool slower = std::abs(wanted_mps) < std::abs(track_mps_[i]);
+  const double rate = slower ? drive.quick_stop_deceleration : drive.acceleration;
+  const double dv = drive.mode == DriveMode::cyclic_velocity ? rate * elapsed_s : 2 * drive.max_speed;
+  track_mps_[i] = std::clamp(wanted_mps, track_mps_[i] - dv, track_mps_[i] + dv);
+  return {canopen::kControlEnable, velocity_to_drive(drive.units, track_mps_[i])};
+}
+
+DriveOrder DriveTargets::flipper(std::size_t i, bool told, const DriveInput& input, double elapsed_s) {
+  const DriveOnBus& drive = bus_.drives[i];
+  const std::size_t f = i - relay::kTrackCount;
+  const double wanted_rad = std::clamp(hold_rad_[f], drive.min_position, drive.max_position);
+  if (drive.mode == DriveMode::cyclic_position) {
+    ramps_[f].step(wanted_rad, drive.max_speed, drive.acceleration, elapsed_s);
+    return {canopen::kControlEnable, position_to_drive(drive.units, ramps_[f].position)};
+  }
+  const std::int32_t target = position_to_drive(drive.units, wanted_rad);
+  // a drive in profile position mode holds by itself where it was enabled
+  if (!told) return {canopen::kControlEnable, target};
+  const std::uint16_t handshake = handshakes_[f].step(target, input.statusword);
+  return {static_cast<std::uint16_t>(canopen::kControlEnable | handshake), target};
+}
+
+}  // namespace kenaf::real

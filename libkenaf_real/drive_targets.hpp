@@ -1,0 +1,39 @@
+// From what the robot shall do to what each drive is told in a cycle: limits, ramps where the mode leaves them to the master,
+// and the handshake of profile position mode.
+#pragma once
+
+#include <array>
+
+#include "canbus/robot_bus.hpp"
+#include "canopen/drive.hpp"
+#include "hrt/transport.hpp"
+#include "libkenaf_real/bus_cycle.hpp"
+
+namespace kenaf::real {
+
+// A position that goes to a target within a speed and an acceleration, and stops there without going beyond.
+struct PositionRamp {
+  double position = 0, speed = 0;
+  void step(double target, double max_speed, double acceleration, double dt_s);
+};
+
+class DriveTargets {
+ public:
+  // The flippers stay where they are until they are told otherwise.
+  DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image);
+
+  // Out of range is cut to the description's limits. `elapsed_s` since the call before.
+  DriveOrders step(const hrt::DriveCommand& command, const ProcessImage& image, double elapsed_s);
+
+ private:
+  DriveOrder track(std::size_t drive, double speed_mps, double elapsed_s);
+  DriveOrder flipper(std::size_t drive, bool told, const DriveInput& input, double elapsed_s);
+
+  const canbus::RobotBus& bus_;
+  std::array<double, relay::kTrackCount> track_mps_{};
+  std::array<double, relay::kFlipperCount> hold_rad_{};
+  std::array<PositionRamp, relay::kFlipperCount> ramps_{};
+  std::array<canopen::SetPointHandshake, relay::kFlipperCount> handshakes_{};
+};
+
+}  // namespace kenaf::real

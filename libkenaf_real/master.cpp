@@ -1,0 +1,133 @@
+#include "libkenaf_real/master.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hrt/error.hpp"
+
+namespace kenaf::real {
+namespace {
+
+using canopen::Frame;
+using canopen::MappedObject;
+using canopen::ReceivedFrame;
+using canopen::SdoAbort;
+using canopen::SdoOutcome;
+using canopen::SdoWrite;
+using canopen::Time;
+using hrt::Error;
+
+[[noreturn]] void fail(const NamedNode& node, std::string_view verb, canopen::ObjectAddress object,
+                       std::string_view purpose, const SdoOutcome& outcome) {
+  const bool silent = !outcome.by_server && outcome.abort == SdoAbort::timed_out;
+  throw Error(HRT_E_DEVICE,
+              fmt::format("{}: {} object {} ({}): {}", to_string(node), verb, to_string(object), purpose,
+                          silent ? std::string("no answer; is it powered, is the bit rate right?")
+                                 : fmt::format("{}{} (SDO abort {:#010x})", outcome.by_server ? "" : "a wrong answer: ",
+                                               describe(*outcome.abort), static_cast<std::uint32_t>(*outcome.abort))));
+}
+
+bool is_missing(const SdoOutcome& outcome) {
+  return outcome.by_server && (outcome.abort == SdoAbort::no_object || outcome.abort == SdoAbort::no_sub_index);
+}
+
+// An expedited answer that does not say its size has four bytes, of which the first ones are the number.
+std::int64_t number_in(const MappedObject& object, const SdoOutcome& outcome) {
+  return decode_number(object.type, std::span(outcome.value).first(byte_count(object.type)));
+}
+
+}  // namespace
+
+std::string to_string(const NamedNode& node) {
+  return fmt::format("{} (node {})", node.name, node.node);
+}
+
+Time to_time(double seconds) {
+  return std::chrono::round<Time>(std::chrono::duration<double>(seconds));
+}
+
+Master::Master(canopen::Bus& bus, canopen::NodeId own_node, Time heartbeat, Time answer_patience)
+    : bus_(bus), own_node_(own_node), heartbeat_(heartbeat), answer_patience_(answer_patience) {}
+
+void Master::start_heartbeat() {
+  if (!next_heartbeat_) next_heartbeat_ = now();
+}
+
+std::optional<ReceivedFrame> Master::receive(Time until) {
+  interrupted_ = false;
+  while (true) {
+    const Time before = now();
+    if (next_heartbeat_ && before >= *next_heartbeat_) {
+      send(encode(canopen::Heartbeat{own_node_, canopen::NmtState::operational}));
+      next_heartbeat_ = before + heartbeat_;
+    }
+    const Time wake = next_heartbeat_ ? std::min(until, *next_heartbeat_) : until;
+    if (const std::optional<ReceivedFrame> frame = bus_.receive(wake)) {
+      if (watch_) watch_(*frame);
+      return frame;
+    }
+    const Time after = now();
+    if (after < wake) {
+      interrupted_ = true;
+      return std::nullopt;
+    }
+    if (after >= until) return std::nullopt;
+  }
+}
+
+bool Master::wait_until(Time until, const std::function<bool()>& done) {
+  while (!done()) {
+    if (!receive(until)) return false;
+  }
+  return true;
+}
+
+SdoOutcome Master::run(canopen::SdoClient& client, const Frame& first) {
+  send(first);
+  while (!client.outcome()) {
+    const std::optional<ReceivedFrame> received = receive(client.deadline());
+    if (interrupted_) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");
+    const std::optional<Frame> next = received ? client.on_frame(received->frame, now()) : client.on_time(now());
+    if (next) send(*next);
+  }
+  return *client.outcome();
+}
+
+std::int64_t Master::read(const NamedNode& node, const MappedObject& object, std::string_view purpose) {
+  canopen::SdoClient client(node.node, answer_patience_);
+  const SdoOutcome outcome = run(client, client.begin_read(object.object, now()));
+  if (outcome.abort) fail(node, "reading", object.object, purpose, outcome);
+  if (outcome.value.size() < byte_count(object.type)) {
+    throw Error(HRT_E_DEVICE,
+                fmt::format("{}: object {} ({}) has {} bytes, not {}", to_string(node), to_string(object.object),
+                            purpose, outcome.value.size(), byte_count(object.type)));
+  }
+  return number_in(object, outcome);
+}
+
+void Master::write(const NamedNode& node, const SdoWrite& write) {
+  canopen::SdoClient client(node.node, answer_patience_);
+  const SdoOutcome outcome =
+      run(client, client.begin_write(write.object, encode_number(write.type, write.value), now()));
+  if (outcome.abort) fail(node, fmt::format("writing {} to", write.value), write.object, write.purpose, outcome);
+}
+
+std::optional<std::int64_t> Master::read_if_there(const NamedNode& node, const MappedObject& object) {
+  canopen::SdoClient client(node.node, answer_patience_);
+  const SdoOutcome outcome = run(client, client.begin_read(object.object, now()));
+  if (outcome.abort && is_missing(outcome)) return std::nullopt;
+  if (outcome.abort) fail(node, "reading", object.object, "which not every drive has", outcome);
+  return outcome.value.size() >= byte_count(object.type) ? std::optional(number_in(object, outcome)) : std::nullopt;
+}
+
+void Master::write_if_there(const NamedNode& node, const SdoWrite& write) {
+  canopen::SdoClient client(node.node, answer_patience_);
+  const SdoOutcome outcome =
+      run(client, client.begin_write(write.object, encode_number(write.type, write.value), now()));
+  if (outcome.abort && !is_missing(outcome))
+    fail(node, fmt::format("writing {} to", write.value), write.object, write.purpose, outcome);
+}
+
+}  // namespace kenaf::real

@@ -1,0 +1,66 @@
+// The master's place on the bus: waiting, with its heartbeat going on meanwhile, and SDO for the set-up.
+//
+// The heartbeat is sent by whoever waits here, and by no thread or timer of its own: a program that hangs must not look alive.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "canopen/bus.hpp"
+#include "canopen/pdo.hpp"
+#include "canopen/sdo_client.hpp"
+
+namespace kenaf::real {
+
+// A node and what it is to the robot: "flipper rear left (node 5)".
+struct NamedNode {
+  canopen::NodeId node;
+  std::string_view name;
+};
+std::string to_string(const NamedNode& node);
+
+// Sees every frame that arrives, also while something else is waited for.
+using FrameWatch = std::function<void(const canopen::ReceivedFrame&)>;
+
+class Master {
+ public:
+  Master(canopen::Bus& bus, canopen::NodeId own_node, canopen::Time heartbeat, canopen::Time answer_patience);
+
+  canopen::Bus& bus() { return bus_; }
+  canopen::Time now() const { return bus_.now(); }
+  void send(const canopen::Frame& frame) { bus_.send(frame); }
+
+  // From now on a heartbeat goes out whenever one is due in receive().
+  void start_heartbeat();
+  void stop_heartbeat() { next_heartbeat_.reset(); }
+
+  void watch(FrameWatch watch) { watch_ = std::move(watch); }
+  // As Bus::receive.
+  std::optional<canopen::ReceivedFrame> receive(canopen::Time until);
+  // Waits until `done` holds, looking after each frame; false: until has come, or interrupted.
+  bool wait_until(canopen::Time until, const std::function<bool()>& done);
+  bool was_interrupted() const { return interrupted_; }
+
+  // Throw hrt::Error(HRT_E_DEVICE) that names node, object, purpose, and why: aborted by the node, no answer.
+  std::int64_t read(const NamedNode& node, const canopen::MappedObject& object, std::string_view purpose);
+  void write(const NamedNode& node, const canopen::SdoWrite& write);
+  // nullopt where the node has no such object.
+  std::optional<std::int64_t> read_if_there(const NamedNode& node, const canopen::MappedObject& object);
+  void write_if_there(const NamedNode& node, const canopen::SdoWrite& write);
+
+ private:
+  canopen::SdoOutcome run(canopen::SdoClient& client, const canopen::Frame& first);
+
+  canopen::Bus& bus_;
+  canopen::NodeId own_node_;
+  canopen::Time heartbeat_, answer_patience_;
+  std::optional<canopen::Time> next_heartbeat_;
+  FrameWatch watch_;
+  bool interrupted_ = false;
+};
+
+canopen::Time to_time(double seconds);
+
+}  // namespace kenaf::real

@@ -1,0 +1,191 @@
+#include "libkenaf_real/power.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+
+#include "canopen/device.hpp"
+#include "hrt/error.hpp"
+#include "libkenaf_real/commissioning.hpp"
+
+namespace kenaf::real {
+namespace {
+
+using canbus::kDriveCount;
+using canopen::DriveMode;
+using canopen::PowerState;
+using canopen::Time;
+using hrt::Error;
+namespace object = canopen::object;
+
+constexpr Time kPowerUp = std::chrono::seconds(3);  // relays and capacitors
+constexpr Time kModeChange = std::chrono::seconds(1);
+constexpr Time kPowerDown = std::chrono::milliseconds(300);
+// Leaving quick stop straight to operation (CiA 402, transition 16) keeps the torque of flippers that carry the robot,
+// but not every drive can; after so many cycles it is left through "switch on disabled".
+constexpr int kHoldThroughQuickStop = 20;
+constexpr double kStanding = 0.01;  // of the full speed
+
+PowerState state_of(const BusCycle& cycle, std::size_t i) {
+  return canopen::power_state_of(cycle.image().drive(i).statusword);
+}
+
+std::int32_t hold_target(const BusCycle& cycle, std::size_t i) {
+  return is_position(cycle.bus().drives[i].mode) ? cycle.image().drive(i).position : 0;
+}
+
+std::string not_enabled(const BusCycle& cycle, std::size_t i) {
+  const DriveInput& drive = cycle.image().drive(i);
+  if (!drive.state_at) return fmt::format("{} sends no process data", to_string(drive_node(cycle.bus(), i)));
+  return fmt::format("{} does not get enabled: it is in the state \"{}\" (statusword {:#06x}){}{}",
+                     to_string(drive_node(cycle.bus(), i)), describe(state_of(cycle, i)), drive.statusword,
+                     drive.emergency ? ": " : "", drive.emergency ? describe(*drive.emergency) : "");
+}
+
+// Cycle by cycle, until `done` is true of all drives; `failure` says what it is where that takes too long.
+void run_until(BusCycle& cycle, Time patience, const std::function<DriveOrder(std::size_t)>& order,
+               const std::function<bool(std::size_t)>& done, const std::function<std::string(std::size_t)>& failure) {
+  const Time until = cycle.master().now() + patience;
+  while (true) {
+    if (!cycle.wait()) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");
+    std::optional<std::size_t> missing;
+    DriveOrders orders;
+    for (std::size_t i = 0; i < kDriveCount; ++i) {
+      orders[i] = order(i);
+      if (!missing && !done(i)) missing = i;
+    }
+    if (missing && cycle.master().now() > until) throw Error(HRT_E_DEVICE, failure(*missing));
+    cycle.send(orders);
+    if (!missing) return;
+  }
+}
+
+void enable_all(BusCycle& cycle) {
+  std::array<int, kDriveCount> cycles_in_quick_stop{};
+  run_until(
+      cycle, kPowerUp,
+      [&](std::size_t i) {
+        const PowerState state = state_of(cycle, i);
+        const bool hold = state == PowerState::quick_stop_active && ++cycles_in_quick_stop[i] < kHoldThroughQuickStop;
+        const bool known = cycle.image().drive(i).state_at.has_value();
+        return DriveOrder{!known ? canopen::kControlDisableVoltage
+                          : hold ? canopen::kControlEnable
+                                 : canopen::control_towards_operation(state, cycle.sent()[i].controlword),
+                          hold_target(cycle, i)};
+      },
+      [&](std::size_t i) {
+        return cycle.image().drive(i).state_at && state_of(cycle, i) == PowerState::operation_enabled;
+      },
+      [&](std::size_t i) { return not_enabled(cycle, i); });
+}
+
+void write_mode(BusCycle& cycle, std::size_t i, DriveMode mode) {
+  const NamedNode node = drive_node(cycle.bus(), i);
+  cycle.master().write(node,
+                       {object::mode.object, object::mode.type, static_cast<std::int64_t>(mode), "mode of operation"});
+  const Time until = cycle.master().now() + kModeChange;
+  while (cycle.master().read(node, object::mode_display, "mode in force") != static_cast<std::int64_t>(mode)) {
+    if (cycle.master().now() > until)
+      throw Error(HRT_E_DEVICE, fmt::format("{} does not take up the mode {}", to_string(node), describe(mode)));
+  }
+}
+
+void begin_homing(BusCycle& cycle, std::size_t i) {
+  const canbus::DriveOnBus& drive = cycle.bus().drives[i];
+  const canbus::Homing& homing = *drive.homing;
+  const NamedNode node = drive_node(cycle.bus(), i);
+  const auto write = [&](const canopen::MappedObject& what, std::int64_t value, const char* purpose) {
+    cycle.master().write(node, {what.object, what.type, value, purpose});
+  };
+  const std::int64_t speed = std::abs(std::int64_t{velocity_to_drive(drive.units, homing.speed_radps)});
+  write(object::homing_method, homing.method, "homing method");
+  write(object::home_offset, position_to_drive(drive.units, homing.home_rad), "position at home");
+  write(object::homing_speed_switch, speed, "homing speed");
+  write(object::homing_speed_zero, speed, "homing speed");
+  write(object::homing_acceleration, acceleration_to_drive(drive.units, homing.acceleration_radps2),
+        "homing acceleration");
+  write_mode(cycle, i, DriveMode::homing);
+}
+
+void home(BusCycle& cycle) {
+  const auto homes = [&](std::size_t i) { return cycle.bus().drives[i].homing.has_value(); };
+  double patience_s = 0;
+  for (std::size_t i = 0; i < kDriveCount; ++i) {
+    if (!homes(i)) continue;
+    begin_homing(cycle, i);
+    patience_s = std::max(patience_s, cycle.bus().drives[i].homing->patience_s);
+  }
+  if (patience_s == 0) return;
+  const auto status = [&](std::size_t i) { return cycle.image().drive(i).statusword; };
+  // A statusword from before the start still says "attained" of an earlier homing; one cycle later it does not.
+  int cycles = 0;
+  run_until(
+      cycle, to_time(patience_s),
+      [&](std::size_t i) {
+        if (i == 0) ++cycles;
+        if (homes(i) && (status(i) & canopen::kStatusError) != 0 && cycles > 2)
+          throw Error(HRT_E_DEVICE, fmt::format("{}: homing failed (statusword {:#06x})",
+                                                to_string(drive_node(cycle.bus(), i)), status(i)));
+        const unsigned start = homes(i) ? canopen::kControlNewSetPoint : 0u;
+        return DriveOrder{static_cast<std::uint16_t>(canopen::kControlEnable | start), hold_target(cycle, i)};
+      },
+      [&](std::size_t i) {
+        constexpr unsigned kDone = canopen::kStatusHomingAttained | canopen::kStatusTargetReached;
+        return !homes(i) || (cycles > 2 && (status(i) & kDone) == kDone);
+      },
+      [&](std::size_t i) {
+        return fmt::format("{} was not home within {} s (statusword {:#06x})", to_string(drive_node(cycle.bus(), i)),
+                           patience_s, status(i));
+      });
+  // In profile position mode bit 4 is a new set-point: it is down, and seen to be, before the mode is.
+  int cycles_down = 0;
+  run_until(
+      cycle, kModeChange,
+      [&](std::size_t i) {
+        return DriveOrder{canopen::kControlEnable, hold_target(cycle, i)};
+      },
+      [&](std::size_t i) { return i > 0 || ++cycles_down > 2; }, [&](std::size_t i) { return not_enabled(cycle, i); });
+  for (std::size_t i = 0; i < kDriveCount; ++i) {
+    if (homes(i)) write_mode(cycle, i, cycle.bus().drives[i].mode);
+  }
+}
+
+bool stands(const BusCycle& cycle, std::size_t track) {
+  const canbus::DriveOnBus& drive = cycle.bus().drives[track];
+  return std::abs(velocity_from_drive(drive.units, cycle.image().drive(track).velocity)) < kStanding * drive.max_speed;
+}
+
+}  // namespace
+
+void power_up(BusCycle& cycle) {
+  enable_all(cycle);
+  for (std::size_t i = 0; i < kDriveCount; ++i) write_mode(cycle, i, cycle.bus().drives[i].mode);
+  home(cycle);
+  cycle.watch_restarts();
+}
+
+void quick_stop(BusCycle& cycle) {
+  DriveOrders orders;
+  for (std::size_t i = 0; i < kDriveCount; ++i) orders[i] = {canopen::kControlQuickStop, hold_target(cycle, i)};
+  cycle.send(orders);
+}
+
+void power_down(BusCycle& cycle) try {
+  quick_stop(cycle);
+  const Time until = cycle.master().now() + kPowerDown;
+  while (cycle.master().now() < until) {
+    cycle.wait();
+    if (stands(cycle, relay::kLeft) && stands(cycle, relay::kRight) &&
+        state_of(cycle, 0) != PowerState::operation_enabled)
+      break;
+  }
+  for (std::size_t i = 0; i < kDriveCount; ++i) {
+    cycle.master().write(drive_node(cycle.bus(), i),
+                         {object::consumer_heartbeat_1.object, object::consumer_heartbeat_1.type, 0,
+                          "end of the watch for the master's heartbeat"});
+  }
+} catch (const std::exception&) {
+}
+
+}  // namespace kenaf::real

@@ -1,0 +1,65 @@
+// The newest of everything that the nodes send in the control loop, in the drives' own units, and when it came.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "canbus/bus_layout.hpp"
+#include "canbus/robot_bus.hpp"
+#include "canopen/bus.hpp"
+#include "canopen/emergency.hpp"
+
+namespace kenaf::real {
+
+struct DriveInput {
+  std::uint16_t statusword = 0;
+  std::int32_t position = 0;
+  std::int32_t velocity = 0;     // tracks
+  std::int16_t current_permil = 0;  // of the rated current
+  std::optional<canopen::Time> state_at, effort_at;
+  std::optional<canopen::Emergency> emergency;  // the newest, until it is cleared
+  bool restarted = false;        // a boot-up message came after watch_restarts()
+};
+
+struct SlopeInput {
+  std::int16_t longitudinal = 0, lateral = 0;  // in units of the sensor's resolution
+  std::optional<canopen::Time> at;
+};
+
+struct GyroInput {
+  std::int32_t rate = 0;
+  std::optional<canopen::Time> at;
+};
+
+class ProcessImage {
+ public:
+  explicit ProcessImage(const canbus::RobotBus& bus);
+
+  // What is no frame of this robot, or has not its PDO's length, changes nothing.
+  void on_frame(const canopen::ReceivedFrame& received);
+  void watch_restarts();
+
+  const DriveInput& drive(std::size_t i) const { return drives_[i]; }
+  const SlopeInput& slope() const { return slope_; }
+  const GyroInput& gyro() const { return gyro_; }
+  std::optional<double> battery_v() const { return battery_v_; }
+  std::optional<canopen::Time> sync_at() const { return sync_at_; }
+  // Everything that comes with each SYNC came since the newest one.
+  bool is_complete() const;
+
+ private:
+  void on_drive_frame(std::size_t i, const canopen::ReceivedFrame& received);
+  void on_sensor_frame(const canopen::ReceivedFrame& received);
+
+  const canbus::RobotBus& bus_;
+  std::array<canbus::DrivePdos, canbus::kDriveCount> pdos_;
+  canopen::Pdo slope_pdo_ = canbus::inclinometer_pdo();
+  std::array<DriveInput, canbus::kDriveCount> drives_{};
+  SlopeInput slope_;
+  GyroInput gyro_;
+  std::optional<double> battery_v_;
+  std::optional<canopen::Time> sync_at_;
+};
+
+}  // namespace kenaf::real

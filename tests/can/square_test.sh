@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# One object file, two libraries, one path: square_test.sh WITH_VCAN BIN_DIR
+#
+# The square example over libkenaf_sim, relay and world server; and over libkenaf_real, SocketCAN and kenaf-candrives, whose
+# drives turn the tracks of the same physics.
+#
+# 1. Both end well.  2. The two paths agree within 5 mm and 1 degree.  3. What was on the bus, from the first frame to the last,
+# keeps the standards' rules, and fills less than half of 500 kbit/s.
+set -uo pipefail
+with_vcan=$1 bin=$2
+work=$(mktemp -d)
+trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
+fail() { echo "square_test: $*" >&2; exit 1; }
+
+"$bin/kenaf-relayd" --embedded --view off --listen 127.0.0.1:0 --port-file "$work/port" >"$work/relay.log" 2>&1 &
+for _ in $(seq 200); do [ -s "$work/port" ] && break; sleep 0.1; done
+KENAF_RELAY="127.0.0.1:$(cat "$work/port")" KENAF_RECORD="$work/sim.csv" "$bin/square_sim" || fail "1: over libkenaf_sim"
+
+cat >"$work/on_bus.sh" <<'END'
+candump -L vcan0 >bus.log & listener=$!
+"$1/kenaf-candrives" --interface vcan0 --log real.csv >drives.log 2>&1 & drives=$!
+for _ in $(seq 300); do grep -q 'nodes on vcan0' drives.log && break; sleep 0.1; done
+KENAF_CAN_INTERFACE=vcan0 KENAF_CAN_TIMEOUT_S=30 "$1/square_real"; status=$?
+sleep 1
+kill "$drives"; wait "$drives"
+kill "$listener"; wait "$listener"
+exit "$status"
+END
+mkdir "$work/bus" && cd "$work/bus" || exit 1
+"$with_vcan" --timeout 280 --writable . bash "$work/on_bus.sh" "$bin" || { cat drives.log; fail "1: over libkenaf_real"; }
+cat drives.log
+
+"$bin/compare_paths" "$work/sim.csv" real.csv 5 1 || fail "2: the paths differ by more than 5 mm and 1 degree"
+"$bin/kenaf-canlog" --robot kenaf --check --figures bus.log || fail "3: kenaf-canlog"

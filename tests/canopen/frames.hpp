@@ -1,0 +1,24 @@
+// Frames as they are written by hand: identifier and bytes; and as a failed test prints them.
+#pragma once
+
+#include <iomanip>
+#include <initializer_list>
+#include <optional>
+#include <ostream>
+
+#include "canopen/frame.hpp"
+
+namespace kenaf::canopen {
+
+inline Frame frame_of(std::uint16_t id, std::initializer_list<std::uint8_t> bytes) {
+  return make_frame(id, std::span(bytes.begin(), bytes.size()));
+}
+
+// In candump's form: "605#4041600000000000".
+inline std::ostream& operator<<(std::ostream& out, const Frame& frame) {
+  out << std::hex << std::setfill('0') << std::setw(3) << frame.id << '#';
+  for (std::size_t i = 0; i < frame.length; ++i) out << std::setw(2) << int{frame.data[i]};
+  return out << std::dec;
+}
+
+}  // namespace kenaf::canopen

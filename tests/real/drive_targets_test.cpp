@@ -1,0 +1,106 @@
+// What the drives are told: limits, ramps, the handshake; and that nothing moves that was not told to.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "libkenaf_real/drive_targets.hpp"
+
+using namespace kenaf;
+using namespace kenaf::real;
+using canopen::DriveMode;
+using canopen::kControlEnable;
+
+namespace {
+
+canbus::RobotBus bus_with(DriveMode track, DriveMode flipper) {
+  canbus::RobotBus bus = canbus::load_robot_bus("kenaf");
+  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) bus.drives[i].mode = canbus::is_track(i) ? track : flipper;
+  return bus;
+}
+
+// All enabled, flippers at `counts`, no set-point acknowledged.
+ProcessImage image_at(const canbus::RobotBus& bus, std::int32_t counts) {
+  ProcessImage image(bus);
+  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+    const std::int64_t values[] = {0x0637, counts};
+    image.on_frame({pack(canbus::pdos_of(i, bus.drives[i].mode).state, bus.drives[i].node, values), canopen::Time(1)});
+  }
+  return image;
+}
+
+}  // namespace
+
+TEST_CASE("without a command flippers keep where they are, and tracks stand") {
+  const canbus::RobotBus bus = bus_with(DriveMode::cyclic_velocity, DriveMode::cyclic_position);
+  const ProcessImage image = image_at(bus, 12345);
+  DriveTargets targets(bus, image);
+  for (int k = 0; k < 10; ++k) {
+    const DriveOrders orders = targets.step({}, image, 0.01);
+    for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+      CHECK(orders[i].controlword == kControlEnable);
+      CHECK(orders[i].target == (canbus::is_track(i) ? 0 : 12345));
+    }
+  }
+}
+
+TEST_CASE("a cyclic track speed is ramped by the description's acceleration, a profile one is the drive's to ramp") {
+  hrt::DriveCommand command;
+  command.track_speed_mps = {0.2, -0.2};
+  const canbus::RobotBus cyclic = bus_with(DriveMode::cyclic_velocity, DriveMode::cyclic_position);
+  const ProcessImage image = image_at(cyclic, 0);
+  DriveTargets ramped(cyclic, image);
+  // 5 m/s^2 in 10 ms: 0.05 m/s a cycle; the right drive counts backwards, so that its -0.05 is positive
+  const double units = cyclic.drives[0].units.velocity_per_unit;
+  DriveOrders orders = ramped.step(command, image, 0.01);
+  CHECK(orders[0].target == std::lround(0.05 * units));
+  CHECK(orders[1].target == std::lround(0.05 * units));
+  for (int k = 0; k < 3; ++k) orders = ramped.step(command, image, 0.01);
+  CHECK(orders[0].target == std::lround(0.2 * units));
+
+  const canbus::RobotBus profile = bus_with(DriveMode::profile_velocity, DriveMode::profile_position);
+  DriveTargets direct(profile, image);
+  CHECK(direct.step(command, image, 0.01)[0].target == std::lround(0.2 * units));
+}
+
+TEST_CASE("what is beyond the description's limits is cut to them") {
+  const canbus::RobotBus bus = bus_with(DriveMode::profile_velocity, DriveMode::profile_position);
+  const ProcessImage image = image_at(bus, 0);
+  DriveTargets targets(bus, image);
+  hrt::DriveCommand command;
+  command.track_speed_mps = {99, -99};
+  command.flipper_mask = 1;
+  command.flipper_rad[0] = 6;
+  const DriveOrders orders = targets.step(command, image, 0.01);
+  CHECK(orders[0].target == std::lround(0.5 * bus.drives[0].units.velocity_per_unit));
+  CHECK(orders[2].target == position_to_drive(bus.drives[2].units, 3.14159265));
+  CHECK((orders[2].controlword & canopen::kControlNewSetPoint) != 0);
+  CHECK((orders[3].controlword & canopen::kControlNewSetPoint) == 0);  // was never told anything: no set-point
+}
+
+TEST_CASE("a position ramp reaches its target in the time of its trapezoid and does not go beyond") {
+  // 1 rad at 1.5 rad/s and 15 rad/s^2: 0.1 s up, 0.1 s down, 0.15 rad together; 0.85 rad at full speed: 0.567 s; in all
+  // 0.767 s
+  PositionRamp ramp;
+  double time_s = 0, fastest = 0, farthest = 0;
+  while (std::abs(ramp.position - 1) > 1e-6 && time_s < 5) {
+    const double before = ramp.speed;
+    ramp.step(1, 1.5, 15, 0.01);
+    time_s += 0.01;
+    fastest = std::max(fastest, ramp.speed);
+    farthest = std::max(farthest, ramp.position);
+    CHECK(std::abs(ramp.speed - before) <= 15 * 0.01 + 1e-9);
+  }
+  CHECK(fastest == Approx(1.5));
+  CHECK(farthest <= 1 + 1e-6);
+  CHECK(time_s == Approx(0.767).margin(0.05));  // whole steps, and the last ones are slow
+}
+
+TEST_CASE("a target that comes nearer than the way to stop is gone back to, within the acceleration") {
+  PositionRamp ramp;
+  for (int k = 0; k < 30; ++k) ramp.step(1, 1.5, 15, 0.01);
+  for (int k = 0; k < 200; ++k) {
+    const double before = ramp.speed;
+    ramp.step(0.1, 1.5, 15, 0.01);
+    CHECK(std::abs(ramp.speed - before) <= 15 * 0.01 + 1e-9);
+  }
+  CHECK(ramp.position == Approx(0.1).margin(1e-4));
+}
