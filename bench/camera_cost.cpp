@@ -1,0 +1,109 @@
+// What a picture costs: processor time of each camera's picture, drawing and JPEG apart, in worlds of few faces and of
+// many, and whether two cameras at 30 pictures a second leave half a core.
+// By the thread's own time, so that it says the same on a machine that does other things too.
+// Usage: camera_cost [pictures per camera and world, default 60] [world]... Status 1: a world's mean misses the limit.
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "camera/jpeg.hpp"
+#include "camera/renderer.hpp"
+#include "camera/robot_cameras.hpp"
+
+using namespace kenaf;
+
+namespace {
+
+constexpr double kLimit = 0.5;  // of a core
+constexpr double kRate_hz = 30;
+
+double thread_time_s() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+struct Cost {
+  double snapshot_s = 0, update_s = 0, draw_s = 0, jpeg_s = 0, bytes = 0, rays = 0;
+};
+
+// The robot drives from the world's start, and pictures are taken of it at the cameras' rate.
+std::vector<Cost> measure(const std::string& world_name, int pictures) {
+  std::vector<std::string> unsupported;
+  physics::World world(physics::load_world(world_name, unsupported), {}, 1);
+  const physics::RobotDescription robot = physics::load_robot("kenaf");
+  physics::Pose X_WB = world.description().start_poses.front().X_WB;
+  const physics::RobotId id = world.add_robot(robot, "R1", X_WB);
+  physics::RobotCommand command;
+  command.track_speed_mps = {0.4, 0.4};
+  for (physics::JointCommand& flipper : command.flipper) flipper.value = 0.6;
+  world.set_command(id, command);
+
+  camera::SnapshotTaker taker;
+  camera::WorldSnapshot snapshot;
+  camera::Scene scene(world.description());
+  camera::JpegEncoder jpeg;
+  std::vector<Cost> costs(robot.cameras.size());
+  std::vector<camera::Renderer> renderers(robot.cameras.size());
+  camera::Picture picture;
+  for (int i = -1; i < pictures; ++i) {  // the first allocates
+    while (world.time_s() < i / kRate_hz) world.step();
+    double t[5];
+    for (std::size_t c = 0; c < robot.cameras.size(); ++c) {
+      t[0] = thread_time_s();
+      taker.take(world, snapshot);
+      t[1] = thread_time_s();
+      scene.update(snapshot);
+      t[2] = thread_time_s();
+      const physics::CameraDescription& camera = robot.cameras[c];
+      renderers[c].render(scene, camera_view(snapshot.robots.front(), camera, camera.field_of_view_rad), picture);
+      t[3] = thread_time_s();
+      const auto file = jpeg.encode(picture, camera.jpeg_quality);
+      t[4] = thread_time_s();
+      if (i < 0) continue;
+      Cost& cost = costs[c];
+      cost.snapshot_s += (t[1] - t[0]) / pictures;
+      cost.update_s += (t[2] - t[1]) / pictures;
+      cost.draw_s += (t[3] - t[2]) / pictures;
+      cost.jpeg_s += (t[4] - t[3]) / pictures;
+      cost.bytes += static_cast<double>(file.size()) / pictures;
+      cost.rays += static_cast<double>(renderers[c].ray_count()) / pictures;
+    }
+  }
+  return costs;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int pictures = argc > 1 ? std::atoi(argv[1]) : 60;
+  if (pictures < 1) {
+    fmt::print(stderr, "usage: camera_cost [pictures per camera and world, at least 1] [world]...\n");
+    return 2;
+  }
+  std::vector<std::string> worlds(argv + std::min(argc, 2), argv + argc);
+  if (worlds.empty()) worlds = {"flat", "step-200", "stairs", "step-field", "hills", "rubble-mesh"};
+  const physics::RobotDescription robot = physics::load_robot("kenaf");
+  bool met = true;
+  fmt::print("{:<12} {:<10} {:>11} {:>9} {:>8} {:>8} {:>9} {:>8} {:>7}\n", "world", "camera", "snapshot us", "scene us",
+             "draw ms", "JPEG ms", "sum ms", "rays k", "kB");
+  for (const std::string& world : worlds) {
+    double share = 0;
+    const std::vector<Cost> costs = measure(world, pictures);
+    for (std::size_t c = 0; c < costs.size(); ++c) {
+      const Cost& cost = costs[c];
+      const double sum_s = cost.snapshot_s + cost.update_s + cost.draw_s + cost.jpeg_s;
+      share += kRate_hz * sum_s;
+      fmt::print("{:<12} {:<10} {:>11.1f} {:>9.1f} {:>8.2f} {:>8.2f} {:>9.2f} {:>8.1f} {:>7.1f}\n", world,
+                 robot.cameras[c].name, 1e6 * cost.snapshot_s, 1e6 * cost.update_s, 1e3 * cost.draw_s,
+                 1e3 * cost.jpeg_s, 1e3 * sum_s, cost.rays / 1e3, cost.bytes / 1e3);
+    }
+    fmt::print("{:<12} all cameras at {:.0f} Hz: {:.2f} of a core, limit {:.1f}\n", world, kRate_hz, share, kLimit);
+    met = met && share <= kLimit;
+  }
+  return met ? 0 : 1;
+}
