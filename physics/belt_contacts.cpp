@@ -38,7 +38,7 @@ template <typename Use>
 void outline_points(const BeltShape& belt, const btVector3& normal, const Use& use) {
   for (int disc = 0; disc < 2; ++disc)
     use(static_cast<std::uint32_t>(disc), furthest_on_disc(belt, disc, -normal), 0.5);
-  const btVector3 run_normal(belt.lean(), 0, normal.z() > 0 ? -belt.rise() : belt.rise());
+  const btVector3 run_normal(belt.lean, 0, normal.z() > 0 ? -belt.rise : belt.rise);
   if (-run_normal.dot(normal) < kFacing) return;
   const btVector3 from = furthest_on_disc(belt, 0, run_normal), to = furthest_on_disc(belt, 1, run_normal);
   for (int i = 1; i < belt.pieces; ++i)
@@ -50,7 +50,7 @@ template <typename Use>
 void side_points(const BeltShape& belt, const Use& use) {
   std::uint32_t place = 0;
   for (const btScalar side : {-1, 1})
-    for (const int disc : {0, 1}) use(place++, furthest_on_disc(belt, disc, {belt.lean(), 0, side * belt.rise()}));
+    for (const int disc : {0, 1}) use(place++, furthest_on_disc(belt, disc, {belt.lean, 0, side * belt.rise}));
   use(place++, furthest_on_disc(belt, 0, {-1, 0, 0}));
   use(place++, furthest_on_disc(belt, 1, {1, 0, 0}));
 }
@@ -171,16 +171,26 @@ class BoxTouches {
   // all, as on a plane.
   void face_points(int j, const btVector3& normal, std::uint32_t face, const Slices& s, std::uint32_t place,
                    btVector3 p, btScalar share) {
+    const auto move_to = [&](std::size_t k) { p.setY(s.y[k]); };
+    const auto gap_here = [&] { return normal.dot(p - box_.center) - box_.half[j]; };
+    const auto counts = [](btScalar gap) { return gap <= kTouching_m && gap >= -kDeepest_m; };
     const auto over = [&](std::size_t k) {
-      p.setY(s.y[k]);
+      move_to(k);
       return in_slabs(box_, p - box_.center, j);
     };
+    // most points are far from most faces, which is quicker to see than where they are beside it
+    bool any = false;
+    for (std::size_t k = 0; k < kBoxSlices; ++k) {
+      move_to(k);
+      any = any || counts(gap_here());
+    }
+    if (!any) return;
     const bool whole = over(0) && over(2);
     for (std::size_t k = 0; k < kBoxSlices; ++k) {
       if (whole ? k == 1 : !over(k)) continue;
-      p.setY(s.y[k]);
-      const btScalar gap = normal.dot(p - box_.center) - box_.half[j];
-      if (gap > kTouching_m || gap < -kDeepest_m) continue;
+      move_to(k);
+      const btScalar gap = gap_here();
+      if (!counts(gap)) continue;
       add(p - normal * (gap / 2), normal, gap, share * (whole ? 1 : s.share[k]), false,
           feature(face, static_cast<std::uint32_t>(k), place));
     }

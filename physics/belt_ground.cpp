@@ -136,14 +136,15 @@ class BeltGround::Algorithm : public btCollisionAlgorithm {
   void remember() {
     pair_->before.swap(pair_->contacts);
     pair_->contacts.clear();
+    const std::vector<BeltContact>& before = pair_->before;
     std::size_t next = 0;
     for (const BeltTouch& touch : owner_.touches_) {
       BeltContact& contact = pair_->contacts.emplace_back(BeltContact{touch, {}});
-      for (std::size_t i = 0; i < pair_->before.size(); ++i) {
-        const BeltContact& before = pair_->before[(next + i) % pair_->before.size()];
-        if (before.touch.feature != touch.feature) continue;
-        contact.impulse = before.impulse;
-        next += i + 1;
+      for (std::size_t tried = 0; tried < before.size(); ++tried) {
+        const BeltContact& old = before[next];
+        next = next + 1 < before.size() ? next + 1 : 0;
+        if (old.touch.feature != touch.feature) continue;
+        contact.impulse = old.impulse;
         break;
       }
     }

@@ -3,7 +3,7 @@
 namespace kenaf::physics {
 
 OutlineDistance distance_to_outline(const BeltShape& belt, btScalar x, btScalar z) {
-  const btScalar lean = belt.lean(), rise = belt.rise();
+  const btScalar lean = belt.lean, rise = belt.rise;
   const btScalar side = z < 0 ? -1 : 1, height = side * z;
   const btScalar along = rise * x - lean * height;  // along the run, from where its normal passes through disc 0
   if (along > 0 && along < belt.length * rise)

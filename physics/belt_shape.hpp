@@ -14,16 +14,17 @@
 namespace kenaf::physics {
 
 struct BeltShape {
-  std::array<btScalar, 2> radius;
-  btScalar length;                  // between the discs' centres
+  std::array<btScalar, 2> radius{};
+  btScalar length = 1;              // between the discs' centres
   btScalar half_width;
   btVector3 p_BodyT;                // in the frame of the collision shape
   int pieces;                       // of a straight run: it touches with a point at each end of each piece
   Surface surface;
 
-  // The straight runs' outward normals are (lean, 0, +-rise): not vertical where the discs' radii differ.
-  btScalar lean() const { return (radius[0] - radius[1]) / length; }
-  btScalar rise() const { return btSqrt(1 - lean() * lean()); }
+  // Follow from the others. The straight runs' outward normals are (lean, 0, +-rise): not vertical where the discs' radii
+  // differ.
+  btScalar lean = (radius[0] - radius[1]) / length;
+  btScalar rise = btSqrt(1 - lean * lean);
 };
 
 // The nearest place of the outline to a point of the plane y = 0.

@@ -1,7 +1,6 @@
 // Between Eigen and Bullet (double precision). Only this room's implementation files include Bullet.
 #pragma once
 
-#include <BulletCollision/CollisionDispatch/btSimulationIslandManager.h>
 #include <btBulletCollisionCommon.h>
 #include <btBulletDynamicsCommon.h>
 

@@ -8,7 +8,7 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr double kWhole = 1e-6;  // of a step: a delay this near to whole steps is meant so
+constexpr double kWholeStep = 1e-6;  // of a step: a delay this near to whole steps is meant so
 
 // No sensor has a name with a blank, so no sensor draws from the same generator.
 constexpr std::string_view kGeneratorName = "command channel";
@@ -39,9 +39,9 @@ CommandChannel::CommandChannel(const Effects& effects, std::uint64_t world_seed,
       gain_(effects.command_gain),
       step_mps_(effects.command_slew_s2pm > 0 ? time_step_s / effects.command_slew_s2pm : 0) {
   const double steps = effects.command_delay_s / time_step_s;
-  delay_steps_ = static_cast<std::size_t>(std::floor(steps + kWhole));
+  delay_steps_ = static_cast<std::size_t>(std::floor(steps + kWholeStep));
   delay_rest_ = steps - static_cast<double>(delay_steps_);
-  if (delay_rest_ < kWhole) delay_rest_ = 0;
+  if (delay_rest_ < kWholeStep) delay_rest_ = 0;
   line_.resize(delay_steps_ + 2);
 }
 

@@ -12,7 +12,7 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr int kWhole = -1;  // the piece that is all of a body that is no compound
+constexpr int kWholeBody = -1;  // the piece that is all of a body that is no compound
 
 const btCompoundShape* compound_of(const btCollisionObjectWrapper& body) {
   const btCollisionShape& shape = *body.getCollisionShape();
@@ -32,10 +32,10 @@ struct Piece {
   btVector3 low_W, high_W;
 
   Piece(const btCollisionObjectWrapper& body, std::size_t number)
-      : index(compound_of(body) ? static_cast<int>(number) : kWhole),
-        X_W(index == kWhole ? body.getWorldTransform()
-                            : body.getWorldTransform() * compound_of(body)->getChildTransform(index)),
-        wrapper(&body, index == kWhole ? body.getCollisionShape() : compound_of(body)->getChildShape(index),
+      : index(compound_of(body) ? static_cast<int>(number) : kWholeBody),
+        X_W(index == kWholeBody ? body.getWorldTransform()
+                                : body.getWorldTransform() * compound_of(body)->getChildTransform(index)),
+        wrapper(&body, index == kWholeBody ? body.getCollisionShape() : compound_of(body)->getChildShape(index),
                 body.getCollisionObject(), X_W, -1, index) {
     wrapper.getCollisionShape()->getAabb(X_W, low_W, high_W);
   }

@@ -120,47 +120,38 @@ void FlipperJoint::push_through(double servo_radps, double torque_nm, double tim
   if (coupling_.play_rad > 0) (ahead < 0 ? max_impulse_ : min_impulse_) = 0;
 }
 
-void FlipperJoint::getInfo1(btConstraintInfo1* info) {
-  info->m_numConstraintRows = 6;
-  info->nub = 0;
-}
-
-void FlipperJoint::getInfo2(btConstraintInfo2* info) {
+void FlipperJoint::rows(btScalar correction_per_s, std::array<Row, kRows>& out) const {
   const btTransform X_WJa = m_rbA.getCenterOfMassTransform() * X_AJ_;
   const btTransform X_WJb = m_rbB.getCenterOfMassTransform() * X_BJ_;
   const btVector3 r_a = X_WJa.getOrigin() - m_rbA.getCenterOfMassPosition();
   const btVector3 r_b = X_WJb.getOrigin() - m_rbB.getCenterOfMassPosition();
   const btVector3 apart = X_WJb.getOrigin() - X_WJa.getOrigin();
-  const btScalar correction = info->fps * info->erp;
-
-  const auto set = [info](btScalar* rows, int row, const btVector3& v) {
-    for (int k = 0; k < 3; ++k) rows[row * info->rowskip + k] = v[k];
-  };
-  // rows 0 to 2 hold the pivots together
+  // the first three hold the pivots together
   for (int i = 0; i < 3; ++i) {
+    Row& row = out[static_cast<std::size_t>(i)];
     btVector3 axis(0, 0, 0);
     axis[i] = 1;
-    set(info->m_J1linearAxis, i, axis);
-    set(info->m_J2linearAxis, i, -axis);
-    set(info->m_J1angularAxis, i, r_a.cross(axis));
-    set(info->m_J2angularAxis, i, -r_b.cross(axis));
-    info->m_constraintError[i * info->rowskip] = correction * apart[i];
+    row.angular_a = r_a.cross(axis);
+    row.angular_b = -r_b.cross(axis);
+    row.velocity = correction_per_s * apart[i];
   }
-  // rows 3 and 4 keep the axes parallel
+  // two keep the axes parallel
   const btVector3 axis_a = X_WJa.getBasis().getColumn(1);
   const btVector3 tilt = axis_a.cross(X_WJb.getBasis().getColumn(1));
-  for (int i = 3; i < 5; ++i) {
+  for (const std::size_t i : {3u, 4u}) {
     const btVector3 p = X_WJa.getBasis().getColumn(i == 3 ? 0 : 2);
-    set(info->m_J1angularAxis, i, p);
-    set(info->m_J2angularAxis, i, -p);
-    info->m_constraintError[i * info->rowskip] = correction * tilt.dot(p);
+    out[i].angular_a = p;
+    out[i].angular_b = -p;
+    out[i].velocity = correction_per_s * tilt.dot(p);
   }
-  // row 5 is the servo: B turns relative to A about -y of the joint
-  set(info->m_J1angularAxis, 5, axis_a);
-  set(info->m_J2angularAxis, 5, -axis_a);
-  info->m_constraintError[5 * info->rowskip] = target_radps_;
-  info->m_lowerLimit[5 * info->rowskip] = min_impulse_;
-  info->m_upperLimit[5 * info->rowskip] = max_impulse_;
+  // the last is the servo: B turns relative to A about -y of the joint
+  Row& servo = out[5];
+  servo.angular_a = axis_a;
+  servo.angular_b = -axis_a;
+  servo.velocity = target_radps_;
+  servo.low = min_impulse_;
+  servo.high = max_impulse_;
+  servo.softness = softness_;
 }
 
 }  // namespace kenaf::physics

@@ -46,14 +46,24 @@ class FlipperJoint : public btTypedConstraint {
   double speed_radps() const;
   double torque_nm(double time_step_s) const { return row_impulse[5] / time_step_s; }  // + lifts the tip
 
-  void getInfo1(btConstraintInfo1* info) override;
-  void getInfo2(btConstraintInfo2* info) override;
+  // An equation for the solver: angular_a . w_A + angular_b . w_B = velocity, held by an impulse between `low` and `high`.
+  // The first three rows have v_A - v_B along x, y, z of W too.
+  struct Row {
+    btVector3 angular_a, angular_b;
+    btScalar velocity, low = -SIMD_INFINITY, high = SIMD_INFINITY;
+    btScalar softness = 0;  // by how much it gives way, in rad/s for an impulse of 1 N m s
+  };
+  static constexpr std::size_t kRows = 6;
+  // `correction_per_s`: of an error of position.
+  void rows(btScalar correction_per_s, std::array<Row, kRows>& out) const;
+
+  // Bullet's own solver never sees it.
+  void getInfo1(btConstraintInfo1* info) override { info->m_numConstraintRows = info->nub = 0; }
+  void getInfo2(btConstraintInfo2*) override {}
   void setParam(int, btScalar, int) override {}
   btScalar getParam(int, int) const override { return 0; }
 
-  std::array<double, 6> row_impulse{};  // of the last step; the servo's is the last one
-  // Of the servo's row, in rad/s for an impulse of 1 N m s: what the row gives way.
-  double softness() const { return softness_; }
+  std::array<double, kRows> row_impulse{};  // of the last step; the servo's is the last one
 
  private:
   void push_through(double servo_radps, double torque_nm, double time_step_s);

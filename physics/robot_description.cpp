@@ -7,18 +7,20 @@
 #include <numbers>
 #include <set>
 
-#include "physics/description_file.hpp"
-#include "physics/toml_reader.hpp"
-#include "protocol/data_files.hpp"
+#include "description/data_files.hpp"
+#include "description/description_file.hpp"
+#include "description/toml_reader.hpp"
 
 namespace kenaf::physics {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr Range kFriction{.min = 0, .max = 10};
 constexpr Range kMaxDelay{.min = 0, .max = 10};
 constexpr std::size_t kMaxSensors = 64;
 constexpr std::size_t kMaxRays = 4096;
+constexpr std::size_t kMaxCameras = 8;
+constexpr int kMaxPixelsASide = 4096;
 
 constexpr std::array<std::string_view, 11> kTypeNames{"GroundTruth", "INS",        "IMU",   "Encoder",
                                                       "Odometry",    "Tachometer", "Sonar", "RangeScanner",
@@ -82,8 +84,8 @@ FlipperDescription read_flipper(TomlReader table) {
       .p_BPivot_m = table.vector3("front_left_pivot_m"),
       .friction_along = table.number("friction_along", kFriction),
       .friction_across = table.number("friction_across", kFriction),
-      .min_angle_rad = table.number("min_angle_rad", {.min = -2 * kPi, .max = 0}),
-      .max_angle_rad = table.number("max_angle_rad", {.min = 0, .max = 2 * kPi}),
+      .min_angle_rad = table.number("min_angle_rad", {.min = -2 * pi, .max = 0}),
+      .max_angle_rad = table.number("max_angle_rad", {.min = 0, .max = 2 * pi}),
       .start_angle_rad = table.number("start_angle_rad"),
       .belt_driven = table.boolean("belt_driven"),
   };
@@ -146,7 +148,7 @@ SensorDescription read_sensor(TomlReader& table) {
     sensor.min_range_m = table.number("min_range_m", kNotNegative);
     sensor.max_range_m = table.number("max_range_m", kPositive);
     if (sensor.max_range_m <= sensor.min_range_m) table.fail("max_range_m", "must be more than min_range_m");
-    sensor.field_of_view_rad = table.number("field_of_view_rad", {.min = 0, .max = 2 * kPi});
+    sensor.field_of_view_rad = table.number("field_of_view_rad", {.min = 0, .max = 2 * pi});
   }
   if (sensor.type == SensorType::range_scanner) {
     sensor.resolution_rad = table.number("resolution_rad", kPositive);
@@ -170,6 +172,40 @@ MissionPackageDescription read_mission_package(TomlReader& table) {
     table.fail("link", "is missing: a mission package has at least one [[mission_package.link]]");
   table.finish();
   return package;
+}
+
+CameraDescription read_camera(TomlReader& table, const std::vector<MissionPackageDescription>& packages) {
+  // 170 degrees: beyond, a plane picture is all border
+  constexpr Range kFieldOfView{.min = 0.01, .max = 170 * pi / 180};
+  CameraDescription camera{};
+  camera.name = table.text("name");
+  if (camera.name.empty() || camera.name.find_first_of("{} \t\r\n") != std::string::npos)
+    table.fail("name", "must not be empty nor hold blanks or braces");
+  if (table.has("mount")) {
+    const std::string mount = table.text("mount");
+    const auto package = std::ranges::find(packages, mount, &MissionPackageDescription::name);
+    if (package == packages.end())
+      table.fail("mount", fmt::format("is \"{}\", but the robot has no [[mission_package]] of that name", mount));
+    if (package->links.size() > 2) table.fail("mount", "must have one link or two: pan, and tilt");
+    camera.mission_package = static_cast<std::size_t>(package - packages.begin());
+    if (table.has("mount_m") || table.has("mount_rpy_rad"))
+      table.fail("mount", "is the camera's place: mount_m and mount_rpy_rad are for cameras without it");
+  } else {
+    camera.X_BC = read_mount(table);
+  }
+  camera.width = table.integer("width", 16, kMaxPixelsASide);
+  camera.height = table.integer("height", 16, kMaxPixelsASide);
+  camera.field_of_view_rad = table.number("field_of_view_rad", kFieldOfView);
+  camera.min_field_of_view_rad = table.number_or("min_field_of_view_rad", camera.field_of_view_rad, kFieldOfView);
+  camera.max_field_of_view_rad = table.number_or("max_field_of_view_rad", camera.field_of_view_rad, kFieldOfView);
+  if (camera.min_field_of_view_rad > camera.field_of_view_rad ||
+      camera.max_field_of_view_rad < camera.field_of_view_rad)
+    table.fail("field_of_view_rad", "must be between min_field_of_view_rad and max_field_of_view_rad");
+  camera.rate_hz = table.number("rate_hz", {.min = 0.1, .max = 120});
+  camera.latency_s = table.number_or("latency_s", 0, {.min = 0, .max = 2});
+  camera.jpeg_quality = table.has("jpeg_quality") ? table.integer("jpeg_quality", 1, 100) : 80;
+  table.finish();
+  return camera;
 }
 
 Effects read_effects(TomlReader file) {
@@ -224,7 +260,15 @@ RobotDescription parse_robot(std::string_view toml_text, const std::string& name
   }
   for (TomlReader& table : file.tables("mission_package"))
     robot.mission_packages.push_back(read_mission_package(table));
+  names.clear();
+  for (TomlReader& table : file.tables("camera")) {
+    robot.cameras.push_back(read_camera(table, robot.mission_packages));
+    if (!names.insert(robot.cameras.back().name).second) table.fail("name", "is the name of another camera too");
+    if (robot.cameras.size() > kMaxCameras)
+      table.fail("name", fmt::format("is one camera too many: at most {}", kMaxCameras));
+  }
   if (file.has("effects")) robot.effects = read_effects(file.table("effects"));
+  file.leave("can");  // of the real robot's bus: canbus/robot_bus.hpp
   file.finish();
   return robot;
 }

@@ -7,22 +7,17 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
-#include <stdexcept>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "description/description_error.hpp"
 #include "physics/effects.hpp"
 #include "physics/pose.hpp"
 #include "physics/robot_command.hpp"
 
 namespace kenaf::physics {
-
-// What is wrong with a description, with file, line and column in its text.
-class DescriptionError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 struct BodyDescription {
   double mass_kg;                  // of the body with its main tracks, without flippers
@@ -112,6 +107,19 @@ struct MissionPackageDescription {
   std::vector<Link> links;         // link 1 first
 };
 
+// What takes pictures (camera/). Frame C: x along the optical axis, y left, z up.
+struct CameraDescription {
+  std::string name;                // unique among the robot's cameras
+  std::optional<std::size_t> mission_package;  // index of the mount that turns it, which has one link or two
+  Pose X_BC;                       // where it is fixed on the body, if it is on no package
+  int width, height;               // pixels
+  double field_of_view_rad;        // horizontal, as it starts
+  double min_field_of_view_rad, max_field_of_view_rad;  // of its zoom
+  double rate_hz;                  // pictures a second
+  double latency_s;                // from the moment that a picture shows until it can be sent
+  int jpeg_quality;                // 1 to 100
+};
+
 struct RobotDescription {
   std::string name;                // as its file is called
   std::string usarsim_class;       // "USARBot.Kenaf"
@@ -123,6 +131,7 @@ struct RobotDescription {
   BatteryDescription battery{};
   std::vector<SensorDescription> sensors;
   std::vector<MissionPackageDescription> mission_packages;
+  std::vector<CameraDescription> cameras;
   Effects effects;                 // switched on by [effects.NAME] tables
 
   bool has_flippers() const { return !flipper.empty(); }

@@ -7,9 +7,9 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int kTrackArcSegments = 16;  // of a half circle: 0.3 mm between chord and arc at a radius of 65 mm
-constexpr double kFlipperArcStep = kPi / 12;
+constexpr double kFlipperArcStep = pi / 12;
 // Bullet rounds what touches within a margin. Small, because the edge of a step decides whether a robot climbs it.
 constexpr double kMargin_m = 0.001;
 
@@ -25,8 +25,8 @@ void add_arc(Outline& outline, const Eigen::Vector2d& center, double radius, dou
 Outline track_outline(const TrackDescription& track) {
   const double half = track.length_m / 2 - track.end_radius_m;  // of the straight run
   Outline outline;
-  add_arc(outline, {half, 0}, track.end_radius_m, -kPi / 2, kPi / 2, kTrackArcSegments);
-  add_arc(outline, {-half, 0}, track.end_radius_m, kPi / 2, 3 * kPi / 2, kTrackArcSegments);
+  add_arc(outline, {half, 0}, track.end_radius_m, -pi / 2, pi / 2, kTrackArcSegments);
+  add_arc(outline, {-half, 0}, track.end_radius_m, pi / 2, 3 * pi / 2, kTrackArcSegments);
   return outline;
 }
 
@@ -35,10 +35,10 @@ Outline flipper_outline(const FlipperDescription& flipper) {
   const double lean =
       std::acos(std::clamp((flipper.pivot_radius_m - flipper.tip_radius_m) / flipper.length_m, -1.0, 1.0));
   const int tip_segments = std::max(2, static_cast<int>(std::lround(2 * lean / kFlipperArcStep)));
-  const int pivot_segments = std::max(2, static_cast<int>(std::lround((2 * kPi - 2 * lean) / kFlipperArcStep)));
+  const int pivot_segments = std::max(2, static_cast<int>(std::lround((2 * pi - 2 * lean) / kFlipperArcStep)));
   Outline outline;
   add_arc(outline, {flipper.length_m, 0}, flipper.tip_radius_m, -lean, lean, tip_segments);
-  add_arc(outline, {0, 0}, flipper.pivot_radius_m, lean, 2 * kPi - lean, pivot_segments);
+  add_arc(outline, {0, 0}, flipper.pivot_radius_m, lean, 2 * pi - lean, pivot_segments);
   return outline;
 }
 

@@ -25,14 +25,12 @@ Scene::Scene(const WorldDescription& description, const PhysicsSettings& setting
       compound_contacts_(dispatcher_),
       broadphase_(&pairs_),
       solver_({settings.contact_stiffness_npm, settings.contact_damping_nspm}, belt_ground_),
-      world_(&dispatcher_, &broadphase_, &solver_, &configuration_) {
+      world_(dispatcher_, broadphase_, configuration_, solver_) {
   btContactSolverInfo& info = world_.getSolverInfo();
   info.m_numIterations = settings.solver_iterations;
-  info.m_splitImpulse = 0;  // contacts give way instead, see ContactSolver
   info.m_erp = kJointCorrection;
   const double solved_mps = kSolved * description.gravity_W_mps2.norm() * settings.time_step_s;
   info.m_leastSquaresResidualThreshold = solved_mps * solved_mps;
-  world_.getSimulationIslandManager()->setSplitIslands(false);  // belts belong to no island
   world_.setForceUpdateAllAabbs(false);
   world_.setGravity(to_bullet(description.gravity_W_mps2));
   for (const GroundPlane& plane : description.planes) {
@@ -209,9 +207,9 @@ std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& from_W, const Eigen
 void Scene::touches(RobotId robot, std::vector<Eigen::Vector3d>& out) const {
   out.clear();
   const auto id = static_cast<std::uint32_t>(robot);
-  for (const ContactSolver::Contact& contact : solver_.contacts())
-    if (contact.impulse[0] > 0 && (contact.collider_a->robot == id || contact.collider_b->robot == id))
-      out.push_back(from_bullet(contact.p_W));
+  for (const Contact& contact : solver_.contacts())
+    if (contact.pressed() && (contact.collider_a().robot == id || contact.collider_b().robot == id))
+      out.push_back(from_bullet(contact.p_W()));
 }
 
 }  // namespace kenaf::physics

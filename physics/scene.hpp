@@ -11,6 +11,7 @@
 #include "physics/compound_contacts.hpp"
 #include "physics/contact_solver.hpp"
 #include "physics/contact_tables.hpp"
+#include "physics/dynamics_world.hpp"
 #include "physics/hull_plane.hpp"
 #include "physics/hull_solid.hpp"
 #include "physics/robot_model.hpp"
@@ -74,7 +75,7 @@ class Scene {
   PairTable pairs_;
   btDbvtBroadphase broadphase_;
   ContactSolver solver_;
-  btDiscreteDynamicsWorld world_;
+  DynamicsWorld world_;
   std::vector<Fixture> planes_;
   std::list<MeshFixture> meshes_;  // stay where they are, as Bullet points at them
   std::map<BoxId, Fixture> boxes_;

@@ -8,7 +8,7 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr double kThinnest_m = 1e-6;
+constexpr double kLeastHeight_m = 1e-6;
 
 void join_vertices(TriangleSurface& surface) {
   const std::vector<Eigen::Vector3d>& v = surface.vertices;
@@ -60,7 +60,7 @@ void examine_edges(const TriangleSurface& surface, TidySurface& tidied) {
 bool too_thin(const TriangleSurface& surface, const std::array<std::uint32_t, 3>& t) {
   const Eigen::Vector3d &a = surface.vertices[t[0]], &b = surface.vertices[t[1]], &c = surface.vertices[t[2]];
   const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-  return !((b - a).cross(c - a).norm() > kThinnest_m * longest);
+  return !((b - a).cross(c - a).norm() > kLeastHeight_m * longest);
 }
 
 }  // namespace

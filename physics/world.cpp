@@ -32,10 +32,11 @@ struct RobotEntry {
   std::vector<std::vector<MissionLink>> mission;
   std::string fault;
   RobotTruth last_whole{};  // before the fault
+  DriveCurrents currents;   // 0 after it
 };
 
 // What no robot on tracks does.
-constexpr double kFastest_mps = 50, kFastest_radps = 500, kDeepest_m = -100, kFurthest_m = 1e5;
+constexpr double kFastest_mps = 50, kFastest_radps = 500, kLowest_m = -100, kFurthest_m = 1e5;
 
 std::string fault_of(const RobotTruth& truth, double t_s) {
   const double speed = truth.v_WB_mps.norm(), spin = truth.w_WB_radps.norm();
@@ -44,7 +45,7 @@ std::string fault_of(const RobotTruth& truth, double t_s) {
     return fmt::format("its pose is no number at {:.3f} s", t_s);
   if (speed > kFastest_mps || spin > kFastest_radps)
     return fmt::format("it exploded: {:.0f} m/s and {:.0f} rad/s at {:.3f} s", speed, spin, t_s);
-  if (p.z() < kDeepest_m || p.norm() > kFurthest_m)
+  if (p.z() < kLowest_m || p.norm() > kFurthest_m)
     return fmt::format("it left the world: x {:.0f}, y {:.0f}, z {:.0f} m at {:.3f} s", p.x(), p.y(), p.z(), t_s);
   return {};
 }
@@ -113,16 +114,17 @@ struct World::Implementation {
         stop_at_fault(entry);
     }
     const RobotTruth& truth = entry.last_whole;
+    entry.currents = {};
     if (!entry.fault.empty()) return entry.sensors->record(truth, time_s(), {}, {}, {});
     if (entry.sensors->has_touch()) {
       const Pose X_BW = inverse(truth.X_WB);
       scene->touches(id, touches);
       for (Eigen::Vector3d& p : touches) p = X_BW.p + X_BW.q * p;
     }
-    entry.sensors->record(truth, time_s(), {model.track_current_a(kLeft, dt), model.track_current_a(kRight, dt)},
-                          {model.flipper_current_a(kFrontLeft, dt), model.flipper_current_a(kFrontRight, dt),
-                           model.flipper_current_a(kRearLeft, dt), model.flipper_current_a(kRearRight, dt)},
-                          touches);
+    entry.currents = {{model.track_current_a(kLeft, dt), model.track_current_a(kRight, dt)},
+                      {model.flipper_current_a(kFrontLeft, dt), model.flipper_current_a(kFrontRight, dt),
+                       model.flipper_current_a(kRearLeft, dt), model.flipper_current_a(kRearRight, dt)}};
+    entry.sensors->record(truth, time_s(), entry.currents.track_a, entry.currents.flipper_a, touches);
   }
 
   void build() {
@@ -226,6 +228,10 @@ const RobotDescription& World::robot_description(RobotId id) const {
   return impl_->robot(id).description;
 }
 
+const std::string& World::robot_name(RobotId id) const {
+  return impl_->robot(id).name;
+}
+
 void World::set_command(RobotId id, const RobotCommand& command) {
   impl_->robot(id).model->send(command);
 }
@@ -286,6 +292,10 @@ RobotTruth World::truth(RobotId id) const {
   return impl_->robot(id).last_whole;
 }
 
+DriveCurrents World::drive_currents(RobotId id) const {
+  return impl_->robot(id).currents;
+}
+
 const std::string& World::fault(RobotId id) const {
   return impl_->robot(id).fault;
 }
@@ -323,6 +333,18 @@ void World::remove_box(BoxId id) {
 
 Pose World::box_pose(BoxId id) const {
   return impl_->scene->box_pose(id);
+}
+
+std::vector<BoxId> World::boxes() const {
+  std::vector<BoxId> ids;
+  for (const auto& [id, box] : impl_->boxes) ids.push_back(id);
+  return ids;
+}
+
+const Box& World::box(BoxId id) const {
+  const auto found = impl_->boxes.find(id);
+  if (found == impl_->boxes.end()) throw std::out_of_range("no such box in this world");
+  return found->second;
 }
 
 std::optional<RayHit> World::cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,

@@ -49,6 +49,12 @@ struct RobotMotion {
   std::array<double, kTrackCount> track_mps{};
 };
 
+// What the motors take, as the drives' own measurement would say it without noise.
+struct DriveCurrents {
+  std::array<double, kTrackCount> track_a{};
+  std::array<double, kFlipperCount> flipper_a{};
+};
+
 struct RayHit { double distance_m; Eigen::Vector3d normal_W; };
 
 class World {
@@ -70,6 +76,7 @@ class World {
   void remove_robot(RobotId id);
   std::vector<RobotId> robots() const;
   const RobotDescription& robot_description(RobotId id) const;
+  const std::string& robot_name(RobotId id) const;
 
   void set_command(RobotId id, const RobotCommand& command);
   // Turns a link (from 0) of a mission package; clamped to its limits, moves with its speed limit.
@@ -95,6 +102,7 @@ class World {
   std::size_t contact_count() const;   // contact points of the last step
 
   RobotTruth truth(RobotId id) const;
+  DriveCurrents drive_currents(RobotId id) const;
   // What went wrong with a robot's simulation, in words; empty: nothing. Once it did, the robot is taken out of the
   // dynamics where it last was whole, until it is teleported or the world is reset: its pose is no longer a number, it
   // moves faster than anything on tracks can, or it fell out of the world. Its sensors go on to report that it stands
@@ -108,6 +116,9 @@ class World {
   void move_box(BoxId id, const Pose& X_WBox);
   void remove_box(BoxId id);
   Pose box_pose(BoxId id) const;
+  // Those of the description first, in its order; then as they were added.
+  std::vector<BoxId> boxes() const;
+  const Box& box(BoxId id) const;      // as it was described or added, wherever it is now
 
   // The first surface along a ray; `ignore` is a robot that the ray passes through.
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sdf/sdf.hh>
 
-#include "physics/description_file.hpp"
+#include "description/description_file.hpp"
 #include "physics/sdf_reader.hpp"
 #include "physics/sdf_surface.hpp"
 #include "physics/world_files.hpp"

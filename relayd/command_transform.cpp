@@ -10,7 +10,6 @@ namespace kenaf::relayd {
 
 namespace {
 
-constexpr usarsim::NumberFormat kExact{12, false};
 constexpr double kMaxTrackSpeed_mps = 10;
 constexpr double kMaxFlipperAngle_rad = 100;
 
@@ -25,7 +24,7 @@ void write_command(std::string& out, const relay::Command& command, double wheel
       if ((command.flipper_mask >> i & 1u) == 0) continue;
       const auto flipper = static_cast<relay::Flipper>(i);
       writer.number(frames::usarsim_flipper_name(flipper),
-                    frames::usarsim_flipper_from_tip_up(flipper, command.flipper_rad[i]), kExact);
+                    frames::usarsim_flipper_from_tip_up(flipper, command.flipper_rad[i]), usarsim::kExactNumber);
     }
     if (world_frame) writer.integer("Frame", *world_frame);
     writer.end();
@@ -33,22 +32,28 @@ void write_command(std::string& out, const relay::Command& command, double wheel
   const auto spin = [&](relay::Track track) {
     return frames::spin_from_surface_speed(command.track_speed_mps[track], wheel_radius_m);
   };
-  writer.begin("DRIVE").number("Left", spin(relay::kLeft), kExact).number("Right", spin(relay::kRight), kExact);
+  writer.begin("DRIVE")
+      .number("Left", spin(relay::kLeft), usarsim::kExactNumber)
+      .number("Right", spin(relay::kRight), usarsim::kExactNumber);
   if (world_frame) writer.integer("Frame", *world_frame);
   writer.end();
 }
 
 void write_stop(std::string& out) {
-  usarsim::MessageWriter(out).begin("DRIVE").number("Left", 0, kExact).number("Right", 0, kExact).end();
+  usarsim::MessageWriter(out)
+      .begin("DRIVE")
+      .number("Left", 0, usarsim::kExactNumber)
+      .number("Right", 0, usarsim::kExactNumber)
+      .end();
 }
 
 void write_world_session(std::string& out, const WorldSession& session) {
   usarsim::MessageWriter(out)
       .begin("CONTROL")
       .text("Type", "Session")
-      .number("Period", session.period_s, kExact)
+      .number("Period", session.period_s, usarsim::kExactNumber)
       .boolean("Lockstep", session.lockstep)
-      .number("CommandTimeout", session.command_timeout_s, kExact)
+      .number("CommandTimeout", session.command_timeout_s, usarsim::kExactNumber)
       .integer("Precision", 12)
       .end();
 }

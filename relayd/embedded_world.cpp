@@ -17,7 +17,9 @@ server::ServerOptions server_options(const EmbeddedWorld& options) {
 }  // namespace
 
 EmbeddedWorldServer::EmbeddedWorldServer(const EmbeddedWorld& options)
-    : server_(server_options(options)), thread_([this] { server_.run(); }) {}
+    : server_(server_options(options)),
+      view_(live::open_view(server_, options.view)),
+      thread_([this] { server_.run(); }) {}
 
 EmbeddedWorldServer::~EmbeddedWorldServer() {
   server_.stop();

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <thread>
 
+#include "live/view.hpp"
 #include "physics/server/world_server.hpp"
 #include "relayd/options.hpp"
 
@@ -18,6 +20,7 @@ class EmbeddedWorldServer {
 
  private:
   server::WorldServer server_;
+  std::unique_ptr<live::View> view_;  // ends after the thread and before the server
   std::thread thread_;
 };
 

@@ -68,6 +68,14 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
 
+  std::string view_token, view = "127.0.0.1:8080";
+  app.add_option("--view", view, "where a browser finds the live view of --embedded, ADDRESS:PORT; off: nowhere")
+      ->needs(embedded_flag)
+      ->check([](const std::string& text) { return words_of(live::parse_view_options, text); })
+      ->capture_default_str();
+  app.add_option("--view-token", view_token, "what a browser must know; where it is not on loopback one is made")
+      ->needs(embedded_flag);
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -80,6 +88,8 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
     placement.pose.emplace();
     std::copy_n(pose.begin(), 6, placement.pose->begin());
   }
+  embedded.view = live::parse_view_options(view);
+  embedded.view.token = view_token;
   if (is_embedded) options.embedded = embedded;
   return options;
 }

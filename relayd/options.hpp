@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "live/view_options.hpp"
 #include "relayd/relay.hpp"
 
 namespace kenaf::relayd {
@@ -12,6 +13,7 @@ struct EmbeddedWorld {
   std::string world = "flat";
   std::string robot = "kenaf";
   double speed = 1;
+  live::ViewOptions view;
 };
 
 struct Options {

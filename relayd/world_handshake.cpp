@@ -9,7 +9,6 @@ namespace kenaf::relayd {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr usarsim::NumberFormat kExact{12, false};
 constexpr auto kGreetingWithin = 1s;
 constexpr auto kRobotWithin = 3s;
 constexpr auto kRestWithin = 500ms;  // STA after RES, or RES after STA
@@ -83,8 +82,8 @@ void WorldHandshake::place(TimePoint now, std::string& out) {
   writer.begin("INIT").text("ClassName", placement_.class_name).text("Name", placement_.name);
   if (placement_.pose) {
     const auto& [x, y, z, roll, pitch, yaw] = *placement_.pose;
-    writer.numbers("Location", frames::usarsim_vector_from_rep103({x, y, z}), kExact);
-    writer.numbers("Rotation", frames::usarsim_angles_from_rep103({roll, pitch, yaw}), kExact);
+    writer.numbers("Location", frames::usarsim_vector_from_rep103({x, y, z}), usarsim::kExactNumber);
+    writer.numbers("Rotation", frames::usarsim_angles_from_rep103({roll, pitch, yaw}), usarsim::kExactNumber);
   } else if (!placement_.start.empty()) {
     writer.text("Start", placement_.start);
   }

@@ -20,7 +20,7 @@ struct SessionRobot {
   physics::RobotId id;
   std::string name;
   const physics::RobotDescription* description;
-  physics::RobotCommand command;  // in force
+  physics::RobotCommand command;  // the client's; in force unless an operator holds the robot
   bool normalized = false;        // the client's speeds are per cent of the fastest; sticky
   bool light = false;
   bool fault_told = false;        // that its simulation went wrong
@@ -32,8 +32,19 @@ struct SessionRobot {
   } body_velocity;
 };
 
+// Somebody who drives by hand: a connection of the live view. Never used twice in one server.
+enum class OperatorId : std::uint32_t {};
+
+// While an operator holds a robot; physics/server/manual_drive.hpp has the rules.
+struct ManualHold {
+  OperatorId holder;
+  physics::RobotCommand command;  // in force, in place of the client's
+  double last_word_wall_s;
+  bool silent = false;            // the command is to stand, until he says something
+};
+
 struct Session {
-  std::uint32_t id = 0;
+  std::uint32_t id = 0;           // never used twice in one server
   std::string peer;  // for log lines
   usarsim::LineSplitter lines;
   std::string out;     // not yet handed to the socket
@@ -43,6 +54,8 @@ struct Session {
   bool extended = false;  // asked for CONTROL {Type Session}
   bool world_controller = false;
   std::optional<SessionRobot> robot;
+  std::optional<ManualHold> hold;
+  bool placed_by_operator = false;  // no client is behind it
   FrameSchedule schedule;
   std::string deferred;  // lines that take effect when the next frame begins
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/server/manual_drive.hpp"
 #include "physics/server/report.hpp"
 #include "physics/server/verbs.hpp"
 #include "physics/terrain_effects.hpp"
@@ -36,6 +37,12 @@ physics::World make_world(const ServerOptions& options) {
   return physics::World(physics::with_terrain_effects(nominal, effects), settings, options.seed);
 }
 
+std::vector<physics::BoxId> find_loose_boxes(const physics::World& world) {
+  std::vector<physics::BoxId> boxes = world.boxes();
+  std::erase_if(boxes, [&](physics::BoxId id) { return world.box(id).mass_kg == 0; });
+  return boxes;
+}
+
 bool is_word(std::string_view text) {
   return std::ranges::all_of(text, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -48,7 +55,8 @@ Simulation::Simulation(const ServerOptions& server_options)
     : options(server_options),
       dialect(server_options.udk_dialect ? Dialect::udk : Dialect::ut2004),
       world(make_world(server_options)),
-      clock(server_options.time_step_s, server_options.speed) {
+      clock(server_options.time_step_s, server_options.speed),
+      loose_boxes(find_loose_boxes(world)) {
   if (!(options.speed >= 0 && std::isfinite(options.speed))) {
     throw std::runtime_error("the speed is a factor of real time, 0 or more (0: as fast as it goes)");
   }
@@ -131,6 +139,8 @@ void Simulation::handle_line(Session& session, std::string_view line) {
 
 void Simulation::send_due(Session& session) {
   if (!session.robot) return;
+  watch_operator(*this, session);
+  if (session.placed_by_operator) return session.out.clear();
   const std::uint64_t step = world.step_count();
   if (!session.schedule.due(step)) return watch_silence(session);
 
@@ -163,7 +173,11 @@ void Simulation::watch_silence(Session& session) {
   for (physics::JointCommand& joint : robot.command.flipper) {
     if (joint.mode != physics::JointMode::angle) joint = {physics::JointMode::brake, 0};
   }
-  world.set_command(robot.id, robot.command);  // again and again: command_loss may take any one of them
+  apply_command(session);  // again and again: command_loss may take any one of them
+}
+
+void Simulation::apply_command(const Session& session) {
+  world.set_command(session.robot->id, session.hold ? session.hold->command : session.robot->command);
 }
 
 bool Simulation::held_by_lockstep(std::optional<double>& until_wall_s) {
@@ -217,10 +231,10 @@ Simulation::Progress Simulation::advance(double now_wall_s) {
   return {true, std::nullopt};
 }
 
-void Simulation::begin_steps(const Session& session, std::uint64_t steps) {
+void Simulation::begin_steps(std::uint32_t session, std::uint64_t steps) {
   set_paused(true);
   const std::uint64_t from = step_requests_.empty() ? world.step_count() : step_requests_.back().until_step;
-  step_requests_.push_back({session.id, from + steps});
+  step_requests_.push_back({session, from + steps});
 }
 
 void Simulation::answer_steps() {
@@ -270,7 +284,8 @@ void Simulation::reset() {
     session->schedule.restart_at(0);
     if (!session->robot) continue;
     session->robot->command = resting_command(*session->robot->description);
-    world.set_command(session->robot->id, session->robot->command);
+    if (session->hold) session->hold->command = standing_command();
+    apply_command(*session);
   }
 }
 

@@ -30,7 +30,7 @@ struct WorldObject {
 };
 
 struct Simulation {
-  // Throws std::runtime_error (physics::DescriptionError) in words.
+  // Throws std::runtime_error (DescriptionError) in words.
   explicit Simulation(const ServerOptions& options);
 
   // A client came; it is greeted. The session lives until disconnect().
@@ -52,10 +52,14 @@ struct Simulation {
   // The command that a robot of this description has when it is placed: at rest, flippers where they start.
   static physics::RobotCommand resting_command(const physics::RobotDescription& description);
   std::size_t robot_count() const;
+  // The one way to command: tells the world what is in force for the session's robot: the client's, or that of who holds it.
+  void apply_command(const Session& session);
   std::uint64_t steps_for(double robot_time_s) const;
+  Session* find_session(std::uint32_t id);  // nullptr: it is gone
 
   // CONTROL {Type Step}: runs on for so many steps, then stands still and answers.
-  void begin_steps(const Session& session, std::uint64_t steps);
+  // `session`: whom to answer when it is done; 0: nobody.
+  void begin_steps(std::uint32_t session, std::uint64_t steps);
   // CONTROL {Type Reset}
   void reset();
   // Pauses or resumes, and says so to every client that understands it.
@@ -67,6 +71,7 @@ struct Simulation {
   Clock clock;
   std::vector<std::unique_ptr<Session>> sessions;  // in the order of their coming
   std::vector<WorldObject> objects;
+  const std::vector<physics::BoxId> loose_boxes;  // of the world's description, those that may move
   std::vector<physics::SensorSample> samples;  // reused by every output
   double wall_s = 0;                           // of the call that is being worked on
   LogLimiter connection_log{20, 0.5};          // robots that come and go
@@ -83,7 +88,6 @@ struct Simulation {
   void answer_steps();
   void tell_faults();
   bool held_by_lockstep(std::optional<double>& until_wall_s);
-  Session* find_session(std::uint32_t id);
 
   std::map<std::string, physics::RobotDescription, std::less<>> descriptions_;  // by shipped name or file
   std::vector<StepRequest> step_requests_;

@@ -23,4 +23,15 @@ const physics::StartPose& free_start_pose(const physics::World& world, double cl
   return found == starts.end() ? starts.front() : *found;
 }
 
+void place_robot(Simulation& simulation, Session& session, const physics::RobotDescription& description,
+                 const std::string& name, const physics::Pose& X_WB) {
+  const physics::RobotId id = simulation.world.add_robot(description, name, X_WB);
+  SessionRobot& robot = session.robot.emplace();
+  robot.id = id;
+  robot.name = name;
+  robot.description = &description;
+  robot.command = Simulation::resting_command(description);
+  simulation.apply_command(session);
+}
+
 }  // namespace kenaf::server

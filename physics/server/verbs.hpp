@@ -40,6 +40,9 @@ bool control_world(Simulation&, Session&, const MessageView&, std::string_view t
 void get_geometry(Simulation&, Session&, const MessageView&);
 void get_configuration(Simulation&, Session&, const MessageView&);
 
+using Reason = std::string_view;  // why a verb failed
+constexpr Reason kDone;           // it did not
+
 // The value of `key`, "" where it is missing.
 std::string_view text_of(const MessageView& message, std::string_view key);
 std::optional<double> number_of(const MessageView& message, std::string_view key);

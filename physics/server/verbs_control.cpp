@@ -9,9 +9,6 @@ namespace kenaf::server {
 
 namespace {
 
-using Reason = std::string_view;
-
-constexpr Reason kDone;
 constexpr double kLongestStep_s = 3600;
 constexpr double kLongestPeriod_s = 10;
 constexpr double kLongestCommandTimeout_s = 3600;
@@ -27,7 +24,7 @@ Reason step(Simulation& simulation, Session& session, const MessageView& message
     steps = std::floor(*count);
   }
   if (!(steps >= 1 && steps <= most_steps)) return "needs {Time s} or {Steps n}, at most an hour of robot time";
-  simulation.begin_steps(session, static_cast<std::uint64_t>(steps));
+  simulation.begin_steps(session.id, static_cast<std::uint64_t>(steps));
   return kDone;
 }
 

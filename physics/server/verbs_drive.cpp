@@ -107,7 +107,7 @@ void right_itself(Simulation& simulation, const SessionRobot& robot) {
 void take_command(Simulation& simulation, Session& session) {
   session.last_command_step = simulation.world.step_count();
   session.silent = false;
-  simulation.world.set_command(session.robot->id, session.robot->command);
+  if (!session.hold) simulation.apply_command(session);
 }
 
 }  // namespace
@@ -126,7 +126,7 @@ void drive(Simulation& simulation, Session& session, const MessageView& message)
   } else if (message.find("LinearVelocity") || message.find("RotationalVelocity")) {
     drive_body_velocity(robot, message);
   }
-  if (bool_of(message, "Flip").value_or(false)) right_itself(simulation, robot);
+  if (bool_of(message, "Flip").value_or(false) && !session.hold) right_itself(simulation, robot);
   take_command(simulation, session);
 }
 

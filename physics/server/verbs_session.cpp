@@ -51,19 +51,13 @@ void init(Simulation& simulation, Session& session, const MessageView& message) 
 
   std::string name = printable(text_of(message, "Name"));
   if (name.empty()) name = fmt::format("Robot{}", session.id);
-  const physics::RobotId id = simulation.world.add_robot(*description, name, *X_WB);
+  place_robot(simulation, session, *description, name, *X_WB);
   const std::uint64_t step = simulation.world.step_count();
-  SessionRobot& robot = session.robot.emplace();
-  robot.id = id;
-  robot.name = name;
-  robot.description = description;
-  robot.command = Simulation::resting_command(*description);
-  simulation.world.set_command(id, robot.command);
   session.last_command_step = step;
   // What a Session asked for before INIT holds.
   session.schedule.start(step, session.schedule.period_steps(), session.schedule.numbered());
   if (!simulation.connection_log.allow(simulation.wall_s)) return;
-  const Eigen::Vector3d p_WB = simulation.world.truth(id).X_WB.p;
+  const Eigen::Vector3d p_WB = simulation.world.truth(session.robot->id).X_WB.p;
   spdlog::info("{}: robot {} ({}) at {:.3f}, {:.3f}, {:.3f} m", session.peer, name, description->usarsim_class,
                p_WB.x(), p_WB.y(), p_WB.z());
 }

@@ -12,12 +12,10 @@ namespace kenaf::server {
 
 namespace {
 
-using Reason = std::string_view;  // why it failed; empty: it did not
-
-constexpr Reason kDone;
 constexpr std::size_t kMostCameras = 16;
 
-Reason set_joint(Simulation& simulation, SessionRobot& robot, const MessageView& message) {
+Reason set_joint(Simulation& simulation, Session& session, const MessageView& message) {
+  SessionRobot& robot = *session.robot;
   if (!robot.description->has_flippers()) return "this robot has no joints";
   const auto order = parse_joint_order(text_of(message, "Opcode"));
   if (!order) return "unknown Opcode";
@@ -42,7 +40,7 @@ Reason set_joint(Simulation& simulation, SessionRobot& robot, const MessageView&
   } else {
     return "no joint of that name";
   }
-  simulation.world.set_command(robot.id, robot.command);
+  if (!session.hold) simulation.apply_command(session);
   return kDone;
 }
 
@@ -97,7 +95,7 @@ Reason obey_set(Simulation& simulation, Session& session, const MessageView& mes
   if (!session.robot) return "no robot";
   SessionRobot& robot = *session.robot;
   const std::string_view type = text_of(message, "Type"), opcode = text_of(message, "Opcode");
-  if (is_any_of(type, {"Joint"})) return set_joint(simulation, robot, message);
+  if (is_any_of(type, {"Joint"})) return set_joint(simulation, session, message);
   if (is_any_of(type, {"Odometry", "Encoder", "Tachometer"})) {
     if (!is_any_of(opcode, {"RESET"})) return "unknown Opcode";
     return for_sensors(robot, type, text_of(message, "Name"),

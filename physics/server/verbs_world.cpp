@@ -9,9 +9,6 @@ namespace kenaf::server {
 
 namespace {
 
-using Reason = std::string_view;
-
-constexpr Reason kDone;
 constexpr std::size_t kMostObjects = 1000;
 constexpr double kDensity_kgpm3 = 100;  // of a box that may fall: light enough for a robot to push
 

@@ -151,6 +151,14 @@ std::uint16_t WorldServer::port() const {
   return impl_->acceptor.local_endpoint().port();
 }
 
+const physics::WorldDescription& WorldServer::world_description() const {
+  return impl_->simulation.world.description();
+}
+
+double WorldServer::time_step_s() const {
+  return impl_->simulation.options.time_step_s;
+}
+
 void WorldServer::run() {
   Implementation& server = *impl_;
   server.accept();
@@ -173,6 +181,14 @@ void WorldServer::run() {
 void WorldServer::stop() {
   impl_->stopping = true;
   asio::post(impl_->io, [] {});  // wakes run()
+}
+
+void WorldServer::ask(std::function<void(Simulation&)> request) {
+  asio::post(impl_->io, [this, request = std::move(request)] {
+    if (impl_->stopping) return;
+    impl_->simulation.wall_s = steady_seconds();
+    request(impl_->simulation);
+  });
 }
 
 }  // namespace kenaf::server

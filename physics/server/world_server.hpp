@@ -5,11 +5,18 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "physics/server/options.hpp"
 
+namespace kenaf::physics {
+struct WorldDescription;
+}
+
 namespace kenaf::server {
+
+struct Simulation;
 
 class WorldServer {
  public:
@@ -21,10 +28,16 @@ class WorldServer {
 
   // Where it listens: the one that was asked for, or the free one that was found.
   std::uint16_t port() const;
+  // Neither ever changes: for any thread.
+  const physics::WorldDescription& world_description() const;
+  double time_step_s() const;
   // Serves until stop(); then every connection is closed.
   void run();
   // From any thread, at any time; run() returns soon, or at once where it is called later.
   void stop();
+  // From any thread, at any time: the thread in run() carries `request` out between two steps of the world, within half a
+  // millisecond or so, also while time stands still. Never where run() has returned. The world waits for it: microseconds.
+  void ask(std::function<void(Simulation&)> request);
 
  private:
   struct Implementation;

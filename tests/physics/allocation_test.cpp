@@ -3,71 +3,35 @@
 // scanners. A program of its own, because it counts every allocation of the process: Bullet's, C++'s and C's all end in
 // these functions, which stand before those of the C library. Not built with sanitizers, which do the same.
 #include <catch2/catch.hpp>
-#include <cerrno>
-#include <cstddef>
 #include <new>
 
 #include "tests/physics/scenes.hpp"
+#include "tests/support/heap_calls.hpp"
 
 using namespace kenaf::physics;
-
-namespace {
-
-thread_local long allocations = 0;
-
-}  // namespace
-
-// The C library's own; __libc_ names are glibc's for whoever puts a function before them.
-extern "C" {
-void* __libc_malloc(std::size_t size);
-void* __libc_calloc(std::size_t count, std::size_t size);
-void* __libc_realloc(void* memory, std::size_t size);
-void* __libc_memalign(std::size_t alignment, std::size_t size);
-
-[[gnu::visibility("default")]] void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-[[gnu::visibility("default")]] void* calloc(std::size_t count, std::size_t size) {
-  ++allocations;
-  return __libc_calloc(count, size);
-}
-[[gnu::visibility("default")]] void* realloc(void* memory, std::size_t size) {
-  ++allocations;
-  return __libc_realloc(memory, size);
-}
-[[gnu::visibility("default")]] void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  ++allocations;
-  return __libc_memalign(alignment, size);
-}
-[[gnu::visibility("default")]] int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
-  ++allocations;
-  *memory = __libc_memalign(alignment, size);
-  return *memory ? 0 : ENOMEM;
-}
-}
+using kenaf::test::heap_calls;
 
 namespace {
 
 // How often `time_s` of simulation allocate; `readings` null: sensors are not read.
 long allocations_in(World& world, double time_s, RobotId robot, std::vector<SensorSample>* readings) {
   const auto steps = std::lround(time_s / world.settings().time_step_s);
-  const long before = allocations;
+  const long before = heap_calls();
   for (long i = 0; i < steps; ++i) {
     world.step();
     if (!readings) continue;
     readings->clear();
     world.read_sensors(robot, *readings);
   }
-  return allocations - before;
+  return heap_calls() - before;
 }
 
 }  // namespace
 
 TEST_CASE("M0: an allocation is counted") {
-  const long before = allocations;
+  const long before = heap_calls();
   void* memory = ::operator new(1000);  // called by its name, so that no compiler leaves it out
-  const long counted = allocations - before;
+  const long counted = heap_calls() - before;
   ::operator delete(memory);
   CHECK(counted == 1);
 }

@@ -97,7 +97,7 @@ TEST_CASE("Rolling resistance: with motors without force a robot rolls where the
 
 // The belly lies across two ridges, so that all it touches are edges. A lug of height h behind an edge rounded by 10 mm
 // holds up to the friction angle plus acos(1 - h / 10 mm).
-TEST_CASE("Lug height: on edges a belt holds up to the friction angle and the lug's own; on faces lugs do nothing") {
+TEST_CASE("Lug height: on edges a belt holds up to the friction angle and the lug's own, on faces lugs do nothing") {
   WorldDescription ridges;
   ridges.start_poses.push_back({"start", {}});
   for (const double x : {-0.15, 0.15})

@@ -273,7 +273,7 @@ TEST_CASE("V9: with belts and flippers prescribed, command and drives change no 
   }
 }
 
-TEST_CASE("V10: what is no speed is refused; a teleport ends what was prescribed") {
+TEST_CASE("V10: what is no speed is refused, a teleport ends what was prescribed") {
   Robot robot = settled(load_robot("kenaf"));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(robot.world.set_in_motion(robot.id, ahead(nan), drive(0, 0)), std::invalid_argument);

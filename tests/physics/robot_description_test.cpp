@@ -25,7 +25,7 @@ std::string error_with(const std::string& from, const std::string& to) {
   text.replace(at, from.size(), to);
   try {
     parse_robot(text, "test.toml");
-  } catch (const DescriptionError& error) {
+  } catch (const kenaf::DescriptionError& error) {
     return error.what();
   }
   return "";
@@ -65,7 +65,9 @@ TEST_CASE("All shipped robots load, by class too") {
 
 TEST_CASE("What is wrong is said with file, line and column") {
   CHECK(error_with("mass_kg = 15.0", "mass = 15.0").find("body.mass_kg is missing") != std::string::npos);
-  CHECK(error_with("mass_kg = 15.0", "mass_kg = 15.0\nmasse = 1").find("test.toml:12:1: body.masse is not a known key") == 0);
+  CHECK(
+      error_with("mass_kg = 15.0", "mass_kg = 15.0\nmasse = 1").find("test.toml:12:1: body.masse is not a known key") ==
+      0);
   CHECK(error_with("mass_kg = 15.0", "mass_kg = \"heavy\"").find("test.toml:11:11: body.mass_kg must be a number") ==
         0);
   CHECK(error_with("mass_kg = 15.0", "mass_kg = -1").find("body.mass_kg is -1, but must be more than 0") !=
@@ -80,8 +82,8 @@ TEST_CASE("What is wrong is said with file, line and column") {
   CHECK(error_with("[servo]", "[servo").find("test.toml:") == 0);
   CHECK(error_with("start_angle_rad = 1.0", "start_angle_rad = 4.0").find("between min_angle_rad") !=
         std::string::npos);
-  CHECK_THROWS_AS(load_robot("no-such-robot"), DescriptionError);
-  CHECK_THROWS_AS(load_robot("./no-such-file.toml"), DescriptionError);
+  CHECK_THROWS_AS(load_robot("no-such-robot"), kenaf::DescriptionError);
+  CHECK_THROWS_AS(load_robot("./no-such-file.toml"), kenaf::DescriptionError);
 }
 
 TEST_CASE("Effects, lugs and a servo's encoder stand in the description, or stay neutral") {
@@ -103,8 +105,8 @@ TEST_CASE("What is wrong with an effect is said with file, line and column") {
   const auto error = [](const std::string& effects) {
     return error_with("usarsim_class = \"USARBot.Kenaf\"\n", "usarsim_class = \"USARBot.Kenaf\"\n" + effects);
   };
-  CHECK(error("[effects.comand_delay]\ndelay_s = 0.1\n").find("test.toml:9:10: effects.comand_delay is not a known key") ==
-        0);
+  CHECK(error("[effects.comand_delay]\ndelay_s = 0.1\n")
+            .find("test.toml:9:10: effects.comand_delay is not a known key") == 0);
   CHECK(error("[effects.command_delay]\ndelay = 0.1\n")
             .find("test.toml:10:1: effects.command_delay.delay is not a known key") == 0);
   CHECK(error("[effects.command_delay]\ndelay_s = 0.7\n")

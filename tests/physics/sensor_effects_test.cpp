@@ -60,7 +60,7 @@ TEST_CASE("Encoder scale: travel, speed and odometry, but not the robot") {
   CHECK(tachometer.angle_rad[kLeft] == Approx(turned_rad));
 }
 
-TEST_CASE("Posture bias and scale: INS and IMU alike; yaw is no posture") {
+TEST_CASE("Posture bias and scale: INS and IMU alike, yaw is no posture") {
   for (const Eigen::Vector3d& angles : postures({0.1, 0.2, 0.7}, {.posture_bias_rad = 0.05, .posture_scale = 1.2}))
     CHECK((angles - Eigen::Vector3d(0.12, 0.29, 0.7)).norm() < 1e-12);
 }

@@ -53,7 +53,7 @@ TEST_CASE("S1: a sensor reports once a period, and at every call where it has no
   CHECK(reports[1] == 20);
 }
 
-TEST_CASE("S2: noise is white, of its sigma; bias is drawn once; other names, other noise") {
+TEST_CASE("S2: noise is white, of its sigma, bias is drawn once, other names, other noise") {
   SensorDescription sensor = sensor_of(SensorType::ins);
   sensor.noise_rad = 0.01;
   sensor.noise_m = 0.02;

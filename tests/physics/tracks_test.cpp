@@ -225,7 +225,7 @@ TEST_CASE("T8: a world turned by any angle gives the same run") {
 
 // Climbing multiplies what rounding makes different: 1 mm is far above that, and far below what axes that mattered
 // would do.
-TEST_CASE("T8: a world turned by any angle gives the same climb over a step, and over a ridge of triangles") {
+TEST_CASE("T8: a world turned by any angle gives the same climb over a step, and over a ridge of triangles", "[long]") {
   const bool mesh = GENERATE(false, true);
   const auto climb = [mesh](double yaw) {
     const Eigen::Quaterniond q = rotation_from({0, 0, yaw});
@@ -295,7 +295,7 @@ TEST_CASE("T9: an incline that needs more than the motors have is not climbed") 
   CHECK(climbed_m(40) == Approx(0.195).margin(0.01));
 }
 
-TEST_CASE("T10: with its front flippers up Kenaf climbs steps of 100 and 200 mm, at half the time step alike") {
+TEST_CASE("T10: with its front flippers up Kenaf climbs steps of 100 and 200 mm, at half the time step alike", "[long]") {
   for (const int height_mm : {100, 200}) {
     std::vector<std::string> unsupported;
     const WorldDescription step = load_world("step-" + std::to_string(height_mm), unsupported);

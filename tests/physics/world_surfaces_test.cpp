@@ -39,7 +39,7 @@ std::string error_of(const std::string& shape, const fs::path& folder = "") {
   std::vector<std::string> unsupported;
   try {
     parse_world(world_of(shape), "t.sdf", folder, unsupported);
-  } catch (const DescriptionError& error) {
+  } catch (const kenaf::DescriptionError& error) {
     return error.what();
   }
   return "";

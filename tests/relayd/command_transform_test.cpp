@@ -23,7 +23,7 @@ TEST_CASE("speeds become wheel spins: v / r, left and right kept apart") {
   CHECK(written(command, 0.05, 17) == "DRIVE {Left 2.000000000000} {Right -6.000000000000} {Frame 17}\r\n");
 }
 
-TEST_CASE("flippers: tip up is negative in front and positive in the rear; DRIVE ends the answer") {
+TEST_CASE("flippers: tip up is negative in front and positive in the rear, DRIVE ends the answer") {
   const relay::Command command{1, 1, 1, {0, 0}, 0b1111, {0.1, 0.2, 0.3, 0.4}};
   CHECK(written(command, 0.05, 3) ==
         "MULTIDRIVE {FLFlipper -0.100000000000} {FRFlipper -0.200000000000} {RLFlipper 0.300000000000} "

@@ -71,7 +71,7 @@ struct Fixture {
 }  // namespace
 
 TEST_CASE_METHOD(Fixture,
-                 "Hello opens the world; Welcome follows once it is ready, and again for each repeated Hello") {
+                 "Hello opens the world, Welcome follows once it is ready, and again for each repeated Hello") {
   hello(kFirst, 7);
   hello(kFirst, 7);
   CHECK(port.opened == 1);
@@ -102,7 +102,7 @@ TEST_CASE_METHOD(Fixture, "another commander is refused, and told who commands a
   CHECK(session.session() == 7);
 }
 
-TEST_CASE_METHOD(Fixture, "an unknown session is told so; an unknown Bye is nobody's") {
+TEST_CASE_METHOD(Fixture, "an unknown session is told so, an unknown Bye is nobody's") {
   command(1, 0, 99);
   CHECK(refused() == relay::RefusedReason::unknown_session);
   from(kFirst, relay::Ping{99, 1});
@@ -145,7 +145,7 @@ TEST_CASE_METHOD(Fixture, "a frame that is told again is no new one: the world p
   CHECK(newest<relay::State>()->events == relay::kWorldPaused);
 }
 
-TEST_CASE_METHOD(Fixture, "only a new Command reaches the world; a repeated one brings the newest State again") {
+TEST_CASE_METHOD(Fixture, "only a new Command reaches the world, a repeated one brings the newest State again") {
   open();
   frame(1, 1.0);
   command(1, 1);
@@ -202,7 +202,7 @@ TEST_CASE_METHOD(Fixture, "without Commands for the time-out of robot time the r
   CHECK(port.driven.size() == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "a second of wall-clock silence ends the session; the next commander is served") {
+TEST_CASE_METHOD(Fixture, "a second of wall-clock silence ends the session, the next commander is served") {
   open();
   frame(1, 1.0);
   pass(999ms);
@@ -217,7 +217,7 @@ TEST_CASE_METHOD(Fixture, "a second of wall-clock silence ends the session; the 
   CHECK(port.opened == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "Bye ends it at once; a late copy of its Hello does not begin it again") {
+TEST_CASE_METHOD(Fixture, "Bye ends it at once, a late copy of its Hello does not begin it again") {
   open();
   from(kFirst, relay::Bye{7});
   CHECK(session.session() == 0);
@@ -246,7 +246,7 @@ TEST_CASE_METHOD(Fixture, "the newest State is the heartbeat while the world liv
   CHECK(*session.next_deadline() == now + 100ms);
 }
 
-TEST_CASE_METHOD(Fixture, "a lost world server is told until the commander leaves; others may begin") {
+TEST_CASE_METHOD(Fixture, "a lost world server is told until the commander leaves, others may begin") {
   open();
   frame(1, 1.0);
   session.on_world_lost("gone", now);

@@ -45,6 +45,7 @@ TEST_CASE("all options") {
   REQUIRE(options);
   CHECK(options->embedded->world == "step-100");
   CHECK(options->embedded->speed == 0);
+  CHECK(options->embedded->view == kenaf::live::ViewOptions{});
   CHECK(options->relay.placement.start == "start_1");
 }
 
@@ -63,6 +64,8 @@ TEST_CASE("wrong options end with status 2, help with 0") {
                                              {"--world", "flat"},
                                              {"--embedded", "--world-server", "a:1"},
                                              {"--embedded", "--speed", "-1"},
+                                             {"--embedded", "--view", "8080"},
+                                             {"--view", "off"},
                                              {"--log-level", "loud"}}) {
     CAPTURE(wrong.front(), wrong.back());
     CHECK_FALSE(read(wrong, status));

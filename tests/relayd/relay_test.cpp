@@ -15,7 +15,7 @@
 #include "tests/relayd/allocations.hpp"
 #include "tests/relayd/fake_commander.hpp"
 #include "tests/relayd/fake_world.hpp"
-#include "tests/relayd/lossy_proxy.hpp"
+#include "tests/support/lossy_proxy.hpp"
 
 using namespace kenaf;
 using namespace kenaf::test;
@@ -147,7 +147,7 @@ TEST_CASE("loss, reordering and duplicates change nothing but latency") {
   for (const unsigned seed : {1u, 2u, 3u}) {
     FakeWorld world;
     RunningRelay relay(world.port());
-    LossyProxy proxy(relay.port(), seed);
+    support::LossyProxy proxy(relay.port(), seed, {}, {.at_start = leave_this_thread_out});
     FakeCommander commander(proxy.port(), 1);
     REQUIRE(is_welcome(commander.hello(true, true)));
     const auto states = commander.drive(150, approach);
@@ -161,7 +161,7 @@ TEST_CASE("loss, reordering and duplicates change nothing but latency") {
   }
 }
 
-TEST_CASE("one commander at a time; the next one is served after Bye or silence") {
+TEST_CASE("one commander at a time, the next one is served after Bye or silence") {
   FakeWorld world;
   RunningRelay relay(world.port());
   FakeCommander first(relay.port(), 1), second(relay.port(), 2);

@@ -116,7 +116,7 @@ TEST_CASE("currents and battery") {
   CHECK(state.battery_v == 24.5);
 }
 
-TEST_CASE("STA counts frames; without a number the relay counts") {
+TEST_CASE("STA counts frames, without a number the relay counts") {
   SensorTransform transform;
   take(transform, "STA {Time 2.0} {Frame 41} {Late 3} {Silent True} {Paused True}");
   CHECK(transform.frame().number == 41);

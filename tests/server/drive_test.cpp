@@ -151,7 +151,7 @@ TEST_CASE("DRIVE orders joints by number, several in one line") {
   CHECK(kenaf.command().flipper[relay::kRearRight].value == most_radps);
 }
 
-TEST_CASE("relative orders start from what the joint does now; what is missing is 0") {
+TEST_CASE("relative orders start from what the joint does now, what is missing is 0") {
   Kenaf kenaf;
   const double start_rad = kenaf.truth().flipper_rad[relay::kRearLeft];
   kenaf.send("DRIVE {Name RLFlipper} {Order 10} {Value 0.25}\r\n");

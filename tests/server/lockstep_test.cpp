@@ -86,7 +86,7 @@ TEST_CASE("flippers and SET keep to their frame too, and are answered when they 
   CHECK(talk.last("RES") == "RES {Time 0.0100} {Type Joint} {Name RLFlipper} {Status OK}");
 }
 
-TEST_CASE("a command that comes late takes effect at once and is counted; one of a coming frame is ignored") {
+TEST_CASE("a command that comes late takes effect at once and is counted, one of a coming frame is ignored") {
   Framed talk("{Period 0.01}");
   REQUIRE(talk.run(0.025));  // frame 3 is the newest
   talk.send("MULTIDRIVE {RRFlipper 0.5} {Frame 2}\r\nDRIVE {Left 1} {Right 1} {Frame 2}\r\n");

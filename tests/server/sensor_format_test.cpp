@@ -31,7 +31,7 @@ std::string told(Dialect dialect, const SensorDescription& description, const ph
 
 }  // namespace
 
-TEST_CASE("GroundTruth: UT2004 as recorded, with angles from 0 to 2 pi; UDK with signed angles and three digits") {
+TEST_CASE("GroundTruth: UT2004 as recorded, with angles from 0 to 2 pi, UDK with signed angles and three digits") {
   // z up 1.85 below, y to the left -1.9; pitch 0.001 nose down and yaw 0.002 to the left are negative in USARSim.
   const physics::GroundTruthReading reading{{4.5, -1.9, -1.85}, {0, 0.0011, 0.0022}};
   CHECK(told(Dialect::ut2004, sensor(SensorType::ground_truth, "GroundTruth"), reading) ==
@@ -54,7 +54,7 @@ TEST_CASE("odometry turns to the right where theta grows") {
         "SEN {Type Odometry} {Name Odometry} {Pose 1.2500,-0.5000,-0.2500}");
 }
 
-TEST_CASE("encoders: one message of UT2004, as recorded; a message for each of UDK") {
+TEST_CASE("encoders: one message of UT2004, as recorded, a message for each of UDK") {
   const physics::EncoderReading reading{{0, -7}};
   CHECK(told(Dialect::ut2004, sensor(SensorType::encoder, "Encoder"), reading) ==
         "SEN {Type Encoder} {Name ECLeft Tick 0} {Name ECRight Tick -7}");
@@ -127,7 +127,7 @@ TEST_CASE("a client that asked for more digits gets them everywhere, rounded") {
         "{Orientation 0.00000000,0.00000000,0.00000000}\r\n");
 }
 
-TEST_CASE("STA of a wheeled robot: UT2004 as recorded; UDK as recorded") {
+TEST_CASE("STA of a wheeled robot: UT2004 as recorded, UDK as recorded") {
   Conversation ut2004;
   ut2004.send("INIT {ClassName USARBot.P2DX}\r\n");
   ut2004.simulation.advance(0);

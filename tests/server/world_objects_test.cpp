@@ -56,7 +56,7 @@ TEST_CASE("GetSTA tells objects by name or class, all in one line") {
   CHECK(controller.control("{Type GetSTA} {Name a}").find("{Name B}") == std::string::npos);
 }
 
-TEST_CASE("KillAll takes what is inside its corners, or everything; a permanent object stays") {
+TEST_CASE("KillAll takes what is inside its corners, or everything, a permanent object stays") {
   Controller controller;
   CHECK(controller.ok("{Type Create} {ClassName Box} {Name A} {Location 0,0,-1}"));
   CHECK(controller.ok("{Type Create} {ClassName Box} {Name B} {Location 5,0,-1}"));

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "live/view.hpp"
 #include "physics/server/world_server.hpp"
 
 namespace {
@@ -28,7 +29,7 @@ void write_port_file(const std::filesystem::path& path, std::uint16_t port) {
 
 int main(int argc, char** argv) {
   kenaf::server::ServerOptions options;
-  std::string dialect = "ut2004", log_level = "info", port_file;
+  std::string dialect = "ut2004", log_level = "info", port_file, view = "127.0.0.1:8080", token;
   CLI::App app{"The Kenaf world server: simulated robots behind the USARSim protocol, a TCP connection for each."};
   app.add_option("--world", options.world, "World: a shipped name or an SDF file")->capture_default_str();
   app.add_option("--robot", options.robot,
@@ -46,6 +47,9 @@ int main(int argc, char** argv) {
   app.add_option("--seed", options.seed, "Seed of the sensors' noise")->capture_default_str();
   app.add_option("--time-step", options.time_step_s, "Physics time step in seconds")->capture_default_str();
   app.add_option("--port-file", port_file, "Write the port into this file once the server listens");
+  app.add_option("--view", view, "Where a browser finds the live view, ADDRESS:PORT; off: nowhere")
+      ->capture_default_str();
+  app.add_option("--view-token", token, "What a browser must know; where it is not on loopback one is made");
   app.add_option("--log-level", log_level, "What is logged")
       ->capture_default_str()
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}));
@@ -62,7 +66,10 @@ int main(int argc, char** argv) {
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
   try {
+    kenaf::live::ViewOptions view_options = kenaf::live::parse_view_options(view);
+    view_options.token = token;
     kenaf::server::WorldServer server(options);
+    const auto live_view = kenaf::live::open_view(server, view_options);
     std::thread stopper([&] {
       int signal = 0;
       sigwait(&signals, &signal);

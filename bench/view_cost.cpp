@@ -1,0 +1,51 @@
+// What the live view costs: filling a state on the world's thread, beside a step of the world; putting it into words on
+// the view's thread. Thread CPU time.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <time.h>
+
+#include "live/messages.hpp"
+#include "physics/server/manual_drive.hpp"
+
+namespace {
+
+using namespace kenaf;
+
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+template <typename Work>
+double microseconds(int times, Work work) {
+  work();
+  const double began = thread_seconds();
+  for (int i = 0; i < times; ++i) work();
+  return (thread_seconds() - began) / times * 1e6;
+}
+
+}  // namespace
+
+int main() {
+  spdlog::set_level(spdlog::level::warn);
+  fmt::print("robots  step/us  state/us  words/us  bytes  states at 30 Hz of one core\n");
+  for (const int robots : {1, 8, 64}) {
+    server::ServerOptions options;
+    options.speed = 0;
+    server::Simulation simulation(options);
+    for (int i = 0; i < robots; ++i) {
+      server::Session& session = simulation.connect("bench");
+      simulation.receive(
+          session, fmt::format("INIT {{ClassName USARBot.Kenaf}} {{Name R{}}} {{Location 0,{},0}}\r\n", i, 2 * i), 0);
+      session.out.clear();
+    }
+    const double step_us = microseconds(300, [&] { simulation.world.step(); });
+    server::WorldState state;
+    const double state_us = microseconds(3000, [&] { server::read_state(simulation, state); });
+    std::string text;
+    const double words_us = microseconds(300, [&] { text = live::state_message(state, 1, 1, 1); });
+    fmt::print("{:6}  {:7.1f}  {:8.2f}  {:8.1f}  {:5}  {:.3f} %\n", robots, step_us, state_us, words_us, text.size(),
+               state_us * 30 * 1e-4);
+  }
+}

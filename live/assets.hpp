@@ -1,0 +1,18 @@
+// The page's files, read once: what is not among them is not served, so no path leads out of their folders.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+
+namespace kenaf::live {
+
+struct Asset { std::string_view type; std::string bytes; };
+using Assets = std::map<std::string, Asset, std::less<>>;  // by path: "/", "/page.css", "/three/three.module.js"
+
+// From share/kenaf/page, or from the source tree and the system's three.js this was built with. Throws
+// std::runtime_error where there is no page.
+Assets load_assets();
+
+}  // namespace kenaf::live

@@ -1,0 +1,139 @@
+#include "live/http_connection.hpp"
+
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <optional>
+
+#include "live/access.hpp"
+#include "live/viewer.hpp"
+
+namespace kenaf::live {
+
+namespace {
+
+namespace beast = boost::beast;
+namespace http = beast::http;
+using beast::error_code;
+
+// A phone may take so long for the largest file.
+constexpr std::chrono::seconds kLongestWrite{60};
+
+// Nothing is loaded from elsewhere, whatever somebody manages to write into the page.
+constexpr const char* kContentPolicy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'";
+
+using Body = http::span_body<const char>;
+
+class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
+ public:
+  HttpConnection(Hub& hub, boost::asio::ip::tcp::socket socket) : hub_(hub), stream_(std::move(socket)) {
+    ++hub_.connections;
+  }
+  ~HttpConnection() { --hub_.connections; }
+  HttpConnection(const HttpConnection&) = delete;
+  HttpConnection& operator=(const HttpConnection&) = delete;
+
+  void read();
+
+ private:
+  void handle();
+  void answer_path(std::string_view path, std::string_view query);
+  bool token_fits(std::string_view query) const {
+    return hub_.token.empty() || equal_in_constant_time(query_value(query, "token"), hub_.token);
+  }
+  // `bytes` must stay: of the hub, or a literal.
+  void send(http::status status, std::string_view type, std::string_view bytes);
+  void refuse(http::status status, std::string_view why) {
+    keep_ = false;
+    send(status, "text/plain; charset=utf-8", why);
+  }
+
+  Hub& hub_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_;
+  std::optional<http::request_parser<http::empty_body>> parser_;
+  http::response<Body> response_;
+  bool keep_ = true;
+};
+
+void HttpConnection::read() {
+  parser_.emplace();
+  parser_->header_limit(static_cast<std::uint32_t>(hub_.limits.header_bytes));
+  parser_->body_limit(0);
+  stream_.expires_after(
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(hub_.limits.quiet_s)));
+  http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
+    if (!error) return self->handle();
+    if (error == http::error::header_limit) self->refuse(http::status::request_header_fields_too_large, "too long\n");
+    // whatever else it was, there is nobody to talk to
+  });
+}
+
+void HttpConnection::handle() {
+  const auto& request = parser_->get();
+  keep_ = request.keep_alive();
+  const std::string_view host(request[http::field::host].data(), request[http::field::host].size());
+  if (!host_allowed(host, hub_.own_name)) {
+    return refuse(http::status::forbidden,
+                  "This server is asked by its address or its own name, not by another name.\n");
+  }
+  if (request.method() != http::verb::get) return refuse(http::status::method_not_allowed, "Only GET is served.\n");
+  const std::string_view origin(request[http::field::origin].data(), request[http::field::origin].size());
+  if (!origin_allowed(origin, host)) {
+    return refuse(http::status::forbidden, "Pages of other servers are not answered.\n");
+  }
+  const std::string_view target(request.target().data(), request.target().size());
+  const std::size_t mark = std::min(target.find('?'), target.size());
+  answer_path(target.substr(0, mark), target.substr(std::min(mark + 1, target.size())));
+}
+
+void HttpConnection::answer_path(std::string_view path, std::string_view query) {
+  const bool upgrade = beast::websocket::is_upgrade(parser_->get());
+  if (path == "/ws" || path == "/scene") {
+    if (!token_fits(query)) {
+      return refuse(http::status::unauthorized, "This needs the token that the server printed when it started.\n");
+    }
+    if (path == "/scene") return send(http::status::ok, "application/octet-stream", hub_.scene);
+    if (!upgrade) return refuse(http::status::upgrade_required, "This is for WebSockets.\n");
+    if (hub_.viewers.size() >= hub_.limits.viewers) {
+      return refuse(http::status::service_unavailable, "Too many look on already.\n");
+    }
+    return start_viewer(hub_, std::move(stream_), parser_->release());
+  }
+  const auto asset = hub_.assets.find(path);
+  if (asset == hub_.assets.end()) {
+    return send(http::status::not_found, "text/plain; charset=utf-8", "There is no such file.\n");
+  }
+  send(http::status::ok, asset->second.type, asset->second.bytes);
+}
+
+void HttpConnection::send(http::status status, std::string_view type, std::string_view bytes) {
+  response_ = {};
+  response_.result(status);
+  response_.set(http::field::content_type, {type.data(), type.size()});
+  response_.set(http::field::cache_control, "no-cache");
+  response_.set("Content-Security-Policy", kContentPolicy);
+  response_.set("X-Content-Type-Options", "nosniff");
+  response_.set("Referrer-Policy", "no-referrer");
+  response_.set("Cross-Origin-Resource-Policy", "same-origin");
+  response_.keep_alive(keep_);
+  response_.body() = beast::span<const char>(bytes.data(), bytes.size());
+  response_.prepare_payload();
+  stream_.expires_after(kLongestWrite);
+  http::async_write(stream_, response_, [self = shared_from_this()](error_code error, std::size_t) {
+    if (error) return;
+    if (self->keep_) return self->read();
+    self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, error);
+  });
+}
+
+}  // namespace
+
+void serve_http(Hub& hub, boost::asio::ip::tcp::socket socket) {
+  std::make_shared<HttpConnection>(hub, std::move(socket))->read();
+}
+
+}  // namespace kenaf::live

@@ -1,0 +1,206 @@
+#include "live/messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <span>
+
+namespace kenaf::live {
+
+namespace {
+
+using server::BoxState;
+using server::RobotState;
+using server::WorldState;
+
+// Written by hand: a tenth of a millimetre is enough to look at, and a library would write 17 digits.
+class Writer {
+ public:
+  Writer& raw(std::string_view text) {
+    out_ += text;
+    return *this;
+  }
+  Writer& key(std::string_view name) {
+    comma();
+    out_ += '"';
+    out_ += name;
+    out_ += "\":";
+    return *this;
+  }
+  Writer& number(double value, int digits = 4) {
+    // JSON has no word for what is not finite
+    if (!std::isfinite(value)) return raw("null");
+    fmt::format_to(std::back_inserter(out_), "{:.{}f}", value, digits);
+    while (digits > 0 && out_.back() == '0') out_.pop_back();
+    if (out_.back() == '.') out_.pop_back();
+    return *this;
+  }
+  Writer& integer(std::uint64_t value) {
+    fmt::format_to(std::back_inserter(out_), "{}", value);
+    return *this;
+  }
+  Writer& boolean(bool value) { return raw(value ? "true" : "false"); }
+  Writer& text(std::string_view value) {
+    using nlohmann::json;
+    return raw(json(value).dump(-1, ' ', false, json::error_handler_t::replace));
+  }
+  Writer& numbers(std::span<const double> values, int digits = 4) {
+    open('[');
+    for (const double value : values) {
+      comma();
+      number(value, digits);
+    }
+    return close(']');
+  }
+  Writer& vector(const Eigen::Vector3d& v) { return numbers(std::array{v.x(), v.y(), v.z()}); }
+  Writer& rotation(const Eigen::Quaterniond& q) { return numbers(std::array{q.w(), q.x(), q.y(), q.z()}, 5); }
+  Writer& open(char bracket) {
+    out_ += bracket;
+    return *this;
+  }
+  Writer& close(char bracket) {
+    out_ += bracket;
+    return *this;
+  }
+  // Before an element of a list or an object.
+  Writer& comma() {
+    if (out_.back() != '{' && out_.back() != '[') out_ += ',';
+    return *this;
+  }
+  std::string take() { return std::move(out_); }
+
+ private:
+  std::string out_;
+};
+
+void write_dimensions(Writer& out, const server::RobotDimensions& size) {
+  out.key("body").vector(size.body_size_m);
+  out.key("track").open('{');
+  out.key("length").number(size.track_length_m).key("radius").number(size.track_radius_m);
+  out.key("width").number(size.track_width_m).key("at").vector(size.p_BT_m).close('}');
+  if (size.has_flippers) {
+    out.key("flipper").open('{');
+    out.key("length").number(size.flipper_length_m).key("width").number(size.flipper_width_m);
+    out.key("pivot_radius").number(size.pivot_radius_m).key("tip_radius").number(size.tip_radius_m);
+    out.key("at").vector(size.p_BPivot_m);
+    out.key("min").number(size.min_angle_rad).key("max").number(size.max_angle_rad);
+    out.key("max_speed").number(size.max_flipper_radps).close('}');
+  }
+  out.key("max_speed").number(size.max_speed_mps);
+}
+
+std::string_view mode_name(physics::JointMode mode) {
+  switch (mode) {
+    case physics::JointMode::angle:
+      return "angle";
+    case physics::JointMode::speed:
+      return "speed";
+    case physics::JointMode::torque:
+      return "torque";
+    case physics::JointMode::brake:
+      break;
+  }
+  return "brake";
+}
+
+void write_command(Writer& out, const RobotState& robot) {
+  out.key("command").open('{').key("track").numbers(robot.command.track_speed_mps);
+  if (robot.dimensions.has_flippers) {
+    out.key("flipper").open('[');
+    for (const physics::JointCommand& joint : robot.command.flipper) {
+      out.comma().open('[').text(mode_name(joint.mode)).comma().number(joint.value).close(']');
+    }
+    out.close(']');
+  }
+  out.close('}');
+}
+
+void write_robot(Writer& out, const RobotState& robot) {
+  out.comma().open('{').key("id").integer(robot.id);
+  out.key("p").vector(robot.X_WB.p).key("q").rotation(robot.X_WB.q).key("v").vector(robot.v_WB_mps);
+  out.key("track_mps").numbers(robot.track_mps).key("track_m").numbers(robot.track_m);
+  out.key("track_a").numbers(robot.track_a, 2);
+  if (robot.dimensions.has_flippers) {
+    out.key("flipper").numbers(robot.flipper_rad).key("flipper_a").numbers(robot.flipper_a, 2);
+  }
+  out.key("battery_v").number(robot.battery_v, 2).key("battery_s").number(robot.battery_left_s, 0);
+  write_command(out, robot);
+  if (robot.has_client) {
+    out.key("client").open('{').key("silent").boolean(robot.client_silent);
+    out.key("age").number(robot.client_silent_s, 2).key("late").integer(robot.late_answers).close('}');
+  }
+  if (robot.holder != server::OperatorId{0}) {
+    out.key("holder").integer(static_cast<std::uint32_t>(robot.holder));
+    out.key("holder_silent").boolean(robot.holder_silent);
+  }
+  if (!robot.fault.empty()) out.key("fault").text(robot.fault);
+  out.close('}');
+}
+
+}  // namespace
+
+std::string hello_message(server::OperatorId you, std::string_view world, double time_step_s,
+                          double operator_silence_s) {
+  Writer out;
+  out.open('{').key("type").text("hello").key("protocol").integer(kViewProtocol);
+  out.key("you").integer(static_cast<std::uint32_t>(you)).key("world").text(world);
+  out.key("time_step").number(time_step_s, 6).key("operator_silence").number(operator_silence_s, 3);
+  out.key("cameras").raw("[]");
+  return out.close('}').take();
+}
+
+std::string inventory_message(const WorldState& state) {
+  Writer out;
+  out.open('{').key("type").text("inventory").key("robots").open('[');
+  for (const RobotState& robot : state.robots) {
+    out.comma().open('{').key("id").integer(robot.id).key("name").text(robot.name);
+    out.key("class").text(robot.class_name).key("placed").boolean(!robot.has_client);
+    write_dimensions(out, robot.dimensions);
+    out.close('}');
+  }
+  out.close(']').key("boxes").open('[');
+  for (const BoxState& box : state.boxes) {
+    out.comma().open('{').key("id").integer(box.id).key("size").vector(box.size_m).close('}');
+  }
+  return out.close(']').close('}').take();
+}
+
+bool same_inventory(const WorldState& a, const WorldState& b) {
+  const auto same_id = [](const auto& x, const auto& y) { return x.id == y.id; };
+  return std::ranges::equal(a.robots, b.robots, same_id) && std::ranges::equal(a.boxes, b.boxes, same_id);
+}
+
+std::string state_message(const WorldState& state, std::uint64_t number, double reached, std::size_t viewers) {
+  Writer out;
+  out.open('{').key("type").text("state").key("n").integer(number);
+  out.key("t").number(state.time_s).key("step").integer(state.step).key("paused").boolean(state.paused);
+  out.key("speed").number(state.speed, 3).key("reached").number(reached, 3).key("viewers").integer(viewers);
+  out.key("robots").open('[');
+  for (const RobotState& robot : state.robots) write_robot(out, robot);
+  out.close(']').key("boxes").open('[');
+  for (const BoxState& box : state.boxes) {
+    out.comma().open('{').key("p").vector(box.X_WBox.p).key("q").rotation(box.X_WBox.q).close('}');
+  }
+  return out.close(']').close('}').take();
+}
+
+std::string refused_message(std::string_view request, std::string_view reason) {
+  Writer out;
+  out.open('{').key("type").text("refused").key("request").text(request).key("reason").text(reason);
+  return out.close('}').take();
+}
+
+std::string placed_message(std::uint32_t robot) {
+  Writer out;
+  return out.open('{').key("type").text("placed").key("robot").integer(robot).close('}').take();
+}
+
+std::string pong_message(double t) {
+  Writer out;
+  return out.open('{').key("type").text("pong").key("t").number(t).close('}').take();
+}
+
+}  // namespace kenaf::live

@@ -1,0 +1,50 @@
+// The WebSocket to the server: opened again when it breaks, watched for age and for states that were dropped.
+const PROTOCOL = 1;
+const token = new URLSearchParams(location.hash.slice(1)).get("token");
+
+// A path of this server, with the token where there is one.
+export function address(path) {
+  return token ? `${path}?token=${encodeURIComponent(token)}` : path;
+}
+
+// `listeners`: functions by type of message; beside them `open` and `closed`.
+export function connect(listeners) {
+  const link = { dropped: 0, roundTrip_ms: null, received_ms: null, open: false, send };
+  let socket = null;
+  let number = null;
+
+  function send(message) {
+    if (link.open) socket.send(JSON.stringify(message));
+  }
+
+  function take(event) {
+    const message = JSON.parse(event.data);
+    link.received_ms = performance.now();
+    if (message.type === "hello" && message.protocol !== PROTOCOL) {
+      location.reload();   // the server is a newer one than this page
+      return;
+    }
+    if (message.type === "pong") link.roundTrip_ms = performance.now() - message.t;
+    if (message.type === "state") {
+      if (number !== null && message.n > number + 1) link.dropped += message.n - number - 1;
+      number = message.n;
+    }
+    listeners[message.type]?.(message);
+  }
+
+  function open() {
+    number = null;
+    socket = new WebSocket(address(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/ws`));
+    socket.onopen = () => { link.open = true; listeners.open(); };
+    socket.onmessage = take;
+    socket.onclose = () => {
+      link.open = false;
+      listeners.closed();
+      setTimeout(open, 1000);
+    };
+  }
+
+  open();
+  setInterval(() => send({ type: "ping", t: performance.now() }), 1000);
+  return link;
+}

@@ -1,0 +1,57 @@
+// Puts the page's parts together: each message from the server changes `world`, and the parts show it.
+import { connect } from "./connection.js";
+import { createDriving } from "./driving.js";
+import { createInstruments } from "./instruments.js";
+import { createLinkHealth } from "./link_health.js";
+import { createPictures } from "./pictures.js";
+import { createPosture } from "./posture.js";
+import { createTimeControls } from "./time_controls.js";
+import { createTimeline } from "./timeline.js";
+import { createWorld, takeHello, takeInventory, takeState } from "./world.js";
+
+const world = createWorld();
+const chosen = () => world.robots.get(driving.chosen) ?? null;
+
+const link = connect({
+  open() {},
+  closed() {
+    world.you = 0;
+    driving.update();
+  },
+  hello(message) {
+    takeHello(world, message);
+    document.getElementById("world").textContent = world.name;
+    pictures.show(world.cameras);
+  },
+  inventory(message) {
+    takeInventory(world, message);
+    driving.update();
+    view?.syncObjects();
+  },
+  state(message) {
+    takeState(world, message);
+    driving.update();
+    timeControls.update();
+    instruments.update(chosen());
+    posture.update(chosen());
+    timeline.update(world.time_s, chosen());
+    view?.update();
+  },
+  placed(message) { driving.placed(message.robot); },
+  refused(message) { health.refused(message.reason); },
+});
+const driving = createDriving(world, link);
+const timeControls = createTimeControls(world, link);
+const instruments = createInstruments();
+const posture = createPosture();
+const timeline = createTimeline();
+const pictures = createPictures();
+const health = createLinkHealth(world, link);
+pictures.show([]);
+
+// Driving and figures work without it, where a browser has no WebGL.
+let view = null;
+import("./view_3d.js").then(({ createView }) => {
+  view = createView(world, chosen, health.refused);
+  view.syncObjects();
+}).catch((error) => health.refused(`No 3D view: ${error.message}`));

@@ -1,0 +1,60 @@
+// The chosen robot's outline from the side and from behind, at its pitch and roll over a level line.
+import { angles } from "./world.js";
+
+const NS = "http://www.w3.org/2000/svg";
+function add(parent, name, attributes) {
+  const element = document.createElementNS(NS, name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  parent.append(element);
+  return element;
+}
+
+export function createPosture() {
+  const side = document.getElementById("side"), back = document.getElementById("back");
+  let drawn = 0, parts = null;
+
+  function draw(about) {
+    side.replaceChildren();
+    back.replaceChildren();
+    const scale = 110 / (about.track.length + 2 * (about.flipper?.length ?? 0.05));
+    for (const svg of [side, back]) add(svg, "line", { class: "level", x1: -58, x2: 58, y1: 0, y2: 0 });
+    const { track, body } = about;
+    const outline = (group, width, height, y, className) => add(group, "rect", { class: className, x: -width / 2 * scale, y: (-y - height / 2) * scale,
+      width: width * scale, height: height * scale, rx: Math.min(height, width) / 2 * scale * (className === "track" ? 1 : 0.25) });
+    const front = add(side, "g", {}), rear = add(back, "g", {});
+    outline(front, body[0], body[2], 0, "hull");
+    outline(front, track.length, 2 * track.radius, track.at[2], "track");
+    outline(rear, body[1], body[2], 0, "hull");
+    for (const y of [track.at[1], -track.at[1]]) {
+      add(rear, "rect", { class: "track", x: (y - track.width / 2) * scale, y: (-track.at[2] - track.radius) * scale, width: track.width * scale, height: 2 * track.radius * scale, rx: 2 });
+    }
+    // nose to the left, as the robot is seen from its left side
+    const arms = about.flipper ? [0, 2].map((i) => add(front, "line", { class: "arm", "stroke-width": 1.5 * about.flipper.tip_radius * scale, "data-arm": i })) : [];
+    const labels = [side, back].map((svg) => add(svg, "text", { x: -58, y: 42 }));
+    parts = { front, rear, arms, labels, scale };
+  }
+
+  return {
+    update(robot) {
+      if (!robot?.now) {
+        if (drawn) { side.replaceChildren(); back.replaceChildren(); drawn = 0; }
+        return;
+      }
+      const { about, now } = robot;
+      if (drawn !== about.id) { draw(about); drawn = about.id; }
+      const { roll, pitch } = angles(now.q);
+      parts.front.setAttribute("transform", `rotate(${-pitch})`);
+      parts.rear.setAttribute("transform", `rotate(${roll})`);
+      parts.labels[0].textContent = `pitch ${pitch.toFixed(1)}\u00b0`;
+      parts.labels[1].textContent = `roll ${roll.toFixed(1)}\u00b0`;
+      parts.arms.forEach((arm, i) => {
+        const { length, at } = about.flipper, angle = now.flipper[2 * i], outward = i === 0 ? -1 : 1;
+        const x = outward * at[0] * parts.scale, y = -at[2] * parts.scale;
+        arm.setAttribute("x1", x);
+        arm.setAttribute("y1", y);
+        arm.setAttribute("x2", x + outward * Math.cos(angle) * length * parts.scale);
+        arm.setAttribute("y2", y - Math.sin(angle) * length * parts.scale);
+      });
+    },
+  };
+}

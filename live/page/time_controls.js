@@ -1,0 +1,32 @@
+// Pause, step, speed, reset.
+import { keyIsTaken } from "./dead_man.js";
+
+const by = (id) => document.getElementById(id);
+
+export function createTimeControls(world, link) {
+  const pause = () => link.send({ type: "pause", on: !world.paused });
+  by("pause").addEventListener("click", pause);
+  by("step").addEventListener("click", () => link.send({ type: "step", time: 0.1 }));
+  by("speed").addEventListener("change", (event) => link.send({ type: "speed", value: Number(event.target.value) }));
+  by("reset").addEventListener("click", () => {
+    if (confirm("Put the whole world back to its start? Programs that drive in it go on.")) link.send({ type: "reset" });
+  });
+  addEventListener("keydown", (event) => {
+    if (event.code === "KeyP" && !event.repeat && !keyIsTaken(event)) pause();
+  });
+
+  function showSpeed() {
+    const select = by("speed"), value = `${world.speed}`;
+    if (document.activeElement === select || select.value === value) return;
+    if (![...select.options].some((option) => option.value === value)) select.add(new Option(`${value} \u00d7`, value));
+    select.value = value;
+  }
+  return {
+    update() {
+      by("time").textContent = `${world.time_s.toFixed(2)} s`;
+      by("pause").textContent = world.paused ? "Resume" : "Pause";
+      by("reached").textContent = `${world.reached.toFixed(2)} \u00d7`;
+      showSpeed();
+    },
+  };
+}

@@ -1,0 +1,40 @@
+// What the server said last: robots by id, each with what it is (inventory) and how it is (state).
+export function createWorld() {
+  return { you: 0, name: "", time_s: 0, paused: false, speed: 1, reached: 0, viewers: 0, cameras: [],
+           robots: new Map(), boxes: [] };
+}
+
+export function takeHello(world, message) {
+  world.you = message.you;
+  world.name = message.world;
+  world.cameras = message.cameras;
+}
+
+export function takeInventory(world, message) {
+  const before = world.robots;
+  world.robots = new Map(message.robots.map((about) => [about.id, { about, now: before.get(about.id)?.now ?? null }]));
+  world.boxes = message.boxes.map((about) => ({ about, now: null }));
+}
+
+export function takeState(world, message) {
+  world.time_s = message.t;
+  world.paused = message.paused;
+  world.speed = message.speed;
+  world.reached = message.reached;
+  world.viewers = message.viewers;
+  for (const now of message.robots) {
+    const robot = world.robots.get(now.id);
+    if (robot) robot.now = now;
+  }
+  message.boxes.forEach((now, i) => { if (world.boxes[i]) world.boxes[i].now = now; });
+}
+
+// Roll, pitch, yaw in degrees of a rotation [w, x, y, z]: turned z, y, x; pitch is positive nose down.
+export function angles([w, x, y, z]) {
+  const deg = 180 / Math.PI;
+  return {
+    roll: Math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)) * deg,
+    pitch: Math.asin(Math.max(-1, Math.min(1, 2 * (w * y - z * x)))) * deg,
+    yaw: Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)) * deg,
+  };
+}

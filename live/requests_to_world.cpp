@@ -1,0 +1,64 @@
+#include "live/requests_to_world.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include "live/messages.hpp"
+#include "physics/server/manual_drive.hpp"
+
+namespace kenaf::live {
+
+namespace {
+
+std::string told(std::string_view request, std::string_view reason) {
+  return reason.empty() ? std::string() : refused_message(request, reason);
+}
+
+struct CarryOut {
+  server::Simulation& simulation;
+  server::OperatorId who;
+
+  std::string operator()(const PauseRequest& request) const {
+    simulation.set_paused(request.on);
+    return {};
+  }
+  std::string operator()(const StepRequest& request) const {
+    if (simulation.robot_count() == 0) return told("step", "there is no robot, so time stands still");
+    simulation.begin_steps(0, simulation.steps_for(request.time_s));
+    return {};
+  }
+  std::string operator()(const SpeedRequest& request) const {
+    simulation.clock.set_speed(request.value);
+    return {};
+  }
+  std::string operator()(const ResetRequest&) const {
+    spdlog::info("the world is put back to its start from the live view");
+    simulation.reset();
+    return {};
+  }
+  std::string operator()(const PlaceRequest&) const {
+    std::uint32_t robot = 0;
+    const std::string_view reason = server::place_robot_by_hand(simulation, who, robot);
+    return reason.empty() ? placed_message(robot) : told("place", reason);
+  }
+  std::string operator()(const TakeRequest& request) const {
+    return told("take", server::take_robot(simulation, request.robot, who));
+  }
+  std::string operator()(const LetGoRequest& request) const {
+    return told("let-go", server::let_go(simulation, request.robot, who));
+  }
+  std::string operator()(const RemoveRequest& request) const {
+    return told("remove", server::remove_placed_robot(simulation, request.robot, who));
+  }
+  std::string operator()(const DriveRequest& request) const {
+    return told("drive", server::drive_by_hand(simulation, request.robot, who, request.command));
+  }
+  std::string operator()(const PingRequest&) const { return {}; }
+};
+
+}  // namespace
+
+std::string carry_out(server::Simulation& simulation, server::OperatorId who, const Request& request) {
+  return std::visit(CarryOut{simulation, who}, request);
+}
+
+}  // namespace kenaf::live

@@ -1,0 +1,48 @@
+// The live view: a page in a browser that shows the world of a WorldServer and drives in it. docs/live-view.md is the page
+// for people.
+//
+// HTTP and WebSocket on a thread of its own, which asks the world's thread and is never waited for by it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "live/view_options.hpp"
+#include "physics/server/world_server.hpp"
+
+namespace kenaf::live {
+
+struct ViewLimits {
+  std::size_t connections = 128;       // of browsers; further ones are closed at once
+  std::size_t viewers = 64;            // of these, WebSockets
+  std::size_t header_bytes = 8192;
+  std::size_t message_bytes = 4096;    // that a page sends
+  std::size_t unread_answers = 32;     // then a page is let go; of states it keeps the newest only
+  double period_s = 1.0 / 30;          // between states
+  double quiet_s = 10;                 // without a request, or an answer to a ping: the connection is closed
+  int requests_per_s = 100;            // of a viewer; then it waits
+};
+
+class View {
+ public:
+  // Listens, and serves from then on. Throws std::runtime_error in words. The world must be there until this has ended,
+  // and this must end after world.run() has, or without it.
+  View(server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits = {});
+  ~View();
+  View(const View&) = delete;
+  View& operator=(const View&) = delete;
+
+  std::uint16_t port() const;
+  // What to open in a browser, with the token, where one is needed.
+  std::string url() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> impl_;
+};
+
+// As programs start it: says in the log where it is, or why it is not there, and the program goes on without it.
+std::unique_ptr<View> open_view(server::WorldServer& world, const ViewOptions& options);
+
+}  // namespace kenaf::live

@@ -1,0 +1,84 @@
+#include "physics/server/world_state.hpp"
+
+namespace kenaf::server {
+
+namespace {
+
+void read_robot(const Simulation& simulation, const Session& session, RobotState& state) {
+  const SessionRobot& robot = *session.robot;
+  const physics::RobotTruth truth = simulation.world.truth(robot.id);
+  const physics::DriveCurrents currents = simulation.world.drive_currents(robot.id);
+  state.id = session.id;
+  state.name = robot.name;
+  state.class_name = robot.description->usarsim_class;
+  state.dimensions = dimensions_of(*robot.description);
+  state.X_WB = truth.X_WB;
+  state.v_WB_mps = truth.v_WB_mps;
+  state.track_mps = truth.track_mps;
+  state.track_m = truth.track_m;
+  state.track_a = currents.track_a;
+  state.flipper_rad = truth.flipper_rad;
+  state.flipper_a = currents.flipper_a;
+  state.battery_v = truth.battery_v;
+  state.battery_left_s = truth.battery_left_s;
+  state.command = session.hold ? session.hold->command : robot.command;
+  state.has_client = !session.placed_by_operator;
+  state.client_silent = session.silent;
+  state.client_silent_s = static_cast<double>(simulation.world.step_count() -
+                                              std::min(simulation.world.step_count(), session.last_command_step)) *
+                          simulation.world.settings().time_step_s;
+  state.late_answers = session.schedule.late();
+  state.holder = session.hold ? session.hold->holder : OperatorId{0};
+  state.holder_silent = session.hold && session.hold->silent;
+  state.fault = simulation.world.fault(robot.id);
+}
+
+void read_box(const Simulation& simulation, physics::BoxId id, BoxState& state) {
+  state.id = static_cast<std::uint32_t>(id);
+  state.size_m = simulation.world.box(id).size_m;
+  state.X_WBox = simulation.world.box_pose(id);
+}
+
+}  // namespace
+
+RobotDimensions dimensions_of(const physics::RobotDescription& robot) {
+  RobotDimensions out;
+  out.body_size_m = robot.body.size_m;
+  out.track_length_m = robot.track.length_m;
+  out.track_radius_m = robot.track.end_radius_m;
+  out.track_width_m = robot.track.width_m;
+  out.p_BT_m = robot.track.p_BT_m;
+  out.max_speed_mps = robot.drive.max_speed_mps;
+  out.has_flippers = robot.has_flippers();
+  if (!out.has_flippers) return out;
+  const physics::FlipperDescription& flipper = robot.flipper.front();
+  out.flipper_length_m = flipper.length_m;
+  out.pivot_radius_m = flipper.pivot_radius_m;
+  out.tip_radius_m = flipper.tip_radius_m;
+  out.flipper_width_m = flipper.width_m;
+  out.p_BPivot_m = flipper.p_BPivot_m;
+  out.min_angle_rad = flipper.min_angle_rad;
+  out.max_angle_rad = flipper.max_angle_rad;
+  out.max_flipper_radps = robot.servo.max_speed_radps;
+  return out;
+}
+
+void read_state(const Simulation& simulation, WorldState& state) {
+  state.wall_s = simulation.wall_s;
+  state.time_s = simulation.world.time_s();
+  state.step = simulation.world.step_count();
+  state.paused = simulation.clock.paused();
+  state.speed = simulation.clock.speed();
+
+  state.robots.resize(simulation.robot_count());
+  std::size_t next = 0;
+  for (const auto& session : simulation.sessions) {
+    if (session->robot) read_robot(simulation, *session, state.robots[next++]);
+  }
+  state.boxes.resize(simulation.loose_boxes.size() + simulation.objects.size());
+  next = 0;
+  for (const physics::BoxId id : simulation.loose_boxes) read_box(simulation, id, state.boxes[next++]);
+  for (const WorldObject& object : simulation.objects) read_box(simulation, object.box, state.boxes[next++]);
+}
+
+}  // namespace kenaf::server

@@ -1,0 +1,68 @@
+// What the simulation shows of itself: a plain value, for other threads to look at while the world goes on.
+//
+// SI units, radians, frames of REP 103. Thread safety: a value. Nobody publishes it by himself: who wants to see hands an
+// empty one, or an old one, to the world's thread (WorldServer::ask) and gets it back filled. So it costs nothing while nobody
+// looks, whoever looks sets the rate, no lock exists that the world could wait for, and an old one is filled without allocating.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "physics/server/simulation.hpp"
+
+namespace kenaf::server {
+
+// The outlines of a robot, and what its drives can do.
+struct RobotDimensions {
+  Eigen::Vector3d body_size_m{0, 0, 0};
+  double track_length_m = 0, track_radius_m = 0, track_width_m = 0;
+  Eigen::Vector3d p_BT_m{0, 0, 0};             // centre of the left track; the right one is its mirror image
+  bool has_flippers = false;
+  double flipper_length_m = 0, pivot_radius_m = 0, tip_radius_m = 0, flipper_width_m = 0;
+  Eigen::Vector3d p_BPivot_m{0, 0, 0};         // of the front left flipper; the others are mirror images
+  double min_angle_rad = 0, max_angle_rad = 0;
+  double max_speed_mps = 0, max_flipper_radps = 0;
+};
+RobotDimensions dimensions_of(const physics::RobotDescription& description);
+
+struct RobotState {
+  std::uint32_t id = 0;                        // of its session: never used twice in one server
+  std::string name, class_name;
+  RobotDimensions dimensions;
+  physics::Pose X_WB;
+  Eigen::Vector3d v_WB_mps{0, 0, 0};
+  std::array<double, physics::kTrackCount> track_mps{}, track_m{}, track_a{};
+  std::array<double, physics::kFlipperCount> flipper_rad{}, flipper_a{};
+  double battery_v = 0, battery_left_s = 0;
+  physics::RobotCommand command;               // in force
+  bool has_client = false;                     // false: an operator placed it
+  bool client_silent = false;                  // its CommandTimeout has passed
+  double client_silent_s = 0;                  // robot time since its last command
+  std::uint64_t late_answers = 0;              // of its frames
+  OperatorId holder{0};                        // 0: nobody drives it by hand
+  bool holder_silent = false;
+  std::string fault;                           // empty: none
+};
+
+// A box that may be elsewhere than the world's description has it.
+struct BoxState {
+  std::uint32_t id = 0;
+  Eigen::Vector3d size_m{0, 0, 0};
+  physics::Pose X_WBox;
+};
+
+struct WorldState {
+  double wall_s = 0;                           // when it was read, of a steady clock
+  double time_s = 0;                           // robot time
+  std::uint64_t step = 0;
+  bool paused = false;
+  double speed = 0;                            // times real time that is wanted; 0: as fast as it goes
+  std::vector<RobotState> robots;              // in the order of their coming
+  std::vector<BoxState> boxes;
+};
+
+// As the world is at simulation.wall_s.
+void read_state(const Simulation& simulation, WorldState& state);
+
+}  // namespace kenaf::server

@@ -1,0 +1,49 @@
+// A browser without a window: Chromium, told what to do by its DevTools protocol over two pipes.
+//
+// Waits at most 60 s for each answer, then throws std::runtime_error. Thread safety: one thread.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kenaf::live {
+
+class Browser {
+ public:
+  // Opens an empty page. `profile`: an empty folder. Throws where there is no Chromium.
+  explicit Browser(const std::filesystem::path& profile);
+  ~Browser();
+  Browser(const Browser&) = delete;
+  Browser& operator=(const Browser&) = delete;
+
+  void open(const std::string& url);
+  void resize(int width, int height, bool phone = false);
+  void set_dark(bool dark);
+  void key(std::string_view code, bool down);  // a KeyboardEvent.code: "KeyW"
+  // What the expression is worth; a promise is waited for. Throws where it throws.
+  nlohmann::json evaluate(const std::string& expression);
+  // Until the expression is true.
+  void wait_for(const std::string& expression);
+  void screenshot(const std::filesystem::path& png);
+  // What the page complained of so far: errors, exceptions, what its policy kept out.
+  const std::vector<std::string>& complaints() const { return complaints_; }
+
+ private:
+  nlohmann::json call(const std::string& method, nlohmann::json parameters = nlohmann::json::object());
+  nlohmann::json receive();
+  void note(const nlohmann::json& event);
+
+  pid_t pid_ = -1;
+  int to_ = -1, from_ = -1;
+  int last_call_ = 0;
+  std::string session_, received_;
+  std::vector<std::string> complaints_;
+};
+
+}  // namespace kenaf::live

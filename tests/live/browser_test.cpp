@@ -1,0 +1,130 @@
+// A person at the page, in a real browser: keys held, the robot drives; let go of, it stands. The pictures are kept
+// beside the test's program, in live-view/.
+//
+// What the robot does is asked of the world server by a second page, not of the browser that drives.
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "tests/live/browser.hpp"
+#include "tests/live/served_world.hpp"
+#include "tests/live/web_client.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/usarsim_client.hpp"
+
+namespace kenaf::live {
+
+namespace {
+
+using nlohmann::json;
+
+struct Desk {
+  support::TemporaryFolder profile;
+  ServedWorld world{"", {}, "step-200"};
+  Browser browser{profile.path()};
+  std::filesystem::path pictures = std::filesystem::path(KENAF_BIN_DIR) / ".." / "live-view";
+
+  Desk() {
+    std::filesystem::create_directories(pictures);
+    browser.resize(1280, 800);
+    browser.open(world.url());
+    browser.wait_for("document.getElementById('link')?.dataset.state === 'good'");
+  }
+  // The state of the first robot, once `condition` holds of it.
+  template <typename Condition>
+  json robot_with(Condition condition) {
+    WebClient witness(world.port());  // its own each time: one that is not read for 10 s is let go of
+    REQUIRE(witness.open_websocket());
+    for (;;) {
+      const json state = witness.message_of("state");
+      if (!state["robots"].empty() && condition(state["robots"][0])) return state["robots"][0];
+    }
+  }
+  void state_is(const std::string& state) {
+    browser.wait_for("document.getElementById('drive-state').dataset.state === '" + state + "'");
+  }
+};
+
+bool drives(const json& robot) {
+  return robot["track_mps"][0] > 0.1;
+}
+bool stands(const json& robot) {
+  return robot["command"]["track"] == json::array({0, 0}) && std::abs(robot["track_mps"][0].get<double>()) < 0.01;
+}
+
+}  // namespace
+
+TEST_CASE("in a browser: keys held drive the robot, letting go of them stops it, and so does looking away") {
+  Desk desk;
+  desk.browser.evaluate("document.getElementById('place').click()");
+  desk.state_is("held");
+  CHECK(desk.browser.evaluate("document.getElementById('stick').checkVisibility()") == true);
+
+  desk.browser.key("KeyW", true);
+  desk.state_is("driving");
+  desk.robot_with(drives);
+  desk.browser.key("KeyW", false);
+  desk.state_is("held");
+  const json stopped = desk.robot_with(stands);
+  CHECK(stopped["p"][0] > 0.005);
+
+  // flippers: up while the key is held
+  const double before = stopped["flipper"][0];
+  desk.browser.key("KeyQ", true);
+  desk.robot_with([&](const json& robot) { return robot["flipper"][0] > before + 0.2; });
+  desk.browser.key("KeyQ", false);
+  desk.robot_with([](const json& robot) { return robot["command"]["flipper"][0][0] == "brake"; });
+
+  // the window loses the focus while the key is down
+  desk.browser.key("ArrowUp", true);
+  desk.robot_with(drives);
+  desk.browser.evaluate("dispatchEvent(new Event('blur')), 0");
+  desk.state_is("held");
+  desk.robot_with(stands);
+
+  desk.browser.wait_for("document.querySelector('#readings dd').textContent.endsWith('\u00b0')");
+  desk.browser.screenshot(desk.pictures / "desktop.png");
+  desk.browser.set_dark(true);
+  desk.browser.resize(390, 844, true);
+  desk.browser.wait_for("innerWidth === 390");
+  // nothing is wider than the phone
+  CHECK(desk.browser.evaluate("document.documentElement.scrollWidth") <= 390);
+  desk.browser.screenshot(desk.pictures / "phone-dark.png");
+
+  desk.browser.key("Escape", true);
+  desk.browser.key("Escape", false);
+  desk.state_is("none");
+  desk.robot_with([](const json& robot) { return !robot.contains("holder"); });
+  CHECK(desk.browser.complaints().empty());
+  for (const std::string& complaint : desk.browser.complaints()) UNSCOPED_INFO(complaint);
+}
+
+TEST_CASE(
+    "in a browser, with the keyboard alone: a robot is taken over from its program by the buttons in their order") {
+  Desk desk;
+  support::UsarsimClient program(desk.world.usarsim_port());
+  program.send("INIT {ClassName USARBot.Kenaf} {Name <b>R1</b>} {Location 0,0,0}\r\nDRIVE {Left 1} {Right 1}\r\n");
+  desk.browser.wait_for("document.getElementById('robot').options.length === 1");
+  CHECK(desk.browser.evaluate("document.getElementById('robot').options[0].text") == "<b>R1</b>");
+  // every control has a name, and Tab reaches those that can be used
+  CHECK(
+      desk.browser.evaluate(
+          "[...document.querySelectorAll('button, select, input')].filter((e) => e.checkVisibility() && !e.disabled && "
+          "!(e.textContent.trim() || e.labels?.length)).length") == 0);
+  for (int presses = 0; desk.browser.evaluate("document.activeElement.id") != "take"; ++presses) {
+    REQUIRE(presses < 40);
+    desk.browser.key("Tab", true);
+    desk.browser.key("Tab", false);
+  }
+  desk.browser.key("KeyT", true);
+  desk.browser.key("KeyT", false);
+  desk.state_is("held");
+  desk.robot_with(stands);
+  program.send("DRIVE {Left 1} {Right 1}\r\n");
+  desk.browser.key("KeyS", true);
+  desk.robot_with([](const json& robot) { return robot["track_mps"][0] < -0.1; });
+  desk.browser.key("KeyS", false);
+  desk.robot_with(stands);
+  CHECK(desk.browser.complaints().empty());
+}
+
+}  // namespace kenaf::live

@@ -1,0 +1,42 @@
+// A world server with its live view, on free ports, in threads of this process.
+#pragma once
+
+#include <string>
+#include <thread>
+
+#include "live/view.hpp"
+#include "physics/server/world_server.hpp"
+
+namespace kenaf::live {
+
+class ServedWorld {
+ public:
+  explicit ServedWorld(const std::string& token = "", const ViewLimits& limits = {}, const std::string& world = "flat")
+      : server_(server_options(world)), view_(server_, view_options(token), limits), thread_([this] { server_.run(); }) {}
+  ~ServedWorld() {
+    server_.stop();
+    thread_.join();
+  }
+  std::uint16_t port() const { return view_.port(); }
+  std::uint16_t usarsim_port() const { return server_.port(); }
+  std::string url() const { return view_.url(); }
+
+ private:
+  static server::ServerOptions server_options(const std::string& world) {
+    server::ServerOptions options;
+    options.world = world;
+    options.port = 0;
+    return options;
+  }
+  static ViewOptions view_options(const std::string& token) {
+    ViewOptions options;
+    options.port = 0;
+    options.token = token;
+    return options;
+  }
+  server::WorldServer server_;
+  View view_;
+  std::thread thread_;
+};
+
+}  // namespace kenaf::live
