@@ -1,0 +1,230 @@
+// The operator's console on the control PC: keyboard and gamepad in, wishes out, and what the robot says on a screen.
+// It knows the control process alone, and no robot: the same console drives simulation and robot. docs/operator.md.
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include "desk.hpp"
+#include "gamepad.hpp"
+#include "link.hpp"
+#include "link_health.hpp"
+#include "screen.hpp"
+#include "script.hpp"
+#include "terminal.hpp"
+#include "udp.hpp"
+
+namespace {
+
+using namespace kenaf::teleop;
+
+constexpr double kWishPeriod_s = 0.05;
+constexpr double kScreenPeriod_s = 0.1;
+constexpr double kPlainPeriod_s = 1;
+constexpr int kTurn_ms = 10;
+constexpr double kTakenShown_s = 1;
+
+struct Options {
+  std::string control = "127.0.0.1:45460", script, gamepad, camera;
+  bool plain = false;
+  double speed_mmps = 200;
+  KeyTiming keys;
+};
+
+volatile sig_atomic_t stop_requested = 0;
+
+void on_signal(int) {
+  stop_requested = 1;
+}
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::uint64_t random_session() {
+  std::random_device device;
+  const std::uint64_t session = std::uint64_t{device()} << 32 | device();
+  return session == 0 ? 1 : session;
+}
+
+class Console {
+ public:
+  explicit Console(const Options& options)
+      : options_(options),
+        socket_(UdpSocket::connected_to(resolve(options.control))),
+        gamepad_(options.gamepad),
+        desk_(options.keys, options.speed_mmps) {
+    if (!options.script.empty()) player_.emplace(script_of(options.script));
+    if (!options.plain && !player_) terminal_ = std::make_unique<Terminal>();
+  }
+  // Whatever ended it: the robot stands at once, not only after the silence.
+  ~Console() {
+    for (int i = 0; i < 3; ++i) send(Bye{session_});
+  }
+
+  // The exit status.
+  int run() {
+    while (stop_requested == 0 && !desk_.wants_to_quit()) {
+      wait();
+      take_statuses();
+      for (const Action action : gamepad_.read(now_s())) act(action);
+      desk_.set_sticks(gamepad_.sticks());
+      if (terminal_) {
+        while (const auto key = terminal_->key()) {
+          if (const auto action = action_of_key(*key)) act(*action);
+        }
+      }
+      if (player_) {
+        const Player::Turn turn = player_->turn(now_s(), newest(), health_.silence_s(now_s()).value_or(0), desk_);
+        for (const Action action : turn.pressed) act(action);
+        for (const std::string& line : turn.said) say(line);
+        if (!turn.failed.empty()) {
+          fmt::print(stderr, "operator_console: {}: {}\n", options_.script, turn.failed);
+          return 1;
+        }
+        if (turn.finished) return 0;
+      }
+      if (now_s() >= next_wish_s_) send_wish();
+      if (now_s() >= next_show_s_) show();
+    }
+    return 0;
+  }
+
+ private:
+  static Script script_of(const std::string& path) {
+    std::ifstream file(path);
+    if (!file) throw std::runtime_error("cannot read the script " + path);
+    const std::string text((std::istreambuf_iterator<char>(file)), {});
+    try {
+      return read_script(text);
+    } catch (const std::runtime_error& error) {
+      throw std::runtime_error(path + ": " + error.what());
+    }
+  }
+
+  const Status* newest() const { return status_ ? &*status_ : nullptr; }
+  void act(Action action) { desk_.act(action, now_s(), newest()); }
+
+  void wait() const {
+    std::array<pollfd, 2> watched{{{socket_.descriptor(), POLLIN, 0}, {STDIN_FILENO, POLLIN, 0}}};
+    ::poll(watched.data(), terminal_ ? 2 : 1, kTurn_ms);
+  }
+
+  void take_statuses() {
+    std::array<std::byte, kMaxDatagramBytes + 1> buffer;  // one more than any of ours: a longer one shows
+    Peer from;
+    for (int i = 0; i < 100; ++i) {
+      const std::optional<std::size_t> size = socket_.receive(buffer, from);
+      if (!size) return;
+      Datagram datagram = Bye{};
+      if (decode(std::span(buffer).first(*size), datagram) != DecodeError::none) continue;
+      if (const Status* status = std::get_if<Status>(&datagram); status != nullptr && status->session == session_) {
+        taken_.reset();
+        if (!health_.heard(*status, now_s())) continue;
+        status_ = *status;
+        desk_.hear(*status);
+      } else if (const Taken* taken = std::get_if<Taken>(&datagram); taken != nullptr && taken->session == session_) {
+        taken_ = std::string(view(taken->by));
+        taken_until_s_ = now_s() + kTakenShown_s;
+      }
+    }
+  }
+
+  void send_wish() {
+    next_wish_s_ = std::max(next_wish_s_ + kWishPeriod_s, now_s());
+    Wish wish = desk_.wish(now_s());
+    wish.session = session_;
+    wish.sequence = ++sequence_;
+    wish.newest_status = health_.newest_status();
+    health_.sent(wish.sequence, now_s());
+    send(wish);
+  }
+
+  void send(const Datagram& datagram) const {
+    std::array<std::byte, kMaxDatagramBytes> buffer;
+    socket_.send(std::span(buffer).first(encode(datagram, buffer)));
+  }
+
+  void show() {
+    if (taken_ && now_s() > taken_until_s_) taken_.reset();
+    const Wish wish = desk_.wish(now_s());
+    const View seen{options_.control, options_.camera, gamepad_.name(), newest(), taken_, health_, desk_, wish,
+                    now_s()};
+    if (terminal_) {
+      terminal_->show(draw_screen(seen));
+      next_show_s_ = now_s() + kScreenPeriod_s;
+    } else {
+      say(plain_line(seen));
+      next_show_s_ = now_s() + kPlainPeriod_s;
+    }
+  }
+
+  static void say(const std::string& line) {
+    fmt::print("{}\n", line);
+    std::fflush(stdout);
+  }
+
+  const Options options_;
+  const std::uint64_t session_ = random_session();
+  UdpSocket socket_;
+  Gamepad gamepad_;
+  Desk desk_;
+  LinkHealth health_;
+  std::optional<Player> player_;
+  std::unique_ptr<Terminal> terminal_;
+  std::optional<Status> status_;
+  std::optional<std::string> taken_;
+  double taken_until_s_ = 0;
+  std::uint32_t sequence_ = 0;
+  double next_wish_s_ = 0, next_show_s_ = 0;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("The operator's console: drives the robot through its control process, operator_control.");
+  app.add_option("--control", options.control, "where the control process listens, HOST:PORT")->capture_default_str();
+  app.add_option("--gamepad", options.gamepad,
+                 "its device, such as /dev/input/js1, or 'none'; default: the first there is");
+  app.add_option("--camera", options.camera, "address of the camera's picture, shown on the screen");
+  app.add_option("--speed", options.speed_mmps, "to begin with, mm/s")
+      ->check(CLI::Range(10.0, kMaxTrack_mmps))
+      ->capture_default_str();
+  app.add_option("--script", options.script, "plays the operator's input from this file, without a terminal");
+  app.add_flag("--plain", options.plain, "one line a second instead of the screen; the keyboard is not read");
+  app.add_option("--key-first", options.keys.first_s, "seconds that a key drives after it was pressed")
+      ->check(CLI::Range(0.1, 2.0))
+      ->capture_default_str();
+  app.add_option("--key-repeat", options.keys.repeat_s, "seconds that a key drives after each of its repeats")
+      ->check(CLI::Range(0.05, 1.0))
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaction(number, &action, nullptr);
+
+  try {
+    return Console(options).run();
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "operator_console: {}\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,119 @@
+#include "terminal.hpp"
+
+#include <fmt/format.h>
+#include <ncurses.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace kenaf::teleop {
+
+namespace {
+
+constexpr int kEscape_ms = 25;  // after an escape: what comes later is no part of a key's sequence
+constexpr int kCtrlC = 3;
+
+void define_tones() {
+  if (!has_colors()) return;
+  start_color();
+  use_default_colors();
+  init_pair(static_cast<short>(Tone::title), COLOR_CYAN, -1);
+  init_pair(static_cast<short>(Tone::good), COLOR_GREEN, -1);
+  init_pair(static_cast<short>(Tone::warning), COLOR_YELLOW, -1);
+  init_pair(static_cast<short>(Tone::alarm), COLOR_RED, -1);
+}
+
+// Readable without colours too.
+attr_t attributes_of(Tone tone) {
+  const attr_t colour = has_colors() ? static_cast<attr_t>(COLOR_PAIR(static_cast<int>(tone))) : 0;
+  switch (tone) {
+    case Tone::plain:
+      return A_NORMAL;
+    case Tone::dim:
+      return A_DIM;
+    case Tone::title:
+      return A_BOLD | colour;
+    case Tone::good:
+      return colour;
+    case Tone::warning:
+      return A_BOLD | colour;
+    case Tone::alarm:
+      return A_BOLD | A_REVERSE | colour;
+  }
+  return A_NORMAL;
+}
+
+std::string name_of_key(int key) {
+  switch (key) {
+    case KEY_UP:
+      return "up";
+    case KEY_DOWN:
+      return "down";
+    case KEY_LEFT:
+      return "left";
+    case KEY_RIGHT:
+      return "right";
+    case KEY_HOME:
+      return "home";
+    case KEY_END:
+      return "end";
+    case KEY_PPAGE:
+      return "page_up";
+    case KEY_NPAGE:
+      return "page_down";
+    case ' ':
+      return "space";
+    case kCtrlC:
+      return "ctrl_c";
+    default:
+      return key > ' ' && key <= '~' ? std::string(1, static_cast<char>(key)) : "?";
+  }
+}
+
+}  // namespace
+
+Terminal::Terminal() {
+  if (::isatty(STDIN_FILENO) == 0 || ::isatty(STDOUT_FILENO) == 0) {
+    throw std::runtime_error("the screen needs a terminal; --plain and --script do without");
+  }
+  if (newterm(nullptr, stdout, stdin) == nullptr) {
+    const char* name = std::getenv("TERM");
+    throw std::runtime_error(fmt::format("the terminal '{}' (TERM) is not known here", name == nullptr ? "" : name));
+  }
+  raw();  // control-S must not stop the console, control-C is a key
+  noecho();
+  keypad(stdscr, TRUE);
+  nodelay(stdscr, TRUE);
+  set_escdelay(kEscape_ms);
+  curs_set(0);
+  define_tones();
+}
+
+Terminal::~Terminal() {
+  endwin();
+}
+
+void Terminal::show(const Canvas& canvas) {
+  erase();
+  if (LINES < static_cast<int>(kRows) || COLS < static_cast<int>(kColumns)) {
+    const std::string words = fmt::format("{}x{}: needs {}x{}. Keys act; E stops.", COLS, LINES, kColumns, kRows);
+    mvaddnstr(0, 0, words.c_str(), COLS);
+  } else {
+    for (std::size_t row = 0; row < kRows; ++row) {
+      move(static_cast<int>(row), 0);
+      for (const Canvas::Cell& cell : canvas.cells[row]) {
+        addch(static_cast<chtype>(cell.character) | static_cast<chtype>(attributes_of(cell.tone)));
+      }
+    }
+  }
+  refresh();
+}
+
+std::optional<std::string> Terminal::key() {
+  const int key = getch();
+  return key == ERR ? std::nullopt : std::optional(name_of_key(key));
+}
+
+}  // namespace kenaf::teleop
