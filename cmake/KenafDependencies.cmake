@@ -10,10 +10,18 @@ find_package(Boost 1.74 REQUIRED COMPONENTS system)
 find_package(sdformat12 REQUIRED)
 find_package(EXPAT 2.5 REQUIRED)
 find_package(PNG 1.6 REQUIRED)
+find_package(embree 3.13 REQUIRED CONFIG)
+set(CURSES_NEED_NCURSES ON)
+find_package(Curses REQUIRED)
 pkg_check_modules(assimp REQUIRED IMPORTED_TARGET assimp>=5.2)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(nettle REQUIRED IMPORTED_TARGET nettle>=3.8)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
+pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg>=2.1)
+
+# The 3D library of the live view's page; a Debian package of JavaScript has no CMake file.
+find_path(KENAF_THREE_FOLDER build/three.module.js PATHS /usr/share/javascript/three NO_DEFAULT_PATH REQUIRED
+  DOC "Folder of three.js, with build/ and examples/")
 
 # The double precision flavour of Bullet. Mixing its headers with the single precision libraries is an error that no
 # linker reports, so headers, definition and libraries come from this one place.

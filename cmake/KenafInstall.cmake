@@ -6,7 +6,8 @@ install(DIRECTORY robots worlds manoeuvres DESTINATION "${CMAKE_INSTALL_DATADIR}
   FILES_MATCHING PATTERN "*.toml" PATTERN "*.sdf" PATTERN "*.png" PATTERN "*.obj")
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
-install(DIRECTORY examples/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples" FILES_MATCHING PATTERN "*.c" PATTERN "*.h")
+install(DIRECTORY examples/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples" FILES_MATCHING
+  PATTERN "*.c" PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.hpp" PATTERN "*.script")
 
 set(cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kenaf")
 install(EXPORT kenafTargets NAMESPACE kenaf:: DESTINATION "${cmake_dir}")

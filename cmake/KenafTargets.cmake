@@ -39,6 +39,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
     target_compile_options(kenaf_warnings INTERFACE
       $<$<COMPILE_LANGUAGE:CXX>:-Wno-array-bounds$<SEMICOLON>-Wno-stringop-overread$<SEMICOLON>-Wno-stringop-overflow>)
   endif()
+  if(KENAF_COMPILE_TOGETHER)
+    # a source file of its own that is included is no header: what is in its unnamed namespace stays in it
+    target_compile_options(kenaf_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+  endif()
   if(KENAF_SANITIZE)
     target_compile_options(kenaf_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-maybe-uninitialized>)
   endif()
@@ -55,23 +59,49 @@ function(kenaf_precompile name)
   endif()
 endfunction()
 
+# kenaf_compile_together(NAME): the files of a folder are compiled as one, so what is a file's alone (in an unnamed namespace)
+# has a name that no other file of the folder has. Each names what it includes all the same: users compile each alone.
+function(kenaf_compile_together name)
+  if(NOT KENAF_COMPILE_TOGETHER)
+    return()
+  endif()
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${name} SOURCES)
+  foreach(source ${sources})
+    get_filename_component(folder "${source}" DIRECTORY)
+    string(MAKE_C_IDENTIFIER "folder_${folder}" group)
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${group}")
+  endforeach()
+endfunction()
+
 # kenaf_room(NAME sources...): the static library of one room. Includes are written from the root: "protocol/frames.hpp".
 function(kenaf_room name)
   add_library(${name} STATIC ${ARGN})
+  kenaf_compile_together(${name})
   target_include_directories(${name} PUBLIC "${PROJECT_SOURCE_DIR}" "${PROJECT_SOURCE_DIR}/include")
   target_link_libraries(${name} PRIVATE kenaf_warnings)
 endfunction()
 
-# kenaf_program(NAME sources...): an installed program.
+# kenaf_compile_lightly(files...): files that read command lines. The library for that is thousands of inlined lines that run
+# once: with less optimisation they take half as long to compile.
+function(kenaf_compile_lightly)
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")
+    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -O1)
+  endif()
+endfunction()
+
+# kenaf_program(NAME sources...): an installed program, with its main() in main.cpp.
 function(kenaf_program name)
   add_executable(${name} ${ARGN})
+  list(FILTER ARGN INCLUDE REGEX "main\\.cpp$")
+  kenaf_compile_lightly(${ARGN})
   target_link_libraries(${name} PRIVATE kenaf_warnings)
   install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT programs)
 endfunction()
 
 # kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [PRECOMPILE h...] [TIMEOUT s] [COST c]): one Catch2 program;
-# ctest sees each of its test cases (under a sanitizer each of its files, which end in _test.cpp), and starts those of the
-# highest cost first.
+# ctest sees each of its test cases (under a sanitizer each of its files, which end in _test.cpp, without the cases tagged
+# [long]), and starts those of the highest cost first.
 function(kenaf_test name)
   cmake_parse_arguments(TEST "" "TIMEOUT;COST" "SOURCES;LIBRARIES;LABELS;PRECOMPILE" ${ARGN})
   if(NOT TEST_TIMEOUT)
@@ -83,19 +113,19 @@ function(kenaf_test name)
   add_executable(${name} ${TEST_SOURCES})
   target_link_libraries(${name} PRIVATE Catch2::Catch2WithMain ${TEST_LIBRARIES} kenaf_warnings)
   target_compile_definitions(${name} PRIVATE KENAF_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  if(KENAF_SANITIZE)
-    # what is tested is optimised; optimising the tests themselves too takes three times as long to compile
-    target_compile_options(${name} PRIVATE -O0)
-    if(KENAF_BUILD_FUZZERS)
-      target_compile_options(${name} PRIVATE -fno-sanitize=fuzzer-no-link)
-    endif()
+  # what is tested is optimised; optimising the tests themselves too takes twice as long to compile
+  target_compile_options(${name} PRIVATE -O0)
+  if(KENAF_BUILD_FUZZERS)
+    target_compile_options(${name} PRIVATE -fno-sanitize=fuzzer-no-link)
   endif()
   list(LENGTH TEST_SOURCES files)
   if(files GREATER 4)
     kenaf_precompile(${name} catch2/catch.hpp ${TEST_PRECOMPILE})
   endif()
   if(NOT KENAF_SANITIZE)
+    # a name that ctest takes for another (it parts them at semicolons) would run nothing, and pass
     catch_discover_tests(${name}
+      EXTRA_ARGS --warn NoTests
       TEST_PREFIX "${name}: "
       PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT} COST ${TEST_COST})
     return()
@@ -104,7 +134,7 @@ function(kenaf_test name)
   list(FILTER TEST_SOURCES INCLUDE REGEX "_test\\.cpp$")
   foreach(source ${TEST_SOURCES})
     get_filename_component(file ${source} NAME_WE)
-    add_test(NAME "${name}: ${file}" COMMAND ${name} --filenames-as-tags --warn NoTests "[#${file}]")
+    add_test(NAME "${name}: ${file}" COMMAND ${name} --filenames-as-tags --warn NoTests "[#${file}]~[long]")
     set_tests_properties("${name}: ${file}" PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT 600 COST ${TEST_COST})
   endforeach()
 endfunction()

@@ -4,8 +4,6 @@
 #include <sys/random.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -21,6 +19,7 @@
 #include "gap/challenge/make_case.hpp"
 #include "gap/challenge/sha256.hpp"
 #include "gap/commands.hpp"
+#include "gap/interrupt.hpp"
 #include "gap/option_checks.hpp"
 #include "gap/parallel.hpp"
 #include "gap/progress_line.hpp"
@@ -31,15 +30,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostCases = 10000, kMostJobs = 1000;
+constexpr std::uint64_t kMostCases = 10000;
 constexpr double kMakingShare = 0.3;  // of the time, for the time left
-
-std::atomic<bool> interrupted = false;  // what a signal handler may write is global
-
-void interrupt(int signal) {
-  interrupted = true;
-  std::signal(signal, SIG_DFL);  // a second one ends the program at once
-}
 
 struct Interrupted {};
 
@@ -93,11 +85,12 @@ class Teller {
 };
 
 // The data of all cases, whole or not at all; returns their key.
-ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller) {
+ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller,
+                        const std::atomic<bool>& stop) {
   ChallengeKey key{seed, {}};
   for (CasePlan& plan : plan_challenge(options.cases, seed)) key.cases.push_back({std::move(plan), {}});
   for_each_job(key.cases.size(), options.jobs, [&](std::size_t i) {
-    if (interrupted) throw Interrupted();
+    if (stop) throw Interrupted();
     SealedCase& sealed = key.cases[i];
     const fs::path data = folder / sealed.plan.name;
     make_case(sealed.plan, data, 1);
@@ -108,12 +101,13 @@ ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::pa
 }
 
 void run(const Options& options, std::uint64_t seed) {
+  const std::atomic<bool>& stop = interruption();
   const fs::path folder = fs::absolute(options.out).lexically_normal();
   Teller teller(options.cases);
   const fs::path part = folder / "cases.part";
   fs::remove_all(part);
   fs::create_directories(part);
-  const ChallengeKey key = make_cases(options, seed, part, teller);
+  const ChallengeKey key = make_cases(options, seed, part, teller, stop);
   const std::string text = key_text(key), commitment = commitment_text(text);
   if (fs::exists(folder / "commitment.txt") && runs::read_whole_file(folder / "commitment.txt") != commitment) {
     fs::remove_all(part);
@@ -145,11 +139,11 @@ void run(const Options& options, std::uint64_t seed) {
   if (!can_confine())
     std::fputs("this kernel has no Landlock: the diagnosis has no key, but could read files beside its case\n", stderr);
   std::size_t diagnosed = key.cases.size() - left.size();
-  diagnose_cases(left, options.jobs, interrupted, [&](std::size_t i, bool could) {
+  diagnose_cases(left, options.jobs, stop, [&](std::size_t i, bool could) {
     teller.diagnosed(names[i], could);
     diagnosed += could ? 1 : 0;
   });
-  if (interrupted) throw Interrupted();
+  if (stop) throw Interrupted();
   if (diagnosed == 0)
     throw std::runtime_error(
         fmt::format("no case could be diagnosed; why is in {}", (left[0].report / "diagnose.log").string()));
@@ -176,8 +170,6 @@ void add_challenge_command(CLI::App& program) {
     check_folder(options->out, options->seed.has_value());
     ::prctl(PR_SET_DUMPABLE, 0);  // no other process of this user may read the key out of this one's memory
     const std::uint64_t seed = options->seed ? *options->seed : seed_from_system();
-    std::signal(SIGINT, interrupt);
-    std::signal(SIGTERM, interrupt);
     try {
       run(*options, seed);
     } catch (const Interrupted&) {

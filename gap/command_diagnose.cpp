@@ -1,7 +1,5 @@
 // kenaf-gap diagnose: where simulation and runs part, which effect causes it, how far the gap shrinks with it.
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
@@ -9,21 +7,12 @@
 
 #include "gap/commands.hpp"
 #include "gap/diagnose/report.hpp"
+#include "gap/interrupt.hpp"
 #include "gap/option_checks.hpp"
 #include "gap/progress_line.hpp"
 
 namespace kenaf::gap {
-namespace {
-
-constexpr std::uint64_t kMostJobs = 1000;
-
-std::atomic<bool> interrupted = false;  // what a signal handler may write is global
-
-void interrupt(int) {
-  interrupted = true;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
   struct Options {
@@ -39,8 +28,7 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
       ->type_name("DIR");
   command->add_option("--robot", diagnosis.robot, "a shipped name or a TOML file [the dataset's]");
   command->add_option("--world", diagnosis.world, "a shipped name or an SDF file, for all runs [each run's own]");
-  command
-      ->add_option("--without", diagnosis.without, "takes effects out of the catalogue, by name, parted by commas")
+  command->add_option("--without", diagnosis.without, "takes effects out of the catalogue, by name, parted by commas")
       ->delimiter(',')
       ->type_name("EFFECT");
   command->add_option("--jobs", diagnosis.jobs, "threads; 0: one a core")
@@ -52,15 +40,13 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
   command->callback([options] {
     for (const auto& [name, text] : {std::pair{"DATASET", &options->dataset}, {"--out", &options->out}})
       if (text->empty()) throw CLI::RequiredError(name);
-    options->diagnosis.stop = &interrupted;
+    options->diagnosis.stop = &interruption();
     const bool reports = options->diagnosis.ranks.rank == 0;
     if (reports)
       options->diagnosis.progress = [line = ProgressLine()](const Progress& progress) {
         line.show(progress.doing, progress.done);
       };
-    const auto before = std::signal(SIGINT, interrupt);
     const Diagnosis result = diagnose(options->dataset, options->diagnosis);
-    std::signal(SIGINT, before);
     if (!reports) return;
     write_diagnosis(result, options->out);
     std::fputs(diagnosis_text(result).c_str(), stdout);

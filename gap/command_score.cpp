@@ -24,8 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostJobs = 1000;
-
 // Where a report has a corrected robot, and the truth is in the catalogue, so that both can be simulated.
 CaseShrinks measure_shrinks(const fs::path& folder, const ScoredCase& scored) {
   const CasePlan& plan = scored.sealed.plan;

@@ -15,8 +15,7 @@
 namespace kenaf::gap {
 namespace {
 
-constexpr std::uint64_t kMostJobs = 1000, kMostRepeats = 100000;
-constexpr double kLargestScale = 1000;
+constexpr std::uint64_t kMostRepeats = 100000;
 
 // Throws RunsWentWrong where a run has a fault.
 void print(const SimulatedDataset& dataset) {
@@ -57,11 +56,11 @@ void add_simulate_command(CLI::App& program) {
   };
   command->add_option("--robot", request.robot, "a shipped name or a TOML file")->capture_default_str();
   command->add_option("--world", request.world, "a shipped name or an SDF file [each manoeuvre's own]");
-  one_word_each(
-      command->add_option("--manoeuvre", request.manoeuvres,
-                          "a shipped name, a TOML file, replay:FILE.csv or replay-measured:FILE.csv; required, may be given "
-                          "several times"),
-      "M");
+  one_word_each(command->add_option(
+                    "--manoeuvre", request.manoeuvres,
+                    "a shipped name, a TOML file, replay:FILE.csv or replay-measured:FILE.csv; required, may be given "
+                    "several times"),
+                "M");
   one_word_each(command->add_option("--effect", request.effects, "switches an effect on; may be given several times"),
                 "NAME:PARAMETER=VALUE");
   one_word_each(command->add_option("--physics", options->physics,

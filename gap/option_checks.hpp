@@ -8,6 +8,8 @@
 
 namespace kenaf::gap {
 
+constexpr std::uint64_t kMostJobs = 1000;  // that an option --jobs takes
+
 // Gives what is wrong with a text, in words; empty: nothing.
 using OptionCheck = std::function<std::string(const std::string&)>;
 

@@ -19,7 +19,6 @@ namespace {
 
 // Chosen: how well a robot is put on a mark by hand.
 constexpr double kStartScatter_m = 0.005, kStartScatter_rad = 0.01;
-constexpr double kLargestScale = 1000;
 constexpr int kMostRuns = 100000;
 
 // FNV-1a, http://www.isthe.com/chongo/tech/comp/fnv/, of everything that a run's noise depends on.

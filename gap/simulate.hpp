@@ -14,6 +14,8 @@
 
 namespace kenaf::gap {
 
+constexpr double kLargestScale = 1000;  // of noise and scatter
+
 struct SimulationRequest {
   std::string robot = "kenaf";           // shipped name or TOML file
   std::string world;                     // shipped name or SDF file; empty: each manoeuvre's own

@@ -8,8 +8,6 @@
 namespace kenaf::rollout {
 namespace {
 
-constexpr double kSameTime_s = 1e-9;  // sample times are multiples of a step that is no binary fraction
-
 bool holds(const GiveUp& give_up, const physics::Pose& X_WB) {
   return !(give_up.x_below_m && X_WB.p.x() >= *give_up.x_below_m) &&
          !(give_up.pitch_below_rad && physics::roll_pitch_yaw(X_WB.q).y() >= *give_up.pitch_below_rad);
@@ -26,7 +24,7 @@ Driver::Driver(const Manoeuvre& manoeuvre, const std::array<double, physics::kFl
 bool Driver::ended(const Phase& phase, double t_s, const physics::Pose& X_WB) const {
   const PhaseEnd& end = phase.end;
   const double pitch_rad = physics::roll_pitch_yaw(X_WB.q).y();
-  return t_s - phase_began_s_ >= phase.at_most_s - kSameTime_s ||
+  return t_s - phase_began_s_ >= phase.at_most_s - runs::kSameTime_s ||
          (end.pitch_above_rad && pitch_rad > *end.pitch_above_rad) ||
          (end.pitch_below_rad && pitch_rad < *end.pitch_below_rad) || (end.x_above_m && X_WB.p.x() > *end.x_above_m) ||
          (end.x_below_m && X_WB.p.x() < *end.x_below_m) || (end.z_above_m && X_WB.p.z() > *end.z_above_m) ||
@@ -64,14 +62,14 @@ std::optional<physics::RobotCommand> Driver::command(double t_s, const physics::
 
 std::optional<physics::RobotCommand> Driver::timed_command(double t_s) {
   const std::vector<TimedCommand>& timed = manoeuvre_.timed;
-  while (next_timed_ < timed.size() && timed[next_timed_].t_s <= t_s + kSameTime_s)
+  while (next_timed_ < timed.size() && timed[next_timed_].t_s <= t_s + runs::kSameTime_s)
     command_ = timed[next_timed_++].command;
   if (next_timed_ == timed.size()) return std::nullopt;
   return command_;
 }
 
 double Driver::next_due_s() const {
-  return next_timed_ < manoeuvre_.timed.size() ? manoeuvre_.timed[next_timed_].t_s - kSameTime_s
+  return next_timed_ < manoeuvre_.timed.size() ? manoeuvre_.timed[next_timed_].t_s - runs::kSameTime_s
                                                : std::numeric_limits<double>::infinity();
 }
 

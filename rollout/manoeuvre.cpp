@@ -7,27 +7,23 @@
 #include <filesystem>
 #include <numbers>
 
-#include "physics/description_file.hpp"
-#include "physics/toml_reader.hpp"
-#include "protocol/data_files.hpp"
+#include "description/data_files.hpp"
+#include "description/description_file.hpp"
+#include "description/toml_reader.hpp"
 #include "runs/dataset.hpp"
 
 namespace kenaf::rollout {
 namespace {
 
 namespace fs = std::filesystem;
-using physics::DescriptionError;
-using physics::Range;
-using physics::TomlReader;
 
 constexpr double kPi = std::numbers::pi;
 constexpr Range kTrackSpeed{.min = -10, .max = 10};
 constexpr Range kFlipperAngle{.min = -2 * kPi, .max = 2 * kPi};
 constexpr Range kPitch{.min = -kPi, .max = kPi};
-constexpr double kLongest_s = 3600;
 constexpr std::string_view kReplay = "replay:", kReplayMeasured = "replay-measured:";
 
-std::optional<double> optional_number(TomlReader& table, std::string_view key, Range range = physics::kAny) {
+std::optional<double> optional_number(TomlReader& table, std::string_view key, Range range = kAny) {
   return table.has(key) ? std::optional(table.number(key, range)) : std::nullopt;
 }
 
@@ -52,13 +48,13 @@ Phase read_phase(TomlReader& table) {
   if (table.has("flipper_rad"))
     std::ranges::copy(table.numbers("flipper_rad", physics::kFlipperCount, kFlipperAngle),
                       phase.flipper_rad.emplace().begin());
-  phase.at_most_s = table.number("at_most_s", {.min = 0, .max = kLongest_s, .open_min = true});
+  phase.at_most_s = table.number("at_most_s", {.min = 0, .max = kLongestManoeuvre_s, .open_min = true});
   phase.end = {.pitch_above_rad = optional_number(table, "pitch_above_rad", kPitch),
                .pitch_below_rad = optional_number(table, "pitch_below_rad", kPitch),
                .x_above_m = optional_number(table, "x_above_m"),
                .x_below_m = optional_number(table, "x_below_m"),
                .z_above_m = optional_number(table, "z_above_m"),
-               .turned_rad = optional_number(table, "turned_rad", physics::kPositive)};
+               .turned_rad = optional_number(table, "turned_rad", kPositive)};
   if (table.has("give_up")) phase.give_up = read_give_up(table);
   table.finish();
   return phase;
@@ -99,8 +95,8 @@ Manoeuvre read_manoeuvre(TomlReader& table, const std::vector<Phase>& shared_pha
   if (manoeuvre.phases.empty()) manoeuvre.phases = shared_phases;
   if (manoeuvre.phases.empty())
     table.fail("phase", "is missing: a manoeuvre has at least one [[manoeuvre.phase]], or a [[phase]] of the file");
-  if (manoeuvre.at_most_s() > kLongest_s)
-    table.fail("phase", fmt::format("is too long: all phases together last at most {} s", kLongest_s));
+  if (manoeuvre.at_most_s() > kLongestManoeuvre_s)
+    table.fail("phase", fmt::format("is too long: all phases together last at most {} s", kLongestManoeuvre_s));
   if (table.has("success")) manoeuvre.success = read_success(table.table("success"));
   table.finish();
   return manoeuvre;
@@ -118,7 +114,7 @@ void name_as_dataset_does(Manoeuvre& replay, const fs::path& run_file) {
 }
 
 std::vector<Manoeuvre> read_file(const fs::path& path) {
-  const physics::DescriptionFile file = physics::read_description_file("manoeuvre", path.string(), ".toml");
+  const DescriptionFile file = read_description_file("manoeuvre", path.string(), ".toml");
   return parse_manoeuvres(file.text, file.path);
 }
 
@@ -131,7 +127,7 @@ double Manoeuvre::at_most_s() const {
 }
 
 std::vector<Manoeuvre> parse_manoeuvres(std::string_view toml_text, const std::string& name_for_errors) {
-  const toml::table root = physics::parse_toml(toml_text, name_for_errors);
+  const toml::table root = parse_toml(toml_text, name_for_errors);
   TomlReader file(root, "", name_for_errors);
   const std::vector<Phase> shared_phases = read_phases(file);
   std::vector<Manoeuvre> manoeuvres;

@@ -20,6 +20,8 @@
 
 namespace kenaf::rollout {
 
+constexpr double kLongestManoeuvre_s = 3600;
+
 // A phase ends when any of these holds, or its time is up.
 struct PhaseEnd {
   std::optional<double> pitch_above_rad{}, pitch_below_rad{};
@@ -80,7 +82,7 @@ struct Manoeuvre {
 
 // A shipped name ("step-200-flippers"), the path of a TOML file that holds one manoeuvre, "replay:FILE.csv", which
 // is replay_of() that recorded run, or "replay-measured:FILE.csv", replay_measured_of() it. Where that file is a run of the
-// dataset.toml beside it, it has that run's manoeuvre name and world. Throws physics::DescriptionError with file,
+// dataset.toml beside it, it has that run's manoeuvre name and world. Throws DescriptionError with file,
 // line and column, for a replay runs::RunFileError.
 Manoeuvre load_manoeuvre(const std::string& name);
 // The manoeuvres of a file, whose own worlds are beside it.

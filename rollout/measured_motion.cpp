@@ -14,8 +14,6 @@ namespace kenaf::rollout {
 namespace {
 
 constexpr std::array<std::string_view, physics::kTrackCount> kTracks{"left", "right"};
-constexpr std::array<std::string_view, physics::kFlipperCount> kFlippers{"fl", "fr", "rl", "rr"};
-constexpr double kSameTime_s = 1e-9;
 constexpr double kTravelCounts_s = 0.1;  // over so long a speed is held to its travel
 constexpr double kMeanSpeed_s = 0.05;    // of travel alone
 constexpr double kShare_m = 0.05;
@@ -64,7 +62,7 @@ class Integral {
 std::vector<std::size_t> knots(const TimeSeries& series, double apart_s) {
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < series.t_s.size(); ++i)
-    if (out.empty() || series.t_s[i] >= series.t_s[out.back()] + apart_s - kSameTime_s) out.push_back(i);
+    if (out.empty() || series.t_s[i] >= series.t_s[out.back()] + apart_s - runs::kSameTime_s) out.push_back(i);
   return out;
 }
 
@@ -119,7 +117,7 @@ Poses first_poses(const runs::Run& run, double time_s) {
   const auto time = run.column("t_s"), x = run.column("x_m"), y = run.column("y_m"), yaw = run.column("yaw_rad");
   Poses poses;
   if (x.empty() || y.empty() || yaw.empty()) return poses;
-  for (std::size_t row = 0; row < time.size() && time[row] - time.front() <= time_s + kSameTime_s; ++row) {
+  for (std::size_t row = 0; row < time.size() && time[row] - time.front() <= time_s + runs::kSameTime_s; ++row) {
     if (std::isnan(x[row]) || std::isnan(y[row]) || std::isnan(yaw[row])) continue;
     poses.t_s.push_back(time[row] - time.front());
     poses.x_m.push_back(x[row]);
@@ -220,8 +218,8 @@ physics::PrescribedMotion MeasuredMotion::at(double time_s) const {
 MeasuredMotion measured_motion(const runs::Run& run) {
   MeasuredMotion motion;
   for (std::size_t i = 0; i < kTracks.size(); ++i) motion.track_mps[i] = track_speed(run, kTracks[i]);
-  for (std::size_t i = 0; i < kFlippers.size(); ++i)
-    motion.flipper_rad[i] = without_full_turns(series_of(run, fmt::format("flipper_{}_rad", kFlippers[i])));
+  for (std::size_t i = 0; i < runs::kFlippers.size(); ++i)
+    motion.flipper_rad[i] = without_full_turns(series_of(run, fmt::format("flipper_{}_rad", runs::kFlippers[i])));
   return motion;
 }
 

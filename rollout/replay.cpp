@@ -10,8 +10,6 @@ namespace kenaf::rollout {
 namespace {
 
 using Column = std::span<const double>;
-constexpr double kLongest_s = 3600;
-constexpr std::array<std::string_view, physics::kFlipperCount> kFlippers{"fl", "fr", "rl", "rr"};
 
 std::optional<double> first_measured(Column column) {
   const auto found = std::ranges::find_if(column, [](double value) { return !std::isnan(value); });
@@ -27,9 +25,9 @@ double at_start(const runs::Run& run, std::string_view name, const std::string& 
 // Of all flippers or of none.
 std::optional<std::array<double, physics::kFlipperCount>> flippers_at_start(const runs::Run& run) {
   std::array<double, physics::kFlipperCount> angles{};
-  for (std::size_t i = 0; i < kFlippers.size(); ++i) {
-    auto angle = first_measured(run.column(fmt::format("flipper_{}_rad", kFlippers[i])));
-    if (!angle) angle = first_measured(run.column(fmt::format("cmd_flipper_{}_rad", kFlippers[i])));
+  for (std::size_t i = 0; i < runs::kFlippers.size(); ++i) {
+    auto angle = first_measured(run.column(fmt::format("flipper_{}_rad", runs::kFlippers[i])));
+    if (!angle) angle = first_measured(run.column(fmt::format("cmd_flipper_{}_rad", runs::kFlippers[i])));
     if (!angle) return std::nullopt;
     angles[i] = *angle;
   }
@@ -38,8 +36,8 @@ std::optional<std::array<double, physics::kFlipperCount>> flippers_at_start(cons
 
 Manoeuvre replay(const runs::Run& run, const std::string& file) {
   const Column time = run.column("t_s");
-  if (!(time.back() - time.front() <= kLongest_s))
-    throw runs::RunFileError(fmt::format("{}: lasts more than {} s", file, kLongest_s));
+  if (!(time.back() - time.front() <= kLongestManoeuvre_s))
+    throw runs::RunFileError(fmt::format("{}: lasts more than {} s", file, kLongestManoeuvre_s));
   const std::array<Column, physics::kTrackCount> tracks{run.column("cmd_track_left_mps"),
                                                         run.column("cmd_track_right_mps")};
   Manoeuvre replay;
@@ -54,7 +52,7 @@ Manoeuvre replay(const runs::Run& run, const std::string& file) {
   std::array<Column, physics::kFlipperCount> flippers;
   physics::RobotCommand command;  // stands until the first one
   for (std::size_t i = 0; i < flippers.size(); ++i) {
-    flippers[i] = run.column(fmt::format("cmd_flipper_{}_rad", kFlippers[i]));
+    flippers[i] = run.column(fmt::format("cmd_flipper_{}_rad", runs::kFlippers[i]));
     if (replay.start->flipper_rad) command.flipper[i].value = (*replay.start->flipper_rad)[i];
   }
   for (std::size_t row = 0; row < time.size(); ++row) {

@@ -40,7 +40,7 @@ double metres_per_count(const physics::TrackDriveDescription& drive) {
 
 std::vector<std::string> flipper_names(std::string_view prefix, std::string_view suffix) {
   std::vector<std::string> names;
-  for (const std::string_view flipper : {"fl", "fr", "rl", "rr"})
+  for (const std::string_view flipper : runs::kFlippers)
     names.push_back(std::string(prefix).append(flipper).append(suffix));
   return names;
 }

@@ -8,8 +8,9 @@ set -euo pipefail
 
 packages=(
   cmake g++ ninja-build pkg-config
-  libassimp-dev libboost-dev libboost-system-dev libbullet-dev libcairo2-dev libcli11-dev libeigen3-dev libexpat1-dev libfmt-dev
-  libpng-dev libsdformat-dev libspdlog-dev libtomlplusplus-dev nettle-dev nlohmann-json3-dev
+  libassimp-dev libboost-dev libboost-system-dev libbullet-dev libcairo2-dev libcli11-dev libeigen3-dev libembree-dev libexpat1-dev
+  libfmt-dev libjs-three libncurses-dev libpng-dev libsdformat-dev libspdlog-dev libtomlplusplus-dev libturbojpeg0-dev nettle-dev
+  nlohmann-json3-dev
 )
 mode=${1:-all}
 case $mode in
@@ -17,7 +18,7 @@ case $mode in
   all | bench)
     packages+=(
       # tests
-      abigail-tools binutils catch2 clang iproute2 libclang-rt-14-dev llvm
+      abigail-tools binutils catch2 chromium-headless-shell clang iproute2 libclang-rt-14-dev llvm
       # the CAN tests
       busybox-static can-utils cpio kmod qemu-system-x86 xz-utils
       # a diagnosis by several processes

@@ -19,8 +19,8 @@
 #include <system_error>
 #include <thread>
 
+#include "description/data_files.hpp"
 #include "gap/challenge/confinement.hpp"
-#include "protocol/data_files.hpp"
 
 namespace kenaf::gap {
 namespace {

@@ -10,7 +10,6 @@ namespace kenaf::gap {
 
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFarthest_m = 1e6, kLargest_rad = 1e6, kLatest_s = 1e9;
 
 enum class Kind { length, angle };
@@ -30,11 +29,11 @@ void fill(std::vector<PoseFrame>& frames, double PoseFrame::*member, std::span<c
   for (PoseFrame& frame : frames) {
     while (next < measured.size() && t_s[measured[next]] < frame.t_s) ++next;
     if (next == measured.size()) {
-      frame.*member = kUnknown;
+      frame.*member = std::numeric_limits<double>::quiet_NaN();
     } else if (const std::size_t row = measured[next]; t_s[row] == frame.t_s) {
       frame.*member = column[row];
     } else if (next == 0) {
-      frame.*member = kUnknown;
+      frame.*member = std::numeric_limits<double>::quiet_NaN();
     } else {
       const std::size_t earlier = measured[next - 1];
       const double share = (frame.t_s - t_s[earlier]) / (t_s[row] - t_s[earlier]);
@@ -96,7 +95,9 @@ PoseFrames pose_frames(const runs::Run& run) {
   PoseFrames result;
   for (std::size_t row = 0; row < t_s.size(); ++row) {
     if (std::isnan(x_m[row]) || std::isnan(z_m[row])) continue;
-    result.frames.push_back({t_s[row], x_m[row], z_m[row], kUnknown, kUnknown, kUnknown, kUnknown});
+    result.frames.push_back({t_s[row], x_m[row], z_m[row], std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::quiet_NaN()});
   }
   if (result.frames.size() < 2) return {{}, "fewer than two rows have both x_m and z_m"};
   fill(result.frames, &PoseFrame::y_m, t_s, run.column("y_m"), Kind::length);
@@ -109,7 +110,13 @@ PoseFrames pose_frames(const runs::Run& run) {
 PoseFrame pose_at(const std::vector<PoseFrame>& frames, double t_s) {
   const auto after = std::ranges::lower_bound(frames, t_s, {}, &PoseFrame::t_s);
   if (after == frames.end() || (after == frames.begin() && after->t_s != t_s)) {
-    return {t_s, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
+    return {t_s,
+            std::numeric_limits<double>::quiet_NaN(),
+            std::numeric_limits<double>::quiet_NaN(),
+            std::numeric_limits<double>::quiet_NaN(),
+            std::numeric_limits<double>::quiet_NaN(),
+            std::numeric_limits<double>::quiet_NaN(),
+            std::numeric_limits<double>::quiet_NaN()};
   }
   if (after->t_s == t_s) return *after;
   const PoseFrame &a = *(after - 1), &b = *after;

@@ -44,7 +44,7 @@ class Worlds {
       std::vector<std::string> unsupported;  // of no interest for a picture
       try {
         entry->second = physics::load_world(name, unsupported);
-      } catch (const physics::DescriptionError& error) {
+      } catch (const DescriptionError& error) {
         notes.push_back(fmt::format("The ground is not drawn: {}", error.what()));
       }
     }

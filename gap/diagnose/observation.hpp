@@ -35,7 +35,7 @@ struct Observations {
 // Reads a dataset, but no more than `most_runs` of it, drawn evenly from all manoeuvres: more runs would take longer and
 // tell little more. `robot` and `world` are used instead of the dataset's own where they are not empty. A run that is too
 // short, or whose simulation went wrong, is left out with a warning. Throws runs::RunFileError or
-// physics::DescriptionError with file, line and column where one cannot be read or cannot be what it says it is
+// DescriptionError with file, line and column where one cannot be read or cannot be what it says it is
 // (gap/plausibility.hpp), or none is left.
 Observations observe(const std::filesystem::path& folder, const std::string& robot, const std::string& world,
                      std::size_t most_runs);

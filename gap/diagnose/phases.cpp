@@ -1,5 +1,7 @@
 #include "gap/diagnose/phases.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,8 +11,8 @@ namespace {
 
 using Column = std::span<const double>;
 
-constexpr double kStep_s = 0.05, kShortest_s = 0.1;
-constexpr double kMoves_mps = 0.01;         // of a belt
+constexpr double kStep_s = 0.05, kShortestPhase_s = 0.1;
+constexpr double kBeltMoves_mps = 0.01;
 constexpr double kTurns = 0.3;              // of the larger belt's speed, by which the belts differ
 constexpr double kSettling_s = 0.3;         // after a command has changed
 constexpr double kFlipperMoves_rad = 0.02;  // from its command
@@ -70,13 +72,13 @@ Signals signals_of(const Observation& observation, std::size_t count) {
       obeyed(s.left_mps[0], "track_left_mps") && obeyed(s.right_mps[0], "track_right_mps") ? count : 0;
   for (std::size_t i = 0; i < count; ++i) {
     if (i > 0 &&
-        std::abs(s.left_mps[i] - s.left_mps[i - 1]) + std::abs(s.right_mps[i] - s.right_mps[i - 1]) > kMoves_mps)
+        std::abs(s.left_mps[i] - s.left_mps[i - 1]) + std::abs(s.right_mps[i] - s.right_mps[i - 1]) > kBeltMoves_mps)
       last_change = i;
     s.changed[i] = last_change < count && static_cast<double>(i - last_change) * kStep_s <= kSettling_s;
   }
-  for (const char* flipper : {"fl", "fr", "rl", "rr"}) {
-    const auto asked = grid(std::string("cmd_flipper_") + flipper + "_rad");
-    const auto is = grid(std::string("flipper_") + flipper + "_rad");
+  for (const std::string_view flipper : runs::kFlippers) {
+    const auto asked = grid(fmt::format("cmd_flipper_{}_rad", flipper));
+    const auto is = grid(fmt::format("flipper_{}_rad", flipper));
     for (std::size_t i = 0; i < count; ++i)
       if (std::abs(asked[i] - is[i]) > kFlipperMoves_rad) s.flippers[i] = true;
   }
@@ -91,7 +93,7 @@ std::string_view phase_at(const Signals& s, std::size_t i, double level_rad, dou
   if (std::abs(pitch_rate) > kTips_radps) return "tip";
   if (upset_s < kLands_s) return "land";
   if (std::abs(pitch) > kInclined_rad) return pitch < 0 ? "climb" : "descend";
-  if (faster < kMoves_mps) return s.flippers[i] ? "flippers" : s.changed[i] ? "slow down" : "stand";
+  if (faster < kBeltMoves_mps) return s.flippers[i] ? "flippers" : s.changed[i] ? "slow down" : "stand";
   if (s.changed[i]) return "speed change";
   if (std::abs(left - right) > kTurns * faster) return "turn";
   return "cruise";
@@ -127,9 +129,9 @@ std::vector<PhaseSpan> phases_of(const Observation& observation) {
   // what is too short belongs to the phase before it, or as the first one to that after it
   std::vector<PhaseSpan> result;
   for (const PhaseSpan& span : spans) {
-    if (!result.empty() && (span.to_s - span.from_s < kShortest_s || span.name == result.back().name))
+    if (!result.empty() && (span.to_s - span.from_s < kShortestPhase_s || span.name == result.back().name))
       result.back().to_s = std::max(result.back().to_s, span.to_s);
-    else if (result.size() == 1 && result.back().to_s - result.back().from_s < kShortest_s)
+    else if (result.size() == 1 && result.back().to_s - result.back().from_s < kShortestPhase_s)
       result.back() = {span.name, result.back().from_s, span.to_s, 0, 0};
     else if (span.to_s > span.from_s)
       result.push_back(span);

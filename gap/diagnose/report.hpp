@@ -15,6 +15,8 @@ std::string_view verdict_name(Verdict verdict);
 // The stage at which the gap comes in: that of the named effect; otherwise the first passage, on the way from command
 // to sensor, that has a gap of its own.
 std::string_view gap_stage(const Diagnosis& diagnosis);
+// On what gap and shrink were measured: "runs held out"; of a single run, "the run fitted to, as there is no other".
+std::string_view measured_on(const Diagnosis& diagnosis);
 // "pitch_inertia", or "pitch_inertia:scale" of an effect with several parameters.
 std::string name_of(const EffectCurve& curve);
 

@@ -1,15 +1,15 @@
 #include <fmt/format.h>
 
-#include <sstream>
 #include <toml++/toml.h>
+#include <sstream>
 
+#include "description/description_file.hpp"
 #include "gap/diagnose/report.hpp"
-#include "physics/description_file.hpp"
 
 namespace kenaf::gap {
 
 std::string corrected_robot_toml(const Diagnosis& d, const std::string& robot_name_or_path) {
-  std::string text = physics::read_description_file("robot", robot_name_or_path, ".toml").text;
+  std::string text = read_description_file("robot", robot_name_or_path, ".toml").text;
   if (!text.ends_with('\n')) text += '\n';
   toml::table root = toml::parse(text);
   bool replaces = false;

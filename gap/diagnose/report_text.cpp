@@ -52,6 +52,10 @@ std::string_view verdict_name(Verdict verdict) {
   return kNames[static_cast<std::size_t>(verdict)];
 }
 
+std::string_view measured_on(const Diagnosis& d) {
+  return d.observations.runs.size() > 1 ? "runs held out" : "the run fitted to, as there is no other";
+}
+
 std::string name_of(const EffectCurve& curve) {
   return curve.effect->parameters.size() == 1 ? std::string(curve.effect->name)
                                               : fmt::format("{}:{}", curve.effect->name, curve.parameter->name);
@@ -101,9 +105,7 @@ std::string diagnosis_text(const Diagnosis& d) {
     fmt::format_to(out, "  {}{}\n", value_text(d, e), e.at_bound ? "  AT THE END OF ITS RANGE" : "");
   for (const std::string& doubt : doubts_in_words(d.decision)) fmt::format_to(out, "  no name: {}\n", doubt);
   if (d.interrupted.empty()) {
-    fmt::format_to(out, "\nGap on {}, in noise floors: {:.2f} before",
-                   d.observations.runs.size() > 1 ? "runs held out" : "the run fitted to, as there is no other",
-                   d.gap.before);
+    fmt::format_to(out, "\nGap on {}, in noise floors: {:.2f} before", measured_on(d), d.gap.before);
     if (!d.best.empty())
       fmt::format_to(out, ", {:.2f} after; {:.0f} % of what is beyond {:.2f} is gone ({:.0f} to {:.0f} %)", d.gap.after,
                      d.gap.shrink.value * 100, d.gap.floor, d.gap.shrink.from * 100, d.gap.shrink.to * 100);
@@ -128,7 +130,7 @@ std::string diagnosis_text(const Diagnosis& d) {
     }
   }
   if (d.decision.verdict != Verdict::none && !d.ranking.empty()) {
-    fmt::format_to(out, "\nEach effect alone, by what it takes off runs held out:\n");
+    fmt::format_to(out, "\nEach effect alone, by what it takes off {}:\n", measured_on(d));
     for (std::size_t i = 0; i < std::min(kRanking, d.ranking.size()); ++i)
       fmt::format_to(out, "  {:>4.0f} %  {}\n", d.ranking[i].heldout_shrink.value * 100, value_text(d, d.ranking[i]));
   }

@@ -15,9 +15,6 @@ constexpr double kLeastMove_m = 0.1, kLeastTurn_rad = 0.2;
 constexpr double kDegreesInARadian = 180 / std::numbers::pi;
 constexpr double kMostSpeed_mps = 5;  // of a robot that is not known
 
-constexpr std::array<const char*, 2> kSides = {"left", "right"};
-constexpr std::array<const char*, 4> kFlippers = {"fl", "fr", "rl", "rr"};
-
 std::string length_unit(double factor) {
   return factor > 300 ? "millimetres" : "centimetres";
 }
@@ -141,8 +138,8 @@ void RunChecks::check_scales() {
   if (crossed("left", "right") && crossed("right", "left") && !found("track_left_mps"))
     add(Severity::refuse, "track_left_mps",
         "follows cmd_track_right_mps, and track_right_mps the left one: left and right are exchanged");
-  for (const std::string flipper : kFlippers) {
-    const std::string angle = "flipper_" + flipper + "_rad", command = "cmd_" + angle;
+  for (const std::string_view flipper : runs::kFlippers) {
+    const std::string angle = fmt::format("flipper_{}_rad", flipper), command = "cmd_" + angle;
     const auto relation = relate_values(command, angle);
     check_same_angle(command, angle, relation, kLeastTurn_rad);
     // A servo too weak for its load lets the arm go the other way too, but not just as far.
@@ -214,14 +211,15 @@ void RunChecks::check_ranges() {
     refuse_above(name, 60, "rad/s at most, ten turns a second: it looks like degrees a second");
   refuse_above("battery_v", 1000, "V: it looks like millivolts");
   for (const std::string side : kSides) refuse_above("track_" + side + "_a", 1000, "A: it looks like milliamperes");
-  for (const std::string flipper : kFlippers)
-    refuse_above("flipper_" + flipper + "_a", 1000, "A: it looks like milliamperes");
+  for (const std::string_view flipper : runs::kFlippers)
+    refuse_above(fmt::format("flipper_{}_a", flipper), 1000, "A: it looks like milliamperes");
 
   if (robot_ != nullptr && robot_->has_flippers()) {
     const physics::FlipperDescription& limits = robot_->flipper.front();
     const double limit = std::max(std::abs(limits.min_angle_rad), std::abs(limits.max_angle_rad));
-    for (const std::string flipper : kFlippers)
-      for (const std::string& name : {"cmd_flipper_" + flipper + "_rad", "flipper_" + flipper + "_rad"}) {
+    for (const std::string_view flipper : runs::kFlippers)
+      for (const std::string& name :
+           {fmt::format("cmd_flipper_{}_rad", flipper), fmt::format("flipper_{}_rad", flipper)}) {
         refuse_above(name, 3 * limit, fmt::format("where {:.3g} rad is its limit: it looks like degrees", limit));
         constexpr double kLoose_rad = 0.5;  // of an encoder with an offset, a stop that gives way
         if (const double most = largest(name); most > limit + kLoose_rad && !found(name))

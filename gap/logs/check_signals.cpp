@@ -11,9 +11,6 @@ namespace {
 constexpr double kMoves_m = 0.1, kCarries_m = 0.3, kSeen_m = 0.2, kTurns_rad = 0.3;
 constexpr std::size_t kFewestValues = 10;
 
-constexpr std::array<const char*, 2> kSides = {"left", "right"};
-constexpr std::array<const char*, 4> kFlippers = {"fl", "fr", "rl", "rr"};
-
 // The same number in all rows that have one, to the last bit: no sensor that works does that for long.
 bool constant(std::span<const double> column) {
   std::size_t count = 0;
@@ -55,8 +52,9 @@ void RunChecks::check_commands() {
     return std::ranges::any_of(column(name), [](double value) { return std::abs(value) > 0; });
   };
   if (ever("cmd_track_left_mps") || ever("cmd_track_right_mps")) return;
-  const bool flippers_commanded = std::ranges::any_of(
-      kFlippers, [this](const std::string& flipper) { return range(column("cmd_flipper_" + flipper + "_rad")) > 0; });
+  const bool flippers_commanded = std::ranges::any_of(runs::kFlippers, [this](std::string_view flipper) {
+    return range(column(fmt::format("cmd_flipper_{}_rad", flipper))) > 0;
+  });
   const double travelled_m = std::max(total_change(belts(1, 0)), total_change(belts(0, 1)));
   if (travelled_m > kCarries_m)
     add(Severity::refuse, "cmd_track_left_mps",
@@ -91,8 +89,8 @@ void RunChecks::check_constants() {
       add(Severity::warn, name,
           "never changes while the track is driven; leave the cells empty where it is not measured");
   }
-  for (const std::string flipper : kFlippers) {
-    const std::string angle = "flipper_" + flipper + "_rad";
+  for (const std::string_view flipper : runs::kFlippers) {
+    const std::string angle = fmt::format("flipper_{}_rad", flipper);
     if (const double commanded = range(column("cmd_" + angle)); commanded > kTurns_rad && constant(column(angle)))
       add(Severity::warn, angle,
           fmt::format("never changes, while {:.3g} rad are commanded: its encoder is dead, or the flipper is stuck",

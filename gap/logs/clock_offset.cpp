@@ -12,7 +12,6 @@ namespace kenaf::gap {
 namespace {
 
 // All of these are chosen.
-constexpr double kShortestWindow_s = 0.2, kWindowSamples = 3, kGridPerWindow = 4;
 constexpr Eigen::Index kMostGridPoints = 8192;  // of either side; a longer log gets a coarser grid
 constexpr double kShortestOverlap_s = 1;
 constexpr double kTellsSomething = 0.5;         // r squared from which on a quantity counts
@@ -73,9 +72,9 @@ Grid grid_for(const std::vector<CourseSeenTwice>& courses) {
   }
   Grid grid{};
   const double longest_s = std::max(robot.length_s(), capture.length_s());
-  grid.window_s = std::max({kShortestWindow_s, kWindowSamples * longest_step_s,
-                            kGridPerWindow * longest_s / static_cast<double>(kMostGridPoints)});
-  grid.step_s = grid.window_s / kGridPerWindow;
+  grid.window_s =
+      std::max(comparing_window_s(longest_step_s), kStepsPerWindow * longest_s / static_cast<double>(kMostGridPoints));
+  grid.step_s = grid.window_s / kStepsPerWindow;
   grid.robot_first_s = robot.first_s;
   grid.capture_first_s = capture.first_s;
   grid.robot_count = static_cast<Index>(robot.length_s() / grid.step_s) + 1;

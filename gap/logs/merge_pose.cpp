@@ -12,8 +12,7 @@
 namespace kenaf::gap {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kGapSteps = 2.5;  // chosen: one captured pose may be missing
+constexpr double kLongestGapSteps = 2.5;  // chosen: one captured pose may be missing
 constexpr std::array<const char*, 6> kPoseColumns = {"x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad"};
 
 double median_step_of(const MotionCapture& capture) {
@@ -61,15 +60,11 @@ void put_start_at_origin(std::vector<std::optional<CapturedPose>>& poses, double
   }
 }
 
-bool has_values(std::span<const double> column) {
-  return std::ranges::any_of(column, [](double value) { return !std::isnan(value); });
-}
-
 }  // namespace
 
 MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const MergeOptions& options) {
   MergedRun merged{run, {}, 0, 0, {}};
-  merged.max_gap_s = options.max_gap_s.value_or(kGapSteps * median_step_of(capture));
+  merged.max_gap_s = options.max_gap_s.value_or(kLongestGapSteps * median_step_of(capture));
   merged.offset = options.offset_s ? ClockOffset{.offset_s = *options.offset_s, .quantities = {}}
                                    : estimate_clock_offset(courses_seen_twice(run, capture));
 
@@ -103,7 +98,7 @@ MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const M
     }
     if (found == out.columns.end()) {
       out.columns.push_back(name);
-      out.values.emplace_back(t_s.size(), kUnknown);
+      out.values.emplace_back(t_s.size(), std::numeric_limits<double>::quiet_NaN());
       found = out.columns.end() - 1;
     }
     std::vector<double>& values = out.values[static_cast<std::size_t>(found - out.columns.begin())];

@@ -6,19 +6,13 @@
 namespace kenaf::gap {
 namespace {
 
-// Chosen, as for the clocks' offset.
-constexpr double kShortestWindow_s = 0.2, kWindowSamples = 3, kGridPerWindow = 4, kGapSteps = 5, kLeastGap_s = 0.25,
-                 kUpright_rad = 1;
-constexpr double kFewestPoints = 15;
-
-double longest_gap_s(std::span<const double> t_s, std::span<const double> values) {
-  return std::max(kLeastGap_s, kGapSteps * median_step(t_s, values));
-}
+// Both chosen.
+constexpr double kUpright_rad = 1, kFewestPoints = 15;
 
 }  // namespace
 
 bool RunChecks::has(const std::string& name) const {
-  return std::ranges::any_of(column(name), [](double value) { return !std::isnan(value); });
+  return has_values(column(name));
 }
 
 bool RunChecks::found(const std::string& name) const {
@@ -27,7 +21,7 @@ bool RunChecks::found(const std::string& name) const {
 
 Course RunChecks::adding(const std::string& name) const {
   const auto t_s = column("t_s"), values = column(name);
-  return course_of(t_s, values, longest_gap_s(t_s, values));
+  return course_of(t_s, values, longest_gap_s(median_step(t_s, values)));
 }
 
 std::vector<bool> RunChecks::upright() const {
@@ -48,7 +42,7 @@ Course RunChecks::upright_angle(const std::string& name) const {
   std::vector<double> kept(values.begin(), values.end());
   for (std::size_t i = 0; i < kept.size(); ++i)
     if (!stands[i]) kept[i] = std::numeric_limits<double>::quiet_NaN();
-  Course course = course_of(t_s, kept, longest_gap_s(t_s, values));
+  Course course = course_of(t_s, kept, longest_gap_s(median_step(t_s, values)));
   double before = course.value.empty() ? 0 : course.value.front();
   for (std::size_t i = 1; i < course.value.size(); ++i) {
     const double now = course.value[i];
@@ -60,7 +54,7 @@ Course RunChecks::upright_angle(const std::string& name) const {
 
 Course RunChecks::rate(const std::string& name) const {
   const auto t_s = column("t_s"), values = column(name);
-  return course_of_rate(t_s, values, longest_gap_s(t_s, values));
+  return course_of_rate(t_s, values, longest_gap_s(median_step(t_s, values)));
 }
 
 Course RunChecks::forward() const {
@@ -79,7 +73,7 @@ Course RunChecks::forward() const {
     course.value.push_back(sum);
     last = i;
   }
-  course.longest_gap_s = longest_gap_s(course.t_s, course.t_s);
+  course.longest_gap_s = longest_gap_s(median_step(course.t_s, course.t_s));
   return course;
 }
 
@@ -92,7 +86,7 @@ Course RunChecks::belts(double left, double right) const {
     const auto a = column(of_left), b = column(of_right);
     std::vector<double> sum(t_s.size());
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = left * a[i] + right * b[i];
-    const double gap_s = longest_gap_s(t_s, sum);
+    const double gap_s = longest_gap_s(median_step(t_s, sum));
     return of_left.ends_with("_m") ? course_of(t_s, sum, gap_s) : course_of_rate(t_s, sum, gap_s);
   }
   return {};
@@ -101,8 +95,7 @@ Course RunChecks::belts(double left, double right) const {
 std::optional<Relation> RunChecks::relate(const Course& first, const Course& second) const {
   if (first.t_s.size() < 2 || second.t_s.size() < 2) return std::nullopt;
   const double step_of_slower = std::max(median_step(first.t_s, first.t_s), median_step(second.t_s, second.t_s));
-  const double window_s = std::max(kShortestWindow_s, kWindowSamples * step_of_slower),
-               step_s = window_s / kGridPerWindow;
+  const double window_s = comparing_window_s(step_of_slower), step_s = window_s / kStepsPerWindow;
   double aa = 0, bb = 0, ab = 0, sum_a = 0, sum_b = 0, count = 0;
   // At times that have a sample: however far a clock has jumped, there are no more of them.
   double next_s = first.t_s.front();

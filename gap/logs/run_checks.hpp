@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -12,6 +13,8 @@
 #include "gap/plausibility.hpp"
 
 namespace kenaf::gap {
+
+inline constexpr std::array<const char*, 2> kSides = {"left", "right"};  // as in the columns of tracks
 
 // How two quantities go together that should be the same: their mean rates over windows of 0.2 s or more.
 struct Relation {

@@ -13,8 +13,6 @@
 namespace kenaf::gap {
 namespace {
 
-// Chosen: a gap over which turns and travel are carried on as if nothing had happened.
-constexpr double kGapSteps = 5, kLeastGap_s = 0.25;
 // What robots do: a gyro, a posture sensor or another pose agrees with motion capture, belts slip, and what track
 // speeds differ by turns a robot by far less than they would without slip. Gauges from 0.1 to 2 m.
 constexpr double kLeastGain = 0.8, kMostGain = 1.25;
@@ -29,14 +27,6 @@ struct BodyCourses {
   std::array<Course, 3> turn;
   Course forward;
 };
-
-bool has_values(std::span<const double> column) {
-  return std::ranges::any_of(column, [](double value) { return !std::isnan(value); });
-}
-
-double longest_gap_s(double median_s) {
-  return std::max(kLeastGap_s, kGapSteps * median_s);
-}
 
 struct Poses {
   std::vector<double> t_s;

@@ -12,7 +12,7 @@ namespace kenaf::gap::plot {
 
 namespace {
 
-constexpr double kTop_px = 46, kMostCell_px = 40, kLeastCell_px = 17, kCellHeight_px = 21;
+constexpr double kMapTop_px = 46, kMostCell_px = 40, kLeastCell_px = 17, kCellHeight_px = 21;
 constexpr double kSlant_deg = 55;  // of the columns' names
 
 double widest_px(const std::vector<std::string>& names) {
@@ -25,7 +25,7 @@ double widest_px(const std::vector<std::string>& names) {
 
 std::string to_svg(const HeatMap& map) {
   if (map.rows.empty() || map.columns.empty())
-    return svg_begin(map.title, map.width_px, kTop_px) + text_at(0, kTop_px - 8, "nothing to show") + "</svg>\n";
+    return svg_begin(map.title, map.width_px, kMapTop_px) + text_at(0, kMapTop_px - 8, "nothing to show") + "</svg>\n";
   const double slant = kSlant_deg * 3.141592653589793 / 180;
   const double left_px = widest_px(map.rows) + 12, names_px = widest_px(map.columns);
   const double head_px = names_px * std::sin(slant) + 14, right_px = names_px * std::cos(slant) + 10;
@@ -34,10 +34,10 @@ std::string to_svg(const HeatMap& map) {
   const double width_px = std::max(left_px + columns * cell_px + right_px,
                                    std::max(text_width_px(map.legend), 1.1 * text_width_px(map.title)) + 8);
   std::string svg =
-      svg_begin(map.title, width_px, kTop_px + head_px + kCellHeight_px * static_cast<double>(map.rows.size()) + 6);
+      svg_begin(map.title, width_px, kMapTop_px + head_px + kCellHeight_px * static_cast<double>(map.rows.size()) + 6);
   const auto out = std::back_inserter(svg);
   svg += text_at(0, 36, map.legend);
-  fmt::format_to(out, "\n<g transform=\"translate({:.1f} {:.1f})\">\n", left_px, kTop_px + head_px);
+  fmt::format_to(out, "\n<g transform=\"translate({:.1f} {:.1f})\">\n", left_px, kMapTop_px + head_px);
   for (std::size_t c = 0; c < map.columns.size(); ++c)
     fmt::format_to(out, "<g transform=\"translate({:.1f} -6) rotate(-{})\">{}</g>\n",
                    (static_cast<double>(c) + 0.6) * cell_px, kSlant_deg, text_at(0, 0, map.columns[c], "dark"));

@@ -13,7 +13,7 @@ namespace kenaf::gap::plot {
 
 namespace {
 
-constexpr double kTitle_px = 26, kLegend_px = 22, kGuide_px = 16, kRow_px = 24, kBottom_px = 44;
+constexpr double kTitle_px = 26, kLegend_px = 22, kGuide_px = 16, kRow_px = 24, kRowsBottom_px = 44;
 constexpr double kRadius_px = 5, kBarHalf_px = 7, kWhiskerEnd_px = 4;
 constexpr double kPixelsPerTick = 70;
 
@@ -120,7 +120,7 @@ std::string to_svg(const RowChart& chart) {
   if (chart.rows.empty())
     return svg_begin(chart.title, chart.width_px, kTitle_px + 24) + text_at(0, kTitle_px + 12, "nothing to show") +
            "</svg>\n";
-  std::string svg = svg_begin(chart.title, chart.width_px, top_px + rows_px + kBottom_px) + legend_of(chart);
+  std::string svg = svg_begin(chart.title, chart.width_px, top_px + rows_px + kRowsBottom_px) + legend_of(chart);
   const auto out = std::back_inserter(svg);
   fmt::format_to(out, "\n<g transform=\"translate({:.1f} {:.1f})\">\n", chart.label_px, top_px);
   const Ticks ticks = ticks_of(scale);

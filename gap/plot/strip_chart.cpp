@@ -12,7 +12,7 @@ namespace kenaf::gap::plot {
 
 namespace {
 
-constexpr double kTop_px = 54, kStrip_px = 38, kGap_px = 8, kBottom_px = 42, kRight_px = 14;
+constexpr double kStripsTop_px = 54, kStrip_px = 38, kGap_px = 8, kStripsBottom_px = 42, kStripsRight_px = 14;
 constexpr double kSmallLetter = 0.85;  // of the width of a letter of full size
 constexpr int kScaleSteps = 6;
 constexpr double kScaleStep_px = 26;
@@ -49,13 +49,14 @@ std::string to_svg(const StripChart& chart) {
   for (const Strip& strip : chart.strips)
     for (const StripSpan& span : strip.spans) range = {std::min(range.low, span.from), std::max(range.high, span.to)};
   if (range.span() <= 0)
-    return svg_begin(chart.title, chart.width_px, kTop_px) + text_at(0, 38, "nothing to show") + "</svg>\n";
-  const double width_px = chart.width_px - chart.label_px - kRight_px;
+    return svg_begin(chart.title, chart.width_px, kStripsTop_px) + text_at(0, 38, "nothing to show") + "</svg>\n";
+  const double width_px = chart.width_px - chart.label_px - kStripsRight_px;
   const double height_px = (kStrip_px + kGap_px) * static_cast<double>(chart.strips.size());
   const auto at = [&](double value) { return (value - range.low) / range.span() * width_px; };
-  std::string svg = svg_begin(chart.title, chart.width_px, kTop_px + height_px + kBottom_px) + scale_of(chart);
+  std::string svg =
+      svg_begin(chart.title, chart.width_px, kStripsTop_px + height_px + kStripsBottom_px) + scale_of(chart);
   const auto out = std::back_inserter(svg);
-  fmt::format_to(out, "<g transform=\"translate({:.1f} {:.1f})\">\n", chart.label_px, kTop_px);
+  fmt::format_to(out, "<g transform=\"translate({:.1f} {:.1f})\">\n", chart.label_px, kStripsTop_px);
   const Ticks ticks = round_ticks(range, 14);
   for (std::size_t i = 0; i < ticks.at.size(); ++i) {
     fmt::format_to(out, "<path class=\"grid\" d=\"M{:.1f} 0v{:.1f}\"/>", at(ticks.at[i]), height_px);

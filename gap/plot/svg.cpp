@@ -10,9 +10,9 @@ namespace kenaf::gap::plot {
 
 namespace {
 
-constexpr double kTitleBase_px = 16;
-constexpr double kLetter_px = 7.2;   // about the mean width of a letter at the font size of 13
-constexpr double kMostShade = 0.62;  // of opacity: text in ink on it keeps a contrast of 4.5, on light and on dark
+constexpr double kSvgTitleBase_px = 16;
+constexpr double kMeanLetter_px = 7.2;  // about the mean width of a letter at the font size of 13
+constexpr double kMostShade = 0.62;     // of opacity: text in ink on it keeps a contrast of 4.5, on light and on dark
 
 }  // namespace
 
@@ -20,7 +20,7 @@ std::string svg_begin(std::string_view title, double width_px, double height_px,
   return fmt::format(
       "<svg class=\"chart\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{0}\" width=\"{1:.0f}\" "
       "height=\"{2:.0f}\" viewBox=\"0 0 {1:.0f} {2:.0f}\">\n<text class=\"title\" x=\"{3:.0f}\" y=\"{4}\">{0}</text>\n",
-      escaped(title), width_px, height_px, title_x_px, kTitleBase_px);
+      escaped(title), width_px, height_px, title_x_px, kSvgTitleBase_px);
 }
 
 std::string text_at(double x_px, double y_px, std::string_view text, std::string_view classes) {
@@ -30,7 +30,7 @@ std::string text_at(double x_px, double y_px, std::string_view text, std::string
 }
 
 double text_width_px(std::string_view text) {
-  return kLetter_px * static_cast<double>(text.size());
+  return kMeanLetter_px * static_cast<double>(text.size());
 }
 
 std::string shaded_box(double x_px, double y_px, double width_px, double height_px, double strength,

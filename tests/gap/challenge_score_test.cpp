@@ -87,7 +87,7 @@ TEST_CASE("A pair is found where each of it has a name or a set of its own") {
   CHECK_FALSE(judge(plan, told("unknown")).right);
 }
 
-TEST_CASE("What the catalogue does not have is unknown; none is missed, a name is wrong") {
+TEST_CASE("What the catalogue does not have is unknown, none is missed, a name is wrong") {
   for (const CasePlan& plan : {plan_of(Stratum::withheld, {kMass}), plan_of(Stratum::foreign)}) {
     CHECK(judge(plan, told("unknown")).right);
     CHECK_FALSE(judge(plan, told("none")).right);
@@ -98,7 +98,7 @@ TEST_CASE("What the catalogue does not have is unknown; none is missed, a name i
   }
 }
 
-TEST_CASE("A name is wrong where it is not hidden, beside right ones too; a set is no name") {
+TEST_CASE("A name is wrong where it is not hidden, beside right ones too, a set is no name") {
   const CasePlan single = plan_of(Stratum::single, {kMass});
   CHECK_FALSE(judge(single, told("named", {"mass"})).names_wrong);
   CHECK(judge(single, told("named", {"mass", "com_up"})).names_wrong);
@@ -316,7 +316,7 @@ TEST_CASE("A key is read back as it was written") {
                     Catch::Contains("mess:scale"));
 }
 
-TEST_CASE("A finished challenge is scored; a key or data that were changed are refused") {
+TEST_CASE("A finished challenge is scored, a key or data that were changed are refused") {
   const TemporaryFolder folder;
   write_challenge(folder);
   const test::Outcome outcome = test::kenaf_gap(folder, "score .");

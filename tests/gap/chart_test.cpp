@@ -79,7 +79,7 @@ TEST_CASE("Words are escaped, and colours come by role") {
   CHECK_THAT(std::string(style_sheet()), Catch::Contains(".line.sim") && Catch::Contains("prefers-color-scheme: dark"));
 }
 
-TEST_CASE("A break parts a line; without a finite point the chart says so") {
+TEST_CASE("A break parts a line, without a finite point the chart says so") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Chart chart;
   chart.lines = {{{{0, 0}, {1, 1}, {nan, 0}, {2, 0}, {3, nan}}, Ink::real, Stroke::solid, ""}};

@@ -48,7 +48,7 @@ TEST_CASE("Runs become a dataset that reads back, each with its manoeuvre and th
   CHECK(kenaf_gap(folder, "check data").status == 0);
 }
 
-TEST_CASE("Runs are added at the end; what somebody wrote into dataset.toml stays, and no file is replaced") {
+TEST_CASE("Runs are added at the end, what somebody wrote into dataset.toml stays, and no file is replaced") {
   const TemporaryFolder folder;
   record(folder, "a.csv");
   REQUIRE(kenaf_gap(folder, "dataset a.csv --manoeuvre straight --out data").status == 0);

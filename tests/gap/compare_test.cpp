@@ -106,7 +106,7 @@ TEST_CASE("The page needs nothing beside itself: four figures a run, the ground 
                        !Catch::Contains("src=") && !Catch::Contains("nan"));
 }
 
-TEST_CASE("Paths that leave the vertical plane are shown from above too; less than 0.1 m beside a line is not") {
+TEST_CASE("Paths that leave the vertical plane are shown from above too, less than 0.1 m beside a line is not") {
   const TemporaryFolder folder;
   make_dataset(folder / "real",
                {{"curve", 0, 0, 0, TestRun().columns, 0.5}, {"drive", 0, 0, 0, TestRun().columns, 0.2}});
@@ -143,7 +143,7 @@ TEST_CASE("Angles that were not measured are null and take nothing else away") {
   CHECK_THAT(read_file(folder / "out/compare.html"), Catch::Contains("not measured"));
 }
 
-TEST_CASE("A run without a place is left out in words, with its counterpart; where none is left that is an error") {
+TEST_CASE("A run without a place is left out in words, with its counterpart, where none is left that is an error") {
   const TemporaryFolder folder;
   const TestRun blind{"blind", 0, 0, 0, "t_s,spare_a,y_m,spare_b,roll_rad,pitch_rad,yaw_rad"};
   make_dataset(folder / "real", {blind, {"drive"}});

@@ -39,7 +39,7 @@ bool holds(const Decision& decision, std::size_t place, std::size_t curve) {
 
 }  // namespace
 
-TEST_CASE("Pure noise is called none, except as often as the chance of a false alarm says") {
+TEST_CASE("Pure noise is called none, except as often as the chance of a false alarm says", "[long]") {
   const std::vector<Whole> effects = orthogonal_effects();
   const auto alarms_at = [&](double false_alarm) {
     DecisionSettings settings = quick();
@@ -180,7 +180,7 @@ TEST_CASE("Two effects together are both named") {
   }
 }
 
-TEST_CASE("Three effects of a size are all named; with a third one that is a trifle of the gap the rest is not") {
+TEST_CASE("Three effects of a size are all named, with a third one that is a trifle of the gap the rest is not") {
   const std::vector<Whole> effects = orthogonal_effects();
   const Whole two = 0.5 * effects[1] - 0.4 * effects[6];
   const Decision all = world().decide(effects, two + 0.3 * effects[4] + LinearWorld::noise(1), quick());

@@ -56,7 +56,7 @@ TEST_CASE("Time counts from the first row, wherever a log's clock began") {
   CHECK(map.measured()[1] == Approx(1.4));
 }
 
-TEST_CASE("Roll and yaw say nothing while the nose points up; what else is measured then counts") {
+TEST_CASE("Roll and yaw say nothing while the nose points up, what else is measured then counts") {
   const auto rears = [](double t_s) { return t_s > 0.45 && t_s < 0.95 ? -1.5 : -0.2; };
   const FeatureMap map(made_run(1.5, 0.1, {{"pitch_rad", rears}, {"roll_rad", ramp}, {"z_m", ramp}}), 0.5);
   std::vector<std::size_t> roll, others;

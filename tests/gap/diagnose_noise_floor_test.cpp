@@ -73,7 +73,7 @@ TEST_CASE("A twentieth of the bins at which something happens does not count as 
   CHECK(sigma < 0.02 * 0.84 / 0.67 * 1.1);
 }
 
-TEST_CASE("Nothing is known finer than a channel's resolution; what was never measured has no sigma") {
+TEST_CASE("Nothing is known finer than a channel's resolution, what was never measured has no sigma") {
   const NoiseFloor floor = floor_of({VectorXd::Zero(kBins), VectorXd::Zero(kBins)}, {{0, 1}});
   for (std::size_t c = 0; c < diagnosis_channels().size(); ++c)
     CHECK(floor.sigma[c] == (c == long_map().bins()[0].channel ? diagnosis_channels()[c].resolution : 0));
@@ -115,7 +115,7 @@ TEST_CASE("Where one repeat goes on alone nothing is learnt of noise, and nothin
   CHECK(sigma_of_x(floor) == Approx(0.02).epsilon(0.21));
 }
 
-TEST_CASE("A bin with half the samples has sqrt(2) of the noise; roughness adds to it") {
+TEST_CASE("A bin with half the samples has sqrt(2) of the noise, roughness adds to it") {
   const FeatureMap map(test::made_run(1, 0.125, {{"x_m", [](double t_s) { return t_s > 0.8 ? NAN : 0.0; }}}), 0.25);
   REQUIRE(map.bins().back().samples == 1);
   const VectorXd none = VectorXd::Zero(4);
@@ -154,7 +154,7 @@ TEST_CASE("Around another model bins are as rough as the rougher one has them") 
   CHECK(around.sigma_of_bin[0][1] == Approx(5e-4 * std::sqrt(2)));
 }
 
-TEST_CASE("Repeats that differ as the floor says inflate nothing; a second of wander does") {
+TEST_CASE("Repeats that differ as the floor says inflate nothing, a second of wander does") {
   std::mt19937_64 random(6);
   const std::vector<FeatureMap> features(2, long_map());
   const double sigma = 0.02;

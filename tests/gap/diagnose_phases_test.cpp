@@ -68,7 +68,7 @@ TEST_CASE("Stands, speeds up, cruises, touches, climbs, tips over the edge, land
   CHECK(spans[2].y_m == 0.5);
 }
 
-TEST_CASE("One belt faster than the other by a third is a turn; backwards is a cruise") {
+TEST_CASE("One belt faster than the other by a third is a turn, backwards is a cruise") {
   const auto tracks = [](double left, double right) {
     return phases(2, {constant("cmd_track_left_mps", left), constant("cmd_track_right_mps", right)}).back().name;
   };
@@ -115,7 +115,7 @@ TEST_CASE("A fall, and the landing after it") {
   CHECK(spans[3].from_s == Approx(1.8).margin(0.101));
 }
 
-TEST_CASE("Nose down is a descent; what stood on a slope at the start is level to it") {
+TEST_CASE("Nose down is a descent, what stood on a slope at the start is level to it") {
   const auto going = constant("cmd_track_left_mps", 0.3), too = constant("cmd_track_right_mps", 0.3);
   CHECK(phases(3, {going, too, {"pitch_rad", polyline({{1, 0}, {2, 0.3}})}}).back().name == "descend");
   CHECK(phases(3, {going, too, constant("pitch_rad", -0.2)}).back().name == "cruise");

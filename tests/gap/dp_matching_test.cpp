@@ -131,7 +131,7 @@ TEST_CASE("M5: a run 30 mm above the other has a mean error of 30 mm") {
   CHECK(matching.pairs.size() == 40);
 }
 
-TEST_CASE("M6: within a band; a wide one changes nothing, one too narrow is widened") {
+TEST_CASE("M6: within a band, a wide one changes nothing, one too narrow is widened") {
   std::mt19937 random(3);
   const Path a = random_path(random, 60), b = random_path(random, 45);
   const Matching all = match_paths(a, b);

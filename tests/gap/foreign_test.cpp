@@ -60,7 +60,7 @@ TEST_CASE("One flipper that lags by half a second is 1 - 1/e of its way after th
   CHECK(command.track_speed_mps[physics::kRight] == 0.3);
 }
 
-TEST_CASE("A loose contact stops the right track for the last 0.2 s of each 1.3 s; half of it halves the speed then") {
+TEST_CASE("A loose contact stops the right track for the last 0.2 s of each 1.3 s, half of it halves the speed then") {
   rollout::Manoeuvre replay = drive(), half = drive();
   obey_foreign(replay, "right_drive_cuts_out", 1);
   obey_foreign(half, "right_drive_cuts_out", 0.5);

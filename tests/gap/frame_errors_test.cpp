@@ -37,7 +37,7 @@ TEST_CASE("One frame: the norm of (x, z), differences simulated less real, angle
   CHECK(error.time_s == 0.5);
 }
 
-TEST_CASE("Mean, RMS and maximum of sizes; what was not measured is not counted") {
+TEST_CASE("Mean, RMS and maximum of sizes, what was not measured is not counted") {
   Summary summary;
   CHECK(std::isnan(summary.mean()));
   CHECK(std::isnan(summary.max()));
@@ -51,7 +51,7 @@ TEST_CASE("Mean, RMS and maximum of sizes; what was not measured is not counted"
   CHECK(summary.max() == 3);
 }
 
-TEST_CASE("Matching hides a delay; the same time shows it") {
+TEST_CASE("Matching hides a delay, the same time shows it") {
   // 0.1 s late at 0.2 m/s: 20 mm behind while both drive.
   const auto real = drive(20, 20), sim = drive(30, 10);
   const RunErrors errors = compare(real, sim);

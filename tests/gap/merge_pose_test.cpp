@@ -202,7 +202,7 @@ TEST_CASE("Nothing is made up where the capture has a gap, nor before and after 
   }
 }
 
-TEST_CASE("A pose that the run has is kept under another name; what the capture did not measure stays") {
+TEST_CASE("A pose that the run has is kept under another name, what the capture did not measure stays") {
   const Drive drive = winding_drive();
   runs::Run run = robot_log(drive, 1);
   run.columns.insert(run.columns.end(), {"x_m", "y_m", "pitch_rad"});

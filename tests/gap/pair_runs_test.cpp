@@ -28,7 +28,7 @@ TEST_CASE("The k-th repeat belongs to the k-th, whatever stands between them") {
   }
 }
 
-TEST_CASE("The shorter list of repeats decides; the rest is named on its own side") {
+TEST_CASE("The shorter list of repeats decides, the rest is named on its own side") {
   const RunPairs result = pair_runs(dataset({"step", "step", "trench"}), dataset({"step", "trench", "trench", "ramp"}));
   REQUIRE(result.pairs.size() == 2);
   REQUIRE(result.left_out.size() == 3);

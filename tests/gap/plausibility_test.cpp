@@ -80,7 +80,7 @@ const std::vector<std::string> kPlace = {"x_m", "y_m", "z_m"}, kAngles = {"roll_
 
 }  // namespace
 
-TEST_CASE("Nothing is found in runs that are right: driving, turning, climbing, falling, failing, standing") {
+TEST_CASE("Nothing is found in runs that are right: driving, turning, climbing, falling, failing, standing", "[long]") {
   for (const char* name : {"arc", "drop", "flipper-sweep", "speed-steps", "step-100", "step-200-flippers",
                            "straight-fast", "trench-350", "turn-in-place", "tilted-box"}) {
     INFO(name);
@@ -146,7 +146,7 @@ TEST_CASE("Millimetres and centimetres where metres belong are refused by name")
   }
 }
 
-TEST_CASE("Degrees where radians belong are refused by name; g where m/s2 belong") {
+TEST_CASE("Degrees where radians belong are refused by name, g where m/s2 belong") {
   struct Case {
     const runs::Run& run;
     std::vector<std::string> columns;
@@ -188,7 +188,7 @@ TEST_CASE("Signs that are turned are refused, and sides that are exchanged") {
   CHECK_THAT(found(exchanged), Catch::Contains("left and right are exchanged"));
 }
 
-TEST_CASE("Time in milliseconds is told by what adds up; gaps, odd steps and other clocks are warned of") {
+TEST_CASE("Time in milliseconds is told by what adds up, gaps, odd steps and other clocks are warned of") {
   CHECK_THAT(found(scaled(arc(), {"t_s"}, 1000)),
              Catch::Contains("run.csv: t_s: looks like milliseconds: it steps by 10"));
   CHECK_THAT(found(scaled(arc(), {"t_s"}, 1e6)), Catch::Contains("t_s: looks like microseconds"));
@@ -228,7 +228,7 @@ TEST_CASE("Dead encoders, frozen poses and commands that were not recorded") {
              Catch::StartsWith("warning: run.csv:402: x_m: stands still to the last digit for 1.99 s"));
 }
 
-TEST_CASE("A pose that jumps is warned of with its line; one that begins late too") {
+TEST_CASE("A pose that jumps is warned of with its line, one that begins late too") {
   runs::Run jumps = arc();
   column(jumps, "x_m")[500] += 0.8;
   CHECK_THAT(found(jumps),
@@ -242,7 +242,7 @@ TEST_CASE("A pose that jumps is warned of with its line; one that begins late to
   CHECK_THAT(found(late), Catch::StartsWith("warning: run.csv:102: x_m: has no value before 1 s"));
 }
 
-TEST_CASE("A run of a few rows tells nothing; a noise that no column has is warned of") {
+TEST_CASE("A run of a few rows tells nothing, a noise that no column has is warned of") {
   CHECK_THAT(found({{"t_s"}, {{0, 1}}}), Catch::Contains("run.csv: has 2 rows"));
   runs::Dataset dataset;
   dataset.noise = {{"x_m", 0.001}, {"x_mm", 1}};

@@ -78,7 +78,7 @@ TEST_CASE("A heat map has a number in each cell and shades it by strength") {
   CHECK_THAT(to_svg(HeatMap{}), Catch::Contains("nothing to show"));
 }
 
-TEST_CASE("Strips share their axis; a name without room is still found under the pointer") {
+TEST_CASE("Strips share their axis, a name without room is still found under the pointer") {
   StripChart chart;
   chart.label_px = 86;
   chart.width_px = 1100;
@@ -93,7 +93,7 @@ TEST_CASE("Strips share their axis; a name without room is still found under the
   CHECK_THAT(to_svg(StripChart{}), Catch::Contains("nothing to show"));
 }
 
-TEST_CASE("Discs stand at their places with their words; one without a place is left out") {
+TEST_CASE("Discs stand at their places with their words, one without a place is left out") {
   Chart chart;
   chart.lines = {{{{0, 0}, {1, 1}}, Ink::faint, Stroke::solid, ""}};
   chart.discs = {{{0.5, 0.5}, 9, Ink::sim, false, "tip", "before"},

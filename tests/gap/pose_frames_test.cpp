@@ -36,7 +36,7 @@ std::vector<PoseFrame> straight(double x_m, double y_m, double yaw_rad) {
 
 }  // namespace
 
-TEST_CASE("A row with both x and z is a frame; no place is made up between them") {
+TEST_CASE("A row with both x and z is a frame, no place is made up between them") {
   const auto frames = frames_of("t_s,x_m,z_m\n0,0,0.1\n1,1,\n2,,0.3\n3,3,0.4\n");
   REQUIRE(frames.size() == 2);
   CHECK(frames[1].t_s == 3);

@@ -21,7 +21,7 @@ bool has_corner(const std::vector<Vector2d>& outline, double x, double z) {
 
 }  // namespace
 
-TEST_CASE("Level ground fills what lies below 0; the step's box stands where its file says") {
+TEST_CASE("Level ground fills what lies below 0, the step's box stands where its file says") {
   std::vector<std::string> unsupported;
   const WorldSection section = world_section(physics::load_world("step-200", unsupported), 0, kLow, kHigh);
   REQUIRE(section.solids.size() == 2);

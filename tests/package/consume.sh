@@ -35,6 +35,9 @@ cmake -S "$work/project" -B "$work/project/build" -DCMAKE_PREFIX_PATH="$work/pre
 cmake --build "$work/project/build" >"$work/build.log" 2>&1 || { cat "$work/build.log"; fail "the stranger's build"; }
 expect_error "$work/project/build/square_sim" relay
 expect_error "$work/project/build/square_real" can
+# The library finds the robots that were installed with it, from a program that was not.
+sed 's/^interface = .*/interface = "stranger0"/' "$source/robots/kenaf.toml" >"$work/prefix/share/kenaf/robots/stranger.toml"
+KENAF_ROBOT=stranger expect_error "$work/project/build/square_real" "no SocketCAN\|'stranger0'"
 
 pkgconfig=$(dirname "$(find "$work/prefix" -name kenaf-sim.pc)")
 for library in sim real; do
@@ -50,8 +53,9 @@ expect_error "$work/pc_real" can
 (cd "$work" && cpack --config "$build/CPackConfig.cmake" -B "$work" >"$work/cpack.log" 2>&1) || { cat "$work/cpack.log"; fail "cpack"; }
 package=$(ls "$work"/kenaf_*.deb)
 dpkg-deb --contents "$package" >"$work/contents"
-for file in usr/bin/kenaf-world usr/bin/kenaf-relayd usr/bin/kenaf-draw usr/include/kenaf/hrt.h \
+for file in usr/bin/kenaf-world usr/bin/kenaf-relayd usr/bin/kenaf-draw usr/bin/kenaf-canlog usr/bin/kenaf-candrives usr/include/kenaf/hrt.h \
             usr/share/kenaf/robots/kenaf.toml usr/share/kenaf/worlds/flat.sdf \
+            usr/share/kenaf/page/index.html usr/share/kenaf/page/three/three.module.js usr/share/kenaf/page/three/OrbitControls.js \
             lib/systemd/system/kenaf-relayd.service lib/systemd/system/kenaf-world.service \
             libkenaf_sim.so.0 libkenaf_real.so.0 kenafConfig.cmake kenaf-sim.pc; do
   grep -q "$file" "$work/contents" || { cat "$work/contents"; fail "$file is not in the package"; }

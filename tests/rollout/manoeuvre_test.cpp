@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <set>
 
+#include "description/data_files.hpp"
 #include "physics/robot_description.hpp"
-#include "protocol/data_files.hpp"
 #include "tests/runs/temporary_folder.hpp"
 
 using namespace kenaf;
@@ -48,7 +48,7 @@ std::string give_up_in_phase(int number, const std::string& what = "{ x_below_m 
 std::string error_of(const std::string& text) {
   try {
     parse_manoeuvres(text, "my.toml");
-  } catch (const physics::DescriptionError& error) {
+  } catch (const DescriptionError& error) {
     return error.what();
   }
   return "";
@@ -142,7 +142,7 @@ TEST_CASE("The shipped manoeuvres: each name once, sorted, found by its name") {
   CHECK(load_manoeuvre("random-speeds").at_most_s() == Approx(30));
 }
 
-TEST_CASE("A manoeuvre by its path; a name that is none says which there are") {
+TEST_CASE("A manoeuvre by its path, a name that is none says which there are") {
   const test::TemporaryFolder folder;
   test::write_file(folder / "two.toml", kTwo);
   CHECK_THROWS_WITH(load_manoeuvre((folder / "two.toml").string()), Contains("two.toml: holds 2 manoeuvres"));

@@ -16,7 +16,7 @@ Manoeuvre replay(const std::string& csv) {
 
 }  // namespace
 
-TEST_CASE("A run's commands, at its times from its first row on; an empty cell holds") {
+TEST_CASE("A run's commands, at its times from its first row on, an empty cell holds") {
   const Manoeuvre manoeuvre = replay(
       "t_s,cmd_track_left_mps,cmd_track_right_mps,x_m,y_m,yaw_rad,flipper_fl_rad,flipper_fr_rad,flipper_rl_rad,"
       "flipper_rr_rad,cmd_flipper_fl_rad\n"

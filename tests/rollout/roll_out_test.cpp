@@ -122,7 +122,7 @@ TEST_CASE("Phases end where the robot is, and say when they began") {
 }
 
 TEST_CASE(
-    "Without noise the seed changes no bit; with noise it does; the same seed gives the same bits on any thread") {
+    "Without noise the seed changes no bit, with noise it does, the same seed gives the same bits on any thread") {
   const auto robot = physics::load_robot("kenaf");
   const Manoeuvre manoeuvre = straight(0.2, 0.3);
   RollOutOptions one = exact(), two = exact();

@@ -59,7 +59,7 @@ TEST_CASE("Tracking that is 0.1 s late sees a robot at 0.3 m/s 30 mm behind wher
   }
 }
 
-TEST_CASE("Late tracking concerns x, y, z and yaw; what the robot measures itself is in time") {
+TEST_CASE("Late tracking concerns x, y, z and yaw, what the robot measures itself is in time") {
   const runs::Run prompt = driven({}, 0.1, 0.3, kSomewhere),
                   late = driven({.tracking_delay_s = 0.2}, 0.1, 0.3, kSomewhere);
   REQUIRE(prompt.columns == late.columns);

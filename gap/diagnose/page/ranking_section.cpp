@@ -15,7 +15,7 @@ constexpr std::size_t kMostRows = 24;  // of the figure; the table has all
 
 std::string ranking_figure(const Diagnosis& d) {
   plot::RowChart chart;
-  chart.title = "What each effect alone takes off the gap on runs held out, with 95 % interval";
+  chart.title = fmt::format("What each effect alone takes off the gap on {}, with 95 % interval", measured_on(d));
   chart.x_label = "shrink of what is beyond the floor (%)";
   double lowest = 0, highest = 0;
   for (std::size_t i = 0; i < std::min(kMostRows, d.ranking.size()); ++i) {
@@ -42,10 +42,9 @@ std::string ranking_figure(const Diagnosis& d) {
 }
 
 std::string ranking_table(const Diagnosis& d) {
-  Table table{
-      {"effect", "stage", "parameter", "fitted value (95 %)", "held-out shrink (95 %)", "explains", "p", "note"},
-      {},
-      {0, 1, 2, 7}};
+  Table table{{"effect", "stage", "parameter", "fitted value (95 %)", "shrink (95 %)", "explains", "p", "note"},
+              {},
+              {0, 1, 2, 7}};
   for (const EffectEvidence& e : d.ranking) {
     const EffectCurve& curve = d.curves.curves[e.curve];
     table.rows.push_back({std::string(curve.effect->name), std::string(physics::stage_name(curve.effect->stage)),
@@ -65,8 +64,8 @@ std::string together(const Diagnosis& d) {
                           interval_text(e.value, curve.parameter->unit), percent(e.explains), probability(e.p_value),
                           e.at_bound ? "end of range" : ""});
   }
-  return paragraph(fmt::format("The best model has {} effects. Together they take {} off runs held out.", d.best.size(),
-                               percent_interval(d.gap.shrink))) +
+  return paragraph(fmt::format("The best model has {} effects. Together they take {} off {}.", d.best.size(),
+                               percent_interval(d.gap.shrink), measured_on(d))) +
          to_html(table);
 }
 

@@ -8,6 +8,7 @@
 #include "gap/diagnose/page/figures.hpp"
 #include "gap/diagnose/page/sections.hpp"
 #include "gap/diagnose/page/words.hpp"
+#include "gap/diagnose/report.hpp"
 #include "gap/plot/row_chart.hpp"
 
 namespace kenaf::gap {
@@ -32,7 +33,7 @@ std::vector<ChannelResidual> residuals_of(const Diagnosis& d) {
   return result;
 }
 
-std::string channel_figure(const std::vector<ChannelResidual>& residuals) {
+std::string channel_figure(const Diagnosis& d, const std::vector<ChannelResidual>& residuals) {
   plot::RowChart chart;
   chart.title = "Residual of each channel in noise units, largest share of the gap first";
   chart.x_label = "rms of measured minus simulated, over rms of noise (1: noise alone)";
@@ -45,7 +46,7 @@ std::string channel_figure(const std::vector<ChannelResidual>& residuals) {
     chart.rows.push_back(std::move(row));
   }
   if (std::ranges::any_of(residuals, [](const ChannelResidual& r) { return !std::isnan(r.after); }))
-    chart.legend.push_back({plot::Shape::disc, plot::Ink::third, "after, on runs held out of the fit"});
+    chart.legend.push_back({plot::Shape::disc, plot::Ink::third, fmt::format("after, on {}", measured_on(d))});
   chart.guides = {{1, "noise"}};
   chart.logarithmic = true;
   double most = 1;
@@ -82,7 +83,7 @@ std::string residual_section(const Diagnosis& d) {
           "is compared with.",
           d.options.span_s),
       "soft");
-  return html + channel_figure(residuals) + table_of(residuals);
+  return html + channel_figure(d, residuals) + table_of(residuals);
 }
 
 }  // namespace kenaf::gap

@@ -12,7 +12,7 @@
 namespace kenaf::gap {
 namespace {
 
-constexpr std::size_t kMostNext = 10, kMostGroups = 60, kMostFiles = 4, kMostWarnings = 100;
+constexpr std::size_t kMostNext = 10, kMostRepeated = 60, kMostFiles = 4, kMostWarnings = 100;
 
 std::string files_of(const Diagnosis& d, const std::vector<std::size_t>& group) {
   std::vector<std::string> files;
@@ -24,7 +24,7 @@ std::string files_of(const Diagnosis& d, const std::vector<std::size_t>& group) 
 
 std::string runs_table(const Diagnosis& d) {
   Table table{{"manoeuvre", "world", "runs", "files", "lasts (s)"}, {}, {0, 1, 3}};
-  for (std::size_t g = 0; g < std::min(kMostGroups, d.repeats.size()); ++g) {
+  for (std::size_t g = 0; g < std::min(kMostRepeated, d.repeats.size()); ++g) {
     double least = 1e9, most = 0;
     for (const std::size_t r : d.repeats[g]) {
       const double duration_s = d.observations.runs[r].replay.at_most_s();
@@ -37,8 +37,8 @@ std::string runs_table(const Diagnosis& d) {
          most - least < 0.05 ? fmt::format("{:.1f}", most) : fmt::format("{:.1f} to {:.1f}", least, most)});
   }
   std::string html = to_html(table);
-  if (d.repeats.size() > kMostGroups)
-    html += paragraph(fmt::format("and {} more manoeuvres", d.repeats.size() - kMostGroups), "soft");
+  if (d.repeats.size() > kMostRepeated)
+    html += paragraph(fmt::format("and {} more manoeuvres", d.repeats.size() - kMostRepeated), "soft");
   return html;
 }
 

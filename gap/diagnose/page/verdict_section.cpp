@@ -138,7 +138,7 @@ std::string value_figure(const Diagnosis& d, const EffectEvidence& evidence) {
 
 std::string gap_figure(const Diagnosis& d) {
   plot::RowChart chart;
-  chart.title = "The gap on runs held out of the fit, in noise units";
+  chart.title = fmt::format("The gap on {}, in noise units", measured_on(d));
   chart.x_label = "rms over all channels (noise units)";
   const auto row = [](std::string_view label, double value, Ink ink) {
     return plot::Row{std::string(label), {{value, Shape::bar, ink}}, fmt::format("{:.2f}", value)};
@@ -162,7 +162,7 @@ std::string shrink_figure(const Diagnosis& d) {
                           {{value, Shape::disc, Ink::third, plot::Range{shrink.from * 100, shrink.to * 100}}},
                           fmt::format("{:.0f} %", value)});
   };
-  add("repeats held out", d.gap.shrink);
+  add(d.observations.runs.size() > 1 ? "repeats held out" : "the run fitted to", d.gap.shrink);
   if (folds_by_manoeuvre(d.observations).size() > 1) add("manoeuvres held out", d.gap.shrink_by_manoeuvre);
   const Interval &repeats = d.gap.shrink, &manoeuvres = d.gap.shrink_by_manoeuvre;
   chart.view = plot::Range{std::clamp(std::min(repeats.from, manoeuvres.from) * 100, -50.0, 0.0),

@@ -1,0 +1,23 @@
+#include "gap/interrupt.hpp"
+
+#include <csignal>
+
+namespace kenaf::gap {
+namespace {
+
+std::atomic<bool> interrupted = false;  // what a signal handler may write is global
+
+void interrupt(int signal) {
+  interrupted = true;
+  std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+const std::atomic<bool>& interruption() {
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+  return interrupted;
+}
+
+}  // namespace kenaf::gap

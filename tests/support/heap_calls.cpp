@@ -1,0 +1,48 @@
+#include "tests/support/heap_calls.hpp"
+
+#include <cerrno>
+#include <cstddef>
+
+namespace {
+
+thread_local long calls = 0;
+
+}  // namespace
+
+// The C library's own; __libc_ names are glibc's for whoever puts a function before them.
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* memory, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+[[gnu::visibility("default")]] void* malloc(std::size_t size) {
+  ++calls;
+  return __libc_malloc(size);
+}
+[[gnu::visibility("default")]] void* calloc(std::size_t count, std::size_t size) {
+  ++calls;
+  return __libc_calloc(count, size);
+}
+[[gnu::visibility("default")]] void* realloc(void* memory, std::size_t size) {
+  ++calls;
+  return __libc_realloc(memory, size);
+}
+[[gnu::visibility("default")]] void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++calls;
+  return __libc_memalign(alignment, size);
+}
+[[gnu::visibility("default")]] int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
+  ++calls;
+  *memory = __libc_memalign(alignment, size);
+  return *memory ? 0 : ENOMEM;
+}
+}
+
+namespace kenaf::test {
+
+long heap_calls() {
+  return calls;
+}
+
+}  // namespace kenaf::test
