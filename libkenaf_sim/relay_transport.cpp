@@ -224,9 +224,12 @@ void RelayTransport::send(const hrt::DriveCommand& command) {
               .track_speed_mps = command.track_speed_mps,
               .flipper_mask = command.flipper_mask,
               .flipper_rad = command.flipper_rad};
+  const Clock::time_point now = Clock::now();
+  // Before the command: where states come so fast that nobody ever waits, this is where the round trip is measured, and
+  // the answer is read before the state that ends the wait, not after the program's next thought.
+  if (now >= ping_at_) ping(now);
   transmit(command_);
   resend_after_ = kFirstResend;
-  const Clock::time_point now = Clock::now();
   resend_at_ = now + resend_after_;
   // The time the program took is not the link's.
   state_at_ = life_at_ = looked_at_ = now;
@@ -249,12 +252,14 @@ void RelayTransport::send_what_is_due(Clock::time_point now) {
   // A state that is overdue: does the world server still live? It answers a ping also where its time stands still.
   const Clock::duration overdue = seconds<Clock::duration>(link_timeout_s_ / 4);
   const bool is_overdue = now - state_at_ >= overdue;
-  if (now >= ping_at_ || (is_overdue && now - pinged_at_ >= overdue)) {
-    ++ping_id_;
-    pinged_at_ = now;
-    ping_at_ = now + kPingEvery;
-    transmit(relay::Ping{.session = session_, .id = ping_id_});
-  }
+  if (now >= ping_at_ || (is_overdue && now - pinged_at_ >= overdue)) ping(now);
+}
+
+void RelayTransport::ping(Clock::time_point now) {
+  ++ping_id_;
+  pinged_at_ = now;
+  ping_at_ = now + kPingEvery;
+  transmit(relay::Ping{.session = session_, .id = ping_id_});
 }
 
 void RelayTransport::close() {

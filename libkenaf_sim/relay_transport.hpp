@@ -43,6 +43,7 @@ class RelayTransport final : public hrt::Transport {
   std::optional<relay::State> take(const relay::Datagram& datagram);
   void transmit(const relay::Datagram& datagram);
   void send_what_is_due(Clock::time_point now);
+  void ping(Clock::time_point now);
   void check_life(Clock::time_point now);
   // Sleeps until a datagram, an interrupt or `until`. False: interrupted.
   bool wait_readable(Clock::time_point until);

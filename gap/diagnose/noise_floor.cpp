@@ -13,7 +13,9 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kMadToSigma = 1.4826;
-constexpr double kTrimmed = 0.05;  // of the largest squares, which are events, not noise
+// Of the largest squares, which are events, not noise. What is left is not made larger for their absence, as for a Gaussian:
+// repeats differ mostly by a slow wander, which is alike in all bins.
+constexpr double kTrimmed = 0.05;
 
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + std::ssize(values) / 2;
