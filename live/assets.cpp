@@ -50,13 +50,14 @@ fs::path find_page() {
 
 }  // namespace
 
-Assets load_assets() {
+Assets load_assets(std::string_view first_page) {
   const fs::path page = find_page();
   Assets assets;
   for (const fs::directory_entry& entry : fs::directory_iterator(page)) {
-    if (entry.is_regular_file()) add(assets, "/" + entry.path().filename().string(), entry.path());
+    const std::string name = entry.path().filename();
+    if (entry.is_regular_file() && entry.path().extension() != ".html") add(assets, "/" + name, entry.path());
   }
-  assets["/"] = assets.at("/index.html");
+  add(assets, "/", page / first_page);
   // At the places from which the second names the first.
   add(assets, "/three/build/three.module.js", three_file(page, "three.module.js", KENAF_THREE_MODULE));
   add(assets, "/three/examples/jsm/controls/OrbitControls.js",

@@ -1,13 +1,12 @@
 #include "live/http_connection.hpp"
 
+#include <algorithm>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
 #include <chrono>
 #include <optional>
 
 #include "live/access.hpp"
-#include "live/viewer.hpp"
 
 namespace kenaf::live {
 
@@ -25,14 +24,16 @@ constexpr const char* kContentPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'none'";
 
+constexpr std::string_view kWords = "text/plain; charset=utf-8";
+
 using Body = http::span_body<const char>;
 
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(Hub& hub, boost::asio::ip::tcp::socket socket) : hub_(hub), stream_(std::move(socket)) {
-    ++hub_.connections;
+  HttpConnection(Site& site, boost::asio::ip::tcp::socket socket) : site_(site), stream_(std::move(socket)) {
+    ++site_.connections;
   }
-  ~HttpConnection() { --hub_.connections; }
+  ~HttpConnection() { --site_.connections; }
   HttpConnection(const HttpConnection&) = delete;
   HttpConnection& operator=(const HttpConnection&) = delete;
 
@@ -42,29 +43,30 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   void handle();
   void answer_path(std::string_view path, std::string_view query);
   bool token_fits(std::string_view query) const {
-    return hub_.token.empty() || equal_in_constant_time(query_value(query, "token"), hub_.token);
+    return site_.token.empty() || equal_in_constant_time(query_value(query, "token"), site_.token);
   }
-  // `bytes` must stay: of the hub, or a literal.
+  // `bytes` must stay: of the site, of `kept_`, or a literal.
   void send(http::status status, std::string_view type, std::string_view bytes);
   void refuse(http::status status, std::string_view why) {
     keep_ = false;
-    send(status, "text/plain; charset=utf-8", why);
+    send(status, kWords, why);
   }
 
-  Hub& hub_;
+  Site& site_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
   http::response<Body> response_;
+  std::shared_ptr<const std::string> kept_;  // what is sent
   bool keep_ = true;
 };
 
 void HttpConnection::read() {
   parser_.emplace();
-  parser_->header_limit(static_cast<std::uint32_t>(hub_.limits.header_bytes));
+  parser_->header_limit(static_cast<std::uint32_t>(site_.limits.header_bytes));
   parser_->body_limit(0);
   stream_.expires_after(
-      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(hub_.limits.quiet_s)));
+      std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::duration<double>(site_.limits.quiet_s)));
   http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
     if (!error) return self->handle();
     if (error == http::error::header_limit) self->refuse(http::status::request_header_fields_too_large, "too long\n");
@@ -76,7 +78,7 @@ void HttpConnection::handle() {
   const auto& request = parser_->get();
   keep_ = request.keep_alive();
   const std::string_view host(request[http::field::host].data(), request[http::field::host].size());
-  if (!host_allowed(host, hub_.own_name)) {
+  if (!host_allowed(host, site_.own_name)) {
     return refuse(http::status::forbidden,
                   "This server is asked by its address or its own name, not by another name.\n");
   }
@@ -91,22 +93,23 @@ void HttpConnection::handle() {
 }
 
 void HttpConnection::answer_path(std::string_view path, std::string_view query) {
-  const bool upgrade = beast::websocket::is_upgrade(parser_->get());
-  if (path == "/ws" || path == "/scene") {
+  const std::size_t end = std::min(path.find('/', 1), path.size());
+  const auto route = site_.routes.find(path.substr(0, end));
+  if (route != site_.routes.end()) {
     if (!token_fits(query)) {
       return refuse(http::status::unauthorized, "This needs the token that the server printed when it started.\n");
     }
-    if (path == "/scene") return send(http::status::ok, "application/octet-stream", hub_.scene);
-    if (!upgrade) return refuse(http::status::upgrade_required, "This is for WebSockets.\n");
-    if (hub_.viewers.size() >= hub_.limits.viewers) {
-      return refuse(http::status::service_unavailable, "Too many look on already.\n");
+    auto answer = route->second({parser_->get(), path.substr(end), query});
+    if (const auto* take_over = std::get_if<TakeOver>(&answer)) {
+      return (*take_over)(std::move(stream_), parser_->release());
     }
-    return start_viewer(hub_, std::move(stream_), parser_->release());
+    Reply& reply = std::get<Reply>(answer);
+    kept_ = std::move(reply.bytes);
+    if (http::to_status_class(reply.status) != http::status_class::successful) return refuse(reply.status, *kept_);
+    return send(reply.status, reply.type, *kept_);
   }
-  const auto asset = hub_.assets.find(path);
-  if (asset == hub_.assets.end()) {
-    return send(http::status::not_found, "text/plain; charset=utf-8", "There is no such file.\n");
-  }
+  const auto asset = site_.assets.find(path);
+  if (asset == site_.assets.end()) return send(http::status::not_found, kWords, "There is no such file.\n");
   send(http::status::ok, asset->second.type, asset->second.bytes);
 }
 
@@ -132,8 +135,12 @@ void HttpConnection::send(http::status status, std::string_view type, std::strin
 
 }  // namespace
 
-void serve_http(Hub& hub, boost::asio::ip::tcp::socket socket) {
-  std::make_shared<HttpConnection>(hub, std::move(socket))->read();
+Reply reply_in_words(http::status status, std::string_view words) {
+  return {status, kWords, std::make_shared<const std::string>(words)};
+}
+
+void serve_http(Site& site, boost::asio::ip::tcp::socket socket) {
+  std::make_shared<HttpConnection>(site, std::move(socket))->read();
 }
 
 }  // namespace kenaf::live

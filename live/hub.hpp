@@ -1,15 +1,14 @@
-// What all connections of the view share. On the view's thread alone, but for the members of `world` that are for any
+// What all pages of the live view share, beside its site. On the view's thread alone, but for the members of `world` that are for any
 // thread.
 #pragma once
 
-#include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "live/assets.hpp"
+#include "live/site.hpp"
 #include "live/view.hpp"
 #include "physics/server/world_state.hpp"
 
@@ -20,25 +19,21 @@ class Viewer;
 struct Hub {
   server::WorldServer& world;
   const ViewLimits limits;
-  const std::string token;     // empty: none is needed
-  const std::string own_name;  // of this machine
-  const Assets assets;
-  const std::string scene;
+  const std::shared_ptr<const std::string> scene;
 
-  std::size_t connections = 0;
   std::uint32_t last_operator = 0;
   std::vector<Viewer*> viewers{};
   std::shared_ptr<const std::string> inventory{};  // as of the newest state
   std::function<void()> viewer_came{};
 
   // Last, so that it ends first: what its handlers hold knows the others.
-  boost::asio::io_context io{1};
+  Site site;
 
   // Has the world's thread carry `request` out, and then this one `done` with what it returned.
   template <typename Request, typename Done>
   void ask(Request request, Done done) {
     world.ask([this, request = std::move(request), done = std::move(done)](server::Simulation& simulation) mutable {
-      boost::asio::post(io, [answer = request(simulation), done = std::move(done)]() mutable { done(answer); });
+      boost::asio::post(site.io, [answer = request(simulation), done = std::move(done)]() mutable { done(answer); });
     });
   }
 };

@@ -1,96 +1,17 @@
 #include "live/messages.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <nlohmann/json.hpp>
-#include <span>
+
+#include "live/json_writer.hpp"
 
 namespace kenaf::live {
 
 namespace {
 
+using Writer = JsonWriter;
 using server::BoxState;
 using server::RobotState;
 using server::WorldState;
-
-// Written by hand: a tenth of a millimetre is enough to look at, and a library would write 17 digits.
-class Writer {
- public:
-  Writer& raw(std::string_view text) {
-    out_ += text;
-    return *this;
-  }
-  Writer& key(std::string_view name) {
-    comma();
-    out_ += '"';
-    out_ += name;
-    out_ += "\":";
-    return *this;
-  }
-  Writer& number(double value, int digits = 4) {
-    // JSON has no word for what is not finite
-    if (!std::isfinite(value)) return raw("null");
-    fmt::format_to(std::back_inserter(out_), "{:.{}f}", value, digits);
-    while (digits > 0 && out_.back() == '0') out_.pop_back();
-    if (out_.back() == '.') out_.pop_back();
-    return *this;
-  }
-  Writer& integer(std::uint64_t value) {
-    fmt::format_to(std::back_inserter(out_), "{}", value);
-    return *this;
-  }
-  Writer& boolean(bool value) { return raw(value ? "true" : "false"); }
-  Writer& text(std::string_view value) {
-    using nlohmann::json;
-    return raw(json(value).dump(-1, ' ', false, json::error_handler_t::replace));
-  }
-  Writer& numbers(std::span<const double> values, int digits = 4) {
-    open('[');
-    for (const double value : values) {
-      comma();
-      number(value, digits);
-    }
-    return close(']');
-  }
-  Writer& vector(const Eigen::Vector3d& v) { return numbers(std::array{v.x(), v.y(), v.z()}); }
-  Writer& rotation(const Eigen::Quaterniond& q) { return numbers(std::array{q.w(), q.x(), q.y(), q.z()}, 5); }
-  Writer& open(char bracket) {
-    out_ += bracket;
-    return *this;
-  }
-  Writer& close(char bracket) {
-    out_ += bracket;
-    return *this;
-  }
-  // Before an element of a list or an object.
-  Writer& comma() {
-    if (out_.back() != '{' && out_.back() != '[') out_ += ',';
-    return *this;
-  }
-  std::string take() { return std::move(out_); }
-
- private:
-  std::string out_;
-};
-
-void write_dimensions(Writer& out, const server::RobotDimensions& size) {
-  out.key("body").vector(size.body_size_m);
-  out.key("track").open('{');
-  out.key("length").number(size.track_length_m).key("radius").number(size.track_radius_m);
-  out.key("width").number(size.track_width_m).key("at").vector(size.p_BT_m).close('}');
-  if (size.has_flippers) {
-    out.key("flipper").open('{');
-    out.key("length").number(size.flipper_length_m).key("width").number(size.flipper_width_m);
-    out.key("pivot_radius").number(size.pivot_radius_m).key("tip_radius").number(size.tip_radius_m);
-    out.key("at").vector(size.p_BPivot_m);
-    out.key("min").number(size.min_angle_rad).key("max").number(size.max_angle_rad);
-    out.key("max_speed").number(size.max_flipper_radps).close('}');
-  }
-  out.key("max_speed").number(size.max_speed_mps);
-}
 
 std::string_view mode_name(physics::JointMode mode) {
   switch (mode) {

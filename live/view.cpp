@@ -1,105 +1,83 @@
 #include "live/view.hpp"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
-#include <array>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
 #include <stdexcept>
-#include <thread>
+#include <utility>
 
-#include "live/access.hpp"
-#include "live/http_connection.hpp"
+#include "live/hub.hpp"
 #include "live/messages.hpp"
 #include "live/scene_bytes.hpp"
 #include "live/speed_meter.hpp"
 #include "live/viewer.hpp"
+#include "live/web_server.hpp"
 
 namespace kenaf::live {
 
 namespace asio = boost::asio;
-using asio::ip::tcp;
 using boost::system::error_code;
 
 namespace {
 
-std::string machine_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+namespace http = boost::beast::http;
+
+Route scene_route(const Hub& hub) {
+  return [&hub](const Visit& visit) -> std::variant<Reply, TakeOver> {
+    if (!visit.rest.empty()) return reply_in_words(http::status::not_found, "There is no such file.\n");
+    return Reply{http::status::ok, "application/octet-stream", hub.scene};
+  };
 }
 
-// On loopback every program is this machine's, and browsers are kept to their own pages by Host and Origin.
-std::string token_for(const ViewOptions& options) {
-  if (!options.token.empty() || asio::ip::make_address(options.address).is_loopback()) return options.token;
-  return make_token();
-}
-
-tcp::acceptor listen_for_browsers(asio::io_context& io, const ViewOptions& options) {
-  try {
-    return tcp::acceptor(io, tcp::endpoint(asio::ip::make_address(options.address), options.port));
-  } catch (const boost::system::system_error& failure) {
-    throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; choose another by --view ADDRESS:PORT",
-                                         options.address, options.port, failure.code().message()));
-  }
+Route viewer_route(Hub& hub) {
+  return [&hub](const Visit& visit) -> std::variant<Reply, TakeOver> {
+    if (!visit.rest.empty()) return reply_in_words(http::status::not_found, "There is no such file.\n");
+    if (!boost::beast::websocket::is_upgrade(visit.request)) {
+      return reply_in_words(http::status::upgrade_required, "This is for WebSockets.\n");
+    }
+    if (hub.viewers.size() >= hub.limits.viewers) {
+      return reply_in_words(http::status::service_unavailable, "Too many look on already.\n");
+    }
+    return TakeOver([&hub](boost::beast::tcp_stream stream, PageRequest upgrade) {
+      start_viewer(hub, std::move(stream), std::move(upgrade));
+    });
+  };
 }
 
 }  // namespace
 
 struct View::Implementation {
   Implementation(server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits)
-      : hub{world, limits, token_for(options), machine_name(), load_assets(), scene_bytes(world.world_description())},
-        acceptor(listen_for_browsers(hub.io, options)),
-        address(options.address) {
+      : hub{.world = world,
+            .limits = limits,
+            .scene = std::make_shared<const std::string>(scene_bytes(world.world_description())),
+            .site = {.limits = limits,
+                     .token = token_for(options),
+                     .own_name = machine_name(),
+                     .assets = load_assets("index.html")}},
+        server(hub.site, options) {
+    hub.site.routes = {{"/scene", scene_route(hub)}, {"/ws", viewer_route(hub)}};
     hub.viewer_came = [this] {
       if (!looking) look();
     };
   }
 
-  void accept();
-  void serve();
   void look();
   void show();
   void wait_and_look();
 
   Hub hub;
-  tcp::acceptor acceptor;
-  const std::string address;
-  asio::steady_timer accept_again{hub.io}, next_look{hub.io};
+  asio::steady_timer next_look{hub.site.io};
   // Handed to the world's thread and back: it belongs to one of the two at a time.
   server::WorldState state;
   server::WorldState told;  // whose inventory the viewers have
   bool looking = false;     // a look is under way or will be
   std::uint64_t states = 0;
   SpeedMeter speed;
-  std::thread thread;
+  WebServer server;  // last: its thread ends before what it uses
 };
-
-void View::Implementation::accept() {
-  acceptor.async_accept([this](error_code error, tcp::socket socket) {
-    if (error == asio::error::operation_aborted) return;
-    if (!error) {
-      if (hub.connections < hub.limits.connections) serve_http(hub, std::move(socket));
-      return accept();
-    }
-    accept_again.expires_after(std::chrono::milliseconds(100));  // most often too many open files
-    accept_again.async_wait([this](error_code cancelled) {
-      if (!cancelled) accept();
-    });
-  });
-}
-
-void View::Implementation::serve() {
-  for (;;) {
-    try {
-      hub.io.run();
-      return;
-    } catch (const std::exception& error) {
-      spdlog::error("live view: {}", error.what());  // of one connection; the others are served on
-    }
-  }
-}
 
 void View::Implementation::look() {
   looking = true;
@@ -137,26 +115,17 @@ void View::Implementation::wait_and_look() {
 
 View::View(server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits)
     : impl_(std::make_unique<Implementation>(world, options, limits)) {
-  impl_->accept();
-  impl_->thread = std::thread([this] { impl_->serve(); });
+  impl_->server.start();
 }
 
-View::~View() {
-  impl_->hub.io.stop();
-  impl_->thread.join();
-}
+View::~View() = default;
 
 std::uint16_t View::port() const {
-  return impl_->acceptor.local_endpoint().port();
+  return impl_->server.port();
 }
 
 std::string View::url() const {
-  const bool v6 = impl_->address.find(':') != std::string::npos;
-  const auto ip = asio::ip::make_address(impl_->address);
-  const std::string host =
-      ip.is_unspecified() ? impl_->hub.own_name : (v6 ? "[" + impl_->address + "]" : impl_->address);
-  const std::string& token = impl_->hub.token;
-  return fmt::format("http://{}:{}/{}{}", host, port(), token.empty() ? "" : "#token=", token);
+  return impl_->server.url();
 }
 
 std::unique_ptr<View> open_view(server::WorldServer& world, const ViewOptions& options) {

@@ -8,19 +8,17 @@
 #include <memory>
 #include <string>
 
+#include "live/site.hpp"
 #include "live/view_options.hpp"
 #include "physics/server/world_server.hpp"
 
 namespace kenaf::live {
 
-struct ViewLimits {
-  std::size_t connections = 128;       // of browsers; further ones are closed at once
-  std::size_t viewers = 64;            // of these, WebSockets
-  std::size_t header_bytes = 8192;
+struct ViewLimits : SiteLimits {
+  std::size_t viewers = 64;            // of its connections, WebSockets
   std::size_t message_bytes = 4096;    // that a page sends
   std::size_t unread_answers = 32;     // then a page is let go; of states it keeps the newest only
   double period_s = 1.0 / 30;          // between states
-  double quiet_s = 10;                 // without a request, or an answer to a ping: the connection is closed
   int requests_per_s = 100;            // of a viewer; then it waits
 };
 

@@ -26,14 +26,14 @@ constexpr int kSendBuffer_bytes = 65536;
 class OpenViewer final : public Viewer, public std::enable_shared_from_this<OpenViewer> {
  public:
   OpenViewer(Hub& hub, beast::tcp_stream stream)
-      : hub_(hub), who_{++hub.last_operator}, socket_(std::move(stream)), pause_(hub.io) {
-    ++hub_.connections;
+      : hub_(hub), who_{++hub.last_operator}, socket_(std::move(stream)), pause_(hub.site.io) {
+    ++hub_.site.connections;
   }
-  ~OpenViewer() { --hub_.connections; }
+  ~OpenViewer() { --hub_.site.connections; }
   OpenViewer(const OpenViewer&) = delete;
   OpenViewer& operator=(const OpenViewer&) = delete;
 
-  void start(beast::http::request<beast::http::empty_body> upgrade);
+  void start(PageRequest upgrade);
   void show(const Message& state) override {
     state_ = state;
     write();
@@ -61,13 +61,14 @@ class OpenViewer final : public Viewer, public std::enable_shared_from_this<Open
   int requests_ = 0;  // in this second
 };
 
-void OpenViewer::start(beast::http::request<beast::http::empty_body> upgrade) {
+void OpenViewer::start(PageRequest upgrade) {
   error_code ignored;
   auto& tcp = beast::get_lowest_layer(socket_);
   tcp.socket().set_option(boost::asio::socket_base::send_buffer_size(kSendBuffer_bytes), ignored);
   tcp.socket().set_option(boost::asio::ip::tcp::no_delay(true), ignored);
   tcp.expires_never();  // the WebSocket has time-outs of its own
-  const auto quiet = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(hub_.limits.quiet_s));
+  const auto quiet =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(hub_.site.limits.quiet_s));
   socket_.set_option(websocket::stream_base::timeout{quiet, quiet, true});
   socket_.read_message_max(hub_.limits.message_bytes);
   socket_.text(true);
@@ -167,7 +168,7 @@ void OpenViewer::close() {
 
 }  // namespace
 
-void start_viewer(Hub& hub, beast::tcp_stream stream, beast::http::request<beast::http::empty_body> upgrade) {
+void start_viewer(Hub& hub, beast::tcp_stream stream, PageRequest upgrade) {
   std::make_shared<OpenViewer>(hub, std::move(stream))->start(std::move(upgrade));
 }
 

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/http/empty_body.hpp>
-#include <boost/beast/http/message.hpp>
 #include <memory>
 #include <string>
 
@@ -25,7 +23,6 @@ class Viewer {
 };
 
 // Answers the upgrade, and is in hub.viewers while it is open.
-void start_viewer(Hub& hub, boost::beast::tcp_stream stream,
-                  boost::beast::http::request<boost::beast::http::empty_body> upgrade);
+void start_viewer(Hub& hub, boost::beast::tcp_stream stream, PageRequest upgrade);
 
 }  // namespace kenaf::live

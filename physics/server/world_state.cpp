@@ -11,7 +11,7 @@ void read_robot(const Simulation& simulation, const Session& session, RobotState
   state.id = session.id;
   state.name = robot.name;
   state.class_name = robot.description->usarsim_class;
-  state.dimensions = dimensions_of(*robot.description);
+  state.dimensions = physics::dimensions_of(*robot.description);
   state.X_WB = truth.X_WB;
   state.v_WB_mps = truth.v_WB_mps;
   state.track_mps = truth.track_mps;
@@ -40,28 +40,6 @@ void read_box(const Simulation& simulation, physics::BoxId id, BoxState& state) 
 }
 
 }  // namespace
-
-RobotDimensions dimensions_of(const physics::RobotDescription& robot) {
-  RobotDimensions out;
-  out.body_size_m = robot.body.size_m;
-  out.track_length_m = robot.track.length_m;
-  out.track_radius_m = robot.track.end_radius_m;
-  out.track_width_m = robot.track.width_m;
-  out.p_BT_m = robot.track.p_BT_m;
-  out.max_speed_mps = robot.drive.max_speed_mps;
-  out.has_flippers = robot.has_flippers();
-  if (!out.has_flippers) return out;
-  const physics::FlipperDescription& flipper = robot.flipper.front();
-  out.flipper_length_m = flipper.length_m;
-  out.pivot_radius_m = flipper.pivot_radius_m;
-  out.tip_radius_m = flipper.tip_radius_m;
-  out.flipper_width_m = flipper.width_m;
-  out.p_BPivot_m = flipper.p_BPivot_m;
-  out.min_angle_rad = flipper.min_angle_rad;
-  out.max_angle_rad = flipper.max_angle_rad;
-  out.max_flipper_radps = robot.servo.max_speed_radps;
-  return out;
-}
 
 void read_state(const Simulation& simulation, WorldState& state) {
   state.wall_s = simulation.wall_s;

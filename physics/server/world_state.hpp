@@ -9,27 +9,15 @@
 #include <string>
 #include <vector>
 
+#include "physics/robot_dimensions.hpp"
 #include "physics/server/simulation.hpp"
 
 namespace kenaf::server {
 
-// The outlines of a robot, and what its drives can do.
-struct RobotDimensions {
-  Eigen::Vector3d body_size_m{0, 0, 0};
-  double track_length_m = 0, track_radius_m = 0, track_width_m = 0;
-  Eigen::Vector3d p_BT_m{0, 0, 0};             // centre of the left track; the right one is its mirror image
-  bool has_flippers = false;
-  double flipper_length_m = 0, pivot_radius_m = 0, tip_radius_m = 0, flipper_width_m = 0;
-  Eigen::Vector3d p_BPivot_m{0, 0, 0};         // of the front left flipper; the others are mirror images
-  double min_angle_rad = 0, max_angle_rad = 0;
-  double max_speed_mps = 0, max_flipper_radps = 0;
-};
-RobotDimensions dimensions_of(const physics::RobotDescription& description);
-
 struct RobotState {
   std::uint32_t id = 0;                        // of its session: never used twice in one server
   std::string name, class_name;
-  RobotDimensions dimensions;
+  physics::RobotDimensions dimensions;
   physics::Pose X_WB;
   Eigen::Vector3d v_WB_mps{0, 0, 0};
   std::array<double, physics::kTrackCount> track_mps{}, track_m{}, track_a{};

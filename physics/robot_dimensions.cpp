@@ -1,0 +1,27 @@
+#include "physics/robot_dimensions.hpp"
+
+namespace kenaf::physics {
+
+RobotDimensions dimensions_of(const RobotDescription& robot) {
+  RobotDimensions out;
+  out.body_size_m = robot.body.size_m;
+  out.track_length_m = robot.track.length_m;
+  out.track_radius_m = robot.track.end_radius_m;
+  out.track_width_m = robot.track.width_m;
+  out.p_BT_m = robot.track.p_BT_m;
+  out.max_speed_mps = robot.drive.max_speed_mps;
+  out.has_flippers = robot.has_flippers();
+  if (!out.has_flippers) return out;
+  const FlipperDescription& flipper = robot.flipper.front();
+  out.flipper_length_m = flipper.length_m;
+  out.pivot_radius_m = flipper.pivot_radius_m;
+  out.tip_radius_m = flipper.tip_radius_m;
+  out.flipper_width_m = flipper.width_m;
+  out.p_BPivot_m = flipper.p_BPivot_m;
+  out.min_angle_rad = flipper.min_angle_rad;
+  out.max_angle_rad = flipper.max_angle_rad;
+  out.max_flipper_radps = robot.servo.max_speed_radps;
+  return out;
+}
+
+}  // namespace kenaf::physics
