@@ -107,10 +107,11 @@ export function makeRobot(about) {
 
   return {
     root,
-    update(now, mine) {
+    // `now`: p, q, track_m, flipper. `hull`: its colour.
+    update(now, hull) {
       root.position.fromArray(now.p);
       root.quaternion.set(now.q[1], now.q[2], now.q[3], now.q[0]);
-      hullMaterial.color.set(now.fault ? 0xb03a2e : mine ? 0x1d6fb8 : now.client?.silent ? 0x7a7f7b : 0x2f7a60);
+      hullMaterial.color.set(hull);
       // going forward the lower run stands still on the ground, and the outline goes forward there
       tracks.forEach((texture, side) => { texture.offset.x = (now.track_m[side] / STRIPE_M) % 1; });
       arms.forEach(({ arm, texture, track: side, ahead }, i) => {

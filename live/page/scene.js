@@ -39,8 +39,8 @@ export function pose(object, p, q) {
   object.quaternion.set(q[1], q[2], q[3], q[0]);
 }
 
-export async function fetchScene() {
-  const answer = await fetch(address("/scene"));
+export async function fetchScene(path) {
+  const answer = await fetch(address(path));
   if (!answer.ok) throw new Error(await answer.text());
   return answer.arrayBuffer();
 }

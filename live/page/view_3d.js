@@ -1,73 +1,16 @@
-// The world in 3D, from a point of view that follows the chosen robot, stays behind it, or is free.
-import * as THREE from "/three/build/three.module.js";
-import { OrbitControls } from "/three/examples/jsm/controls/OrbitControls.js";
+// The live world in 3D: its robots and the boxes that move.
 import { makeRobot } from "./robot_model.js";
-import { colour, fetchScene, makeBox, makeScene, pose } from "./scene.js";
+import { makeBox, pose } from "./scene.js";
+import { createStage, dispose } from "./stage.js";
 
-const MODES = ["follow", "behind", "free"];
-// A picture that takes so long is made simpler from then on: driving goes on by the same thread, and nobody drives well by
-// pictures that come late.
-const SLOW_MS = 40;
-const QUALITIES = [{ shadows: true, ratio: 2 }, { shadows: false, ratio: 1 }, { shadows: false, ratio: 0.5 }, { shadows: false, ratio: 0.25 }];
-
-function dispose(object) {
-  object.traverse((part) => {
-    part.geometry?.dispose();
-    part.material?.map?.dispose();
-    part.material?.dispose();
-  });
-}
+const HULL = { fault: 0xb03a2e, mine: 0x1d6fb8, silent: 0x7a7f7b, usual: 0x2f7a60 };
 
 // `complain` is told what is missing, in words.
 export function createView(world, chosen, complain) {
-  const canvas = document.getElementById("canvas");
-  const renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
-  const scene = new THREE.Scene(), sky = new THREE.HemisphereLight(0xffffff, 0xb5b0a4, 0.8);
-  const sun = new THREE.DirectionalLight(0xfff4e0, 0.6);
-  const camera = new THREE.PerspectiveCamera(45, 1, 0.05, 300);
-  camera.up.set(0, 0, 1);
-  camera.position.set(-1.6, -1.5, 1.25);
-  const controls = new OrbitControls(camera, canvas);
-  controls.enableKeys = false;   // the keys drive
-  controls.maxPolarAngle = 0.495 * Math.PI;
-  controls.minDistance = 0.4;
-  controls.maxDistance = 60;
-
-  renderer.shadowMap.enabled = true;
-  renderer.shadowMap.type = THREE.PCFSoftShadowMap;
-  sun.castShadow = true;
-  sun.shadow.mapSize.set(1024, 1024);
-  Object.assign(sun.shadow.camera, { left: -3, right: 3, top: 3, bottom: -3, near: 0.5, far: 20 });
-  sun.shadow.bias = -0.001;
-  scene.add(sky, sun, sun.target);
-
   const robots = new Map();
-  let boxes = [], mode = "follow", dirty = true, quality = 0, pictureTook_ms = 0, drawn = 0, drawn_ms = 0;
-  const at = new THREE.Vector3();
-
-  let bytes = null, fixed = new THREE.Group();   // what never moves
-  function dress() {   // in light or dark
-    scene.background = colour("--sky");
-    scene.fog = new THREE.Fog(scene.background, 25, 120);
-    if (bytes) {
-      scene.remove(fixed);
-      dispose(fixed);
-      scene.add(fixed = makeScene(bytes));
-    }
-    boxes = rebuildBoxes();
-    dirty = true;
-  }
-  fetchScene().then((answer) => { bytes = answer; dress(); }).catch((error) => complain(`No world to see: ${error.message}`));
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", dress);
-  controls.addEventListener("change", () => { dirty = true; });
-  new ResizeObserver(() => { dirty = true; }).observe(canvas.parentElement);
-
-  function choose(next) {
-    mode = next;
-    for (const name of MODES) document.getElementById(`view-${name}`).setAttribute("aria-pressed", `${name === mode}`);
-    dirty = true;
-  }
-  for (const name of MODES) document.getElementById(`view-${name}`).addEventListener("click", () => choose(name));
+  let boxes = [];
+  const stage = createStage({ complain, dressed() { boxes = rebuildBoxes(); } });   // the keys drive, not the point of view
+  const { scene } = stage;
 
   function rebuildBoxes() {
     for (const { object } of boxes) { scene.remove(object); dispose(object); }
@@ -91,67 +34,28 @@ export function createView(world, chosen, complain) {
       scene.add(robots.get(id).root);
     }
     boxes = rebuildBoxes();
-    dirty = true;
+    stage.redraw();
   }
 
-  function followRobot() {
-    const robot = chosen();
-    if (!robot?.now) return;
-    at.fromArray(robot.now.p);
-    if (mode !== "free") {
-      camera.position.add(at).sub(controls.target);   // the same look at it, wherever it is
-      controls.target.copy(at);
-    }
-    if (mode === "behind") {
-      const [w, x, y, z] = robot.now.q, yaw = Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
-      const reach = 0.8 * camera.position.distanceTo(at);
-      const wanted = new THREE.Vector3(at.x - reach * Math.cos(yaw), at.y - reach * Math.sin(yaw), at.z + 0.6 * reach);
-      camera.position.lerp(wanted, 0.15);
-    }
-    sun.target.position.copy(at);
-    sun.position.set(at.x - 1, at.y - 5, at.z + 7);
+  function hull(now) {
+    if (now.fault) return HULL.fault;
+    if (now.holder === world.you) return HULL.mine;
+    return now.client?.silent ? HULL.silent : HULL.usual;
   }
 
   function update() {
     for (const [id, model] of robots) {
       const { now } = world.robots.get(id) ?? {};
       model.root.visible = Boolean(now);
-      if (now) model.update(now, now.holder === world.you);
+      if (now) model.update(now, hull(now));
     }
     world.boxes.forEach(({ now }, i) => { if (now && boxes[i]) pose(boxes[i].object, now.p, now.q); });
-    followRobot();
-    dirty = true;
+    const robot = chosen();
+    if (robot?.now) stage.follow(robot.now.p, robot.now.q);
+    stage.redraw();
   }
 
-  function fit() {
-    const width = canvas.parentElement.clientWidth, height = canvas.parentElement.clientHeight;
-    const ratio = Math.min(QUALITIES[quality].ratio, devicePixelRatio), size = renderer.getSize(new THREE.Vector2());
-    if (size.x === width && size.y === height && renderer.getPixelRatio() === ratio) return;
-    renderer.setPixelRatio(ratio);
-    renderer.setSize(width, height, false);
-    camera.aspect = width / Math.max(1, height);
-    camera.updateProjectionMatrix();
-  }
-
-  function draw(now_ms) {
-    requestAnimationFrame(draw);
-    // at most a third of the time
-    if (!dirty || now_ms < drawn_ms + 2 * pictureTook_ms) return;
-    dirty = false;
-    fit();
-    controls.update();
-    const began = performance.now();
-    renderer.render(scene, camera);
-    renderer.getContext().finish();
-    drawn_ms = performance.now();
-    if (++drawn <= 2) return;   // the first ones compile shaders
-    pictureTook_ms += 0.3 * (drawn_ms - began - pictureTook_ms);
-    if (pictureTook_ms < SLOW_MS || quality + 1 === QUALITIES.length) return;
-    sun.castShadow = renderer.shadowMap.enabled = QUALITIES[++quality].shadows;
-    pictureTook_ms = 0;
-  }
-
-  dress();
-  requestAnimationFrame(draw);
+  stage.start();
+  stage.show("/scene");
   return { syncObjects, update };
 }

@@ -1,0 +1,128 @@
+// A canvas with the world in 3D: ground, light, and a point of view that follows a place, stays behind it, or is free.
+// What stands in the world is put there by others (view_3d.js, playback_view.js).
+import * as THREE from "/three/build/three.module.js";
+import { OrbitControls } from "/three/examples/jsm/controls/OrbitControls.js";
+import { colour, fetchScene, makeScene } from "./scene.js";
+
+const MODES = ["follow", "behind", "free"];
+// A picture that takes so long is made simpler from then on: driving goes on by the same thread, and nobody drives well by
+// pictures that come late.
+const SLOW_MS = 40;
+const QUALITIES = [{ shadows: true, ratio: 2 }, { shadows: false, ratio: 1 }, { shadows: false, ratio: 0.5 }, { shadows: false, ratio: 0.25 }];
+
+export function dispose(object) {
+  object.traverse((part) => {
+    part.geometry?.dispose();
+    part.material?.map?.dispose();
+    part.material?.dispose();
+  });
+}
+
+// `dressed()` is called when the colours have changed, with the scene first: `complain` is told what is missing, in words.
+export function createStage({ complain, dressed = () => {}, keys = false }) {
+  const canvas = document.getElementById("canvas");
+  const renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
+  const scene = new THREE.Scene(), sky = new THREE.HemisphereLight(0xffffff, 0xb5b0a4, 0.8);
+  const sun = new THREE.DirectionalLight(0xfff4e0, 0.6);
+  const camera = new THREE.PerspectiveCamera(45, 1, 0.05, 300);
+  camera.up.set(0, 0, 1);
+  camera.position.set(-1.6, -1.5, 1.25);
+  const controls = new OrbitControls(camera, canvas);
+  controls.enableKeys = keys;
+  controls.maxPolarAngle = 0.495 * Math.PI;
+  controls.minDistance = 0.4;
+  controls.maxDistance = 60;
+
+  renderer.shadowMap.enabled = true;
+  renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+  sun.castShadow = true;
+  sun.shadow.mapSize.set(1024, 1024);
+  Object.assign(sun.shadow.camera, { left: -3, right: 3, top: 3, bottom: -3, near: 0.5, far: 20 });
+  sun.shadow.bias = -0.001;
+  scene.add(sky, sun, sun.target);
+
+  let mode = "follow", dirty = true, quality = 0, pictureTook_ms = 0, drawn = 0, drawn_ms = 0;
+  const at = new THREE.Vector3();
+
+  let bytes = null, fixed = new THREE.Group();   // what never moves
+  function dress() {   // in light or dark
+    scene.background = colour("--sky");
+    scene.fog = new THREE.Fog(scene.background, 25, 120);
+    if (bytes) {
+      scene.remove(fixed);
+      dispose(fixed);
+      scene.add(fixed = makeScene(bytes));
+    }
+    dressed();
+    dirty = true;
+  }
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", dress);
+  controls.addEventListener("change", () => { dirty = true; });
+  new ResizeObserver(() => { dirty = true; }).observe(canvas.parentElement);
+
+  function choose(next) {
+    mode = next;
+    for (const name of MODES) document.getElementById(`view-${name}`).setAttribute("aria-pressed", `${name === mode}`);
+    dirty = true;
+  }
+  for (const name of MODES) document.getElementById(`view-${name}`).addEventListener("click", () => choose(name));
+
+  function fit() {
+    const width = canvas.parentElement.clientWidth, height = canvas.parentElement.clientHeight;
+    const ratio = Math.min(QUALITIES[quality].ratio, devicePixelRatio), size = renderer.getSize(new THREE.Vector2());
+    if (size.x === width && size.y === height && renderer.getPixelRatio() === ratio) return;
+    renderer.setPixelRatio(ratio);
+    renderer.setSize(width, height, false);
+    camera.aspect = width / Math.max(1, height);
+    camera.updateProjectionMatrix();
+  }
+
+  function draw(now_ms) {
+    requestAnimationFrame(draw);
+    // at most a third of the time
+    if (!dirty || now_ms < drawn_ms + 2 * pictureTook_ms) return;
+    dirty = false;
+    fit();
+    controls.update();
+    const began = performance.now();
+    renderer.render(scene, camera);
+    renderer.getContext().finish();
+    drawn_ms = performance.now();
+    if (++drawn <= 2) return;   // the first ones compile shaders
+    pictureTook_ms += 0.3 * (drawn_ms - began - pictureTook_ms);
+    if (pictureTook_ms < SLOW_MS || quality + 1 === QUALITIES.length) return;
+    sun.castShadow = renderer.shadowMap.enabled = QUALITIES[++quality].shadows;
+    pictureTook_ms = 0;
+  }
+
+  return {
+    scene,
+    redraw() { dirty = true; },
+    // Shows that world; `path` is where the server has its bytes.
+    show(path) {
+      return fetchScene(path).then((answer) => { bytes = answer; dress(); })
+        .catch((error) => complain(`No world to see: ${error.message}`));
+    },
+    // Looks at the place p = [x, y, z] by the mode; behind it is where a robot with the rotation q = [w, x, y, z] has come from.
+    follow(p, [w, x, y, z]) {
+      at.fromArray(p);
+      if (mode !== "free") {
+        camera.position.add(at).sub(controls.target);   // the same look at it, wherever it is
+        controls.target.copy(at);
+      }
+      if (mode === "behind") {
+        const yaw = Math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z));
+        const reach = 0.8 * camera.position.distanceTo(at);
+        const wanted = new THREE.Vector3(at.x - reach * Math.cos(yaw), at.y - reach * Math.sin(yaw), at.z + 0.6 * reach);
+        camera.position.lerp(wanted, 0.15);
+      }
+      sun.target.position.copy(at);
+      sun.position.set(at.x - 1, at.y - 5, at.z + 7);
+      dirty = true;
+    },
+    start() {
+      dress();
+      requestAnimationFrame(draw);
+    },
+  };
+}
