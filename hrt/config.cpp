@@ -63,6 +63,7 @@ constexpr TextKey kTextKeys[] = {
     {"can_interface", [](hrt_config& c) { return std::span<char>(c.can_interface); }, true},
     {"robot", [](hrt_config& c) { return std::span<char>(c.robot); }, false},
     {"record", [](hrt_config& c) { return std::span<char>(c.record); }, true},
+    {"camera_server", [](hrt_config& c) { return std::span<char>(c.camera_server); }, false},
 };
 
 // Each set_... returns what is wrong with the value, or an empty string once it is set.
@@ -149,7 +150,18 @@ hrt_config default_config() {
   for (const FlagKey& key : kFlagKeys) config.*key.member = 1;
   std::strcpy(config.relay, "127.0.0.1:45454");
   std::strcpy(config.robot, "kenaf");
+  std::strcpy(config.camera_server, "127.0.0.1:5003");
   return config;
+}
+
+hrt_config whole_config(const hrt_config& config) {
+  hrt_config whole = default_config();
+  if (config.size < kFirstConfigSize || config.size > sizeof whole || config.cookie != kCookie) {
+    throw Error(HRT_E_ARGUMENT, "hrt_config: it was not made by hrt_config_default()");
+  }
+  std::memcpy(&whole, &config, config.size);
+  whole.size = sizeof whole;
+  return whole;
 }
 
 void apply_toml(std::string_view text, const std::string& name_for_errors, hrt_config& config) {
@@ -219,9 +231,6 @@ void check_config(const hrt_config& config) {
   const auto check = [](const std::string& wrong) {
     if (!wrong.empty()) throw Error(HRT_E_ARGUMENT, "hrt_config: " + wrong);
   };
-  if (config.size != sizeof(hrt_config) || config.cookie != kCookie) {
-    check("it was not made by hrt_config_default()");
-  }
   hrt_config copy = config;
   for (const NumberKey& key : kNumberKeys) check(set_number(key, config.*key.member, copy));
   for (const TextKey& key : kTextKeys) {

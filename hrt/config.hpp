@@ -3,6 +3,7 @@
 // Thread safety: pure functions, but for load_config, which reads the environment and files.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,13 @@
 namespace kenaf::hrt {
 
 hrt_config default_config();
+
+// The first published size: a program that was compiled then passes a struct that ends there.
+inline constexpr std::size_t kFirstConfigSize = offsetof(hrt_config, camera_server);
+
+// `config` of a program, which may have been compiled with an older and so shorter struct: what it lacks is as by default.
+// Reads config.size bytes. Throws Error(HRT_E_ARGUMENT) where it is not from hrt_config_default().
+hrt_config whole_config(const hrt_config& config);
 
 // The value of an environment variable, or nullptr.
 using Environment = std::function<const char*(const char* name)>;
@@ -27,7 +35,7 @@ void apply_environment(const Environment& environment, hrt_config& config);
 // environment.
 void load_config(const Environment& environment, hrt_config& config);
 
-// Throws Error(HRT_E_ARGUMENT) naming the member that is out of its range.
+// Throws Error(HRT_E_ARGUMENT) naming the member that is out of its range. `config` is a whole one.
 void check_config(const hrt_config& config);
 
 }  // namespace kenaf::hrt

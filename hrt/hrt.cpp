@@ -12,12 +12,15 @@
 #include <mutex>
 #include <new>
 
+#include "hrt/camera_stream.hpp"
 #include "hrt/config.hpp"
 #include "hrt/error.hpp"
+#include "hrt/get_picture.hpp"
 #include "hrt/presentation.hpp"
 #include "hrt/robot.hpp"
 #include "hrt/transport.hpp"
 
+using kenaf::hrt::Cameras;
 using kenaf::hrt::Error;
 using kenaf::hrt::kDegrees;
 using kenaf::hrt::kMillimetres;
@@ -28,7 +31,7 @@ namespace {
 
 // The first published sizes: a program compiled then may pass a struct that ends there.
 constexpr std::size_t kFirstStateSize = sizeof(hrt_state);
-constexpr std::size_t kFirstConfigSize = sizeof(hrt_config);
+constexpr std::size_t kFirstPictureSize = sizeof(hrt_picture);
 
 thread_local char last_error[600];
 
@@ -36,6 +39,7 @@ thread_local char last_error[600];
 struct Holder {
   std::mutex mutex;
   std::shared_ptr<Robot> robot;
+  std::shared_ptr<Cameras> cameras;  // while there is a robot
   bool opening = false;
 };
 Holder& holder() {
@@ -68,12 +72,19 @@ int guarded(Body&& body) noexcept {
   return HRT_E_INTERNAL;
 }
 
-std::shared_ptr<Robot> open_robot() {
+struct Opened {
+  std::shared_ptr<Robot> robot;
+  std::shared_ptr<Cameras> cameras;
+};
+Opened open_all() {
   Holder& h = holder();
   const std::lock_guard lock(h.mutex);
   if (!h.robot)
     throw Error(HRT_E_NOT_INITIALISED, "no robot is open: call hrt_kenaf_init() first and look at what it returns");
-  return h.robot;
+  return {h.robot, h.cameras};
+}
+std::shared_ptr<Robot> open_robot() {
+  return open_all().robot;
 }
 
 void require(bool fine, const std::string& what) {
@@ -102,18 +113,23 @@ void copy_state(const Snapshot& snapshot, hrt_state& out) {
 void open_with(const hrt_config& config) {
   Holder& h = holder();
   std::shared_ptr<Robot> lost;
+  std::shared_ptr<Cameras> lost_cameras;
   {
     const std::lock_guard lock(h.mutex);
     if (h.opening || (h.robot && !h.robot->is_lost())) {
       throw Error(HRT_E_BUSY, h.opening ? "the robot is being opened by another thread" : "the robot is open already");
     }
     lost = std::move(h.robot);
+    lost_cameras = std::move(h.cameras);
     h.opening = true;
   }
+  if (lost_cameras) lost_cameras->close();
   lost.reset();
   std::shared_ptr<Robot> robot;
+  std::shared_ptr<Cameras> cameras;
   try {
     robot = std::make_shared<Robot>(kenaf::hrt::make_transport(), config);
+    cameras = std::make_shared<Cameras>(config);
   } catch (...) {
     const std::lock_guard lock(h.mutex);
     h.opening = false;
@@ -123,11 +139,14 @@ void open_with(const hrt_config& config) {
   std::call_once(registered, [] { std::atexit([] { (void)hrt_close(); }); });
   const std::lock_guard lock(h.mutex);
   h.robot = std::move(robot);
+  h.cameras = std::move(cameras);
   h.opening = false;
 }
 
 constexpr double kMaxDistance_mm = 1e6, kMaxAngle_deg = 36000, kMaxTrack_mmps = 2000, kMaxFlipper_deg = 360;
 constexpr double kMaxWait_s = 3600, kMaxSleep_s = 86400;
+constexpr double kMaxPictureWait_s = 60;
+constexpr std::size_t kMaxCameraName = sizeof(hrt_picture::camera) - 1;
 constexpr double kMinTolerance_deg = 0.1, kMaxTolerance_deg = 90;
 
 }  // namespace
@@ -137,7 +156,7 @@ extern "C" {
 int hrt_config_fill(hrt_config* config) {
   return guarded([&] {
     require(config != nullptr, "config is a null pointer");
-    require(config->size >= kFirstConfigSize && config->size <= sizeof(hrt_config),
+    require(config->size >= kenaf::hrt::kFirstConfigSize && config->size <= sizeof(hrt_config),
             "config.size is wrong: begin with `hrt_config config = hrt_config_default();`");
     hrt_config full = kenaf::hrt::default_config();
     full.size = config->size;
@@ -148,8 +167,11 @@ int hrt_config_fill(hrt_config* config) {
 int hrt_config_load(hrt_config* config) {
   return guarded([&] {
     require(config != nullptr, "config is a null pointer");
-    kenaf::hrt::check_config(*config);
-    kenaf::hrt::load_config([](const char* name) { return std::getenv(name); }, *config);
+    hrt_config whole = kenaf::hrt::whole_config(*config);
+    kenaf::hrt::check_config(whole);
+    kenaf::hrt::load_config([](const char* name) { return std::getenv(name); }, whole);
+    whole.size = config->size;
+    std::memcpy(config, &whole, config->size);
   });
 }
 
@@ -164,20 +186,28 @@ int hrt_kenaf_init(void) {
 int hrt_kenaf_init_with(const hrt_config* config) {
   return guarded([&] {
     require(config != nullptr, "config is a null pointer");
-    kenaf::hrt::check_config(*config);
-    open_with(*config);
+    const hrt_config whole = kenaf::hrt::whole_config(*config);
+    kenaf::hrt::check_config(whole);
+    open_with(whole);
   });
 }
 
 int hrt_close(void) {
   return guarded([] {
     std::shared_ptr<Robot> robot;
+    std::shared_ptr<Cameras> cameras;
     {
       Holder& h = holder();
       const std::lock_guard lock(h.mutex);
       robot = std::move(h.robot);
+      cameras = std::move(h.cameras);
     }
-    if (robot) robot->close();
+    // the robot first: it stops
+    const int code = guarded([&] {
+      if (robot) robot->close();
+    });
+    if (cameras) cameras->close();
+    if (code != HRT_OK) throw Error(code, std::string(last_error));
   });
 }
 
@@ -302,6 +332,33 @@ int hrt_show_status(void) {
     if (!snapshot.warning.empty()) text += "  without   " + snapshot.warning + "\n";
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
+    if (code != HRT_OK) throw Error(code, std::string(last_error));
+  });
+}
+
+int hrt_get_picture(const char* camera, int format, void* data, size_t capacity, double timeout_s,
+                    hrt_picture* picture) {
+  return guarded([&] {
+    require(picture != nullptr, "hrt_get_picture: picture is a null pointer");
+    require(picture->size >= kFirstPictureSize && picture->size <= sizeof(hrt_picture),
+            "picture.size is wrong: begin with `hrt_picture picture = hrt_picture_init();`");
+    const std::string name(camera == nullptr ? "" : camera);
+    require(name.size() <= kMaxCameraName,
+            fmt::format("hrt_get_picture: a camera's name has at most {} bytes", kMaxCameraName));
+    require(format == HRT_PICTURE_RGB || format == HRT_PICTURE_JPEG,
+            fmt::format("hrt_get_picture: there is no format {}", format));
+    require(data != nullptr || capacity == 0, "hrt_get_picture: data is a null pointer");
+    require_range(timeout_s, 0, kMaxPictureWait_s, "hrt_get_picture: timeout_s");
+    const Opened opened = open_all();
+    // a program of an older header has a shorter struct
+    hrt_picture full = hrt_picture_init();
+    std::memcpy(&full, picture, picture->size);
+    const int code = guarded([&] {
+      kenaf::hrt::get_picture(*opened.robot, *opened.cameras, name, format,
+                              {static_cast<std::uint8_t*>(data), capacity}, timeout_s, full);
+    });
+    full.size = picture->size;
+    std::memcpy(picture, &full, picture->size);
     if (code != HRT_OK) throw Error(code, std::string(last_error));
   });
 }

@@ -41,6 +41,7 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
     if (!first) throw Error(HRT_E_INTERNAL, "the transport was interrupted while it was being opened");
     // The first cycle is known before the caller goes on.
     measured_ = *first;
+    measured_at_ = Clock::now();
     estimate_ = estimator_.update(*first);
     warning_ = transport_->warning();
     last_call_t_s_ = estimate_.t_s;
@@ -114,6 +115,32 @@ void Robot::wait_cycle() {
 
 bool Robot::motion_active() const {
   return std::ranges::any_of(calls_, [](const Call* call) { return call->kind == Kind::motion; });
+}
+
+void Robot::wait_beside(const std::function<bool()>& wait_a_little) {
+  Call call{.kind = Kind::beside, .step = [] { return std::optional<Verdict>(); }};
+  std::unique_lock lock = lock_open();
+  calls_.push_back(&call);
+  std::erase_if(due_, [&](const Due& due) { return due.thread == call.owner; });
+  program_acted_.notify_one();
+  const auto leave = [&] {
+    std::erase(calls_, &call);
+    last_call_t_s_ = estimate_.t_s;
+    if (!call.verdict) due_.push_back({call.owner});
+  };
+  try {
+    for (bool done = false; !done && !call.verdict;) {
+      lock.unlock();
+      done = wait_a_little();
+      lock.lock();
+    }
+  } catch (...) {
+    lock.lock();
+    leave();
+    throw;
+  }
+  leave();
+  if (call.verdict) throw Error(call.verdict->code, call.verdict->text);
 }
 
 void Robot::begin_motion() {
@@ -194,7 +221,8 @@ void Robot::set_flippers(std::uint8_t mask, const std::array<double, kFlipperCou
 
 void Robot::stop() {
   const std::unique_lock lock = lock_open();
-  end_calls([](const Call& call) { return call.kind != Kind::time; }, HRT_E_STOPPED, "hrt_stop() ended this call");
+  end_calls([](const Call& call) { return call.kind == Kind::motion || call.kind == Kind::flippers; }, HRT_E_STOPPED,
+            "hrt_stop() ended this call");
   goal_heading_rad_.reset();
   user_track_mps_ = {};
   for (std::size_t i = 0; i < kFlipperCount; ++i) {
@@ -227,6 +255,16 @@ void Robot::snapshot(Snapshot& out) {
 bool Robot::is_lost() const {
   const std::lock_guard lock(mutex_);
   return failure_.has_value();
+}
+
+void Robot::note_call() {
+  (void)lock_open();
+}
+
+std::optional<double> Robot::robot_time_at(Clock::time_point moment) const {
+  const std::lock_guard lock(mutex_);
+  if (connection_.lockstep) return std::nullopt;
+  return measured_.robot_time_s + std::chrono::duration<double>(moment - measured_at_).count();
 }
 
 void Robot::record_start(const std::string& path) {
@@ -299,6 +337,7 @@ std::optional<DriveCommand> Robot::answer(const relay::State& state) {
   if (state.frame != estimate_.frame) {  // the first one was taken by the constructor
     lost_cycles_ += state.frame - estimate_.frame - 1;
     measured_ = state;
+    measured_at_ = Clock::now();
     estimate_ = estimator_.update(state);
     warning_ = transport_->warning();
     if (recorder_) recorder_->add(state, command_);

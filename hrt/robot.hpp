@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -53,6 +54,9 @@ class Robot {
   void wait_flippers(double tolerance_rad, double timeout_s);
   void sleep(double seconds);
   void wait_cycle();
+  // For what no cycle brings: calls `wait_a_little`, which takes some tens of milliseconds at most, until it returns true. Robot
+  // time runs on meanwhile, and the program counts as calling.
+  void wait_beside(const std::function<bool()>& wait_a_little);
 
   void set_tracks(double left_mps, double right_mps);
   void set_flippers(std::uint8_t mask, const std::array<double, kFlipperCount>& angle_rad);
@@ -64,6 +68,11 @@ class Robot {
   // Fills `out` also where the link is lost; throws afterwards then.
   void snapshot(Snapshot& out);
   bool is_lost() const;
+  // Throws where the link is lost or the robot closed; else the program has called.
+  void note_call();
+  // The robot time of a moment of the wall clock that has just been, by the newest cycle; nullopt in lock step, where robot
+  // time stands and runs as it likes.
+  std::optional<double> robot_time_at(std::chrono::steady_clock::time_point moment) const;
 
   // Stops the robot and ends every call with HRT_E_CLOSED; a recording ends with the cycle that is known now. Throws
   // where the recording is not whole.
@@ -75,7 +84,7 @@ class Robot {
     int code;
     std::string text;
   };
-  enum class Kind { motion, flippers, time };
+  enum class Kind { motion, flippers, time, beside };
   // A blocking call; it lives on the stack of the thread that waits in it.
   struct Call {
     Kind kind;
@@ -120,6 +129,7 @@ class Robot {
   std::optional<Error> failure_;  // link lost or closed: set once
   bool closing_ = false;
   relay::State measured_{};
+  std::chrono::steady_clock::time_point measured_at_;  // when it was taken
   Estimator estimator_;
   Estimate estimate_;
   std::uint64_t lost_cycles_ = 0;

@@ -1,7 +1,6 @@
 #include "libkenaf_sim/relay_transport.hpp"
 
 #include <fmt/format.h>
-#include <netdb.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/random.h>
@@ -10,11 +9,10 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
-#include <memory>
 
 #include "hrt/error.hpp"
+#include "libkenaf_sim/host_port.hpp"
 
 namespace kenaf::sim {
 namespace {
@@ -86,28 +84,7 @@ hrt::Connection RelayTransport::open(const hrt_config& config) {
 }
 
 void RelayTransport::connect_socket() {
-  const std::size_t colon = relay_.rfind(':');
-  std::string host = relay_.substr(0, colon);
-  const std::string port = colon == std::string::npos ? "" : relay_.substr(colon + 1);
-  unsigned number = 0;
-  const auto [end, wrong_digit] = std::from_chars(port.data(), port.data() + port.size(), number);
-  if (host.empty() || wrong_digit != std::errc{} || end != port.data() + port.size() || number < 1 || number > 65535) {
-    throw Error(HRT_E_CONFIG, fmt::format("relay must be HOST:PORT with a port from 1 to 65535, not '{}'", relay_));
-  }
-  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);  // [::1]:45454
-  const addrinfo hints{.ai_flags = AI_NUMERICSERV,
-                       .ai_family = AF_UNSPEC,
-                       .ai_socktype = SOCK_DGRAM,
-                       .ai_protocol = 0,
-                       .ai_addrlen = 0,
-                       .ai_addr = nullptr,
-                       .ai_canonname = nullptr,
-                       .ai_next = nullptr};
-  addrinfo* found = nullptr;
-  if (const int wrong = getaddrinfo(host.c_str(), port.c_str(), &hints, &found); wrong != 0) {
-    throw Error(HRT_E_CONFIG, fmt::format("relay '{}': {}", relay_, gai_strerror(wrong)));
-  }
-  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> addresses(found, &freeaddrinfo);
+  const Addresses found = look_up("relay", relay_, SOCK_DGRAM);
   socket_ = socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   if (socket_ < 0 || connect(socket_, found->ai_addr, found->ai_addrlen) < 0) {
     throw Error(HRT_E_LINK, fmt::format("no way to the relay at {}: {}", relay_, std::strerror(errno)));

@@ -43,6 +43,10 @@
  *   wait for the robot. The library runs threads of its own, with all signals blocked. A child of fork() must
  *   not use the robot of its parent.
  *
+ * Pictures
+ *   hrt_get_picture gives the newest picture of one of the robot's cameras, and how old it is. Pictures are no part of
+ *   the cycle and never delay it; they come by wall-clock time, which is why their time limit counts that.
+ *
  * Errors
  *   A function returns HRT_OK (0) or one of the negative HRT_E... values, and explains in hrt_last_error(). No function
  *   ends the process, throws through this border, or crashes on a null pointer: that is HRT_E_ARGUMENT. A function
@@ -92,7 +96,7 @@ enum {
   HRT_E_STUCK = -8,           /* the sensors show no progress, or a track's current stayed above stuck_current_a */
   HRT_E_STOPPED = -9,         /* hrt_stop or hrt_set_tracks of another thread ended this motion */
   HRT_E_CLOSED = -10,         /* hrt_close of another thread ended this call */
-  HRT_E_DEVICE = -11,         /* no such device, it does not answer, or it cannot do what was asked */
+  HRT_E_DEVICE = -11,         /* no such device or camera, it does not answer, or it cannot do what was asked */
   HRT_E_RECORD = -12,         /* the recording could not be written, or is incomplete */
   HRT_E_INTERNAL = -13        /* out of memory or threads, or a defect of the library */
 };
@@ -154,6 +158,9 @@ typedef struct hrt_config {
 
   /* Recording. */
   char record[1024];      /* a file: hrt_kenaf_init starts a recording into it, see hrt_record_start; "" = none */
+
+  /* libkenaf_sim: pictures. */
+  char camera_server[128]; /* HOST:PORT of the world server's cameras, default 127.0.0.1:5003; see hrt_get_picture */
 } hrt_config;
 
 /* Fills *config with the defaults. config->size must be set; hrt_config_default() does both.
@@ -338,6 +345,87 @@ int hrt_get_warning(char* text, size_t size);
 /* Prints the newest state to standard output, for people, in a few lines. HRT_E_NOT_INITIALISED; HRT_E_LINK: printed
  * all the same, with the last state that arrived. */
 int hrt_show_status(void);
+
+/* ---- Pictures ----
+ *
+ * What the robot's cameras see. Which there are stands in the robot's description ([[camera]]): for Kenaf "Camera" at the
+ * front and "BirdsEye" above. libkenaf_sim takes their pictures from the world server's image port (camera_server),
+ * libkenaf_real from the video device that the description names (V4L2).
+ *
+ *     static unsigned char pixels[640 * 480 * 3];
+ *     hrt_picture picture = hrt_picture_init();
+ *     while (hrt_get_picture("Camera", HRT_PICTURE_RGB, pixels, sizeof pixels, 1, &picture) == HRT_OK)
+ *       steer_by(pixels, picture.width, picture.height, picture.age_ms);     // each picture once, always the newest
+ *
+ * Cost. The first call for a camera opens a connection and a thread of its own, hrt_close closes them. A program that
+ * asks for no picture has neither; no cycle ever waits for one. Pictures flow from the first call on and cease 2 s (wall
+ * clock) after the last; the next call lets them flow again, which takes a real camera up to a second.
+ *
+ * Time. Pictures are made, sent and read in wall-clock time, so timeout_s and age_ms count that, and which picture a
+ * call gets may differ from run to run. A call that has to wait is a blocking call: robot time runs on, track speeds
+ * hold, and in lock step robot time waits afterwards for the program's next call. A call that finds its picture there, or has
+ * timeout_s = 0, does not block, and is no more to lock step than the program's own work. So a control loop of
+ * hrt_wait_cycle asks with timeout_s = 0 and takes HRT_E_TIMEOUT for "no new one". */
+
+/* What hrt_get_picture writes to `data`. Both: rows from the top, each from the left. */
+enum {
+  HRT_PICTURE_RGB = 0, /* 3 bytes a pixel: red, green, blue, 0 to 255; no padding: 3 * width * height bytes */
+  HRT_PICTURE_JPEG = 1 /* a whole JPEG file. One that the camera made is handed on byte by byte (a webcam's may lack the
+                          standard Huffman tables, as Motion JPEG allows); else quality jpeg_quality of the description */
+};
+
+/* What is known of a picture. */
+typedef struct hrt_picture {
+  uint32_t size;         /* sizeof(hrt_picture) of the program, so that the struct can grow: see hrt_picture_init() */
+  int32_t format;        /* HRT_PICTURE_... of `data` */
+  int32_t width, height; /* pixels */
+  uint64_t number;       /* of this picture at this camera; grows, a gap counts those that this program did not get.
+                            Also an argument: a picture with another number than this is wanted; 0 = any */
+  double time_s;         /* robot time of its exposure. libkenaf_real: from age and cycle, right within a cycle;
+                            -1: not known */
+  double age_ms;         /* from its exposure to the return of this call, wall clock, never less than it really was;
+                            -1: not known. libkenaf_sim: the server's word of the age at sending, and all the time since
+                            the picture was requested; so up to one picture's period too much. libkenaf_real: from the
+                            driver's time stamp; where it marks the end of a picture, its period is added */
+  size_t bytes;          /* of `data`: written, or needed where `capacity` is too small */
+  char camera[64];       /* the camera's name; "" where the server does not say it */
+} hrt_picture;
+
+/* One that is ready for hrt_get_picture and has had no picture yet. One for each camera and loop; begin anew after
+ * hrt_kenaf_init, for cameras count from their own beginning. */
+static inline hrt_picture hrt_picture_init(void) {
+  hrt_picture picture;
+  memset(&picture, 0, sizeof picture);
+  picture.size = (uint32_t)sizeof picture;
+  return picture;
+}
+
+/* Writes the newest picture of `camera` to `data` and what is known of it to *picture.
+ *
+ * camera    a name from the robot's description, at most 63 bytes; null or "": the robot's first camera. libkenaf_sim:
+ *           of the robot that was placed last, unless the name is "ROBOT/CAMERA" as the world server names robots.
+ * format    HRT_PICTURE_RGB or HRT_PICTURE_JPEG.
+ * data      `capacity` bytes; null with capacity 0 asks how many are needed. JPEG files differ in size; one is hardly
+ *           ever larger than 3 * width * height bytes. Its contents are unspecified where the call fails.
+ * timeout_s 0 to 60, wall clock: how long to wait until there is a picture whose number is not picture->number.
+ *
+ * HRT_OK: *picture and `data` are of the same picture.
+ * HRT_E_TIMEOUT: no other picture by then; *picture is unchanged. Also while the connection is still being made.
+ * HRT_E_ARGUMENT: picture null or its size wrong, data null, no such format, a number out of its range. Or `capacity` is
+ *   too small: picture->bytes, width, height, format and camera say for what, all else is unchanged, so that the next call gets
+ *   this picture or a newer one.
+ * HRT_E_DEVICE: no such camera: hrt_last_error() names those there are. libkenaf_real: the description gives it no
+ *   device, or the device is not there, in use, unplugged, silent, no camera, or has no such resolution. Either: the
+ *   picture is damaged or larger than 4096 x 4096.
+ * HRT_E_LINK: the robot's link is lost; or (libkenaf_sim) nobody serves pictures at camera_server, it falls silent
+ *   or sends something else.
+ * HRT_E_CONFIG: camera_server is no HOST:PORT, or (libkenaf_real) a [[camera]] of the description is wrong.
+ * HRT_E_CLOSED; HRT_E_NOT_INITIALISED.
+ * After HRT_E_DEVICE, HRT_E_CONFIG and HRT_E_LINK by a camera the robot goes on, and the next call opens the camera anew.
+ *
+ * From any thread; hrt_stop does not end it. Decoding is done in the calling thread. */
+int hrt_get_picture(const char* camera, int format, void* data, size_t capacity, double timeout_s,
+                    hrt_picture* picture);
 
 /* ---- Recording ---- */
 

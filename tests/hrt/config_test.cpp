@@ -1,6 +1,8 @@
 // Configuration: defaults, TOML, environment, ranges, and where an error is said to be.
 #include <catch2/catch.hpp>
+#include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -58,6 +60,27 @@ TEST_CASE("the defaults are the ones the header states, and valid") {
   CHECK(std::string(config.can_interface).empty());
   CHECK(std::string(config.robot) == "kenaf");
   CHECK(config.record[0] == '\0');
+  CHECK(std::string(config.camera_server) == "127.0.0.1:5003");
+}
+
+TEST_CASE("a program of the first header has a shorter config, and what it lacks is as by default") {
+  // Its hrt_config ended where camera_server begins now; what lies behind it is not the library's.
+  alignas(hrt_config) unsigned char memory[sizeof(hrt_config)];
+  std::memset(memory, 0x5a, sizeof memory);
+  auto& config = reinterpret_cast<hrt_config&>(memory);
+  config.size = offsetof(hrt_config, camera_server);
+  REQUIRE(hrt_config_fill(&config) == HRT_OK);
+  const kenaf::support::TemporaryFolder folder;
+  std::ofstream(folder.path() / "mine.toml") << "period_s = 0.02\ncamera_server = \"10.0.0.2:5003\"\n";
+  REQUIRE(setenv("KENAF_CONFIG", (folder.path() / "mine.toml").c_str(), 1) == 0);
+  CHECK(hrt_config_load(&config) == HRT_OK);
+  REQUIRE(unsetenv("KENAF_CONFIG") == 0);
+  CHECK(config.size == offsetof(hrt_config, camera_server));
+  CHECK(config.period_s == 0.02);
+  for (std::size_t i = config.size; i < sizeof memory; ++i) REQUIRE(memory[i] == 0x5a);
+  CHECK(std::string(whole_config(config).camera_server) == "127.0.0.1:5003");
+  config.size = sizeof config + 8;
+  CHECK_THROWS_WITH(whole_config(config), Catch::Contains("hrt_config_default()"));
 }
 
 TEST_CASE("a file sets every kind of key") {

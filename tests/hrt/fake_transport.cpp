@@ -9,11 +9,18 @@ namespace kenaf::hrt {
 namespace {
 
 std::function<std::unique_ptr<Transport>()> maker;
+std::function<std::unique_ptr<Camera>(const hrt_config&, const std::string&)> camera_maker;
 
 }  // namespace
 
 std::unique_ptr<Transport> make_transport() {
   return maker();
+}
+std::string resolve_camera(const hrt_config&, const std::string& name) {
+  return name;
+}
+std::unique_ptr<Camera> make_camera(const hrt_config& config, const std::string& camera) {
+  return camera_maker(config, camera);
 }
 extern const char* const kLibraryName = "sim";
 
@@ -21,6 +28,10 @@ namespace test {
 
 void use_transport(std::function<std::unique_ptr<Transport>()> make) {
   maker = std::move(make);
+}
+
+void use_cameras(std::function<std::unique_ptr<Camera>(const hrt_config&, const std::string&)> make) {
+  camera_maker = std::move(make);
 }
 
 std::shared_ptr<FakeRobot> use_fake_robot(const PlantSettings& settings) {

@@ -7,8 +7,10 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
+#include "hrt/camera.hpp"
 #include "hrt/transport.hpp"
 #include "tests/hrt/plant.hpp"
 
@@ -48,6 +50,8 @@ class FakeTransport final : public Transport {
 
 // What make_transport() makes from now on.
 void use_transport(std::function<std::unique_ptr<Transport>()> make);
+// What make_camera() makes from now on; every name stands for itself.
+void use_cameras(std::function<std::unique_ptr<Camera>(const hrt_config& config, const std::string& camera)> make);
 // A fresh robot that the next hrt_kenaf_init opens.
 std::shared_ptr<FakeRobot> use_fake_robot(const PlantSettings& settings = {});
 

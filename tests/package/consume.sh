@@ -60,5 +60,8 @@ for file in usr/bin/kenaf-world usr/bin/kenaf-relayd usr/bin/kenaf-draw usr/bin/
             libkenaf_sim.so.0 libkenaf_real.so.0 kenafConfig.cmake kenaf-sim.pc; do
   grep -q "$file" "$work/contents" || { cat "$work/contents"; fail "$file is not in the package"; }
 done
-dpkg-deb --field "$package" Depends | grep -q libbullet || fail "the package does not depend on Bullet"
+depends=$(dpkg-deb --field "$package" Depends)
+for library in libbullet libturbojpeg0; do
+  grep -q "$library" <<<"$depends" || fail "the package does not depend on $library"
+done
 echo "consume: find_package, pkg-config and $(basename "$package") work"

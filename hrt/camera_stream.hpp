@@ -1,0 +1,75 @@
+// The newest picture of each open camera, and the threads that fetch them while they are asked for.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "hrt/camera.hpp"
+#include "hrt/error.hpp"
+#include "kenaf/hrt.h"
+
+namespace kenaf::hrt {
+
+// One camera, from its opening to its first failure. Thread safety: every function from any thread.
+class CameraStream {
+ public:
+  using Clock = std::chrono::steady_clock;
+  // Pictures are fetched until so long after the last wait().
+  static constexpr std::chrono::seconds kIdleAfter{2};
+
+  explicit CameraStream(std::unique_ptr<Camera> camera);
+  ~CameraStream();  // closes
+  CameraStream(const CameraStream&) = delete;
+  CameraStream& operator=(const CameraStream&) = delete;
+
+  // The newest picture whose number is not `had` (0: any), waited for until `until`; null: there was none. Throws the Error
+  // that ended the stream, also one that came between two calls.
+  std::shared_ptr<const CameraPicture> wait(std::uint64_t had, Clock::time_point until);
+
+  // Every wait() throws Error(HRT_E_CLOSED) from now on.
+  void close();
+
+ private:
+  void run();
+  void fetch();
+  bool wait_until_wanted();  // false: closed
+
+  std::unique_ptr<Camera> camera_;
+  std::mutex mutex_;  // guards all below
+  std::condition_variable changed_, wanted_;
+  std::shared_ptr<const CameraPicture> newest_;
+  std::optional<Error> failure_;  // set once
+  bool closing_ = false;
+  Clock::time_point wanted_until_;
+  std::mutex close_mutex_;  // one close at a time
+  std::thread thread_;
+};
+
+// All cameras of an open robot, by name. Thread safety: every function from any thread.
+class Cameras {
+ public:
+  explicit Cameras(const hrt_config& config) : config_(config) {}
+
+  // The stream of a camera, opened where it is not. Throws Error: there is no such camera, or closed.
+  std::shared_ptr<CameraStream> stream(const std::string& name);
+  // It has failed: the next stream() of this camera opens it anew.
+  void drop(const std::shared_ptr<CameraStream>& stream);
+  void close();
+
+ private:
+  const hrt_config config_;
+  std::mutex mutex_;
+  bool closed_ = false;
+  std::map<std::string, std::shared_ptr<CameraStream>> streams_;  // by resolved name
+  std::map<std::string, std::string> resolved_;                   // of the names in streams_, by the name asked for
+};
+
+}  // namespace kenaf::hrt

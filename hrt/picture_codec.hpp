@@ -1,0 +1,27 @@
+// Between what cameras give and what hrt.h hands out: JPEG by TurboJPEG, YUYV. Thread safety: pure functions.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "hrt/camera.hpp"
+
+namespace kenaf::hrt {
+
+struct PictureSize {
+  int width, height;  // 1 to kMaxSide
+  std::size_t rgb_bytes() const { return std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+};
+// What a file claims to hold is not believed beyond this: decoding a progressive one takes 6 bytes a pixel.
+inline constexpr int kMaxSide = 4096;
+
+// Each throws Error(HRT_E_DEVICE): what is wrong with the picture.
+PictureSize picture_size(const CameraPicture& picture);
+// `rgb` has rgb_bytes() bytes.
+void write_rgb(const CameraPicture& picture, std::span<std::uint8_t> rgb);
+// The file; `made` holds it where it has to be made.
+std::span<const std::uint8_t> jpeg_file(const CameraPicture& picture, std::vector<std::uint8_t>& made);
+
+}  // namespace kenaf::hrt

@@ -1,0 +1,37 @@
+#include "libkenaf_sim/host_port.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+#include "hrt/error.hpp"
+
+namespace kenaf::sim {
+
+Addresses look_up(const char* key, const std::string& host_port, int socket_type) {
+  const std::size_t colon = host_port.rfind(':');
+  std::string host = host_port.substr(0, colon);
+  const std::string port = colon == std::string::npos ? "" : host_port.substr(colon + 1);
+  unsigned number = 0;
+  const auto [end, wrong_digit] = std::from_chars(port.data(), port.data() + port.size(), number);
+  if (host.empty() || wrong_digit != std::errc{} || end != port.data() + port.size() || number < 1 || number > 65535) {
+    throw hrt::Error(HRT_E_CONFIG,
+                     fmt::format("{} must be HOST:PORT with a port from 1 to 65535, not '{}'", key, host_port));
+  }
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
+  const addrinfo hints{.ai_flags = AI_NUMERICSERV,
+                       .ai_family = AF_UNSPEC,
+                       .ai_socktype = socket_type,
+                       .ai_protocol = 0,
+                       .ai_addrlen = 0,
+                       .ai_addr = nullptr,
+                       .ai_canonname = nullptr,
+                       .ai_next = nullptr};
+  addrinfo* found = nullptr;
+  if (const int wrong = getaddrinfo(host.c_str(), port.c_str(), &hints, &found); wrong != 0) {
+    throw hrt::Error(HRT_E_CONFIG, fmt::format("{} '{}': {}", key, host_port, gai_strerror(wrong)));
+  }
+  return {found, &freeaddrinfo};
+}
+
+}  // namespace kenaf::sim

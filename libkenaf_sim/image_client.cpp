@@ -1,0 +1,200 @@
+#include "libkenaf_sim/image_client.hpp"
+
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "hrt/error.hpp"
+#include "libkenaf_sim/host_port.hpp"
+
+namespace kenaf::sim {
+namespace {
+
+// A Kenaf server answers 'J' within a second, if only with the old picture again.
+constexpr std::chrono::milliseconds kOldServerAfter{1000};
+// Words of a server that are passed on.
+constexpr std::size_t kMaxRefusalBytes = 400;
+
+std::string printable(std::span<const std::uint8_t> words) {
+  std::string text(words.begin(),
+                   words.begin() + static_cast<std::ptrdiff_t>(std::min(words.size(), kMaxRefusalBytes)));
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }, ' ');
+  return text;
+}
+
+}  // namespace
+
+ImageClient::ImageClient(const hrt_config& config, const std::string& camera)
+    : server_(config.camera_server),
+      camera_(camera),
+      patience_(config.connect_timeout_s),
+      interrupt_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (interrupt_ < 0) throw hrt::Error(HRT_E_INTERNAL, fmt::format("eventfd: {}", std::strerror(errno)));
+}
+
+ImageClient::~ImageClient() {
+  if (socket_ >= 0) ::close(socket_);
+  ::close(interrupt_);
+}
+
+void ImageClient::interrupt() {
+  const std::uint64_t one = 1;
+  // An eventfd takes it unless its count overflows, and then it is readable already.
+  [[maybe_unused]] const ssize_t written = write(interrupt_, &one, sizeof one);
+}
+
+ImageClient::Ready ImageClient::wait_for(short events, Clock::time_point until) const {
+  for (;;) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+    std::array<pollfd, 2> watched{{{socket_, events, 0}, {interrupt_, POLLIN, 0}}};
+    const int ready = poll(watched.data(), watched.size(), static_cast<int>(std::max<std::int64_t>(left, 0)));
+    if (watched[1].revents != 0) return Ready::interrupted;
+    if (ready > 0) return Ready::yes;
+    if (left <= 0) return Ready::time_is_up;
+  }
+}
+
+void ImageClient::open() {
+  const Addresses found = look_up("camera_server", server_, SOCK_STREAM);
+  const Clock::time_point until = Clock::now() + std::chrono::duration_cast<Clock::duration>(patience_);
+  std::string why;
+  for (const addrinfo* address = found.get(); address != nullptr; address = address->ai_next) {
+    socket_ = socket(address->ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    int wrong = socket_ < 0 || (connect(socket_, address->ai_addr, address->ai_addrlen) < 0 && errno != EINPROGRESS)
+                    ? errno
+                    : 0;
+    if (wrong == 0) {
+      const Ready ready = wait_for(POLLOUT, until);
+      if (ready == Ready::interrupted) return;
+      socklen_t size = sizeof wrong;
+      if (ready == Ready::time_is_up) {
+        wrong = ETIMEDOUT;
+      } else {
+        getsockopt(socket_, SOL_SOCKET, SO_ERROR, &wrong, &size);
+      }
+    }
+    if (wrong == 0) {
+      const int on = 1;
+      setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+      // Nothing but requests for pictures goes to a server that is not asked for a certain one: an old one knows
+      // nothing else.
+      if (!camera_.empty()) send_all(image::select_request(camera_));
+      return;
+    }
+    why = std::strerror(wrong);
+    if (socket_ >= 0) ::close(std::exchange(socket_, -1));
+  }
+  throw hrt::Error(
+      HRT_E_LINK,
+      fmt::format("nobody serves camera pictures at {}: {}; start kenaf-world or kenaf-relayd --embedded, or set "
+                  "camera_server in kenaf.toml or KENAF_CAMERA_SERVER",
+                  server_, why));
+}
+
+void ImageClient::lose(const std::string& why) const {
+  throw hrt::Error(HRT_E_LINK, fmt::format("the camera server at {} {}; the next call connects anew", server_, why));
+}
+
+void ImageClient::send_all(std::string_view bytes) {
+  // Some bytes into an empty buffer of the kernel's: that they do not fit means that the server has not read for long.
+  const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  if (sent < 0) lose(fmt::format("is gone: {}", std::strerror(errno)));
+  if (static_cast<std::size_t>(sent) != bytes.size()) lose("does not take requests");
+}
+
+void ImageClient::request() {
+  requested_at_ = Clock::now();
+  send_all(is_old_server_ ? image::kOldRequest : image::kJpegRequest);
+}
+
+bool ImageClient::receive_some() {
+  const ssize_t size = recv(socket_, buffer_.data(), buffer_.size(), 0);
+  if (size < 0 && (errno == EAGAIN || errno == EINTR)) return false;
+  if (size < 0) lose(fmt::format("is gone: {}", std::strerror(errno)));
+  if (size == 0) lose("closed the connection");
+  unread_ = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(size));
+  return true;
+}
+
+bool ImageClient::read_answer() {
+  const auto patience = std::chrono::duration_cast<Clock::duration>(patience_);
+  Clock::time_point until = requested_at_ + std::max<Clock::duration>(patience, kOldServerAfter + patience / 2);
+  bool may_be_old = !is_kenaf_server_ && !is_old_server_;
+  for (;;) {
+    try {
+      if (reader_.take(unread_)) return true;
+    } catch (const std::runtime_error& error) {
+      lose(fmt::format("sent {}", error.what()));
+    }
+    const Clock::time_point old_at = requested_at_ + kOldServerAfter;
+    switch (wait_for(POLLIN, may_be_old ? std::min(old_at, until) : until)) {
+      case Ready::interrupted:
+        return false;
+      case Ready::yes:
+        // A large picture over a slow network takes its time; silence does not.
+        if (receive_some()) until = std::max(until, Clock::now() + patience);
+        break;
+      case Ready::time_is_up:
+        if (!may_be_old || !reader_.is_between())
+          lose(fmt::format("says nothing{}", reader_.is_between() ? "" : " more in the middle of a picture"));
+        may_be_old = false;
+        is_old_server_ = true;
+        request();
+        until = requested_at_ + patience;
+    }
+  }
+}
+
+std::optional<hrt::CameraPicture> ImageClient::next() {
+  if (socket_ < 0) return std::nullopt;  // interrupted while it was being opened
+  request();
+  if (!read_answer()) return std::nullopt;
+  return picture_of_answer();
+}
+
+hrt::CameraPicture ImageClient::picture_of_answer() {
+  image::Answer answer = std::exchange(reader_.answer, {});
+  if (answer.type == image::kRefused)
+    throw hrt::Error(HRT_E_DEVICE, fmt::format("{}: {}", camera_.empty() ? "no camera" : "camera '" + camera_ + "'",
+                                               printable(answer.data)));
+  hrt::CameraPicture picture;
+  if (answer.type == image::kRaw) {
+    std::optional<image::RawPicture> raw = image::read_raw_picture(answer.data);
+    if (!raw) lose(fmt::format("sent a raw picture of {} bytes, which are not those of its size", answer.data.size()));
+    picture.encoding = hrt::CameraPicture::Encoding::rgb;
+    picture.width = raw->width;
+    picture.height = raw->height;
+    picture.bytes = std::move(raw->rgb);
+  } else {
+    if (!image::is_whole_jpeg(answer.data)) lose("sent a picture that is no whole JPEG");
+    picture.bytes = std::move(answer.data);
+  }
+  std::optional<image::FrameNote> note;
+  if (picture.encoding == hrt::CameraPicture::Encoding::jpeg) note = image::read_frame_note(picture.bytes);
+  is_kenaf_server_ = is_kenaf_server_ || note;
+  if (!note) {
+    picture.number = ++counted_;
+    return picture;
+  }
+  picture.number = note->number;
+  picture.robot_time_s = note->robot_time_s;
+  picture.camera = note->camera;
+  // It was sent after it was requested: counted from then, the age is never too small.
+  const std::chrono::duration<double, std::milli> age(note->age_ms);
+  constexpr std::chrono::hours kOldest{24 * 365};
+  picture.exposed_at =
+      requested_at_ - (age < kOldest ? std::chrono::duration_cast<Clock::duration>(age) : Clock::duration(kOldest));
+  return picture;
+}
+
+}  // namespace kenaf::sim

@@ -1,0 +1,60 @@
+// A camera of the simulated robot: TCP to the world server's image port and back. protocol/image_message.hpp has the wire format.
+//
+// One request is under way at a time, so a picture is asked for when there is a use for it, and none waits in a buffer and grows
+// old. USARSim image servers that know neither 'J' nor frame notes are understood: where a first 'J' stays unanswered for a
+// second, 'OK' is asked with from then on; pictures are counted here then, and their age and robot time are not known.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "hrt/camera.hpp"
+#include "kenaf/hrt.h"
+#include "protocol/image_message.hpp"
+
+namespace kenaf::sim {
+
+class ImageClient final : public hrt::Camera {
+ public:
+  // `camera`: "ROBOT/CAMERA", "CAMERA" of the robot that was placed last, or "": the server's own choice, its robot's first one.
+  ImageClient(const hrt_config& config, const std::string& camera);
+  ~ImageClient() override;
+  ImageClient(const ImageClient&) = delete;
+  ImageClient& operator=(const ImageClient&) = delete;
+
+  void open() override;
+  std::optional<hrt::CameraPicture> next() override;
+  void pause() override {}  // nothing is under way between two calls of next()
+  void interrupt() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  enum class Ready { yes, time_is_up, interrupted };
+
+  Ready wait_for(short events, Clock::time_point until) const;
+  void request();
+  void send_all(std::string_view bytes);
+  // Waits for an answer and reads it. False: interrupted.
+  bool read_answer();
+  // False: the connection has no more for now.
+  bool receive_some();
+  [[noreturn]] void lose(const std::string& why) const;
+  hrt::CameraPicture picture_of_answer();
+
+  std::string server_, camera_;
+  std::chrono::duration<double> patience_;
+  int socket_ = -1, interrupt_ = -1;
+  bool is_old_server_ = false;    // it knows 'OK' alone
+  bool is_kenaf_server_ = false;  // it has sent a frame note
+  Clock::time_point requested_at_{};
+  std::uint64_t counted_ = 0;  // pictures without a frame note
+  image::AnswerReader reader_;
+  std::array<std::uint8_t, 65536> buffer_{};
+  std::span<const std::uint8_t> unread_{};  // of buffer_
+};
+
+}  // namespace kenaf::sim

@@ -1,0 +1,243 @@
+// libkenaf_sim's camera client below hrt_get_picture, against a server of pictures that the test speaks for byte by
+// byte.
+//   I1 what is requested; I2 what a picture says of itself, and its age; I3 servers of USARSim's; I4 whatever a server
+//   does wrong ends in words, and the robot goes on
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <cstring>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "kenaf/hrt.h"
+#include "libkenaf_sim/image_client.hpp"
+#include "tests/hrt/fake_image_server.hpp"
+#include "tests/hrt/fake_transport.hpp"
+
+using namespace kenaf;
+using namespace kenaf::hrt::test;
+using namespace std::chrono_literals;
+using Connection = FakeImageServer::Connection;
+
+namespace {
+
+// A robot that stands by, whose cameras are at `server`.
+struct OpenAt {
+  explicit OpenAt(const std::string& server, double connect_timeout_s = 3) : robot(use_fake_robot()) {
+    use_cameras([](const hrt_config& config, const std::string& camera) {
+      return std::make_unique<sim::ImageClient>(config, camera);
+    });
+    hrt_config config = hrt_config_default();
+    std::memset(config.camera_server, 0, sizeof config.camera_server);
+    server.copy(config.camera_server, sizeof config.camera_server - 1);
+    config.connect_timeout_s = connect_timeout_s;
+    REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  }
+  ~OpenAt() { (void)hrt_close(); }
+  std::shared_ptr<FakeRobot> robot;
+};
+
+unsigned char pixels[64 * 48 * 3];
+
+int get(hrt_picture& picture, const char* camera = nullptr, double timeout_s = 20) {
+  return hrt_get_picture(camera, HRT_PICTURE_RGB, pixels, sizeof pixels, timeout_s, &picture);
+}
+
+// Fails as it must, in these words, and the robot still moves.
+void check_failure(const std::string& server, int code, const std::string& words, double connect_timeout_s = 3) {
+  const OpenAt open(server, connect_timeout_s);
+  hrt_picture picture = hrt_picture_init();
+  CHECK(get(picture, "Camera") == code);
+  CHECK_THAT(hrt_last_error(), Catch::Contains(words));
+  CHECK(hrt_go_forward(10) == HRT_OK);
+}
+
+}  // namespace
+
+TEST_CASE("I1 a name is selected, then pictures are asked for one at a time, without a name 'J' is all that is sent") {
+  std::mutex mutex;
+  std::vector<std::string> heard;
+  const Bytes8 red = plain_jpeg(64, 48, 200, 0, 0);
+  FakeImageServer server([&](Connection& connection) {
+    std::uint64_t number = 0;
+    while (const auto kind = connection.request()) {
+      {
+        const std::lock_guard lock(mutex);
+        heard.push_back(*kind == 'V' ? "V " + connection.selected : std::string(1, *kind));
+      }
+      if (*kind == 'J') connection.answer(3, noted(red, {.number = ++number, .robot = "k", .camera = "Front"}));
+    }
+  });
+  const OpenAt open(server.address());
+  hrt_picture picture = hrt_picture_init();
+  REQUIRE(get(picture) == HRT_OK);
+  {
+    const std::lock_guard lock(mutex);
+    CHECK(heard.front() == "J");
+    heard.clear();
+  }
+  REQUIRE(hrt_close() == HRT_OK);
+  const hrt_config config = [&] {
+    hrt_config other = hrt_config_default();
+    std::memset(other.camera_server, 0, sizeof other.camera_server);
+    server.address().copy(other.camera_server, sizeof other.camera_server - 1);
+    return other;
+  }();
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  picture = hrt_picture_init();
+  REQUIRE(get(picture, "Kenaf 1/Front") == HRT_OK);
+  const std::lock_guard lock(mutex);
+  const auto select =
+      std::find(heard.begin(), heard.end(), "V Kenaf 1/Front");  // before it: the first connection's last
+  REQUIRE(heard.end() - select >= 2);
+  CHECK(select[1] == "J");
+}
+
+TEST_CASE("I2 number, robot time, name and pixels are the server's, the age counts from the request at least") {
+  const Bytes8 green = plain_jpeg(64, 48, 0, 180, 0);
+  FakeImageServer server([&](Connection& connection) {
+    while (const auto kind = connection.request()) {
+      std::this_thread::sleep_for(100ms);  // of which the server says nothing
+      const image::FrameNote note{
+          .number = 41, .robot_time_s = 12.25, .age_ms = 20, .robot = "a b", .camera = "BirdsEye"};
+      connection.answer(1, noted(green, note));
+    }
+  });
+  const OpenAt open(server.address());
+  hrt_picture picture = hrt_picture_init();
+  REQUIRE(get(picture) == HRT_OK);
+  CHECK(picture.number == 41);
+  CHECK(picture.time_s == 12.25);
+  CHECK(std::string(picture.camera) == "BirdsEye");
+  CHECK(picture.width == 64);
+  CHECK(picture.height == 48);
+  CHECK(picture.bytes == sizeof pixels);
+  CHECK(picture.age_ms >= 120);  // 20 ms by the server, 100 ms since the request
+  CHECK(picture.age_ms < 20'000);
+  // JPEG of quality 80, one colour: a level or two of rounding.
+  CHECK(int{pixels[0]} < 4);
+  CHECK(std::abs(pixels[1] - 180) < 4);
+  CHECK(int{pixels[2]} < 4);
+  // It is the same again and again: no other one.
+  CHECK(get(picture, nullptr, 0.3) == HRT_E_TIMEOUT);
+}
+
+TEST_CASE("I3 a server that knows 'OK' alone is asked so after a second, its pictures are counted here") {
+  std::atomic<int> asked = 0, selected = 0;
+  const Bytes8 blue = plain_jpeg(64, 48, 0, 0, 180);
+  FakeImageServer server([&](Connection& connection) {
+    while (const auto kind = connection.request()) {
+      if (*kind == 'O') connection.answer(3, blue), ++asked;
+      if (*kind == 'V') ++selected;
+    }
+  });
+  const OpenAt open(server.address());
+  hrt_picture picture = hrt_picture_init();
+  for (const std::uint64_t number : {1u, 2u}) {
+    REQUIRE(get(picture) == HRT_OK);
+    CHECK(picture.number >= number);
+    CHECK(picture.time_s == -1);
+    CHECK(picture.age_ms == -1);
+    CHECK(picture.camera[0] == '\0');
+    CHECK(int{pixels[2]} > 170);
+  }
+  CHECK(asked >= 2);
+  CHECK(selected == 0);
+}
+
+TEST_CASE("I3 raw pictures are blue, green, red, in rows of whole 4 bytes") {
+  FakeImageServer server([&](Connection& connection) {
+    while (const auto kind = connection.request()) {
+      // 1 x 2 pixels: 3 bytes and 1 of padding a row.
+      if (*kind == 'O') connection.answer(0, {0, 1, 0, 2, 10, 20, 30, 0, 40, 50, 60, 0});
+    }
+  });
+  const OpenAt open(server.address());
+  hrt_picture picture = hrt_picture_init();
+  REQUIRE(get(picture) == HRT_OK);
+  CHECK(picture.width == 1);
+  CHECK(picture.height == 2);
+  CHECK(picture.bytes == 6);
+  CHECK(std::vector<int>(pixels, pixels + 6) == std::vector<int>{30, 20, 10, 60, 50, 40});
+}
+
+TEST_CASE("I3 a picture that a server sends unasked at the begin does not end the asking") {
+  const Bytes8 grey = plain_jpeg(64, 48, 90, 90, 90);
+  FakeImageServer server([&](Connection& connection) {
+    connection.answer(3, grey);
+    while (const auto kind = connection.request())
+      if (*kind == 'O') connection.answer(3, grey);
+  });
+  const OpenAt open(server.address());
+  hrt_picture picture = hrt_picture_init();
+  REQUIRE(get(picture) == HRT_OK);
+  REQUIRE(get(picture) == HRT_OK);
+}
+
+TEST_CASE("I4 no such camera: the server's words") {
+  FakeImageServer server([](Connection& connection) {
+    const std::string words = "robot kenaf has no camera 'Camera'; it has:\nBirdsEye";
+    while (const auto kind = connection.request())
+      if (*kind == 'J') connection.answer(255, Bytes8(words.begin(), words.end()));
+  });
+  check_failure(server.address(), HRT_E_DEVICE,
+                "camera 'Camera': robot kenaf has no camera 'Camera'; it has: BirdsEye");
+}
+
+TEST_CASE("I4 whatever else a server does wrong") {
+  const Bytes8 jpeg = plain_jpeg(64, 48, 1, 2, 3);
+  const auto misbehave = [&](const std::function<void(Connection&)>& answer, const std::string& words) {
+    FakeImageServer server([&](Connection& connection) {
+      while (const auto kind = connection.request())
+        if (*kind != 'V') answer(connection);
+    });
+    check_failure(server.address(), HRT_E_LINK, words, 0.3);
+  };
+  misbehave(
+      [](Connection& c) {
+        c.send({"\x03\x04\x00\x00\x01", 5});
+      },
+      "67108865 bytes, which is more than a picture has");
+  misbehave([](Connection& c) { c.send("HTTP/1.1 400 Bad Request\r\n"); }, "type 72, which is no picture's");
+  misbehave([&](Connection& c) { c.answer(3, Bytes8(jpeg.begin(), jpeg.end() - 9)); }, "no whole JPEG");
+  misbehave([&](Connection& c) { c.answer(3, {}); }, "no whole JPEG");
+  misbehave([](Connection& c) { c.answer(0, {0, 9, 0, 9, 1, 2}); }, "raw picture of 6 bytes");
+  misbehave([](Connection&) {}, "says nothing");
+  misbehave(
+      [](Connection& c) {
+        c.send({"\x03\x00\x01\x00\x00\xff\xd8", 7});
+      },
+      "says nothing more in the middle of a picture");
+  // announces all it may and sends a little: memory is for what came
+  misbehave([](Connection& c) { c.send({"\x03\x03\xff\xff\xff\xff\xd8", 7}); }, "says nothing more");
+}
+
+TEST_CASE("I4 a server that goes away is named, and asked anew by the next call") {
+  std::atomic<bool> serves = false;
+  const Bytes8 red = plain_jpeg(64, 48, 200, 0, 0);
+  FakeImageServer server([&](Connection& connection) {
+    if (!connection.request() || !serves) return;
+    connection.answer(3, noted(red, {.number = 1, .robot = "k", .camera = "c"}));
+    while (connection.request()) {
+    }
+  });
+  const OpenAt open(server.address());
+  hrt_picture picture = hrt_picture_init();
+  CHECK(get(picture) == HRT_E_LINK);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("closed the connection; the next call connects anew"));
+  serves = true;
+  CHECK(get(picture) == HRT_OK);
+  CHECK(server.connections() == 2);
+}
+
+TEST_CASE("I4 nobody there, and no address") {
+  std::string gone;
+  {
+    const FakeImageServer server([](Connection&) {});
+    gone = server.address();
+  }
+  check_failure(gone, HRT_E_LINK, "nobody serves camera pictures at " + gone);
+  check_failure("localhost", HRT_E_CONFIG, "camera_server must be HOST:PORT");
+}
