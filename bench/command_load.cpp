@@ -109,9 +109,9 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     const TemporaryFolder folder;
-    Process world(
-        {bin + "/kenaf-world", "--view", "off", "--port", "0", "--port-file", (folder.path() / "world").string()},
-        folder.path() / "world.log");
+    Process world({bin + "/kenaf-world", "--view", "off", "--cameras", "off", "--port", "0", "--port-file",
+                   (folder.path() / "world").string()},
+                  folder.path() / "world.log");
     Tap tap(wait_for_port(folder.path() / "world", world));
     std::size_t arrived = 0;
     double cpu_share = 0;

@@ -133,8 +133,8 @@ struct Servers {
   std::uint16_t world_port;
   Servers(const std::string& bin_folder, const char* speed)
       : bin(bin_folder),
-        world({bin + "/kenaf-world", "--view", "off", "--port", "0", "--speed", speed, "--port-file",
-               (folder.path() / "world").string()},
+        world({bin + "/kenaf-world", "--view", "off", "--cameras", "off", "--port", "0", "--speed", speed,
+               "--port-file", (folder.path() / "world").string()},
               folder.path() / "world.log"),
         world_port(wait_for_port(folder.path() / "world", world)) {}
   Process start_relay() const {

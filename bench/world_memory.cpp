@@ -19,9 +19,9 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   try {
     const support::TemporaryFolder folder;
-    support::Process world(
-        {bin + "/kenaf-world", "--view", "off", "--port", "0", "--port-file", (folder.path() / "world").string()},
-        folder.path() / "world.log");
+    support::Process world({bin + "/kenaf-world", "--view", "off", "--cameras", "off", "--port", "0", "--port-file",
+                            (folder.path() / "world").string()},
+                           folder.path() / "world.log");
     const std::uint16_t port = support::wait_for_port(folder.path() / "world", world);
     constexpr int kRobots = 16;
     std::vector<int> robots;

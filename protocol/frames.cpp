@@ -45,6 +45,14 @@ double tip_up_from_usarsim_flipper(relay::Flipper flipper, double joint_rad) {
   return is_front(flipper) ? -joint_rad : joint_rad;
 }
 
+double usarsim_link_from_rep103(double angle_rad) {
+  return -angle_rad;
+}
+
+double rep103_link_from_usarsim(double angle_rad) {
+  return -angle_rad;
+}
+
 const char* usarsim_flipper_name(relay::Flipper flipper) {
   switch (flipper) {
     case relay::kFrontLeft:

@@ -28,6 +28,11 @@ Vector3 rep103_angles_from_usarsim(const Vector3& roll_pitch_yaw);
 double usarsim_flipper_from_tip_up(relay::Flipper flipper, double tip_up_rad);
 double tip_up_from_usarsim_flipper(relay::Flipper flipper, double joint_rad);
 
+// The links of a camera mount turn about axes of the frame: pan about z, tilt about y. So USARSim's pan is positive to the
+// right and its tilt positive up, and REP 103's to the left and down.
+double usarsim_link_from_rep103(double angle_rad);
+double rep103_link_from_usarsim(double angle_rad);
+
 // The joint names of USARSim's Kenaf: "FLFlipper", "FRFlipper", "RLFlipper", "RRFlipper".
 const char* usarsim_flipper_name(relay::Flipper flipper);
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <thread>
 
+#include "camera/server/served_cameras.hpp"
 #include "live/view.hpp"
 #include "physics/server/world_server.hpp"
 #include "relayd/options.hpp"
@@ -20,7 +21,8 @@ class EmbeddedWorldServer {
 
  private:
   server::WorldServer server_;
-  std::unique_ptr<live::View> view_;  // ends after the thread and before the server
+  camera::ServedCameras cameras_;
+  std::unique_ptr<live::View> view_;  // ends after the thread, and before the cameras and the server
   std::thread thread_;
 };
 

@@ -76,6 +76,23 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
   app.add_option("--view-token", view_token, "what a browser must know; where it is not on loopback one is made")
       ->needs(embedded_flag);
 
+  std::string cameras = "on", camera_port = "5003", camera_image = "good";
+  const auto camera_option = [&](const char* name, std::string& text,
+                                 void (*set)(camera::CameraOptions&, std::string_view), const char* what) {
+    app.add_option(name, text, what)
+        ->needs(embedded_flag)
+        ->check([&embedded, set](const std::string& given) {
+          return words_of([&](const std::string& words) { set(embedded.cameras, words); }, given);
+        })
+        ->capture_default_str();
+  };
+  camera_option("--cameras", cameras, camera::set_cameras,
+                "off: no pictures from the robots' cameras of --embedded, neither by TCP nor in the live view");
+  camera_option("--camera-port", camera_port, camera::set_camera_port,
+                "TCP port of the image server of --embedded, on loopback; 0: any free one; off: none");
+  camera_option("--camera-image", camera_image, camera::set_camera_image,
+                "what it sends: raw, or a JPEG: superb, good, normal, fair, bad");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "camera/server/options.hpp"
 #include "live/view_options.hpp"
 #include "relayd/relay.hpp"
 
@@ -14,6 +15,7 @@ struct EmbeddedWorld {
   std::string robot = "kenaf";
   double speed = 1;
   live::ViewOptions view;
+  camera::CameraOptions cameras;
 };
 
 struct Options {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "camera/server/served_cameras.hpp"
 #include "live/view.hpp"
 #include "physics/server/world_server.hpp"
 
@@ -29,7 +30,8 @@ void write_port_file(const std::filesystem::path& path, std::uint16_t port) {
 
 int main(int argc, char** argv) {
   kenaf::server::ServerOptions options;
-  std::string dialect = "ut2004", log_level = "info", port_file, view = "127.0.0.1:8080", token;
+  std::string dialect = "ut2004", log_level = "info", port_file, view = "127.0.0.1:8080", token, cameras = "on",
+              camera_port = "5003", camera_image = "good";
   CLI::App app{"The Kenaf world server: simulated robots behind the USARSim protocol, a TCP connection for each."};
   app.add_option("--world", options.world, "World: a shipped name or an SDF file")->capture_default_str();
   app.add_option("--robot", options.robot,
@@ -50,6 +52,12 @@ int main(int argc, char** argv) {
   app.add_option("--view", view, "Where a browser finds the live view, ADDRESS:PORT; off: nowhere")
       ->capture_default_str();
   app.add_option("--view-token", token, "What a browser must know; where it is not on loopback one is made");
+  app.add_option("--cameras", cameras, "off: no pictures from the robots' cameras, neither by TCP nor in the live view")
+      ->capture_default_str();
+  app.add_option("--camera-port", camera_port, "TCP port of USARSim's image server; 0: any free one; off: none")
+      ->capture_default_str();
+  app.add_option("--camera-image", camera_image, "What it sends: raw, or a JPEG: superb, good, normal, fair, bad")
+      ->capture_default_str();
   app.add_option("--log-level", log_level, "What is logged")
       ->capture_default_str()
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}));
@@ -68,7 +76,12 @@ int main(int argc, char** argv) {
   try {
     kenaf::live::ViewOptions view_options = kenaf::live::parse_view_options(view);
     view_options.token = token;
+    kenaf::camera::CameraOptions camera_options;
+    kenaf::camera::set_cameras(camera_options, cameras);
+    kenaf::camera::set_camera_port(camera_options, camera_port);
+    kenaf::camera::set_camera_image(camera_options, camera_image);
     kenaf::server::WorldServer server(options);
+    const auto served_cameras = kenaf::camera::open_cameras(server, camera_options, options.listen_address);
     const auto live_view = kenaf::live::open_view(server, view_options);
     std::thread stopper([&] {
       int signal = 0;

@@ -92,6 +92,27 @@ std::string_view drive_by_hand(Simulation& simulation, std::uint32_t id, Operato
   return {};
 }
 
+std::string_view look_by_hand(Simulation& simulation, std::uint32_t id, OperatorId who, std::string_view name,
+                              const CameraOrder& order) {
+  Session* session = session_with_robot(simulation, id);
+  if (session == nullptr) return kNoRobot;
+  if (!held_by(*session, who)) return kNotHeld;
+  SessionRobot& robot = *session->robot;
+  const auto& cameras = robot.description->cameras;
+  const auto camera = std::ranges::find(cameras, name, &physics::CameraDescription::name);
+  if (camera == cameras.end()) return "that robot has no such camera";
+  const std::size_t links =
+      camera->mission_package ? robot.description->mission_packages[*camera->mission_package].links.size() : 0;
+  if ((order.pan_rad && links < 1) || (order.tilt_rad && links < 2)) return "that camera does not turn so";
+  if (order.pan_rad) simulation.world.set_mission_link(robot.id, *camera->mission_package, 0, *order.pan_rad);
+  if (order.tilt_rad) simulation.world.set_mission_link(robot.id, *camera->mission_package, 1, *order.tilt_rad);
+  if (order.field_of_view_rad) {
+    robot.camera_field_of_view_rad[static_cast<std::size_t>(camera - cameras.begin())] =
+        std::clamp(*order.field_of_view_rad, camera->min_field_of_view_rad, camera->max_field_of_view_rad);
+  }
+  return {};
+}
+
 std::string_view let_go(Simulation& simulation, std::uint32_t id, OperatorId who) {
   Session* session = session_with_robot(simulation, id);
   if (session == nullptr) return kNoRobot;

@@ -1,7 +1,7 @@
 // Driving a robot by hand: an operator takes a robot over from its client, or places one of his own.
 //
 // 1. A robot is held by one operator at most. Taking it makes it stand; from then on only its holder's commands count. Its
-//    client is told nothing new: it is answered, and sent sensors, as before, but what it commands is kept out.
+//    client is told nothing new: it is answered, and sent sensors, as before, but what it commands is kept out, of tracks, flippers and cameras alike.
 // 2. The holder's word holds for kOperatorSilence_s of wall-clock time. Then the robot stands until he says the next.
 // 3. Letting go makes the robot stand. Its client has it back by its next command; an earlier one does not come back to life.
 // 4. A robot that an operator placed belongs to no client. Let go of, it stands where it is for whoever takes it next.
@@ -10,6 +10,7 @@
 // Thread safety: none; on the thread that owns the Simulation. A returned reason says why it was refused; empty: done.
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "physics/server/simulation.hpp"
@@ -29,6 +30,11 @@ std::string_view place_robot_by_hand(Simulation& simulation, OperatorId who, std
 // `command` is limited to what the robot can do. Numbers must be finite.
 std::string_view drive_by_hand(Simulation& simulation, std::uint32_t session, OperatorId who,
                                const physics::RobotCommand& command);
+// Where a camera shall look; what is empty stays. Positive pan to the left, positive tilt down. Numbers must be finite.
+struct CameraOrder { std::optional<double> pan_rad, tilt_rad, field_of_view_rad; };
+// Limited to what the camera can do; its mount turns there at its own speed, and goes on to when the holder is silent.
+std::string_view look_by_hand(Simulation& simulation, std::uint32_t session, OperatorId who, std::string_view camera,
+                              const CameraOrder& order);
 std::string_view let_go(Simulation& simulation, std::uint32_t session, OperatorId who);
 // Takes a robot that an operator placed out of the world. Its holder may, anybody where nobody holds it.
 std::string_view remove_placed_robot(Simulation& simulation, std::uint32_t session, OperatorId who);

@@ -62,21 +62,22 @@ void write_robot_configuration(MessageWriter& writer, const physics::RobotDescri
       .end();
 }
 
+// `mount`: what turns it; empty: it is fixed on the robot.
 void add_mount(MessageWriter& writer, Dialect dialect, std::string_view name, const physics::Pose& X_B,
-               const physics::RobotDescription& robot, usarsim::NumberFormat format) {
+               const physics::RobotDescription& robot, usarsim::NumberFormat format, std::string_view mount = {}) {
   const frames::Vector3 location = wire_vector(X_B.p), orientation = wire_angles(X_B.q);
   if (dialect == Dialect::ut2004) {
     writer.open_group("Name", name)
         .add_numbers("Location", location, format)
         .add_numbers("Orientation", orientation, format)
-        .add_text("Mount", "HARD")
+        .add_text("Mount", mount.empty() ? "HARD" : mount)
         .close_group();
     return;
   }
   writer.text("Name", name)
       .numbers("Location", location, format)
       .numbers("Orientation", orientation, format)
-      .text("Mount", short_class_name(robot));
+      .text("Mount", mount.empty() ? short_class_name(robot) : mount);
 }
 
 void add_configuration(MessageWriter& writer, const SensorDescription& sensor, double ticks_per_radian,
@@ -153,8 +154,8 @@ bool write_mission_packages(MessageWriter& writer, const Simulation& simulation,
         writer.text("JointType", "Revolute")
             .number("MaxSpeed", package.links[link].max_speed_radps, format)
             .number("MaxTorque", 0, format)
-            .number("MinValue", package.links[link].min_rad, format)
-            .number("MaxValue", package.links[link].max_rad, format);
+            .number("MinValue", frames::usarsim_link_from_rep103(package.links[link].max_rad), format)
+            .number("MaxValue", frames::usarsim_link_from_rep103(package.links[link].min_rad), format);
       }
     }
     writer.end();
@@ -196,14 +197,34 @@ bool write_flippers(MessageWriter& writer, const Session& session, const Request
   return found;
 }
 
-bool write_cameras(MessageWriter& writer, const Session& session, const Request& request) {
-  if (request.geometry || session.cameras.empty()) return false;
-  writer.begin("CONF").text("Type", request.type);
-  for (const Session::Camera& camera : session.cameras) {
-    writer.text("Name", camera.name).number("CameraFov", camera.field_of_view_rad, session.formats.value);
+// A camera that a package turns is where it is while the package's links are at 0.
+bool write_cameras(MessageWriter& writer, const Simulation& simulation, const Session& session,
+                   const Request& request) {
+  const physics::RobotDescription& robot = *session.robot->description;
+  const usarsim::NumberFormat format = session.formats.value;
+  bool found = false;
+  for (std::size_t i = 0; i < robot.cameras.size(); ++i) {
+    const physics::CameraDescription& camera = robot.cameras[i];
+    if (!request.name.empty() && !usarsim::equal_ignoring_case(camera.name, request.name)) continue;
+    if (!found) writer.begin(request.geometry ? "GEO" : "CONF").text("Type", request.type);
+    found = true;
+    if (request.geometry && camera.mission_package) {
+      const physics::MissionPackageDescription& package = robot.mission_packages[*camera.mission_package];
+      add_mount(writer, simulation.dialect, camera.name, package.X_BM, robot, format, package.name);
+    } else if (request.geometry) {
+      add_mount(writer, simulation.dialect, camera.name, camera.X_BC, robot, format);
+    } else {
+      writer.text("Name", camera.name)
+          .number("CameraDefFov", camera.field_of_view_rad, format)
+          .number("CameraMinFov", camera.min_field_of_view_rad, format)
+          .number("CameraMaxFov", camera.max_field_of_view_rad, format)
+          .number("CameraFov", session.robot->camera_field_of_view_rad[i], format)
+          .integer("CameraResX", camera.width)
+          .integer("CameraResY", camera.height);
+    }
   }
-  writer.end();
-  return true;
+  if (found) writer.end();
+  return found;
 }
 
 void reply(const Simulation& simulation, Session& session, const MessageView& message, bool geometry) {
@@ -221,7 +242,7 @@ void reply(const Simulation& simulation, Session& session, const MessageView& me
       return;
     }
     if (is_any_of(request.type, {"Joint"}) && write_flippers(writer, session, request)) return;
-    if (is_any_of(request.type, {"Camera"}) && write_cameras(writer, session, request)) return;
+    if (is_any_of(request.type, {"Camera"}) && write_cameras(writer, simulation, session, request)) return;
   }
   writer.begin(geometry ? "GEO" : "CONF").text("Type", request.type);
   if (!request.name.empty()) writer.text("Name", request.name);

@@ -30,7 +30,8 @@ void write_mission_packages(const Simulation& simulation, Session& session) {
         .text("Name", packages[i].name);
     for (std::size_t link = 0; link < packages[i].links.size(); ++link) {
       writer.integer("Link", static_cast<std::int64_t>(link) + 1)
-          .number("Value", simulation.world.mission_link_rad(robot.id, i, link), session.formats.value)
+          .number("Value", frames::usarsim_link_from_rep103(simulation.world.mission_link_rad(robot.id, i, link)),
+                  session.formats.value)
           .number("Torque", 0, {2, false});
     }
     writer.end();

@@ -30,6 +30,7 @@ struct SessionRobot {
   struct {
     double linear_mps = 0, clockwise_radps = 0;
   } body_velocity;
+  std::vector<double> camera_field_of_view_rad;  // of each camera of the description, as zoomed; within its limits
 };
 
 // Somebody who drives by hand: a connection of the live view. Never used twice in one server.
@@ -62,12 +63,6 @@ struct Session {
   std::uint64_t command_timeout_steps = 0;  // 0: the robot keeps its command
   std::uint64_t last_command_step = 0;
   bool silent = false;
-
-  struct Camera {
-    std::string name;
-    double field_of_view_rad;
-  };
-  std::vector<Camera> cameras;  // state that SET {Type Camera} keeps
 
   std::uint64_t bad_lines = 0;
   LogLimiter bad_line_log{1, 5};

@@ -225,6 +225,7 @@ Simulation::Progress Simulation::advance(double now_wall_s) {
 
   world.step();
   if (!stepping) clock.stepped();
+  if (world.step_count() >= next_call_step_) call_due(world.step_count());
   tell_faults();
   answer_steps();
   for (const auto& session : sessions) send_due(*session);
@@ -269,6 +270,24 @@ void Simulation::set_paused(bool paused) {
   }
 }
 
+void Simulation::call_at(const void* owner, std::uint64_t step, std::function<void(Simulation&)> then) {
+  std::erase_if(calls_, [owner](const Call& call) { return call.owner == owner; });
+  calls_.push_back({owner, step, std::move(then)});
+  call_due(world.step_count());
+}
+
+// They may ask for further calls.
+void Simulation::call_due(std::uint64_t step) {
+  std::vector<Call> due;
+  for (const Call& call : calls_) {
+    if (call.step <= step) due.push_back(call);
+  }
+  std::erase_if(calls_, [step](const Call& call) { return call.step <= step; });
+  next_call_step_ = kNever;
+  for (const Call& call : calls_) next_call_step_ = std::min(next_call_step_, call.step);
+  for (const Call& call : due) call.then(*this);
+}
+
 void Simulation::reset() {
   world.reset();
   for (const StepRequest& request : step_requests_) {
@@ -284,9 +303,11 @@ void Simulation::reset() {
     session->schedule.restart_at(0);
     if (!session->robot) continue;
     session->robot->command = resting_command(*session->robot->description);
+    session->robot->camera_field_of_view_rad = unzoomed(*session->robot->description);
     if (session->hold) session->hold->command = standing_command();
     apply_command(*session);
   }
+  call_due(kNever);
 }
 
 const physics::RobotDescription* Simulation::description_for_class(std::string_view class_name) {
@@ -311,6 +332,12 @@ physics::RobotCommand Simulation::resting_command(const physics::RobotDescriptio
     command.flipper.fill({physics::JointMode::angle, description.flipper.front().start_angle_rad});
   }
   return command;
+}
+
+std::vector<double> Simulation::unzoomed(const physics::RobotDescription& description) {
+  std::vector<double> angles_rad;
+  for (const physics::CameraDescription& camera : description.cameras) angles_rad.push_back(camera.field_of_view_rad);
+  return angles_rad;
 }
 
 std::size_t Simulation::robot_count() const {

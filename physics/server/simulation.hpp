@@ -4,6 +4,8 @@
 // clock.
 #pragma once
 
+#include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -51,6 +53,8 @@ struct Simulation {
   const physics::RobotDescription* description_for_class(std::string_view class_name);
   // The command that a robot of this description has when it is placed: at rest, flippers where they start.
   static physics::RobotCommand resting_command(const physics::RobotDescription& description);
+  // The angles of view that its cameras have then.
+  static std::vector<double> unzoomed(const physics::RobotDescription& description);
   std::size_t robot_count() const;
   // The one way to command: tells the world what is in force for the session's robot: the client's, or that of who holds it.
   void apply_command(const Session& session);
@@ -60,6 +64,10 @@ struct Simulation {
   // CONTROL {Type Step}: runs on for so many steps, then stands still and answers.
   // `session`: whom to answer when it is done; 0: nobody.
   void begin_steps(std::uint32_t session, std::uint64_t steps);
+  // Calls `then` once, as soon as the world has made `step` steps in all: at once where it has. Earlier where the world is
+  // reset, as time begins anew. It takes the place of what the same owner asked for before. The world waits for it: microseconds.
+  void call_at(const void* owner, std::uint64_t step, std::function<void(Simulation&)> then);
+
   // CONTROL {Type Reset}
   void reset();
   // Pauses or resumes, and says so to every client that understands it.
@@ -77,11 +85,20 @@ struct Simulation {
   LogLimiter connection_log{20, 0.5};          // robots that come and go
 
  private:
+  static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+
   struct StepRequest {
     std::uint32_t session;
     std::uint64_t until_step;
   };
 
+  struct Call {
+    const void* owner;
+    std::uint64_t step;
+    std::function<void(Simulation&)> then;
+  };
+
+  void call_due(std::uint64_t step);
   void handle_line(Session& session, std::string_view line);
   void send_due(Session& session);
   void watch_silence(Session& session);
@@ -91,6 +108,8 @@ struct Simulation {
 
   std::map<std::string, physics::RobotDescription, std::less<>> descriptions_;  // by shipped name or file
   std::vector<StepRequest> step_requests_;
+  std::vector<Call> calls_;
+  std::uint64_t next_call_step_ = kNever;
   std::uint32_t last_session_ = 0;
   std::string due_lines_;  // scratch of send_due()
   LogLimiter behind_log_{1, 10};

@@ -31,6 +31,7 @@ void place_robot(Simulation& simulation, Session& session, const physics::RobotD
   robot.name = name;
   robot.description = &description;
   robot.command = Simulation::resting_command(description);
+  robot.camera_field_of_view_rad = Simulation::unzoomed(description);
   simulation.apply_command(session);
 }
 

@@ -12,8 +12,6 @@ namespace kenaf::server {
 
 namespace {
 
-constexpr std::size_t kMostCameras = 16;
-
 Reason set_joint(Simulation& simulation, Session& session, const MessageView& message) {
   SessionRobot& robot = *session.robot;
   if (!robot.description->has_flippers()) return "this robot has no joints";
@@ -74,21 +72,22 @@ Reason set_ins(Simulation& simulation, const SessionRobot& robot, const MessageV
                      [&](std::size_t i) { simulation.world.reset_sensor(robot.id, i, pose); });
 }
 
-Reason set_camera(Session& session, const MessageView& message) {
+// All cameras where none is named, as with sensors.
+Reason set_camera(SessionRobot& robot, const MessageView& message) {
   const auto field_of_view = number_of(message, "Params");
   if (!is_any_of(text_of(message, "Opcode"), {"Zoom", "FOV"})) return "unknown Opcode";
   if (!field_of_view || !(*field_of_view > 0 && *field_of_view < 3.15))
     return "Params is not an angle of view in radians";
-  const std::string name = printable(text_of(message, "Name"));
-  const auto found = std::ranges::find(session.cameras, name, &Session::Camera::name);
-  if (found != session.cameras.end()) {
-    found->field_of_view_rad = *field_of_view;
-  } else if (session.cameras.size() >= kMostCameras) {
-    return "too many cameras";
-  } else {
-    session.cameras.push_back({name, *field_of_view});
+  const std::string_view name = text_of(message, "Name");
+  Reason reason = "no such camera on this robot";
+  const auto& cameras = robot.description->cameras;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    if (!name.empty() && !usarsim::equal_ignoring_case(cameras[i].name, name)) continue;
+    robot.camera_field_of_view_rad[i] =
+        std::clamp(*field_of_view, cameras[i].min_field_of_view_rad, cameras[i].max_field_of_view_rad);
+    reason = kDone;
   }
-  return kDone;
+  return reason;
 }
 
 Reason obey_set(Simulation& simulation, Session& session, const MessageView& message) {
@@ -107,7 +106,8 @@ Reason obey_set(Simulation& simulation, Session& session, const MessageView& mes
     if (!is_any_of(opcode, {"SCAN"})) return "unknown Opcode";
     return for_sensors(robot, type, text_of(message, "Name"), [](std::size_t) {});
   }
-  if (is_any_of(type, {"Camera"})) return set_camera(session, message);
+  if (is_any_of(type, {"Camera"})) return session.hold ? kDone : set_camera(robot, message);
+  if (is_any_of(type, {"Viewports"})) return "a picture is one camera's: the image server's clients choose it";
   return "unknown Type";
 }
 
@@ -123,7 +123,7 @@ void set(Simulation& simulation, Session& session, const MessageView& message) {
 }
 
 void move_mission_package(Simulation& simulation, Session& session, const MessageView& message) {
-  if (!session.robot) return;
+  if (!session.robot || session.hold) return;
   const SessionRobot& robot = *session.robot;
   const auto& packages = robot.description->mission_packages;
   const auto package = std::ranges::find_if(packages, [&](const physics::MissionPackageDescription& candidate) {
@@ -140,11 +140,12 @@ void move_mission_package(Simulation& simulation, Session& session, const Messag
     if (!link || !order || !(*link >= 1 && *link <= static_cast<double>(package->links.size()))) return;
     const auto index = static_cast<std::size_t>(*link) - 1;
     const double now_rad = simulation.world.mission_link_rad(robot.id, package_index, index);
+    const double wanted_rad = frames::rep103_link_from_usarsim(value);
     double angle_rad = now_rad;  // brake, and what a camera mount cannot do
-    if (*order == JointOrder::angle) angle_rad = value;
-    if (*order == JointOrder::relative_angle) angle_rad = now_rad + value;
-    if (*order == JointOrder::speed && value > 0) angle_rad = package->links[index].max_rad;
-    if (*order == JointOrder::speed && value < 0) angle_rad = package->links[index].min_rad;
+    if (*order == JointOrder::angle) angle_rad = wanted_rad;
+    if (*order == JointOrder::relative_angle) angle_rad = now_rad + wanted_rad;
+    if (*order == JointOrder::speed && wanted_rad > 0) angle_rad = package->links[index].max_rad;
+    if (*order == JointOrder::speed && wanted_rad < 0) angle_rad = package->links[index].min_rad;
     simulation.world.set_mission_link(robot.id, package_index, index, angle_rad);
   };
   for (const usarsim::Group& group : message.all()) {

@@ -4,11 +4,32 @@ namespace kenaf::server {
 
 namespace {
 
+void read_camera(const Simulation& simulation, const SessionRobot& robot, std::size_t index, CameraState& state) {
+  const physics::CameraDescription& camera = robot.description->cameras[index];
+  state.name = camera.name;
+  state.width = camera.width;
+  state.height = camera.height;
+  state.min_field_of_view_rad = camera.min_field_of_view_rad;
+  state.max_field_of_view_rad = camera.max_field_of_view_rad;
+  state.field_of_view_rad = robot.camera_field_of_view_rad[index];
+  const auto read_link = [&](std::size_t link, std::optional<CameraState::Link>& out) {
+    out.reset();
+    if (!camera.mission_package) return;
+    const auto& links = robot.description->mission_packages[*camera.mission_package].links;
+    if (link >= links.size()) return;
+    out = CameraState::Link{links[link].min_rad, links[link].max_rad,
+                            simulation.world.mission_link_rad(robot.id, *camera.mission_package, link)};
+  };
+  read_link(0, state.pan);
+  read_link(1, state.tilt);
+}
+
 void read_robot(const Simulation& simulation, const Session& session, RobotState& state) {
   const SessionRobot& robot = *session.robot;
   const physics::RobotTruth truth = simulation.world.truth(robot.id);
   const physics::DriveCurrents currents = simulation.world.drive_currents(robot.id);
   state.id = session.id;
+  state.robot = robot.id;
   state.name = robot.name;
   state.class_name = robot.description->usarsim_class;
   state.dimensions = physics::dimensions_of(*robot.description);
@@ -31,6 +52,8 @@ void read_robot(const Simulation& simulation, const Session& session, RobotState
   state.holder = session.hold ? session.hold->holder : OperatorId{0};
   state.holder_silent = session.hold && session.hold->silent;
   state.fault = simulation.world.fault(robot.id);
+  state.cameras.resize(robot.description->cameras.size());
+  for (std::size_t i = 0; i < state.cameras.size(); ++i) read_camera(simulation, robot, i, state.cameras[i]);
 }
 
 void read_box(const Simulation& simulation, physics::BoxId id, BoxState& state) {

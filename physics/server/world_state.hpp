@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,18 @@
 
 namespace kenaf::server {
 
+// A camera of a robot. Positive pan to the left, positive tilt down.
+struct CameraState {
+  std::string name;
+  int width = 0, height = 0;                   // pixels
+  double min_field_of_view_rad = 0, max_field_of_view_rad = 0, field_of_view_rad = 0;
+  struct Link { double min_rad, max_rad, angle_rad; };
+  std::optional<Link> pan, tilt;               // where a mount turns it
+};
+
 struct RobotState {
   std::uint32_t id = 0;                        // of its session: never used twice in one server
+  physics::RobotId robot{0};                   // in the world; likewise
   std::string name, class_name;
   physics::RobotDimensions dimensions;
   physics::Pose X_WB;
@@ -31,6 +42,7 @@ struct RobotState {
   OperatorId holder{0};                        // 0: nobody drives it by hand
   bool holder_silent = false;
   std::string fault;                           // empty: none
+  std::vector<CameraState> cameras;            // in the order of its description
 };
 
 // A box that may be elsewhere than the world's description has it.

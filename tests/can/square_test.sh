@@ -12,7 +12,7 @@ work=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
 fail() { echo "square_test: $*" >&2; exit 1; }
 
-"$bin/kenaf-relayd" --embedded --view off --listen 127.0.0.1:0 --port-file "$work/port" >"$work/relay.log" 2>&1 &
+"$bin/kenaf-relayd" --embedded --view off --cameras off --listen 127.0.0.1:0 --port-file "$work/port" >"$work/relay.log" 2>&1 &
 for _ in $(seq 200); do [ -s "$work/port" ] && break; sleep 0.1; done
 KENAF_RELAY="127.0.0.1:$(cat "$work/port")" KENAF_RECORD="$work/sim.csv" "$bin/square_sim" || fail "1: over libkenaf_sim"
 

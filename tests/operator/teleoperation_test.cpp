@@ -58,8 +58,9 @@ class Desk {
     std::filesystem::remove(port_file);
     relay_.reset();
     relay_ = std::make_unique<Process>(
-        std::vector<std::string>{KENAF_BIN_DIR "/kenaf-relayd", "--embedded", "--view", "off", "--world", "step-200",
-                                 "--listen", "127.0.0.1:" + std::to_string(port), "--port-file", port_file.string()},
+        std::vector<std::string>{KENAF_BIN_DIR "/kenaf-relayd", "--embedded", "--view", "off", "--cameras", "off",
+                                 "--world", "step-200", "--listen", "127.0.0.1:" + std::to_string(port), "--port-file",
+                                 port_file.string()},
         folder_.path() / "relay.log");
     relay_port_ = support::wait_for_port(port_file, *relay_);
   }

@@ -46,7 +46,18 @@ TEST_CASE("all options") {
   CHECK(options->embedded->world == "step-100");
   CHECK(options->embedded->speed == 0);
   CHECK(options->embedded->view == kenaf::live::ViewOptions{});
+  CHECK(options->embedded->cameras == kenaf::camera::CameraOptions{});
   CHECK(options->relay.placement.start == "start_1");
+}
+
+TEST_CASE("cameras are chosen on the command line of --embedded") {
+  int status = 0;
+  const auto with_cameras =
+      read({"--embedded", "--cameras", "off", "--camera-port", "0", "--camera-image", "raw"}, status);
+  REQUIRE(with_cameras);
+  CHECK_FALSE(with_cameras->embedded->cameras.on);
+  CHECK(with_cameras->embedded->cameras.image_port == 0);
+  CHECK(with_cameras->embedded->cameras.image_type == kenaf::camera::ImageType::raw);
 }
 
 TEST_CASE("wrong options end with status 2, help with 0") {
@@ -66,6 +77,9 @@ TEST_CASE("wrong options end with status 2, help with 0") {
                                              {"--embedded", "--speed", "-1"},
                                              {"--embedded", "--view", "8080"},
                                              {"--view", "off"},
+                                             {"--cameras", "off"},
+                                             {"--embedded", "--camera-port", "65536"},
+                                             {"--embedded", "--camera-image", "best"},
                                              {"--log-level", "loud"}}) {
     CAPTURE(wrong.front(), wrong.back());
     CHECK_FALSE(read(wrong, status));

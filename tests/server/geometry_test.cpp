@@ -60,6 +60,17 @@ TEST_CASE("a mission package tells its links") {
   CHECK(talk.answer_to("GETGEO {Type MisPkg}\r\n").ends_with("{Link 1} {ParentLink -1} {Link 2} {ParentLink 1}"));
 }
 
+TEST_CASE("a camera's mount is told, and what turns it") {
+  Conversation talk = with_robot("USARBot.Kenaf");
+  CHECK(talk.answer_to("GETGEO {Type Camera}\r\n") ==
+        "GEO {Type Camera} {Name Camera Location 0.2000,0.0000,-0.0900 Orientation 0.0000,0.0000,0.0000 Mount "
+        "CameraPanTilt} {Name BirdsEye Location -0.2800,0.0000,-0.6200 Orientation 0.0000,-0.6500,0.0000 Mount HARD}");
+  Conversation udk = with_robot("USARBot.Kenaf", true);
+  CHECK(udk.answer_to("GETGEO {Type Camera} {Name Camera}\r\n") ==
+        "GEO {Type Camera} {Name Camera} {Location 0.2000,0.0000,-0.0900} {Orientation 0.0000,0.0000,0.0000} {Mount "
+        "CameraPanTilt}");
+}
+
 TEST_CASE("a flipper's pivot is told with y to the right") {
   Conversation talk = with_robot("USARBot.Kenaf");
   const auto p = talk.session->robot->description->flipper.front().p_BPivot_m;

@@ -96,6 +96,29 @@ TEST_CASE("rule 1: the client is answered and sent its sensors while another dri
   CHECK(desk.answer_to("PING {Id 7}\r\n").starts_with("PONG {Id 7}"));
 }
 
+TEST_CASE("rule 1: the same holds of its cameras, which turn no further than they can") {
+  Desk desk;
+  const auto look = [&](OperatorId who, const CameraOrder& order, std::string_view camera = "Camera") {
+    return look_by_hand(desk.simulation, desk.robot, who, camera, order);
+  };
+  const auto link = [&](std::size_t i) {
+    return desk.simulation.world.mission_link_rad(desk.session->robot->id, 0, i);
+  };
+  CHECK_FALSE(look(kAnna, {.pan_rad = 1, .tilt_rad = {}, .field_of_view_rad = {}}).empty());  // holds nothing yet
+  REQUIRE(desk.take(kAnna).empty());
+  CHECK(look(kAnna, {.pan_rad = 0.5, .tilt_rad = 9, .field_of_view_rad = 0.001}).empty());
+  desk.send("MISPKG {Name CameraPanTilt} {Link 1} {Value 3}\r\nSET {Type Camera} {Opcode Zoom} {Params 1}\r\n");
+  desk.drive(kAnna, tracks(0, 0), 2);
+  CHECK(link(0) == Approx(0.5));
+  CHECK(link(1) == Approx(1.5707963));  // straight down
+  CHECK(desk.session->robot->camera_field_of_view_rad[0] == 0.1);
+  CHECK(look(kAnna, {.pan_rad = {}, .tilt_rad = {}, .field_of_view_rad = 1.2}).empty());
+  CHECK(desk.session->robot->camera_field_of_view_rad[0] == 1.2);
+  CHECK_FALSE(look(kBen, {.pan_rad = 1, .tilt_rad = {}, .field_of_view_rad = {}}).empty());
+  CHECK_FALSE(look(kAnna, {.pan_rad = 1, .tilt_rad = {}, .field_of_view_rad = {}}, "Third").empty());
+  CHECK_FALSE(look(kAnna, {.pan_rad = 1, .tilt_rad = {}, .field_of_view_rad = {}}, "BirdsEye").empty());  // is fixed
+}
+
 TEST_CASE("rule 2: an operator who says nothing for half a second of wall-clock time stands, until he speaks again") {
   Desk desk;
   REQUIRE(desk.take(kAnna).empty());

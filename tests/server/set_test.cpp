@@ -80,23 +80,48 @@ TEST_CASE("encoders and odometry start anew, with or without their name") {
   }
 }
 
-TEST_CASE("INS takes a pose, scanners scan by themselves, cameras keep their zoom") {
+TEST_CASE("INS takes a pose, scanners scan by themselves") {
   Conversation talk = with_robot();
   CHECK(talk.answer_to("SET {Type INS} {Name INS} {Opcode POSE} {Params 1,2,3,0,0,0.5}\r\n") ==
         "RES {Time 0.0000} {Type INS} {Name INS} {Status OK}");
   CHECK(talk.answer_to("SET {Type RangeScanner} {Name Scanner1} {Opcode SCAN}\r\n").ends_with("{Status OK}"));
-  CHECK(talk.answer_to("SET {Type Camera} {Name Camera} {Opcode Zoom} {Params 0.7}\r\n").ends_with("{Status OK}"));
-  CHECK(talk.answer_to("GETCONF {Type Camera}\r\n") == "CONF {Type Camera} {Name Camera} {CameraFov 0.7000}");
 }
 
+TEST_CASE("cameras keep their zoom, within what they can, until a reset") {
+  Conversation talk = with_robot();
+  const auto angle_of = [&](const char* camera) {
+    return number_in(talk.answer_to("GETCONF {Type Camera} {Name " + std::string(camera) + "}\r\n"), "CameraFov");
+  };
+  CHECK(talk.answer_to("GETCONF {Type Camera}\r\n") ==
+        "CONF {Type Camera} {Name Camera} {CameraDefFov 1.0500} {CameraMinFov 0.1000} {CameraMaxFov 1.4000} {CameraFov "
+        "1.0500} {CameraResX 640} {CameraResY 480} {Name BirdsEye} {CameraDefFov 1.4000} {CameraMinFov 1.4000} "
+        "{CameraMaxFov 1.4000} {CameraFov 1.4000} {CameraResX 640} {CameraResY 480}");
+  CHECK(talk.answer_to("SET {Type Camera} {Name camera} {Opcode Zoom} {Params 0.7}\r\n").ends_with("{Status OK}"));
+  CHECK(angle_of("Camera") == 0.7);
+  CHECK(talk.answer_to("SET {Type Camera} {Opcode FOV} {Params 0.01}\r\n").ends_with("{Status OK}"));  // all of them
+  CHECK(angle_of("Camera") == 0.1);
+  CHECK(angle_of("BirdsEye") == 1.4);  // has no zoom
+  CHECK(talk.answer_to("SET {Type Camera} {Name Third} {Opcode Zoom} {Params 0.7}\r\n")
+            .ends_with("{Status Failed} {Reason no such camera on this robot}"));
+  talk.send("CONTROL {Type Reset}\r\n");
+  CHECK(angle_of("Camera") == 1.05);
+}
+
+// In a frame of x forward, y right, z down a turn about z leads from x to y, and one about y from z to x: a pan is positive to the
+// right, a tilt positive up. Inside (REP 103) left and down are positive.
 TEST_CASE("a camera mount turns by MISPKG and by ACT, and MISSTA tells how far") {
   Conversation talk = with_robot();
+  const auto inside = [&](std::size_t link) {
+    return talk.simulation.world.mission_link_rad(talk.session->robot->id, 0, link);
+  };
   talk.send("MISPKG {Name CameraPanTilt} {Link 1} {Value 0.5} {Order 0} {Link 2} {Value 0.25}\r\n");
   REQUIRE(talk.run(1));
   std::string status = talk.last("MISSTA");
   CHECK(status ==
         "MISSTA {Time 1.00} {Name CameraPanTilt} {Link 1} {Value 0.5000} {Torque 0.00} {Link 2} {Value 0.2500} "
         "{Torque 0.00}");
+  CHECK(inside(0) == Approx(-0.5));
+  CHECK(inside(1) == Approx(-0.25));
   talk.send("ACT {Name CameraPanTilt} {Link 1} {Value -0.25} {Order 10}\r\n");  // relative
   REQUIRE(talk.run(1));
   CHECK(talk.last("MISSTA").find("{Link 1} {Value 0.2500}") != std::string::npos);
@@ -104,6 +129,16 @@ TEST_CASE("a camera mount turns by MISPKG and by ACT, and MISSTA tells how far")
   talk.send("MISPKG {Name Arm} {Link 1} {Value 1}\r\n");
   REQUIRE(talk.run(1));
   CHECK(talk.last("MISSTA").find("{Link 1} {Value 0.2500}") != std::string::npos);
+}
+
+TEST_CASE("a camera mount that is told a speed goes to that end of its range") {
+  Conversation talk = with_robot();
+  // up to 45 degrees, down to 90: the same limits that GETCONF tells
+  const std::string tilt = talk.answer_to("GETCONF {Type MisPkg} {Name CameraPanTilt}\r\n");
+  CHECK(tilt.ends_with("{MinValue -1.5708} {MaxValue 0.7854}"));
+  talk.send("MISPKG {Name CameraPanTilt} {Link 2} {Value 1} {Order 1}\r\n");
+  REQUIRE(talk.run(1));
+  CHECK(talk.last("MISSTA").find("{Link 2} {Value 0.7854}") != std::string::npos);
 }
 
 TEST_CASE("UDK calls the mount's status ASTA") {

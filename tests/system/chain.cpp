@@ -23,8 +23,9 @@ void Chain::start_world() {
   std::filesystem::remove(port_file);
   world_.reset();
   world_ = std::make_unique<Process>(
-      std::vector<std::string>{KENAF_BIN_DIR "/kenaf-world", "--view", "off", "--world", world_name_, "--speed", speed_,
-                               "--port", std::to_string(world_port_), "--port-file", port_file.string()},
+      std::vector<std::string>{KENAF_BIN_DIR "/kenaf-world", "--view", "off", "--cameras", "off", "--world",
+                               world_name_, "--speed", speed_, "--port", std::to_string(world_port_), "--port-file",
+                               port_file.string()},
       folder() / "world.log");
   world_port_ = support::wait_for_port(port_file, *world_);
 }

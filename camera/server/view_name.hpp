@@ -1,0 +1,25 @@
+// Which camera a reader means. Pure functions.
+//
+//   ROBOT/CAMERA   that camera of that robot; of several robots of one name, the one placed last
+//   CAMERA         that camera of the robot placed last that has one
+//   (empty)        the first camera of the robot placed last that has one
+// Names are compared without case, as USARSim does. What a view shows changes as robots come and go.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "camera/server/frame.hpp"
+#include "camera/snapshot.hpp"
+
+namespace kenaf::camera {
+
+// `robots`: in the order in which they were placed. Empty: there is no such camera now.
+std::optional<CameraId> find_view(const std::vector<RobotSnapshot>& robots, std::string_view view);
+
+// Why find_view() finds nothing, and what there is instead; at most some 1000 bytes.
+std::string no_such_view(const std::vector<RobotSnapshot>& robots, std::string_view view);
+
+}  // namespace kenaf::camera
