@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "live/access.hpp"
+#include "live/picture_stream.hpp"
 #include "live/request.hpp"
 #include "live/view_options.hpp"
 
@@ -22,12 +23,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         if (!std::isfinite(joint.value)) std::abort();
       }
     }
+    if (const auto* look = std::get_if<live::LookRequest>(request)) {
+      for (const auto& angle : {look->order.pan_rad, look->order.tilt_rad, look->order.field_of_view_rad}) {
+        if (angle && !std::isfinite(*angle)) std::abort();
+      }
+    }
   } else if (std::get<std::string>(parsed).empty()) {
     std::abort();
   }
   live::host_allowed(text, "workbench");
   live::origin_allowed(text, "127.0.0.1:8080");
   live::query_value(text, "token");
+  if (const auto path = live::parse_picture_path(text); path && path->view.size() > text.size()) std::abort();
   try {
     live::parse_view_options(text);
   } catch (const std::runtime_error&) {

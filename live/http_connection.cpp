@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "live/access.hpp"
+#include "live/headers.hpp"
 
 namespace kenaf::live {
 
@@ -18,11 +19,6 @@ using beast::error_code;
 
 // A phone may take so long for the largest file.
 constexpr std::chrono::seconds kLongestWrite{60};
-
-// Nothing is loaded from elsewhere, whatever somebody manages to write into the page.
-constexpr const char* kContentPolicy =
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; base-uri 'none'; "
-    "form-action 'none'; frame-ancestors 'none'";
 
 constexpr std::string_view kWords = "text/plain; charset=utf-8";
 
@@ -118,10 +114,7 @@ void HttpConnection::send(http::status status, std::string_view type, std::strin
   response_.result(status);
   response_.set(http::field::content_type, {type.data(), type.size()});
   response_.set(http::field::cache_control, "no-cache");
-  response_.set("Content-Security-Policy", kContentPolicy);
-  response_.set("X-Content-Type-Options", "nosniff");
-  response_.set("Referrer-Policy", "no-referrer");
-  response_.set("Cross-Origin-Resource-Policy", "same-origin");
+  for (const auto& [name, value] : kSafetyHeaders) response_.set(name, value);
   response_.keep_alive(keep_);
   response_.body() = beast::span<const char>(bytes.data(), bytes.size());
   response_.prepare_payload();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/server/feed.hpp"
 #include "live/site.hpp"
 #include "live/view.hpp"
 #include "physics/server/world_state.hpp"
@@ -15,14 +16,17 @@
 namespace kenaf::live {
 
 class Viewer;
+class PictureReader;
 
 struct Hub {
   server::WorldServer& world;
   const ViewLimits limits;
   const std::shared_ptr<const std::string> scene;
+  camera::Feed* const cameras = nullptr;  // null: they are off
 
   std::uint32_t last_operator = 0;
   std::vector<Viewer*> viewers{};
+  std::vector<PictureReader*> picture_readers{};
   std::shared_ptr<const std::string> inventory{};  // as of the newest state
   std::function<void()> viewer_came{};
 

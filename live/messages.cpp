@@ -13,6 +13,38 @@ using server::BoxState;
 using server::RobotState;
 using server::WorldState;
 
+void write_cameras(Writer& out, const RobotState& robot) {
+  out.key("cameras").open('[');
+  for (const server::CameraState& camera : robot.cameras) {
+    out.comma().open('{').key("name").text(camera.name);
+    out.key("width").integer(static_cast<std::uint64_t>(camera.width));
+    out.key("height").integer(static_cast<std::uint64_t>(camera.height));
+    out.key("fov").numbers(std::array{camera.min_field_of_view_rad, camera.max_field_of_view_rad});
+    if (camera.pan) out.key("pan").numbers(std::array{camera.pan->min_rad, camera.pan->max_rad});
+    if (camera.tilt) out.key("tilt").numbers(std::array{camera.tilt->min_rad, camera.tilt->max_rad});
+    out.close('}');
+  }
+  out.close(']');
+}
+
+// Where they look, and how old the newest picture is.
+void write_camera_states(Writer& out, const RobotState& robot, std::span<const FrameAge> frames) {
+  if (robot.cameras.empty()) return;
+  out.key("cameras").open('[');
+  for (std::size_t i = 0; i < robot.cameras.size(); ++i) {
+    const server::CameraState& camera = robot.cameras[i];
+    out.comma().open('{').key("fov").number(camera.field_of_view_rad);
+    if (camera.pan) out.key("pan").number(camera.pan->angle_rad);
+    if (camera.tilt) out.key("tilt").number(camera.tilt->angle_rad);
+    const auto frame = std::ranges::find(frames, kenaf::camera::CameraId{robot.robot, i}, &FrameAge::id);
+    if (frame != frames.end()) {
+      out.key("n").integer(frame->number).key("t").number(frame->robot_time_s).key("age").number(frame->age_s);
+    }
+    out.close('}');
+  }
+  out.close(']');
+}
+
 std::string_view mode_name(physics::JointMode mode) {
   switch (mode) {
     case physics::JointMode::angle:
@@ -39,7 +71,7 @@ void write_command(Writer& out, const RobotState& robot) {
   out.close('}');
 }
 
-void write_robot(Writer& out, const RobotState& robot) {
+void write_robot(Writer& out, const RobotState& robot, std::span<const FrameAge> frames) {
   out.comma().open('{').key("id").integer(robot.id);
   out.key("p").vector(robot.X_WB.p).key("q").rotation(robot.X_WB.q).key("v").vector(robot.v_WB_mps);
   out.key("track_mps").numbers(robot.track_mps).key("track_m").numbers(robot.track_m);
@@ -57,19 +89,20 @@ void write_robot(Writer& out, const RobotState& robot) {
     out.key("holder").integer(static_cast<std::uint32_t>(robot.holder));
     out.key("holder_silent").boolean(robot.holder_silent);
   }
+  write_camera_states(out, robot, frames);
   if (!robot.fault.empty()) out.key("fault").text(robot.fault);
   out.close('}');
 }
 
 }  // namespace
 
-std::string hello_message(server::OperatorId you, std::string_view world, double time_step_s,
-                          double operator_silence_s) {
+std::string hello_message(server::OperatorId you, std::string_view world, double time_step_s, double operator_silence_s,
+                          bool pictures) {
   Writer out;
   out.open('{').key("type").text("hello").key("protocol").integer(kViewProtocol);
   out.key("you").integer(static_cast<std::uint32_t>(you)).key("world").text(world);
   out.key("time_step").number(time_step_s, 6).key("operator_silence").number(operator_silence_s, 3);
-  out.key("cameras").raw("[]");
+  out.key("pictures").boolean(pictures);
   return out.close('}').take();
 }
 
@@ -80,6 +113,7 @@ std::string inventory_message(const WorldState& state) {
     out.comma().open('{').key("id").integer(robot.id).key("name").text(robot.name);
     out.key("class").text(robot.class_name).key("placed").boolean(!robot.has_client);
     write_dimensions(out, robot.dimensions);
+    write_cameras(out, robot);
     out.close('}');
   }
   out.close(']').key("boxes").open('[');
@@ -94,13 +128,14 @@ bool same_inventory(const WorldState& a, const WorldState& b) {
   return std::ranges::equal(a.robots, b.robots, same_id) && std::ranges::equal(a.boxes, b.boxes, same_id);
 }
 
-std::string state_message(const WorldState& state, std::uint64_t number, double reached, std::size_t viewers) {
+std::string state_message(const WorldState& state, std::uint64_t number, double reached, std::size_t viewers,
+                          std::span<const FrameAge> frames) {
   Writer out;
   out.open('{').key("type").text("state").key("n").integer(number);
   out.key("t").number(state.time_s).key("step").integer(state.step).key("paused").boolean(state.paused);
   out.key("speed").number(state.speed, 3).key("reached").number(reached, 3).key("viewers").integer(viewers);
   out.key("robots").open('[');
-  for (const RobotState& robot : state.robots) write_robot(out, robot);
+  for (const RobotState& robot : state.robots) write_robot(out, robot, frames);
   out.close(']').key("boxes").open('[');
   for (const BoxState& box : state.boxes) {
     out.comma().open('{').key("p").vector(box.X_WBox.p).key("q").rotation(box.X_WBox.q).close('}');

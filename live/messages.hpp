@@ -2,23 +2,30 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
+#include "camera/server/frame.hpp"
 #include "physics/server/world_state.hpp"
 
 namespace kenaf::live {
 
 // Raised by one where a page of before would misunderstand.
-inline constexpr int kViewProtocol = 1;
+inline constexpr int kViewProtocol = 2;
 
-std::string hello_message(server::OperatorId you, std::string_view world, double time_step_s, double operator_silence_s);
+// `pictures`: whether robots' cameras can be seen.
+std::string hello_message(server::OperatorId you, std::string_view world, double time_step_s, double operator_silence_s,
+                          bool pictures);
 // What a robot or a box is, beside how it moves: sent when one comes or leaves.
 std::string inventory_message(const server::WorldState& state);
 // Whether a page that has the inventory of `a` needs that of `b`.
 bool same_inventory(const server::WorldState& a, const server::WorldState& b);
 // How everything moves. `number` counts the messages, `reached` is robot time by wall-clock time.
-std::string state_message(const server::WorldState& state, std::uint64_t number, double reached, std::size_t viewers);
+// `frames`: of the cameras that somebody looks through, wherever.
+struct FrameAge { camera::CameraId id; std::uint64_t number; double robot_time_s, age_s; };
+std::string state_message(const server::WorldState& state, std::uint64_t number, double reached, std::size_t viewers,
+                          std::span<const FrameAge> frames = {});
 std::string refused_message(std::string_view request, std::string_view reason);
 std::string placed_message(std::uint32_t robot);
 std::string pong_message(double t);

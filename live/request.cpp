@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 namespace kenaf::live {
@@ -57,11 +58,25 @@ DriveRequest drive(const json& object) {
   return request;
 }
 
+LookRequest look(const json& object) {
+  constexpr double kFarthest_rad = 100;
+  const auto name = object.find("camera");
+  if (name == object.end() || !name->is_string()) throw std::runtime_error("camera is missing");
+  LookRequest request{robot(object), name->get<std::string>(), {}};
+  const auto angle = [&](const char* key) -> std::optional<double> {
+    if (!object.contains(key)) return std::nullopt;
+    return number(object, key, -kFarthest_rad, kFarthest_rad);
+  };
+  request.order = {angle("pan"), angle("tilt"), angle("fov")};
+  return request;
+}
+
 Request read(const json& object) {
   const auto found = object.find("type");
   if (found == object.end() || !found->is_string()) throw std::runtime_error("type is missing");
   const auto& type = found->get_ref<const std::string&>();
   if (type == "drive") return drive(object);
+  if (type == "look") return look(object);
   if (type == "ping") return PingRequest{number(object, "t", -1e15, 1e15)};
   if (type == "pause") return PauseRequest{boolean(object, "on")};
   if (type == "step") return StepRequest{number(object, "time", 1e-4, 60)};

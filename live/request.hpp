@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "physics/robot_command.hpp"
+#include "physics/server/manual_drive.hpp"
 
 namespace kenaf::live {
 
@@ -19,10 +20,11 @@ struct TakeRequest { std::uint32_t robot; };
 struct LetGoRequest { std::uint32_t robot; };
 struct RemoveRequest { std::uint32_t robot; };
 struct DriveRequest { std::uint32_t robot; physics::RobotCommand command; };  // finite numbers
+struct LookRequest { std::uint32_t robot; std::string camera; server::CameraOrder order; };  // finite numbers
 struct PingRequest { double t; };                   // comes back as it is
 
 using Request = std::variant<PauseRequest, StepRequest, SpeedRequest, ResetRequest, PlaceRequest, TakeRequest, LetGoRequest,
-                             RemoveRequest, DriveRequest, PingRequest>;
+                             RemoveRequest, DriveRequest, LookRequest, PingRequest>;
 
 // std::string: why `text` is no request.
 std::variant<Request, std::string> parse_request(std::string_view text);

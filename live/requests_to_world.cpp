@@ -52,6 +52,9 @@ struct CarryOut {
   std::string operator()(const DriveRequest& request) const {
     return told("drive", server::drive_by_hand(simulation, request.robot, who, request.command));
   }
+  std::string operator()(const LookRequest& request) const {
+    return told("look", server::look_by_hand(simulation, request.robot, who, request.camera, request.order));
+  }
   std::string operator()(const PingRequest&) const { return {}; }
 };
 

@@ -10,6 +10,7 @@
 
 #include "live/hub.hpp"
 #include "live/messages.hpp"
+#include "live/picture_stream.hpp"
 #include "live/scene_bytes.hpp"
 #include "live/speed_meter.hpp"
 #include "live/viewer.hpp"
@@ -46,22 +47,44 @@ Route viewer_route(Hub& hub) {
   };
 }
 
+Route picture_route(Hub& hub) {
+  return [&hub](const Visit& visit) -> std::variant<Reply, TakeOver> {
+    auto picture = parse_picture_path(visit.rest);
+    if (!picture) return reply_in_words(http::status::not_found, "There is no such file.\n");
+    if (hub.cameras == nullptr) return reply_in_words(http::status::not_found, "The cameras are off.\n");
+    if (hub.picture_readers.size() >= hub.limits.pictures) {
+      return reply_in_words(http::status::service_unavailable, "Too many look through cameras already.\n");
+    }
+    return TakeOver([&hub, picture = std::move(*picture)](boost::beast::tcp_stream stream, const PageRequest&) {
+      start_pictures(hub, std::move(stream), picture);
+    });
+  };
+}
+
 }  // namespace
 
 struct View::Implementation {
-  Implementation(server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits)
+  Implementation(server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits,
+                 camera::Feed* cameras)
       : hub{.world = world,
             .limits = limits,
             .scene = std::make_shared<const std::string>(scene_bytes(world.world_description())),
+            .cameras = cameras,
             .site = {.limits = limits,
                      .token = token_for(options),
                      .own_name = machine_name(),
                      .assets = load_assets("index.html")}},
         server(hub.site, options) {
-    hub.site.routes = {{"/scene", scene_route(hub)}, {"/ws", viewer_route(hub)}};
+    hub.site.routes = {{"/scene", scene_route(hub)}, {"/ws", viewer_route(hub)}, {"/camera", picture_route(hub)}};
     hub.viewer_came = [this] {
       if (!looking) look();
     };
+    if (cameras == nullptr) return;
+    told_of_frames = cameras->listen([this] {
+      asio::post(hub.site.io, [this] {
+        for (std::size_t i = hub.picture_readers.size(); i-- > 0;) hub.picture_readers[i]->look();
+      });
+    });
   }
 
   void look();
@@ -76,6 +99,7 @@ struct View::Implementation {
   bool looking = false;     // a look is under way or will be
   std::uint64_t states = 0;
   SpeedMeter speed;
+  std::shared_ptr<void> told_of_frames;
   WebServer server;  // last: its thread ends before what it uses
 };
 
@@ -99,7 +123,14 @@ void View::Implementation::show() {
     for (std::size_t i = hub.viewers.size(); i-- > 0;) hub.viewers[i]->tell(hub.inventory);
   }
   const double reached = speed.read(state.wall_s, state.time_s);
-  const auto message = std::make_shared<const std::string>(state_message(state, ++states, reached, hub.viewers.size()));
+  std::vector<FrameAge> frames;
+  if (hub.cameras != nullptr) {
+    for (const auto& frame : hub.cameras->newest()) {
+      frames.push_back({frame->id, frame->number, frame->robot_time_s, camera::age_s(*frame)});
+    }
+  }
+  const auto message =
+      std::make_shared<const std::string>(state_message(state, ++states, reached, hub.viewers.size(), frames));
   for (std::size_t i = hub.viewers.size(); i-- > 0;) hub.viewers[i]->show(message);
 }
 
@@ -113,8 +144,8 @@ void View::Implementation::wait_and_look() {
   });
 }
 
-View::View(server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits)
-    : impl_(std::make_unique<Implementation>(world, options, limits)) {
+View::View(server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits, camera::Feed* cameras)
+    : impl_(std::make_unique<Implementation>(world, options, limits, cameras)) {
   impl_->server.start();
 }
 
@@ -128,10 +159,10 @@ std::string View::url() const {
   return impl_->server.url();
 }
 
-std::unique_ptr<View> open_view(server::WorldServer& world, const ViewOptions& options) {
+std::unique_ptr<View> open_view(server::WorldServer& world, const ViewOptions& options, camera::Feed* cameras) {
   if (!options.on) return nullptr;
   try {
-    auto view = std::make_unique<View>(world, options);
+    auto view = std::make_unique<View>(world, options, ViewLimits{}, cameras);
     spdlog::info("live view: {}", view->url());
     return view;
   } catch (const std::runtime_error& error) {

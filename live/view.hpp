@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "camera/server/feed.hpp"
 #include "live/site.hpp"
 #include "live/view_options.hpp"
 #include "physics/server/world_server.hpp"
@@ -16,6 +17,7 @@ namespace kenaf::live {
 
 struct ViewLimits : SiteLimits {
   std::size_t viewers = 64;            // of its connections, WebSockets
+  std::size_t pictures = 64;           // of its connections, readers of a camera's pictures
   std::size_t message_bytes = 4096;    // that a page sends
   std::size_t unread_answers = 32;     // then a page is let go; of states it keeps the newest only
   double period_s = 1.0 / 30;          // between states
@@ -25,8 +27,9 @@ struct ViewLimits : SiteLimits {
 class View {
  public:
   // Listens, and serves from then on. Throws std::runtime_error in words. The world must be there until this has ended,
-  // and this must end after world.run() has, or without it.
-  View(server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits = {});
+  // and this must end after world.run() has, or without it. The cameras must be there as long; null: there are none to see.
+  View(server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits = {},
+       camera::Feed* cameras = nullptr);
   ~View();
   View(const View&) = delete;
   View& operator=(const View&) = delete;
@@ -41,6 +44,6 @@ class View {
 };
 
 // As programs start it: says in the log where it is, or why it is not there, and the program goes on without it.
-std::unique_ptr<View> open_view(server::WorldServer& world, const ViewOptions& options);
+std::unique_ptr<View> open_view(server::WorldServer& world, const ViewOptions& options, camera::Feed* cameras);
 
 }  // namespace kenaf::live

@@ -19,7 +19,7 @@ server::ServerOptions server_options(const EmbeddedWorld& options) {
 EmbeddedWorldServer::EmbeddedWorldServer(const EmbeddedWorld& options)
     : server_(server_options(options)),
       cameras_(camera::open_cameras(server_, options.cameras, "127.0.0.1")),
-      view_(live::open_view(server_, options.view)),
+      view_(live::open_view(server_, options.view, cameras_.feed.get())),
       thread_([this] { server_.run(); }) {}
 
 EmbeddedWorldServer::~EmbeddedWorldServer() {

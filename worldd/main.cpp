@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
     kenaf::camera::set_camera_image(camera_options, camera_image);
     kenaf::server::WorldServer server(options);
     const auto served_cameras = kenaf::camera::open_cameras(server, camera_options, options.listen_address);
-    const auto live_view = kenaf::live::open_view(server, view_options);
+    const auto live_view = kenaf::live::open_view(server, view_options, served_cameras.feed.get());
     std::thread stopper([&] {
       int signal = 0;
       sigwait(&signals, &signal);

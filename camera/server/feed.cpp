@@ -65,7 +65,7 @@ struct Feed::Implementation {
   void draw(const Exposure& exposure, const std::vector<CameraId>& due);
   FramePtr draw_one(const Exposure& exposure, std::size_t robot, std::size_t camera, std::uint64_t number);
   void stand_still(CameraId id, const std::string& why);
-  void ask_again(const Exposure& exposure);
+  void ask_later(const Exposure& exposure);
   void publish_due();
   void fall_asleep();
   void tell();
@@ -158,14 +158,22 @@ void Feed::Implementation::take(std::shared_ptr<Exposure> exposure) {
   for (auto& [id, camera] : drawn) {
     wanted = wanted || camera.wanted;
     if (!camera.wanted || camera.faulty) continue;
-    if (exposes_at({camera.rate_hz, camera.last}, exposure->step, exposure->time_step_s)) due.push_back(id);
+    if (!exposes_at({camera.rate_hz, camera.last}, exposure->step, exposure->time_step_s)) continue;
+    due.push_back(id);
+    const Tick tick = tick_at(exposure->step, exposure->time_step_s, camera.rate_hz);
+    // after a reset time begins anew, and numbers go on
+    camera.number += camera.last && tick > *camera.last ? tick - *camera.last : 1;
+    camera.last = tick;
   }
-  if (!due.empty()) draw(*exposure, due);
   {
     const std::lock_guard lock(mutex);
     if (views.empty() && !wanted) return fall_asleep();
   }
-  if (newest) ask_again(*exposure);
+  // Where the clock sets the pace, the next exposure is asked for before this one is drawn: if drawing is late, it
+  // still is in time.
+  if (newest && exposure->speed > 0) ask(false);
+  if (!due.empty()) draw(*exposure, due);
+  if (newest && exposure->speed == 0) ask_later(*exposure);
   spare = std::move(exposure);
 }
 
@@ -215,15 +223,10 @@ void Feed::Implementation::draw(const Exposure& exposure, const std::vector<Came
     return;
   }
   for (const CameraId& id : due) {
-    Drawn& camera = drawn.at(id);
-    const Tick tick = tick_at(exposure.step, exposure.time_step_s, camera.rate_hz);
-    // after a reset time begins anew, and numbers go on
-    camera.number += camera.last && tick > *camera.last ? tick - *camera.last : 1;
-    camera.last = tick;
     const auto& robots = exposure.world.robots;
     const auto robot = std::ranges::find(robots, id.robot, &RobotSnapshot::id) - robots.begin();
     try {
-      const FramePtr frame = draw_one(exposure, static_cast<std::size_t>(robot), id.camera, camera.number);
+      const FramePtr frame = draw_one(exposure, static_cast<std::size_t>(robot), id.camera, drawn.at(id).number);
       const double latency_s = robots[static_cast<std::size_t>(robot)].description->cameras[id.camera].latency_s;
       const Clock::duration latency =
           exposure.speed > 0 ? seconds(latency_s / exposure.speed) : Clock::duration::zero();
@@ -265,10 +268,8 @@ void Feed::Implementation::stand_still(CameraId id, const std::string& why) {
   tell();
 }
 
-// The next exposure is asked for at once where the clock sets the pace, and else no sooner than the rate says by the
-// wall clock.
-void Feed::Implementation::ask_again(const Exposure& exposure) {
-  if (exposure.speed > 0) return ask(false);
+// The clock sets no pace: the rate does, by the wall clock.
+void Feed::Implementation::ask_later(const Exposure& exposure) {
   double rate_hz = 1 / std::chrono::duration<double>(kLookAnyway).count();
   for (const auto& [id, camera] : drawn) {
     if (camera.wanted) rate_hz = std::max(rate_hz, camera.rate_hz);

@@ -14,7 +14,7 @@ namespace kenaf::camera {
 
 struct ImageServerLimits {
   std::size_t connections = 64;      // further ones are closed at once
-  double repeat_s = 1;               // without a new frame the old one is sent again
+  double repeat_s = 0.9;             // without a new frame the old one is sent again: within a second
   double first_s = 10;               // without any frame words are sent
   double words_apart_s = 0.1;        // between two answers in words
   double unread_s = 10;              // a reader that takes no byte for so long is closed

@@ -1,5 +1,5 @@
 // The WebSocket to the server: opened again when it breaks, watched for age and for states that were dropped.
-const PROTOCOL = 1;
+const PROTOCOL = 2;
 const token = new URLSearchParams(location.hash.slice(1)).get("token");
 
 // A path of this server, with the token where there is one.

@@ -4,6 +4,7 @@ const KEYS = {
   KeyW: "forward", ArrowUp: "forward", KeyS: "back", ArrowDown: "back",
   KeyA: "left", ArrowLeft: "left", KeyD: "right", ArrowRight: "right",
   KeyQ: "front-up", KeyE: "front-down", KeyR: "rear-up", KeyF: "rear-down",
+  KeyJ: "look-left", KeyL: "look-right", KeyI: "look-up", KeyK: "look-down", KeyU: "zoom-in", KeyO: "zoom-out", KeyC: "look-ahead",
   Digit1: "flat", Digit2: "raised", Digit3: "climb", Digit4: "stand",
 };
 

@@ -6,8 +6,9 @@ const REPEAT_MS = 50;   // ten words in the time after which the server takes si
 const by = (id) => document.getElementById(id);
 
 export function createDriving(world, link) {
-  const driving = { chosen: 0, update, placed, letGo };
+  const driving = { chosen: 0, update, placed, letGo, holding };
   const hands = watchHands(() => holding() !== null, speak);
+  driving.held = hands.held;
 
   const chosen = () => world.robots.get(driving.chosen) ?? null;
   // The robot that is yours, or null.

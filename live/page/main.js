@@ -1,5 +1,6 @@
 // Puts the page's parts together: each message from the server changes `world`, and the parts show it.
 import { connect } from "./connection.js";
+import { createCameraHand } from "./camera_hand.js";
 import { createDriving } from "./driving.js";
 import { createInstruments } from "./instruments.js";
 import { createLinkHealth } from "./link_health.js";
@@ -17,20 +18,24 @@ const link = connect({
   closed() {
     world.you = 0;
     driving.update();
+    pictures.update();
   },
   hello(message) {
     takeHello(world, message);
     document.getElementById("world").textContent = world.name;
-    pictures.show(world.cameras);
+    pictures.update();
   },
   inventory(message) {
     takeInventory(world, message);
     driving.update();
+    pictures.update();
     view?.syncObjects();
   },
   state(message) {
     takeState(world, message);
     driving.update();
+    cameraHand.update();
+    pictures.update();
     timeControls.update();
     instruments.update(chosen());
     posture.update(chosen());
@@ -45,9 +50,9 @@ const timeControls = createTimeControls(world, link);
 const instruments = createInstruments();
 const posture = createPosture();
 const timeline = createTimeline();
-const pictures = createPictures();
+const pictures = createPictures(world, chosen);
+const cameraHand = createCameraHand(link, driving);
 const health = createLinkHealth(world, link);
-pictures.show([]);
 
 // Driving and figures work without it, where a browser has no WebGL.
 let view = null;

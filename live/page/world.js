@@ -1,13 +1,13 @@
 // What the server said last: robots by id, each with what it is (inventory) and how it is (state).
 export function createWorld() {
-  return { you: 0, name: "", time_s: 0, paused: false, speed: 1, reached: 0, viewers: 0, cameras: [],
+  return { you: 0, name: "", time_s: 0, paused: false, speed: 1, reached: 0, viewers: 0, pictures: false,
            robots: new Map(), boxes: [] };
 }
 
 export function takeHello(world, message) {
   world.you = message.you;
   world.name = message.world;
-  world.cameras = message.cameras;
+  world.pictures = message.pictures;
 }
 
 export function takeInventory(world, message) {

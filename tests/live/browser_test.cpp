@@ -3,7 +3,9 @@
 //
 // What the robot does is asked of the world server by a second page, not of the browser that drives.
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <filesystem>
+#include <thread>
 
 #include "tests/live/browser.hpp"
 #include "tests/live/served_world.hpp"
@@ -94,6 +96,59 @@ TEST_CASE("in a browser: keys held drive the robot, letting go of them stops it,
   desk.browser.key("Escape", false);
   desk.state_is("none");
   desk.robot_with([](const json& robot) { return !robot.contains("holder"); });
+  CHECK(desk.browser.complaints().empty());
+  for (const std::string& complaint : desk.browser.complaints()) UNSCOPED_INFO(complaint);
+}
+
+TEST_CASE("in a browser: both cameras' pictures are shown, turned by keys, and not fetched by a hidden page") {
+  Desk desk;
+  desk.browser.evaluate("document.getElementById('place').click()");
+  desk.state_is("held");
+  // both are there, whole, and show something: their middle row has many colours
+  const char* shown =
+      "(() => { const pictures = [...document.querySelectorAll('#pictures img')];"
+      "  return pictures.length === 2 && pictures.every((picture) => {"
+      "    if (picture.naturalWidth !== 640 || picture.naturalHeight !== 480) return false;"
+      "    const canvas = document.createElement('canvas'); canvas.width = 640; canvas.height = 480;"
+      "    const context = canvas.getContext('2d'); context.drawImage(picture, 0, 0);"
+      "    const pixels = context.getImageData(320, 0, 1, 480).data;"
+      "    return new Set(Array.from({ length: 480 }, (_, row) => pixels[4 * row])).size > 20; }); })()";
+  desk.browser.wait_for(shown);
+  const char* ages = "[...document.querySelectorAll('#pictures output')].every((age) => / ms$/.test(age.textContent))";
+  desk.browser.wait_for(ages);
+
+  // while L is held the camera turns to the right: a negative pan
+  const auto camera = [](const json& robot) { return robot["cameras"][0]; };
+  desk.browser.key("KeyL", true);
+  desk.robot_with([&](const json& robot) { return camera(robot)["pan"] < -0.2; });
+  desk.browser.key("KeyL", false);
+  desk.browser.key("KeyU", true);
+  desk.robot_with([&](const json& robot) { return camera(robot)["fov"] < 0.9; });
+  desk.browser.key("KeyU", false);
+  desk.browser.key("KeyC", true);
+  desk.robot_with([&](const json& robot) { return camera(robot)["pan"] == 0; });
+  desk.browser.key("KeyC", false);
+  // the slider, by the keyboard: right is right
+  desk.browser.evaluate("document.getElementById('look-pan').focus()");
+  for (int i = 0; i < 3; ++i) {
+    desk.browser.key("ArrowRight", true);
+    desk.browser.key("ArrowRight", false);
+  }
+  desk.robot_with([&](const json& robot) { return camera(robot)["pan"] < -0.04; });
+  desk.robot_with([&](const json& robot) {
+    return robot["track_mps"][0] == 0 || std::abs(robot["track_mps"][0].get<double>()) < 0.01;
+  });
+
+  // a page that nobody sees has nothing drawn
+  desk.browser.evaluate(
+      "Object.defineProperty(document, 'hidden', { value: true, configurable: true }); document.dispatchEvent(new "
+      "Event('visibilitychange')), 0");
+  for (int i = 0; i < 2000 && !desk.world.cameras().newest().empty(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  CHECK(desk.world.cameras().newest().empty());
+  desk.browser.evaluate("delete document.hidden; document.dispatchEvent(new Event('visibilitychange')), 0");
+  desk.browser.wait_for(shown);
   CHECK(desk.browser.complaints().empty());
   for (const std::string& complaint : desk.browser.complaints()) UNSCOPED_INFO(complaint);
 }

@@ -53,6 +53,12 @@ TEST_CASE("the other requests") {
   CHECK(request<PauseRequest>(R"({"type":"pause","on":true})").on);
   CHECK(request<StepRequest>(R"({"type":"step","time":0.1})").time_s == 0.1);
   CHECK(request<SpeedRequest>(R"({"type":"speed","value":0})").value == 0);
+  const auto look = request<LookRequest>(R"({"type":"look","robot":2,"camera":"Camera","pan":-1,"fov":0.5})");
+  CHECK(look.robot == 2);
+  CHECK(look.camera == "Camera");
+  CHECK(look.order.pan_rad == -1);
+  CHECK_FALSE(look.order.tilt_rad);
+  CHECK(look.order.field_of_view_rad == 0.5);
   request<ResetRequest>(R"({"type":"reset"})");
   request<PlaceRequest>(R"({"type":"place","more":1})");
   CHECK(request<TakeRequest>(R"({"type":"take","robot":4294967295})").robot == 4294967295);
@@ -77,6 +83,9 @@ TEST_CASE("what is no request is refused in words") {
                             R"({"type":"step","time":1e9})",
                             R"({"type":"speed","value":-1})",
                             R"({"type":"speed","value":1e-9})",
+                            R"({"type":"look","robot":1})",
+                            R"({"type":"look","robot":1,"camera":"Camera","pan":1e999})",
+                            R"({"type":"look","robot":1,"camera":"Camera","tilt":"up"})",
                             R"({"type":"take","robot":0})",
                             R"({"type":"take","robot":-1})",
                             R"({"type":"take","robot":4294967296})",

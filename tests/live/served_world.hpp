@@ -1,4 +1,4 @@
-// A world server with its live view, on free ports, in threads of this process.
+// A world server with its cameras and its live view, on free ports, in threads of this process.
 #pragma once
 
 #include <string>
@@ -12,7 +12,10 @@ namespace kenaf::live {
 class ServedWorld {
  public:
   explicit ServedWorld(const std::string& token = "", const ViewLimits& limits = {}, const std::string& world = "flat")
-      : server_(server_options(world)), view_(server_, view_options(token), limits), thread_([this] { server_.run(); }) {}
+      : server_(server_options(world)),
+        cameras_(server_),
+        view_(server_, view_options(token), limits, &cameras_),
+        thread_([this] { server_.run(); }) {}
   ~ServedWorld() {
     server_.stop();
     thread_.join();
@@ -20,6 +23,7 @@ class ServedWorld {
   std::uint16_t port() const { return view_.port(); }
   std::uint16_t usarsim_port() const { return server_.port(); }
   std::string url() const { return view_.url(); }
+  const camera::Feed& cameras() const { return cameras_; }
 
  private:
   static server::ServerOptions server_options(const std::string& world) {
@@ -35,6 +39,7 @@ class ServedWorld {
     return options;
   }
   server::WorldServer server_;
+  camera::Feed cameras_;
   View view_;
   std::thread thread_;
 };

@@ -39,7 +39,7 @@ struct Page : WebClient {
   explicit Page(const ServedWorld& world) : WebClient(world.port()) {
     REQUIRE(open_websocket());
     const json hello = message_of("hello");
-    CHECK(hello["protocol"] == 1);
+    CHECK(hello["protocol"] == 2);
     you = hello["you"];
   }
   json state() { return message_of("state"); }
@@ -138,8 +138,8 @@ TEST_CASE("a port that is taken is named, and a program goes on without the view
   server::WorldServer server(options);
   const ViewOptions taken{true, "127.0.0.1", world.port(), ""};
   CHECK_THROWS_WITH(View(server, taken), Catch::Contains(std::to_string(world.port())) && Catch::Contains("--view"));
-  CHECK(open_view(server, taken) == nullptr);
-  CHECK(open_view(server, ViewOptions{false, "127.0.0.1", 0, ""}) == nullptr);
+  CHECK(open_view(server, taken, nullptr) == nullptr);
+  CHECK(open_view(server, ViewOptions{false, "127.0.0.1", 0, ""}, nullptr) == nullptr);
 }
 
 TEST_CASE("a page places a robot in an empty world, drives it, and it stops when the page goes silent") {
