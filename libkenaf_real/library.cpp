@@ -1,9 +1,12 @@
 // What makes this library libkenaf_real.
 #include "canbus/socket_bus.hpp"
+#include "description/description_error.hpp"
 #include "hrt/camera.hpp"
 #include "hrt/error.hpp"
 #include "hrt/transport.hpp"
+#include "libkenaf_real/camera_on_robot.hpp"
 #include "libkenaf_real/can_transport.hpp"
+#include "libkenaf_real/v4l2_camera.hpp"
 
 namespace kenaf::hrt {
 
@@ -12,12 +15,23 @@ std::unique_ptr<Transport> make_transport() {
     return std::make_unique<canbus::SocketBus>(interface, ids);
   });
 }
-std::string resolve_camera(const hrt_config&, const std::string&) {
-  throw Error(HRT_E_DEVICE, "libkenaf_real does not read cameras yet");
+namespace {
+
+real::CameraOnRobot described_camera(const hrt_config& config, const std::string& name) {
+  try {
+    return real::choose_camera(real::load_cameras(config.robot), name, config.robot);
+  } catch (const DescriptionError& error) {
+    throw Error(HRT_E_CONFIG, error.what());
+  }
+}
+
+}  // namespace
+
+std::string resolve_camera(const hrt_config& config, const std::string& name) {
+  return described_camera(config, name).name;
 }
 std::unique_ptr<Camera> make_camera(const hrt_config& config, const std::string& camera) {
-  (void)resolve_camera(config, camera);
-  return nullptr;
+  return std::make_unique<real::V4l2Camera>(described_camera(config, camera));
 }
 extern const char* const kLibraryName = "real";
 

@@ -204,6 +204,7 @@ CameraDescription read_camera(TomlReader& table, const std::vector<MissionPackag
   camera.rate_hz = table.number("rate_hz", {.min = 0.1, .max = 120});
   camera.latency_s = table.number_or("latency_s", 0, {.min = 0, .max = 2});
   camera.jpeg_quality = table.has("jpeg_quality") ? table.integer("jpeg_quality", 1, 100) : 80;
+  table.leave("device");  // of the real robot's camera: libkenaf_real/camera_on_robot.hpp
   table.finish();
   return camera;
 }

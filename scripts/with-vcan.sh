@@ -7,6 +7,7 @@
 #   --check            say which way would be taken, and why, and end
 #   --way WAY          direct, kvm or tcg instead of the first of them that works; also KENAF_VCAN_WAY
 #   --timeout SECONDS  stop the command after so long, default 600; also KENAF_VCAN_TIMEOUT
+#   --camera           there is a camera too: a V4L2 device of the kernel's virtual driver vivid, a webcam with a test pattern
 #   --writable DIR     the command may write below DIR, which must exist; any number of times
 #
 # direct: a network namespace of its own on this kernel. kvm, tcg: a small virtual machine with Debian's kernel, by the
@@ -23,10 +24,11 @@ PATH=$PATH:/usr/sbin:/sbin   # ip and depmod, which the PATH of a normal user la
 fail() { printf 'with-vcan: %s\n' "$*" >&2; exit 125; }
 usage() { sed -n '2,/^set /{/^set /d;s/^# \{0,1\}//p}' "${BASH_SOURCE[0]}"; }
 
-check='' way=${KENAF_VCAN_WAY:-auto} limit_s=${KENAF_VCAN_TIMEOUT:-600} writable=()
+check='' camera='' way=${KENAF_VCAN_WAY:-auto} limit_s=${KENAF_VCAN_TIMEOUT:-600} writable=()
 while [ $# -gt 0 ]; do
   case $1 in
     --check) check=1; shift ;;
+    --camera) camera=1; shift ;;
     --help|-h) usage; exit 0 ;;
     --way|--timeout|--writable)
       [ $# -ge 2 ] || fail "$1 needs a value"
@@ -54,6 +56,9 @@ own_network=(unshare --net)
 # Whether this kernel gives us virtual CAN interfaces and both kinds of CAN sockets; its words where it does not.
 # 29 is AF_CAN; (3, 1) SOCK_RAW, CAN_RAW; (2, 2) SOCK_DGRAM, CAN_BCM: <linux/can.h>.
 try_direct() {
+  [ -z "$camera" ] || grep -qs '^vivid' /sys/class/video4linux/*/name ||
+    modprobe vivid n_devs=1 node_types=1 num_inputs=1 input_types=0 2>/dev/null ||
+    { echo "this kernel gives this user no vivid (a virtual camera)"; return 1; }
   command -v ip >/dev/null || { echo "there is no ip (package iproute2)"; return 1; }
   "${own_network[@]}" -- sh -c 'ip link add vcan0 type vcan && exec perl -e "$1"' sh '
     socket(my $raw, 29, 3, 1) or die "CAN_RAW sockets: $!\n";
@@ -84,7 +89,7 @@ machine_arguments() {
     -nodefaults -no-user-config -display none -no-reboot
     -kernel "$kernel/vmlinux" -initrd "$kernel/initramfs.cpio"
     -append "console=ttyS0 quiet panic=-1 reboot=t nokaslr mitigations=off audit=0 random.trust_cpu=on
-             8250.nr_uarts=1 pci=lastbus=0 rdinit=$init")
+             8250.nr_uarts=1 pci=lastbus=0 rdinit=$init${camera:+ kenaf.camera}")
 }
 
 # Whether the processor really runs the machine: /dev/kvm may be there, and yet a hypervisor below emulate too little.

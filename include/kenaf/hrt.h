@@ -359,7 +359,7 @@ int hrt_show_status(void);
  *
  * Cost. The first call for a camera opens a connection and a thread of its own, hrt_close closes them. A program that
  * asks for no picture has neither; no cycle ever waits for one. Pictures flow from the first call on and cease 2 s (wall
- * clock) after the last; the next call lets them flow again, which takes a real camera up to a second.
+ * clock) after the last; the next call lets them flow again, which may take a real camera a second.
  *
  * Time. Pictures are made, sent and read in wall-clock time, so timeout_s and age_ms count that, and which picture a
  * call gets may differ from run to run. A call that has to wait is a blocking call: robot time runs on, track speeds

@@ -7,6 +7,7 @@
 set -Eeuo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 modules=(virtio_pci 9pnet_virtio 9p overlay can-raw can-bcm vcan)
+camera_modules=(vivid)   # loaded by --camera alone
 work=''
 trap '[ -z "$work" ] || rm -rf "$work"' EXIT
 trap 'echo "with-vcan: ${BASH_SOURCE[0]}: line $LINENO failed" >&2' ERR
@@ -61,21 +62,31 @@ extract_vmlinux() {
   dd if="$image" iflag=skip_bytes,count_bytes skip="$start" count="$length" bs=1M status=none | xz -dc
 }
 
-# $work/kernel: vmlinux, modules/, and modules/order, their names in the order of loading.
-unpack() {
-  local package=$1 tree=$work/tree release module
-  mkdir -p "$tree" "$work/kernel/modules"
-  dpkg-deb --fsys-tarfile "$package" | tar -x -C "$tree" --wildcards './boot/vmlinuz-*' './lib/modules/*/modules.*' \
-    './lib/modules/*/kernel/drivers/virtio/*' './lib/modules/*/kernel/drivers/net/can/*' \
-    './lib/modules/*/kernel/fs/*' './lib/modules/*/kernel/net/9p/*' './lib/modules/*/kernel/net/can/*' ||
-    fail "$package is not a package of Debian's kernel linux-image-amd64"
-  release=$(basename "$tree"/lib/modules/*)
-  depmod -b "$tree" "$release"
-  for module in "${modules[@]}"; do
+# The files of the modules named after FILE and of all that they need, in the order of loading: their names in FILE.
+copy_modules() {
+  local tree=$1 release=$2 order=$3 module; shift 3
+  for module; do
     modprobe -d "$tree" -S "$release" --show-depends "$module" || fail "$package has no module $module"
   done | awk '$1 == "insmod" && !seen[$2]++ { print $2 }' >"$work/files"
   xargs cp -t "$work/kernel/modules" <"$work/files"
-  sed 's,.*/,,' "$work/files" >"$work/kernel/modules/order"
+  sed 's,.*/,,' "$work/files" >"$order"
+}
+
+# $work/kernel: vmlinux, modules/, with modules/order and modules/camera-order.
+unpack() {
+  local package=$1 tree=$work/tree release
+  mkdir -p "$tree" "$work/kernel/modules"
+  dpkg-deb --fsys-tarfile "$package" | tar -x -C "$tree" --wildcards './boot/vmlinuz-*' './lib/modules/*/modules.*' \
+    './lib/modules/*/kernel/drivers/virtio/*' './lib/modules/*/kernel/drivers/net/can/*' \
+    './lib/modules/*/kernel/drivers/media/*' './lib/modules/*/kernel/fs/*' './lib/modules/*/kernel/net/9p/*' \
+    './lib/modules/*/kernel/net/can/*' ||
+    fail "$package is not a package of Debian's kernel linux-image-amd64"
+  release=$(basename "$tree"/lib/modules/*)
+  depmod -b "$tree" "$release"
+  copy_modules "$tree" "$release" "$work/kernel/modules/order" "${modules[@]}"
+  copy_modules "$tree" "$release" "$work/kernel/modules/camera-order" "${camera_modules[@]}"
+  # One camera that takes pictures of a test pattern, as a webcam does: no tuner, no other devices.
+  sed -i 's/^vivid.ko$/& n_devs=1 node_types=1 num_inputs=1 input_types=0/' "$work/kernel/modules/camera-order"
   extract_vmlinux "$tree/boot/vmlinuz-$release" >"$work/kernel/vmlinux"
   [ "$(head -c 4 "$work/kernel/vmlinux")" = $'\x7fELF' ] || fail "the kernel of $package is not packed with xz"
 }
@@ -88,10 +99,12 @@ else
   package=''
   kernel=$(find "$cache" -maxdepth 1 -name 'linux-image-*' | sort -V | tail -n 1)
 fi
-if [ -z "$kernel" ] || [ ! -e "$kernel/vmlinux" ]; then
+# A folder of an older version of this script lacks the camera.
+if [ -z "$kernel" ] || [ ! -e "$kernel/vmlinux" ] || [ ! -e "$kernel/modules/camera-order" ]; then
   [ -n "$package" ] || { echo "with-vcan: downloading Debian's kernel into $cache, once" >&2; package=$(download) || exit 1; }
   kernel=$cache/$(basename "$package" .deb)
   unpack "$package"
+  rm -rf "$kernel"
   mv -T "$work/kernel" "$kernel"
 fi
 

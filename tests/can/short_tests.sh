@@ -8,3 +8,4 @@ bin=$1
 "$here/candrives_test.sh" "$bin/kenaf-candrives"
 "$here/real_library_test.sh" "$bin/square_real"
 "$here/operator_test.sh" "$bin"
+"$here/camera_test.sh" "$bin" "$here/../../robots/kenaf.toml"
