@@ -164,6 +164,29 @@ TEST_CASE("P1 a camera's own JPEG is handed on byte by byte, and decoded for RGB
   }
 }
 
+TEST_CASE("P1 a webcam's Motion JPEG, which leaves out the standard Huffman tables, is decoded") {
+  const OpenScene open;
+  Bytes8 jpeg = plain_jpeg(32, 32, 10, 200, 90);
+  // Without its segments DHT (FF C4), which TurboJPEG writes where they are the standard's.
+  int dropped = 0;
+  for (std::size_t at = 2; jpeg[at + 1] != 0xda;) {
+    const std::size_t bytes = std::size_t{2} + jpeg[at + 2] * 256u + jpeg[at + 3];
+    if (jpeg[at + 1] != 0xc4) {
+      at += bytes;
+      continue;
+    }
+    jpeg.erase(jpeg.begin() + static_cast<std::ptrdiff_t>(at), jpeg.begin() + static_cast<std::ptrdiff_t>(at + bytes));
+    ++dropped;
+  }
+  CHECK(dropped > 0);
+  open.scene->show(jpeg_picture(jpeg));
+  hrt_picture picture = hrt_picture_init();
+  REQUIRE(get_rgb(picture) == HRT_OK);
+  CHECK(std::abs(room[0] - 10) < 4);
+  CHECK(std::abs(room[1] - 200) < 4);
+  CHECK(std::abs(room[2] - 90) < 4);
+}
+
 TEST_CASE("P1 YUYV by BT.601, as RGB and as JPEG") {
   const OpenScene open;
   CameraPicture yuyv;
