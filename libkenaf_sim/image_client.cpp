@@ -21,6 +21,9 @@ namespace {
 
 // A Kenaf server answers 'J' within a second, if only with the old picture again.
 constexpr std::chrono::milliseconds kOldServerAfter{1000};
+// A Kenaf server whose world stands still before the first picture says so after 10 s. Nobody waits for longer than he
+// wants: it is the calls that have time limits.
+constexpr double kPatienceWithSilence = 5;
 // Words of a server that are passed on.
 constexpr std::size_t kMaxRefusalBytes = 400;
 
@@ -38,6 +41,7 @@ ImageClient::ImageClient(const hrt_config& config, const std::string& camera)
     : server_(config.camera_server),
       camera_(camera),
       patience_(config.connect_timeout_s),
+      silence_(kPatienceWithSilence * patience_),
       interrupt_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (interrupt_ < 0) throw hrt::Error(HRT_E_INTERNAL, fmt::format("eventfd: {}", std::strerror(errno)));
 }
@@ -127,7 +131,7 @@ bool ImageClient::receive_some() {
 }
 
 bool ImageClient::read_answer() {
-  const auto patience = std::chrono::duration_cast<Clock::duration>(patience_);
+  const auto patience = std::chrono::duration_cast<Clock::duration>(silence_);
   Clock::time_point until = requested_at_ + std::max<Clock::duration>(patience, kOldServerAfter + patience / 2);
   bool may_be_old = !is_kenaf_server_ && !is_old_server_;
   for (;;) {
@@ -181,7 +185,10 @@ hrt::CameraPicture ImageClient::picture_of_answer() {
   }
   std::optional<image::FrameNote> note;
   if (picture.encoding == hrt::CameraPicture::Encoding::jpeg) note = image::read_frame_note(picture.bytes);
-  is_kenaf_server_ = is_kenaf_server_ || note;
+  if (note) {
+    is_kenaf_server_ = true;
+    is_old_server_ = false;  // it was only slow
+  }
   if (!note) {
     picture.number = ++counted_;
     return picture;

@@ -46,7 +46,7 @@ class ImageClient final : public hrt::Camera {
   hrt::CameraPicture picture_of_answer();
 
   std::string server_, camera_;
-  std::chrono::duration<double> patience_;
+  std::chrono::duration<double> patience_, silence_;  // with a connection that is being made; with one that says nothing
   int socket_ = -1, interrupt_ = -1;
   bool is_old_server_ = false;    // it knows 'OK' alone
   bool is_kenaf_server_ = false;  // it has sent a frame note
