@@ -3,12 +3,14 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 
 namespace kenaf::system_test {
 
 using support::Process;
 
-Chain::Chain(const std::string& speed, const std::string& world) : speed_(speed), world_name_(world) {
+Chain::Chain(const std::string& speed, const std::string& world, bool has_cameras)
+    : speed_(speed), world_name_(world), has_cameras_(has_cameras) {
   start_world();
   const std::filesystem::path port_file = folder() / "relay.port";
   relay_ = std::make_unique<Process>(std::vector<std::string>{KENAF_BIN_DIR "/kenaf-relayd", "--world-server",
@@ -23,9 +25,9 @@ void Chain::start_world() {
   std::filesystem::remove(port_file);
   world_.reset();
   world_ = std::make_unique<Process>(
-      std::vector<std::string>{KENAF_BIN_DIR "/kenaf-world", "--view", "off", "--cameras", "off", "--world",
-                               world_name_, "--speed", speed_, "--port", std::to_string(world_port_), "--port-file",
-                               port_file.string()},
+      std::vector<std::string>{KENAF_BIN_DIR "/kenaf-world", "--view", "off", "--cameras", has_cameras_ ? "on" : "off",
+                               "--camera-port", "0", "--world", world_name_, "--speed", speed_, "--port",
+                               std::to_string(world_port_), "--port-file", port_file.string()},
       folder() / "world.log");
   world_port_ = support::wait_for_port(port_file, *world_);
 }
@@ -34,6 +36,14 @@ Process Chain::start_program(const std::string& name, Environment environment) c
   environment.try_emplace("KENAF_RELAY", "127.0.0.1:" + std::to_string(relay_port_));
   environment.try_emplace("KENAF_CONFIG", "");  // no configuration of the machine's user
   return Process({KENAF_BIN_DIR "/" + name}, folder() / (name + ".log"), environment);
+}
+
+std::uint16_t Chain::camera_port() const {
+  // It listens before the world's port is written.
+  const std::string words = "camera pictures on 127.0.0.1:", text = log("world");
+  const std::size_t at = text.find(words);
+  if (at == std::string::npos) throw std::runtime_error("kenaf-world serves no pictures: " + text);
+  return static_cast<std::uint16_t>(std::stoi(text.substr(at + words.size())));
 }
 
 std::string Chain::log(const std::string& name) const {

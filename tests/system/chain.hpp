@@ -18,7 +18,7 @@ using Environment = std::map<std::string, std::string>;
 class Chain {
  public:
   // Starts both servers on ephemeral loopback ports; `speed` is kenaf-world's.
-  explicit Chain(const std::string& speed, const std::string& world = "flat");
+  explicit Chain(const std::string& speed, const std::string& world = "flat", bool has_cameras = false);
 
   // A user program that drives through this chain; `name` is a program of the build's bin folder.
   support::Process start_program(const std::string& name, Environment environment = {}) const;
@@ -28,6 +28,7 @@ class Chain {
   support::Process& relay() { return *relay_; }
   std::uint16_t world_port() const { return world_port_; }
   std::uint16_t relay_port() const { return relay_port_; }
+  std::uint16_t camera_port() const;  // of a chain that has cameras
   const std::filesystem::path& folder() const { return folder_.path(); }
 
   // All that a program (or "world", "relay") printed so far.
@@ -36,6 +37,7 @@ class Chain {
  private:
   support::TemporaryFolder folder_;
   std::string speed_, world_name_;
+  bool has_cameras_;
   std::unique_ptr<support::Process> world_, relay_;
   std::uint16_t world_port_ = 0, relay_port_ = 0;
 };
