@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "hrt/error.hpp"
