@@ -29,6 +29,7 @@ constexpr void (*kCommands[])(CLI::App&) = {
     kenaf::gap::add_effects_command,
     kenaf::gap::add_manoeuvres_command,
     kenaf::gap::add_merge_command,
+    kenaf::gap::add_play_command,
     kenaf::gap::add_score_command,
     kenaf::gap::add_simulate_command,
 };

@@ -48,6 +48,14 @@ void start_at_mean(const Observation& observation, rollout::Manoeuvre& replay) {
   start.yaw_rad = mean_of_first(observation.run.column("yaw_rad"), rows, start.yaw_rad);
 }
 
+void prepare_replays(Observation& observation, const std::string& path) {
+  observation.resting_rows = resting_rows(observation.replay);
+  start_at_mean(observation, observation.replay);
+  if (rollout::measured_motion(observation.run).track_mps[0].empty()) return;
+  observation.measured = rollout::replay_measured_of(observation.run, path);
+  start_at_mean(observation, *observation.measured);
+}
+
 // Throws where something is certainly wrong.
 void check(const runs::Run& run, const std::string& file, const fs::path& folder, Observations& result) {
   const std::vector<Finding> findings = check_run(run, file, &result.robot);
@@ -78,6 +86,13 @@ std::vector<runs::DatasetRun> drawn_evenly(const std::vector<runs::DatasetRun>& 
 }
 
 }  // namespace
+
+Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const std::string& path) {
+  Observation observation{entry.file, entry.manoeuvre, 0, std::move(run), {}, {}, 0};
+  observation.replay = rollout::replay_of(observation.run, path);
+  prepare_replays(observation, path);
+  return observation;
+}
 
 Observations observe(const fs::path& folder, const std::string& robot, const std::string& world,
                      std::size_t most_runs) {
@@ -110,12 +125,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     const auto [known, is_new] = worlds.try_emplace(name, result.worlds.size());
     if (is_new) result.worlds.push_back(physics::load_world(name, result.warnings));
     observation.world = known->second;
-    observation.resting_rows = resting_rows(observation.replay);
-    start_at_mean(observation, observation.replay);
-    if (!rollout::measured_motion(observation.run).track_mps[0].empty()) {
-      observation.measured = rollout::replay_measured_of(observation.run, path);
-      start_at_mean(observation, *observation.measured);
-    }
+    prepare_replays(observation, path);
     result.runs.push_back(std::move(observation));
   }
   if (result.runs.empty())

@@ -32,6 +32,9 @@ struct Observations {
   std::vector<std::string> warnings;  // what was left out and why, in words
 };
 
+// One run of a dataset, of world 0. `path` names its file in errors. Throws runs::RunFileError where it has no commands or no start.
+Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const std::string& path);
+
 // Reads a dataset, but no more than `most_runs` of it, drawn evenly from all manoeuvres: more runs would take longer and
 // tell little more. `robot` and `world` are used instead of the dataset's own where they are not empty. A run that is too
 // short, or whose simulation went wrong, is left out with a warning. Throws runs::RunFileError or

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/repeats.hpp"
 #include "gap/diagnose/report.hpp"
 
 namespace kenaf::gap {
@@ -37,13 +38,15 @@ Json where_json(const Diagnosis& d) {
                                  {"share", number(gap.share)}});
   }
   for (const PhaseGap& phase : d.where.phases)
-    where["phases"].push_back({{"manoeuvre", phase.manoeuvre},
-                               {"phase", phase.phase},
-                               {"from_s", phase.from_s},
-                               {"to_s", phase.to_s},
-                               {"x_m", number(phase.x_m)},
-                               {"y_m", number(phase.y_m)},
-                               {"share", number(phase.share)}});
+    where["phases"].push_back(
+        {{"manoeuvre", phase.manoeuvre},
+         {"run", d.observations.runs[representative(d.observations, d.repeats[phase.group])].file},
+         {"phase", phase.phase},
+         {"from_s", phase.from_s},
+         {"to_s", phase.to_s},
+         {"x_m", number(phase.x_m)},
+         {"y_m", number(phase.y_m)},
+         {"share", number(phase.share)}});
   return where;
 }
 

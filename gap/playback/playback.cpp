@@ -1,0 +1,111 @@
+#include "gap/playback/playback.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "runs/whole_file.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The dataset that lists a run's file, with that run alone; or one made for it.
+runs::Dataset dataset_of_file(const fs::path& file, std::vector<std::string>& notes) {
+  const std::string name = file.filename().string();
+  if (fs::exists(file.parent_path() / "dataset.toml")) {
+    runs::Dataset dataset = runs::read_dataset(file.parent_path());
+    std::erase_if(dataset.runs, [&](const runs::DatasetRun& run) { return run.file != name; });
+    if (!dataset.runs.empty()) return dataset;
+  }
+  notes.push_back(
+      "A run without a dataset: its robot is taken to be kenaf and its world flat, where nothing else is said.");
+  runs::Dataset dataset;
+  dataset.source = "real";
+  dataset.robot = "kenaf";
+  dataset.world = "flat";
+  dataset.runs.push_back({name, file.stem().string(), {}, {}});
+  return dataset;
+}
+
+std::string shown_name(const std::string& name_or_path) {
+  return fs::path(name_or_path).stem().string();
+}
+
+void read_report(const fs::path& folder, Playback& playback) {
+  const fs::path file = folder / "report.json";
+  if (!fs::exists(file))
+    throw std::runtime_error(
+        fmt::format("{}: there is no report.json; `kenaf-gap diagnose` writes one", folder.string()));
+  try {
+    playback.report = parse_reported_places(runs::read_whole_file(file));
+  } catch (const std::runtime_error& error) {
+    throw std::runtime_error(fmt::format("{}: {}", file.string(), error.what()));
+  }
+  const auto told = [&](const ListedRun& run) {
+    return std::ranges::any_of(playback.report->phases,
+                               [&](const ReportedPhase& phase) { return phase.manoeuvre == run.entry.manoeuvre; });
+  };
+  if (!playback.report->phases.empty() && std::ranges::none_of(playback.runs, told))
+    throw std::runtime_error(fmt::format("{}: tells of other manoeuvres than {} has; is it the report of these runs?",
+                                         file.string(), playback.name));
+  if (fs::exists(folder / "robot.toml"))
+    playback.robots.corrected = physics::load_robot((folder / "robot.toml").string()).effects;
+}
+
+std::size_t find_run(const Playback& playback, const std::string& name) {
+  const auto is = [&](const ListedRun& run) { return run.entry.file == name || run.entry.manoeuvre == name; };
+  const auto found = std::ranges::find_if(playback.runs, is);
+  if (found != playback.runs.end()) return static_cast<std::size_t>(found - playback.runs.begin());
+  throw std::runtime_error(
+      fmt::format("--run {}: {} has neither such a file nor such a manoeuvre", name, playback.name));
+}
+
+}  // namespace
+
+Playback load_playback(const PlaybackRequest& request) {
+  Playback playback;
+  const fs::path path = fs::absolute(request.runs).lexically_normal();
+  const bool alone = fs::is_regular_file(path);
+  playback.folder = alone ? path.parent_path() : path;
+  playback.name = (path.has_filename() ? path : path.parent_path()).filename().string();
+  const runs::Dataset dataset = alone ? dataset_of_file(path, playback.notes) : runs::read_dataset(request.runs);
+  playback.source = dataset.source;
+  playback.robots.nominal = physics::load_robot(
+      request.robot.empty() ? runs::resolve_beside(playback.folder, dataset.robot, ".toml") : request.robot);
+  std::map<std::string, std::size_t> worlds;
+  for (const runs::DatasetRun& entry : dataset.runs) {
+    const runs::Run run = runs::read_run(playback.folder / entry.file);
+    if (run.row_count() == 0)
+      throw runs::RunFileError(fmt::format("{}: has no rows", (playback.folder / entry.file).string()));
+    const std::string own = entry.world.empty() ? dataset.world : entry.world;
+    const std::string world =
+        request.world.empty() ? runs::resolve_beside(playback.folder, own, ".sdf") : request.world;
+    const auto [known, is_new] = worlds.try_emplace(world, playback.worlds.size());
+    if (is_new) playback.worlds.push_back(physics::load_world(world, playback.notes));
+    const auto time = run.column("t_s");
+    playback.runs.push_back({entry, shown_name(world), run.row_count(), time.back() - time.front(), known->second});
+  }
+  if (!request.report.empty()) read_report(request.report, playback);
+  if (!request.run.empty()) playback.first = find_run(playback, request.run);
+  return playback;
+}
+
+PlayedRun prepare_run(const Playback& playback, std::size_t index) {
+  const ListedRun& listed = playback.runs.at(index);
+  const std::string path = (playback.folder / listed.entry.file).string();
+  const runs::Run run = runs::read_run(path);
+  if (run.row_count() == 0) throw runs::RunFileError(path + ": has no rows");
+  PlayedRun played = play_run(listed.entry, run, path, playback.robots, playback.worlds[listed.world], kMostShownTimes);
+  if (playback.report) {
+    std::map<std::string, std::string> world_of;
+    for (const ListedRun& other : playback.runs) world_of[other.entry.file] = std::to_string(other.world);
+    played.marks = phases_of_run(*playback.report, listed.entry.file, listed.entry.manoeuvre, world_of);
+    if (played.marks.empty()) played.notes.push_back("The report has no phases of this run's manoeuvre.");
+  }
+  return played;
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <string_view>
+
+#include "gap/diagnose/channels.hpp"
+#include "gap/playback/playback.hpp"
+#include "live/json_writer.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+using live::JsonWriter;
+
+constexpr int kDigits = 4;
+
+void write_texts(JsonWriter& out, std::string_view key, const std::vector<std::string>& texts) {
+  out.key(key).open('[');
+  for (const std::string& text : texts) out.comma().text(text);
+  out.close(']');
+}
+
+std::string_view pose_from_name(PoseFrom from) {
+  switch (from) {
+    case PoseFrom::measured:
+      return "measured";
+    case PoseFrom::dead_reckoning:
+      return "dead reckoning";
+    case PoseFrom::nothing:
+      break;
+  }
+  return "nothing";
+}
+
+void write_body(JsonWriter& out, const PlayedBody& body) {
+  out.comma().open('{').key("kind").text(body.kind).key("pose_from").text(pose_from_name(body.pose_from));
+  if (body.pose_from != PoseFrom::nothing) {
+    constexpr std::string_view kPlaces[] = {"x", "y", "z"}, kTurns[] = {"roll", "pitch", "yaw"};
+    out.key("pose").open('{');
+    for (std::size_t i = 0; i < 3; ++i) out.key(kPlaces[i]).numbers(body.p_WB_m[i], kDigits);
+    for (std::size_t i = 0; i < 3; ++i) out.key(kTurns[i]).numbers(body.angles_rad[i], kDigits);
+    out.close('}');
+  }
+  out.key("flipper").open('[');
+  for (const std::vector<double>& angles : body.flipper_rad) out.comma().numbers(angles, 3);
+  out.close(']').key("track_m").open('[');
+  for (const std::vector<double>& travel : body.track_m) out.comma().numbers(travel, 3);
+  out.close(']').key("channels").open('{');
+  for (const auto& [column, values] : body.channels) out.key(column).numbers(values, kDigits);
+  out.close('}').close('}');
+}
+
+// Columns that can be drawn, with their units; where a report says how much of the gap they show, that.
+void write_channels(JsonWriter& out, const Playback& playback, const PlayedRun& played) {
+  out.key("channels").open('[');
+  for (const Channel& channel : diagnosis_channels()) {
+    const std::string column(channel.column);
+    if (std::ranges::none_of(played.bodies, [&](const PlayedBody& body) { return body.channels.contains(column); }))
+      continue;
+    out.comma().open('{').key("column").text(column).key("unit").text(channel.unit);
+    if (playback.report) {
+      const auto share = playback.report->channel_share.find(column);
+      if (share != playback.report->channel_share.end()) out.key("share").number(share->second);
+    }
+    out.close('}');
+  }
+  out.close(']');
+}
+
+}  // namespace
+
+std::string playback_json(const Playback& playback) {
+  JsonWriter out;
+  out.open('{').key("format").text("kenaf-playback/1").key("name").text(playback.name);
+  out.key("source").text(playback.source).key("first").integer(playback.first);
+  out.key("robot").open('{').key("name").text(playback.robots.nominal.name);
+  live::write_dimensions(out, physics::dimensions_of(playback.robots.nominal));
+  out.close('}').key("corrected").boolean(playback.robots.corrected.has_value());
+  out.key("report");
+  if (playback.report) {
+    out.open('{').key("verdict").text(playback.report->verdict);
+    write_texts(out, "named", playback.report->named);
+    out.close('}');
+  } else {
+    out.raw("null");
+  }
+  out.key("runs").open('[');
+  for (const ListedRun& run : playback.runs) {
+    out.comma().open('{').key("file").text(run.entry.file).key("manoeuvre").text(run.entry.manoeuvre);
+    out.key("world").text(run.world_name).key("rows").integer(run.rows);
+    out.key("duration_s").number(run.duration_s, kDigits).close('}');
+  }
+  out.close(']');
+  write_texts(out, "notes", playback.notes);
+  return out.close('}').take();
+}
+
+std::string played_run_json(const Playback& playback, std::size_t index, const PlayedRun& played) {
+  const ListedRun& listed = playback.runs.at(index);
+  JsonWriter out;
+  out.open('{').key("file").text(played.entry.file).key("manoeuvre").text(played.entry.manoeuvre);
+  out.key("world").text(listed.world_name).key("rows").integer(played.rows);
+  out.key("t_s").numbers(played.times_s, kDigits);
+  out.key("bodies").open('[');
+  for (const PlayedBody& body : played.bodies) write_body(out, body);
+  out.close(']');
+  write_channels(out, playback, played);
+  out.key("phases").open('[');
+  for (const PhaseSpan& phase : played.phases) {
+    out.comma().open('{').key("phase").text(phase.name);
+    out.key("from_s").number(phase.from_s, kDigits).key("to_s").number(phase.to_s, kDigits).close('}');
+  }
+  out.close(']').key("marks").open('[');
+  for (const ReportedPhase& mark : played.marks) {
+    out.comma().open('{').key("manoeuvre").text(mark.manoeuvre).key("phase").text(mark.phase);
+    out.key("run").text(mark.run).key("from_s").number(mark.from_s, kDigits).key("to_s").number(mark.to_s, kDigits);
+    out.key("share").number(mark.share, kDigits).close('}');
+  }
+  out.close(']');
+  write_texts(out, "notes", played.notes);
+  return out.close('}').take();
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,85 @@
+#include "gap/playback/playback_server.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "gap/playback/shelf.hpp"
+#include "live/scene_bytes.hpp"
+#include "live/web_server.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+namespace http = boost::beast::http;
+using Bytes = std::shared_ptr<const std::string>;
+
+constexpr std::size_t kMostKept_bytes = std::size_t{256} << 20;  // a run of 20 000 times is some 15 MB
+constexpr std::string_view kJson = "application/json";
+
+Bytes bytes_of(std::string text) {
+  return std::make_shared<const std::string>(std::move(text));
+}
+
+}  // namespace
+
+struct PlaybackServer::Implementation {
+  Implementation(Playback what, const live::ViewOptions& options)
+      : playback(std::move(what)),
+        list(bytes_of(playback_json(playback))),
+        shelf(kMostKept_bytes,
+              [this](std::size_t run) { return played_run_json(playback, run, prepare_run(playback, run)); }),
+        site{.limits = {},
+             .token = live::token_for(options),
+             .own_name = live::machine_name(),
+             .assets = live::load_assets("playback.html")},
+        server(site, options) {
+    for (const physics::WorldDescription& world : playback.worlds) scenes.push_back(bytes_of(live::scene_bytes(world)));
+    site.routes = {{"/playback", [this](const live::Visit& visit) { return answer(visit.rest); }}};
+    shelf.look(playback.first);
+  }
+
+  // "", "/3" or "/3/scene".
+  live::Reply answer(std::string_view rest) {
+    if (rest.empty()) return {http::status::ok, kJson, list};
+    rest.remove_prefix(1);
+    std::size_t run = 0;
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), run);
+    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+    const bool known = error == std::errc() && run < playback.runs.size();
+    if (!known || (!rest.empty() && rest != "/scene"))
+      return live::reply_in_words(http::status::not_found, "There is no such run.\n");
+    if (rest == "/scene") return {http::status::ok, "application/octet-stream", scenes[playback.runs[run].world]};
+    const Shelf::Look look = shelf.look(run);
+    if (!look.failure.empty()) return live::reply_in_words(http::status::internal_server_error, look.failure + "\n");
+    // the page asks again
+    if (!look.text) return live::reply_in_words(http::status::accepted, "It is being simulated.\n");
+    return {http::status::ok, kJson, look.text};
+  }
+
+  const Playback playback;
+  const Bytes list;
+  std::vector<Bytes> scenes;  // of Playback::worlds
+  Shelf shelf;
+  live::Site site;
+  live::WebServer server;  // last: its thread ends before what it uses
+};
+
+PlaybackServer::PlaybackServer(Playback playback, const live::ViewOptions& options)
+    : impl_(std::make_unique<Implementation>(std::move(playback), options)) {
+  impl_->server.start();
+}
+
+PlaybackServer::~PlaybackServer() = default;
+
+std::uint16_t PlaybackServer::port() const {
+  return impl_->server.port();
+}
+
+std::string PlaybackServer::url() const {
+  return impl_->server.url();
+}
+
+}  // namespace kenaf::gap

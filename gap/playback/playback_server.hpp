@@ -1,0 +1,31 @@
+// Serves a playback as a page, by the rules of the live view (docs/live-view.md): Host, Origin, token.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "gap/playback/playback.hpp"
+#include "live/view_options.hpp"
+
+namespace kenaf::gap {
+
+class PlaybackServer {
+ public:
+  // Listens, and serves from then on, on a thread of its own; runs are simulated on another one when a page asks for them.
+  // Throws std::runtime_error in words.
+  PlaybackServer(Playback playback, const live::ViewOptions& options);
+  // Waits for a simulation that is under way.
+  ~PlaybackServer();
+  PlaybackServer(const PlaybackServer&) = delete;
+  PlaybackServer& operator=(const PlaybackServer&) = delete;
+
+  std::uint16_t port() const;
+  std::string url() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> impl_;
+};
+
+}  // namespace kenaf::gap

@@ -1,0 +1,65 @@
+#include "gap/playback/reported_places.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <stdexcept>
+
+namespace kenaf::gap {
+namespace {
+
+using PlacesJson = nlohmann::json;
+
+double share_in(const PlacesJson& json) {
+  const double share = json.is_null() ? 0 : json.get<double>();
+  return std::isfinite(share) ? std::clamp(share, 0.0, 1.0) : 0;
+}
+
+ReportedPhase phase_in(const PlacesJson& json) {
+  ReportedPhase phase{json.at("manoeuvre"), json.at("phase"), json.value("run", ""),
+                      json.at("from_s"),    json.at("to_s"),  share_in(json.at("share"))};
+  if (!(phase.from_s >= 0) || !(phase.to_s >= phase.from_s) || !std::isfinite(phase.to_s))
+    throw std::runtime_error(
+        fmt::format("phase '{}' is from {} s to {} s; is the file damaged?", phase.phase, phase.from_s, phase.to_s));
+  return phase;
+}
+
+}  // namespace
+
+ReportedPlaces parse_reported_places(std::string_view report_json) try {
+  const PlacesJson json = PlacesJson::parse(report_json);
+  if (json.at("format") != "kenaf-gap-report/1") throw std::runtime_error("its format is not kenaf-gap-report/1");
+  ReportedPlaces places;
+  json.at("verdict").get_to(places.verdict);
+  json.at("named").get_to(places.named);
+  const PlacesJson& where = json.at("where");
+  for (const PlacesJson& phase : where.at("phases")) places.phases.push_back(phase_in(phase));
+  for (const PlacesJson& channel : where.at("channels"))
+    places.channel_share[channel.at("channel")] = share_in(channel.at("share"));
+  return places;
+} catch (const std::exception& error) {
+  throw std::runtime_error(fmt::format("no report of a diagnosis: {}", error.what()));
+}
+
+std::vector<ReportedPhase> phases_of_run(const ReportedPlaces& places, const std::string& file,
+                                         const std::string& manoeuvre,
+                                         const std::map<std::string, std::string>& world_of) {
+  const auto world = [&](const std::string& name) {
+    const auto found = world_of.find(name);
+    return found == world_of.end() ? std::string() : found->second;
+  };
+  std::set<std::string> told;  // whose phases could be this run's
+  for (const ReportedPhase& phase : places.phases)
+    if (phase.manoeuvre == manoeuvre && (phase.run.empty() || world(phase.run) == world(file))) told.insert(phase.run);
+  if (told.empty() || (told.size() > 1 && !told.contains(file))) return {};
+  const std::string of = told.contains(file) ? file : *told.begin();
+  std::vector<ReportedPhase> result;
+  for (const ReportedPhase& phase : places.phases)
+    if (phase.manoeuvre == manoeuvre && phase.run == of) result.push_back(phase);
+  return result;
+}
+
+}  // namespace kenaf::gap

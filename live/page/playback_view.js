@@ -1,0 +1,95 @@
+// The recorded robot and its simulations in the world of their run, and the paths of all on the floor.
+import * as THREE from "/three/build/three.module.js";
+import { stateAt } from "./playback_data.js";
+import { makeRobot } from "./robot_model.js";
+import { colour } from "./scene.js";
+import { createStage, dispose } from "./stage.js";
+
+const SEE_THROUGH = 0.42;
+// The recorded path is the broad one, under the others.
+const BROAD_M = 0.05, NARROW_M = 0.018, RIBBON_STEP_M = 0.02;
+
+function tint(root, hue) {
+  root.traverse((part) => {
+    part.castShadow = false;
+    if (!part.material) return;
+    part.material.color.set(hue);
+    part.material.transparent = true;
+    part.material.opacity = SEE_THROUGH;
+    part.material.depthWrite = false;
+    // where it stands just where the recorded robot does, that one is seen
+    part.material.polygonOffset = true;
+    part.material.polygonOffsetFactor = part.material.polygonOffsetUnits = 2;
+  });
+}
+
+// The path as a flat strip `lower_m` under the body's middle.
+function makeRibbon(run, body, hue, lower_m) {
+  const position = [], index = [], { x, y, z } = body.pose;
+  const half_m = (body.kind === "recorded" ? BROAD_M : NARROW_M) / 2;
+  let last = null;   // of the strip so far
+  run.t_s.forEach((_, i) => {
+    if (x[i] === null || y[i] === null || z[i] === null) { last = null; return; }
+    const from = last, way = from ? [x[i] - from.x, y[i] - from.y] : [0, 0], length = Math.hypot(...way);
+    if (from && length < RIBBON_STEP_M) return;
+    last = { x: x[i], y: y[i], z: z[i] };
+    if (!from) return;
+    const side = [-way[1] / length * half_m, way[0] / length * half_m], at = position.length / 3;
+    for (const end of [from, last]) {
+      position.push(end.x + side[0], end.y + side[1], end.z - lower_m, end.x - side[0], end.y - side[1], end.z - lower_m);
+    }
+    index.push(at, at + 1, at + 2, at + 2, at + 1, at + 3);
+  });
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.Float32BufferAttribute(position, 3));
+  geometry.setIndex(index);
+  return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ color: hue, side: THREE.DoubleSide }));
+}
+
+// `shown(kind)`: whether that body is to be seen; "paths": the strips.
+export function createPlaybackView(list, shown, complain) {
+  const stage = createStage({ complain, dressed: rebuild });
+  let run = null, bodies = [], t = 0;
+
+  function rebuild() {
+    for (const { model, ribbon } of bodies) {
+      for (const object of [model.root, ribbon]) { stage.scene.remove(object); dispose(object); }
+    }
+    if (!run) return;
+    const { track } = list.robot, belly_m = track.radius - track.at[2];
+    bodies = run.bodies.filter((body) => body.pose).map((body, i) => {
+      const model = makeRobot(list.robot), hue = colour(`--${body.kind}`);
+      if (body.kind !== "recorded") tint(model.root, hue);
+      // a little higher each, so that none hides in another
+      const ribbon = makeRibbon(run, body, hue, belly_m - 0.006 - 0.003 * i);
+      stage.scene.add(model.root, ribbon);
+      return { body, model, ribbon, hue };
+    });
+    update(t);
+  }
+
+  function update(now_s) {
+    t = now_s;
+    let followed = null;
+    for (const { body, model, ribbon, hue } of bodies) {
+      const state = stateAt(run, body, t);
+      model.root.visible = Boolean(state) && shown(body.kind);
+      ribbon.visible = shown("paths") && shown(body.kind);
+      if (!state) continue;
+      model.update(state, hue);
+      followed ??= state;
+    }
+    if (followed) stage.follow(followed.p, followed.q);
+    stage.redraw();
+  }
+
+  stage.start();
+  return {
+    update,
+    load(next, scenePath) {
+      run = next;
+      t = 0;
+      return stage.show(scenePath);
+    },
+  };
+}
