@@ -120,7 +120,7 @@ const KEYS = {
   Home: () => { clock.play(false); clock.set(0); }, End: () => clock.set(clock.end),
 };
 addEventListener("keydown", (event) => {
-  if (!run || !KEYS[event.code] || keyIsTaken(event) || !(event.target instanceof Element)) return;
+  if (!run || !KEYS[event.code] || !(event.target instanceof Element) || keyIsTaken(event)) return;
   event.preventDefault();
   KEYS[event.code]();
 });

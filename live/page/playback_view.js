@@ -5,6 +5,7 @@ import { makeRobot } from "./robot_model.js";
 import { colour } from "./scene.js";
 import { createStage, dispose } from "./stage.js";
 
+const EYE = [-0.75, -1.5, 0.8];   // from aside: one drives ahead of the other
 const SEE_THROUGH = 0.42;
 // The recorded path is the broad one, under the others.
 const BROAD_M = 0.05, NARROW_M = 0.018, RIBBON_STEP_M = 0.02;
@@ -48,7 +49,7 @@ function makeRibbon(run, body, hue, lower_m) {
 
 // `shown(kind)`: whether that body is to be seen; "paths": the strips.
 export function createPlaybackView(list, shown, complain) {
-  const stage = createStage({ complain, dressed: rebuild });
+  const stage = createStage({ complain, dressed: rebuild, eye: EYE, sharpens: true });
   let run = null, bodies = [], t = 0;
 
   function rebuild() {

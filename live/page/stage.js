@@ -8,6 +8,7 @@ const MODES = ["follow", "behind", "free"];
 // A picture that takes so long is made simpler from then on: driving goes on by the same thread, and nobody drives well by
 // pictures that come late.
 const SLOW_MS = 40;
+const STILL_MS = 300;
 const QUALITIES = [{ shadows: true, ratio: 2 }, { shadows: false, ratio: 1 }, { shadows: false, ratio: 0.5 }, { shadows: false, ratio: 0.25 }];
 
 export function dispose(object) {
@@ -18,17 +19,18 @@ export function dispose(object) {
   });
 }
 
-// `dressed()` is called when the colours have changed, with the scene first: `complain` is told what is missing, in words.
-export function createStage({ complain, dressed = () => {}, keys = false }) {
+// `dressed()` is called when the colours have changed; `complain` is told what is missing, in words; `eye` is where one looks from
+// at first, seen from what is followed. `sharpens`: a picture that was made simpler is drawn in full when nothing moves.
+export function createStage({ complain, dressed = () => {}, eye = [-1.6, -1.5, 1.25], sharpens = false }) {
   const canvas = document.getElementById("canvas");
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
   const scene = new THREE.Scene(), sky = new THREE.HemisphereLight(0xffffff, 0xb5b0a4, 0.8);
   const sun = new THREE.DirectionalLight(0xfff4e0, 0.6);
   const camera = new THREE.PerspectiveCamera(45, 1, 0.05, 300);
   camera.up.set(0, 0, 1);
-  camera.position.set(-1.6, -1.5, 1.25);
+  camera.position.set(...eye);
   const controls = new OrbitControls(camera, canvas);
-  controls.enableKeys = keys;
+  controls.enableKeys = false;   // the keys drive, or play
   controls.maxPolarAngle = 0.495 * Math.PI;
   controls.minDistance = 0.4;
   controls.maxDistance = 60;
@@ -41,7 +43,7 @@ export function createStage({ complain, dressed = () => {}, keys = false }) {
   sun.shadow.bias = -0.001;
   scene.add(sky, sun, sun.target);
 
-  let mode = "follow", dirty = true, quality = 0, pictureTook_ms = 0, drawn = 0, drawn_ms = 0;
+  let mode = "follow", dirty = true, quality = 0, pictureTook_ms = 0, drawn = 0, drawn_ms = 0, sharp = true;
   const at = new THREE.Vector3();
 
   let bytes = null, fixed = new THREE.Group();   // what never moves
@@ -67,9 +69,9 @@ export function createStage({ complain, dressed = () => {}, keys = false }) {
   }
   for (const name of MODES) document.getElementById(`view-${name}`).addEventListener("click", () => choose(name));
 
-  function fit() {
+  function fit(most) {
     const width = canvas.parentElement.clientWidth, height = canvas.parentElement.clientHeight;
-    const ratio = Math.min(QUALITIES[quality].ratio, devicePixelRatio), size = renderer.getSize(new THREE.Vector2());
+    const ratio = Math.min(most, devicePixelRatio), size = renderer.getSize(new THREE.Vector2());
     if (size.x === width && size.y === height && renderer.getPixelRatio() === ratio) return;
     renderer.setPixelRatio(ratio);
     renderer.setSize(width, height, false);
@@ -79,10 +81,17 @@ export function createStage({ complain, dressed = () => {}, keys = false }) {
 
   function draw(now_ms) {
     requestAnimationFrame(draw);
+    if (!dirty && !sharp && sharpens && now_ms > drawn_ms + STILL_MS) {
+      sharp = true;
+      fit(QUALITIES[0].ratio);
+      renderer.render(scene, camera);
+      drawn_ms = performance.now();
+    }
     // at most a third of the time
     if (!dirty || now_ms < drawn_ms + 2 * pictureTook_ms) return;
     dirty = false;
-    fit();
+    fit(QUALITIES[quality].ratio);
+    sharp = QUALITIES[quality].ratio >= devicePixelRatio;
     controls.update();
     const began = performance.now();
     renderer.render(scene, camera);

@@ -9,7 +9,7 @@ const HULL = { fault: 0xb03a2e, mine: 0x1d6fb8, silent: 0x7a7f7b, usual: 0x2f7a6
 export function createView(world, chosen, complain) {
   const robots = new Map();
   let boxes = [];
-  const stage = createStage({ complain, dressed() { boxes = rebuildBoxes(); } });   // the keys drive, not the point of view
+  const stage = createStage({ complain, dressed() { boxes = rebuildBoxes(); } });
   const { scene } = stage;
 
   function rebuildBoxes() {
