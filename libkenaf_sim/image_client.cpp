@@ -24,6 +24,11 @@ constexpr std::chrono::milliseconds kOldServerAfter{1000};
 // A Kenaf server whose world stands still before the first picture says so after 10 s. Nobody waits for longer than he
 // wants: it is the calls that have time limits.
 constexpr double kPatienceWithSilence = 5;
+// A picture is requested when this part of the time between the last two has passed: it is not there before, so nothing
+// is lost, and the age, which counts from the request, is hardly too large. Where the world's speed changes, one
+// picture is late by this at most.
+constexpr double kRequestAfter = 0.8;
+constexpr std::chrono::milliseconds kLongestPause{100};
 // Words of a server that are passed on.
 constexpr std::size_t kMaxRefusalBytes = 400;
 
@@ -161,6 +166,7 @@ bool ImageClient::read_answer() {
 
 std::optional<hrt::CameraPicture> ImageClient::next() {
   if (socket_ < 0) return std::nullopt;  // interrupted while it was being opened
+  if (wait_for(0, request_at_) == Ready::interrupted) return std::nullopt;
   request();
   if (!read_answer()) return std::nullopt;
   return picture_of_answer();
@@ -192,6 +198,14 @@ hrt::CameraPicture ImageClient::picture_of_answer() {
   if (!note) {
     picture.number = ++counted_;
     return picture;
+  }
+  const Clock::time_point now = Clock::now();
+  request_at_ = now;
+  if (note->number != newest_number_) {
+    const auto pause = std::chrono::duration_cast<Clock::duration>(kRequestAfter * (now - newest_at_));
+    request_at_ += std::min<Clock::duration>(pause, kLongestPause);
+    newest_number_ = note->number;
+    newest_at_ = now;
   }
   picture.number = note->number;
   picture.robot_time_s = note->robot_time_s;

@@ -50,7 +50,9 @@ class ImageClient final : public hrt::Camera {
   int socket_ = -1, interrupt_ = -1;
   bool is_old_server_ = false;    // it knows 'OK' alone
   bool is_kenaf_server_ = false;  // it has sent a frame note
-  Clock::time_point requested_at_{};
+  Clock::time_point requested_at_{}, request_at_{};  // the last one; the next one, not before
+  Clock::time_point newest_at_ = Clock::now();
+  std::uint64_t newest_number_ = 0;
   std::uint64_t counted_ = 0;  // pictures without a frame note
   image::AnswerReader reader_;
   std::array<std::uint8_t, 65536> buffer_{};

@@ -385,8 +385,9 @@ typedef struct hrt_picture {
                             -1: not known */
   double age_ms;         /* from its exposure to the return of this call, wall clock, never less than it really was;
                             -1: not known. libkenaf_sim: the server's word of the age at sending, and all the time since
-                            the picture was requested; so up to one picture's period too much. libkenaf_real: from the
-                            driver's time stamp; where it marks the end of a picture, its period is added */
+                            the picture was requested, which is shortly before it is due: some milliseconds too much, and
+                            up to a period for the first ones. libkenaf_real: from the driver's time stamp; where that
+                            marks the end of a picture, its period is added */
   size_t bytes;          /* of `data`: written, or needed where `capacity` is too small */
   char camera[64];       /* the camera's name; "" where the server does not say it */
 } hrt_picture;
