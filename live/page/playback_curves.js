@@ -21,9 +21,10 @@ function rangeOf(lines) {
   let least = Infinity, most = -Infinity;
   for (const { values } of lines) for (const v of values) if (v !== null) { least = Math.min(least, v); most = Math.max(most, v); }
   if (least > most) return null;
-  const span = Math.max(most - least, 1e-3), power = 10 ** Math.floor(Math.log10(span / 2));
+  const span = Math.max(most - least, 0.01), power = 10 ** Math.floor(Math.log10(span / 2));
   const step = [1, 2, 5, 10].map((factor) => factor * power).find((s) => span / s <= 4);
-  return { least: Math.floor(least / step + 1e-6) * step, most: Math.ceil(most / step - 1e-6) * step, step };
+  const from = Math.floor(least / step + 1e-6), to = Math.ceil(most / step - 1e-6);
+  return { least: (to > from ? from : from - 1) * step, most: (to > from ? to : to + 1) * step, step };
 }
 
 const plain = (value, step) => value.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))).replace("-", "\u2212").replace(/^\u2212(0(\.0+)?)$/, "$1");
