@@ -99,11 +99,34 @@ function(kenaf_program name)
   install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT programs)
 endfunction()
 
-# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [PRECOMPILE h...] [TIMEOUT s] [COST c]): one Catch2 program;
+# kenaf_test_headers(): the program from which all tests have their precompiled headers. Comes before the first kenaf_test.
+function(kenaf_test_headers)
+  if(NOT KENAF_PRECOMPILE_HEADERS)
+    return()
+  endif()
+  file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp" "int main() {}\n")
+  add_executable(kenaf_test_headers "${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp")
+  kenaf_test_settings(kenaf_test_headers)
+  target_link_libraries(kenaf_test_headers PRIVATE Eigen3::Eigen)
+  kenaf_precompile(kenaf_test_headers catch2/catch.hpp Eigen/Geometry)
+endfunction()
+
+# What all tests are compiled with. Precompiled headers serve where these are the same.
+function(kenaf_test_settings name)
+  target_link_libraries(${name} PRIVATE Catch2::Catch2WithMain Threads::Threads kenaf_warnings)
+  target_compile_definitions(${name} PRIVATE KENAF_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  # what is tested is optimised; optimising the tests themselves too takes twice as long to compile
+  target_compile_options(${name} PRIVATE -O0)
+  if(KENAF_BUILD_FUZZERS)
+    target_compile_options(${name} PRIVATE -fno-sanitize=fuzzer-no-link)
+  endif()
+endfunction()
+
+# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [TIMEOUT s] [COST c]): one Catch2 program;
 # ctest sees each of its test cases (under a sanitizer each of its files, which end in _test.cpp, without the cases tagged
 # [long]), and starts those of the highest cost first.
 function(kenaf_test name)
-  cmake_parse_arguments(TEST "" "TIMEOUT;COST" "SOURCES;LIBRARIES;LABELS;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(TEST "" "TIMEOUT;COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
   if(NOT TEST_TIMEOUT)
     set(TEST_TIMEOUT 120)
   endif()
@@ -111,16 +134,10 @@ function(kenaf_test name)
     set(TEST_COST 0)
   endif()
   add_executable(${name} ${TEST_SOURCES})
-  target_link_libraries(${name} PRIVATE Catch2::Catch2WithMain ${TEST_LIBRARIES} kenaf_warnings)
-  target_compile_definitions(${name} PRIVATE KENAF_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  # what is tested is optimised; optimising the tests themselves too takes twice as long to compile
-  target_compile_options(${name} PRIVATE -O0)
-  if(KENAF_BUILD_FUZZERS)
-    target_compile_options(${name} PRIVATE -fno-sanitize=fuzzer-no-link)
-  endif()
-  list(LENGTH TEST_SOURCES files)
-  if(files GREATER 4)
-    kenaf_precompile(${name} catch2/catch.hpp ${TEST_PRECOMPILE})
+  kenaf_test_settings(${name})
+  target_link_libraries(${name} PRIVATE ${TEST_LIBRARIES})
+  if(KENAF_PRECOMPILE_HEADERS)
+    target_precompile_headers(${name} REUSE_FROM kenaf_test_headers)
   endif()
   if(NOT KENAF_SANITIZE)
     # a name that ctest takes for another (it parts them at semicolons) would run nothing, and pass

@@ -5,7 +5,7 @@
 #   scripts/test.sh release asan    only the named parts, of:
 #       release   g++, as installed: all tests, the CAN bus, the package
 #       asan      clang, address and undefined behaviour sanitizers: all tests but those and the minutes-long runs
-#       fuzz      the fuzzers of that build, FUZZ_SECONDS each (default 2)
+#       fuzz      the fuzzers of that build, FUZZ_SECONDS each (default 1)
 #       tsan      g++, thread sanitizer: the relay and the libraries
 #
 # Installs what is missing. Exit status 0: all tests passed.
@@ -53,7 +53,7 @@ run_tsan() {
 
 run_fuzz() {
   build asan --target fuzzers
-  step "fuzzers, ${FUZZ_SECONDS:=2} s each"
+  step "fuzzers, ${FUZZ_SECONDS:=1} s each"
   export FUZZ_SECONDS
   export -f run_fuzzer
   grep . build/asan/fuzzers.txt | xargs -P "$jobs" -I{} bash -c 'run_fuzzer {}'
