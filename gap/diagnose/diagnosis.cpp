@@ -240,4 +240,13 @@ physics::Effects corrected_effects(const Diagnosis& d) {
   return effects;
 }
 
+std::string group_title(const Diagnosis& d, std::size_t group) {
+  const auto first = [&](std::size_t g) -> const Observation& { return d.observations.runs[d.repeats[g].front()]; };
+  const Observation& run = first(group);
+  if (run.manoeuvre.empty()) return run.file;
+  for (std::size_t g = 0; g < d.repeats.size(); ++g)
+    if (g != group && first(g).manoeuvre == run.manoeuvre) return fmt::format("{} ({})", run.manoeuvre, run.file);
+  return run.manoeuvre;
+}
+
 }  // namespace kenaf::gap

@@ -81,4 +81,8 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
 // The effects of the best model on top of those of the robot.
 physics::Effects corrected_effects(const Diagnosis& diagnosis);
 
+// What people call a group of repeats: its manoeuvre; with its first file where other groups are called the same, or it
+// has no name.
+std::string group_title(const Diagnosis& diagnosis, std::size_t group);
+
 }  // namespace kenaf::gap

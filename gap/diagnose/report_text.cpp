@@ -125,8 +125,8 @@ std::string diagnosis_text(const Diagnosis& d) {
     }
     for (std::size_t i = 0; i < std::min(kPhases, d.where.phases.size()); ++i) {
       const PhaseGap& phase = d.where.phases[i];
-      fmt::format_to(out, "  {:<24} {:<13} {:>5.1f} to {:>5.1f} s  {:>3.0f} % of the gap\n", phase.manoeuvre,
-                     phase.phase, phase.from_s, phase.to_s, phase.share * 100);
+      fmt::format_to(out, "  {:<24} {:<13} {:>5.1f} to {:>5.1f} s  {:>3.0f} % of the gap\n",
+                     group_title(d, phase.group), phase.phase, phase.from_s, phase.to_s, phase.share * 100);
     }
   }
   if (d.decision.verdict != Verdict::none && !d.ranking.empty()) {

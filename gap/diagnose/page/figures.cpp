@@ -218,7 +218,7 @@ Chart places_figure(const Diagnosis& d, const Overlay& overlay) {
       place_chart(d, overlay, {{path_of(real, from_side), Ink::faint, Stroke::solid, "real path"}}, from_side);
   if (places.empty()) return chart;
   chart.title =
-      fmt::format("{}: gap by place, seen from {}", group_title(d, overlay.group), from_side ? "the right" : "above");
+      fmt::format("{}: gap by place, from {}", group_title(d, overlay.group), from_side ? "the right" : "above");
   const double left = d.where.beyond_chance > 0 ? d.where_left.beyond_chance / d.where.beyond_chance : 0;
   const auto [west, east] = std::ranges::minmax(places, {}, &Place::x_m);
   const double width_m = east.x_m - west.x_m;

@@ -61,15 +61,6 @@ std::vector<std::string> curve_names(const Diagnosis& d, std::span<const std::si
   return names;
 }
 
-std::string group_title(const Diagnosis& d, std::size_t group) {
-  const auto first = [&](std::size_t g) -> const Observation& { return d.observations.runs[d.repeats[g].front()]; };
-  const Observation& run = first(group);
-  if (run.manoeuvre.empty()) return run.file;
-  for (std::size_t g = 0; g < d.repeats.size(); ++g)
-    if (g != group && first(g).manoeuvre == run.manoeuvre) return fmt::format("{} ({})", run.manoeuvre, run.file);
-  return run.manoeuvre;
-}
-
 std::string paragraph(std::string_view text, std::string_view classes) {
   if (classes.empty()) return fmt::format("<p>{}</p>\n", escaped(text));
   return fmt::format("<p class=\"{}\">{}</p>\n", classes, escaped(text));

@@ -30,9 +30,6 @@ std::string parameter_name(const EffectCurve& curve);
 std::string enumeration(std::span<const std::string> names, std::string_view last_word = "and");
 std::vector<std::string> curve_names(const Diagnosis& d, std::span<const std::size_t> curves);
 
-// The manoeuvre of a group of repeats; with its first file where other groups are called the same, or it has no name.
-std::string group_title(const Diagnosis& d, std::size_t group);
-
 // An element with escaped text.
 std::string paragraph(std::string_view text, std::string_view classes = {});
 std::string section_head(std::string_view id, std::string_view title);
