@@ -1,6 +1,7 @@
 #include "gap/diagnose/repeats.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -15,6 +16,8 @@ using Eigen::VectorXd;
 // Chosen: an operator decides that much earlier or later in a repeat, and a log's numbers are rounded that much; in the
 // rest of the time he may have done otherwise.
 constexpr double kSooner_s = 0.5, kRounded = 0.02, kOtherwise = 0.1;
+// Chosen: more than the noise of a speed at rest, less than another motion. Of the largest speed commanded.
+constexpr double kMovesOtherwise = 0.25;
 
 using Timed = std::vector<rollout::TimedCommand>;
 
@@ -55,11 +58,33 @@ double otherwise_s(const Timed& a, const Timed& b, const Largest& largest) {
   return sum_s;
 }
 
+Largest largest_of(const Observation& a, const Observation& b) {
+  Largest largest;
+  widen(largest, a.replay.timed);
+  widen(largest, b.replay.timed);
+  return largest;
+}
+
+// Both tracks, or where they were not measured the body's speed twice.
+std::array<double, physics::kTrackCount> speeds_at_start(const Observation& observation) {
+  const auto& start = observation.replay.start;
+  if (!start || !start->motion) return {};
+  if (start->motion->track_mps) return *start->motion->track_mps;
+  const double forward_mps = start->motion->forward_mps.value_or(0);
+  return {forward_mps, forward_mps};
+}
+
+bool same_start(const Observation& a, const Observation& b) {
+  const auto one = speeds_at_start(a), two = speeds_at_start(b);
+  const double allowed_mps = kMovesOtherwise * largest_of(a, b).track_mps;
+  for (std::size_t t = 0; t < one.size(); ++t)
+    if (std::abs(one[t] - two[t]) > allowed_mps) return false;
+  return true;
+}
+
 bool same_commands(const Observation& a, const Observation& b) {
   const Timed &one = a.replay.timed, &two = b.replay.timed;
-  Largest largest;
-  widen(largest, one);
-  widen(largest, two);
+  const Largest largest = largest_of(a, b);
   const double allowed_s = kOtherwise * std::min(one.back().t_s, two.back().t_s);
   return otherwise_s(one, two, largest) <= allowed_s && otherwise_s(two, one, largest) <= allowed_s;
 }
@@ -73,9 +98,7 @@ std::vector<physics::RobotCommand> orders_of(const Timed& commands, const Larges
 }
 
 bool same_orders(const Observation& a, const Observation& b) {
-  Largest largest;
-  widen(largest, a.replay.timed);
-  widen(largest, b.replay.timed);
+  const Largest largest = largest_of(a, b);
   std::vector<physics::RobotCommand> fewer = orders_of(a.replay.timed, largest),
                                      more = orders_of(b.replay.timed, largest);
   if (fewer.size() > more.size()) std::swap(fewer, more);
@@ -106,12 +129,14 @@ std::vector<std::vector<std::size_t>> groups_of(const Observations& observations
 }  // namespace
 
 std::vector<std::vector<std::size_t>> repeats_of(const Observations& observations) {
-  return groups_of(observations, same_commands);
+  return groups_of(observations,
+                   [](const Observation& a, const Observation& b) { return same_start(a, b) && same_commands(a, b); });
 }
 
 std::vector<std::vector<std::size_t>> same_orders_of(const Observations& observations) {
-  return groups_of(observations,
-                   [](const Observation& a, const Observation& b) { return same_commands(a, b) || same_orders(a, b); });
+  return groups_of(observations, [](const Observation& a, const Observation& b) {
+    return same_start(a, b) && (same_commands(a, b) || same_orders(a, b));
+  });
 }
 
 std::size_t representative(const Observations& observations, const std::vector<std::size_t>& group) {

@@ -11,8 +11,8 @@
 
 namespace kenaf::gap {
 
-// Runs that share a manoeuvre, a world and their commands, which need not be the same at every time: an operator decides by
-// what he sees. In the order in which each first comes. A dataset that calls all of its runs by one name although each has
+// Runs that share a manoeuvre, a world, the speed with which they begin, and their commands, which need not be the same at
+// every time: an operator decides by what he sees. In the order in which each first comes. A dataset that calls all of its runs by one name although each has
 // commands of its own has as many groups as runs.
 std::vector<std::vector<std::size_t>> repeats_of(const Observations& observations);
 

@@ -57,6 +57,21 @@ std::vector<FeatureMap> maps(std::initializer_list<double> durations_s) {
 
 }  // namespace
 
+TEST_CASE("Runs that begin in another motion do not repeat each other, whatever they are told") {
+  const auto begun = [](double left_mps, double right_mps) {
+    Observation run = told("a", 0.8);
+    run.replay.start.emplace();
+    run.replay.start->motion.emplace().track_mps = {left_mps, right_mps};
+    return run;
+  };
+  // as recorded: told the same, one comes out of driving backward, the other out of a turn
+  CHECK(groups_of({begun(-0.59, -0.21), begun(0.58, -0.03)}) == Groups{{0}, {1}});
+  CHECK(same_orders({begun(-0.59, -0.21), begun(0.58, -0.03)}) == Groups{{0}, {1}});
+  // 30 mm/s of noise in speeds at rest; and one that stands, to which nothing was added
+  CHECK(groups_of({begun(0.03, -0.03), begun(-0.03, 0.03), told("a", 0.8)}) == Groups{{0, 1, 2}});
+  CHECK(groups_of({begun(0.5, 0.5), told("a", 0.8)}) == Groups{{0}, {1}});
+}
+
 TEST_CASE("Runs of one name with the same commands repeat each other") {
   CHECK(groups_of({told("a", 0.3), told("b", 0.3), told("a", 0.3)}) == Groups{{0, 2}, {1}});
 }
