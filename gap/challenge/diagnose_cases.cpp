@@ -61,8 +61,8 @@ pid_t start(const CaseToDiagnose& one, int program) {
   const Descriptor out{::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)};
   const Descriptor in{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
   if (out.value < 0 || in.value < 0) throw failed(log.string());
-  std::vector<std::string> arguments{"kenaf-gap", "diagnose", one.data.string(), "--out", one.report.string(),
-                                     "--jobs",    "1"};
+  std::vector<std::string> arguments{"kenaf-gap",         "diagnose",  one.data.string(), "--out",
+                                     one.report.string(), "--no-next", "--jobs",          "1"};
   if (!one.without.empty()) {
     arguments.emplace_back("--without");
     arguments.push_back(fmt::format("{}", fmt::join(one.without, ",")));

@@ -51,7 +51,7 @@ class Diagnoser {
     weigh();
     d_.isolability = isolability(d_.curves);
     say("looking for the next manoeuvre", 0.93);
-    propose();
+    if (options_.propose_next) propose();
     say("done", 1);
   }
 

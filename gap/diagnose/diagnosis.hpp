@@ -28,6 +28,7 @@ struct DiagnosisOptions {
   std::string robot, world;           // instead of the dataset's; empty: its own
   std::vector<std::string> without;   // effects taken out of the catalogue; throws std::invalid_argument for others
   std::size_t most_runs = 36;         // that are used of a larger dataset
+  bool propose_next = true;           // manoeuvres that would tell more, where the verdict leaves a choice
   unsigned jobs = 0;                  // threads; 0: one a core
   std::uint64_t seed = 1;
   double span_s = 0.25;               // of a bin (chosen: four to a manoeuvre's quickest event)

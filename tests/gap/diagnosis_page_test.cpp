@@ -222,6 +222,13 @@ TEST_CASE("Runs without repeats and without any visible effect have a page") {
   CHECK_THAT(page_of(d), Contains("none repeats another") && Contains("show no effect of the catalogue"));
 }
 
+TEST_CASE("Where no next manoeuvre was asked for, the page says that, not that none is needed") {
+  Diagnosis d = two_manoeuvres();
+  d.next.clear();
+  d.options.propose_next = false;
+  CHECK_THAT(page_of(d), Contains("It was not asked for.") && !Contains("Nothing has to be told apart"));
+}
+
 TEST_CASE("Look-alikes become neighbours") {
   // 0 with 2, and 1 with 3; the pairs have little in common
   Eigen::Matrix4d angle_deg;

@@ -85,6 +85,7 @@ std::string options_text(const Diagnosis& d) {
 
 std::string next_section(const Diagnosis& d) {
   std::string html = section_head("next", "What to drive next");
+  if (!d.options.propose_next) return html + paragraph("It was not asked for.");
   if (d.next.empty()) {
     if (!d.interrupted.empty()) return html + paragraph("It was not worked out before the diagnosis ended.");
     return html +
