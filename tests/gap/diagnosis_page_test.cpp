@@ -68,7 +68,7 @@ Diagnosis two_manoeuvres() {
     d.nominal_floor.whiteners.emplace_back(sigma, Eigen::MatrixXd::Zero(sigma.size(), 1));
   }
   d.where = {{{channel("x_m"), 0.1, kSigma, 0.9}, {channel("z_m"), 0.02, kSigma, 0.1}},
-             {{"up & <over>", "climb", 0.5, 2, 0.6, 0, 0.7, 1, 2}, {"drive", "cruise", 0, 2, 0.5, 0, 0.3, 0, 0}},
+             {{"up & <over>", "climb", 0.5, 2, 0.6, 0, 0.7, 1}, {"drive", "cruise", 0, 2, 0.5, 0, 0.3, 0}},
              200};
   d.where_left = {d.where.channels, d.where.phases, 20};
   d.stages = {{Passage::command_to_drive, 1, 0.9, 30},
@@ -263,7 +263,7 @@ TEST_CASE("Of many manoeuvres those with most of the gap are drawn, in the order
   Diagnosis d;
   for (std::size_t g = 0; g < 30; ++g) {
     d.repeats.push_back({g});
-    d.where.phases.push_back({"m", "cruise", 0, 1, 0, 0, g == 3 || g == 20 ? 0.3 : 0.01, g, g});
+    d.where.phases.push_back({"m", "cruise", 0, 1, 0, 0, g == 3 || g == 20 ? 0.3 : 0.01, g});
   }
   const std::vector<std::size_t> shown = shown_groups(d);
   CHECK(shown.size() < 12);
