@@ -96,6 +96,7 @@ struct Feed::Implementation {
     std::uint64_t number = 0;
     double rate_hz = 0;
     bool wanted = false, faulty = false;
+    bool left_out = false;  // the last exposure, as it was late
   };
   struct Waiting {
     Clock::time_point until;
@@ -153,13 +154,17 @@ void Feed::Implementation::take(std::shared_ptr<Exposure> exposure) {
   if (!awake) return;
   const bool newest = exposure->asked == asked;
   settle_views(*exposure);
+  const Clock::duration waited = Clock::now() - exposure->wall;
   std::vector<CameraId> due;
   bool wanted = false;
   for (auto& [id, camera] : drawn) {
     wanted = wanted || camera.wanted;
     if (!camera.wanted || camera.faulty) continue;
     if (!exposes_at({camera.rate_hz, camera.last}, exposure->step, exposure->time_step_s)) continue;
-    due.push_back(id);
+    // Half a period late already: the next one is fresher. Never twice running, or a busy machine would show nothing.
+    const bool late = camera.last && exposure->speed > 0 && waited > seconds(0.5 / (camera.rate_hz * exposure->speed));
+    camera.left_out = late && !camera.left_out;
+    if (!camera.left_out) due.push_back(id);
     const Tick tick = tick_at(exposure->step, exposure->time_step_s, camera.rate_hz);
     // after a reset time begins anew, and numbers go on
     camera.number += camera.last && tick > *camera.last ? tick - *camera.last : 1;

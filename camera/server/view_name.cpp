@@ -1,7 +1,6 @@
 #include "camera/server/view_name.hpp"
 
 #include <algorithm>
-#include <ranges>
 
 #include "protocol/usarsim_message.hpp"
 
@@ -26,7 +25,8 @@ std::optional<CameraId> find_view(const std::vector<RobotSnapshot>& robots, std:
   const bool names_robot = slash != std::string_view::npos;
   const std::string_view robot_name = view.substr(0, names_robot ? slash : 0);
   const std::string_view camera_name = view.substr(names_robot ? slash + 1 : 0);
-  for (const RobotSnapshot& robot : robots | std::views::reverse) {
+  for (auto found = robots.rbegin(); found != robots.rend(); ++found) {  // clang 14 knows no std::views::reverse
+    const RobotSnapshot& robot = *found;
     if (names_robot && !usarsim::equal_ignoring_case(robot.name, robot_name)) continue;
     const auto& cameras = robot.description->cameras;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
