@@ -1,1 +1,2 @@
 kenaf_fuzzer(robot_on_bus_fuzz SOURCE robot_on_bus_fuzz.cpp LIBRARIES kenaf_real_transport kenaf_hrt_config kenaf_test_bus)
+kenaf_fuzzer(camera_on_robot_fuzz SOURCE camera_on_robot_fuzz.cpp LIBRARIES kenaf_real_transport)

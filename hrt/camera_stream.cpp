@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "hrt/error.hpp"
 #include "hrt/quiet_thread.hpp"
 
 namespace kenaf::hrt {
@@ -27,7 +28,7 @@ std::shared_ptr<const CameraPicture> CameraStream::wait(std::uint64_t had, Clock
   wanted_until_ = std::max(now, until) + kIdleAfter;
   wanted_.notify_one();
   changed_.wait_until(lock, until, [&] { return failure_ || is_there(); });
-  if (failure_) throw *failure_;
+  if (failure_) throw Error(failure_->code, failure_->text);
   wanted_until_ = std::max(wanted_until_, Clock::now() + kIdleAfter);
   return is_there() ? newest_ : nullptr;
 }
@@ -37,7 +38,7 @@ void CameraStream::close() {
   {
     const std::lock_guard lock(mutex_);
     closing_ = true;
-    if (!failure_) failure_ = Error(HRT_E_CLOSED, "hrt_close() was called");
+    if (!failure_) failure_ = Failure{HRT_E_CLOSED, "hrt_close() was called"};
   }
   changed_.notify_all();
   wanted_.notify_one();
@@ -47,13 +48,13 @@ void CameraStream::close() {
 }
 
 void CameraStream::run() {
-  std::optional<Error> failure;
+  std::optional<Failure> failure;
   try {
     fetch();
   } catch (const Error& error) {
-    failure = error;
+    failure = Failure{error.code(), error.what()};
   } catch (const std::exception& error) {
-    failure = Error(HRT_E_INTERNAL, fmt::format("the library's camera thread failed: {}", error.what()));
+    failure = Failure{HRT_E_INTERNAL, fmt::format("the library's camera thread failed: {}", error.what())};
   }
   const std::lock_guard lock(mutex_);
   if (failure && !failure_) failure_ = std::move(failure);

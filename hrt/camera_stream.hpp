@@ -13,7 +13,6 @@
 #include <thread>
 
 #include "hrt/camera.hpp"
-#include "hrt/error.hpp"
 #include "kenaf/hrt.h"
 
 namespace kenaf::hrt {
@@ -38,6 +37,11 @@ class CameraStream {
   void close();
 
  private:
+  // Of an Error: copies of one share its text, and each of several threads throws its own.
+  struct Failure {
+    int code;
+    std::string text;
+  };
   void run();
   void fetch();
   bool wait_until_wanted();  // false: closed
@@ -46,7 +50,7 @@ class CameraStream {
   std::mutex mutex_;  // guards all below
   std::condition_variable changed_, wanted_;
   std::shared_ptr<const CameraPicture> newest_;
-  std::optional<Error> failure_;  // set once
+  std::optional<Failure> failure_;  // set once
   bool closing_ = false;
   Clock::time_point wanted_until_;
   std::mutex close_mutex_;  // one close at a time
