@@ -247,7 +247,7 @@ TEST_CASE("P5: a corrected robot beside the nominal one, and a file that its dat
   CHECK(behind == Approx(0.06).margin(0.005));
 }
 
-TEST_CASE("P6: what is made is made once and kept; what fails is told, and tried again") {
+TEST_CASE("P6: what is made is made once and kept, and what fails is told and tried again") {
   std::atomic<int> made = 0;
   Shelf shelf(10, [&](std::size_t n) {
     if (++made == 2) throw std::runtime_error("out of order");
