@@ -12,7 +12,7 @@ using namespace kenaf;
 using namespace kenaf::gap;
 using test::TemporaryFolder;
 
-TEST_CASE("A case is made: its effect is as large as asked, and its folder does not say which it is") {
+TEST_CASE("A case is made: its effect is as large as asked, and its folder does not say which it is", "[long]") {
   const TemporaryFolder folder;
   CasePlan plan;
   plan.name = "case-007";

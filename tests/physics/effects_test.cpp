@@ -73,7 +73,8 @@ TEST_CASE("E1: at its neutral value no effect changes a bit") {
 }
 
 // Motion capture is no sensor of the robot: what tracking does is in tests/rollout/tracking_test.cpp.
-TEST_CASE("E2: at any other value every effect but those of tracking changes what the robot does or measures", "[long]") {
+TEST_CASE("E2: at any other value every effect but those of tracking changes what the robot does or measures",
+          "[long]") {
   const std::uint64_t nominal = drive_with({}).hash;
   for (const EffectInfo& effect : effect_catalogue()) {
     for (const EffectParameter& parameter : effect.parameters) {

@@ -115,7 +115,8 @@ TEST_CASE("M4: a robot on a slope tips over its belly's end, or over its track's
 }
 
 // tan 30 = 0.5774; 1 % of it to either side. Held for 5 s: what creeps is not held.
-TEST_CASE("M5: block and robot hold on a slope where mu is 1 % above its tangent, and slide where it is 1 % below") {
+TEST_CASE("M5: block and robot hold on a slope where mu is 1 % above its tangent, and slide where it is 1 % below",
+          "[long]") {
   const double slope = 30 * kDegree;
   const Pose X_WP = slope_frame(slope);
   for (const double share : {1.01, 0.99}) {

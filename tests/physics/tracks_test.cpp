@@ -295,7 +295,8 @@ TEST_CASE("T9: an incline that needs more than the motors have is not climbed") 
   CHECK(climbed_m(40) == Approx(0.195).margin(0.01));
 }
 
-TEST_CASE("T10: with its front flippers up Kenaf climbs steps of 100 and 200 mm, at half the time step alike", "[long]") {
+TEST_CASE("T10: with its front flippers up Kenaf climbs steps of 100 and 200 mm, at half the time step alike",
+          "[long]") {
   for (const int height_mm : {100, 200}) {
     std::vector<std::string> unsupported;
     const WorldDescription step = load_world("step-" + std::to_string(height_mm), unsupported);

@@ -63,7 +63,7 @@ TEST_CASE("S1 S2 S5 the square closes, goes round its corners, and both servers 
   CHECK(chain.world().wait_for(20s) == 0);
 }
 
-TEST_CASE("S3 half, double and full speed drive the same path") {
+TEST_CASE("S3 half, double and full speed drive the same path", "[long]") {
   Chain half("0.5"), twice("2"), full("0");
   // At the same time: those at half and double speed mostly wait for the clock.
   support::Process slow = start_square(half), fast = start_square(twice);
