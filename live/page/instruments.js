@@ -17,7 +17,7 @@ const ROWS = [   // label, text of a robot's state, wide
 ];
 
 // Not "-0.00".
-function fixed(value, digits) {
+export function fixed(value, digits) {
   const text = value.toFixed(digits);
   return Number(text) === 0 ? (0).toFixed(digits) : text.replace("-", "\u2212");
 }

@@ -1,4 +1,5 @@
 // The chosen robot's outline from the side and from behind, at its pitch and roll over a level line.
+import { fixed } from "./instruments.js";
 import { angles } from "./world.js";
 
 const NS = "http://www.w3.org/2000/svg";
@@ -45,8 +46,8 @@ export function createPosture() {
       const { roll, pitch } = angles(now.q);
       parts.front.setAttribute("transform", `rotate(${-pitch})`);
       parts.rear.setAttribute("transform", `rotate(${roll})`);
-      parts.labels[0].textContent = `pitch ${pitch.toFixed(1)}\u00b0`;
-      parts.labels[1].textContent = `roll ${roll.toFixed(1)}\u00b0`;
+      parts.labels[0].textContent = `pitch ${fixed(pitch, 1)}\u00b0`;
+      parts.labels[1].textContent = `roll ${fixed(roll, 1)}\u00b0`;
       parts.arms.forEach((arm, i) => {
         const { length, at } = about.flipper, angle = now.flipper[2 * i], outward = i === 0 ? -1 : 1;
         const x = outward * at[0] * parts.scale, y = -at[2] * parts.scale;
