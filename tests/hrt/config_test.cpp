@@ -92,7 +92,7 @@ max_speed_mmps = 150          # an integer is a number
 lockstep = false
 relay = "10.0.0.2:5000"
 robot = "./my-robot.toml"
-record = "/tmp/run.csv"
+record = "recordings/run.csv"
 )",
              "kenaf.toml", config);
   CHECK(config.period_s == 0.02);
@@ -101,7 +101,7 @@ record = "/tmp/run.csv"
   CHECK(config.reset_robot == 1);
   CHECK(std::string(config.relay) == "10.0.0.2:5000");
   CHECK(std::string(config.robot) == "./my-robot.toml");
-  CHECK(std::string(config.record) == "/tmp/run.csv");
+  CHECK(std::string(config.record) == "recordings/run.csv");
 }
 
 TEST_CASE("what is wrong in a file is named with line and column, and nothing is changed") {
