@@ -1,7 +1,5 @@
 #include "tests/camera_server/image_client.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -9,36 +7,19 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "tests/support/loopback.hpp"
+
 namespace kenaf::camera {
 
 ImageClient::ImageClient(std::uint16_t port, int receive_buffer_bytes)
-    : descriptor_(::socket(AF_INET, SOCK_STREAM, 0)) {
-  const timeval limit{20, 0};
-  ::setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-  if (receive_buffer_bytes > 0) {
-    ::setsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &receive_buffer_bytes, sizeof receive_buffer_bytes);
-  }
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (::connect(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-    ::close(descriptor_);
-    throw std::runtime_error("the image server does not listen");
-  }
-}
+    : descriptor_(test::connect_to_loopback(port, receive_buffer_bytes)) {}
 
 ImageClient::~ImageClient() {
   ::close(descriptor_);
 }
 
 bool ImageClient::send(std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t sent = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
-    if (sent <= 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(sent));
-  }
-  return true;
+  return test::send_all(descriptor_, bytes);
 }
 
 bool ImageClient::receive(std::uint8_t* bytes, std::size_t count) {
