@@ -1,6 +1,6 @@
 #include "camera/server/frame.hpp"
 
-#include <fmt/format.h>
+#include "protocol/image_message.hpp"
 
 namespace kenaf::camera {
 
@@ -16,14 +16,9 @@ double age_s(const Frame& frame, SteadyTime now) {
 }
 
 std::string stamped_start(const Frame& frame, double age_s) {
-  const std::string text = fmt::format("kenaf-frame/1 number={} robot_time_s={:.6f} age_ms={:.3f} robot={} camera={}",
-                                       frame.number, frame.robot_time_s, 1e3 * age_s,
-                                       frame.robot.substr(0, kLongestName), frame.camera.substr(0, kLongestName));
-  const std::size_t length = text.size() + 2;  // of the segment, its length included
-  std::string out("\xff\xd8\xff\xfe", 4);
-  out += static_cast<char>(length >> 8);
-  out += static_cast<char>(length & 0xff);
-  return out + text;
+  return "\xff\xd8" +
+         image::frame_note_segment({frame.number, frame.robot_time_s, 1e3 * age_s, frame.robot.substr(0, kLongestName),
+                                    frame.camera.substr(0, kLongestName)});
 }
 
 std::span<const std::uint8_t> after_start(std::span<const std::uint8_t> jpeg) {

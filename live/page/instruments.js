@@ -1,4 +1,5 @@
 // The chosen robot in figures.
+import { fixed } from "./numbers.js";
 import { angles } from "./world.js";
 
 const ROWS = [   // label, text of a robot's state, wide
@@ -16,11 +17,6 @@ const ROWS = [   // label, text of a robot's state, wide
   ["Program", clientText, true],
 ];
 
-// Not "-0.00".
-export function fixed(value, digits) {
-  const text = value.toFixed(digits);
-  return Number(text) === 0 ? (0).toFixed(digits) : text.replace("-", "\u2212");
-}
 function degrees(value) {
   return `${fixed(value, 1)}\u00b0`;
 }

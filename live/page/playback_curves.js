@@ -1,4 +1,6 @@
 // Curves of chosen columns over the whole run, real against simulated. The cursor is not drawn here: it moves alone.
+import { fixed } from "./numbers.js";
+
 const STRIP_PX = 74, DEG = 180 / Math.PI;
 const DASHES = { recorded: [], nominal: [6, 4], corrected: [] };
 const WIDTHS = { recorded: 2.6, nominal: 1.5, corrected: 1.5 };
@@ -27,7 +29,7 @@ function rangeOf(lines) {
   return { least: (to > from ? from : from - 1) * step, most: (to > from ? to : to + 1) * step, step };
 }
 
-const plain = (value, step) => value.toFixed(Math.max(0, -Math.floor(Math.log10(step) + 1e-9))).replace("-", "\u2212").replace(/^\u2212(0(\.0+)?)$/, "$1");
+const plain = (value, step) => fixed(value, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
 
 export function createCurves(xOf) {
   const canvas = document.getElementById("curves"), pen = canvas.getContext("2d");

@@ -1,4 +1,5 @@
 // What there is to read at the cursor: where the recorded robot is, and how far each simulation is from it.
+import { fixed } from "./numbers.js";
 import { differenceOf, stateAt } from "./playback_data.js";
 
 const by = (id) => document.getElementById(id);
@@ -6,7 +7,7 @@ const signed = (value, digits) => {
   const text = Math.abs(value).toFixed(digits);
   return Number(text) === 0 ? text : `${value < 0 ? "\u2212" : "+"}${text}`;
 };
-const metres = (value) => value.toFixed(3).replace("-", "\u2212").replace(/^\u2212(0\.0+)$/, "$1");
+const metres = (value) => fixed(value, 3);
 const ROWS = [
   ["distance, mm", (d) => d.distance_mm.toFixed(1)],
   ["x, mm", (d) => signed(d.place_mm[0], 1)], ["y, mm", (d) => signed(d.place_mm[1], 1)], ["z, mm", (d) => signed(d.place_mm[2], 1)],

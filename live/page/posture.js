@@ -1,5 +1,5 @@
 // The chosen robot's outline from the side and from behind, at its pitch and roll over a level line.
-import { fixed } from "./instruments.js";
+import { fixed } from "./numbers.js";
 import { angles } from "./world.js";
 
 const NS = "http://www.w3.org/2000/svg";
