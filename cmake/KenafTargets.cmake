@@ -122,11 +122,11 @@ function(kenaf_test_settings name)
   endif()
 endfunction()
 
-# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [TIMEOUT s] [COST c]): one Catch2 program;
+# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [TIMEOUT s] [COST c] [ONE_AT_A_TIME]): one Catch2 program;
 # ctest sees each of its test cases (under a sanitizer each of its files, which end in _test.cpp, without the cases tagged
 # [long]), and starts those of the highest cost first.
 function(kenaf_test name)
-  cmake_parse_arguments(TEST "" "TIMEOUT;COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
+  cmake_parse_arguments(TEST "ONE_AT_A_TIME" "TIMEOUT;COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
   if(NOT TEST_TIMEOUT)
     set(TEST_TIMEOUT 120)
   endif()
@@ -140,11 +140,15 @@ function(kenaf_test name)
     target_precompile_headers(${name} REUSE_FROM kenaf_test_headers)
   endif()
   if(NOT KENAF_SANITIZE)
+    set(lock "")
+    if(TEST_ONE_AT_A_TIME)
+      set(lock RESOURCE_LOCK ${name})
+    endif()
     # a name that ctest takes for another (it parts them at semicolons) would run nothing, and pass
     catch_discover_tests(${name}
       EXTRA_ARGS --warn NoTests
       TEST_PREFIX "${name}: "
-      PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT} COST ${TEST_COST})
+      PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT} COST ${TEST_COST} ${lock})
     return()
   endif()
   # a process takes a tenth of a second to start under a sanitizer: one for each file, not for each test case
