@@ -6,6 +6,7 @@
 # 4. Unplugged: named, the robot goes on; plugged in again, it gives pictures again.  5. A resolution that the device has
 # not: refused, with those it has.
 set -uo pipefail
+. "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/waiting.sh"
 bin=$(realpath "$1") robot=$(realpath "$2")
 work=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
@@ -31,12 +32,13 @@ describe 200 >other.toml
 
 export KENAF_CAN_INTERFACE=vcan0 KENAF_CAN_TIMEOUT_S=30 KENAF_CONFIG=''
 "$bin/kenaf-candrives" --interface vcan0 --ideal --robot "$PWD/robot.toml" >drives.log 2>&1 & drives=$!
-for _ in $(seq 300); do grep -q 'nodes on vcan0' drives.log && break; sleep 0.1; done
+wait_until 30 holds drives.log 'nodes on vcan0'
 
 mkfifo input
 KENAF_ROBOT=$PWD/robot.toml timeout 200 "$bin/camera_reader" Camera <input >out 2>&1 & reader=$!
 exec 3>input
-for _ in $(seq 600); do grep -q '^unplug it' out && break; kill -0 "$reader" 2>/dev/null || break; sleep 0.1; done
+unplugged_or_gone() { holds out 'unplug it' || ! kill -0 "$reader" 2>/dev/null; }
+wait_until 60 unplugged_or_gone
 said 1 "^Rear: HRT_E_DEVICE: robot '.*' has no camera 'Rear'; it has: Camera, BirdsEye"
 said 1 "^BirdsEye: HRT_E_DEVICE: camera 'BirdsEye' of robot '.*' has no device: add device"
 said 2 '^rgb 320 x 180, 172800 bytes'

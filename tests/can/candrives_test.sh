@@ -8,39 +8,35 @@
 # disabled, 0x0231 ready to switch on, 0x0233 switched on, 0x0237 operation enabled, 0x0217 quick stop active, 0x0218 fault;
 # + 0x0400 target reached, + 0x1000 (in profile velocity) stands still.
 set -uo pipefail
+. "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/waiting.sh"
 candrives=$1
 work=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
 cd "$work" || exit 1
 fail() { echo "candrives_test: $*" >&2; cat out errors >&2; exit 1; }
 
-heard() { sed 's/^.* vcan0 //' log; }
+# have_heard COUNT: heard is what candump wrote into the log, a frame each, and they are so many or more.
+have_heard() { mapfile -t heard <log; heard=("${heard[@]##* vcan0 }"); [ ${#heard[@]} -ge "$1" ]; }
 # expect CLAIM FRAME...: these are the next frames on the bus, and no others.
 seen=0
 expect() {
-  local claim=$1 wanted got; shift
-  wanted=$(printf '%s\n' "$@")
-  for ((i = 0; i < 60; ++i)); do
-    got=$(heard | tail -n "+$((seen + 1))")
-    [ "$(printf '%s\n' "$got" | wc -l)" -lt $# ] || break
-    sleep 0.05
-  done
-  [ "$got" = "$wanted" ] || fail "$claim: expected ${wanted//$'\n'/ }, heard ${got//$'\n'/ }"
+  local claim=$1 got; shift
+  wait_until 3 have_heard $((seen + $#))
+  got="${heard[*]:seen}"
+  [ "$got" = "$*" ] || fail "$claim: expected $*, heard $got"
   seen=$((seen + $#))
 }
 # ask CLAIM FRAME ANSWER...
 ask() { cansend vcan0 "$2" || fail "$1: cansend"; expect "$@"; }
-said() {
-  for ((i = 0; i < 60; ++i)); do grep -qF -- "$1" out errors && return; sleep 0.05; done
-  fail "it does not say '$1'"
-}
+either_holds() { holds out "$1" || holds errors "$1"; }
+said() { wait_until 3 either_holds "$1" || fail "it does not say '$1'"; }
 
 : >log; : >out; : >errors
 listen() {
   candump -L vcan0 >>log 2>/dev/null & listener=$!
-  while ! grep -q "7FF#$1" log; do cansend vcan0 "7FF#$1"; sleep 0.05; done
-  sleep 0.2
-  seen=$(heard | wc -l)
+  while ! holds log "7FF#$1"; do cansend vcan0 "7FF#$1"; pause 0.05; done
+  pause 0.2
+  have_heard 1; seen=${#heard[@]}
 }
 listen 01
 mkfifo input

@@ -4,6 +4,7 @@
 # 1. An operator on paper, who lifts the front flippers and drives 0.3 m, gets there, by what the console shows him.
 # 2. The robot behind the drives really is there, and stands.
 set -uo pipefail
+. "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/waiting.sh"
 bin=$1
 work=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
@@ -18,14 +19,14 @@ hold w until x_mm > 300 within 8
 wait until track_mmps < 5 within 3
 END
 "$bin/kenaf-candrives" --interface vcan0 --log real.csv >drives.log 2>&1 & drives=$!
-for _ in $(seq 300); do grep -q 'nodes on vcan0' drives.log && break; sleep 0.1; done
+wait_until 30 holds drives.log 'nodes on vcan0'
 KENAF_CONFIG='' KENAF_CAN_INTERFACE=vcan0 KENAF_CAN_TIMEOUT_S=30 \
   "$bin/operator_control_real" --listen 127.0.0.1:0 --port-file port >control.log 2>&1 & control=$!
-for _ in $(seq 300); do [ -s port ] && break; sleep 0.1; done
+wait_until 30 [ -s port ]
 "$bin/operator_console" --control "127.0.0.1:$(cat port)" --gamepad none --script drive.script >console.log 2>&1 ||
   fail "1: the console ended with status $?"
 kill "$control"; wait "$control" || fail "1: the control process ended with status $?"
-sleep 0.5
+pause 0.5
 kill "$drives"; wait "$drives"
 
 # Columns: t_s, x_m, y_m, z_m, three angles, track_left_m, track_right_m; a row each 10 ms.

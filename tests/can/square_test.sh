@@ -7,6 +7,7 @@
 # 1. Both end well.  2. The two paths agree within 5 mm and 1 degree.  3. What was on the bus, from the first frame to the last,
 # keeps the standards' rules, and fills less than half of 500 kbit/s.
 set -uo pipefail
+here=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
 with_vcan=$1 bin=$2
 work=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
@@ -16,18 +17,23 @@ fail() { echo "square_test: $*" >&2; exit 1; }
 for _ in $(seq 200); do [ -s "$work/port" ] && break; sleep 0.1; done
 KENAF_RELAY="127.0.0.1:$(cat "$work/port")" KENAF_RECORD="$work/sim.csv" "$bin/square_sim" || fail "1: over libkenaf_sim"
 
+# candump writes each frame on its own, which into a folder of this machine's costs an emulated one more than the frame does.
 cat >"$work/on_bus.sh" <<'END'
+. "$1/waiting.sh"
+results=$PWD; shift
+cd "$(mktemp -d)" || exit 1
 candump -L vcan0 >bus.log & listener=$!
 "$1/kenaf-candrives" --interface vcan0 --log real.csv >drives.log 2>&1 & drives=$!
-for _ in $(seq 300); do grep -q 'nodes on vcan0' drives.log && break; sleep 0.1; done
+wait_until 30 holds drives.log 'nodes on vcan0'
 KENAF_CAN_INTERFACE=vcan0 KENAF_CAN_TIMEOUT_S=30 "$1/square_real"; status=$?
-sleep 1
+pause 1
 kill "$drives"; wait "$drives"
 kill "$listener"; wait "$listener"
+cp bus.log drives.log real.csv "$results"
 exit "$status"
 END
 mkdir "$work/bus" && cd "$work/bus" || exit 1
-"$with_vcan" --timeout 280 --writable . bash "$work/on_bus.sh" "$bin" || { cat drives.log; fail "1: over libkenaf_real"; }
+"$with_vcan" --timeout 280 --writable . bash "$work/on_bus.sh" "$here" "$bin" || { cat drives.log; fail "1: over libkenaf_real"; }
 cat drives.log
 
 "$bin/compare_paths" "$work/sim.csv" real.csv 5 1 || fail "2: the paths differ by more than 5 mm and 1 degree"

@@ -10,6 +10,7 @@
 # 4. the interface goes down and up; 5. the bus is off; 6. a drive falls silent; 7. a drive is in fault; 8. a drive restarts.
 # 9. The inclinometer falls silent: the robot drives on, and the program is told. (3 is counted from up to 0.06 s after the last call.)
 set -uo pipefail
+. "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/waiting.sh"
 bin=$1
 work=$(mktemp -d)
 trap 'kill -9 $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
@@ -18,10 +19,7 @@ fail() { echo "stop_times_test: $*" >&2; cat drives.log program.log >&2; exit 1;
 export KENAF_CAN_INTERFACE=vcan0 KENAF_CAN_TIMEOUT_S=10
 
 # said FILE WORDS: waits for them.
-said() {
-  for ((i = 0; i < 200; ++i)); do grep -qF -- "$2" "$1" && return; sleep 0.05; done
-  fail "$claim: $1 does not say '$2'"
-}
+said() { wait_until 10 holds "$1" "$2" || fail "$claim: $1 does not say '$2'"; }
 tell() { echo "$*" >&3; }
 
 begin() {  # CLAIM [ARGUMENT...]: the program is started, and the robot in motion
@@ -33,7 +31,7 @@ begin() {  # CLAIM [ARGUMENT...]: the program is started, and the robot in motio
 end() { kill -9 "$program" 2>/dev/null; wait "$program" 2>/dev/null; }
 # The time between the line of drives.log that holds WORDS and the last row in which a track still moved (more than 0.1 mm in 10 ms).
 stop_time() {
-  sleep 1.1  # the path is written out once a second
+  pause 1.1  # the path is written out once a second
   local from
   from=$(grep -F -- "$1" drives.log | tail -n 1 | sed 's/^kenaf-candrives: \([0-9.]*\) s:.*/\1/')
   awk -F, -v from="$from" '
@@ -79,7 +77,7 @@ drive_fault 7 "flipper rear left in fault" "node 5 fault 0x2310" "0x2310"
 drive_fault 8 "track left restarts" "node 1 power loss" "lost: track left (node 1)"
 
 begin 9; tell inclinometer silent; said program.log "degraded: inclinometer (node 7) is silent"
-sleep 0.5; kill -0 "$program" || fail "9: the program ended"
+pause 0.5; kill -0 "$program" || fail "9: the program ended"
 echo "inclinometer silent                            the robot drives on, degraded"
 end 2>/dev/null
 
