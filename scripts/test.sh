@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # Builds and runs all tests.
 #
-#   scripts/test.sh                 everything
+#   scripts/test.sh                 release, asan, fuzz and tsan
 #   scripts/test.sh release asan    only the named parts, of:
 #       release   g++, as installed: all tests, the CAN bus, the package
-#       asan      clang, address and undefined behaviour sanitizers: all tests but those and the minutes-long runs
-#       fuzz      the fuzzers of that build, FUZZ_SECONDS each (default 1)
+#       asan      clang, address and undefined behaviour sanitizers: all tests but those, the long runs and those of gap
+#       fuzz      the fuzzers of that build, 1 s each
 #       tsan      g++, thread sanitizer: the relay and the libraries
+#       asan-all  asan with the tests of gap; then all fuzzers, FUZZ_SECONDS each (default 60). Takes most of an hour.
 #
 # Installs what is missing. Exit status 0: all tests passed.
 set -euo pipefail
@@ -39,10 +40,11 @@ run_release() {
   ctest --preset release -j "$tests_at_once"
 }
 
-run_asan() {
-  build asan
+run_asan() { sanitized_tests asan; }
+sanitized_tests() {  # PRESET
+  build "$1"
   step "tests under address and undefined behaviour sanitizers"
-  ctest --preset asan -j "$tests_at_once" -LE release-only -E '^abi:'
+  ctest --preset "$1" -j "$tests_at_once" -LE release-only -E '^abi:'
 }
 
 run_tsan() {
@@ -51,19 +53,25 @@ run_tsan() {
   ctest --preset tsan -j "$tests_at_once" -L 'relayd|hrt' -E '^abi:'
 }
 
-run_fuzz() {
-  build asan --target fuzzers
-  step "fuzzers, ${FUZZ_SECONDS:=1} s each"
-  export FUZZ_SECONDS
+run_fuzz() { fuzz asan 1; }
+fuzz() {  # PRESET SECONDS
+  build "$1" --target fuzzers
+  step "fuzzers, $2 s each"
   export -f run_fuzzer
-  grep . build/asan/fuzzers.txt | xargs -P "$jobs" -I{} bash -c 'run_fuzzer {}'
+  grep . "build/$1/fuzzers.txt" | xargs -P "$jobs" -I{} bash -c 'run_fuzzer {} "$@"' run_fuzzer "build/$1" "$2"
+}
+
+run_asan-all() {
+  sanitized_tests asan-all
+  fuzz asan-all "${FUZZ_SECONDS:-60}"
 }
 
 # One fuzzer; says one line, or what it found. 255 keeps xargs from starting more.
 run_fuzzer() {
-  local fuzzer=$1 found="build/asan/found/$1" log="build/asan/$1.log"
+  local fuzzer=$1 build=$2 seconds=$3
+  local found="$build/found/$fuzzer" log="$build/$fuzzer.log"
   mkdir -p "$found"
-  if ! "build/asan/bin/$fuzzer" -max_total_time="$FUZZ_SECONDS" -timeout=10 -rss_limit_mb=2048 -print_final_stats=0 \
+  if ! "$build/bin/$fuzzer" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=0 \
       -artifact_prefix="$found/" "$found" "fuzz/corpus/$fuzzer" >"$log" 2>&1; then
     tail -n 60 "$log"
     echo "test: $fuzzer found an input that fails; it is in $found" >&2
@@ -75,8 +83,8 @@ run_fuzzer() {
 scripts/install-dependencies.sh
 for part in "${parts[@]}"; do
   case $part in
-    release|asan|fuzz|tsan) "run_$part" ;;
-    *) echo "test: '$part' is not one of release, asan, fuzz, tsan" >&2; exit 2 ;;
+    release|asan|fuzz|tsan|asan-all) "run_$part" ;;
+    *) echo "test: '$part' is not one of release, asan, fuzz, tsan, asan-all" >&2; exit 2 ;;
   esac
 done
 step "all parts passed: ${parts[*]}"
