@@ -4,10 +4,10 @@
 #   scripts/test.sh                 release, asan, fuzz and tsan
 #   scripts/test.sh release asan    only the named parts, of:
 #       release   g++, as installed: all tests, the CAN bus, the package
-#       asan      clang, address and undefined behaviour sanitizers: all tests but those, the long runs and those of gap
+#       asan      clang, address and undefined behaviour sanitizers: the rooms that take input from others, but for long runs
 #       fuzz      the fuzzers of that build, 1 s each
 #       tsan      g++, thread sanitizer: the relay and the libraries
-#       asan-all  asan with the tests of gap; then all fuzzers, FUZZ_SECONDS each (default 60). Takes most of an hour.
+#       asan-all  asan with all rooms; then all fuzzers, FUZZ_SECONDS each (default 60). Takes most of an hour.
 #
 # Installs what is missing. Exit status 0: all tests passed.
 set -euo pipefail

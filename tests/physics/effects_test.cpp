@@ -58,7 +58,7 @@ Drive drive_with(const Effects& effects) {
 
 }  // namespace
 
-TEST_CASE("E1: at its neutral value no effect changes a bit") {
+TEST_CASE("E1: at its neutral value no effect changes a bit", "[long]") {
   const std::uint64_t nominal = drive_with({}).hash;
   CHECK(drive_with({}).hash == nominal);
   for (const EffectInfo& effect : effect_catalogue()) {
@@ -89,7 +89,7 @@ TEST_CASE("E2: at any other value every effect but those of tracking changes wha
   }
 }
 
-TEST_CASE("E3: an effect comes out of nothing: a millionth of its range moves the robot by less than 2 mm") {
+TEST_CASE("E3: an effect comes out of nothing: a millionth of its range moves the robot by less than 2 mm", "[long]") {
   const Eigen::Vector3d nominal = drive_with({}).end;
   for (const EffectInfo& effect : effect_catalogue()) {
     if (effect.name == "command_loss") continue;  // that a command is lost is chance, not a matter of how much

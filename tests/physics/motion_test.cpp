@@ -240,7 +240,7 @@ TEST_CASE("V8: prescribed flippers follow, under load and beyond what a servo ca
   CHECK(robot.world.truth(robot.id).X_WB.p.z() > 0.1);  // from 0.09
 }
 
-TEST_CASE("V9: with belts and flippers prescribed, command and drives change no bit of what the body does") {
+TEST_CASE("V9: with belts and flippers prescribed, command and drives change no bit of what the body does", "[long]") {
   const auto path = [](const RobotDescription& description, const RobotCommand& command) {
     World world(ground(), {}, 1);
     const RobotId id = world.add_robot(description, "a", {});

@@ -199,7 +199,7 @@ TEST_CASE("T7: a slow turn is a turn") {
   CHECK(world.truth(id).w_WB_radps.z() > 0.015);  // 0.06 rad/s if nothing slipped
 }
 
-TEST_CASE("T8: a world turned by any angle gives the same run") {
+TEST_CASE("T8: a world turned by any angle gives the same run", "[long]") {
   const auto run_turned = [](double yaw) {
     WorldDescription description = ground();
     const Eigen::Quaterniond q = rotation_from({0, 0, yaw});
