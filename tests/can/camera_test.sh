@@ -37,8 +37,8 @@ wait_until 30 holds drives.log 'nodes on vcan0'
 mkfifo input
 KENAF_ROBOT=$PWD/robot.toml timeout 200 "$bin/camera_reader" Camera <input >out 2>&1 & reader=$!
 exec 3>input
-unplugged_or_gone() { holds out 'unplug it' || ! kill -0 "$reader" 2>/dev/null; }
-wait_until 60 unplugged_or_gone
+told_to_unplug_or_gone() { holds out 'unplug it' || ! kill -0 "$reader" 2>/dev/null; }
+wait_until 60 told_to_unplug_or_gone
 said 1 "^Rear: HRT_E_DEVICE: robot '.*' has no camera 'Rear'; it has: Camera, BirdsEye"
 said 1 "^BirdsEye: HRT_E_DEVICE: camera 'BirdsEye' of robot '.*' has no device: add device"
 said 2 '^rgb 320 x 180, 172800 bytes'

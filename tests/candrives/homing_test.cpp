@@ -10,7 +10,7 @@ using namespace kenaf::candrives;
 
 namespace {
 
-constexpr std::int64_t kTargetReached = 1 << 10, kAttained = 1 << 12, kError = 1 << 13;
+constexpr std::int64_t kReached = 1 << 10, kAttained = 1 << 12, kError = 1 << 13;
 
 canbus::RobotBus with_homing() {
   canbus::RobotBus bus = easy_robot();
@@ -36,7 +36,7 @@ TEST_CASE("homing method 37: here is home, and nothing moves", "[homing]") {
   begin_homing(robot, 3, 37, 12'345);
   robot.wait(1);
   CHECK(robot.value(3, 0x6064) == 12'345);
-  CHECK((robot.value(3, 0x6041) & (kTargetReached | kAttained | kError)) == (kTargetReached | kAttained));
+  CHECK((robot.value(3, 0x6041) & (kReached | kAttained | kError)) == (kReached | kAttained));
   CHECK(robot.plant.state().flipper_rad[0] == 1.0);
   // and then it goes where the position says: 1000 counts further are 0.1 rad
   robot.write(3, 0x6040, 0, 2, 0x0f);
@@ -61,9 +61,9 @@ TEST_CASE("homing methods 17 and 18: onto the switch, slowly back, home where it
   begin_homing(robot, id, method, 30'000);
   robot.wait(1000);                                                     // 0.5 rad/s
   CHECK(std::abs(angle() - start_rad) == Approx(0.475).margin(0.001));  // less v^2/2a = 0.025 rad
-  CHECK((robot.value(id, 0x6041) & (kTargetReached | kAttained)) == 0);
+  CHECK((robot.value(id, 0x6041) & (kReached | kAttained)) == 0);
   robot.wait(3000);
-  CHECK((robot.value(id, 0x6041) & (kTargetReached | kAttained | kError)) == (kTargetReached | kAttained));
+  CHECK((robot.value(id, 0x6041) & (kReached | kAttained | kError)) == (kReached | kAttained));
   // Home, where the position is 30000, is 10 counts before the end, found within a step of 0.5 counts. The motor stands
   // off it by that step and the way to stop from 500 counts/s: 2.5 counts.
   const double home_rad = end_rad > 0 ? end_rad - 0.001 : end_rad + 0.001;
@@ -81,7 +81,7 @@ TEST_CASE("homing ends with an error where the motor is held up, and stops where
     robot.write(3, 0x6040, 0, 2, 0x0f);
     robot.wait(200);
     CHECK(robot.plant.state().flipper_radps[0] == 0);
-    CHECK((robot.value(3, 0x6041) & (kTargetReached | kAttained | kError)) == kTargetReached);
+    CHECK((robot.value(3, 0x6041) & (kReached | kAttained | kError)) == kReached);
   }
   SECTION("held up: 0.1 rad behind its demand") {
     Homing homing;

@@ -14,13 +14,6 @@ namespace {
 constexpr ObjectAddress kStatusword{0x6041, 0}, kName{0x1008, 0}, kControlword{0x6040, 0}, kStore{0x2000, 1};
 constexpr Time kStart = 7s, kPatience = 50ms;
 
-Frame request(std::initializer_list<std::uint8_t> bytes) {
-  return frame_of(0x605, bytes);
-}
-Frame answer(std::initializer_list<std::uint8_t> bytes) {
-  return frame_of(0x585, bytes);
-}
-
 const Frame kSegmentRequest = request({0x60, 0, 0, 0, 0, 0, 0, 0});         // command 3, toggle 0
 const Frame kToggledSegmentRequest = request({0x70, 0, 0, 0, 0, 0, 0, 0});  // toggle 1
 

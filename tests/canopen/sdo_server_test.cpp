@@ -11,13 +11,6 @@ using namespace kenaf::canopen;
 
 namespace {
 
-Frame request(std::initializer_list<std::uint8_t> bytes) {
-  return frame_of(0x605, bytes);
-}
-Frame answer(std::initializer_list<std::uint8_t> bytes) {
-  return frame_of(0x585, bytes);
-}
-
 // A node whose objects are what the test says, and that writes down what is written to it.
 struct Node {
   std::map<ObjectAddress, ObjectBytes> objects;

@@ -9,14 +9,11 @@ using namespace kenaf;
 using namespace kenaf::gap;
 using test::LinearWorld;
 using test::Whole;
+using test::world;
 
 namespace {
 
-const LinearWorld& world() {
-  static const LinearWorld world;  // every test case is a process: only those that use it pay
-  return world;
-}
-constexpr double kLength = 40;
+constexpr double kShift = 40;
 constexpr Eigen::Index kBinsOfManoeuvre = LinearWorld::kBins / 2;
 
 // 0.5 of an effect in the first manoeuvre, `second` of it in the other one.
@@ -29,7 +26,7 @@ Whole two_values(const Whole& effect, double second) {
 }  // namespace
 
 TEST_CASE("What manoeuvres would gain by values of their own is what the common one costs them") {
-  const Whole effect = kLength * world().direction(0);
+  const Whole effect = kShift * world().direction(0);
   const EffectCurves curves = world().curves({effect}, two_values(effect, 0.3));
   const Agreement found = agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0);
   // of two springs a and b that want values 0.2 apart: a b / (a + b) 0.2^2
@@ -43,9 +40,9 @@ TEST_CASE("What manoeuvres would gain by values of their own is what the common 
 }
 
 TEST_CASE("A manoeuvre that does not show an effect has no value of its own for it") {
-  Whole effect = kLength * world().direction(0);
+  Whole effect = kShift * world().direction(0);
   effect.tail(kBinsOfManoeuvre).setZero();
-  const EffectCurves curves = world().curves({effect, kLength * world().direction(1)}, effect / 2);
+  const EffectCurves curves = world().curves({effect, kShift * world().direction(1)}, effect / 2);
   CHECK(agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0).freedom == 0);
   CHECK(p_of_squares(100, 0) == 1);
 }
@@ -59,7 +56,7 @@ TEST_CASE("The chance of a sum of squares, against the tables of chi-squared") {
 
 TEST_CASE("An effect that would need another value in each manoeuvre is not named") {
   std::vector<Whole> effects;
-  for (std::size_t i = 0; i < 4; ++i) effects.push_back(kLength * world().direction(i));
+  for (std::size_t i = 0; i < 4; ++i) effects.push_back(kShift * world().direction(i));
   const Decision one = world().decide(effects, two_values(effects[2], 0.5), {});
   CHECK(one.verdict == Verdict::named);
   CHECK(one.p_agree > 0.5);

@@ -11,13 +11,9 @@ using namespace kenaf;
 using namespace kenaf::gap;
 using test::LinearWorld;
 using test::Whole;
+using test::world;
 
 namespace {
-
-const LinearWorld& world() {
-  static const LinearWorld world;  // every test case is a process: only those that use it pay
-  return world;
-}
 
 Products products(const EffectCurves& curves) {
   return products_of(curves, curves.gap);

@@ -10,13 +10,10 @@ using namespace kenaf;
 using namespace kenaf::gap;
 using test::LinearWorld;
 using test::Whole;
+using test::world;
 
 namespace {
 
-const LinearWorld& world() {
-  static const LinearWorld world;  // every test case is a process: only those that use it pay
-  return world;
-}
 constexpr std::size_t kEffects = 8;
 constexpr double kLength = 40;  // of an effect's shift at the end of its range, in sigma
 

@@ -11,13 +11,9 @@ using namespace kenaf;
 using namespace kenaf::gap;
 using test::LinearWorld;
 using test::Whole;
+using test::world;
 
 namespace {
-
-const LinearWorld& world() {
-  static const LinearWorld world;  // every test case is a process: only those that use it pay
-  return world;
-}
 
 void check_whole(const Folds& folds, std::size_t runs) {
   std::multiset<std::size_t> held;

@@ -131,4 +131,9 @@ class LinearWorld {
   Eigen::MatrixXd cells_;
 };
 
+inline const LinearWorld& world() {
+  static const LinearWorld world;  // every test case is a process: only those that use it pay
+  return world;
+}
+
 }  // namespace kenaf::test

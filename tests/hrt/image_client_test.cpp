@@ -19,7 +19,7 @@
 using namespace kenaf;
 using namespace kenaf::hrt::test;
 using namespace std::chrono_literals;
-using Connection = FakeImageServer::Connection;
+using Client = FakeImageServer::Connection;
 
 namespace {
 
@@ -60,7 +60,7 @@ TEST_CASE("I1 a name is selected, then pictures are asked for one at a time, wit
   std::mutex mutex;
   std::vector<std::string> heard;
   const Bytes8 red = plain_jpeg(64, 48, 200, 0, 0);
-  FakeImageServer server([&](Connection& connection) {
+  FakeImageServer server([&](Client& connection) {
     std::uint64_t number = 0;
     while (const auto kind = connection.request()) {
       {
@@ -97,7 +97,7 @@ TEST_CASE("I1 a name is selected, then pictures are asked for one at a time, wit
 
 TEST_CASE("I2 number, robot time, name and pixels are the server's, the age counts from the request at least") {
   const Bytes8 green = plain_jpeg(64, 48, 0, 180, 0);
-  FakeImageServer server([&](Connection& connection) {
+  FakeImageServer server([&](Client& connection) {
     while (const auto kind = connection.request()) {
       std::this_thread::sleep_for(100ms);  // of which the server says nothing
       const image::FrameNote note{
@@ -127,7 +127,7 @@ TEST_CASE("I2 number, robot time, name and pixels are the server's, the age coun
 TEST_CASE("I2 the next picture is not requested long before it can be there") {
   const Bytes8 red = plain_jpeg(64, 48, 200, 0, 0);
   std::atomic<int> too_soon = 0, pictures = 0;
-  FakeImageServer server([&](Connection& connection) {
+  FakeImageServer server([&](Client& connection) {
     // A camera of 20 Hz that answers when its next picture is there.
     auto due = std::chrono::steady_clock::now();
     std::uint64_t number = 0;
@@ -149,7 +149,7 @@ TEST_CASE("I2 the next picture is not requested long before it can be there") {
 TEST_CASE("I3 a server that knows 'OK' alone is asked so after a second, its pictures are counted here") {
   std::atomic<int> asked = 0, selected = 0;
   const Bytes8 blue = plain_jpeg(64, 48, 0, 0, 180);
-  FakeImageServer server([&](Connection& connection) {
+  FakeImageServer server([&](Client& connection) {
     while (const auto kind = connection.request()) {
       if (*kind == 'O') connection.answer(3, blue), ++asked;
       if (*kind == 'V') ++selected;
@@ -170,7 +170,7 @@ TEST_CASE("I3 a server that knows 'OK' alone is asked so after a second, its pic
 }
 
 TEST_CASE("I3 raw pictures are blue, green, red, in rows of whole 4 bytes") {
-  FakeImageServer server([&](Connection& connection) {
+  FakeImageServer server([&](Client& connection) {
     while (const auto kind = connection.request()) {
       // 1 x 2 pixels: 3 bytes and 1 of padding a row.
       if (*kind == 'O') connection.answer(0, {0, 1, 0, 2, 10, 20, 30, 0, 40, 50, 60, 0});
@@ -187,7 +187,7 @@ TEST_CASE("I3 raw pictures are blue, green, red, in rows of whole 4 bytes") {
 
 TEST_CASE("I3 a picture that a server sends unasked at the begin does not end the asking") {
   const Bytes8 grey = plain_jpeg(64, 48, 90, 90, 90);
-  FakeImageServer server([&](Connection& connection) {
+  FakeImageServer server([&](Client& connection) {
     connection.answer(3, grey);
     while (const auto kind = connection.request())
       if (*kind == 'O') connection.answer(3, grey);
@@ -199,7 +199,7 @@ TEST_CASE("I3 a picture that a server sends unasked at the begin does not end th
 }
 
 TEST_CASE("I4 no such camera: the server's words") {
-  FakeImageServer server([](Connection& connection) {
+  FakeImageServer server([](Client& connection) {
     const std::string words = "robot kenaf has no camera 'Camera'; it has:\nBirdsEye";
     while (const auto kind = connection.request())
       if (*kind == 'J') connection.answer(255, Bytes8(words.begin(), words.end()));
@@ -210,36 +210,36 @@ TEST_CASE("I4 no such camera: the server's words") {
 
 TEST_CASE("I4 whatever else a server does wrong") {
   const Bytes8 jpeg = plain_jpeg(64, 48, 1, 2, 3);
-  const auto misbehave = [&](const std::function<void(Connection&)>& answer, const std::string& words) {
-    FakeImageServer server([&](Connection& connection) {
+  const auto misbehave = [&](const std::function<void(Client&)>& answer, const std::string& words) {
+    FakeImageServer server([&](Client& connection) {
       while (const auto kind = connection.request())
         if (*kind != 'V') answer(connection);
     });
     check_failure(server.address(), HRT_E_LINK, words, 0.3);
   };
   misbehave(
-      [](Connection& c) {
+      [](Client& c) {
         c.send({"\x03\x04\x00\x00\x01", 5});
       },
       "67108865 bytes, which is more than a picture has");
-  misbehave([](Connection& c) { c.send("HTTP/1.1 400 Bad Request\r\n"); }, "type 72, which is no picture's");
-  misbehave([&](Connection& c) { c.answer(3, Bytes8(jpeg.begin(), jpeg.end() - 9)); }, "no whole JPEG");
-  misbehave([&](Connection& c) { c.answer(3, {}); }, "no whole JPEG");
-  misbehave([](Connection& c) { c.answer(0, {0, 9, 0, 9, 1, 2}); }, "raw picture of 6 bytes");
-  misbehave([](Connection&) {}, "says nothing");
+  misbehave([](Client& c) { c.send("HTTP/1.1 400 Bad Request\r\n"); }, "type 72, which is no picture's");
+  misbehave([&](Client& c) { c.answer(3, Bytes8(jpeg.begin(), jpeg.end() - 9)); }, "no whole JPEG");
+  misbehave([&](Client& c) { c.answer(3, {}); }, "no whole JPEG");
+  misbehave([](Client& c) { c.answer(0, {0, 9, 0, 9, 1, 2}); }, "raw picture of 6 bytes");
+  misbehave([](Client&) {}, "says nothing");
   misbehave(
-      [](Connection& c) {
+      [](Client& c) {
         c.send({"\x03\x00\x01\x00\x00\xff\xd8", 7});
       },
       "says nothing more in the middle of a picture");
   // announces all it may and sends a little: memory is for what came
-  misbehave([](Connection& c) { c.send({"\x03\x03\xff\xff\xff\xff\xd8", 7}); }, "says nothing more");
+  misbehave([](Client& c) { c.send({"\x03\x03\xff\xff\xff\xff\xd8", 7}); }, "says nothing more");
 }
 
 TEST_CASE("I4 a server that goes away is named, and asked anew by the next call") {
   std::atomic<bool> serves = false;
   const Bytes8 red = plain_jpeg(64, 48, 200, 0, 0);
-  FakeImageServer server([&](Connection& connection) {
+  FakeImageServer server([&](Client& connection) {
     if (!connection.request() || !serves) return;
     connection.answer(3, noted(red, {.number = 1, .robot = "k", .camera = "c"}));
     while (connection.request()) {
@@ -257,7 +257,7 @@ TEST_CASE("I4 a server that goes away is named, and asked anew by the next call"
 TEST_CASE("I4 nobody there, and no address") {
   std::string gone;
   {
-    const FakeImageServer server([](Connection&) {});
+    const FakeImageServer server([](Client&) {});
     gone = server.address();
   }
   check_failure(gone, HRT_E_LINK, "nobody serves camera pictures at " + gone);

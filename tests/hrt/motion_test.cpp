@@ -17,7 +17,7 @@ using kenaf::hrt::test::PlantSettings;
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kOneDegree = std::numbers::pi / 180;
 
 struct Ride {
   explicit Ride(const PlantSettings& settings, double turn_efficiency = 1)
@@ -122,28 +122,28 @@ TEST_CASE("M3 the heading is held where one track makes 4 % less ground than the
 
 TEST_CASE("M3 a heading that is off at the start is taken back, also when driving backward") {
   for (const double distance_m : {0.5, -0.5}) {
-    Ride ride({.turn_efficiency = 0.6, .yaw_start_rad = 3 * kDegree});
+    Ride ride({.turn_efficiency = 0.6, .yaw_start_rad = 3 * kOneDegree});
     ride.goal_rad = 0;
     CHECK(ride.forward(distance_m).code == HRT_OK);
-    CHECK(std::abs(ride.plant.yaw_rad) < 0.3 * kDegree);
+    CHECK(std::abs(ride.plant.yaw_rad) < 0.3 * kOneDegree);
   }
 }
 
 TEST_CASE("M4 a turn is reached within 0.3 degrees although the tracks slip") {
   for (const double efficiency : {1.0, 0.7, 0.45}) {
     for (const double degrees : {90.0, -90.0, 180.0, 360.0, -720.0, 5.0}) {
-      Ride ride({.turn_efficiency = efficiency, .yaw_start_rad = 170 * kDegree});
-      const MotionStep end = ride.turn(degrees * kDegree);
+      Ride ride({.turn_efficiency = efficiency, .yaw_start_rad = 170 * kOneDegree});
+      const MotionStep end = ride.turn(degrees * kOneDegree);
       CAPTURE(efficiency, degrees, end.text);
       CHECK(end.code == HRT_OK);
-      CHECK(std::abs(ride.plant.yaw_rad / kDegree - 170 - degrees) <= 0.3);
+      CHECK(std::abs(ride.plant.yaw_rad / kOneDegree - 170 - degrees) <= 0.3);
     }
   }
 }
 
 TEST_CASE("M4 positive is to the left: the right track drives forward") {
   Ride ride({});
-  TurnInPlace turn(ride.limits, 90 * kDegree, ride.now);
+  TurnInPlace turn(ride.limits, 90 * kOneDegree, ride.now);
   (void)turn.step(ride.now);
   DriveCommand nothing;
   const MotionStep step = turn.step(ride.estimator.update(ride.plant.advance(nothing)));
@@ -154,11 +154,11 @@ TEST_CASE("M4 positive is to the left: the right track drives forward") {
 TEST_CASE("M5 without a posture sensor a turn is the encoders' times turn_efficiency") {
   PlantSettings settings{.turn_efficiency = 0.6, .has_posture = false};
   Ride calibrated(settings, 0.6);
-  CHECK(calibrated.turn(90 * kDegree).code == HRT_OK);
-  CHECK(std::abs(calibrated.plant.yaw_rad / kDegree - 90) <= 0.3);
+  CHECK(calibrated.turn(90 * kOneDegree).code == HRT_OK);
+  CHECK(std::abs(calibrated.plant.yaw_rad / kOneDegree - 90) <= 0.3);
   Ride uncalibrated(settings, 1);
-  CHECK(uncalibrated.turn(90 * kDegree).code == HRT_OK);
-  CHECK(uncalibrated.plant.yaw_rad / kDegree == Approx(0.6 * 90).margin(0.3));
+  CHECK(uncalibrated.turn(90 * kOneDegree).code == HRT_OK);
+  CHECK(uncalibrated.plant.yaw_rad / kOneDegree == Approx(0.6 * 90).margin(0.3));
 }
 
 TEST_CASE("M6 blocked tracks are stuck after stuck_time_s of robot time") {
@@ -168,13 +168,13 @@ TEST_CASE("M6 blocked tracks are stuck after stuck_time_s of robot time") {
     CHECK(forward.code == HRT_E_STUCK);
     CHECK(forward.text.find("0 mm of 100 mm") != std::string::npos);
     CHECK(ride.duration_s == Approx(1.0).margin(2 * period_s));
-    CHECK(ride.turn(90 * kDegree).code == HRT_E_STUCK);
+    CHECK(ride.turn(90 * kOneDegree).code == HRT_E_STUCK);
   }
 }
 
 TEST_CASE("M6 noise of the posture sensor is no progress") {
-  Ride ride({.yaw_noise_rad = 0.1 * kDegree, .tracks_blocked = true});
-  CHECK(ride.turn(90 * kDegree).code == HRT_E_STUCK);
+  Ride ride({.yaw_noise_rad = 0.1 * kOneDegree, .tracks_blocked = true});
+  CHECK(ride.turn(90 * kOneDegree).code == HRT_E_STUCK);
   CHECK(ride.duration_s < 3);
 }
 
@@ -199,19 +199,19 @@ TEST_CASE("M6 tracks that need 10 mm/s to get going are pushed until they do") {
   Ride ride({.dead_band_mps = 0.01});
   CHECK(ride.forward(0.1).code == HRT_OK);
   CHECK(std::abs(ride.plant.x_m - 0.1) <= 0.001);
-  CHECK(ride.turn(45 * kDegree).code == HRT_OK);
-  CHECK(std::abs(ride.plant.yaw_rad / kDegree - 45) <= 0.3);
+  CHECK(ride.turn(45 * kOneDegree).code == HRT_OK);
+  CHECK(std::abs(ride.plant.yaw_rad / kOneDegree - 45) <= 0.3);
 }
 
 TEST_CASE("M7 a square of 100 mm closes within 10 mm and 2 degrees: slip, noise, off-centre turns, unequal tracks") {
   Ride ride({.turn_efficiency = 0.55,
              .ground_per_belt = {0.98, 0.96},
              .turn_centre_m = 0.02,
-             .yaw_noise_rad = 0.1 * kDegree});
+             .yaw_noise_rad = 0.1 * kOneDegree});
   for (int side = 0; side < 4; ++side) {
     REQUIRE(ride.forward(0.1).code == HRT_OK);
-    REQUIRE(ride.turn(90 * kDegree).code == HRT_OK);
+    REQUIRE(ride.turn(90 * kOneDegree).code == HRT_OK);
   }
   CHECK(std::hypot(ride.plant.x_m, ride.plant.y_m) < 0.003);
-  CHECK(std::abs(ride.plant.yaw_rad / kDegree - 360) < 0.5);
+  CHECK(std::abs(ride.plant.yaw_rad / kOneDegree - 360) < 0.5);
 }

@@ -10,7 +10,7 @@ using namespace kenaf::teleop;
 
 namespace {
 
-Status some_status() {
+Status status_to_show() {
   Status status{};
   status.session = 1;
   status.sequence = 1;
@@ -27,7 +27,7 @@ Status some_status() {
 }
 
 struct Scene {
-  Status status = some_status();
+  Status status = status_to_show();
   LinkHealth health{};
   Desk desk{};
   Wish wish = desk.wish(10);
@@ -108,7 +108,7 @@ TEST_CASE("V3 the posture is drawn as it is") {
   // column 19; 30 mm a column, 60 mm a row. The front pivot at x = 225 mm, z = -25 mm is column 19 + 8 = 27 (7.5 rounds
   // up), row 4; the flipper's tip, 1.3 * 145 mm above it, is at 163 mm, row 4 - 3 = 1; the rear one reaches to
   // -225 - 188 mm, column 19 - 14 = 5.
-  Status status = some_status();
+  Status status = status_to_show();
   status.posture_deg = {};
   status.flipper_deg = {90, 90, 0, 0};
   Canvas canvas;

@@ -35,7 +35,7 @@ TriangleMesh mesh_of(const std::string& shape, const fs::path& folder = "", cons
   return world.meshes[0];
 }
 
-std::string error_of(const std::string& shape, const fs::path& folder = "") {
+std::string error_of_shape(const std::string& shape, const fs::path& folder = "") {
   std::vector<std::string> unsupported;
   try {
     parse_world(world_of(shape), "t.sdf", folder, unsupported);
@@ -236,7 +236,7 @@ TEST_CASE("U2: a Collada mesh: unit, nodes, submesh") {
   CHECK(bounds(b).min().isApprox(Eigen::Vector3d(0, 5, 0), 1e-6));
   const TriangleMesh centred = mesh_of(only_b + "<center>true</center></submesh></mesh>", folder.path());
   CHECK(bounds(centred).min().isApprox(Eigen::Vector3d(-0.005, -0.005, 0), 1e-6));
-  CHECK(error_of("<mesh><uri>cm.dae</uri><submesh><name>c</name></submesh></mesh>", folder.path())
+  CHECK(error_of_shape("<mesh><uri>cm.dae</uri><submesh><name>c</name></submesh></mesh>", folder.path())
             .find("t.sdf:3: \"cm.dae\" has no submesh \"c\"") == 0);
 }
 
@@ -289,7 +289,7 @@ TEST_CASE("U4: nothing outside of the world's folder is read") {
   write_file(outer / "meshes/mine.obj", "mtllib ../secret.obj\n" + tetrahedron_obj());
   const fs::path folder = outer.path() / "meshes";
   fs::create_symlink(outer.path() / "secret.obj", folder / "link.obj");
-  const auto error = [&](const std::string& uri) { return error_of("<mesh><uri>" + uri + "</uri></mesh>", folder); };
+  const auto error = [&](const std::string& uri) { return error_of_shape("<mesh><uri>" + uri + "</uri></mesh>", folder); };
   for (const std::string& uri : {std::string("../secret.obj"), std::string("file://../secret.obj"),
                                  (outer.path() / "secret.obj").string(), std::string("link.obj")}) {
     INFO(uri);
@@ -299,7 +299,7 @@ TEST_CASE("U4: nothing outside of the world's folder is read") {
   CHECK(error("gone.obj").find("t.sdf:3: \"gone.obj\": there is no such file") == 0);
   CHECK(error(".").find("must be a .stl, .obj or .dae file") != std::string::npos);
   CHECK(mesh_of("<mesh><uri>mine.obj</uri></mesh>", folder).triangles.size() == 4);  // without its materials
-  CHECK(error_of("<mesh><uri>mine.obj</uri></mesh>", "").find("has no folder") != std::string::npos);
+  CHECK(error_of_shape("<mesh><uri>mine.obj</uri></mesh>", "").find("has no folder") != std::string::npos);
 }
 
 TEST_CASE("U5: sizes that cannot be are refused with their line") {
@@ -312,7 +312,7 @@ TEST_CASE("U5: sizes that cannot be are refused with their line") {
         "<polyline><point>0 0</point><point>1 1</point><point>1 0</point><point>0 1</point>"
         "<height>1</height></polyline>"}) {
     INFO(shape);
-    CHECK(error_of(shape).find("t.sdf:3: ") == 0);
+    CHECK(error_of_shape(shape).find("t.sdf:3: ") == 0);
   }
 }
 
@@ -320,11 +320,11 @@ TEST_CASE("U5: files that are not what they should be are refused with the line 
   const TemporaryFolder folder;
   const auto mesh_error = [&](const std::string& name, const std::string& bytes) {
     write_file(folder / name, bytes);
-    return error_of("<mesh><uri>" + name + "</uri></mesh>", folder.path());
+    return error_of_shape("<mesh><uri>" + name + "</uri></mesh>", folder.path());
   };
   const auto map_error = [&](const std::string& bytes, const std::string& size = "1 1 1") {
     write_file(folder / "a.png", bytes);
-    return error_of("<heightmap><uri>a.png</uri><size>" + size + "</size></heightmap>", folder.path());
+    return error_of_shape("<heightmap><uri>a.png</uri><size>" + size + "</size></heightmap>", folder.path());
   };
   for (const std::string& error :
        {mesh_error("a.stl", ""), mesh_error("a.stl", "no mesh"), mesh_error("a.obj", "v 0 0 0\n"),
@@ -342,7 +342,7 @@ TEST_CASE("U5: what would eat memory or stack is refused first") {
   const TemporaryFolder folder;
   const auto error = [&](const std::string& name, const std::string& bytes) {
     write_file(folder / name, bytes);
-    return error_of("<mesh><uri>" + name + "</uri></mesh>", folder.path());
+    return error_of_shape("<mesh><uri>" + name + "</uri></mesh>", folder.path());
   };
   CHECK(error("large.stl", std::string((16U << 20U) + 1, 'x')).find("is too large") != std::string::npos);
   const std::string instances =
@@ -364,5 +364,5 @@ TEST_CASE("U5: what would eat memory or stack is refused first") {
   std::string png = kGrey8;
   png.replace(16, 8, std::string("\0\0\xea\x60\0\0\xea\x60", 8));
   write_file(folder / "a.png", png);
-  CHECK(error_of("<heightmap><uri>a.png</uri></heightmap>", folder.path()).find("t.sdf:3: ") == 0);
+  CHECK(error_of_shape("<heightmap><uri>a.png</uri></heightmap>", folder.path()).find("t.sdf:3: ") == 0);
 }

@@ -5,16 +5,11 @@
 #include <vector>
 
 #include "protocol/relay_datagram.hpp"
+#include "tests/protocol/encoded.hpp"
 
 using namespace kenaf::relay;
 
 namespace {
-
-std::vector<std::byte> encoded(const Datagram& datagram) {
-  std::vector<std::byte> out(kMaxDatagramBytes);
-  out.resize(encode(datagram, out));
-  return out;
-}
 
 std::vector<std::byte> with(std::vector<std::byte> bytes, std::size_t offset, int value) {
   bytes.at(offset) = static_cast<std::byte>(value);
@@ -30,12 +25,6 @@ DecodeError error_of(const std::vector<std::byte>& bytes) {
     CHECK(std::get<Ping>(out).id == 88);
   }
   return error;
-}
-
-State empty_state() {
-  State state{};
-  state.session = 1;
-  return state;
 }
 
 const std::vector<Datagram> kOneOfEach{Hello{1, 0.01, 0.5, true, true},

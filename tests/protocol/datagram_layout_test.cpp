@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "protocol/relay_datagram.hpp"
+#include "tests/protocol/encoded.hpp"
 
 using namespace kenaf::relay;
 
@@ -20,12 +21,6 @@ std::vector<std::byte> bytes_from_hex(std::string_view hex) {
     ++i;
   }
   return bytes;
-}
-
-std::vector<std::byte> encoded(const Datagram& datagram) {
-  std::vector<std::byte> out(kMaxDatagramBytes);
-  out.resize(encode(datagram, out));
-  return out;
 }
 
 // Encodes to exactly `hex`, and `hex` decodes to what encodes to it again.

@@ -8,6 +8,7 @@
 
 #include "protocol/relay_datagram.hpp"
 #include "protocol/usarsim_message.hpp"
+#include "tests/protocol/encoded.hpp"
 
 namespace {
 std::atomic<std::size_t> allocations{0};
@@ -36,12 +37,6 @@ std::atomic<std::size_t> allocations{0};
 
 namespace {
 
-kenaf::relay::State empty_state() {
-  kenaf::relay::State state{};
-  state.session = 1;
-  return state;
-}
-
 template <class Work>
 std::size_t allocations_in(Work work) {
   for (int i = 0; i < 10; ++i) work();  // buffers reach their size
@@ -61,7 +56,7 @@ TEST_CASE("Encoding and decoding a datagram allocates nothing") {
   std::array<std::byte, kMaxDatagramBytes> bytes;
   Datagram out = Bye{1};
   CHECK(allocations_in([&] {
-          for (const Datagram& d : {Datagram{empty_state()}, Datagram{Command{1, 1, 1, {}, 0, {}}}}) {
+          for (const Datagram& d : {Datagram{kenaf::relay::empty_state()}, Datagram{Command{1, 1, 1, {}, 0, {}}}}) {
             if (decode(std::span(bytes).first(encode(d, bytes)), out) != DecodeError::none) std::abort();
           }
         }) == 0);

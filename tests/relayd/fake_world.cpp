@@ -91,11 +91,10 @@ void FakeWorld::run() {
 // Without lock step a frame goes out every 2 ms of wall-clock time, whatever its robot time. Lock step waits for ever,
 // so that no test depends on how fast the machine is.
 void FakeWorld::serve(int fd) {
-  using Clock = std::chrono::steady_clock;
   usarsim::LineSplitter splitter;
   std::array<char, 4096> bytes;
   send_text(fd, "NFO {Gametype BotDeathMatch} {Level Fake} {TimeLimit 20}\r\n");
-  auto sent = Clock::now();
+  auto sent = std::chrono::steady_clock::now();
   while (!stopping_) {
     pollfd reading{fd, POLLIN, 0};
     if (::poll(&reading, 1, 1) > 0) {
@@ -109,8 +108,8 @@ void FakeWorld::serve(int fd) {
         send_frame(fd);
       }
     }
-    if (!has_robot_ || lockstep_ || Clock::now() - sent < std::chrono::milliseconds(2)) continue;
-    sent = Clock::now();
+    if (!has_robot_ || lockstep_ || std::chrono::steady_clock::now() - sent < std::chrono::milliseconds(2)) continue;
+    sent = std::chrono::steady_clock::now();
     step();
     send_frame(fd);
   }

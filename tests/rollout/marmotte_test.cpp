@@ -9,22 +9,14 @@
 #include "protocol/frames.hpp"
 #include "rollout/roll_out.hpp"
 #include "runs/dataset.hpp"
+#include "tests/rollout/exact_runs.hpp"
 
 using namespace kenaf;
 using namespace kenaf::rollout;
+using test::exact;
+using test::flat;
 
 namespace {
-
-physics::WorldDescription flat() {
-  std::vector<std::string> unsupported;
-  return physics::load_world("flat", unsupported);
-}
-
-RollOutOptions exact() {
-  RollOutOptions options;
-  options.noise_scale = 0;
-  return options;
-}
 
 // Root mean square of the simulated column less the measured one, where that was measured, in the first `until_s`.
 double residual(const runs::Run& real, const runs::Run& simulated, const char* column, double until_s,

@@ -8,26 +8,15 @@
 
 #include "protocol/frames.hpp"
 #include "rollout/roll_out.hpp"
+#include "tests/rollout/exact_runs.hpp"
 
 using namespace kenaf;
 using namespace kenaf::rollout;
 using Catch::Contains;
+using test::exact;
+using test::flat;
 
 namespace {
-
-const physics::WorldDescription& flat() {
-  static const physics::WorldDescription world = [] {
-    std::vector<std::string> unsupported;
-    return physics::load_world("flat", unsupported);
-  }();
-  return world;
-}
-
-RollOutOptions exact() {
-  RollOutOptions options;
-  options.noise_scale = 0;
-  return options;
-}
 
 Manoeuvre drive(std::initializer_list<std::pair<double, double>> speeds_mps, double each_s) {
   Manoeuvre manoeuvre;

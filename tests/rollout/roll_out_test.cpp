@@ -6,25 +6,15 @@
 #include <cmath>
 #include <thread>
 
+#include "tests/rollout/exact_runs.hpp"
+
 using namespace kenaf;
 using namespace kenaf::rollout;
 using Catch::Contains;
+using test::exact;
+using test::flat;
 
 namespace {
-
-const physics::WorldDescription& flat() {
-  static const physics::WorldDescription world = [] {
-    std::vector<std::string> unsupported;
-    return physics::load_world("flat", unsupported);
-  }();
-  return world;
-}
-
-RollOutOptions exact() {
-  RollOutOptions options;
-  options.noise_scale = 0;
-  return options;
-}
 
 Manoeuvre straight(double speed_mps, double time_s) {
   Manoeuvre manoeuvre;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-std::string refusal_of(std::string_view text) {
+std::string refusal_of_run(std::string_view text) {
   try {
     parse_run(text, "run.csv");
   } catch (const RunFileError& error) {
@@ -53,22 +53,22 @@ TEST_CASE("A last line without its end is a row, a header alone is a run without
 }
 
 TEST_CASE("What is refused of a run, with its line and column") {
-  CHECK_THAT(refusal_of(""), Catch::StartsWith("run.csv:1:1: the file is empty"));
-  CHECK_THAT(refusal_of("x_m,y_m\n"), Catch::StartsWith("run.csv:1:1: no column t_s"));
-  CHECK_THAT(refusal_of("t_s,x_m,x_m\n"), Catch::StartsWith("run.csv:1:9: the column 'x_m' is named twice"));
-  CHECK_THAT(refusal_of("t_s,,x_m\n"), Catch::StartsWith("run.csv:1:5: a column without a name"));
-  CHECK_THAT(refusal_of("t_s,x_m\n0,1\n0.1,n.a.\n"), Catch::StartsWith("run.csv:3:5: 'n.a.' in column 'x_m'"));
-  CHECK_THAT(refusal_of("t_s,x_m\n0, nan\n"), Catch::StartsWith("run.csv:2:4: 'nan'"));
-  CHECK_THAT(refusal_of("t_s,x_m\n0,inf\n"), Catch::StartsWith("run.csv:2:3: 'inf'"));
-  CHECK_THAT(refusal_of("t_s,x_m\n0,1e999\n"), Catch::StartsWith("run.csv:2:3:"));
-  CHECK_THAT(refusal_of("t_s,x_m\n0,1,2\n"), Catch::StartsWith("run.csv:2:5: the row has 3 cells"));
-  CHECK_THAT(refusal_of("t_s,x_m\n0\n"), Catch::StartsWith("run.csv:2:2: the row has 1 cells"));
-  CHECK_THAT(refusal_of("t_s,x_m\n0,1\n\n1,2\n"), Catch::StartsWith("run.csv:3:1: the row has 1 cells"));
-  CHECK_THAT(refusal_of("x_m,t_s\n1,\n"), Catch::StartsWith("run.csv:2:3: the row has no time"));
-  CHECK_THAT(refusal_of("x_m,t_s\n1,0.5\n1,0.5\n"), Catch::StartsWith("run.csv:3:3: t_s does not grow"));
-  CHECK_THAT(refusal_of("t_s\n2\n1\n"), Catch::StartsWith("run.csv:3:1: t_s does not grow"));
+  CHECK_THAT(refusal_of_run(""), Catch::StartsWith("run.csv:1:1: the file is empty"));
+  CHECK_THAT(refusal_of_run("x_m,y_m\n"), Catch::StartsWith("run.csv:1:1: no column t_s"));
+  CHECK_THAT(refusal_of_run("t_s,x_m,x_m\n"), Catch::StartsWith("run.csv:1:9: the column 'x_m' is named twice"));
+  CHECK_THAT(refusal_of_run("t_s,,x_m\n"), Catch::StartsWith("run.csv:1:5: a column without a name"));
+  CHECK_THAT(refusal_of_run("t_s,x_m\n0,1\n0.1,n.a.\n"), Catch::StartsWith("run.csv:3:5: 'n.a.' in column 'x_m'"));
+  CHECK_THAT(refusal_of_run("t_s,x_m\n0, nan\n"), Catch::StartsWith("run.csv:2:4: 'nan'"));
+  CHECK_THAT(refusal_of_run("t_s,x_m\n0,inf\n"), Catch::StartsWith("run.csv:2:3: 'inf'"));
+  CHECK_THAT(refusal_of_run("t_s,x_m\n0,1e999\n"), Catch::StartsWith("run.csv:2:3:"));
+  CHECK_THAT(refusal_of_run("t_s,x_m\n0,1,2\n"), Catch::StartsWith("run.csv:2:5: the row has 3 cells"));
+  CHECK_THAT(refusal_of_run("t_s,x_m\n0\n"), Catch::StartsWith("run.csv:2:2: the row has 1 cells"));
+  CHECK_THAT(refusal_of_run("t_s,x_m\n0,1\n\n1,2\n"), Catch::StartsWith("run.csv:3:1: the row has 1 cells"));
+  CHECK_THAT(refusal_of_run("x_m,t_s\n1,\n"), Catch::StartsWith("run.csv:2:3: the row has no time"));
+  CHECK_THAT(refusal_of_run("x_m,t_s\n1,0.5\n1,0.5\n"), Catch::StartsWith("run.csv:3:3: t_s does not grow"));
+  CHECK_THAT(refusal_of_run("t_s\n2\n1\n"), Catch::StartsWith("run.csv:3:1: t_s does not grow"));
   // A decimal comma makes one cell too many, and that is what is said.
-  CHECK_THAT(refusal_of("t_s,x_m\n0,0,5\n"), Catch::Contains("3 cells"));
+  CHECK_THAT(refusal_of_run("t_s,x_m\n0,0,5\n"), Catch::Contains("3 cells"));
 }
 
 TEST_CASE("A file that is not there or cannot be read is named") {
