@@ -59,7 +59,7 @@ function(kenaf_precompile name)
   endif()
 endfunction()
 
-# kenaf_compile_together(NAME): the files of a folder are compiled as one (those of a test eight at a time), so what is a file's alone (in an unnamed namespace)
+# kenaf_compile_together(NAME): the files of a folder are compiled as one, so what is a file's alone (in an unnamed namespace)
 # has a name that no other file of the folder has. Each names what it includes all the same: users compile each alone.
 function(kenaf_compile_together name)
   if(NOT KENAF_COMPILE_TOGETHER)
@@ -147,7 +147,7 @@ function(kenaf_test name)
   if(KENAF_PRECOMPILE_HEADERS)
     target_precompile_headers(${name} REUSE_FROM kenaf_test_headers)
   endif()
-  if(KENAF_COMPILE_TOGETHER)
+  if(KENAF_COMPILE_TOGETHER)  # a folder of tests as one would leave the other core without work
     set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
   endif()
   if(NOT KENAF_SANITIZE)

@@ -8,13 +8,14 @@
 # keeps the standards' rules, and fills less than half of 500 kbit/s.
 set -uo pipefail
 here=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
+. "$here/waiting.sh"
 with_vcan=$1 bin=$2
 work=$(mktemp -d)
 trap 'kill $(jobs -p) 2>/dev/null; rm -rf "$work"' EXIT
 fail() { echo "square_test: $*" >&2; exit 1; }
 
 "$bin/kenaf-relayd" --embedded --view off --cameras off --listen 127.0.0.1:0 --port-file "$work/port" >"$work/relay.log" 2>&1 &
-for _ in $(seq 200); do [ -s "$work/port" ] && break; sleep 0.1; done
+wait_until 20 [ -s "$work/port" ]
 KENAF_RELAY="127.0.0.1:$(cat "$work/port")" KENAF_RECORD="$work/sim.csv" "$bin/square_sim" || fail "1: over libkenaf_sim"
 
 # candump writes each frame on its own, which into a folder of this machine's costs an emulated one more than the frame does.
