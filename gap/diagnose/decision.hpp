@@ -21,6 +21,7 @@ enum class Doubt {
   disagreement,  // manoeuvres want different values
   end_of_range,  // a value stands for something that its effect cannot do
   trifle,        // one of three effects or more accounts for too little
+  not_held_out,  // on runs held out of the fit too little of the gap is gone; found after decide()
 };
 
 struct DecisionSettings {

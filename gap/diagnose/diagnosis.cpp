@@ -156,12 +156,18 @@ class Diagnoser {
           hold_out(d_.curves, d_.floor, best, by_manoeuvre, floor, options_.seed, [&](const auto& places_of_run) {
             return by_curves(d_.curves, best, places_of_run);
           }).shrink;
+    if (!is_borne_out(held)) doubt(Doubt::not_held_out);
     d_.where_left = places(held.left);
     const std::vector<Interval> values = value_intervals(d_.curves, best, share, d_.decision.inflation, options_.seed);
     for (std::size_t i = 0; i < best.places.size(); ++i) {
       const double without = best.places.size() == 1 ? nominal_left : left_without(d_.curves, best, i);
       d_.best.push_back(evidence(best.places[i], values[i], without - best.left, held.shrink));
     }
+  }
+
+  void doubt(Doubt why) {
+    d_.decision.doubts.push_back(why);
+    d_.decision.verdict = Verdict::unknown;
   }
 
   std::vector<double> rms_si(const std::vector<VectorXd>& differences) const {

@@ -13,6 +13,7 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kMostFolds = 5, kResamplings = 400;
 constexpr double kTwoSided95 = 1.96;
+constexpr double kBorneOut = 0.5;
 
 double quantile(std::vector<double>& values, double share) {
   std::ranges::sort(values);
@@ -66,6 +67,10 @@ Folds folds_by_manoeuvre(const Observations& observations) {
 
 double shrink(double before, double after, double floor) {
   return before > floor ? 1 - (after - floor) / (before - floor) : 0;
+}
+
+bool is_borne_out(const HeldOut& held) {
+  return held.before <= held.floor || held.shrink.value >= kBorneOut;
 }
 
 Refit::Refit(const EffectCurves& curves, const Model& model)

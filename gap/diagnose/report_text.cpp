@@ -87,6 +87,9 @@ std::vector<std::string> doubts_in_words(const Decision& decision) {
       case Doubt::trifle:
         words.push_back("of so many effects one accounts for too little");
         break;
+      case Doubt::not_held_out:
+        words.push_back("on runs held out too little of the gap is gone");
+        break;
     }
   return words;
 }

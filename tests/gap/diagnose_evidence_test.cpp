@@ -81,7 +81,22 @@ TEST_CASE("The true effect takes all of a gap away on runs it was not fitted to,
     // what a fit to noise takes away of other runs is less than nothing
     const HeldOut wrong = held_out(curves, world().fitted(curves, {1}));
     CHECK(wrong.shrink.value == Approx(0).margin(0.02));
+    CHECK(is_borne_out(right));
+    CHECK(!is_borne_out(wrong));
   }
+}
+
+TEST_CASE("A model is borne out by half of the gap, gone on runs held out; where there is none, by nothing") {
+  // effects of 48 sigma, 48 / sqrt(192) = 3.46 floors rms, and no noise: a share s of it leaves (1 - s) 3.46 of 3.46
+  // floors, and of what is beyond the one floor s * 3.46 / 2.46 is gone: half of it for s = 0.355
+  const Whole whole = 48 * world().direction(0);
+  for (const double share : {0.30, 0.40}) {
+    // the effect can do no more: its range ends at 1
+    const EffectCurves curves = world().curves({share * whole}, whole);
+    CHECK(is_borne_out(held_out(curves, world().fitted(curves, {0}))) == (share > 0.355));
+  }
+  const EffectCurves nothing = world().curves({whole}, 1e-3 * whole);
+  CHECK(is_borne_out(held_out(nothing, world().fitted(nothing, {0}))));
 }
 
 TEST_CASE("A value that is held out is fitted without the runs it is for") {
