@@ -11,6 +11,10 @@ constexpr double kSpread[] = {0.25, 1};
 
 constexpr double kRoughReach = 2;
 
+// Times the length that a straight line through the inner one of two points has at the outer one.
+constexpr double kBent = 2;
+constexpr int kHalvings = 4;
+
 std::size_t neutral_point(const EffectCurve& curve) {
   return static_cast<std::size_t>(std::ranges::find(curve.points, -1, &CurvePoint::column) - curve.points.begin());
 }
@@ -28,8 +32,8 @@ bool applies(const physics::EffectInfo& effect, const Observations& observations
   return true;
 }
 
-// A straight line between an exact point and a rough one near it would lead anywhere. But the ends of a curve stay: without
-// them no fit could go beyond the exact point.
+// A straight line between an exact point and a rough one near it would lead anywhere. But the ends of a curve stay:
+// without them no fit could go beyond the exact point.
 void forget_rough_points(EffectCurve& curve, double exact_value) {
   const double neutral = curve.points[neutral_point(curve)].value, reach = kRoughReach * (exact_value - neutral);
   const double first = curve.points.front().value, last = curve.points.back().value;
@@ -38,6 +42,27 @@ void forget_rough_points(EffectCurve& curve, double exact_value) {
     const double from_neutral = point.value - neutral;
     return !point.exact && from_neutral * reach > 0 && std::abs(from_neutral) < std::abs(reach);
   });
+}
+
+double length_at(const EffectCurves& curves, int column) {
+  double squares = 0;
+  for (const Eigen::MatrixXd& shift : curves.shifts) squares += shift.col(column).squaredNorm();
+  return std::sqrt(squares);
+}
+
+// Half way between neighbours to one side of neutral between which a bent curve becomes longer than `length`.
+void add_halves(const EffectCurves& curves, std::size_t curve, double length, std::vector<NewPoint>& halves) {
+  const std::vector<CurvePoint>& points = curves.curves[curve].points;
+  const double neutral = points[neutral_point(curves.curves[curve])].value;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const bool outward = points[i].value > neutral;
+    const CurvePoint &inner = points[outward ? i - 1 : i], &outer = points[outward ? i : i - 1];
+    if (inner.column < 0 || outer.column < 0) continue;
+    const double inner_length = length_at(curves, inner.column), outer_length = length_at(curves, outer.column);
+    const double straight = inner_length * (outer.value - neutral) / (inner.value - neutral);
+    if (inner_length < length && outer_length > std::max(length, kBent * straight))
+      halves.push_back({curve, (inner.value + outer.value) / 2});
+  }
 }
 
 }  // namespace
@@ -97,9 +122,18 @@ void insert_points(EffectCurves& curves, std::span<const NewPoint> points, const
       *place = added;
     else
       curve.points.insert(place, added);
-    double length = 0;
-    for (const Eigen::MatrixXd& shift : curves.shifts) length += shift.col(added.column).squaredNorm();
-    curve.visible = std::max(curve.visible, std::sqrt(length));
+    curve.visible = std::max(curve.visible, length_at(curves, added.column));
+  }
+}
+
+void follow_bends(EffectCurves& curves, const std::function<void(std::span<const NewPoint>)>& simulate) {
+  double gap = 0;
+  for (const Eigen::VectorXd& run : curves.gap) gap += run.squaredNorm();
+  for (int i = 0; i < kHalvings; ++i) {
+    std::vector<NewPoint> halves;
+    for (std::size_t c = 0; c < curves.curves.size(); ++c) add_halves(curves, c, std::sqrt(gap), halves);
+    if (halves.empty()) return;
+    simulate(halves);
   }
 }
 
@@ -117,6 +151,8 @@ EffectCurves scan_effects(std::vector<EffectCurve> candidates, const std::vector
         if (end != neutral) points.push_back({c, neutral + part * (end - neutral)});
   }
   add_points(curves, points, Fidelity::coarse, predictor);
+  follow_bends(curves,
+               [&](std::span<const NewPoint> halves) { add_points(curves, halves, Fidelity::coarse, predictor); });
   return curves;
 }
 

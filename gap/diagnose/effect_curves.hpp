@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,7 +46,7 @@ void set_whiteners(EffectCurves& curves, std::vector<Whitener> whiteners);
 // without, in a world with obstacles or without. What is random (command_loss) is not among them.
 std::vector<EffectCurve> candidate_curves(const Observations& observations, std::span<const std::string> without);
 
-// Simulates points spread over each candidate's range, denser near neutral; coarse.
+// Simulates points spread over each candidate's range, denser near neutral, and follows bends; coarse.
 EffectCurves scan_effects(std::vector<EffectCurve> candidates, const std::vector<Eigen::VectorXd>& residuals,
                           const NoiseFloor& floor, Predictor& predictor);
 
@@ -59,6 +60,11 @@ void add_points(EffectCurves& curves, std::span<const NewPoint> points, Fidelity
 // The same where the shifts of each point are known already.
 void insert_points(EffectCurves& curves, std::span<const NewPoint> points, const std::vector<Shift>& shifts,
                    Fidelity fidelity);
+
+// A curve that moves little up to a value and much beyond it (drives that stall) is halved, up to four times, where it
+// becomes as long as the gap: between points that are far apart a straight line hides where it goes. `simulate` adds
+// points to these curves.
+void follow_bends(EffectCurves& curves, const std::function<void(std::span<const NewPoint>)>& simulate);
 
 // Effects at their values, on top of the nominal ones.
 Variation varied(const EffectCurves& curves, std::span<const NewPoint> effects, const Predictor& predictor);
