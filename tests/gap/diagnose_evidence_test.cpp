@@ -86,7 +86,7 @@ TEST_CASE("The true effect takes all of a gap away on runs it was not fitted to,
   }
 }
 
-TEST_CASE("A model is borne out by half of the gap, gone on runs held out; where there is none, by nothing") {
+TEST_CASE("A model is borne out where half of the gap is gone on runs held out, or where there is none") {
   // effects of 48 sigma, 48 / sqrt(192) = 3.46 floors rms, and no noise: a share s of it leaves (1 - s) 3.46 of 3.46
   // floors, and of what is beyond the one floor s * 3.46 / 2.46 is gone: half of it for s = 0.355
   const Whole whole = 48 * world().direction(0);
