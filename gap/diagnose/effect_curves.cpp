@@ -80,6 +80,12 @@ std::vector<EffectCurve> candidate_curves(const Observations& observations, std:
   return curves;
 }
 
+double squared_length(const Whitened& runs) {
+  double sum = 0;
+  for (const Eigen::VectorXd& run : runs) sum += run.squaredNorm();
+  return sum;
+}
+
 void set_whiteners(EffectCurves& curves, std::vector<Whitener> whiteners) {
   curves.whiteners = std::move(whiteners);
   for (std::size_t r = 0; r < curves.residual.size(); ++r) {
@@ -127,11 +133,10 @@ void insert_points(EffectCurves& curves, std::span<const NewPoint> points, const
 }
 
 void follow_bends(EffectCurves& curves, const std::function<void(std::span<const NewPoint>)>& simulate) {
-  double gap = 0;
-  for (const Eigen::VectorXd& run : curves.gap) gap += run.squaredNorm();
+  const double gap = std::sqrt(squared_length(curves.gap));
   for (int i = 0; i < kHalvings; ++i) {
     std::vector<NewPoint> halves;
-    for (std::size_t c = 0; c < curves.curves.size(); ++c) add_halves(curves, c, std::sqrt(gap), halves);
+    for (std::size_t c = 0; c < curves.curves.size(); ++c) add_halves(curves, c, gap, halves);
     if (halves.empty()) return;
     simulate(halves);
   }

@@ -39,6 +39,9 @@ struct EffectCurves {
   std::vector<Eigen::MatrixXd> shifts;
 };
 
+using Whitened = std::vector<Eigen::VectorXd>;  // of each run
+double squared_length(const Whitened& runs);
+
 // With other whiteners, all that is whitened is made anew.
 void set_whiteners(EffectCurves& curves, std::vector<Whitener> whiteners);
 

@@ -200,12 +200,6 @@ EffectSet effects_of(const Model& model) {
   return effects;
 }
 
-double squared_length(const Whitened& runs) {
-  double sum = 0;
-  for (const VectorXd& run : runs) sum += run.squaredNorm();
-  return sum;
-}
-
 Whitened whitened_difference(const EffectCurves& curves, const std::vector<VectorXd>& a, const Shift& b) {
   Whitened result(a.size());
   for (std::size_t r = 0; r < a.size(); ++r) result[r] = curves.whiteners[r](a[r] - b[r]);

@@ -16,8 +16,6 @@
 
 namespace kenaf::gap {
 
-using Whitened = std::vector<Eigen::VectorXd>;  // of each run
-
 struct Model {
   std::vector<OnCurve> places;  // none: nominal
   Shift shift;                  // by all its effects together
@@ -50,7 +48,6 @@ std::vector<NewPoint> values_of(const std::vector<OnCurve>& places);
 // Curves of different effects that may explain a gap together.
 using EffectSet = std::vector<std::size_t>;
 EffectSet effects_of(const Model& model);
-double squared_length(const Whitened& runs);
 Whitened whitened_difference(const EffectCurves& curves, const std::vector<Eigen::VectorXd>& a, const Shift& b);
 // Inner products of all runs together.
 Products products_of(const EffectCurves& curves, const Whitened& gap);
