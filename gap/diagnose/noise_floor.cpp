@@ -13,8 +13,8 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kMadToSigma = 1.4826;
-// Of the largest squares, which are events, not noise. What is left is not made larger for their absence, as for a Gaussian:
-// repeats differ mostly by a slow wander, which is alike in all bins.
+// Of the largest squares, which are events, not noise. What is left is not made larger for their absence, as for a
+// Gaussian: repeats differ mostly by a slow wander, which is alike in all bins.
 constexpr double kTrimmed = 0.05;
 
 double median(std::vector<double>& values) {
@@ -192,7 +192,7 @@ NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShape
 
 std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Predictor& predictor,
                                     const Variation& model, double start_sigma_m, double start_sigma_rad) {
-  constexpr std::size_t kOpen = 6;
+  constexpr std::size_t kOpen = 7;
   std::vector<Variation> variations(2 * kOpen + 1, model);
   for (const bool minus : {false, true}) {
     Variation* v = variations.data() + (minus ? kOpen : 0);
@@ -203,6 +203,8 @@ std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Pre
     v[3].physics.time_step_s *= factor;
     v[4].physics.contact_stiffness_npm *= factor;
     v[5].physics.contact_damping_nspm *= factor;
+    v[6].physics.solver_iterations =
+        minus ? std::max(1, model.physics.solver_iterations / 2) : 2 * model.physics.solver_iterations;
   }
   const std::vector<Shift> shifts = predictor.shifts(variations, Fidelity::every_run);
   std::vector<OpenShapes> open;

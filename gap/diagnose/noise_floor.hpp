@@ -52,8 +52,8 @@ struct OpenShapes {
   Eigen::MatrixXd shapes;     // in columns
   Eigen::VectorXd roughness;  // of each bin, 1 sigma
 };
-// Start pose by its uncertainty (`start_sigma_m`, `start_sigma_rad`); time step, contact stiffness and damping by a factor
-// of 2 either way; and for each channel an offset of its resolution: a count more or less lasts as long as the robot
+// Start pose by its uncertainty (`start_sigma_m`, `start_sigma_rad`); time step, solver iterations, contact stiffness and
+// damping by a factor of 2 either way; and for each channel an offset of its resolution: a count more or less lasts as long as the robot
 // rolls on.
 // Around `model`: where an event falls is open around where that model has it. Every run by itself: of two repeats one may
 // be about to slip.
