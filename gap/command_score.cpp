@@ -31,11 +31,11 @@ CaseShrinks measure_shrinks(const fs::path& folder, const ScoredCase& scored) {
   if (judge(plan, scored.told).hidden.empty() || !scored.told || !fs::exists(robot)) return {};
   const physics::Effects told = physics::load_robot(robot.string()).effects;
   CaseShrinks shrinks;
-  shrinks.heldout = shrinks_on(case_folder(folder, plan.name), told, hidden_effects(plan), 1);
+  shrinks.heldout = shrinks_on(case_folder(folder, plan.name), told, hidden_effects_in_model(plan), 1);
   shrinks.heldout->told = scored.told->shrink;
   const TemporaryFolder unseen;
   make_unseen(plan, unseen.path, 1);
-  shrinks.unseen = shrinks_on(unseen.path, told, hidden_effects(plan), 1);
+  shrinks.unseen = shrinks_on(unseen.path, told, hidden_effects_in_model(plan), 1);
   return shrinks;
 }
 

@@ -52,6 +52,7 @@ Judgement judge(const CasePlan& plan, const std::optional<Told>& told) {
   for (const HiddenEffect& hidden : plan.effects)
     if (in_catalogue) result.hidden.push_back(reported_name(hidden.effect, hidden.parameter));
   result.found.assign(result.hidden.size(), Found::missed);
+  result.can_be_told_apart = is_outside(plan.stratum) && plan.look_alike.angle_deg >= kToldApart_deg;
   if (!told) return result;
 
   std::vector<std::vector<std::string>> claims = told->ambiguous_sets;

@@ -17,7 +17,8 @@ namespace kenaf::gap {
 
 // Smaller effects need not be found: `none` is no error then.
 constexpr double kSurelySeen_floors = 2;
-// An effect that is no closer than this to any other in the isolability table can be told from all of them.
+// An effect that is no closer than this to any other in the isolability table can be told from all of them; what is outside
+// the catalogue, where its look-alike is no closer.
 constexpr double kToldApart_deg = 10;
 
 enum class Found {
@@ -34,7 +35,8 @@ struct Judgement {
   bool right = false;
   bool named_alone = false;         // the only effect hidden, and the only one claimed, by its name
   bool names_wrong = false;         // a name in `named` that is not hidden
-  bool can_be_told_apart = false;   // the only effect hidden, and the report's own table says so
+  bool can_be_told_apart = false;   // the only effect hidden, and the report's own table says so; or outside the catalogue,
+                                    // and nothing in it looks like that
 };
 
 // The name of an effect in reports: with its parameter only where it has several.

@@ -27,6 +27,8 @@ Json case_json(const SealedCase& sealed) {
                                {"floors", hidden.floors}});
   if (!plan.foreign.empty())
     json["foreign"] = {{"name", plan.foreign}, {"amount", plan.foreign_amount}, {"floors", plan.foreign_floors}};
+  if (is_outside(plan.stratum))
+    json["looks_like"] = {{"effect", plan.look_alike.effect}, {"angle_deg", plan.look_alike.angle_deg}};
   json["manoeuvres"] = plan.manoeuvres;
   json["unseen"] = plan.unseen;
   json["repeats"] = plan.repeats;
@@ -68,6 +70,8 @@ SealedCase case_of(const Json& json) {
     foreign.at("amount").get_to(plan.foreign_amount);
     foreign.at("floors").get_to(plan.foreign_floors);
   }
+  if (is_outside(plan.stratum))
+    plan.look_alike = {json.at("looks_like").at("effect"), json.at("looks_like").at("angle_deg")};
   json.at("manoeuvres").get_to(plan.manoeuvres);
   json.at("unseen").get_to(plan.unseen);
   json.at("repeats").get_to(plan.repeats);

@@ -9,6 +9,8 @@
 
 #include "gap/challenge/compared_runs.hpp"
 #include "gap/challenge/foreign.hpp"
+#include "gap/challenge/judge.hpp"
+#include "gap/challenge/look_alike.hpp"
 #include "gap/parallel.hpp"
 #include "gap/temporary_folder.hpp"
 #include "physics/effects.hpp"
@@ -126,13 +128,30 @@ class Scale {
     floor_rms_ = rms_of_repeats(*runs_, floor_, runs_->residuals);
   }
 
-  double floors_of(const physics::Effects& effects) {
-    Variation variation = runs_->predictor.unvaried();
-    variation.effects = effects;
-    return floor_.rms(runs_->predictor.shifts({&variation, 1}, Fidelity::coarse).front()) / floor_rms_;
-  }
+  double floors_of(const physics::Effects& effects) { return floor_.rms(shift_of(effects)) / floor_rms_; }
 
   double floors_of_foreign(const std::string& foreign, double amount) {
+    return floor_.rms(shift_of_foreign(foreign, amount)) / floor_rms_;
+  }
+
+  // Of what is hidden outside the catalogue.
+  LookAlike look_alike_of(const CasePlan& plan) {
+    std::vector<std::string> without;
+    for (const HiddenEffect& hidden : plan.effects) without.push_back(hidden.effect);
+    return look_alike(
+        *runs_, floor_,
+        plan.foreign.empty() ? shift_of(hidden_effects(plan)) : shift_of_foreign(plan.foreign, plan.foreign_amount),
+        without);
+  }
+
+ private:
+  Shift shift_of(const physics::Effects& effects) {
+    Variation variation = runs_->predictor.unvaried();
+    variation.effects = effects;
+    return runs_->predictor.shifts({&variation, 1}, Fidelity::coarse).front();
+  }
+
+  Shift shift_of_foreign(const std::string& foreign, double amount) {
     const Observations& observed = runs_->observations;
     Shift shift(runs_->features.size());
     for_each_job(shift.size(), jobs_, [&](std::size_t r) {
@@ -145,10 +164,9 @@ class Scale {
       record_foreign(run, foreign, amount);
       shift[r] = runs_->features[r].of(run) - runs_->predictor.nominal()[r];
     });
-    return floor_.rms(shift) / floor_rms_;
+    return shift;
   }
 
- private:
   unsigned jobs_;
   std::optional<ComparedRuns> runs_;
   NoiseFloor floor_;
@@ -214,6 +232,12 @@ physics::Effects hidden_effects(const CasePlan& plan) {
   return effects;
 }
 
+physics::Effects hidden_effects_in_model(const CasePlan& plan) {
+  physics::Effects effects;
+  for (const HiddenEffect& hidden : plan.effects) effects.*parameter_of(hidden).value = value_in_model(plan, hidden);
+  return effects;
+}
+
 void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs) {
   std::mt19937_64 random(mixed(plan.seed, 1));
   const bool upward = (random() & 1) != 0;
@@ -221,7 +245,7 @@ void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs) {
   for (const auto& set : manoeuvre_sets())
     if (set != plan.manoeuvres) sets.push_back(set);
   CasePlan best = plan;
-  double best_reached = -1;
+  double best_size = -1;
   for (const auto& set : sets) {
     if (plan.stratum == Stratum::none) break;
     CasePlan candidate = plan;
@@ -236,11 +260,13 @@ void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs) {
                     [&](double amount) { return scale.floors_of_foreign(plan.foreign, amount); });
       reached = candidate.foreign_floors / plan.foreign_floors;
     }
-    if (reached > best_reached) {
-      best_reached = reached;
-      best = std::move(candidate);
-    }
-    if (best_reached >= kCloseToPlanned) break;
+    const double size = std::min(reached, kCloseToPlanned);
+    if (size < best_size) continue;
+    if (is_outside(plan.stratum)) candidate.look_alike = scale.look_alike_of(candidate);
+    if (size == best_size && !(candidate.look_alike.angle_deg > best.look_alike.angle_deg)) continue;
+    best_size = size;
+    best = std::move(candidate);
+    if (size == kCloseToPlanned && (!is_outside(plan.stratum) || best.look_alike.angle_deg >= kToldApart_deg)) break;
   }
   plan = best;
   write_cases_runs(plan, recipe_of(plan), plan.manoeuvres, mixed(plan.seed, 2), folder, jobs);

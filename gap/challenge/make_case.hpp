@@ -11,11 +11,13 @@ namespace kenaf::gap {
 
 // Writes the dataset to `folder`, which must not exist, as that of a real robot, and sets the effects' values in `plan`.
 // Where these manoeuvres cannot show an effect as large as planned, they are exchanged for others that can; where none
-// can, the effect is as large as they show it.
+// can, the effect is as large as they show it. So they are where they cannot tell what is outside the catalogue from what is in
+// it: `look_alike` says how far apart the two are in the end.
 void make_case(CasePlan& plan, const std::filesystem::path& folder, unsigned jobs);
 
-// What of the catalogue is hidden in a case that is made.
+// What of the catalogue is hidden in a case that is made: as its robot has it, and as a model of it would (value_in_model).
 physics::Effects hidden_effects(const CasePlan& plan);
+physics::Effects hidden_effects_in_model(const CasePlan& plan);
 
 // Runs of the same robot in the manoeuvre that the dataset does not have.
 void make_unseen(const CasePlan& plan, const std::filesystem::path& folder, unsigned jobs);

@@ -77,10 +77,26 @@ std::string_view stratum_name(Stratum stratum) {
   return kStratumNames[static_cast<std::size_t>(stratum)];
 }
 
+bool is_outside(Stratum stratum) {
+  return stratum == Stratum::withheld || stratum == Stratum::foreign;
+}
+
 Stratum stratum_of(std::string_view name) {
   const auto* found = std::ranges::find(kStratumNames, name);
   if (found == std::end(kStratumNames)) throw std::invalid_argument(fmt::format("\"{}\" is no stratum", name));
   return static_cast<Stratum>(found - kStratumNames);
+}
+
+double value_in_model(const CasePlan& plan, const HiddenEffect& hidden) {
+  const physics::EffectParameter& parameter =
+      *physics::find_parameter(*physics::find_effect(hidden.effect), hidden.parameter);
+  const physics::PhysicsSettings usual;
+  double value = hidden.value;
+  if (parameter.value == &physics::Effects::ground_compliance_scale)
+    value *= usual.contact_stiffness_npm / plan.physics.contact_stiffness_npm;
+  if (parameter.value == &physics::Effects::ground_damping_scale)
+    value *= plan.physics.contact_damping_nspm / usual.contact_damping_nspm;
+  return std::clamp(value, parameter.min, parameter.max);
 }
 
 std::vector<std::vector<std::string>> manoeuvre_sets() {

@@ -20,6 +20,7 @@ enum class Stratum {
   foreign,   // something that the catalogue never had
 };
 std::string_view stratum_name(Stratum stratum);
+bool is_outside(Stratum stratum);         // withheld or foreign: the diagnosis' catalogue does not have it
 Stratum stratum_of(std::string_view name);  // throws std::invalid_argument
 
 struct HiddenEffect {
@@ -28,12 +29,19 @@ struct HiddenEffect {
   double value = 0;   // that makes it so large; known once the case is made
 };
 
+// The effect of a diagnosis' catalogue that looks most like what is hidden and not in it.
+struct LookAlike {
+  std::string effect;     // as reports name it
+  double angle_deg = 90;  // between what the two shift, 0 (the same) to 90 (nothing in common)
+};
+
 struct CasePlan {
   std::string name;  // "case-017"
   Stratum stratum = Stratum::none;
   std::vector<HiddenEffect> effects;
   std::string foreign;                  // one of foreign_effects(), or empty
   double foreign_floors = 0, foreign_amount = 0;
+  LookAlike look_alike;                 // of what is withheld or foreign; known once the case is made
   std::vector<std::string> manoeuvres;  // of the dataset
   std::string unseen;                   // another one, to try the diagnosis' robot.toml on
   int repeats = 2;
@@ -41,6 +49,10 @@ struct CasePlan {
   double noise_scale = 1, noise_memory_s = 0;  // of the pose; 0: white
   std::uint64_t seed = 0;
 };
+
+// The value that a model with the simulator's own contacts needs for the same: the give of the ground and its damping multiply
+// those of the "real" side's contacts, which are others. Within the parameter's range.
+double value_in_model(const CasePlan& plan, const HiddenEffect& hidden);
 
 // Nothing hidden in three of ten; of the rest each effect of the catalogue alone in turn, each withheld in turn, pairs
 // and foreign ones by chance. In an order that says nothing.

@@ -53,9 +53,10 @@ bool is_large(const std::optional<Shrinks>& shrinks) {
 void count_intervals(const ScoredCase& scored, Count& covered) {
   for (const HiddenEffect& hidden : scored.sealed.plan.effects) {
     if (std::ranges::count(scored.told->named, reported_name(hidden.effect, hidden.parameter)) == 0) continue;
+    const double value = value_in_model(scored.sealed.plan, hidden);
     for (const ToldEffect& told : scored.told->effects)
       if (told.effect == hidden.effect && told.parameter == hidden.parameter)
-        covered.add(told.from <= hidden.value && hidden.value <= told.to);
+        covered.add(told.from <= value && value <= told.to);
   }
 }
 
@@ -70,19 +71,21 @@ Share wilson(std::size_t hits, std::size_t cases) {
 }
 
 std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
-  Count singles, alone, pairs, outside, none, wrong, covered, close, close_unseen;
+  Count singles, alone, pairs, outside, outside_apart, none, wrong, wrong_apart, covered, close, close_unseen;
   std::vector<double> heldout, unseen;
   for (const ScoredCase& scored : cases) {
     const Judgement judgement = judge(scored.sealed.plan, scored.told);
     const Stratum stratum = scored.sealed.plan.stratum;
     wrong.add(judgement.names_wrong);
+    if (!is_outside(stratum) || judgement.can_be_told_apart) wrong_apart.add(judgement.names_wrong);
     if (stratum == Stratum::none) none.add(judgement.right);
     if (!judgement.hidden.empty() && scored.told) count_intervals(scored, covered);
     if (judgement.is_small) continue;
     if (stratum == Stratum::single) singles.add(judgement.right);
     if (stratum == Stratum::single && judgement.can_be_told_apart) alone.add(judgement.named_alone);
     if (stratum == Stratum::pair) pairs.add(judgement.right);
-    if (stratum == Stratum::withheld || stratum == Stratum::foreign) outside.add(judgement.right);
+    if (is_outside(stratum)) outside.add(judgement.right);
+    if (is_outside(stratum) && judgement.can_be_told_apart) outside_apart.add(judgement.right);
     if (const auto& s = scored.shrinks.heldout; is_large(s)) {
       heldout.push_back(s->told - s->hidden);
       close.add(std::abs(heldout.back()) <= kShrinkWithin);
@@ -104,6 +107,10 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
       difference_figure("shrink_heldout", "held-out shrink beside the true effect's, mean difference", "<= 0.05",
                         heldout),
       difference_figure("shrink_unseen", "the same on a manoeuvre that was not seen", "<= 0.05", unseen),
+      share_figure("outside_apart_unknown", "withheld and foreign that can be told apart, called unknown", "",
+                   outside_apart, 0, 1),
+      share_figure("wrong_name_apart", "reports that name what is not hidden, without those that cannot be told apart",
+                   "", wrong_apart, 0, 1),
       share_figure("shrink_heldout_close", "held-out shrinks within 0.05 of it", "", close, 0, 1),
       share_figure("shrink_unseen_close", "the same on a manoeuvre that was not seen", "", close_unseen, 0, 1),
   };
@@ -137,7 +144,7 @@ std::vector<OutsideScore> scores_outside(const std::vector<ScoredCase>& cases) {
   std::map<std::string, OutsideScore> scores;
   for (const ScoredCase& scored : cases) {
     const CasePlan& plan = scored.sealed.plan;
-    if (plan.stratum != Stratum::withheld && plan.stratum != Stratum::foreign) continue;
+    if (!is_outside(plan.stratum)) continue;
     const std::string name = plan.foreign.empty() ? "without " + plan.effects.front().effect : plan.foreign;
     OutsideScore& score = scores[name];
     score.name = name;

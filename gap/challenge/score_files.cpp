@@ -21,6 +21,11 @@ std::string truth_text(const CasePlan& plan) {
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
+std::string look_alike_text(const CasePlan& plan) {
+  if (!is_outside(plan.stratum)) return "";
+  return fmt::format("{}, {:.1f} degrees", plan.look_alike.effect, plan.look_alike.angle_deg);
+}
+
 std::string told_text(const std::optional<Told>& told) {
   if (!told) return "no report";
   std::string text = told->verdict;
@@ -46,11 +51,14 @@ std::string case_rows(const std::vector<ScoredCase>& cases, bool small) {
     const Judgement judgement = judge(scored.sealed.plan, scored.told);
     const bool quiet = scored.told && scored.told->verdict == "none";
     if (judgement.right || (judgement.is_small && quiet) != small) continue;
-    rows += fmt::format("| {} | {} | {} | {} | {} |\n", scored.sealed.plan.name,
+    rows += fmt::format("| {} | {} | {} | {} | {} | {} |\n", scored.sealed.plan.name,
                         stratum_name(scored.sealed.plan.stratum), truth_text(scored.sealed.plan),
-                        fmt::join(scored.sealed.plan.manoeuvres, ", "), told_text(scored.told));
+                        look_alike_text(scored.sealed.plan), fmt::join(scored.sealed.plan.manoeuvres, ", "),
+                        told_text(scored.told));
   }
-  return rows.empty() ? "none\n" : "| case | stratum | hidden | manoeuvres | report |\n|---|---|---|---|---|\n" + rows;
+  return rows.empty()
+             ? "none\n"
+             : "| case | stratum | hidden | looks like | manoeuvres | report |\n|---|---|---|---|---|---|\n" + rows;
 }
 
 Json shrinks_json(const std::optional<Shrinks>& shrinks) {
@@ -65,6 +73,7 @@ Json case_json(const ScoredCase& scored) {
   return {{"name", plan.name},
           {"stratum", stratum_name(plan.stratum)},
           {"hidden", truth_text(plan)},
+          {"looks_like", look_alike_text(plan)},
           {"report", told_text(scored.told)},
           {"small", judgement.is_small},
           {"right", judgement.right},

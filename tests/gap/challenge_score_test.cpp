@@ -28,6 +28,7 @@ CasePlan plan_of(Stratum stratum, std::vector<HiddenEffect> effects = {}) {
   plan.stratum = stratum;
   plan.effects = std::move(effects);
   if (stratum == Stratum::foreign) plan.foreign = "track_gauge", plan.foreign_floors = 3;
+  if (is_outside(stratum)) plan.look_alike = {"com_up", 40};
   return plan;
 }
 
@@ -119,6 +120,25 @@ TEST_CASE("An effect can be told apart where no other is within 10 degrees of it
   CHECK_FALSE(judge(plan, report).can_be_told_apart);
 }
 
+TEST_CASE("What is outside can be told apart where nothing in the catalogue is within 10 degrees of it") {
+  CasePlan plan = plan_of(Stratum::withheld, {kMass});
+  CHECK(judge(plan, told("unknown")).can_be_told_apart);
+  plan.look_alike.angle_deg = 9.9;
+  CHECK_FALSE(judge(plan, told("unknown")).can_be_told_apart);
+
+  // three right of five that can be told apart; what cannot be counts with all the others only
+  const ScoredCase apart_right = scored(plan_of(Stratum::foreign), told("unknown"));
+  const ScoredCase apart_wrong = scored(plan_of(Stratum::foreign), told("named", {"com_up"}));
+  std::vector<ScoredCase> cases = times(3, apart_right, 2, apart_wrong);
+  cases.push_back(scored(plan, told("named", {"com_up"})));
+  CHECK(figure(cases, "outside_unknown").cases == 6);
+  CHECK(figure(cases, "outside_unknown").value == Approx(0.5));
+  CHECK(figure(cases, "outside_apart_unknown").cases == 5);
+  CHECK(figure(cases, "outside_apart_unknown").value == Approx(0.6));
+  CHECK(figure(cases, "wrong_name").value == Approx(0.5));
+  CHECK(figure(cases, "wrong_name_apart").value == Approx(0.4));
+}
+
 TEST_CASE("Shares count the cases that they are of") {
   const ScoredCase found = scored(plan_of(Stratum::single, {kMass}), told("named", {"mass"}));
   const ScoredCase missed = scored(plan_of(Stratum::single, {kMass}), told("none"));
@@ -191,6 +211,21 @@ TEST_CASE("Intervals are asked of hidden effects that are named") {
   CHECK_FALSE(figure(times(17, scored(plan, holds), 2, scored(plan, beside)), "interval_covers").met);  // 89 %
   // intervals that hold the value always are too wide for 95 %
   CHECK_FALSE(figure(times(20, scored(plan, holds), 0, scored(plan, beside)), "interval_covers").met);
+}
+
+TEST_CASE("Ground that gives is measured in contacts of the model, not in those of the robot") {
+  // The robot's contacts are half as stiff as the model's (100 for 200 kN/m): ground that gives 3 times as much gives 6
+  // times as much as the model's own. Twice the damping: 1.5 times that is 3 times the model's.
+  CasePlan plan = plan_of(Stratum::single, {{"ground_compliance", "scale", 3, 3}});
+  plan.physics.contact_stiffness_npm = 1e5;
+  plan.physics.contact_damping_nspm = 2000;
+  CHECK(value_in_model(plan, plan.effects.front()) == Approx(6));
+  CHECK(value_in_model(plan, {"ground_damping", "scale", 3, 1.5}) == Approx(3));
+  CHECK(value_in_model(plan, {"ground_damping", "scale", 3, 19}) == 20);  // the end of its range
+  CHECK(value_in_model(plan, kMass) == kMass.value);
+  Told report = told("named", {"ground_compliance"});
+  report.effects = {{"ground_compliance", "scale", 5.9, 5.5, 6.3}};
+  CHECK(figure({scored(plan, report)}, "interval_covers").value == 1);
 }
 
 TEST_CASE("Shrinks are compared with those of the hidden effect, where there is a gap to shrink") {
@@ -307,6 +342,8 @@ TEST_CASE("A key is read back as it was written") {
   CHECK(key.cases.at(0).plan.effects.at(1).value == 0.1);
   CHECK(key.cases.at(0).plan.seed == 0xffffffffffffffff);
   CHECK(key.cases.at(1).plan.foreign == "track_gauge");
+  CHECK(key.cases.at(1).plan.look_alike.effect == "com_up");
+  CHECK(key.cases.at(1).plan.look_alike.angle_deg == 40);
   CHECK(key_text(key) == text);
   CHECK(key_text({18, key.cases}) != text);
   CHECK_THROWS_WITH(read_key("{\"format\": 1}"), Catch::Contains("key.json is no key"));

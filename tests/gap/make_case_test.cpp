@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "gap/challenge/look_alike.hpp"
 #include "gap/challenge/shrinks.hpp"
 #include "runs/dataset.hpp"
 #include "tests/runs/temporary_folder.hpp"
@@ -11,6 +12,20 @@
 using namespace kenaf;
 using namespace kenaf::gap;
 using test::TemporaryFolder;
+
+namespace {
+
+std::filesystem::path robot_without_gap(const std::string& manoeuvre, const std::filesystem::path& folder) {
+  CasePlan plan;
+  plan.name = "case-000";
+  plan.manoeuvres = {manoeuvre};
+  plan.unseen = "arc";
+  plan.seed = 3;
+  make_case(plan, folder, 1);
+  return folder;
+}
+
+}  // namespace
 
 TEST_CASE("A case is made: its effect is as large as asked, and its folder does not say which it is", "[long]") {
   const TemporaryFolder folder;
@@ -44,5 +59,39 @@ TEST_CASE("A case is made: its effect is as large as asked, and its folder does 
     CHECK(bytes.find("encoder") == std::string::npos);
     CHECK(bytes.find("single") == std::string::npos);
     CHECK(bytes.find("challenge") == std::string::npos);
+  }
+}
+
+TEST_CASE("In a turn in place more friction across looks like less along, as only their ratio counts there", "[long]") {
+  const TemporaryFolder folder;
+  ComparedRuns runs(robot_without_gap("turn-in-place", folder / "case"), 1);
+  const NoiseFloor floor = floor_around(runs, runs.predictor.unvaried());
+  Variation slippery = runs.predictor.unvaried();
+  slippery.effects.friction_across_scale = 1.02;
+  const Shift hidden = runs.predictor.shifts({&slippery, 1}, Fidelity::coarse).front();
+
+  const LookAlike itself = look_alike(runs, floor, hidden, {});
+  CHECK(itself.effect == "friction_across");
+  CHECK(itself.angle_deg < 2);
+  const LookAlike other = look_alike(runs, floor, hidden, std::vector<std::string>{"friction_across"});
+  CHECK(other.effect == "friction_along");
+  CHECK(other.angle_deg < 10);
+  const Shift nothing(hidden.size(), Eigen::VectorXd::Zero(hidden.front().size()));
+  CHECK(look_alike(runs, floor, nothing, {}).angle_deg == 90);
+}
+
+TEST_CASE("How long a solver iterates is no gap, also where tracks a ten-thousandth apart share what the ground holds",
+          "[long]") {
+  const TemporaryFolder folder;
+  ComparedRuns runs(robot_without_gap("speed-steps", folder / "case"), 1);
+  std::vector<Variation> models(2, runs.predictor.unvaried());
+  for (Variation& model : models) model.effects.drive_asymmetry = 3e-4;
+  models[1].physics.solver_iterations *= 2;
+  const std::vector<Shift> shifts = runs.predictor.shifts(models, Fidelity::every_run);
+  const NoiseFloor floor = floor_around(runs, models[0]);
+  // The difference is the sum of two open shapes, by 1 sigma each, and no shape is longer than 1 once it is whitened.
+  for (std::size_t r = 0; r < runs.features.size(); ++r) {
+    CHECK((shifts[1][r] - shifts[0][r]).norm() > 1);  // amperes, mostly
+    CHECK(floor.whiteners[r](shifts[1][r] - shifts[0][r]).norm() < std::sqrt(2));
   }
 }
