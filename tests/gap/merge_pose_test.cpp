@@ -32,7 +32,7 @@ std::string why_no_offset(const runs::Run& run, const gap::MotionCapture& captur
 }
 
 // The same with one column multiplied.
-runs::Run scaled(runs::Run run, const std::string& column, double factor) {
+runs::Run with_scaled_column(runs::Run run, const std::string& column, double factor) {
   for (std::size_t i = 0; i < run.columns.size(); ++i)
     if (run.columns[i] == column)
       for (double& value : run.values[i]) value *= factor;
@@ -137,9 +137,10 @@ TEST_CASE("Units and signs that are wrong are named, not fitted") {
   for (auto& pose : ahead.poses) pose.p_m *= 1000;
   CHECK_THAT(why_no_offset(robot_log(straight, 1, false), ahead),
              Catch::Contains("millimetres; give --mocap-units mm"));
-  CHECK_THAT(why_no_offset(scaled(run, "gyro_z_radps", 180 / std::numbers::pi), captured(drive, 1, {})),
+  CHECK_THAT(why_no_offset(with_scaled_column(run, "gyro_z_radps", 180 / std::numbers::pi), captured(drive, 1, {})),
              Catch::Contains("the run looks like degrees"));
-  CHECK_THAT(why_no_offset(scaled(run, "gyro_z_radps", -1), captured(drive, 1, {})), Catch::Contains("sign turned"));
+  CHECK_THAT(why_no_offset(with_scaled_column(run, "gyro_z_radps", -1), captured(drive, 1, {})),
+             Catch::Contains("sign turned"));
   CHECK_THAT(why_no_offset(run, millimetres), Catch::Contains("millimetres"));
 }
 
