@@ -84,7 +84,7 @@ class Teller {
   double cases_, made_ = 0, diagnosed_ = 0;
 };
 
-// The data of all cases, whole or not at all; returns their key.
+// The data of all cases; returns their key.
 ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller,
                         const std::atomic<bool>& stop) {
   ChallengeKey key{seed, {}};
@@ -100,14 +100,14 @@ ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::pa
   return key;
 }
 
-void run(const Options& options, std::uint64_t seed) {
-  const std::atomic<bool>& stop = interruption();
-  const fs::path folder = fs::absolute(options.out).lexically_normal();
-  Teller teller(options.cases);
+// Cases and commitment, all or none; those that are there already are kept.
+ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller,
+                        const std::atomic<bool>& stop) {
+  if (auto key = sealed_key(folder, seed); key && key->cases.size() == options.cases) return *std::move(key);
   const fs::path part = folder / "cases.part";
   fs::remove_all(part);
   fs::create_directories(part);
-  const ChallengeKey key = make_cases(options, seed, part, teller, stop);
+  ChallengeKey key = make_cases(options, seed, part, teller, stop);
   const std::string text = key_text(key), commitment = commitment_text(text);
   if (fs::exists(folder / "commitment.txt") && runs::read_whole_file(folder / "commitment.txt") != commitment) {
     fs::remove_all(part);
@@ -119,6 +119,15 @@ void run(const Options& options, std::uint64_t seed) {
   fs::remove_all(folder / "cases");
   fs::rename(part, folder / "cases");
   runs::write_whole_file(folder / "commitment.txt", commitment);
+  runs::write_whole_file(folder / "key.enciphered", enciphered(text, seed));
+  return key;
+}
+
+void run(const Options& options, std::uint64_t seed) {
+  const std::atomic<bool>& stop = interruption();
+  const fs::path folder = fs::absolute(options.out).lexically_normal();
+  Teller teller(options.cases);
+  const ChallengeKey key = seal_cases(options, seed, folder, teller, stop);
 
   std::vector<CaseToDiagnose> left;
   std::vector<std::string> names;
@@ -147,7 +156,8 @@ void run(const Options& options, std::uint64_t seed) {
   if (diagnosed == 0)
     throw std::runtime_error(
         fmt::format("no case could be diagnosed; why is in {}", (left[0].report / "diagnose.log").string()));
-  runs::write_whole_file(folder / "key.json", text);
+  runs::write_whole_file(folder / "key.json", key_text(key));
+  fs::remove(folder / "key.enciphered");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -88,6 +89,27 @@ SealedCase case_of(const Json& json) {
   return sealed;
 }
 
+// The first case whose data are no longer those that were sealed.
+std::optional<fs::path> first_changed(const fs::path& folder, const ChallengeKey& key) {
+  for (const SealedCase& sealed : key.cases)
+    if (const fs::path data = case_folder(folder, sealed.plan.name); sha256_of_dataset(data) != sealed.data_sha256)
+      return data;
+  return std::nullopt;
+}
+
+// Its own inverse.
+std::string with_keystream(std::string bytes, std::uint64_t seed) {
+  std::string block;  // 64 hexadecimal digits, of which each byte takes two
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const std::size_t in_block = i % 32;
+    if (in_block == 0) block = sha256(fmt::format("key of a kenaf-gap challenge, seed {}, block {}", seed, i / 32));
+    unsigned stream = 0;
+    std::from_chars(block.data() + 2 * in_block, block.data() + 2 * in_block + 2, stream, 16);
+    bytes[i] = static_cast<char>(static_cast<unsigned char>(bytes[i]) ^ stream);
+  }
+  return bytes;
+}
+
 }  // namespace
 
 std::string key_text(const ChallengeKey& key) {
@@ -115,6 +137,36 @@ std::string commitment_text(const std::string& key_text) {
          sha256(key_text) + "  key.json\n";
 }
 
+std::string enciphered(const std::string& key_text, std::uint64_t seed) {
+  const std::string bytes = with_keystream(key_text, seed);
+  std::string text;
+  for (const char byte : bytes) text += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+  return text + "\n";
+}
+
+std::string deciphered(const std::string& text, std::uint64_t seed) {
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
+    unsigned byte = 0;
+    const char* const from = text.data() + i;
+    if (std::from_chars(from, from + 2, byte, 16).ptr != from + 2)
+      throw std::runtime_error("key.enciphered holds other characters than pairs of hexadecimal digits");
+    bytes += static_cast<char>(byte);
+  }
+  return with_keystream(bytes, seed);
+}
+
+std::optional<ChallengeKey> sealed_key(const fs::path& folder, std::uint64_t seed) try {
+  if (!fs::exists(folder / "commitment.txt") || !fs::exists(folder / "key.enciphered")) return std::nullopt;
+  const std::string text = deciphered(runs::read_whole_file(folder / "key.enciphered"), seed);
+  if (runs::read_whole_file(folder / "commitment.txt") != commitment_text(text)) return std::nullopt;
+  ChallengeKey key = read_key(text);
+  if (first_changed(folder, key)) return std::nullopt;
+  return key;
+} catch (const std::exception&) {
+  return std::nullopt;  // what is there is damaged, and all of it can be made again
+}
+
 ChallengeKey open_key(const fs::path& folder) {
   if (!fs::exists(folder / "commitment.txt"))
     throw std::runtime_error(fmt::format("{}: is no challenge, there is no commitment.txt", folder.string()));
@@ -126,9 +178,8 @@ ChallengeKey open_key(const fs::path& folder) {
     throw std::runtime_error(fmt::format(
         "{}: key.json is not the key that commitment.txt was made from; one of them was changed", folder.string()));
   ChallengeKey key = read_key(text);
-  for (const SealedCase& sealed : key.cases)
-    if (const fs::path data = case_folder(folder, sealed.plan.name); sha256_of_dataset(data) != sealed.data_sha256)
-      throw std::runtime_error(fmt::format("{}: is not the data that was sealed; it was changed", data.string()));
+  if (const auto data = first_changed(folder, key))
+    throw std::runtime_error(fmt::format("{}: is not the data that was sealed; it was changed", data->string()));
   return key;
 }
 

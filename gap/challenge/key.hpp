@@ -1,5 +1,6 @@
 // What is hidden in the cases of a challenge, and how it is sealed: the key is in no file until all cases are diagnosed,
-// but its hash is, so that it cannot become another one.
+// but its hash is, so that it cannot become another one. Enciphered with the seed it is there, so that a challenge that was
+// interrupted need not make its cases again.
 //
 // The key holds a salt of 256 bits, without which its hash could be found by trying what may be hidden. The salt is made
 // from the challenge's seed, so that a challenge that was interrupted has the same key when it goes on.
@@ -8,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,15 @@ ChallengeKey read_key(const std::string& text);
 
 // commitment.txt, which `sha256sum --check` reads.
 std::string commitment_text(const std::string& key_text);
+
+// key.enciphered: what only who has the seed can read; with another one it is noise. Each is the other's inverse.
+// By SHA-256 in counter mode. std::runtime_error where a text was never enciphered.
+std::string enciphered(const std::string& key_text, std::uint64_t seed);
+std::string deciphered(const std::string& text, std::uint64_t seed);
+
+// The key of a challenge that was interrupted after its cases were made; nothing where it was not, where the seed is
+// another one, or where anything in DIR is no longer what was sealed.
+std::optional<ChallengeKey> sealed_key(const std::filesystem::path& folder, std::uint64_t seed);
 
 // Reads DIR/key.json. Throws std::runtime_error in words where it is not there yet, is not the one that
 // DIR/commitment.txt was made from, or a case's data is no longer that which was diagnosed.

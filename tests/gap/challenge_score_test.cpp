@@ -380,6 +380,43 @@ TEST_CASE("A finished challenge is scored, a key or data that were changed are r
   CHECK_THAT(other.error, Catch::Contains("case-000: is not the data that was sealed"));
 }
 
+TEST_CASE("A key that is enciphered is read with its seed only, and only where all is what was sealed") {
+  const TemporaryFolder folder;
+  write_challenge(folder);
+  const std::string key = read_file(folder / "key.json"), text = enciphered(key, 11);
+  std::filesystem::remove(folder / "key.json");
+  CHECK(text.find("straight") == std::string::npos);
+  CHECK(deciphered(text, 11) == key);
+  CHECK(deciphered(text, 12) != key);
+  CHECK_FALSE(sealed_key(folder.path(), 11));  // not there yet
+  write_file(folder / "key.enciphered", text);
+  REQUIRE(sealed_key(folder.path(), 11));
+  CHECK(key_text(*sealed_key(folder.path(), 11)) == key);
+  CHECK_FALSE(sealed_key(folder.path(), 12));
+  write_file(folder / "key.enciphered", "no key" + text);
+  CHECK_FALSE(sealed_key(folder.path(), 11));
+  write_file(folder / "key.enciphered", text);
+  write_file(case_folder(folder.path(), "case-000") / "run-000.csv", "t_s,x_m\n0,0\n1,2\n");
+  CHECK_FALSE(sealed_key(folder.path(), 11));
+  std::filesystem::remove_all(case_folder(folder.path(), "case-000"));
+  CHECK_FALSE(sealed_key(folder.path(), 11));
+}
+
+TEST_CASE("A challenge that was interrupted goes on with the cases and reports that it has") {
+  const TemporaryFolder folder;
+  write_challenge(folder);
+  const std::string key = read_file(folder / "key.json");
+  write_file(folder / "key.enciphered", enciphered(key, 11));
+  std::filesystem::remove(folder / "key.json");
+  // its only case has a report: there is nothing left to do but to show the key
+  const test::Outcome outcome = test::kenaf_gap(folder, "challenge --out . --cases 1 --seed 11");
+  CAPTURE(outcome.error);
+  CHECK(outcome.status == 0);
+  CHECK(read_file(folder / "key.json") == key);
+  CHECK_FALSE(std::filesystem::exists(folder / "key.enciphered"));
+  CHECK_THAT(outcome.error, !Catch::Contains("making cases"));
+}
+
 TEST_CASE("A challenge that is not finished has no score, and one that is finished is not begun again") {
   const TemporaryFolder folder;
   CHECK_THAT(test::kenaf_gap(folder, "score .").error, Catch::Contains("is no challenge"));
