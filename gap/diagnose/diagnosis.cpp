@@ -129,7 +129,8 @@ class Diagnoser {
       if (d_.curves.curves[model.places[0].curve].visible < 1) continue;
       const auto shift = [&](const auto& places_of_run) { return by_curves(d_.curves, model, places_of_run); };
       const HeldOut held = hold_out(d_.curves, d_.floor, model, by_repeat, floor, options_.seed, shift);
-      const Interval value = value_intervals(d_.curves, model, share, d_.decision.inflation, options_.seed).front();
+      const Interval value =
+          value_intervals(d_.curves, model, d_.floor.numerics, share, d_.decision.inflation, options_.seed).front();
       d_.ranking.push_back(evidence(model.places[0], value, nominal_left - model.left, held.shrink));
     }
     std::ranges::stable_sort(d_.ranking, std::ranges::greater{},
@@ -158,7 +159,8 @@ class Diagnoser {
           }).shrink;
     if (!is_borne_out(held)) doubt(Doubt::not_held_out);
     d_.where_left = places(held.left);
-    const std::vector<Interval> values = value_intervals(d_.curves, best, share, d_.decision.inflation, options_.seed);
+    const std::vector<Interval> values =
+        value_intervals(d_.curves, best, d_.floor.numerics, share, d_.decision.inflation, options_.seed);
     for (std::size_t i = 0; i < best.places.size(); ++i) {
       const double without = best.places.size() == 1 ? nominal_left : left_without(d_.curves, best, i);
       d_.best.push_back(evidence(best.places[i], values[i], without - best.left, held.shrink));

@@ -40,6 +40,23 @@ Eigen::MatrixXd slopes(const EffectCurves& curves, const Model& model, std::size
   return result;
 }
 
+// Of each value: what it would be, were the simulator's numbers other ones. The floor takes each run's shapes for its
+// own; but these are the same numbers in all runs, so that more runs do not make them known.
+std::vector<double> variances_of_numerics(const Refit& refit, const std::vector<Eigen::MatrixXd>& numerics,
+                                          std::size_t effects) {
+  std::vector<double> variances(effects, 0);
+  if (numerics.empty() || numerics.front().cols() == 0) return variances;
+  const std::vector<OnCurve> as_they_are = refit(std::vector<double>(numerics.size(), 1));
+  for (Eigen::Index c = 0; c < numerics.front().cols(); c += 2) {
+    const std::vector<OnCurve> up = refit.with(numerics, c), down = refit.with(numerics, c + 1);
+    for (std::size_t e = 0; e < effects; ++e) {
+      const double value = as_they_are[e].value;
+      variances[e] += std::pow(std::max(std::abs(up[e].value - value), std::abs(down[e].value - value)), 2);
+    }
+  }
+  return variances;
+}
+
 }  // namespace
 
 Folds folds_by_repeat(const std::vector<std::vector<std::size_t>>& repeats) {
@@ -78,6 +95,19 @@ Refit::Refit(const EffectCurves& curves, const Model& model)
 
 std::vector<OnCurve> Refit::operator()(std::span<const double> weights) const {
   return fit_together(weighted_sum(runs_, weights), curves_.curves, effects_).places;
+}
+
+std::vector<OnCurve> Refit::with(const std::vector<Eigen::MatrixXd>& added, Eigen::Index column) const {
+  Products sum = weighted_sum(runs_, std::vector<double>(runs_.size(), 1));
+  double squares = 0;
+  for (std::size_t r = 0; r < runs_.size(); ++r) {
+    const VectorXd whitened = curves_.whiteners[r](added[r].col(column));
+    sum.shift_gap.noalias() += curves_.shifts[r].transpose() * whitened;
+    squares += whitened.squaredNorm();
+  }
+  // the same for all values, so that the most it may be will do
+  sum.gap_gap = std::pow(std::sqrt(sum.gap_gap) + std::sqrt(squares), 2);
+  return fit_together(sum, curves_.curves, effects_).places;
 }
 
 Shift by_curves(const EffectCurves& curves, const Model& model,
@@ -132,7 +162,8 @@ HeldOut hold_out(const EffectCurves& curves, const NoiseFloor& floor, const Mode
   return result;
 }
 
-std::vector<Interval> value_intervals(const EffectCurves& curves, const Model& model, double model_share,
+std::vector<Interval> value_intervals(const EffectCurves& curves, const Model& model,
+                                      const std::vector<Eigen::MatrixXd>& numerics, double model_share,
                                       double inflation, std::uint64_t seed) {
   const auto effects = std::ssize(model.places);
   const std::size_t runs = curves.gap.size();
@@ -150,6 +181,7 @@ std::vector<Interval> value_intervals(const EffectCurves& curves, const Model& m
     const std::vector<OnCurve> places = refit(resample(runs, random));
     for (std::size_t e = 0; e < places.size(); ++e) resampled[e].push_back(places[e].value);
   }
+  const std::vector<double> of_numerics = variances_of_numerics(refit, numerics, model.places.size());
   std::vector<Interval> intervals;
   for (std::size_t e = 0; e < model.places.size(); ++e) {
     const EffectCurve& curve = curves.curves[model.places[e].curve];
@@ -158,8 +190,9 @@ std::vector<Interval> value_intervals(const EffectCurves& curves, const Model& m
     const auto i = static_cast<Eigen::Index>(e);
     const double of_runs = (quantile(resampled[e], 0.84) - quantile(resampled[e], 0.16)) / 2;
     const double of_model = model_share / 2 * (value - neutral);
-    // resampled runs differ by the floor's noise too: with both, it would count twice
-    const double sigma = std::sqrt(std::max(covariance(i, i), of_runs * of_runs) + of_model * of_model);
+    // resampled runs differ by the floor's noise too, and the floor has the numerics: together they would count twice
+    const double sigma =
+        std::sqrt(std::max({covariance(i, i), of_runs * of_runs, of_numerics[e]}) + of_model * of_model);
     intervals.push_back({value, std::max(curve.parameter->min, value - kTwoSided95 * sigma),
                          std::min(curve.parameter->max, value + kTwoSided95 * sigma)});
   }

@@ -42,6 +42,8 @@ class Refit {
  public:
   Refit(const EffectCurves& curves, const Model& model);
   std::vector<OnCurve> operator()(std::span<const double> weights) const;
+  // To all runs, had they been measured with a column of `added` more, in units of the channels.
+  std::vector<OnCurve> with(const std::vector<Eigen::MatrixXd>& added, Eigen::Index column) const;
 
  private:
   const EffectCurves& curves_;
@@ -55,9 +57,10 @@ HeldOut hold_out(const EffectCurves& curves, const NoiseFloor& floor, const Mode
                  const std::function<Shift(const std::vector<std::vector<OnCurve>>& places_of_run)>& shift_of);
 Shift by_curves(const EffectCurves& curves, const Model& model, const std::vector<std::vector<OnCurve>>& places_of_run);
 
-// 95 % intervals of the values: of the floor or of resampled runs, whichever is wider, and of the share of a shift that
-// numerics may change.
-std::vector<Interval> value_intervals(const EffectCurves& curves, const Model& model, double model_share,
+// 95 % intervals of the values: of the floor, of resampled runs or of `numerics` (NoiseFloor::numerics; none where it is
+// empty), whichever is widest, and of the share of a shift that curves may be wrong by.
+std::vector<Interval> value_intervals(const EffectCurves& curves, const Model& model,
+                                      const std::vector<Eigen::MatrixXd>& numerics, double model_share,
                                       double inflation, std::uint64_t seed);
 
 }  // namespace kenaf::gap

@@ -134,6 +134,7 @@ NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vecto
   const std::vector<std::size_t> full = full_bins(features);
   const std::vector<std::vector<bool>> shared = shared_bins(features, repeats);
   NoiseFloor floor{std::vector<double>(channels, 0), {}, {}, false};
+  for (const OpenShapes& run : open) floor.numerics.push_back(run.numerics);
   std::vector<std::vector<double>> jumps(channels);
   for (std::size_t r = 0; r < features.size(); ++r) {
     floor.from_repeats |= deviations[r].size() > 0;
@@ -186,13 +187,14 @@ NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShape
   for (std::size_t r = 0; r < open.size(); ++r) {
     result.sigma_of_bin[r] = result.sigma_of_bin[r].cwiseMax(hypot(floor.sigma_of_bin[r], open[r].roughness));
     result.whiteners[r] = Whitener(result.sigma_of_bin[r], open[r].shapes);
+    result.numerics[r] = open[r].numerics;
   }
   return result;
 }
 
 std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Predictor& predictor,
                                     const Variation& model, double start_sigma_m, double start_sigma_rad) {
-  constexpr std::size_t kOpen = 7;
+  constexpr std::size_t kOfStart = 3, kOpen = 7;  // after those of the start, numbers of the simulator
   std::vector<Variation> variations(2 * kOpen + 1, model);
   for (const bool minus : {false, true}) {
     Variation* v = variations.data() + (minus ? kOpen : 0);
@@ -211,7 +213,8 @@ std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Pre
   for (std::size_t r = 0; r < features.size(); ++r) {
     const auto size = static_cast<Index>(features[r].bins().size());
     const auto channels = static_cast<Index>(diagnosis_channels().size());
-    open.push_back({Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOpen) + channels), VectorXd::Zero(size)});
+    open.push_back({Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOpen) + channels), VectorXd::Zero(size),
+                    Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOpen - kOfStart))});
     for (std::size_t b = 0; b < features[r].bins().size(); ++b) {
       const std::size_t channel = features[r].bins()[b].channel;
       open[r].shapes(static_cast<Index>(b), static_cast<Index>(2 * kOpen + channel)) =
@@ -223,6 +226,9 @@ std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Pre
       open[r].shapes.col(static_cast<Index>(2 * i)) = odd;
       open[r].shapes.col(static_cast<Index>(2 * i + 1)) = even;
       open[r].roughness.array() += even.array().square();
+      if (i < kOfStart) continue;
+      open[r].numerics.col(static_cast<Index>(2 * (i - kOfStart))) = plus;
+      open[r].numerics.col(static_cast<Index>(2 * (i - kOfStart) + 1)) = minus;
     }
     open[r].roughness = open[r].roughness.cwiseSqrt();
   }

@@ -37,6 +37,7 @@ struct NoiseFloor {
   std::vector<Eigen::VectorXd> sigma_of_bin;  // of each run, with roughness
   std::vector<Whitener> whiteners;  // of each run
   bool from_repeats = false;        // otherwise from the residuals alone, which a gap makes larger
+  std::vector<Eigen::MatrixXd> numerics{};  // of each run, as OpenShapes has them
 
   // Of all bins of all runs that are not empty, whitened: 1 is the floor, whatever its shapes.
   double rms(const std::vector<Eigen::VectorXd>& differences) const;
@@ -51,6 +52,9 @@ inline constexpr double kOpenStart_m = 0.001, kOpenStart_rad = 0.002;
 struct OpenShapes {
   Eigen::MatrixXd shapes;     // in columns
   Eigen::VectorXd roughness;  // of each bin, 1 sigma
+  // What each number of the simulator shifts by 1 sigma up and by 1 sigma down, in pairs of columns: unlike a start pose, it
+  // is the same number in all runs.
+  Eigen::MatrixXd numerics{};
 };
 // Start pose by its uncertainty (`start_sigma_m`, `start_sigma_rad`); time step, solver iterations, contact stiffness and
 // damping by a factor of 2 either way; and for each channel an offset of its resolution: a count more or less lasts as long as the robot

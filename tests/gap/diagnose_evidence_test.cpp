@@ -138,10 +138,10 @@ TEST_CASE("Intervals of 95 % cover the true value in 95 % of draws") {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const Whole noise = LinearWorld::noise(5000 + seed);
     const EffectCurves curves = world().curves(effects, truth[0] * effects[0] + truth[1] * effects[1] + noise);
-    const std::vector<Interval> both = value_intervals(curves, world().fitted(curves, {0, 1}), 0, 1, seed);
+    const std::vector<Interval> both = value_intervals(curves, world().fitted(curves, {0, 1}), {}, 0, 1, seed);
     for (std::size_t e = 0; e < 2; ++e) covered += both[e].from <= truth[e] && truth[e] <= both[e].to;
     const EffectCurves alone = world().curves({effects[0]}, truth[0] * effects[0] + noise);
-    const Interval one = value_intervals(alone, world().fitted(alone, {0}), 0, 1, seed)[0];
+    const Interval one = value_intervals(alone, world().fitted(alone, {0}), {}, 0, 1, seed)[0];
     one_covered += one.from <= truth[0] && truth[0] <= one.to;
   }
   INFO("both " << covered << " of 400, one alone " << one_covered << " of 200");
@@ -157,17 +157,34 @@ TEST_CASE("An interval is wider by what numerics may change of a shift, and stay
   const Whole effect = 1000 * world().direction(0);
   const EffectCurves curves = world().curves({effect}, 0.5 * effect);
   const Model model = world().fitted(curves, {0});
-  const Interval sharp = value_intervals(curves, model, 0, 1, 1)[0];
+  const Interval sharp = value_intervals(curves, model, {}, 0, 1, 1)[0];
   // sigma 1 / 1000
   CHECK(sharp.to - sharp.value == Approx(1.96e-3).epsilon(0.02));
-  const Interval inflated = value_intervals(curves, model, 0, 4, 1)[0];
+  const Interval inflated = value_intervals(curves, model, {}, 0, 4, 1)[0];
   CHECK(inflated.to - inflated.value == Approx(2 * 1.96e-3).epsilon(0.02));
   // half of 10 % of 0.5, twice
-  const Interval wide = value_intervals(curves, model, 0.1, 1, 1)[0];
+  const Interval wide = value_intervals(curves, model, {}, 0.1, 1, 1)[0];
   CHECK(wide.to - wide.value == Approx(1.96 * 0.025).epsilon(0.01));
   const Whole faint = 1e-3 * world().direction(0);
   const EffectCurves unseen = world().curves({faint}, 0.5 * faint);
-  const Interval open = value_intervals(unseen, world().fitted(unseen, {0}), 0, 1, 1)[0];
+  const Interval open = value_intervals(unseen, world().fitted(unseen, {0}), {}, 0, 1, 1)[0];
   CHECK(open.from == -1);
   CHECK(open.to == 1);
+}
+
+TEST_CASE("A number of the simulator, the same in all runs, opens a value as far as it moves it") {
+  const Whole effect = 1000 * world().direction(0);
+  const EffectCurves curves = world().curves({effect}, 0.5 * effect);
+  const Model model = world().fitted(curves, {0});
+  // One number moves the runs as 0.1 of the effect one way and 0.04 the other, a second one as 0.05 and 0.08 of it:
+  // larger ones of both, as if they were sigmas that are independent. What is across the effect moves no value.
+  std::vector<Eigen::MatrixXd> numerics(LinearWorld::kRuns, Eigen::MatrixXd(LinearWorld::kBinsOfRun, 4));
+  const std::array<Whole, 4> columns{0.1 * effect, -0.04 * effect + 50 * world().direction(1), 0.05 * effect,
+                                     -0.08 * effect};
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    for (std::size_t r = 0; r < LinearWorld::kRuns; ++r)
+      numerics[r].col(static_cast<Eigen::Index>(c)) = LinearWorld::by_run(columns[c])[r];
+  const Interval open = value_intervals(curves, model, numerics, 0, 1, 1)[0];
+  CHECK(open.to - open.value == Approx(1.96 * std::hypot(0.1, 0.08)).epsilon(0.01));
+  CHECK(open.value - open.from == Approx(1.96 * std::hypot(0.1, 0.08)).epsilon(0.01));
 }
