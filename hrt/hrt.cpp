@@ -2,8 +2,10 @@
 #include "kenaf/hrt.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -41,6 +43,7 @@ struct Holder {
   std::shared_ptr<Robot> robot;
   std::shared_ptr<Cameras> cameras;  // while there is a robot
   bool opening = false;
+  std::atomic<pid_t> owner = 0;  // the process that opened the robot
 };
 Holder& holder() {
   static Holder* const the_holder = new Holder;
@@ -135,8 +138,14 @@ void open_with(const hrt_config& config) {
     h.opening = false;
     throw;
   }
+  h.owner = getpid();
   static std::once_flag registered;
-  std::call_once(registered, [] { std::atexit([] { (void)hrt_close(); }); });
+  std::call_once(registered, [] {
+    // a child of fork() ends by exit() too: the robot is its parent's, and goes on
+    std::atexit([] {
+      if (holder().owner == getpid()) (void)hrt_close();
+    });
+  });
   const std::lock_guard lock(h.mutex);
   h.robot = std::move(robot);
   h.cameras = std::move(cameras);

@@ -318,6 +318,8 @@ void Robot::run(relay::State state) {
       if (!command) return;
       transport_->send(*command);
     }
+    // after close() its failure stands; otherwise whoever waits for a cycle would wait for ever
+    fail(HRT_E_INTERNAL, "the wait for the robot's states was ended by something other than hrt_close()");
   } catch (const Error& error) {
     fail(error.code(), error.what());
   } catch (const std::exception& error) {

@@ -235,6 +235,22 @@ TEST_CASE("F2 F3 a broken link ends every call, and a new init opens anew") {
   CHECK(robot->closed);
 }
 
+TEST_CASE("F3 a wait for states that ends without hrt_close() ends every call") {
+  const auto robot = use_fake_robot();
+  const Open open(unhurried());
+  int result = HRT_OK;
+  std::thread driver([&] { result = hrt_go_forward(1e6); });
+  await_motion();
+  {
+    const std::lock_guard lock(robot->mutex);
+    robot->interrupted = true;
+    robot->changed.notify_all();
+  }
+  driver.join();
+  CHECK(result == HRT_E_INTERNAL);
+  CHECK(hrt_sleep(1) == HRT_E_INTERNAL);
+}
+
 TEST_CASE("F3 another thread stops a motion, and a second motion is busy") {
   const auto robot = use_fake_robot();
   const Open open(unhurried());

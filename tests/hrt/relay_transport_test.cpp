@@ -1,9 +1,15 @@
 // libkenaf_sim's transport below the whole library, against a fake relay.
 //   R1 loss, doubling and reordering change nothing but latency; R2 who is not there, or refuses, is named with what to
 //   do; R3 a link that breaks is known in time; R4 what looks like a break and is none goes on; R5 the session ends
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <iostream>
 #include <string>
 #include <thread>
 
@@ -63,6 +69,15 @@ std::vector<relay::Command> run_corner(const BadNetwork::Quality& quality, int& 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
+
+// A child of fork() that calls exit() runs what main() and the library have registered, and then ends here: what the
+// test framework and the sanitizers do at the end is the parent's.
+bool is_forked_child = false;
+struct ChildEndsHere {
+  ~ChildEndsHere() {
+    if (is_forked_child) _exit(0);
+  }
+} child_ends_here;
 
 }  // namespace
 
@@ -278,4 +293,25 @@ TEST_CASE("R5 closing says goodbye three times") {
   REQUIRE(hrt_close() == HRT_OK);
   for (int i = 0; i < 2000 && relay.byes() < 3; ++i) std::this_thread::sleep_for(1ms);
   CHECK(relay.byes() == 3);
+}
+
+TEST_CASE("R5 a child of fork() that calls exit() leaves its parent's robot alone") {
+  FakeRelay relay({});
+  const hrt_config config = config_for(relay.address());
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  std::cout.flush();
+  std::fflush(nullptr);
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    is_forked_child = true;
+    alarm(60);  // one that waits for threads that it does not have would wait for ever
+    std::exit(0);
+  }
+  int status = -1;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  CHECK(status == 0);
+  CHECK(hrt_go_forward(10) == HRT_OK);
+  CHECK(relay.byes() == 0);
+  CHECK(hrt_close() == HRT_OK);
 }
