@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "protocol/frames.hpp"
@@ -31,10 +32,13 @@ const Estimate& Estimator::update(const relay::State& state) {
   // The clock's zero is anywhere: in whole nanoseconds since the first cycle, the same run has the same times to the
   // last bit whenever it begins.
   const std::int64_t t_ns = std::llround(std::clamp(state.robot_time_s, -kLongest_s, kLongest_s) * 1e9);
-  if (first) start_ns_ = t_ns_ = t_ns;
-  now.dt_s = static_cast<double>(std::max<std::int64_t>(0, t_ns - t_ns_)) * 1e-9;
-  now.t_s = static_cast<double>(t_ns - start_ns_) * 1e-9;
+  if (first) t_ns_ = t_ns;
+  // A clock that was put back says nothing of this cycle, and is the measure of the next.
+  const std::int64_t dt_ns = std::max<std::int64_t>(0, t_ns - t_ns_);
   t_ns_ = t_ns;
+  passed_ns_ += std::min(dt_ns, std::numeric_limits<std::int64_t>::max() - passed_ns_);
+  now.dt_s = static_cast<double>(dt_ns) * 1e-9;
+  now.t_s = static_cast<double>(passed_ns_) * 1e-9;
   now.has_encoders = (state.fields & relay::kHasEncoders) != 0;
   now.has_currents = (state.fields & relay::kHasCurrents) != 0;
   if (now.has_currents) {

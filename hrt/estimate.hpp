@@ -10,7 +10,7 @@ namespace kenaf::hrt {
 
 struct Estimate {
   std::uint32_t frame = 0;
-  double t_s = 0;   // since the first cycle, in whole nanoseconds
+  double t_s = 0;   // since the first cycle, in whole nanoseconds; never goes back, though a world's Reset puts the robot's clock back
   double dt_s = 0;  // since the cycle before; 0 in the first one
   bool has_encoders = false;
   bool has_currents = false;
@@ -34,7 +34,7 @@ class Estimator {
  private:
   EstimatorSettings settings_;
   Estimate estimate_;
-  std::int64_t start_ns_ = 0, t_ns_ = 0;  // the robot's clock in the first and in the newest cycle
+  std::int64_t t_ns_ = 0, passed_ns_ = 0;  // the robot's clock in the newest cycle, and what has passed on it
   bool started_ = false;
   bool has_posture_ = false;  // was ever seen: the heading is the encoders' before, and while it is lost
   double posture_gap_s_ = 0, gap_turn_rad_ = 0;  // since it was last seen; what the encoders turned and is not counted yet

@@ -15,7 +15,7 @@ namespace {
 
 constexpr auto kLongestWait = std::chrono::milliseconds(100);
 
-// The clock's zero is anywhere: without its rounding the same run has the same file.
+// A recording begins anywhere: without the rounding of its difference the same run has the same file.
 double whole_nanoseconds(double t_s) {
   return static_cast<double>(std::llround(t_s * 1e9)) / 1e9;
 }
@@ -88,23 +88,22 @@ Recorder::~Recorder() {
   }
 }
 
-void Recorder::add(const relay::State& state, const DriveCommand& command) {
+void Recorder::add(const relay::State& state, const DriveCommand& command, double t_s) {
   std::unique_lock lock(mutex_);
   if (!started_) {
     started_ = true;
-    start_t_s_ = state.robot_time_s;
-  } else if (state.robot_time_s <= last_t_s_) {
+    start_t_s_ = t_s;
+  } else if (t_s <= last_t_s_) {
     return;
   }
-  last_t_s_ = state.robot_time_s;
+  last_t_s_ = t_s;
   const auto has_room = [&] { return count_ < kQueueRows; };
   if (wait_when_full_) row_taken_.wait_for(lock, kLongestWait, has_room);
   if (!has_room() || ended_) {
     ++lost_;
     return;
   }
-  queue_[(first_ + count_) % kQueueRows] =
-      record_row(state, command, whole_nanoseconds(state.robot_time_s - start_t_s_));
+  queue_[(first_ + count_) % kQueueRows] = record_row(state, command, whole_nanoseconds(t_s - start_t_s_));
   ++count_;
   row_added_.notify_one();
 }

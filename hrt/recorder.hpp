@@ -32,8 +32,9 @@ class Recorder {
   Recorder(const std::string& path, bool wait_when_full);
   ~Recorder();  // finishes; errors are lost then
 
-  // Time in the file counts from the first state added. A state no later than the one before is left out.
-  void add(const relay::State& state, const DriveCommand& command);
+  // `t_s`: an Estimate's, because the clock of `state` may be put back. Time in the file counts from the first state added. A
+  // state no later than the one before is left out.
+  void add(const relay::State& state, const DriveCommand& command, double t_s);
 
   // Writes what is queued and closes the file. Throws Error(HRT_E_RECORD): not whole, with the reason.
   void finish();

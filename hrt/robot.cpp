@@ -47,7 +47,7 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
     last_call_t_s_ = estimate_.t_s;
     due_.push_back({gettid()});
     if (config_.record[0] != '\0') recorder_ = std::make_unique<Recorder>(config_.record, connection_.lockstep);
-    if (recorder_) recorder_->add(*first, command_);
+    if (recorder_) recorder_->add(*first, command_, estimate_.t_s);
     thread_ = start_quiet_thread([this, state = *first] { run(state); });
   } catch (...) {
     transport_->close();
@@ -271,7 +271,7 @@ void Robot::record_start(const std::string& path) {
   const std::unique_lock lock = lock_open();
   if (recorder_) throw Error(HRT_E_BUSY, "a recording is under way; hrt_record_stop() ends it");
   recorder_ = std::make_unique<Recorder>(path, connection_.lockstep);
-  recorder_->add(measured_, command_);
+  recorder_->add(measured_, command_, estimate_.t_s);
   note_setting();
 }
 
@@ -342,7 +342,7 @@ std::optional<DriveCommand> Robot::answer(const relay::State& state) {
     measured_at_ = Clock::now();
     estimate_ = estimator_.update(state);
     warning_ = transport_->warning();
-    if (recorder_) recorder_->add(state, command_);
+    if (recorder_) recorder_->add(state, command_, estimate_.t_s);
   }
   step_calls();
   if (connection_.lockstep) {

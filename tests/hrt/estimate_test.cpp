@@ -81,7 +81,8 @@ TEST_CASE("a sensor that begins late or pauses makes nothing jump") {
   CHECK(now.heading_rad == 1);
 }
 
-TEST_CASE("a posture sensor that is lost leaves the heading to the encoders, and one that comes back makes it not jump") {
+TEST_CASE(
+    "a posture sensor that is lost leaves the heading to the encoders, and one that comes back makes it not jump") {
   Estimator estimator({0.2, 1});
   const auto state = [](std::uint32_t cycle, double right_m, std::optional<double> yaw_rad) {
     relay::State out = state_at(cycle, 0, right_m);
@@ -90,7 +91,8 @@ TEST_CASE("a posture sensor that is lost leaves the heading to the encoders, and
     return out;
   };
   (void)estimator.update(state(1, 0, 1.0));
-  // the right track runs 1 mm a cycle: 0.005 rad at a gauge of 0.2 m. Lost after 0.25 s; then what was missed counts too
+  // the right track runs 1 mm a cycle: 0.005 rad at a gauge of 0.2 m. Lost after 0.25 s; then what was missed counts
+  // too
   Estimate now;
   for (std::uint32_t i = 1; i <= 24; ++i) now = estimator.update(state(1 + i, 1e-3 * i, {}));
   CHECK(now.heading_rad == 1.0);
@@ -102,6 +104,25 @@ TEST_CASE("a posture sensor that is lost leaves the heading to the encoders, and
   for (std::uint32_t i = 0; i < 100; ++i) now = estimator.update(state(103 + i, 0.1, -1.8));
   CHECK(now.heading_rad == Approx(1.7));
   CHECK(now.odometry_yaw_rad == Approx(0.7));
+}
+
+TEST_CASE("time goes on where the robot's clock is put back, and the same to the last bit where it is not") {
+  Estimator estimator({0.2, 1});
+  Estimate now;
+  for (std::uint32_t i = 1; i <= 100; ++i) {
+    now = estimator.update(state_at(i, 0, 0));
+    REQUIRE(now.t_s == static_cast<double>(10'000'000 * (i - 1)) * 1e-9);
+  }
+  relay::State state = state_at(101, 0, 0);
+  state.robot_time_s = 0;  // a world's Reset: how long this cycle lasted is not known
+  now = estimator.update(state);
+  CHECK(now.dt_s == 0);
+  CHECK(now.t_s == Approx(0.99));
+  state = state_at(102, 0, 0);
+  state.robot_time_s = 0.01;
+  now = estimator.update(state);
+  CHECK(now.dt_s == Approx(0.01));
+  CHECK(now.t_s == Approx(1.0));
 }
 
 TEST_CASE("the tracks stand while they move less than the encoders resolve") {

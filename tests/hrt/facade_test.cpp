@@ -48,6 +48,21 @@ void await_motion() {
   } while ((state.activity & HRT_MOTION_ACTIVE) == 0);
 }
 
+// Waits, without calling the library, until the tracks are told to stand; the last frame whose answer told them
+// otherwise.
+std::size_t last_moving_frame(FakeRobot& robot) {
+  std::size_t frame = 0;
+  for (bool stopped = false; !stopped; std::this_thread::sleep_for(1ms)) {
+    const std::lock_guard lock(robot.mutex);
+    const std::size_t count = robot.commands.size();
+    stopped = robot.commands.back().track_speed_mps[0] == 0;
+    for (std::size_t i = 0; stopped && i < count; ++i) {
+      if (robot.commands[i].track_speed_mps[0] != 0) frame = i + 1;
+    }
+  }
+  return frame;
+}
+
 // A robot on which a motion of 100 m lasts long enough to be interrupted.
 hrt_config unhurried() {
   hrt_config config = hrt_config_default();
@@ -478,21 +493,49 @@ TEST_CASE("F5 track speeds hold while the program calls, and stop command_timeou
   REQUIRE(hrt_set_tracks(100, 100) == HRT_OK);
   REQUIRE(hrt_sleep(2) == HRT_OK);      // calling all the while
   const double last_call_s = 0.01 + 2;  // the first cycle is at 0.01 s
-  // Without calling: watch the robot, not the library.
-  double moving_until_s = 0;
-  for (bool stopped = false; !stopped; std::this_thread::sleep_for(1ms)) {
-    const std::lock_guard lock(robot->mutex);
-    const std::size_t count = robot->commands.size();
-    stopped = robot->commands.back().track_speed_mps[0] == 0;
-    for (std::size_t i = 0; stopped && i < count; ++i) {
-      if (robot->commands[i].track_speed_mps[0] != 0) moving_until_s = 0.01 * static_cast<double>(i + 1);
-    }
-  }
+  const double moving_until_s = 0.01 * static_cast<double>(last_moving_frame(*robot));
   CHECK(moving_until_s - last_call_s == Approx(0.3).margin(0.011));
   hrt_state state = hrt_state_init();
   REQUIRE(hrt_wait_cycle(&state) == HRT_OK);
   REQUIRE(hrt_wait_cycle(&state) == HRT_OK);
   CHECK(state.commanded_track_mmps[0] == 0);  // stopped for good, until commanded anew
+}
+
+TEST_CASE("F5 and they stop as early where the world is reset meanwhile") {
+  const auto robot = use_fake_robot();
+  robot->reset_at_frame = 205;
+  hrt_config config = hrt_config_default();
+  config.command_timeout_s = 0.3;
+  const Open open(config);
+  REQUIRE(hrt_set_tracks(100, 100) == HRT_OK);
+  REQUIRE(hrt_sleep(2) == HRT_OK);
+  // cycle 201 is the last call's; 30 cycles are 0.3 s; the one in which the clock is put back does not count
+  const std::size_t frame = last_moving_frame(*robot);
+  CHECK(frame >= 231);
+  CHECK(frame <= 233);
+}
+
+TEST_CASE("F1 F6 where the world is reset, sleeping and a recording go on") {
+  const kenaf::support::TemporaryFolder folder;
+  const std::string file = (folder.path() / "run.csv").string();
+  const auto robot = use_fake_robot();
+  robot->reset_at_frame = 1000;
+  hrt_config config = hrt_config_default();
+  config.hold_s = 0.2;
+  file.copy(config.record, sizeof config.record - 1);
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  hrt_state before = hrt_state_init(), after = hrt_state_init();
+  REQUIRE(hrt_sleep(9) == HRT_OK);
+  REQUIRE(hrt_get_state(&before) == HRT_OK);
+  REQUIRE(hrt_sleep(2) == HRT_OK);
+  REQUIRE(hrt_get_state(&after) == HRT_OK);
+  REQUIRE(hrt_close() == HRT_OK);
+  CHECK(after.time_s < before.time_s);
+  CHECK(after.cycle - before.cycle == 201);  // the reset's own takes no time that is known
+  const kenaf::runs::Run run = kenaf::runs::read_run(file);
+  CHECK(run.row_count() == after.cycle - 1);
+  CHECK(run.column("t_s").back() == Approx(11));
+  CHECK(run.column("robot_time_s").back() == Approx(after.time_s));
 }
 
 TEST_CASE("F6 a recording has every cycle once, with what was commanded and measured") {

@@ -69,6 +69,9 @@ std::optional<relay::State> FakeTransport::wait_state() {
     robot_->plant.advance(command_);
   } while (robot_->plant.state.frame == robot_->skipped_frame);
   answered_ = false;
+  if (robot_->reset_at_frame != 0 && robot_->plant.state.frame >= robot_->reset_at_frame) {
+    robot_->plant.state.robot_time_s -= robot_->reset_at_frame * robot_->plant.settings.period_s;
+  }
   if (robot_->lost_at_frame != 0 && robot_->plant.state.frame >= robot_->lost_at_frame) {
     throw Error(HRT_E_LINK, "the fake link broke");
   }

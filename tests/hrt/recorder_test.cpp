@@ -83,7 +83,7 @@ TEST_CASE("R1 R2 a disk that stalls for as many cycles as the queue holds costs 
   Recorder recorder(recording_in(folder), false);
   // If one add() waited for the disk, it would wait for good: nobody reads before all of them are done.
   constexpr std::uint32_t kRows = Recorder::kQueueRows;
-  for (std::uint32_t i = 0; i < kRows; ++i) recorder.add(state_of(i), DriveCommand{});
+  for (std::uint32_t i = 0; i < kRows; ++i) recorder.add(state_of(i), DriveCommand{}, 0.01 * i);
   disk.resume();
   recorder.finish();
   const runs::Run run = disk.written();
@@ -96,7 +96,7 @@ TEST_CASE("R1 R3 one that stalls for longer loses rows, still without a wait, an
   StalledDisk disk(recording_in(folder));
   Recorder recorder(recording_in(folder), false);
   constexpr std::uint32_t kRows = 3 * Recorder::kQueueRows;
-  for (std::uint32_t i = 0; i < kRows; ++i) recorder.add(state_of(i), DriveCommand{});
+  for (std::uint32_t i = 0; i < kRows; ++i) recorder.add(state_of(i), DriveCommand{}, 0.01 * i);
   disk.resume();
   std::string said;
   try {
