@@ -10,7 +10,7 @@ namespace kenaf::hrt {
 
 struct Estimate {
   std::uint32_t frame = 0;
-  double t_s = 0;   // since the first cycle, in whole nanoseconds; never goes back, though a world's Reset puts the robot's clock back
+  double t_s = 0;   // since the first cycle, in whole nanoseconds; never goes back, as a reset world's clock does
   double dt_s = 0;  // since the cycle before; 0 in the first one
   bool has_encoders = false;
   bool has_currents = false;

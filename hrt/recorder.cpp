@@ -139,7 +139,7 @@ void Recorder::finish() {
   if (thread_.joinable()) {
     thread_.join();
     try {
-      if (failure_.empty()) writer_.finish();
+      if (failure_.empty() && started_) writer_.finish();
     } catch (const std::exception& error) {
       failure_ = error.what();
     }

@@ -30,7 +30,7 @@ class Recorder {
   // Throws Error(HRT_E_RECORD) where the file cannot be made. `wait_when_full`: add() may wait for the disk, since
   // robot time waits too; otherwise a row that finds the queue full is lost and counted.
   Recorder(const std::string& path, bool wait_when_full);
-  ~Recorder();  // finishes; errors are lost then
+  ~Recorder();  // finishes; errors are lost then. Without a row the file is not made, and one of its name stays
 
   // `t_s`: an Estimate's, because the clock of `state` may be put back. Time in the file counts from the first state added. A
   // state no later than the one before is left out.

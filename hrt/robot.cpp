@@ -268,14 +268,21 @@ std::optional<double> Robot::robot_time_at(Clock::time_point moment) const {
 }
 
 void Robot::record_start(const std::string& path) {
+  const std::lock_guard one(record_mutex_);
+  {
+    const std::unique_lock lock = lock_open();
+    if (recorder_) throw Error(HRT_E_BUSY, "a recording is under way; hrt_record_stop() ends it");
+  }
+  // the file is made while cycles go on: a disk may take seconds for it
+  auto recorder = std::make_unique<Recorder>(path, connection_.lockstep);
   const std::unique_lock lock = lock_open();
-  if (recorder_) throw Error(HRT_E_BUSY, "a recording is under way; hrt_record_stop() ends it");
-  recorder_ = std::make_unique<Recorder>(path, connection_.lockstep);
+  recorder_ = std::move(recorder);
   recorder_->add(measured_, command_, estimate_.t_s);
   note_setting();
 }
 
 void Robot::record_stop() {
+  const std::lock_guard one(record_mutex_);  // until the file is whole: the next recording may have its name
   std::unique_ptr<Recorder> recorder;
   {
     const std::lock_guard lock(mutex_);  // also where the link is lost: what came before it is worth keeping
@@ -301,6 +308,7 @@ void Robot::close() {
     thread_.join();
     transport_->close();
   }
+  const std::lock_guard one_recording(record_mutex_);
   std::unique_ptr<Recorder> recorder;
   {
     const std::lock_guard lock(mutex_);

@@ -145,7 +145,8 @@ class Robot {
   std::vector<Due> due_;
   std::unique_ptr<Recorder> recorder_;
 
-  std::mutex close_mutex_;  // one close at a time
+  std::mutex close_mutex_;   // one close at a time
+  std::mutex record_mutex_;  // one recording is begun or ended at a time; locked before mutex_, and never by the cycle thread
   std::thread thread_;
 };
 

@@ -12,6 +12,7 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <thread>
 
@@ -30,21 +31,21 @@ namespace {
 // Where a recording to `file` is written aside: nothing more than a pipe holds, 64 KiB, goes there before resume().
 class StalledDisk {
  public:
-  explicit StalledDisk(const std::string& file) {
-    const std::string part = file + ".part";
-    REQUIRE(::mkfifo(part.c_str(), 0600) == 0);
-    descriptor_ = ::open(part.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    REQUIRE(descriptor_ >= 0);
+  // `makes_file`: at once; otherwise who opens it to write waits for resume(), too.
+  explicit StalledDisk(const std::string& file, bool makes_file = true) : part_(file + ".part") {
+    REQUIRE(::mkfifo(part_.c_str(), 0600) == 0);
+    if (makes_file) open(O_NONBLOCK);
   }
   ~StalledDisk() {
     if (reader_.joinable()) reader_.join();
-    ::close(descriptor_);
+    if (descriptor_ >= 0) ::close(descriptor_);
   }
   StalledDisk(const StalledDisk&) = delete;
   StalledDisk& operator=(const StalledDisk&) = delete;
 
   // Takes all from now on, until the recording is closed.
   void resume() {
+    if (descriptor_ < 0) open(0);
     REQUIRE(::fcntl(descriptor_, F_SETFL, 0) == 0);  // reading waits
     reader_ = std::thread([this] {
       std::array<char, 65536> chunk;
@@ -59,7 +60,13 @@ class StalledDisk {
   }
 
  private:
-  int descriptor_;
+  void open(int flags) {
+    descriptor_ = ::open(part_.c_str(), O_RDONLY | O_CLOEXEC | flags);
+    REQUIRE(descriptor_ >= 0);
+  }
+
+  std::string part_;
+  int descriptor_ = -1;
   std::thread reader_;
   std::string bytes_;
 };
@@ -133,6 +140,34 @@ TEST_CASE("R1 R2 a robot that does not wait for its program is answered in every
     REQUIRE(frame[i] == frame[0] + static_cast<double>(i));
     REQUIRE(late[i] == 0);
   }
+}
+
+TEST_CASE("R1 cycles go on while the disk makes the file of a recording") {
+  const support::TemporaryFolder folder;
+  StalledDisk disk(recording_in(folder), false);
+  const auto robot = hrt::test::use_fake_robot();
+  robot->lockstep = false;
+  REQUIRE(hrt_kenaf_init() == HRT_OK);
+  int started = HRT_E_INTERNAL;
+  std::thread starter([&] { started = hrt_record_start(recording_in(folder).c_str()); });
+  // 4000 cycles are a tenth of a second at least: a start that kept them waiting would keep this call for good
+  CHECK(hrt_sleep(40) == HRT_OK);
+  disk.resume();
+  starter.join();
+  CHECK(started == HRT_OK);
+  CHECK(hrt_sleep(0.1) == HRT_OK);
+  CHECK(hrt_record_stop() == HRT_OK);
+  REQUIRE(hrt_close() == HRT_OK);
+  CHECK(disk.written().row_count() >= 10);
+}
+
+TEST_CASE("R3 a recording that gets no row leaves the file of its name as it is") {
+  const support::TemporaryFolder folder;
+  std::ofstream(recording_in(folder)) << "of before";
+  { const Recorder recorder(recording_in(folder), false); }
+  std::string text;
+  std::getline(std::ifstream(recording_in(folder)), text);
+  CHECK(text == "of before");
 }
 
 TEST_CASE("R4 KENAF_RECORD records the same as the call, from the first cycle on") {
