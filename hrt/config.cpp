@@ -224,6 +224,7 @@ void load_config(const Environment& environment, hrt_config& config) {
     apply_toml(text, path.string(), changed);
   }
   apply_environment(environment, changed);
+  check_together(changed, HRT_E_CONFIG);
   config = changed;
 }
 
@@ -238,6 +239,15 @@ void check_config(const hrt_config& config) {
     const auto end = std::ranges::find(text, '\0');
     if (end == text.end()) check(fmt::format("{} has no terminating zero", key.name));
     check(end == text.begin() && !key.may_be_empty ? fmt::format("{} must not be empty", key.name) : "");
+  }
+}
+
+void check_together(const hrt_config& config, int code) {
+  // the time since the last call is looked at once a cycle: such a robot would be stopped in each
+  if (config.period_s > config.command_timeout_s) {
+    throw Error(
+        code, fmt::format("period_s, {}, must not be above command_timeout_s, {}: the tracks would stop in every cycle",
+                          config.period_s, config.command_timeout_s));
   }
 }
 

@@ -32,10 +32,13 @@ void apply_toml(std::string_view text, const std::string& name_for_errors, hrt_c
 void apply_environment(const Environment& environment, hrt_config& config);
 
 // The file that applies ($KENAF_CONFIG, ./kenaf.toml, ~/.config/kenaf/kenaf.toml; none of them is no error), then the
-// environment.
+// environment. Throws Error(HRT_E_CONFIG), also where the members do not go together then.
 void load_config(const Environment& environment, hrt_config& config);
 
 // Throws Error(HRT_E_ARGUMENT) naming the member that is out of its range. `config` is a whole one.
 void check_config(const hrt_config& config);
+
+// Throws Error(`code`) naming members that are each in their range and do not go together.
+void check_together(const hrt_config& config, int code);
 
 }  // namespace kenaf::hrt

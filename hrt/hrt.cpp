@@ -197,6 +197,7 @@ int hrt_kenaf_init_with(const hrt_config* config) {
     require(config != nullptr, "config is a null pointer");
     const hrt_config whole = kenaf::hrt::whole_config(*config);
     kenaf::hrt::check_config(whole);
+    kenaf::hrt::check_together(whole, HRT_E_ARGUMENT);
     open_with(whole);
   });
 }

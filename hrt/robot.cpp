@@ -401,7 +401,8 @@ void Robot::look_at_due() {
 
 void Robot::compose_command() {
   if (!calls_.empty()) last_call_t_s_ = estimate_.t_s;
-  if (estimate_.t_s - last_call_t_s_ > config_.command_timeout_s) user_track_mps_ = {};
+  const double silent_s = estimate_.t_s - last_call_t_s_ - kCycleRounding * connection_.period_s;
+  if (silent_s > config_.command_timeout_s) user_track_mps_ = {};
   command_.track_speed_mps = motion_active() ? motion_track_mps_ : user_track_mps_;
   if (closing_) command_.track_speed_mps = {};
   command_.flipper_mask = flipper_mask_;

@@ -127,7 +127,7 @@ typedef struct hrt_config {
 
   /* Cycle and link. */
   double period_s;          /* one cycle, robot time: 0.001 to 1, default 0.01 */
-  double command_timeout_s; /* silence after which the tracks stop, robot time: 0.01 to 10, default 0.1 */
+  double command_timeout_s; /* silence after which the tracks stop, robot time: 0.01 to 10, not below period_s, default 0.1 */
   double link_timeout_s;    /* silence of the link that is an error, wall clock: 0.05 to 10, default 0.5 */
   double connect_timeout_s; /* how long init waits for the robot, wall clock: 0.05 to 60, default 3 */
 
@@ -170,7 +170,7 @@ int hrt_config_fill(hrt_config* config);
 
 /* Overrides *config by file and environment as above; members named in neither keep their value.
  * HRT_E_ARGUMENT: null or not from hrt_config_default(); HRT_E_CONFIG: *config is unchanged, hrt_last_error() names
- * file, line and column, or the variable. Reads the environment: not while another thread changes it. */
+ * file, line and column, or the variable, or the members that do not go together. Reads the environment: not while another thread changes it. */
 int hrt_config_load(hrt_config* config);
 
 /* The built-in defaults, ready to be changed and given to hrt_kenaf_init_with. */
@@ -198,7 +198,8 @@ static inline hrt_config hrt_config_default(void) {
 int hrt_kenaf_init(void);
 
 /* The same with *config alone; file and environment are not read (hrt_config_load does that).
- * Also HRT_E_ARGUMENT: null, not from hrt_config_default(), or a member out of its range; hrt_last_error() names it. */
+ * Also HRT_E_ARGUMENT: null, not from hrt_config_default(), a member out of its range, or two that do not go together;
+ * hrt_last_error() names them. */
 int hrt_kenaf_init_with(const hrt_config* config);
 
 /* Stops the tracks, ends a recording with the newest cycle, and gives the robot back. Calls that wait in other threads return HRT_E_CLOSED.

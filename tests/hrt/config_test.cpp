@@ -161,6 +161,26 @@ TEST_CASE("what is wrong in the environment is named by its variable") {
   CHECK_THAT(environment_error({{"KENAF_RELAY", std::string(500, 'x')}}), Catch::Contains("at most 127 bytes"));
 }
 
+TEST_CASE("a cycle longer than the commands' timeout is refused, wherever the two come from") {
+  const std::string both = "period_s, 0.2, must not be above command_timeout_s, 0.1";
+  hrt_config config = default_config();
+  const hrt_config before = config;
+  try {
+    load_config(environment_of({{"KENAF_PERIOD_S", "0.2"}}), config);
+    FAIL("it was taken");
+  } catch (const Error& error) {
+    CHECK(error.code() == HRT_E_CONFIG);
+    CHECK_THAT(error.what(), Catch::StartsWith(both));
+    CHECK(std::memcmp(&config, &before, sizeof config) == 0);
+  }
+  load_config(environment_of({{"KENAF_PERIOD_S", "0.2"}, {"KENAF_COMMAND_TIMEOUT_S", "0.2"}}), config);
+  CHECK(config.period_s == 0.2);
+  config = hrt_config_default();
+  config.period_s = 0.2;
+  CHECK(hrt_kenaf_init_with(&config) == HRT_E_ARGUMENT);
+  CHECK_THAT(hrt_last_error(), Catch::StartsWith(both));
+}
+
 TEST_CASE("a config that a program made up is refused, member by member") {
   hrt_config config = hrt_config_default();
   config.stuck_time_s = 0;
