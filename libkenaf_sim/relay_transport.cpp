@@ -85,8 +85,12 @@ hrt::Connection RelayTransport::open(const hrt_config& config) {
 
 void RelayTransport::connect_socket() {
   const Addresses found = look_up("relay", relay_, SOCK_DGRAM);
-  socket_ = socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (socket_ < 0 || connect(socket_, found->ai_addr, found->ai_addrlen) < 0) {
+  // kenaf-relayd listens on IPv4 alone, and "localhost" may be ::1 first
+  const addrinfo* address = found.get();
+  while (address != nullptr && address->ai_family != AF_INET) address = address->ai_next;
+  if (address == nullptr) address = found.get();
+  socket_ = socket(address->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (socket_ < 0 || connect(socket_, address->ai_addr, address->ai_addrlen) < 0) {
     throw Error(HRT_E_LINK, fmt::format("no way to the relay at {}: {}", relay_, std::strerror(errno)));
   }
 }

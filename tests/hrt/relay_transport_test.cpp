@@ -140,6 +140,13 @@ TEST_CASE("R2 no relay: the error says what to start, after connect_timeout_s") 
              Catch::Contains(address) && Catch::Contains("start kenaf-relayd") && Catch::Contains("nobody listens"));
 }
 
+TEST_CASE("R2 a host that has also an IPv6 address is reached where the relay listens") {
+  FakeRelay relay({});
+  const hrt_config config = config_for("localhost:" + std::to_string(relay.port()));
+  REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+  CHECK(hrt_close() == HRT_OK);
+}
+
 TEST_CASE("R2 an address that is none is an error of the configuration") {
   for (const char* address :
        {"127.0.0.1", "127.0.0.1:", "127.0.0.1:port", "127.0.0.1:0", "127.0.0.1:65536", "127.0.0.1:-1", ":1"}) {
