@@ -108,7 +108,8 @@ void CanTransport::lose(std::size_t drive) {
 
 void CanTransport::send(const hrt::DriveCommand& command) try {
   Session& s = *session_;
-  const double elapsed_s = (s.newest - s.answered) * s.period_s;
+  // what came before the first answer, power-up and homing, is nothing that a ramp may make up for
+  const double elapsed_s = (s.answered == 0 ? 1 : s.newest - s.answered) * s.period_s;
   s.answered = s.newest;
   s.cycle.send(s.targets->step(command, s.cycle.image(), elapsed_s));
 } catch (const canopen::BusError& error) {

@@ -32,7 +32,9 @@ DriveOrders DriveTargets::step(const hrt::DriveCommand& command, const ProcessIm
   for (std::size_t f = 0; f < relay::kFlipperCount; ++f) {
     const std::size_t drive = relay::kTrackCount + f;
     const bool told = (command.flipper_mask >> f & 1) != 0;
-    if (told) hold_rad_[f] = command.flipper_rad[f];
+    const DriveOnBus& on_bus = bus_.drives[drive];
+    // one that was not told anything stays also where that is outside of its limits
+    if (told) hold_rad_[f] = std::clamp(command.flipper_rad[f], on_bus.min_position, on_bus.max_position);
     orders[drive] = flipper(drive, told, image.drive(drive), elapsed_s);
   }
   return orders;
@@ -52,12 +54,11 @@ DriveOrder DriveTargets::track(std::size_t i, double speed_mps, double elapsed_s
 DriveOrder DriveTargets::flipper(std::size_t i, bool told, const DriveInput& input, double elapsed_s) {
   const DriveOnBus& drive = bus_.drives[i];
   const std::size_t f = i - relay::kTrackCount;
-  const double wanted_rad = std::clamp(hold_rad_[f], drive.min_position, drive.max_position);
   if (drive.mode == DriveMode::cyclic_position) {
-    ramps_[f].step(wanted_rad, drive.max_speed, drive.acceleration, elapsed_s);
+    ramps_[f].step(hold_rad_[f], drive.max_speed, drive.acceleration, elapsed_s);
     return {canopen::kControlEnable, position_to_drive(drive.units, ramps_[f].position)};
   }
-  const std::int32_t target = position_to_drive(drive.units, wanted_rad);
+  const std::int32_t target = position_to_drive(drive.units, hold_rad_[f]);
   // a drive in profile position mode holds by itself where it was enabled
   if (!told) return {canopen::kControlEnable, target};
   const std::uint16_t handshake = handshakes_[f].step(target, input.statusword);

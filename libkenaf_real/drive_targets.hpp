@@ -22,7 +22,7 @@ class DriveTargets {
   // The flippers stay where they are until they are told otherwise.
   DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image);
 
-  // Out of range is cut to the description's limits. `elapsed_s` since the call before.
+  // A command out of range is cut to the description's limits. `elapsed_s` since the call before; in the first call a period.
   DriveOrders step(const hrt::DriveCommand& command, const ProcessImage& image, double elapsed_s);
 
  private:

@@ -76,6 +76,31 @@ TEST_CASE("what is beyond the description's limits is cut to them") {
   CHECK((orders[3].controlword & canopen::kControlNewSetPoint) == 0);  // was never told anything: no set-point
 }
 
+TEST_CASE("a flipper that stands outside of its limits stays there until it is told, and then goes as its ramp does") {
+  for (const DriveMode mode : {DriveMode::cyclic_position, DriveMode::profile_position}) {
+    const canbus::RobotBus bus = bus_with(DriveMode::cyclic_velocity, mode);
+    const std::int32_t outside = position_to_drive(bus.drives[2].units, 4);  // its range ends at pi
+    const ProcessImage image = image_at(bus, outside);
+    DriveTargets targets(bus, image);
+    for (int k = 0; k < 10; ++k) {
+      const DriveOrders orders = targets.step({}, image, 0.01);
+      for (std::size_t i = relay::kTrackCount; i < canbus::kDriveCount; ++i) {
+        CHECK(orders[i].controlword == kControlEnable);
+        CHECK(orders[i].target == outside);
+      }
+    }
+    hrt::DriveCommand command;
+    command.flipper_mask = 1;
+    command.flipper_rad[0] = 5;
+    const DriveOrders orders = targets.step(command, image, 0.01);
+    // 15 rad/s^2 in 10 ms: 0.15 rad/s, and so 0.0015 rad; a drive in profile mode has its own ramp to the end of the
+    // range
+    const double first_rad = mode == DriveMode::cyclic_position ? 4 - 0.0015 : bus.drives[2].max_position;
+    CHECK(orders[2].target == Approx(position_to_drive(bus.drives[2].units, first_rad)).margin(1));
+    CHECK(orders[3].target == outside);
+  }
+}
+
 TEST_CASE("a position ramp reaches its target in the time of its trapezoid and does not go beyond") {
   // 1 rad at 1.5 rad/s and 15 rad/s^2: 0.1 s up, 0.1 s down, 0.15 rad together; 0.85 rad at full speed: 0.567 s; in all
   // 0.767 s
