@@ -243,9 +243,11 @@ void Robot::snapshot(Snapshot& out) {
   out.commanded = command_;
   out.lost_cycles = lost_cycles_;
   out.warning = warning_;
-  out.round_trip_s = transport_->round_trip_s();
+  if (!closing_) {  // afterwards the transport may be closing without this lock
+    out.round_trip_s = transport_->round_trip_s();
+    out.paused = transport_->is_paused();
+  }
   out.motion_active = motion_active();
-  out.paused = transport_->is_paused();
   out.recording = recorder_ != nullptr;
   out.lockstep = connection_.lockstep;
   if (failure_) throw *failure_;

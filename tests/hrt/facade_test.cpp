@@ -15,6 +15,7 @@
 #include <string>
 #include <thread>
 
+#include "hrt/robot.hpp"
 #include "kenaf/hrt.h"
 #include "runs/run_file.hpp"
 #include "tests/hrt/fake_transport.hpp"
@@ -314,6 +315,19 @@ TEST_CASE("F3 closing ends the calls of other threads") {
   CHECK(moved == HRT_E_CLOSED);
   CHECK((slept == HRT_E_CLOSED || slept == HRT_E_NOT_INITIALISED));
   CHECK(robot->closed);
+}
+
+TEST_CASE("F3 a robot that is being closed asks its transport nothing more") {
+  const auto fake = use_fake_robot();
+  kenaf::hrt::Robot robot(kenaf::hrt::make_transport(), hrt_config_default());
+  kenaf::hrt::Snapshot snapshot;
+  robot.snapshot(snapshot);
+  CHECK(snapshot.round_trip_s == 0.002);
+  robot.close();
+  snapshot = {};
+  CHECK_THROWS_WITH(robot.snapshot(snapshot), "hrt_close() was called");
+  CHECK(snapshot.round_trip_s == 0);
+  CHECK(snapshot.measured.frame > 0);
 }
 
 TEST_CASE("F3 flippers that do not arrive are named, and hrt_stop leaves them where they are") {
