@@ -42,8 +42,8 @@ struct Holder {
   std::mutex mutex;
   std::shared_ptr<Robot> robot;
   std::shared_ptr<Cameras> cameras;  // while there is a robot
-  bool opening = false;
-  std::atomic<pid_t> owner = 0;  // the process that opened the robot
+  const char* under_way = nullptr;   // what a thread does with it: "opened", "closed"
+  std::atomic<pid_t> owner = 0;      // the process that opened the robot
 };
 Holder& holder() {
   static Holder* const the_holder = new Holder;
@@ -113,29 +113,40 @@ void copy_state(const Snapshot& snapshot, hrt_state& out) {
   std::memcpy(&out, &full, out.size);
 }
 
+// Not by its destructor: a call that has not returned yet may keep it alive, and with it the bus that the new one
+// needs.
+void close_lost(Robot& robot) {
+  try {
+    robot.close();
+  } catch (const std::exception&) {
+    // its recording is not whole: who wanted to know would have ended it, and a new robot is what is asked for now
+  }
+}
+
 void open_with(const hrt_config& config) {
   Holder& h = holder();
   std::shared_ptr<Robot> lost;
   std::shared_ptr<Cameras> lost_cameras;
   {
     const std::lock_guard lock(h.mutex);
-    if (h.opening || (h.robot && !h.robot->is_lost())) {
-      throw Error(HRT_E_BUSY, h.opening ? "the robot is being opened by another thread" : "the robot is open already");
+    if (h.under_way != nullptr) {
+      throw Error(HRT_E_BUSY, fmt::format("the robot is being {} by another thread", h.under_way));
     }
+    if (h.robot && !h.robot->is_lost()) throw Error(HRT_E_BUSY, "the robot is open already");
     lost = std::move(h.robot);
     lost_cameras = std::move(h.cameras);
-    h.opening = true;
+    h.under_way = "opened";
   }
-  if (lost_cameras) lost_cameras->close();
-  lost.reset();
   std::shared_ptr<Robot> robot;
   std::shared_ptr<Cameras> cameras;
   try {
+    if (lost_cameras) lost_cameras->close();
+    if (lost) close_lost(*lost);
     robot = std::make_shared<Robot>(kenaf::hrt::make_transport(), config);
     cameras = std::make_shared<Cameras>(config);
   } catch (...) {
     const std::lock_guard lock(h.mutex);
-    h.opening = false;
+    h.under_way = nullptr;
     throw;
   }
   h.owner = getpid();
@@ -149,7 +160,7 @@ void open_with(const hrt_config& config) {
   const std::lock_guard lock(h.mutex);
   h.robot = std::move(robot);
   h.cameras = std::move(cameras);
-  h.opening = false;
+  h.under_way = nullptr;
 }
 
 constexpr double kMaxDistance_mm = 1e6, kMaxAngle_deg = 36000, kMaxTrack_mmps = 2000, kMaxFlipper_deg = 360;
@@ -204,20 +215,26 @@ int hrt_kenaf_init_with(const hrt_config* config) {
 
 int hrt_close(void) {
   return guarded([] {
+    Holder& h = holder();
     std::shared_ptr<Robot> robot;
     std::shared_ptr<Cameras> cameras;
     {
-      Holder& h = holder();
       const std::lock_guard lock(h.mutex);
+      if (!h.robot) return;
       robot = std::move(h.robot);
       cameras = std::move(h.cameras);
+      h.under_way = "closed";
     }
     // the robot first: it stops
-    const int code = guarded([&] {
-      if (robot) robot->close();
-    });
-    if (cameras) cameras->close();
-    if (code != HRT_OK) throw Error(code, std::string(last_error));
+    const int code = guarded([&] { robot->close(); });
+    const int cameras_code = guarded([&] { cameras->close(); });
+    {
+      const std::lock_guard lock(h.mutex);
+      h.under_way = nullptr;
+    }
+    if (code != HRT_OK || cameras_code != HRT_OK) {
+      throw Error(code != HRT_OK ? code : cameras_code, std::string(last_error));
+    }
   });
 }
 

@@ -310,7 +310,6 @@ void Robot::close() {
     thread_.join();
     transport_->close();
   }
-  const std::lock_guard one_recording(record_mutex_);
   std::unique_ptr<Recorder> recorder;
   {
     const std::lock_guard lock(mutex_);

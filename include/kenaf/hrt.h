@@ -189,7 +189,7 @@ static inline hrt_config hrt_config_default(void) {
  * back at its start pose. Odometry begins at 0.
  * Blocks up to connect_timeout_s of wall-clock time; libkenaf_real: can_timeout_s until all nodes have started, a second
  * or two to set them up, and the homing.
- * HRT_E_BUSY: the robot is open already (one whose link was lost is closed and opened anew), or is being opened;
+ * HRT_E_BUSY: the robot is open already (one whose link was lost is closed and opened anew), or is being opened or closed;
  * HRT_E_CONFIG; HRT_E_LINK: nobody answers, hrt_last_error() says what to start; HRT_E_REFUSED: another program has
  * the robot, or the relay has no world server; HRT_E_DEVICE: (libkenaf_real) no SocketCAN in the kernel, no such
  * interface, interface down, or a node that does not start, is not what it should be, refuses a value or does not get

@@ -161,6 +161,56 @@ TEST_CASE("R1 cycles go on while the disk makes the file of a recording") {
   CHECK(disk.written().row_count() >= 10);
 }
 
+TEST_CASE("a lost robot is closed before a new one is opened, also while its recording waits for the disk") {
+  const support::TemporaryFolder folder;
+  StalledDisk disk(recording_in(folder));
+  const auto lost = hrt::test::use_fake_robot();
+  lost->lockstep = false;
+  REQUIRE(hrt_kenaf_init() == HRT_OK);
+  REQUIRE(hrt_record_start(recording_in(folder).c_str()) == HRT_OK);
+  REQUIRE(hrt_sleep(10) == HRT_OK);  // 1000 rows are more than the pipe takes: the recording's end waits for it
+  {
+    const std::lock_guard lock(lost->mutex);
+    lost->lost_at_frame = 1;
+  }
+  while (hrt_wait_cycle(nullptr) == HRT_OK) {
+  }
+  int stopped = HRT_E_INTERNAL;
+  std::thread stopper([&] { stopped = hrt_record_stop(); });
+  hrt_state state = hrt_state_init();
+  do {
+    std::this_thread::yield();
+    CHECK(hrt_get_state(&state) == HRT_E_LINK);
+  } while ((state.activity & HRT_RECORDING) != 0);
+  hrt::test::use_fake_robot();
+  CHECK(hrt_kenaf_init() == HRT_OK);
+  CHECK(lost->closed);
+  disk.resume();
+  stopper.join();
+  CHECK(stopped == HRT_OK);
+  CHECK(hrt_close() == HRT_OK);
+}
+
+TEST_CASE("a robot that is being closed is busy until it is") {
+  const support::TemporaryFolder folder;
+  StalledDisk disk(recording_in(folder));
+  hrt::test::use_fake_robot()->lockstep = false;
+  REQUIRE(hrt_kenaf_init() == HRT_OK);
+  REQUIRE(hrt_record_start(recording_in(folder).c_str()) == HRT_OK);
+  REQUIRE(hrt_sleep(10) == HRT_OK);
+  int closed = HRT_E_INTERNAL;
+  std::thread closer([&] { closed = hrt_close(); });
+  while (hrt_time() != -1) std::this_thread::yield();
+  CHECK(hrt_kenaf_init() == HRT_E_BUSY);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("is being closed"));
+  disk.resume();
+  closer.join();
+  CHECK(closed == HRT_OK);
+  hrt::test::use_fake_robot();
+  CHECK(hrt_kenaf_init() == HRT_OK);
+  CHECK(hrt_close() == HRT_OK);
+}
+
 TEST_CASE("R3 a recording that gets no row leaves the file of its name as it is") {
   const support::TemporaryFolder folder;
   std::ofstream(recording_in(folder)) << "of before";
