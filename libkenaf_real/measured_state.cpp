@@ -76,7 +76,11 @@ void MeasuredState::add_posture(const BusCycle& cycle, double elapsed_s, relay::
   const ProcessImage& image = cycle.image();
   state.posture_rad[0] = angle_from(bus_.inclinometer->roll, image.slope(), facts_.slope_unit_rad);
   state.posture_rad[1] = angle_from(bus_.inclinometer->pitch, image.slope(), facts_.slope_unit_rad);
-  const bool standing = std::ranges::all_of(state.track_mps, [](double v) { return std::abs(v) < kStanding_mps; });
+  // what a slow turn makes the gyro say is no bias
+  bool standing = true;
+  for (std::size_t t = 0; t < relay::kTrackCount; ++t) {
+    standing = standing && std::abs(state.track_mps[t]) < kStanding_mps && cycle.sent()[t].target == 0;
+  }
   heading_.update(image.gyro().rate / bus_.gyro->units_per_radps, state.posture_rad[0], state.posture_rad[1], standing,
                   elapsed_s);
   state.posture_rad[2] = heading_.yaw_rad();
