@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace kenaf::real {
 namespace {
@@ -12,6 +13,8 @@ using canbus::DriveUnits;
 using canbus::InclinometerAxis;
 
 constexpr double kStanding_mps = 0.002;
+// A longer gap in the posture is bridged by the tracks (hrt/estimate.cpp), from whatever heading the sensor then has.
+constexpr double kLongestCatchUp_s = 0.25;
 
 double angle_from(const InclinometerAxis& axis, const SlopeInput& slope, double unit_rad) {
   const int raw = axis.lateral ? slope.lateral : slope.longitudinal;
@@ -71,6 +74,7 @@ void MeasuredState::add_posture(const BusCycle& cycle, double elapsed_s, relay::
     const NamedNode node =
         slope ? NamedNode{bus_.inclinometer->node, "inclinometer"} : NamedNode{bus_.gyro->node, "gyro"};
     warning_ = fmt::format("{} is silent: no posture, and the heading is that of the tracks", to_string(node));
+    unseen_s_ += elapsed_s;
     return;
   }
   const ProcessImage& image = cycle.image();
@@ -81,6 +85,7 @@ void MeasuredState::add_posture(const BusCycle& cycle, double elapsed_s, relay::
   for (std::size_t t = 0; t < relay::kTrackCount; ++t) {
     standing = standing && std::abs(state.track_mps[t]) < kStanding_mps && cycle.sent()[t].target == 0;
   }
+  elapsed_s += std::min(std::exchange(unseen_s_, 0), kLongestCatchUp_s);
   heading_.update(image.gyro().rate / bus_.gyro->units_per_radps, state.posture_rad[0], state.posture_rad[1], standing,
                   elapsed_s);
   state.posture_rad[2] = heading_.yaw_rad();

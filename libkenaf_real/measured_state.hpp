@@ -19,7 +19,7 @@ class MeasuredState {
   MeasuredState(const canbus::RobotBus& bus, const NodeFacts& facts, double period_s);
 
   // For one beat. Without posture (kHasPosture) while inclinometer or gyro are silent or there is none of them; warning()
-  // says so.
+  // says so. The heading catches up on a short silence with the rate that it finds after it.
   relay::State update(const BusCycle& cycle, const Beat& beat);
   const std::string& warning() const { return warning_; }
 
@@ -33,6 +33,7 @@ class MeasuredState {
   std::array<std::int32_t, relay::kTrackCount> last_counts_{};
   std::array<std::int64_t, relay::kTrackCount> travelled_counts_{};
   Heading heading_;
+  double unseen_s_ = 0;  // without inclinometer or gyro, and not in the heading yet
   std::string warning_;
 };
 

@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include "hrt/error.hpp"
+#include "hrt/estimate.hpp"
 #include "tests/real/robot_on_bus.hpp"
 
 using namespace kenaf;
@@ -150,6 +151,40 @@ TEST_CASE("an inclinometer or a gyro that falls silent takes the posture away, s
     state = robot.run(5, drive_at(0.2, 0.2));
     CHECK((state.fields & relay::kHasPosture) != 0);
     CHECK(robot.transport.warning().empty());
+  }
+}
+
+TEST_CASE("a turn that is made while a sensor of the posture is silent counts, and counts once") {
+  struct Case {
+    int silent_cycles;
+    double margin_rad;
+  };
+  // The posture is away after 0.1 s of silence, so for 0.2 and 0.5 s here. From 0.25 s on the heading is the tracks',
+  // and the smoothing begins anew after it: it lags by 0.025 rad at this rate, and a cycle more is not seen.
+  for (const Case& one : {Case{30, 0.01}, Case{60, 0.04}}) {
+    for (const canopen::NodeId node : {canopen::NodeId{7}, canopen::NodeId{8}}) {
+      RobotOnBus robot;
+      robot.open();
+      hrt::Estimator estimator({0.2, 1});
+      hrt::Estimate now;
+      const auto turn = [&](int cycles) {
+        relay::State state{};
+        for (int i = 0; i < cycles; ++i) {
+          state = robot.run(1, drive_at(-0.05, 0.05));  // 0.5 rad/s at a gauge of 0.2 m
+          now = estimator.update(state);
+        }
+        return state;
+      };
+      robot.plant.yaw_rate_radps = 0.5;
+      turn(100);
+      const double before_rad = now.heading_rad;
+      robot.wire.inject({FaultKind::silent, node});
+      CHECK((turn(one.silent_cycles).fields & relay::kHasPosture) == 0);
+      robot.wire.inject({FaultKind::healed, node});
+      CHECK((turn(150 - one.silent_cycles).fields & relay::kHasPosture) != 0);
+      CAPTURE(one.silent_cycles, node);
+      CHECK(now.heading_rad - before_rad == Approx(0.5 * 1.5).margin(one.margin_rad));
+    }
   }
 }
 
