@@ -52,6 +52,8 @@ struct CanTransport::Session {
   std::optional<MeasuredState> measured;
   std::optional<DriveTargets> targets;
   std::uint32_t answered = 0, newest = 0;  // beats
+  std::uint32_t before = 0,
+                late_before = 0;  // of these and of late orders, what the opening took; with its first state
   bool lost = false;
   std::atomic<double> round_trip_s = 0;
 };
@@ -70,7 +72,7 @@ hrt::Connection CanTransport::open(const hrt_config& config) try {
   s.targets.emplace(s.robot, s.cycle.image());
   s.lost = false;
   for (double t_s = 0; t_s < kStand_s; t_s += s.period_s) {
-    if (!wait_state()) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");
+    if (!measure()) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");
     send({});
   }
   return {.period_s = s.period_s, .lockstep = false};
@@ -80,7 +82,20 @@ hrt::Connection CanTransport::open(const hrt_config& config) try {
   throw Error(HRT_E_LINK, error.what());
 }
 
-std::optional<relay::State> CanTransport::wait_state() try {
+std::optional<relay::State> CanTransport::wait_state() {
+  std::optional<relay::State> state = measure();
+  if (!state) return state;
+  Session& s = *session_;
+  if (s.before == 0) {  // the opening took beats of its own
+    s.before = state->frame - 1;
+    s.late_before = state->late_commands;
+  }
+  state->frame -= s.before;
+  state->late_commands -= s.late_before;
+  return state;
+}
+
+std::optional<relay::State> CanTransport::measure() try {
   Session& s = *session_;
   const std::optional<Beat> beat = s.cycle.wait();
   if (!beat) return std::nullopt;

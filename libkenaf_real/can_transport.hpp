@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "canopen/bus.hpp"
 #include "hrt/transport.hpp"
@@ -34,6 +35,7 @@ class CanTransport final : public hrt::Transport {
 
  private:
   struct Session;  // an open robot
+  std::optional<relay::State> measure();  // as wait_state, in the beats and the late orders since SYNC began
   [[noreturn]] void lose(std::size_t drive);
 
   OpenBus open_bus_;

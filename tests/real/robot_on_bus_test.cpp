@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 
 #include "hrt/error.hpp"
 #include "tests/real/changed_robot.hpp"
@@ -19,6 +20,7 @@ TEST_CASE("opening enables all drives and moves nothing") {
   CHECK(robot.plant.state().track_m == std::array<double, 2>{});
   CHECK(robot.plant.state().flipper_rad == std::array<double, 4>{});
   const relay::State state = robot.run(1, {});
+  CHECK(state.frame == 1);  // those of power-up are not the program's
   CHECK((state.fields &
          (relay::kHasPosture | relay::kHasEncoders | relay::kHasFlippers | relay::kHasCurrents | relay::kHasBattery)) ==
         (relay::kHasPosture | relay::kHasEncoders | relay::kHasFlippers | relay::kHasCurrents | relay::kHasBattery));
@@ -192,6 +194,19 @@ TEST_CASE("a program that answers too late is told so, cycle by cycle") {
   robot.transport.send({});
   const relay::State state = robot.run(2, {});
   CHECK(state.late_commands == 1);
+}
+
+TEST_CASE("what was late while the robot was opened is not counted as the program's") {
+  RobotOnBus robot;
+  bool was_held_up = false;  // with its first orders: two SYNCs go by
+  robot.wire.alter = [&](canopen::Frame& frame, candrives::Sender sender) {
+    if (sender == candrives::Sender::master && frame.id == 0x201 && !std::exchange(was_held_up, true))
+      robot.wire.run_until(robot.wire.now() + std::chrono::milliseconds(25));
+    return true;
+  };
+  robot.open();
+  CHECK(was_held_up);
+  CHECK(robot.run(2, {}).late_commands == 0);
 }
 
 TEST_CASE("a SYNC that stops is a link that is lost") {
