@@ -357,6 +357,8 @@ std::optional<DriveCommand> Robot::answer(const relay::State& state) {
   if (connection_.lockstep) {
     hold(lock);
     step_calls();  // those that began during the hold
+  } else {
+    due_.clear();  // nobody is waited for
   }
   compose_command();
   return command_;
