@@ -299,7 +299,11 @@ int hrt_sleep(double seconds) {
   return guarded([&] {
     require_range(seconds, 0, kMaxSleep_s, "hrt_sleep: seconds");
     const std::shared_ptr<Robot> robot = open_robot();
-    if (seconds > 0) robot->sleep(seconds);
+    if (seconds > 0) {
+      robot->sleep(seconds);
+    } else {
+      robot->note_call();
+    }
   });
 }
 
@@ -344,9 +348,12 @@ int hrt_wait_cycle(hrt_state* state) {
 int hrt_get_warning(char* text, size_t size) {
   return guarded([&] {
     require(text != nullptr && size > 0, "hrt_get_warning: text is null or size is 0");
+    text[0] = '\0';
+    const std::shared_ptr<Robot> robot = open_robot();
     Snapshot snapshot;
-    open_robot()->snapshot(snapshot);
+    const int code = guarded([&] { robot->snapshot(snapshot); });
     text[snapshot.warning.copy(text, size - 1)] = '\0';
+    if (code != HRT_OK) throw Error(code, std::string(last_error));
   });
 }
 

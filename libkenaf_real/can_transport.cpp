@@ -52,8 +52,8 @@ struct CanTransport::Session {
   std::optional<MeasuredState> measured;
   std::optional<DriveTargets> targets;
   std::uint32_t answered = 0, newest = 0;  // beats
-  std::uint32_t before = 0,
-                late_before = 0;  // of these and of late orders, what the opening took; with its first state
+  // what of them, and of late orders, the opening took: known with the first state after it
+  std::uint32_t before = 0, late_before = 0;
   bool lost = false;
   std::atomic<double> round_trip_s = 0;
 };

@@ -340,8 +340,8 @@ int hrt_get_state(hrt_state* state);
 int hrt_wait_cycle(hrt_state* state);
 
 /* What the robot goes on without, one line of English such as "inclinometer (node 7) is silent: no posture, and the heading
- * is that of the tracks"; "" where nothing is missing. At most size - 1 bytes of it and a zero.
- * HRT_E_NOT_INITIALISED; HRT_E_ARGUMENT: null or size 0. */
+ * is that of the tracks"; "" where nothing is missing. At most size - 1 bytes of it and a zero, also where the call fails on
+ * something other than its arguments. HRT_E_NOT_INITIALISED; HRT_E_ARGUMENT: null or size 0; HRT_E_LINK: as of the last state. */
 int hrt_get_warning(char* text, size_t size);
 
 /* Prints the newest state to standard output, for people, in a few lines. HRT_E_NOT_INITIALISED; HRT_E_LINK: printed

@@ -5,6 +5,7 @@
 #include <sched.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>
@@ -14,6 +15,7 @@
 #include <random>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "hrt/robot.hpp"
 #include "kenaf/hrt.h"
@@ -154,6 +156,9 @@ TEST_CASE("F2 without a robot every call says so") {
   CHECK(hrt_show_status() == HRT_E_NOT_INITIALISED);
   CHECK(hrt_record_start("x.csv") == HRT_E_NOT_INITIALISED);
   CHECK(hrt_record_stop() == HRT_E_NOT_INITIALISED);
+  char warning[] = "what the caller had here";
+  CHECK(hrt_get_warning(warning, sizeof warning) == HRT_E_NOT_INITIALISED);
+  CHECK(std::string(warning).empty());
   CHECK(hrt_time() == -1);
   CHECK_THAT(hrt_last_error(), Catch::Contains("hrt_kenaf_init()"));
   CHECK(hrt_close() == HRT_OK);
@@ -239,7 +244,11 @@ TEST_CASE("F2 F3 a broken link ends every call, and a new init opens anew") {
     CHECK(std::string(hrt_last_error()) == "the fake link broke");
     CHECK(hrt_set_tracks(1, 1) == HRT_E_LINK);
     CHECK(hrt_sleep(1) == HRT_E_LINK);
+    CHECK(hrt_sleep(0) == HRT_E_LINK);
     CHECK(hrt_stop() == HRT_E_LINK);
+    char warning[] = "what the caller had here";
+    CHECK(hrt_get_warning(warning, sizeof warning) == HRT_E_LINK);
+    CHECK(std::string(warning).empty());
     hrt_state state = hrt_state_init();
     CHECK(hrt_get_state(&state) == HRT_E_LINK);
     CHECK(state.cycle == 39);  // the last that arrived
@@ -513,6 +522,32 @@ TEST_CASE("F5 track speeds hold while the program calls, and stop command_timeou
   REQUIRE(hrt_wait_cycle(&state) == HRT_OK);
   REQUIRE(hrt_wait_cycle(&state) == HRT_OK);
   CHECK(state.commanded_track_mmps[0] == 0);  // stopped for good, until commanded anew
+}
+
+TEST_CASE("F5 a sleep of no time counts as a call") {
+  // Where this thread was kept from calling for half of the timeout, which is a hundred cycles, it tells nothing.
+  for (bool told = false; !told;) {
+    const auto robot = use_fake_robot();
+    robot->lockstep = false;
+    hrt_config config = hrt_config_default();
+    config.command_timeout_s = 1;
+    const Open open(config);
+    const auto cycles = [&] {
+      const std::lock_guard lock(robot->mutex);
+      return robot->commands.size();
+    };
+    std::size_t now = cycles(), longest = 0;
+    const std::size_t end = now + 300;
+    REQUIRE(hrt_set_tracks(100, 100) == HRT_OK);
+    while (now < end) {
+      REQUIRE(hrt_sleep(0) == HRT_OK);
+      const std::size_t before = std::exchange(now, cycles());
+      longest = std::max(longest, now - before);
+    }
+    told = longest < 50;
+    const std::lock_guard lock(robot->mutex);
+    if (told) CHECK(robot->commands[now - 1].track_speed_mps[0] != 0);
+  }
 }
 
 TEST_CASE("F5 and they stop as early where the world is reset meanwhile") {
