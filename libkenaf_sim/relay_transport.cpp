@@ -67,6 +67,7 @@ hrt::Connection RelayTransport::open(const hrt_config& config) {
       throw Error(HRT_E_INTERNAL, fmt::format("getrandom: {}", std::strerror(errno)));
     }
   }
+  const Clock::time_point start = Clock::now();
   const hrt::Connection connection = greet({.session = session_,
                                             .period_s = config.period_s,
                                             .command_timeout_s = config.command_timeout_s,
@@ -79,7 +80,8 @@ hrt::Connection RelayTransport::open(const hrt_config& config) {
   const Clock::time_point now = Clock::now();
   resend_after_ = kFirstStateResend;
   resend_at_ = now + resend_after_;
-  state_at_ = life_at_ = looked_at_ = ping_at_ = now;
+  life_at_ = looked_at_ = ping_at_ = now;
+  state_at_ = start;  // connect_timeout_s is for all until the first State
   return connection;
 }
 
@@ -184,14 +186,20 @@ void RelayTransport::check_life(Clock::time_point now) {
   state_at_ += slept;
   life_at_ += slept;
   looked_at_ = now;
-  const double patience_s = frame_ == 0 ? connect_timeout_s_ : link_timeout_s_;
   const auto silent_s = [&](Clock::time_point since) { return std::chrono::duration<double>(now - since).count(); };
-  if (silent_s(life_at_) > patience_s) {
+  if (frame_ == 0) {
+    if (silent_s(state_at_) <= connect_timeout_s_) return;
+    throw Error(HRT_E_LINK,
+                fmt::format("the relay at {} gave the robot, but its first state has not come within {:.2f} s; is the "
+                            "world server stopped?",
+                            relay_, silent_s(state_at_)));
+  }
+  if (silent_s(life_at_) > link_timeout_s_) {
     throw Error(HRT_E_LINK, fmt::format("no state from the relay at {} for {:.2f} s; is the network, the relay or the "
                                         "world server down?",
                                         relay_, silent_s(life_at_)));
   }
-  if (silent_s(state_at_) > kFrozenLinkTimeouts * patience_s) {
+  if (silent_s(state_at_) > kFrozenLinkTimeouts * link_timeout_s_) {
     throw Error(HRT_E_LINK, fmt::format("the world server behind the relay at {} answers, but its time has stood still "
                                         "for {:.1f} s",
                                         relay_, silent_s(state_at_)));

@@ -44,7 +44,7 @@ class RelayTransport final : public hrt::Transport {
   void transmit(const relay::Datagram& datagram);
   void send_what_is_due(Clock::time_point now);
   void ping(Clock::time_point now);
-  void check_life(Clock::time_point now);
+  void check_life(Clock::time_point now);  // the first State has connect_timeout_s from open() on
   // Sleeps until a datagram, an interrupt or `until`. False: interrupted.
   bool wait_readable(Clock::time_point until);
 

@@ -123,7 +123,7 @@ std::vector<relay::Datagram> FakeRelay::answers_to(const relay::Datagram& datagr
     session_ = hello->session;
     plant_.state.session = session_;
     const relay::Welcome welcome{session_, plant_.state.robot_time_s, behaviour_.plant.period_s, true};
-    if (behaviour_.first_state_lost) return {welcome};
+    if (behaviour_.first_state_lost || behaviour_.no_state) return {welcome};
     return {welcome, plant_.state};
   }
   if (const auto* ping = std::get_if<relay::Ping>(&datagram)) {
@@ -140,7 +140,7 @@ std::vector<relay::Datagram> FakeRelay::answers_to(const relay::Datagram& datagr
   if (command->sequence == plant_.state.acknowledged) ++repeats_;
   const std::uint32_t next = plant_.state.frame + 1;
   const auto happens_at = [&](std::uint32_t frame) { return frame != 0 && next >= frame; };
-  if (happens_at(behaviour_.silent_from_frame)) return {};
+  if (happens_at(behaviour_.silent_from_frame) || behaviour_.no_state) return {};
   if (command->frame != plant_.state.frame || happens_at(behaviour_.frozen_from_frame)) return {plant_.state};
   if (happens_at(behaviour_.forgets_at_frame)) return {refused(session_, relay::RefusedReason::unknown_session)};
   relay::State event = plant_.state;

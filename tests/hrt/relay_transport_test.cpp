@@ -110,6 +110,20 @@ TEST_CASE("R1 a first state that was lost is asked for") {
   CHECK(hrt_close() == HRT_OK);
 }
 
+TEST_CASE("R2 a first state that never comes is waited for as long as a relay") {
+  FakeRelay::Behaviour behaviour;
+  behaviour.no_state = true;
+  FakeRelay relay(behaviour);
+  hrt_config config = config_for(relay.address());
+  config.connect_timeout_s = 0.3;
+  config.link_timeout_s = 0.05;
+  const Clock::time_point start = Clock::now();
+  CHECK(hrt_kenaf_init_with(&config) == HRT_E_LINK);
+  CHECK(seconds_since(start) >= 0.3);
+  CHECK(relay.pings() >= 1);
+  CHECK_THAT(hrt_last_error(), Catch::Contains("first state has not come within"));
+}
+
 TEST_CASE("R2 what the configuration says is what Hello asks for") {
   FakeRelay relay({});
   hrt_config config = config_for(relay.address());
