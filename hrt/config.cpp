@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
@@ -216,8 +217,10 @@ void load_config(const Environment& environment, hrt_config& config) {
   hrt_config changed = config;
   if (const std::filesystem::path path = file_that_applies(environment); !path.empty()) {
     std::ifstream file(path);
-    const std::string text(std::istreambuf_iterator<char>(file), {});
-    if (!file) {
+    file.peek();  // reading a folder sets badbit here, and would throw below
+    std::string text;
+    if (file.good()) text.assign(std::istreambuf_iterator<char>(file), {});
+    if (!file.is_open() || file.bad()) {
       throw Error(HRT_E_CONFIG, fmt::format("{}: cannot be read: {}; KENAF_CONFIG names the configuration file",
                                             path.string(), std::strerror(errno)));
     }

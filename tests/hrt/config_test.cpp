@@ -149,6 +149,17 @@ TEST_CASE("a personal file applies where nothing else does, and a named file mus
   CHECK(config.period_s == 0.04);
   const Environment missing = environment_of({{"KENAF_CONFIG", (home.path() / "none.toml").string()}});
   CHECK_THROWS_WITH(load_config(missing, config), Catch::Contains("none.toml: cannot be read"));
+  const Environment folder = environment_of({{"KENAF_CONFIG", home.path().string()}});
+  try {
+    load_config(folder, config);
+    FAIL("a folder was taken for a file");
+  } catch (const Error& error) {
+    CHECK(error.code() == HRT_E_CONFIG);
+    CHECK_THAT(error.what(), Catch::StartsWith(home.path().string() + ": cannot be read: Is a directory"));
+  }
+  std::ofstream(home.path() / "empty.toml").flush();
+  load_config(environment_of({{"KENAF_CONFIG", (home.path() / "empty.toml").string()}}), config);
+  CHECK(config.period_s == 0.04);
 }
 
 TEST_CASE("what is wrong in the environment is named by its variable") {
