@@ -35,9 +35,6 @@ class SocketBus final : public canopen::Bus {
   void stop_sync() override;
   void interrupt() override;
 
-  // The newest error frame that did not end the bus, in words, "" after none: "no acknowledgement: is anybody else on the bus?".
-  const std::string& last_warning() const { return last_warning_; }
-
  private:
   void open(std::span<const std::uint16_t> ids);
   void close();
@@ -46,7 +43,7 @@ class SocketBus final : public canopen::Bus {
 
   std::string interface_;
   int raw_ = -1, broadcast_manager_ = -1, interrupt_ = -1;
-  std::string last_warning_;
+  std::string last_warning_;  // the newest error frame in words, "" after none: "no acknowledgement: is anybody else on the bus?"
 };
 
 // What a controller's error frame says, in words. <linux/can/error.h>

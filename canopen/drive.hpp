@@ -33,7 +33,6 @@ inline constexpr std::uint16_t kStatusVoltageEnabled = 1 << 4, kStatusWarning = 
                                kStatusTargetReached = 1 << 10, kStatusInternalLimit = 1 << 11,
                                kStatusSetPointAcknowledged = 1 << 12,  // profile position
                                kStatusHomingAttained = 1 << 12,        // homing
-                               kStatusFollowsCommand = 1 << 12,        // cyclic modes
                                kStatusError = 1 << 13;                 // following error; homing error
 
 // Controlword, object 0x6040.

@@ -10,7 +10,6 @@ class TurnInPlace {
   // `goal_rad`: the heading to reach, in the estimate's unwrapped angle.
   TurnInPlace(const MotionLimits& limits, double goal_rad, const Estimate& start);
   MotionStep step(const Estimate& now);
-  double goal_rad() const { return goal_rad_; }
 
  private:
   MotionStep fail(int code, const Estimate& now, const std::string& why) const;

@@ -28,9 +28,8 @@ void Heading::update(double rate_radps, double roll_rad, double pitch_rad, bool 
     learnt_s_ = std::min(learnt_s_ + dt_s, kBiasTime_s);
     bias_radps_ += dt_s / learnt_s_ * (rate_radps - bias_radps_);
   }
-  rate_radps_ = rate_radps - bias_radps_;
   const double cosine = std::max(std::cos(pitch_rad), kLeastCosine);
-  yaw_rad_ = wrapped(yaw_rad_ + rate_radps_ * std::cos(roll_rad) / cosine * dt_s);
+  yaw_rad_ = wrapped(yaw_rad_ + (rate_radps - bias_radps_) * std::cos(roll_rad) / cosine * dt_s);
 }
 
 }  // namespace kenaf::real

@@ -12,12 +12,11 @@ class Heading {
   // `dt_s` since the sample before; `standing`: tracks at rest and told to be.
   void update(double rate_radps, double roll_rad, double pitch_rad, bool standing, double dt_s);
 
-  double yaw_rad() const { return yaw_rad_; }        // in (-pi, pi]; 0 at the start
+  double yaw_rad() const { return yaw_rad_; }  // in (-pi, pi]; 0 at the start
   double bias_radps() const { return bias_radps_; }
-  double rate_radps() const { return rate_radps_; }  // newest, without the bias
 
  private:
-  double yaw_rad_ = 0, bias_radps_ = 0, rate_radps_ = 0;
+  double yaw_rad_ = 0, bias_radps_ = 0;
   double standing_s_ = 0, learnt_s_ = 0;
 };
 
