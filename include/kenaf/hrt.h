@@ -50,15 +50,18 @@
  * Errors
  *   A function returns HRT_OK (0) or one of the negative HRT_E... values, and explains in hrt_last_error(). No function
  *   ends the process, throws through this border, or crashes on a null pointer: that is HRT_E_ARGUMENT. A function
- *   that fails on its arguments or its state has changed nothing.
+ *   that fails on its arguments or its state has changed nothing. Where the robot is lost, every function that needs it says
+ *   how from then on, and only hrt_close and a new init help: HRT_E_LINK, or, of libkenaf_real, HRT_E_DEVICE where a drive is
+ *   silent, in fault or restarted. Where HRT_E_LINK stands below, that HRT_E_DEVICE is meant too.
  *
  * Safety
  *   - A motion ends with an error, not with a hang: stuck, link lost, or its time is up. After any of them the tracks
  *     are commanded to stand.
  *   - Track speeds hold until changed, but no longer than command_timeout_s after the last call of any hrt_ function;
  *     a blocking call counts as calling all the while.
- *   - Where the whole program falls silent (killed, hung, network cut), the robot stops command_timeout_s after its
- *     last command. This does not depend on the program.
+ *   - Where the whole program falls silent (killed, hung, network cut), the robot stops by itself: a simulated one
+ *     command_timeout_s after its last command, the real one master_silence_s (of its description) after the library's last
+ *     heartbeat. This does not depend on the program.
  *   - The simulation is not the robot. A program that is safe in it is not for that reason safe.
  */
 #ifndef KENAF_HRT_H
@@ -97,7 +100,8 @@ enum {
   HRT_E_STUCK = -8,           /* the sensors show no progress, or a track's current stayed above stuck_current_a */
   HRT_E_STOPPED = -9,         /* hrt_stop or hrt_set_tracks of another thread ended this motion */
   HRT_E_CLOSED = -10,         /* hrt_close of another thread ended this call */
-  HRT_E_DEVICE = -11,         /* no such device or camera, it does not answer, or it cannot do what was asked */
+  HRT_E_DEVICE = -11,         /* no such device or camera, it does not answer, or it cannot do what was asked. libkenaf_real
+                                 also: a drive is lost, and the robot with it, as with HRT_E_LINK */
   HRT_E_RECORD = -12,         /* the recording could not be written, or is incomplete */
   HRT_E_INTERNAL = -13        /* out of memory or threads, or a defect of the library */
 };
@@ -128,8 +132,8 @@ typedef struct hrt_config {
   /* Cycle and link. */
   double period_s;          /* one cycle, robot time: 0.001 to 1, default 0.01 */
   double command_timeout_s; /* silence after which the tracks stop, robot time: 0.01 to 10, not below period_s, default 0.1 */
-  double link_timeout_s;    /* silence of the link that is an error, wall clock: 0.05 to 10, default 0.5 */
-  double connect_timeout_s; /* how long init waits for the robot, wall clock: 0.05 to 60, default 3 */
+  double link_timeout_s;    /* libkenaf_sim: silence of the link that is an error, wall clock: 0.05 to 10, default 0.5 */
+  double connect_timeout_s; /* libkenaf_sim: how long init waits for the robot, wall clock: 0.05 to 60, default 3 */
 
   /* Motions: hrt_go_forward and hrt_turning. */
   double max_speed_mmps;            /* 1 to 2000, default 200 */
@@ -188,7 +192,7 @@ static inline hrt_config hrt_config_default(void) {
  * does not move, but for flippers whose description asks for a homing that moves them; with reset_robot a simulated one is
  * back at its start pose. Odometry begins at 0.
  * Blocks up to connect_timeout_s of wall-clock time; libkenaf_real: can_timeout_s until all nodes have started, a second
- * or two to set them up, and the homing.
+ * or two to set them up, and the homing. Nothing ends it earlier, hrt_close of another thread neither.
  * HRT_E_BUSY: the robot is open already (one whose link was lost is closed and opened anew), or is being opened or closed;
  * HRT_E_CONFIG; HRT_E_LINK: nobody answers, hrt_last_error() says what to start; HRT_E_REFUSED: another program has
  * the robot, or the relay has no world server; HRT_E_DEVICE: (libkenaf_real) no SocketCAN in the kernel, no such
@@ -202,8 +206,9 @@ int hrt_kenaf_init(void);
  * hrt_last_error() names them. */
 int hrt_kenaf_init_with(const hrt_config* config);
 
-/* Stops the tracks, ends a recording with the newest cycle, and gives the robot back. Calls that wait in other threads return HRT_E_CLOSED.
- * Also called when the process ends by exit() or by returning from main(). Without an open robot: HRT_OK.
+/* Stops the tracks, ends a recording with the newest cycle, and gives the robot back. Calls that wait in other threads
+ * return HRT_E_CLOSED. Also called when the process ends by exit() or by returning from main(). Without an open robot: HRT_OK,
+ * also while another thread opens or closes it: an opening goes on.
  * HRT_E_RECORD: closed, but the recording is incomplete. */
 int hrt_close(void);
 
