@@ -174,7 +174,8 @@ int hrt_config_fill(hrt_config* config);
 
 /* Overrides *config by file and environment as above; members named in neither keep their value.
  * HRT_E_ARGUMENT: null or not from hrt_config_default(); HRT_E_CONFIG: *config is unchanged, hrt_last_error() names
- * file, line and column, or the variable, or the members that do not go together. Reads the environment: not while another thread changes it. */
+ * file, line and column, or the variable, or the members that do not go together. Reads the environment: not while another
+ * thread changes it. */
 int hrt_config_load(hrt_config* config);
 
 /* The built-in defaults, ready to be changed and given to hrt_kenaf_init_with. */
