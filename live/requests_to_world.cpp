@@ -23,7 +23,8 @@ struct CarryOut {
   }
   std::string operator()(const StepRequest& request) const {
     if (simulation.robot_count() == 0) return told("step", "there is no robot, so time stands still");
-    simulation.begin_steps(0, simulation.steps_for(request.time_s));
+    if (!simulation.begin_steps(0, simulation.steps_for(request.time_s)))
+      return told("step", "as many steps as are taken are waiting already");
     return {};
   }
   std::string operator()(const SpeedRequest& request) const {

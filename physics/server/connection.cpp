@@ -4,6 +4,7 @@
 
 #include <boost/asio/buffer.hpp>
 #include <chrono>
+#include <exception>
 
 namespace kenaf::server {
 
@@ -34,7 +35,12 @@ void Connection::read() {
   socket_.async_read_some(asio::buffer(received_), [self = shared_from_this()](error_code error, std::size_t count) {
     if (!self->open_) return;
     if (error) return self->close();
-    self->simulation_.receive(self->session_, {self->received_.data(), count}, steady_seconds());
+    try {
+      self->simulation_.receive(self->session_, {self->received_.data(), count}, steady_seconds());
+    } catch (const std::exception& failure) {  // whatever one client sends, the others' world goes on
+      spdlog::error("{}: closed, what it sent cannot be obeyed: {}", self->session_.peer, failure.what());
+      return self->close();
+    }
     self->flush();
     if (self->open_ && self->session_.close) self->close();
     self->read();

@@ -232,10 +232,13 @@ Simulation::Progress Simulation::advance(double now_wall_s) {
   return {true, std::nullopt};
 }
 
-void Simulation::begin_steps(std::uint32_t session, std::uint64_t steps) {
+bool Simulation::begin_steps(std::uint32_t session, std::uint64_t steps) {
+  constexpr std::size_t kMostWaiting = 1000;
+  if (step_requests_.size() >= kMostWaiting) return false;
   set_paused(true);
   const std::uint64_t from = step_requests_.empty() ? world.step_count() : step_requests_.back().until_step;
   step_requests_.push_back({session, from + steps});
+  return true;
 }
 
 void Simulation::answer_steps() {

@@ -62,8 +62,8 @@ struct Simulation {
   Session* find_session(std::uint32_t id);  // nullptr: it is gone
 
   // CONTROL {Type Step}: runs on for so many steps, then stands still and answers.
-  // `session`: whom to answer when it is done; 0: nobody.
-  void begin_steps(std::uint32_t session, std::uint64_t steps);
+  // `session`: whom to answer when it is done; 0: nobody. False: as many wait already as are taken.
+  bool begin_steps(std::uint32_t session, std::uint64_t steps);
   // Calls `then` once, as soon as the world has made `step` steps in all: at once where it has. Earlier where the world is
   // reset, as time begins anew. It takes the place of what the same owner asked for before. The world waits for it: microseconds.
   void call_at(const void* owner, std::uint64_t step, std::function<void(Simulation&)> then);

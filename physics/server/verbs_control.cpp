@@ -24,7 +24,7 @@ Reason step(Simulation& simulation, Session& session, const MessageView& message
     steps = std::floor(*count);
   }
   if (!(steps >= 1 && steps <= most_steps)) return "needs {Time s} or {Steps n}, at most an hour of robot time";
-  simulation.begin_steps(session.id, static_cast<std::uint64_t>(steps));
+  if (!simulation.begin_steps(session.id, static_cast<std::uint64_t>(steps))) return "1000 steps are waiting already";
   return kDone;
 }
 

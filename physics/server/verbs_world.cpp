@@ -84,6 +84,11 @@ Reason kill_all(Simulation& simulation, const MessageView& message) {
   return kDone;
 }
 
+// Steps to somewhere add up, and what falls off the ground falls on: the world itself takes no such pose.
+bool is_too_far(const physics::Pose& X_W) {
+  return !X_W.q.coeffs().allFinite() || !(X_W.p.cwiseAbs().maxCoeff() <= kFarthest);
+}
+
 // Of an object, or of a robot by its name. What is not given stays.
 Reason move(Simulation& simulation, const MessageView& message, bool relative) {
   const auto location = read_location(message, "Location");
@@ -97,12 +102,16 @@ Reason move(Simulation& simulation, const MessageView& message, bool relative) {
   };
   const std::string_view name = text_of(message, "Name");
   if (const auto object = find_object(simulation, name); object != simulation.objects.end()) {
-    simulation.world.move_box(object->box, moved(simulation.world.box_pose(object->box)));
+    const physics::Pose X_WBox = moved(simulation.world.box_pose(object->box));
+    if (is_too_far(X_WBox)) return "that is farther away than 100 km";
+    simulation.world.move_box(object->box, X_WBox);
     return kDone;
   }
   for (const auto& other : simulation.sessions) {
     if (!other->robot || !usarsim::equal_ignoring_case(other->robot->name, name)) continue;
-    simulation.world.teleport(other->robot->id, moved(simulation.world.truth(other->robot->id).X_WB));
+    const physics::Pose X_WB = moved(simulation.world.truth(other->robot->id).X_WB);
+    if (is_too_far(X_WB)) return "that is farther away than 100 km";
+    simulation.world.teleport(other->robot->id, X_WB);
     return kDone;
   }
   return "no object or robot of that name";

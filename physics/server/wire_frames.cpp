@@ -7,8 +7,6 @@ namespace kenaf::server {
 
 namespace {
 
-constexpr double kFarthest = 1e5;
-
 std::optional<frames::Vector3> read_three(const usarsim::MessageView& message, std::string_view key) {
   const auto text = message.find(key);
   frames::Vector3 v;

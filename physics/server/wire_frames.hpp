@@ -28,8 +28,10 @@ inline frames::Vector3 wire_angles(const Eigen::Quaterniond& q) {
   return wire_angles(physics::roll_pitch_yaw(q));
 }
 
-// A vector or a rotation that a client sent; nullopt where the group is missing, not three numbers, or out of all
-// reason (beyond 100 km), where physics would lose its precision.
+// Farther away, in m on an axis, physics would lose its precision.
+inline constexpr double kFarthest = 1e5;
+
+// A vector or a rotation that a client sent; nullopt where the group is missing, not three numbers, or beyond kFarthest.
 std::optional<Eigen::Vector3d> read_location(const usarsim::MessageView& message, std::string_view key);
 std::optional<Eigen::Quaterniond> read_rotation(const usarsim::MessageView& message, std::string_view key);
 

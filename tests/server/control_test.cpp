@@ -62,6 +62,15 @@ TEST_CASE("a step that makes no sense is refused") {
   CHECK_FALSE(talk.simulation.clock.paused());
 }
 
+TEST_CASE("of steps that wait for each other no more are taken than 1000") {
+  Conversation talk = with_robot();
+  for (int i = 0; i < 1000; ++i) CHECK(talk.answer_to("CONTROL {Type Step} {Steps 1}\r\n").empty());
+  CHECK(talk.answer_to("CONTROL {Type Step} {Steps 1}\r\n").starts_with(std::string(kOk) + "Step} {Status Failed}"));
+  CHECK_FALSE(talk.run(2));
+  CHECK(talk.simulation.world.step_count() == 1000);
+  CHECK(talk.answer_to("CONTROL {Type Step} {Steps 1}\r\n").empty());
+}
+
 TEST_CASE("the speed is a factor of wall-clock time") {
   Conversation talk = with_robot(1);
   const auto steps_in_a_second = [&] {

@@ -45,6 +45,15 @@ TEST_CASE("boxes are created, moved, told and removed, in USARSim's frame") {
   CHECK_FALSE(controller.ok("{Type Kill} {Name B1}"));
 }
 
+TEST_CASE("moves that add up end at 100 km, and the server goes on") {
+  Controller controller;
+  CHECK(controller.ok("{Type Create} {ClassName Box} {Name A} {Location 90000,90000,-90000}"));
+  CHECK_FALSE(controller.ok("{Type RelMove} {Name A} {Location 90000,90000,-90000}"));
+  CHECK(controller.control("{Type GetSTA}").find("{Location 90000.0000,90000.0000,-90000.0000}") != std::string::npos);
+  CHECK(controller.ok("{Type RelMove} {Name A} {Location -90000,-90000,90000}"));
+  CHECK(controller.control("{Type GetSTA}").find("{Location 0.0000,0.0000,0.0000}") != std::string::npos);
+}
+
 TEST_CASE("GetSTA tells objects by name or class, all in one line") {
   Controller controller;
   CHECK(controller.ok("{Type Create} {ClassName Box} {Name A} {Location 0,0,-1}"));
