@@ -20,13 +20,25 @@ void on_signal(int) {
   relay_to_stop->stop();
 }
 
-void stop_on_signals(kenaf::relayd::Relay& relay) {
-  relay_to_stop = &relay;
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGINT, &action, nullptr);
-}
+// As long as it lives; then signals are ignored, as the program is about to end.
+class StopOnSignals {
+ public:
+  explicit StopOnSignals(kenaf::relayd::Relay& relay) {
+    relay_to_stop = &relay;
+    handle(on_signal);
+  }
+  ~StopOnSignals() { handle(SIG_IGN); }
+  StopOnSignals(const StopOnSignals&) = delete;
+  StopOnSignals& operator=(const StopOnSignals&) = delete;
+
+ private:
+  static void handle(void (*handler)(int)) {
+    struct sigaction action {};
+    action.sa_handler = handler;
+    sigaction(SIGTERM, &action, nullptr);
+    sigaction(SIGINT, &action, nullptr);
+  }
+};
 
 // Written aside and renamed, so that who waits for the file never reads half of it.
 void write_port_file(const std::string& path, std::uint16_t port) {
@@ -53,7 +65,7 @@ int main(int argc, char** argv) {
       options->relay.world_server = {"127.0.0.1", world->port()};
     }
     kenaf::relayd::Relay relay(options->relay);
-    stop_on_signals(relay);
+    const StopOnSignals stop_on_signals(relay);
     spdlog::info("listening on {}", to_text(relay.address()));
     if (!options->port_file.empty()) write_port_file(options->port_file, relay.address().port);
     relay.run();

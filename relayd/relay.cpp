@@ -46,8 +46,9 @@ Relay::Relay(const RelayOptions& options)
 void Relay::run() {
   std::thread receiver(&Relay::receive_commands, this);
   std::thread link(&WorldLink::run, &link_, std::cref(threads_end_));
-  while (!stopping_) {
+  while (true) {
     sender_waker_.clear();
+    if (stopping_) break;  // asked after clear(), which would take the call to stop away
     take_mail();
     const TimePoint now = Clock::now();
     watch_world(now);
