@@ -18,10 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kUnfinished = ".part";  // ends the name of a copy that is not whole
+
 // "run.csv", or "run-2.csv" where that is taken in the folder or among `names`.
 std::string free_name(const fs::path& file, const fs::path& folder, std::set<std::string>& names) {
   std::string name = file.filename().string();
-  for (int k = 2; names.contains(name) || fs::exists(folder / name); ++k)
+  for (int k = 2; names.contains(name) || fs::exists(folder / name) || fs::exists(folder / (name + kUnfinished)); ++k)
     name = fmt::format("{}-{}{}", file.stem().string(), k, file.extension().string());
   names.insert(name);
   return name;
@@ -38,6 +40,14 @@ std::string world_of(const CollectRequest& request, const RecordedRun& run,
                   run.file.string(), run.manoeuvre));
 }
 
+// Asked for by the dataset's name of it, or by another path to the same description.
+bool is_robot_of(const runs::Dataset& dataset, const CollectRequest& request) {
+  if (request.robot == dataset.robot) return true;
+  const fs::path asked = request.robot;
+  return asked.extension() == ".toml" && asked.filename() == dataset.robot &&
+         runs::read_whole_file(asked) == runs::read_whole_file(request.out / dataset.robot);
+}
+
 // Copies that go away again unless they are kept.
 class Copies {
  public:
@@ -46,20 +56,22 @@ class Copies {
     for (const fs::path& file : files_) fs::remove(file, ignored);
   }
   void add(const fs::path& from, const fs::path& to) {
-    const fs::path part = to.string() + ".part";
-    files_.push_back(part);
+    const fs::path part = to.string() + kUnfinished;
+    files_.insert(part);
+    files_.insert(to);  // free_name() found none there
     std::error_code error;
     fs::copy_file(from, part, fs::copy_options::overwrite_existing, error);
     if (!error) fs::rename(part, to, error);
     if (error)
       throw std::runtime_error(
           fmt::format("{}: cannot be copied from {}: {}", to.string(), from.string(), error.message()));
-    files_.back() = to;
+    files_.erase(part);
   }
+  void add(const std::vector<fs::path>& made) { files_.insert(made.begin(), made.end()); }
   void keep() { files_.clear(); }
 
  private:
-  std::vector<fs::path> files_;
+  std::set<fs::path> files_;
 };
 
 }  // namespace
@@ -70,7 +82,7 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
   std::optional<runs::Dataset> there;
   if (fs::exists(request.out / "dataset.toml")) there = runs::read_dataset(request.out);
   result.extended = there.has_value();
-  if (there && !request.robot.empty() && request.robot != there->robot)
+  if (there && !request.robot.empty() && !is_robot_of(*there, request))
     throw std::invalid_argument(fmt::format("{}: its robot is '{}', not '{}'; give another folder with --out",
                                             request.out.string(), there->robot, request.robot));
   if (there && there->source != request.source)
@@ -88,10 +100,14 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
   if (result.refused) return result;
 
   const std::vector<rollout::Manoeuvre> shipped = rollout::shipped_manoeuvres();
+  // What the dataset calls its world is a name beside it, not one from here.
+  const auto lies_there = [&](const std::string& world) {
+    return there && request.world.empty() && world == there->world;
+  };
   std::vector<std::string> worlds;
   for (const RecordedRun& run : request.runs) {
     worlds.push_back(world_of(request, run, shipped, there));
-    if (there && worlds.back() == there->world) continue;
+    if (lies_there(worlds.back())) continue;
     std::vector<std::string> what_is_not_simulated;
     physics::load_world(worlds.back(), what_is_not_simulated);  // or it says why not
   }
@@ -100,19 +116,21 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
   if (!there) whole.emplace(request.out, false);
   const fs::path folder = there ? request.out : whole->path();
   Descriptions robots(folder, ".toml"), world_files(folder, ".sdf");
-  runs::Dataset dataset = there.value_or(runs::Dataset{.source = request.source,
-                                                       .robot = robots.add(asked_robot),
-                                                       .world = world_files.add(worlds.front()),
-                                                       .description = request.description,
-                                                       .noise = {},
-                                                       .runs = {}});
+  runs::Dataset dataset = there ? *there
+                                : runs::Dataset{.source = request.source,
+                                                .robot = robots.add(asked_robot),
+                                                .world = world_files.add(worlds.front()),
+                                                .description = request.description,
+                                                .noise = {},
+                                                .runs = {}};
   std::set<std::string> names;
   Copies copies;
   for (std::size_t i = 0; i < request.runs.size(); ++i) {
     const RecordedRun& run = request.runs[i];
     const std::string name = free_name(run.file, folder, names);
     copies.add(run.file, folder / name);
-    const std::string world = world_files.add(worlds[i]);
+    const std::string world = lies_there(worlds[i]) ? there->world : world_files.add(worlds[i]);
+    copies.add(world_files.made());
     result.runs.push_back({name, run.manoeuvre, world == dataset.world ? std::string() : world});
   }
   if (there) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <stdexcept>
 #include <system_error>
@@ -20,28 +21,41 @@ namespace fs = std::filesystem;
   throw std::runtime_error(fmt::format("{}: {}: {}", folder.string(), what, std::generic_category().message(error)));
 }
 
+constexpr std::string_view kPartFolder = ".part-";  // begins the name of what is not whole
+
+// But for what a program left that was killed.
+bool holds_nothing(const fs::path& folder) {
+  return std::ranges::all_of(fs::directory_iterator(folder), [](const fs::directory_entry& entry) {
+    return entry.path().filename().string().starts_with(kPartFolder);
+  });
+}
+
 }  // namespace
 
-PartFolder::PartFolder(const fs::path& out, bool force) : out_(out) {
+void check_can_write(const fs::path& folder) {
+  fs::path there = fs::absolute(folder).lexically_normal();
+  while (!fs::exists(there) && there.has_relative_path()) there = there.parent_path();
+  if (!fs::is_directory(there)) throw std::runtime_error(fmt::format("{}: is no folder", there.string()));
+  if (::access(there.c_str(), W_OK | X_OK) != 0) fail(there, "cannot be written into", errno);
+}
+
+PartFolder::PartFolder(const fs::path& out, bool force, std::string_view otherwise) : out_(out) {
   if (out.empty()) throw std::invalid_argument("no folder to write to; give one with --out");
   std::error_code error;
   const fs::file_status status = fs::status(out, error);
   if (fs::exists(status) && !fs::is_directory(status))
     throw std::runtime_error(fmt::format("{}: is no folder", out.string()));
   if (!fs::status_known(status)) fail(out, "cannot be reached", error.value());
-  if (fs::exists(status)) {
-    const bool empty = fs::is_empty(out, error);
-    if (error) fail(out, "cannot be read", error.value());
-    if (!empty && !force)
-      throw std::runtime_error(
-          fmt::format("{}: is not empty; give another folder, or --force to write into it", out.string()));
-  }
+  const bool is_there = fs::exists(status);
+  if (is_there && !force && !holds_nothing(out))
+    throw std::runtime_error(fmt::format("{}: is not empty; give another folder{}", out.string(), otherwise));
   fs::path whole = fs::absolute(out).lexically_normal();
   if (!whole.has_filename()) whole = whole.parent_path();  // "runs/" is "runs"
   out_ = whole;
-  fs::create_directories(out_.parent_path(), error);
+  if (!is_there) fs::create_directories(out_.parent_path(), error);
   if (error) fail(out, "cannot be made", error.value());
-  std::string name = out_.string() + ".part-XXXXXX";
+  // Within a folder that is there, which may be a link, a mount point, or where somebody's shell is.
+  std::string name = fmt::format("{}{}XXXXXX", is_there ? (out_ / "").string() : out_.string(), kPartFolder);
   if (::mkdtemp(name.data()) == nullptr) fail(out, "cannot be made", errno);
   part_ = name;
   fs::permissions(part_,
@@ -55,7 +69,7 @@ PartFolder::~PartFolder() {
 }
 
 void PartFolder::finish() {
-  if (!fs::exists(out_) || fs::is_empty(out_)) {
+  if (!fs::exists(out_)) {
     fs::rename(part_, out_);
     return;
   }
@@ -81,7 +95,10 @@ std::string Descriptions::add(const std::string& name_or_path) {
   const bool there = fs::exists(copy);
   if (known->second == "dataset.toml" || (there && runs::read_whole_file(copy) != text))
     throw std::runtime_error(fmt::format("{}: another file of the dataset has that name; rename it", name_or_path));
-  if (!there) runs::write_whole_file(copy, text);
+  if (!there) {
+    runs::write_whole_file(copy, text);
+    made_.push_back(copy);
+  }
   return known->second;
 }
 

@@ -18,7 +18,6 @@ namespace kenaf::gap {
 namespace {
 
 // Chosen: how well a robot is put on a mark by hand.
-constexpr double kStartScatter_m = 0.005, kStartScatter_rad = 0.01;
 constexpr int kMostRuns = 100000;
 
 // FNV-1a, http://www.isthe.com/chongo/tech/comp/fnv/, of everything that a run's noise depends on.
@@ -58,8 +57,8 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
   rollout::RollOutOptions options;
   options.physics = request.physics;
   options.noise_scale = request.noise_scale;
-  options.start_scatter_m = kStartScatter_m * request.scatter_scale;
-  options.start_scatter_rad = kStartScatter_rad * request.scatter_scale;
+  options.start_scatter_m = rollout::kUsualScatter_m * request.scatter_scale;
+  options.start_scatter_rad = rollout::kUsualScatter_rad * request.scatter_scale;
 
   SimulatedDataset result;
   std::map<std::string, physics::WorldDescription> worlds;
@@ -74,7 +73,7 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
     asked.push_back({name, std::move(manoeuvre), &world->second});
   }
 
-  PartFolder folder(request.out, request.force);
+  PartFolder folder(request.out, request.force, ", or --force to write into it");
   Descriptions robots(folder.path(), ".toml"), world_files(folder.path(), ".sdf");
   runs::Dataset dataset{.source = "sim",
                         .robot = robots.add(request.robot),

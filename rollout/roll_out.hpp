@@ -15,6 +15,9 @@
 
 namespace kenaf::rollout {
 
+// 1 sigma of start poses where a robot is put down by hand. Chosen.
+inline constexpr double kUsualScatter_m = 0.005, kUsualScatter_rad = 0.01;
+
 struct RollOutOptions {
   physics::PhysicsSettings physics;
   std::uint64_t seed = 1;

@@ -90,7 +90,8 @@ std::vector<DatasetRun> read_runs(const TableReader& reader, const toml::table& 
   for (const toml::node& entry : *entries) {
     if (!entry.is_table()) reader.fail(entry, "'run' is no list of tables; write [[run]] for each run");
     runs.push_back(read_run_entry(*entry.as_table(), file));
-    if (!files.insert(runs.back().file).second) reader.fail(entry, "'" + runs.back().file + "' is a run already");
+    if (!files.insert(fs::path(runs.back().file).lexically_normal().string()).second)
+      reader.fail(entry, "'" + runs.back().file + "' is a run already");
   }
   return runs;
 }

@@ -23,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kRobot = "kenaf";
-constexpr double kStartScatter_m = 0.005, kStartScatter_rad = 0.01;
 constexpr int kHalvings = 12;
 constexpr double kSmallestShare = 1e-5, kCloseEnough = 1.05;
 constexpr double kSmallestPlay = 0.01;  // 3 mrad of backlash: of less there is little but the give of the teeth
@@ -77,8 +76,8 @@ runs::Run make_run(const CasePlan& plan, const Recipe& recipe, const std::string
   options.noise_scale = plan.noise_scale;
   options.mocap_noise_m *= plan.noise_scale;
   options.mocap_noise_rad *= plan.noise_scale;
-  options.start_scatter_m = kStartScatter_m;
-  options.start_scatter_rad = kStartScatter_rad;
+  options.start_scatter_m = rollout::kUsualScatter_m;
+  options.start_scatter_rad = rollout::kUsualScatter_rad;
 
   runs::Run run;
   if (is_of_commands(recipe.foreign)) {
@@ -188,10 +187,6 @@ std::pair<double, double> share_for(double wanted, double smallest_share, SizeAt
       above = middle, size = at_middle;
   }
   return {above, size};
-}
-
-const physics::EffectParameter& parameter_of(const HiddenEffect& hidden) {
-  return *physics::find_parameter(*physics::find_effect(hidden.effect), hidden.parameter);
 }
 
 // Sets the value so that the effect is as large as planned; returns its size over what was planned. Where it cannot be

@@ -7,8 +7,6 @@
 #include <random>
 #include <stdexcept>
 
-#include "physics/effects.hpp"
-
 namespace kenaf::gap {
 namespace {
 
@@ -87,9 +85,12 @@ Stratum stratum_of(std::string_view name) {
   return static_cast<Stratum>(found - kStratumNames);
 }
 
+const physics::EffectParameter& parameter_of(const HiddenEffect& hidden) {
+  return *physics::find_parameter(*physics::find_effect(hidden.effect), hidden.parameter);
+}
+
 double value_in_model(const CasePlan& plan, const HiddenEffect& hidden) {
-  const physics::EffectParameter& parameter =
-      *physics::find_parameter(*physics::find_effect(hidden.effect), hidden.parameter);
+  const physics::EffectParameter& parameter = parameter_of(hidden);
   const physics::PhysicsSettings usual;
   double value = hidden.value;
   if (parameter.value == &physics::Effects::ground_compliance_scale)

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "physics/effects.hpp"
 #include "physics/world.hpp"
 
 namespace kenaf::gap {
@@ -49,6 +50,9 @@ struct CasePlan {
   double noise_scale = 1, noise_memory_s = 0;  // of the pose; 0: white
   std::uint64_t seed = 0;
 };
+
+// Of the catalogue, which must have it: a plan hides nothing else, and a key that is read is checked for it.
+const physics::EffectParameter& parameter_of(const HiddenEffect& hidden);
 
 // The value that a model with the simulator's own contacts needs for the same: the give of the ground and its damping multiply
 // those of the "real" side's contacts, which are others. Within the parameter's range.

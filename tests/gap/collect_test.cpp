@@ -1,6 +1,7 @@
 // Recorded runs become a dataset, and more are added to it; nothing that was there is changed.
 #include <catch2/catch.hpp>
 
+#include "description/data_files.hpp"
 #include "runs/dataset.hpp"
 #include "tests/gap/kenaf_gap.hpp"
 
@@ -66,6 +67,42 @@ TEST_CASE("Runs are added at the end, what somebody wrote into dataset.toml stay
   CHECK(read_file(folder / "data/a-3.csv") == read_file(folder / "a.csv"));
 }
 
+TEST_CASE("A dataset with a world and a robot of its own is added to from another folder") {
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  std::filesystem::create_directory(folder / "mine");
+  write_file(folder / "mine/hall.sdf", read_file(find_data_file("worlds", "flat", ".sdf")));
+  write_file(folder / "mine/my.toml", read_file(find_data_file("robots", "kenaf", ".toml")));
+  const std::string with_both = "dataset a.csv --manoeuvre own --world mine/hall.sdf --robot mine/my.toml --out data";
+  REQUIRE(kenaf_gap(folder, with_both).status == 0);
+  // hall.sdf and my.toml are beside dataset.toml; here are none of these names
+  Outcome added = kenaf_gap(folder, "dataset a.csv --manoeuvre own --out data");
+  CHECK(added.error == "");
+  CHECK(added.status == 0);
+  added = kenaf_gap(folder, with_both);
+  CHECK(added.error == "");
+  CHECK(added.status == 0);
+  const runs::Dataset dataset = runs::read_dataset(folder / "data");
+  CHECK(dataset.robot == "my.toml");
+  CHECK(dataset.world == "hall.sdf");
+  REQUIRE(dataset.runs.size() == 3);
+  for (const runs::DatasetRun& run : dataset.runs) CHECK(run.world.empty());  // the dataset's
+  write_file(folder / "mine/my.toml", read_file(folder / "mine/my.toml") + "\n# another one\n");
+  CHECK_THAT(kenaf_gap(folder, with_both).error, Catch::Contains("its robot is 'my.toml', not 'mine/my.toml'"));
+}
+
+TEST_CASE("A file of the dataset that is called like an unfinished copy stays") {
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  std::filesystem::rename(folder / "a.csv", folder / "a.csv.part");
+  REQUIRE(kenaf_gap(folder, "dataset a.csv.part --manoeuvre straight --out data").status == 0);
+  const std::string first = read_file(folder / "data/a.csv.part");
+  record(folder, "a.csv", 0.25);
+  REQUIRE(kenaf_gap(folder, "dataset a.csv --manoeuvre straight --out data").status == 0);
+  CHECK(read_file(folder / "data/a.csv.part") == first);
+  CHECK(runs::read_dataset(folder / "data").runs.at(1).file == "a-2.csv");
+}
+
 TEST_CASE("What is no run, or not plausible, writes nothing, and says why") {
   const TemporaryFolder folder;
   record(folder, "a.csv");
@@ -103,6 +140,7 @@ TEST_CASE("What is no run, or not plausible, writes nothing, and says why") {
     return std::distance(begin(all), end(all));
   };
   const auto count = files();
-  CHECK(kenaf_gap(folder, "dataset a.csv --manoeuvre straight --out data").status == 2);
+  write_file(folder / "hall.sdf", read_file(find_data_file("worlds", "flat", ".sdf")));
+  CHECK(kenaf_gap(folder, "dataset a.csv --manoeuvre straight --world hall.sdf --out data").status == 2);
   CHECK(files() == count);
 }

@@ -157,6 +157,18 @@ TEST_CASE("A folder with something in it is left alone, or with --force written 
   CHECK(simulate(folder, "--manoeuvre ./short.toml --out empty").status == 0);
 }
 
+TEST_CASE("A folder that is there is written into: one behind a link, one that a killed program left something in") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "disk");
+  std::filesystem::create_directory(folder / "disk/.part-abcdef");
+  std::filesystem::create_directory_symlink("disk", folder / "runs");
+  const Outcome outcome = simulate(folder, "--manoeuvre ./short.toml --out runs");
+  CHECK(outcome.error == "");
+  REQUIRE(outcome.status == 0);
+  CHECK(runs::read_dataset(folder / "disk").runs.size() == 1);
+  CHECK(std::filesystem::is_symlink(folder / "runs"));
+}
+
 // Nothing but a box under the start: the robot drives off it after 0.5 m of way and 2.5 s, and falls for 4.5 s more
 // until it is 100 m down.
 TEST_CASE("A run whose robot leaves the world: status 1, named, marked in the dataset, and not compared") {

@@ -75,6 +75,7 @@ TEST_CASE("What is refused of dataset.toml, with its line and column") {
   CHECK_THAT(refusal_of(changed("0.002", "nan")), Catch::StartsWith("dataset.toml:9:7: the noise of 'x_m'"));
   CHECK_THAT(refusal_of(changed("0.002", "\"little\"")), Catch::StartsWith("dataset.toml:9:7: the noise of 'x_m'"));
   CHECK_THAT(refusal_of(changed("more/run-001.csv", "run-000.csv")), Catch::Contains("is a run already"));
+  CHECK_THAT(refusal_of(changed("more/run-001.csv", "./run-000.csv")), Catch::Contains("is a run already"));
   CHECK_THAT(refusal_of(changed("more/run-001.csv", "../run.csv")),
              Catch::StartsWith("dataset.toml:18:8: '../run.csv' is outside"));
   CHECK_THAT(refusal_of(changed("more/run-001.csv", "/run.csv")), Catch::Contains("is outside"));
