@@ -18,6 +18,7 @@
 #include "gap/challenge/key.hpp"
 #include "gap/challenge/make_case.hpp"
 #include "gap/challenge/sha256.hpp"
+#include "gap/challenge/told.hpp"
 #include "gap/commands.hpp"
 #include "gap/interrupt.hpp"
 #include "gap/option_checks.hpp"
@@ -49,11 +50,16 @@ std::uint64_t seed_from_system() {
   return seed;
 }
 
+// Also one that was interrupted before its cases were sealed.
+bool is_challenge(const fs::path& folder) {
+  return fs::exists(folder / "commitment.txt") || fs::exists(folder / "cases.part");
+}
+
 void check_folder(const fs::path& folder, bool seed_given) {
   if (fs::exists(folder / "key.json"))
     throw std::runtime_error(
         fmt::format("{}: this challenge is finished, its key is there; `kenaf-gap score` scores it", folder.string()));
-  if (fs::exists(folder) && !fs::is_empty(folder) && !seed_given)
+  if (fs::exists(folder) && !fs::is_empty(folder) && !(seed_given && is_challenge(folder)))
     throw std::runtime_error(
         fmt::format("{}: is not empty; give another folder, or the --seed of the challenge that is to go on there",
                     folder.string()));
@@ -103,7 +109,11 @@ ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::pa
 // Cases and commitment, all or none; those that are there already are kept.
 ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller,
                         const std::atomic<bool>& stop) {
-  if (auto key = sealed_key(folder, seed); key && key->cases.size() == options.cases) return *std::move(key);
+  if (auto key = sealed_key(folder, seed)) {
+    if (key->cases.size() == options.cases) return *std::move(key);
+    throw std::runtime_error(
+        fmt::format("{0}: is a challenge of {1} cases; give --cases {1}", folder.string(), key->cases.size()));
+  }
   const fs::path part = folder / "cases.part";
   fs::remove_all(part);
   fs::create_directories(part);
@@ -116,14 +126,22 @@ ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::pa
                     "numbers would",
                     folder.string(), options.cases, seed));
   }
+  runs::write_whole_file(folder / "commitment.txt",
+                         commitment);  // before "cases.part" goes, by which it is known till then
+  runs::write_whole_file(folder / "key.enciphered", enciphered(text, seed));
   fs::remove_all(folder / "cases");
   fs::rename(part, folder / "cases");
-  runs::write_whole_file(folder / "commitment.txt", commitment);
-  runs::write_whole_file(folder / "key.enciphered", enciphered(text, seed));
   return key;
 }
 
-void run(const Options& options, std::uint64_t seed) {
+bool is_diagnosed(const CaseToDiagnose& one) try {
+  return read_told(one.report / "report.json").has_value();
+} catch (const std::exception&) {
+  return false;  // what is there is damaged
+}
+
+// Returns how many cases could be diagnosed.
+std::size_t run(const Options& options, std::uint64_t seed) {
   const std::atomic<bool>& stop = interruption();
   const fs::path folder = fs::absolute(options.out).lexically_normal();
   Teller teller(options.cases);
@@ -138,7 +156,7 @@ void run(const Options& options, std::uint64_t seed) {
       for (const HiddenEffect& hidden : plan.effects) one.without.push_back(hidden.effect);
       runs::write_whole_file(one.data / "without.txt", one.without.front() + "\n");
     }
-    if (fs::exists(one.report / "report.json")) {
+    if (is_diagnosed(one)) {
       teller.diagnosed(plan.name, true);
     } else {
       left.push_back(std::move(one));
@@ -149,6 +167,7 @@ void run(const Options& options, std::uint64_t seed) {
     std::fputs("this kernel has no Landlock: the diagnosis has no key, but could read files beside its case\n", stderr);
   std::size_t diagnosed = key.cases.size() - left.size();
   diagnose_cases(left, options.jobs, stop, [&](std::size_t i, bool could) {
+    could = could && is_diagnosed(left[i]);
     teller.diagnosed(names[i], could);
     diagnosed += could ? 1 : 0;
   });
@@ -158,6 +177,7 @@ void run(const Options& options, std::uint64_t seed) {
         fmt::format("no case could be diagnosed; why is in {}", (left[0].report / "diagnose.log").string()));
   runs::write_whole_file(folder / "key.json", key_text(key));
   fs::remove(folder / "key.enciphered");
+  return diagnosed;
 }
 
 }  // namespace
@@ -180,17 +200,26 @@ void add_challenge_command(CLI::App& program) {
     check_folder(options->out, options->seed.has_value());
     ::prctl(PR_SET_DUMPABLE, 0);  // no other process of this user may read the key out of this one's memory
     const std::uint64_t seed = options->seed ? *options->seed : seed_from_system();
+    // Told only where it ends early: without the seed nobody could go on.
+    const auto goes_on = [&](const std::string& why) {
+      return std::runtime_error(fmt::format("{}; `kenaf-gap challenge --out {} --cases {} --seed {}` goes on with it",
+                                            why, options->out, options->cases, seed));
+    };
+    std::size_t diagnosed = 0;
     try {
-      run(*options, seed);
+      diagnosed = run(*options, seed);
     } catch (const Interrupted&) {
-      throw std::runtime_error(
-          fmt::format("interrupted; `kenaf-gap challenge --out {} --cases {} --seed {}` goes on with it", options->out,
-                      options->cases, seed));
+      throw goes_on("interrupted");
+    } catch (const std::exception& error) {
+      if (options->seed || !is_challenge(options->out)) throw;
+      throw goes_on(error.what());
     }
     fmt::print(
-        "all {0} cases are diagnosed, and {1}/key.json says what was hidden in them\n`kenaf-gap score {1}` "
-        "compares\n",
-        options->cases, options->out);
+        "{} of {} cases are diagnosed, and {}/key.json says what was hidden in them\n`kenaf-gap score {}` compares\n",
+        diagnosed, options->cases, options->out, options->out);
+    if (diagnosed < options->cases)
+      throw RunsWentWrong(
+          "not all cases could be diagnosed; why is in the diagnose.log of those without a report.json");
   });
 }
 

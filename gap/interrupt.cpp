@@ -17,6 +17,7 @@ void interrupt(int signal) {
 const std::atomic<bool>& interruption() {
   std::signal(SIGINT, interrupt);
   std::signal(SIGTERM, interrupt);
+  if (std::signal(SIGHUP, interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // as nohup asked for
   return interrupted;
 }
 

@@ -5,7 +5,7 @@
 
 namespace kenaf::gap {
 
-// From now on a first SIGINT or SIGTERM sets this; a second one ends the program at once. Thread safety: call it from one.
+// From now on a first SIGINT, SIGTERM or SIGHUP sets this; a second one ends the program at once. Thread safety: call it from one.
 const std::atomic<bool>& interruption();
 
 }  // namespace kenaf::gap

@@ -21,9 +21,10 @@ bool is_small(const CasePlan& plan) {
 
 // Whether each name can have a claim of its own. There are at most two names.
 bool fits(const std::vector<std::string>& names, std::vector<std::vector<std::string>> claims) {
+  if (claims.size() != names.size()) return false;
   std::ranges::sort(claims);
   do {
-    bool all = claims.size() == names.size();
+    bool all = true;
     for (std::size_t i = 0; all && i < names.size(); ++i) all = has(claims[i], names[i]);
     if (all) return true;
   } while (std::ranges::next_permutation(claims).found);

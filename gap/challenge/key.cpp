@@ -5,6 +5,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string_view>
 
 #include "gap/challenge/sha256.hpp"
 #include "physics/effects.hpp"
@@ -17,6 +18,9 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "kenaf-gap-key/1";
+// Beyond these nobody scores a case within his lifetime.
+constexpr int kMostRepeats = 100, kMostIterations = 1000;
+constexpr double kShortestStep_s = 1e-5, kLongestStep_s = 0.01;
 
 Json case_json(const SealedCase& sealed) {
   const CasePlan& plan = sealed.plan;
@@ -51,11 +55,21 @@ void check(const CasePlan& plan) {
                                                                                                      : 0;
   if (plan.effects.size() != effects || plan.foreign.empty() == (plan.stratum == Stratum::foreign))
     throw std::runtime_error(fmt::format("{} does not hide what its stratum says", plan.name));
-  for (const HiddenEffect& hidden : plan.effects)
-    if (const auto* effect = physics::find_effect(hidden.effect);
-        effect == nullptr || physics::find_parameter(*effect, hidden.parameter) == nullptr)
+  for (const HiddenEffect& hidden : plan.effects) {
+    const auto* effect = physics::find_effect(hidden.effect);
+    const auto* parameter = effect == nullptr ? nullptr : physics::find_parameter(*effect, hidden.parameter);
+    if (parameter == nullptr)
       throw std::runtime_error(fmt::format("{} hides {}:{}, which this program's catalogue does not have", plan.name,
                                            hidden.effect, hidden.parameter));
+    if (!(hidden.value >= parameter->min && hidden.value <= parameter->max))
+      throw std::runtime_error(fmt::format("{} hides {}:{} = {}, which is out of its range", plan.name, hidden.effect,
+                                           hidden.parameter, hidden.value));
+  }
+  const physics::PhysicsSettings& physics = plan.physics;
+  if (plan.repeats < 1 || plan.repeats > kMostRepeats || !(physics.time_step_s >= kShortestStep_s) ||
+      !(physics.time_step_s <= kLongestStep_s) || physics.solver_iterations < 1 ||
+      physics.solver_iterations > kMostIterations)
+    throw std::runtime_error(fmt::format("{} has repeats, a time step or iterations that no challenge has", plan.name));
 }
 
 SealedCase case_of(const Json& json) {
@@ -97,15 +111,20 @@ std::optional<fs::path> first_changed(const fs::path& folder, const ChallengeKey
   return std::nullopt;
 }
 
+unsigned char byte_of(std::string_view two_digits) {
+  unsigned char byte = 0;
+  if (std::from_chars(two_digits.begin(), two_digits.end(), byte, 16).ptr != two_digits.end())
+    throw std::runtime_error(fmt::format("\"{}\" is not two hexadecimal digits", two_digits));
+  return byte;
+}
+
 // Its own inverse.
 std::string with_keystream(std::string bytes, std::uint64_t seed) {
   std::string block;  // 64 hexadecimal digits, of which each byte takes two
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const std::size_t in_block = i % 32;
     if (in_block == 0) block = sha256(fmt::format("key of a kenaf-gap challenge, seed {}, block {}", seed, i / 32));
-    unsigned stream = 0;
-    std::from_chars(block.data() + 2 * in_block, block.data() + 2 * in_block + 2, stream, 16);
-    bytes[i] = static_cast<char>(static_cast<unsigned char>(bytes[i]) ^ stream);
+    bytes[i] = static_cast<char>(bytes[i] ^ byte_of(std::string_view(block).substr(2 * in_block, 2)));
   }
   return bytes;
 }
@@ -146,13 +165,8 @@ std::string enciphered(const std::string& key_text, std::uint64_t seed) {
 
 std::string deciphered(const std::string& text, std::uint64_t seed) {
   std::string bytes;
-  for (std::size_t i = 0; i + 1 < text.size(); i += 2) {
-    unsigned byte = 0;
-    const char* const from = text.data() + i;
-    if (std::from_chars(from, from + 2, byte, 16).ptr != from + 2)
-      throw std::runtime_error("key.enciphered holds other characters than pairs of hexadecimal digits");
-    bytes += static_cast<char>(byte);
-  }
+  for (std::size_t i = 0; i + 1 < text.size(); i += 2)
+    bytes += static_cast<char>(byte_of(std::string_view(text).substr(i, 2)));
   return with_keystream(bytes, seed);
 }
 

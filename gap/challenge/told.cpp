@@ -45,7 +45,10 @@ Told told_by(const std::string& report_json) try {
 std::optional<Told> read_told(const std::filesystem::path& report_json) {
   if (!std::filesystem::exists(report_json)) return std::nullopt;
   try {
-    return told_by(runs::read_whole_file(report_json));
+    const std::string text = runs::read_whole_file(report_json);
+    Told told = told_by(text);
+    if (Json::parse(text).contains("interrupted")) return std::nullopt;  // its verdict is none that counts
+    return told;
   } catch (const std::exception& error) {
     throw std::runtime_error(fmt::format("{}: {}", report_json.string(), error.what()));
   }

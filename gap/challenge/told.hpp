@@ -28,7 +28,7 @@ struct Told {
 
 // Throws std::runtime_error in words where it is none of the format kenaf-gap-report/1.
 Told told_by(const std::string& report_json);
-// Nothing where there is no such file, as of a diagnosis that failed.
+// Nothing where there is no such file, as of a diagnosis that failed, or it is what an interrupted one left.
 std::optional<Told> read_told(const std::filesystem::path& report_json);
 
 }  // namespace kenaf::gap

@@ -300,6 +300,17 @@ TEST_CASE("A report is read as it is written, and what is none is refused") {
   CHECK_THROWS_WITH(told_by("{\"format\": \"kenaf-gap-report/2\"}"), Catch::Contains("kenaf-gap-report/1"));
 }
 
+TEST_CASE("What an interrupted diagnosis left is no report: unknown would be right for what is outside") {
+  const TemporaryFolder folder;
+  const std::string whole = R"({"format": "kenaf-gap-report/1", "verdict": "unknown", "named": [],
+    "ambiguous_sets": [], "effects": [], "gap": {"shrink": 0}, "isolability": {"effects": [], "angle_deg": []})";
+  write_file(folder / "whole.json", whole + "}");
+  write_file(folder / "half.json", whole + R"(, "interrupted": "while fitting"})");
+  CHECK(read_told(folder / "whole.json"));
+  CHECK_FALSE(read_told(folder / "half.json"));
+  CHECK_FALSE(read_told(folder / "none.json"));
+}
+
 TEST_CASE("SHA-256 gives what its standard's examples say") {
   CHECK(sha256("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   CHECK(sha256("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
@@ -351,6 +362,14 @@ TEST_CASE("A key is read back as it was written") {
   CHECK_THROWS_WITH(read_key(with(plan_of(Stratum::single))), Catch::Contains("does not hide what its stratum says"));
   CHECK_THROWS_WITH(read_key(with(plan_of(Stratum::single, {{"mess", "scale", 3, 1.2}}))),
                     Catch::Contains("mess:scale"));
+  CHECK_THROWS_WITH(read_key(with(plan_of(Stratum::single, {{"mass", "scale", 3, -1}}))),
+                    Catch::Contains("out of its range"));
+  CasePlan endless = plan_of(Stratum::none);
+  endless.repeats = -1;  // would be 18446744073709551615 of them
+  CHECK_THROWS_WITH(read_key(with(endless)), Catch::Contains("no challenge has"));
+  endless = plan_of(Stratum::none);
+  endless.physics.time_step_s = 1e-300;
+  CHECK_THROWS_WITH(read_key(with(endless)), Catch::Contains("no challenge has"));
 }
 
 TEST_CASE("A finished challenge is scored, a key or data that were changed are refused") {
@@ -408,6 +427,7 @@ TEST_CASE("A challenge that was interrupted goes on with the cases and reports t
   const std::string key = read_file(folder / "key.json");
   write_file(folder / "key.enciphered", enciphered(key, 11));
   std::filesystem::remove(folder / "key.json");
+  CHECK_THAT(test::kenaf_gap(folder, "challenge --out . --cases 2 --seed 11").error, Catch::Contains("give --cases 1"));
   // its only case has a report: there is nothing left to do but to show the key
   const test::Outcome outcome = test::kenaf_gap(folder, "challenge --out . --cases 1 --seed 11");
   CAPTURE(outcome.error);
@@ -427,4 +447,10 @@ TEST_CASE("A challenge that is not finished has no score, and one that is finish
   const test::Outcome other = test::kenaf_gap(folder, "challenge --out . --cases 1");
   CHECK(other.status == 2);
   CHECK_THAT(other.error, Catch::Contains("is not empty"));
+  const TemporaryFolder somebodys;
+  std::filesystem::create_directory(somebodys / "cases");
+  write_file(somebodys / "cases/mine.txt", "mine");
+  CHECK_THAT(test::kenaf_gap(somebodys, "challenge --out . --cases 1 --seed 11").error,
+             Catch::Contains("is not empty"));
+  CHECK(read_file(somebodys / "cases/mine.txt") == "mine");
 }
