@@ -35,7 +35,8 @@ void check(const std::filesystem::path& folder) {
     if (entry.fault.empty()) take(check_run(run, entry.file, &robot));
   }
   take(check_noise(dataset, columns));
-  const std::string counts = fmt::format("{} runs, {} refused, {} warned of", dataset.runs.size(), refused, warned);
+  const std::string counts =
+      fmt::format("{} runs; {} things refused, {} warned of", dataset.runs.size(), refused, warned);
   if (refused > 0) throw std::runtime_error(fmt::format("{}: {}", folder.string(), counts));
   std::printf("%s\n", counts.c_str());
 }

@@ -185,6 +185,9 @@ void RunChecks::check_pose() {
                     "the cells there",
                     turns),
         line(first_turn));
+  if (!start)
+    return add(tracks_measured ? Severity::warn : Severity::refuse, "x_m",
+               "has a value in no row in which y_m has one: where the robot went is not known");
   if (t_s[*start] - t_s.front() > kLate_s)
     add(Severity::warn, "x_m",
         fmt::format(

@@ -20,6 +20,7 @@ constexpr double kRefuted = 2;                  // an offset is, where it leaves
 constexpr double kEnoughMotion = 0.2;           // of what the less moving side saw has to lie in the overlap
 constexpr double kWidestPeak_s = 2, kLargestError_s = 0.25;
 constexpr double kCorrelatedOver_s = 2;  // residuals farther apart are taken as independent
+constexpr double kFinest_s = 1e-9;       // no clock tells less; courses that are the same leave no residual at all
 constexpr Eigen::Index kMostFinePoints = 20000;
 constexpr double kBodyIsGoodEnough_s = 0.01;  // then what slips only compares
 
@@ -298,7 +299,7 @@ std::optional<QuantityOffset> refine(const CourseSeenTwice& seen, const Grid& gr
                           (curvature * curvature);
   const bool no_match = gain < seen.least_gain || gain > seen.most_gain || correlation * correlation < kTellsSomething;
   if (no_match || !(variance < 1)) return std::nullopt;
-  return QuantityOffset{seen.name, offset_s, std::sqrt(variance), gain, correlation, false};
+  return QuantityOffset{seen.name, offset_s, std::max(kFinest_s, std::sqrt(variance)), gain, correlation, false};
 }
 
 bool moves(const Course& course, double enough) {

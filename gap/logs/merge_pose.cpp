@@ -63,12 +63,15 @@ void put_start_at_origin(std::vector<std::optional<CapturedPose>>& poses, double
 }  // namespace
 
 MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const MergeOptions& options) {
+  const auto t_s = run.column("t_s");
+  if (!t_s.empty() && !(std::abs(t_s.front()) <= kLatest_s && std::abs(t_s.back()) <= kLatest_s))
+    throw runs::RunFileError(
+        fmt::format("the run goes from {:.3g} to {:.3g} s, times that no robot has", t_s.front(), t_s.back()));
   MergedRun merged{run, {}, 0, 0, {}};
   merged.max_gap_s = options.max_gap_s.value_or(kLongestGapSteps * median_step_of(capture));
   merged.offset = options.offset_s ? ClockOffset{.offset_s = *options.offset_s, .quantities = {}}
                                    : estimate_clock_offset(courses_seen_twice(run, capture));
 
-  const auto t_s = run.column("t_s");
   std::vector<std::optional<CapturedPose>> poses;
   for (const double time_s : t_s)
     poses.push_back(pose_between(capture, time_s - merged.offset.offset_s, merged.max_gap_s));

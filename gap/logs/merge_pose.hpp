@@ -33,7 +33,8 @@ std::vector<CourseSeenTwice> courses_seen_twice(const runs::Run& run, const Moti
 
 // The run with x_m, y_m, z_m, roll_rad, pitch_rad, yaw_rad of the capture, as far as that measured them, at the run's
 // own times. A pose column of the run that holds values is kept as recorded_<name>.
-// Throws NoOffset; runs::RunFileError where no row of the run lies within the capture, or recorded_<name> is there.
+// Throws NoOffset; runs::RunFileError where no row of the run lies within the capture, recorded_<name> is there, or the
+// run's times are beyond kLatest_s.
 MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const MergeOptions& options);
 
 }  // namespace kenaf::gap

@@ -14,8 +14,8 @@ namespace {
 
 // How far from 1 the norm of a quaternion may be that was written with few digits.
 constexpr double kNormTolerance = 0.01;
-// Beyond these no place and no time of a robot lies; larger numbers would lose their small digits.
-constexpr double kFarthest_m = 1e6, kLargest_rad = 1e6, kLatest_s = 1e12;
+// Beyond these no place and no angle of a robot lies, as with kLatest_s.
+constexpr double kFarthest_m = 1e6, kLargest_rad = 1e6;
 
 class Table {
  public:
@@ -39,6 +39,7 @@ class Table {
     return std::nullopt;
   }
   Column needed(const std::optional<Column>& column, const std::string& names) const {
+    if (run_.row_count() == 0) fail("has no rows");
     if (!column) fail(fmt::format("no column {}; the first line names the columns", names));
     return *column;
   }

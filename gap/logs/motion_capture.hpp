@@ -11,6 +11,9 @@
 
 namespace kenaf::gap {
 
+// Beyond this no time of a robot or of a capture lies, either way; larger numbers would lose their small digits.
+inline constexpr double kLatest_s = 1e12;
+
 enum class LengthUnit { metres, millimetres };
 
 struct CapturedPose {

@@ -96,6 +96,28 @@ TEST_CASE(
   CHECK(quantity(without, "turn by the tracks").gain == Approx(0.8).margin(0.01));
 }
 
+TEST_CASE("A course that both logs have to the last digit has an offset and an error of it") {
+  const Drive drive = winding_drive();
+  gap::Course turned{{}, {}, 0.1};
+  double yaw_rad = 0;
+  for (int i = 0; i <= 2000; ++i) {
+    turned.t_s.push_back(0.01 * i);
+    turned.value.push_back(yaw_rad += 0.01 * drive.turn_radps(0.01 * i));
+  }
+  const auto offset = gap::estimate_clock_offset({{"turn", turned, turned, 0.5, 2, 0.1, false}});
+  CHECK(std::abs(offset.offset_s) < 1e-6);
+  CHECK(offset.standard_error_s < 1e-6);  // nothing is left of which it could be told
+}
+
+TEST_CASE("A run whose times are beyond those of robots is refused") {
+  const Drive drive = winding_drive();
+  runs::Run run = robot_log(drive, 1);
+  REQUIRE(run.columns.front() == "t_s");
+  run.values.front().front() = -1.7e308;
+  run.values.front().back() = 1.7e308;
+  CHECK_THROWS_WITH(gap::merge_pose(run, captured(drive, 1, {}), {}), Catch::Contains("times that no robot has"));
+}
+
 TEST_CASE("No offset is made up: standstill, other drives, drives that repeat themselves") {
   const Drive drive = winding_drive();
   const Drive still{[](double) { return 0.0; }, [](double) { return 0.0; }, 20};

@@ -240,6 +240,10 @@ TEST_CASE("A pose that jumps is warned of with its line, one that begins late to
   for (const std::string& name : kPlace)
     for (std::size_t i = 0; i < 100; ++i) column(late, name)[i] = std::nan("");
   CHECK_THAT(found(late), Catch::StartsWith("warning: run.csv:102: x_m: has no value before 1 s"));
+  runs::Run never_both = arc();
+  for (std::size_t i = 0; i < never_both.row_count(); ++i)
+    column(never_both, i % 2 == 0 ? "x_m" : "y_m")[i] = std::nan("");
+  CHECK_THAT(found(never_both), Catch::Contains("x_m: has a value in no row in which y_m has one"));
 }
 
 TEST_CASE("A run of a few rows tells nothing, a noise that no column has is warned of") {
@@ -256,7 +260,7 @@ TEST_CASE("The command check ends with 2 where something is refused, and with 0 
   REQUIRE(test::kenaf_gap(folder, "simulate --manoeuvre straight-fast --out data").status == 0);
   auto outcome = test::kenaf_gap(folder, "check data");
   CHECK(outcome.status == 0);
-  CHECK(outcome.out == "1 runs, 0 refused, 0 warned of\n");
+  CHECK(outcome.out == "1 runs; 0 things refused, 0 warned of\n");
   runs::Run run = scaled(runs::read_run(folder / "data/run-000.csv"), kPlace, 1000);
   runs::RunWriter writer(folder / "data/run-000.csv", run.columns);
   for (std::size_t i = 0; i < run.row_count(); ++i) {
