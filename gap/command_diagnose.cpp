@@ -6,13 +6,13 @@
 #include <memory>
 
 #include "gap/commands.hpp"
+#include "gap/dataset_files.hpp"
 #include "gap/diagnose/report.hpp"
 #include "gap/interrupt.hpp"
 #include "gap/option_checks.hpp"
 #include "gap/progress_line.hpp"
 
 namespace kenaf::gap {
-namespace {}  // namespace
 
 void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
   struct Options {
@@ -48,10 +48,12 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
       options->diagnosis.progress = [line = ProgressLine()](const Progress& progress) {
         line.show(progress.doing, progress.done);
       };
+    if (reports) check_can_write(options->out);
     const Diagnosis result = diagnose(options->dataset, options->diagnosis);
     if (!reports) return;
-    write_diagnosis(result, options->out);
+    if (!result.interrupted.empty()) clear_progress_line();
     std::fputs(diagnosis_text(result).c_str(), stdout);
+    write_diagnosis(result, options->out);
     std::printf("\n%s/report.html has the figures\n", options->out.c_str());
   });
 }

@@ -1,9 +1,7 @@
 // kenaf-gap score: the reports of a challenge beside its key.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -12,6 +10,7 @@
 #include "gap/challenge/make_case.hpp"
 #include "gap/challenge/score.hpp"
 #include "gap/commands.hpp"
+#include "gap/dataset_files.hpp"
 #include "gap/option_checks.hpp"
 #include "gap/parallel.hpp"
 #include "gap/progress_line.hpp"
@@ -62,6 +61,7 @@ void add_score_command(CLI::App& program) {
       std::optional<Told> told = read_told(report_folder(folder, sealed.plan.name) / "report.json");
       cases.push_back({std::move(sealed), std::move(told), {}});
     }
+    check_can_write(folder);
     const ProgressLine line;
     std::mutex mutex;
     double done = 0;
@@ -72,9 +72,9 @@ void add_score_command(CLI::App& program) {
         line.show("simulating what was named, and what was hidden", ++done / static_cast<double>(cases.size()));
       });
     const std::string text = score_markdown(cases);
+    std::fputs(text.c_str(), stdout);
     runs::write_whole_file(folder / "score.json", score_json(cases));
     runs::write_whole_file(folder / "score.md", text);
-    std::fputs(text.c_str(), stdout);
   });
 }
 

@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "gap/commands.hpp"
+#include "gap/progress_line.hpp"
 #include "gap/ranks.hpp"
 
 namespace {
@@ -61,9 +62,11 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return program.exit(error) == 0 ? 0 : kBadInput;
   } catch (const kenaf::gap::RunsWentWrong& error) {
+    kenaf::gap::clear_progress_line();
     std::fprintf(stderr, "kenaf-gap: %s\n", error.what());
     return kWentWrong;
   } catch (const std::exception& error) {
+    kenaf::gap::clear_progress_line();
     std::fprintf(stderr, "kenaf-gap: %s\n", error.what());
     return kBadInput;
   }

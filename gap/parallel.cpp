@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -25,7 +26,11 @@ void for_each_job(std::size_t count, unsigned threads, const std::function<void(
   };
   {
     std::vector<std::jthread> others;
-    for (std::size_t i = 1; i < std::min<std::size_t>(threads, count); ++i) others.emplace_back(work);
+    for (std::size_t i = 1; i < std::min<std::size_t>(threads, count); ++i) try {
+        others.emplace_back(work);
+      } catch (const std::system_error&) {
+        break;  // no more threads are to be had: those that there are do it
+      }
     work();
   }
   for (const std::exception_ptr& error : errors)

@@ -29,4 +29,8 @@ void ProgressLine::show(std::string_view doing, double done) const {
   if (done >= 1) std::fputs("\r\033[K", stderr);
 }
 
+void clear_progress_line() {
+  if (::isatty(STDERR_FILENO) != 0) std::fputs("\r\033[K", stderr);
+}
+
 }  // namespace kenaf::gap

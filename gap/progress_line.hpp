@@ -18,4 +18,7 @@ class ProgressLine {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+// Takes away a line that is not finished, before something else is said.
+void clear_progress_line();
+
 }  // namespace kenaf::gap

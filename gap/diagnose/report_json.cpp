@@ -123,7 +123,7 @@ std::string diagnosis_json(const Diagnosis& d) {
                                        {"separates", names_of(d, next.separates)},
                                        {"expected_score", number(next.expected_score)}});
   json["warnings"] = d.observations.warnings;
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // names of files may hold any bytes
 }
 
 }  // namespace kenaf::gap

@@ -7,6 +7,16 @@
 #include "gap/diagnose/report.hpp"
 
 namespace kenaf::gap {
+namespace {
+
+// Not where `effects` is an inline table, to which nothing can be added from below.
+bool reads_as(const std::string& text, const toml::table& root) try {
+  return toml::parse(text) == root;
+} catch (const toml::parse_error&) {
+  return false;
+}
+
+}  // namespace
 
 std::string corrected_robot_toml(const Diagnosis& d, const std::string& robot_name_or_path) {
   std::string text = read_description_file("robot", robot_name_or_path, ".toml").text;
@@ -24,7 +34,7 @@ std::string corrected_robot_toml(const Diagnosis& d, const std::string& robot_na
     added += fmt::format("\n[effects.{}]                # found by a diagnosis of runs\n{} = {}\n", curve.effect->name,
                          curve.parameter->name, place.value);
   }
-  if (!replaces) return text + added;
+  if (!replaces && reads_as(text + added, root)) return text + added;
   std::ostringstream out;
   out << root << '\n';
   return out.str();

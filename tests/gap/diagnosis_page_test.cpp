@@ -4,11 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "description/data_files.hpp"
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/page/sections.hpp"
 #include "gap/diagnose/page/words.hpp"
 #include "gap/diagnose/report.hpp"
+#include "physics/robot_description.hpp"
 #include "tests/gap/well_formed.hpp"
+#include "tests/runs/temporary_folder.hpp"
 
 using namespace kenaf;
 using namespace kenaf::gap;
@@ -153,6 +156,27 @@ TEST_CASE("Names and warnings are shown as they are, whatever they hold") {
   CHECK_THAT(page, Contains("up &amp; &lt;over&gt;") && Contains("run-007.csv: &quot;late&quot; &lt;clock&gt;") &&
                        Contains("Logs of &lt;Monday&gt; &amp; Tuesday"));
   CHECK_THAT(page, !Contains("<over>") && !Contains("<clock>") && !Contains("<Monday>"));
+}
+
+TEST_CASE("A robot with effects has the one that was found among them, however its file writes them") {
+  const Diagnosis d = two_manoeuvres();  // found drive_lag of 0.0513 s
+  const test::TemporaryFolder folder;
+  std::string kenaf = test::read_file(find_data_file("robots", "kenaf", ".toml"));
+  for (const auto& [has, lag_s, delay_s] : {std::tuple{"", 0.0513, 0.0},
+                                            {"\n[effects.command_delay]\ndelay_s = 0.05\n", 0.0513, 0.05},
+                                            {"\n[effects.drive_lag]\nlag_s = 0.2\n", 0.0513, 0.0}}) {
+    test::write_file(folder / "my.toml", kenaf + has);
+    test::write_file(folder / "corrected.toml", corrected_robot_toml(d, folder / "my.toml"));
+    const physics::Effects effects = physics::load_robot(folder / "corrected.toml").effects;
+    CHECK(effects.drive_lag_s == lag_s);
+    CHECK(effects.command_delay_s == delay_s);
+  }
+  // a table in one line, to which none can be added from below; keys without a table come first in a file
+  test::write_file(folder / "my.toml", "effects = { command_delay = { delay_s = 0.05 } }\n" + kenaf);
+  test::write_file(folder / "corrected.toml", corrected_robot_toml(d, folder / "my.toml"));
+  const physics::Effects effects = physics::load_robot(folder / "corrected.toml").effects;
+  CHECK(effects.drive_lag_s == 0.0513);
+  CHECK(effects.command_delay_s == 0.05);
 }
 
 TEST_CASE("Each verdict says what it means and what to do next") {
