@@ -3,9 +3,13 @@
 #pragma once
 
 #include <boost/asio/post.hpp>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "camera/server/feed.hpp"
@@ -30,14 +34,27 @@ struct Hub {
   std::shared_ptr<const std::string> inventory{};  // as of the newest state
   std::function<void()> viewer_came{};
 
-  // Last, so that it ends first: what its handlers hold knows the others.
+  // Near the end, so that it ends before the others: what its handlers hold knows them.
   Site site;
 
-  // Has the world's thread carry `request` out, and then this one `done` with what it returned.
+  // Whom the world owes an answer. They are kept here, by number, and not in the world's queue: that one drops what it no longer
+  // carries out on its own thread, or after all of this has ended. They end before the site: they are its connections.
+  std::map<std::uint64_t, std::function<void()>> waiting{};
+  std::uint64_t last_question = 0;
+  std::shared_ptr<const bool> here = std::make_shared<const bool>(true);
+
+  // Has the world's thread carry `request` out, and then this one `done` with what it returned; neither, where the world begins to
+  // run only after this has ended.
   template <typename Request, typename Done>
   void ask(Request request, Done done) {
-    world.ask([this, request = std::move(request), done = std::move(done)](server::Simulation& simulation) mutable {
-      boost::asio::post(site.io, [answer = request(simulation), done = std::move(done)]() mutable { done(answer); });
+    auto answer = std::make_shared<std::invoke_result_t<Request&, server::Simulation&>>();
+    const std::uint64_t number = ++last_question;
+    waiting.emplace(number, [answer, done = std::move(done)] { done(*answer); });
+    world.ask([this, still = std::weak_ptr(here), request = std::move(request), answer = std::move(answer),
+               number](server::Simulation& simulation) {
+      if (still.expired()) return;
+      *answer = request(simulation);
+      boost::asio::post(site.io, [this, number] { waiting.extract(number).mapped()(); });
     });
   }
 };

@@ -27,7 +27,7 @@ struct ViewLimits : SiteLimits {
 class View {
  public:
   // Listens, and serves from then on. Throws std::runtime_error in words. The world must be there until this has ended,
-  // and this must end after world.run() has, or without it. The cameras must be there as long; null: there are none to see.
+  // and this must end while world.run() is not under way. The cameras must be there as long; null: there are none to see.
   View(server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits = {},
        camera::Feed* cameras = nullptr);
   ~View();

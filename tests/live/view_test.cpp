@@ -131,6 +131,24 @@ TEST_CASE("another address than loopback makes itself a token") {
   CHECK(View(server, anywhere).url().ends_with("#token=chosen"));
 }
 
+TEST_CASE("a view with a page that waits for an answer ends before its world, which never ran") {
+  server::ServerOptions options;
+  options.port = 0;
+  server::WorldServer server(options);
+  auto view = std::make_unique<View>(server, ViewOptions{true, "127.0.0.1", 0, ""});
+  WebClient page(view->port());
+  REQUIRE(page.open_websocket());
+  page.message_of("hello");
+  page.send_text(R"({"type":"place"})");
+  // One thread serves all: when it has answered these, it has taken what came before them.
+  for (int i = 0; i < 2; ++i) {
+    WebClient other(view->port());
+    other.send(get("/page.css"));
+    CHECK(status_of(other.answer()) == "200");
+  }
+  view.reset();
+}
+
 TEST_CASE("a port that is taken is named, and a program goes on without the view") {
   ServedWorld world;
   server::ServerOptions options;
