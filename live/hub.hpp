@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <random>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -28,6 +29,8 @@ struct Hub {
   const std::shared_ptr<const std::string> scene;
   camera::Feed* const cameras = nullptr;  // null: they are off
 
+  // By it a page that was open before sees that this is another server, with another world.
+  const std::uint32_t server_number = std::random_device{}();
   std::uint32_t last_operator = 0;
   std::vector<Viewer*> viewers{};
   std::vector<PictureReader*> picture_readers{};

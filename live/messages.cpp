@@ -96,11 +96,11 @@ void write_robot(Writer& out, const RobotState& robot, std::span<const FrameAge>
 
 }  // namespace
 
-std::string hello_message(server::OperatorId you, std::string_view world, double time_step_s, double operator_silence_s,
-                          bool pictures) {
+std::string hello_message(server::OperatorId you, std::uint32_t server, std::string_view world, double time_step_s,
+                          double operator_silence_s, bool pictures) {
   Writer out;
   out.open('{').key("type").text("hello").key("protocol").integer(kViewProtocol);
-  out.key("you").integer(static_cast<std::uint32_t>(you)).key("world").text(world);
+  out.key("you").integer(static_cast<std::uint32_t>(you)).key("server").integer(server).key("world").text(world);
   out.key("time_step").number(time_step_s, 6).key("operator_silence").number(operator_silence_s, 3);
   out.key("pictures").boolean(pictures);
   return out.close('}').take();

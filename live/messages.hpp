@@ -14,9 +14,9 @@ namespace kenaf::live {
 // Raised by one where a page of before would misunderstand.
 inline constexpr int kViewProtocol = 2;
 
-// `pictures`: whether robots' cameras can be seen.
-std::string hello_message(server::OperatorId you, std::string_view world, double time_step_s, double operator_silence_s,
-                          bool pictures);
+// `server`: another one each time a server is started. `pictures`: whether robots' cameras can be seen.
+std::string hello_message(server::OperatorId you, std::uint32_t server, std::string_view world, double time_step_s,
+                          double operator_silence_s, bool pictures);
 // What a robot or a box is, beside how it moves: sent when one comes or leaves.
 std::string inventory_message(const server::WorldState& state);
 // Whether a page that has the inventory of `a` needs that of `b`.

@@ -82,8 +82,8 @@ void OpenViewer::welcome() {
   open_ = true;
   hub_.viewers.push_back(this);
   const auto& world = hub_.world;
-  tell(hello_message(who_, world.world_description().name, world.time_step_s(), server::kOperatorSilence_s,
-                     hub_.cameras != nullptr));
+  tell(hello_message(who_, hub_.server_number, world.world_description().name, world.time_step_s(),
+                     server::kOperatorSilence_s, hub_.cameras != nullptr));
   if (hub_.inventory) tell(hub_.inventory);
   hub_.viewer_came();
   read();

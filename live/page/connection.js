@@ -11,7 +11,7 @@ export function address(path) {
 export function connect(listeners) {
   const link = { dropped: 0, roundTrip_ms: null, received_ms: null, open: false, send };
   let socket = null;
-  let number = null;
+  let number = null, server = null;
 
   function send(message) {
     if (link.open) socket.send(JSON.stringify(message));
@@ -20,9 +20,12 @@ export function connect(listeners) {
   function take(event) {
     const message = JSON.parse(event.data);
     link.received_ms = performance.now();
-    if (message.type === "hello" && message.protocol !== PROTOCOL) {
-      location.reload();   // the server is a newer one than this page
-      return;
+    if (message.type === "hello") {
+      if (message.protocol !== PROTOCOL || (server !== null && message.server !== server)) {
+        location.reload();   // another server than before: it may be newer than this page, and have another world
+        return;
+      }
+      server = message.server;
     }
     if (message.type === "pong") link.roundTrip_ms = performance.now() - message.t;
     if (message.type === "state") {

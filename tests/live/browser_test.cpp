@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <filesystem>
+#include <memory>
 #include <thread>
 
 #include "tests/live/browser.hpp"
@@ -98,6 +99,20 @@ TEST_CASE("in a browser: keys held drive the robot, letting go of them stops it,
   desk.robot_with([](const json& robot) { return !robot.contains("holder"); });
   CHECK(desk.browser.complaints().empty());
   for (const std::string& complaint : desk.browser.complaints()) UNSCOPED_INFO(complaint);
+}
+
+TEST_CASE("in a browser: a page that was open shows the world of the server that is started next") {
+  support::TemporaryFolder profile;
+  auto world = std::make_unique<ServedWorld>("", ViewLimits{}, "step-200");
+  Browser browser(profile.path());
+  browser.open(world->url());
+  const std::string shows = "document.getElementById('link')?.dataset.state === 'good' && ";
+  browser.wait_for(shows + "document.getElementById('world').textContent === 'step-200'");
+  browser.evaluate("window.was_open = true");
+  const std::uint16_t port = world->port();
+  world.reset();
+  world = std::make_unique<ServedWorld>("", ViewLimits{}, "flat", port);
+  browser.wait_for(shows + "document.getElementById('world').textContent === 'flat' && !window.was_open");
 }
 
 TEST_CASE("in a browser: both cameras' pictures are shown, turned by keys, and not fetched by a hidden page") {

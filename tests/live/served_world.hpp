@@ -11,10 +11,12 @@ namespace kenaf::live {
 
 class ServedWorld {
  public:
-  explicit ServedWorld(const std::string& token = "", const ViewLimits& limits = {}, const std::string& world = "flat")
+  // `port` of the view; 0: any free one.
+  explicit ServedWorld(const std::string& token = "", const ViewLimits& limits = {}, const std::string& world = "flat",
+                       std::uint16_t port = 0)
       : server_(server_options(world)),
         cameras_(server_),
-        view_(server_, view_options(token), limits, &cameras_),
+        view_(server_, view_options(token, port), limits, &cameras_),
         thread_([this] { server_.run(); }) {}
   ~ServedWorld() {
     server_.stop();
@@ -32,9 +34,9 @@ class ServedWorld {
     options.port = 0;
     return options;
   }
-  static ViewOptions view_options(const std::string& token) {
+  static ViewOptions view_options(const std::string& token, std::uint16_t port) {
     ViewOptions options;
-    options.port = 0;
+    options.port = port;
     options.token = token;
     return options;
   }

@@ -35,12 +35,14 @@ std::string status_of(const std::string& answer) {
 // A page that looks on.
 struct Page : WebClient {
   int you = 0;
+  json server;
 
   explicit Page(const ServedWorld& world) : WebClient(world.port()) {
     REQUIRE(open_websocket());
     const json hello = message_of("hello");
     CHECK(hello["protocol"] == 2);
     you = hello["you"];
+    server = hello["server"];
   }
   json state() { return message_of("state"); }
   // The newest state in which `condition` holds.
@@ -180,6 +182,7 @@ TEST_CASE("of two pages one drives, and when its connection ends the other can")
   auto first = std::make_unique<Page>(world);
   Page second(world);
   CHECK(first->you != second.you);
+  CHECK(first->server == second.server);
   const int robot = first->place();
   const std::string take = R"({"type":"take","robot":)" + std::to_string(robot) + "}";
   second.send_text(take);
