@@ -57,7 +57,7 @@ void add_play_command(CLI::App& program) {
     if (options->request.runs.empty()) throw CLI::RequiredError("RUNS");
     live::ViewOptions view = live::parse_view_options(options->view);
     if (!view.on) throw std::invalid_argument("--view off: there is nothing to do; give ADDRESS:PORT");
-    view.token = options->token;
+    view.token = live::parse_view_token(options->token);
     Playback playback = load_playback(options->request);
     for (const std::string& note : playback.notes) std::fprintf(stderr, "kenaf-gap: %s\n", note.c_str());
     const sigset_t signals = block_signals_to_end();

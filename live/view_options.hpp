@@ -17,5 +17,7 @@ struct ViewOptions {
 
 // "off", "127.0.0.1:8080", "localhost:0", "0.0.0.0:80", "[::1]:8080"; the token stays empty. Throws std::runtime_error in words.
 ViewOptions parse_view_options(std::string_view text);
+// A token that stands in an address as it is: letters, digits and - . _ ~ alone; empty: none. Throws std::runtime_error in words.
+std::string parse_view_token(std::string_view text);
 
 }  // namespace kenaf::live

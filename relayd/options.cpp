@@ -74,7 +74,8 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
       ->check([](const std::string& text) { return words_of(live::parse_view_options, text); })
       ->capture_default_str();
   app.add_option("--view-token", view_token, "what a browser must know; where it is not on loopback one is made")
-      ->needs(embedded_flag);
+      ->needs(embedded_flag)
+      ->check([](const std::string& text) { return words_of(live::parse_view_token, text); });
 
   std::string cameras = "on", camera_port = "5003", camera_image = "good";
   const auto camera_option = [&](const char* name, std::string& text,

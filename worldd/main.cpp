@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
 
   try {
     kenaf::live::ViewOptions view_options = kenaf::live::parse_view_options(view);
-    view_options.token = token;
+    view_options.token = kenaf::live::parse_view_token(token);
     kenaf::camera::CameraOptions camera_options;
     kenaf::camera::set_cameras(camera_options, cameras);
     kenaf::camera::set_camera_port(camera_options, camera_port);

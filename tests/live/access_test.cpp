@@ -65,6 +65,14 @@ TEST_CASE("the option --view is an address with a port, or off") {
   }
 }
 
+TEST_CASE("a token that stands in an address as it is is taken, another is not") {
+  for (const char* token : {"", "chosen", "0123456789abcdef", "A-b.C_d~9"}) CHECK(parse_view_token(token) == token);
+  for (const char* token : {"a b", "a=b", "a+b", "a/b", "a&b", "a%20b", "a#b", "a?b", "\xc3\xa4"}) {
+    INFO(token);
+    CHECK_THROWS_WITH(parse_view_token(token), Catch::Contains("letters, digits"));
+  }
+}
+
 TEST_CASE("the speed is that of the last second") {
   SpeedMeter meter;
   CHECK(meter.read(100, 7) == 0);

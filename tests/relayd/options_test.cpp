@@ -76,6 +76,7 @@ TEST_CASE("wrong options end with status 2, help with 0") {
                                              {"--embedded", "--world-server", "a:1"},
                                              {"--embedded", "--speed", "-1"},
                                              {"--embedded", "--view", "8080"},
+                                             {"--embedded", "--view-token", "a&b"},
                                              {"--view", "off"},
                                              {"--cameras", "off"},
                                              {"--embedded", "--camera-port", "65536"},
