@@ -102,10 +102,7 @@ class Control {
       }
     } else if (admission == Admission::newest) {
       console_ = from;  // it may have got another address
-      if (seat_.session != session_before) {
-        log(fmt::format("the console at {} has the robot", to_text(from)));
-        status_sequence_ = 0;
-      }
+      if (seat_.session != session_before) log(fmt::format("the console at {} has the robot", to_text(from)));
     }
     return wish.emergency_stop && admission != Admission::old;
   }
@@ -193,7 +190,7 @@ class Control {
   Seat seat_;
   Driving driving_;
   Peer console_;
-  std::uint32_t status_sequence_ = 0;
+  std::uint32_t status_sequence_ = 0;           // of all consoles: one that comes back drops what is older than it saw
   std::array<double, 256> status_sent_at_s_{};  // by the sequence's last byte: 12 s of statuses
   double status_sent_s_ = 0, taken_sent_s_ = 0, logged_s_ = 0;
 };

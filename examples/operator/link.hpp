@@ -98,7 +98,7 @@ enum StatusFlag : std::uint32_t {
 // Control to console, every 50 ms while that console has the robot.
 struct Status {
   std::uint64_t session;        // of the console it is for
-  std::uint32_t sequence;       // 1, 2, 3 ...
+  std::uint32_t sequence;       // 1, 2, 3 ... since the control process was started, for whichever console
   std::uint32_t newest_wish;    // sequence of the newest Wish seen
   double wish_age_s;            // how long ago that one came: what is left of the echo is the network's round trip
   std::uint32_t wishes_received;  // of this session, old ones too: those missing of `newest_wish` were lost

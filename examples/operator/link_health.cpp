@@ -21,8 +21,12 @@ void LinkHealth::sent(std::uint32_t sequence, double now_s) {
 
 bool LinkHealth::heard(const Status& status, double now_s) {
   ++statuses_received_;
-  if (newest_ && status.sequence <= newest_->sequence) return false;
   const bool is_known = status.newest_wish <= newest_sent_ && newest_sent_ - status.newest_wish < sent_at_s_.size();
+  if (newest_ && status.sequence <= newest_->sequence) {
+    // A control process that was started again counts anew; a datagram that is only late echoes no newer wish.
+    if (!is_known || status.newest_wish <= newest_->wish) return false;
+    window_.clear();
+  }
   if (is_known && status.newest_wish > (newest_ ? newest_->wish : 0)) {
     const double echo_s = now_s - sent_at_s_[status.newest_wish % sent_at_s_.size()] - status.wish_age_s;
     round_trip_s_ = std::max(0.0, echo_s);

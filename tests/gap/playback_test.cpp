@@ -328,6 +328,7 @@ TEST_CASE("P7: kenaf-gap play says what is wrong, and ends when it is told to") 
       {"play . --robot nobody", "nobody"},
       {"play . --view here", "ADDRESS:PORT"},
       {"play . --view off", "nothing to do"},
+      {"play . --view-token a=b", "letters"},
   };
   for (const auto& [arguments, words] : wrong) {
     INFO(arguments);
