@@ -108,6 +108,10 @@ void Desk::act(Action action, double now_s, const Status* newest) {
 }
 
 void Desk::nudge(unsigned flippers, double by_deg, const Status& newest) {
+  constexpr unsigned kAll = (1u << kFlipperCount) - 1;
+  const bool all_told = (newest.flippers_commanded & kAll) == kAll;
+  // the order names all four: one whose angle nobody knows would be sent to 0
+  if (!ordered_deg_ && !all_told && (newest.fields & kHasFlippers) == 0) return;
   std::array<double, kFlipperCount> deg{};
   for (std::size_t i = 0; i < kFlipperCount; ++i) {
     const bool was_told = (newest.flippers_commanded >> i & 1) != 0;

@@ -2,9 +2,9 @@
 //   K1 A key drives 0.6 s after it was pressed and 0.2 s after each repeat; another key takes its place.
 //   K2 Speeds and directions add up to the wish; nothing without the dead-man.
 //   K3 The emergency stop stays pressed until it is released; the release is asked for until the latch is gone.
-//   K4 A nudge starts from the angles sent last, after a halt from those the robot holds.
-//   G1 A gamepad's events by the kernel's layout; its dead-man counts only once it was pressed anew.
-//   H1 Round trip and losses, from the numbers in the datagrams.
+//   K4 A nudge starts from the angles sent last, after a halt from those the robot holds; never from one that nobody
+//   knows. G1 A gamepad's events by the kernel's layout; its dead-man counts only once it was pressed anew. H1 Round
+//   trip and losses, from the numbers in the datagrams.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -148,6 +148,7 @@ TEST_CASE("K3 the emergency stop and its release") {
 TEST_CASE("K4 postures and nudges") {
   Desk desk;
   Status status = status_in(Mode::ready);
+  status.fields = kHasFlippers;
   status.flipper_deg = {10, 20, 30, 40};
   status.commanded_flipper_deg = {11, 0, 0, 0};
   status.flippers_commanded = 0b0001;
@@ -172,6 +173,21 @@ TEST_CASE("K4 postures and nudges") {
   desk.hear(status);
   desk.act(Action::rear_right_up, 20, &status);
   CHECK(desk.wish(20).flipper_deg == std::array{40.0, 40.0, 0.0, 3.0});
+}
+
+TEST_CASE("K4 a nudge does nothing while the angle of one flipper is not known") {
+  Desk desk;
+  Status status = status_in(Mode::ready);
+  status.flippers_commanded = 0b0111;
+  status.commanded_flipper_deg = {40, 40, 10, 0};
+  desk.act(Action::front_up, 10, &status);  // the order names all four: the fourth would be sent to 0
+  CHECK(desk.wish(10).flipper_order == 0);
+  status.flippers_commanded = 0b1111;
+  desk.act(Action::front_up, 10, &status);
+  CHECK(desk.wish(10).flipper_deg == std::array{43.0, 43.0, 10.0, 0.0});
+  status = status_in(Mode::ready);
+  desk.act(Action::rear_up, 10, &status);  // from what was sent
+  CHECK(desk.wish(10).flipper_order == 2);
 }
 
 TEST_CASE("G1 a gamepad by the kernel's events") {
@@ -268,6 +284,30 @@ TEST_CASE("H1 round trip without the time that the control process kept the wish
   status.newest_wish = 999;  // one that was never sent
   CHECK(health.heard(status, 12.1));
   CHECK(*health.round_trip_s() == Approx(0.2));
+}
+
+TEST_CASE("H1 statuses of a control process that was started again count, late ones of before do not") {
+  LinkHealth health;
+  Status status = status_in(Mode::ready);
+  for (std::uint32_t i = 1; i <= 50; ++i) {
+    health.sent(i, 10 + 0.05 * i);
+    status.sequence = status.newest_wish = status.wishes_received = i;
+    REQUIRE(health.heard(status, 10.01 + 0.05 * i));
+  }
+  status.sequence = status.newest_wish = 49;
+  CHECK_FALSE(health.heard(status, 15));
+
+  health.sent(51, 20);
+  status.sequence = status.wishes_received = 1;
+  status.newest_wish = 51;
+  CHECK(health.heard(status, 20.1));
+  CHECK(health.newest_status() == 1);
+  CHECK(*health.round_trip_s() == Approx(0.1));
+  CHECK(health.loss_up_percent() == 0);
+  CHECK(health.loss_down_percent() == 0);
+  CHECK_FALSE(health.heard(status, 20.2));  // the same again
+  status.sequence = 2;
+  CHECK(health.heard(status, 20.2));
 }
 
 TEST_CASE("H1 losses over the last seconds") {
