@@ -74,7 +74,8 @@ void DriveRules::check_fault_reset(const LogFrame& logged, const DriveCommand& c
 void DriveRules::check_target(const LogFrame& logged, const DriveCommand& command, const Drive& drive) {
   if (!drive.shown) return;
   const std::string_view name = canbus::kDriveNames[command.drive];
-  const bool enabled = drive.shown->state() == PowerState::operation_enabled;
+  const bool enabled =
+      could_be(logged, drive, [](const Shown& shown) { return shown.state() == PowerState::operation_enabled; });
   const bool told = order_of(command.controlword) == DriveOrder::enable;
   if (canbus::is_track(command.drive)) {
     if (command.target == 0 || (enabled && told && !drive.ended)) return;
