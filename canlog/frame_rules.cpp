@@ -66,7 +66,8 @@ bool FrameRules::check_length(const LogFrame& logged, const Address& address) {
     const std::size_t length = logged.frame.length;
     if (length >= least && length <= most) return true;
     findings_.add(logged, rule::length, "{}{} has {} bytes, not {}", name_of(address.service),
-                  address.node == 0 ? "" : fmt::format(" ({})", network_.name(address.node)), length, most);
+                  address.node == 0 ? "" : fmt::format(" ({})", network_.name(address.node)), length,
+                  least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most));
     return false;
   };
   switch (address.service) {

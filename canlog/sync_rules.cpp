@@ -19,7 +19,9 @@ void SyncRules::on_frame(const LogFrame& logged, const Address& address) {
 }
 
 void SyncRules::on_write(const WrittenObject& written) {
-  if (written.object == kWindow && written.number() > 0) written_window_ = std::chrono::microseconds(written.number());
+  if (written.object != kWindow) return;
+  written_window_.reset();  // 0: there is none
+  if (written.number() > 0) written_window_ = std::chrono::microseconds(written.number());
 }
 
 void SyncRules::on_restart(canopen::NodeId node) {

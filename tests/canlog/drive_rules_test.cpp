@@ -54,6 +54,10 @@ TEST_CASE("the window after SYNC") {
   Lines later = written + cycle;
   for (Line& line : later) line.ms += 10;
   CHECK(broken(later) == Broken{"7: sync-pdo"});
+  // 0 ends it
+  Lines ended = written + Lines{{-0.9, "607#2307100000000000"}, {-0.8, "587#6007100000000000"}} + cycle;
+  for (Line& line : ended) line.ms += 10;
+  CHECK(broken(ended).empty());
 }
 
 TEST_CASE("a drive is led to operation one transition at a time") {
@@ -174,6 +178,12 @@ TEST_CASE("before operation enabled a target is to stay") {
   CHECK(broken({{0, "183#400010270000"}, {5, "203#060070270000"}}).empty());
   CHECK(broken({{0, "183#400010270000"}, {5, "203#060000000000"}}) == Broken{"2: target"});
   CHECK(broken({{0, "183#270010270000"}, {5, "203#0F0000000000"}}).empty());
+  // the drive's fault and the next target crossed on the wire
+  const Lines fault{
+      {0, "181#270000000000"}, {0.1, "183#270000000000"}, {10, "181#080000000000"}, {10.1, "183#080000000000"}};
+  CHECK(broken(fault + Lines{{10.3, "201#0F00D0070000"}, {10.4, "203#0F00D0070000"}}).empty());
+  // each an order and a target that are wrong
+  CHECK(broken(fault + Lines{{12, "201#0F00D0070000"}, {12.1, "203#0F00D0070000"}}).size() == 4);
 }
 
 TEST_CASE("after a quick stop a track has no speed until it is enabled anew") {

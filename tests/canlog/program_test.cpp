@@ -52,7 +52,7 @@ TEST_CASE("kenaf-canlog --check names what is broken, and ends with 1 where some
   CHECK(ended.status == 1);
   CHECK(
       ended.text ==
-      "LOG:5: 0.011000 s: length: SYNC has 2 bytes, not 1\n"
+      "LOG:5: 0.011000 s: length: SYNC has 2 bytes, not 0 to 1\n"
       "rule length (CiA 301, 7.2): each service has its length: NMT 2, SYNC 0 or 1, heartbeat 1, SDO and EMCY 8, PDOs "
       "as they are mapped\n"
       "4 frames, 16 rules, violations: 1\n");
