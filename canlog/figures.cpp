@@ -95,10 +95,10 @@ void add_cycle_times(const std::vector<Cycle>& cycles, Figures& figures) {
 // A cycle that begins after the first motion and whose next SYNC comes before the last.
 void add_late_commands(const Log& log, const Network& network, const std::vector<Cycle>& cycles, Figures& figures) {
   for (const LoopSpan& span : loop_spans(log, network)) {
-    for (std::size_t i = 0; i + 1 < cycles.size(); ++i) {
-      if (cycles[i].frame < span.first || cycles[i + 1].frame > span.last) continue;
+    auto cycle = std::ranges::lower_bound(cycles, span.first, {}, &Cycle::frame);
+    for (; cycle != cycles.end() && cycle + 1 != cycles.end() && (cycle + 1)->frame <= span.last; ++cycle) {
       ++figures.driven_cycles;
-      if (cycles[i].commanded.size() < canbus::kDriveCount) ++figures.late_commands;
+      if (cycle->commanded.size() < canbus::kDriveCount) ++figures.late_commands;
     }
   }
 }
