@@ -87,13 +87,16 @@ void Visibility::mark_small(const Scene& scene, const View& view, int cell) {
     const double radius_px = f * sphere.radius_m / depth_m;
     if (2 * radius_px > kSmall_px) continue;
     const Pixel middle = *project(view, sphere.centre_W);
-    const auto first = [&](double at) { return static_cast<int>(std::max(0.0, (at - radius_px) / cell)); };
+    // what is hardly ahead of the camera's plane may be farther aside than an int counts
+    const auto first = [&](double at, int count) {
+      return static_cast<int>(std::clamp((at - radius_px) / cell, 0.0, static_cast<double>(count)));
+    };
     const auto last = [&](double at, int count) {
       return static_cast<int>(std::clamp((at + radius_px) / cell, -1.0, count - 1.0));
     };
     if (middle.u + radius_px < 0 || middle.v + radius_px < 0) continue;
-    for (int j = first(middle.v); j <= last(middle.v, rows); ++j)
-      for (int i = first(middle.u); i <= last(middle.u, marked_columns_); ++i)
+    for (int j = first(middle.v, rows); j <= last(middle.v, rows); ++j)
+      for (int i = first(middle.u, marked_columns_); i <= last(middle.u, marked_columns_); ++i)
         marked_[static_cast<std::size_t>(j * marked_columns_ + i)] = 1;
   }
 }

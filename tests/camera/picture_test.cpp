@@ -164,6 +164,15 @@ TEST_CASE("P6: what is smaller than a cell is not missed, wherever in a cell it 
   CHECK(differing_share(picture_of(scene, view), picture_of(world, {}, view), 8) > 0);
 }
 
+TEST_CASE("P6: a speck that is hardly ahead of the camera's plane and far aside changes nothing") {
+  const auto world = level_ground();
+  const View view = eye(pose(0, 0, 0.3));
+  // 549 * 4e6 / 0.02 = 1e11 pixels to the right, 24 pixels wide
+  WorldSnapshot snapshot;
+  snapshot.boxes.push_back(box_at(1, {0.0005, 0.0005, 0.0005}, pose(0.02, -4e6, 0.3), false));
+  CHECK(picture_of(world, snapshot, view).rgb == picture_of(world, {}, view).rgb);
+}
+
 TEST_CASE("P7: far ground keeps its colour when the camera moves, near ground shows it") {
   const Scene scene(level_ground());
   const Picture a = picture_of(scene, eye(pose(0, 0, 0.18))), b = picture_of(scene, eye(pose(0.25, 0.25, 0.18)));
