@@ -69,6 +69,7 @@ struct Feed::Implementation {
   void publish_due();
   void fall_asleep();
   void tell();
+  bool make_room();
 
   server::WorldServer& world;
 
@@ -224,6 +225,7 @@ void Feed::Implementation::draw(const Exposure& exposure, const std::vector<Came
     if (!scene) scene = std::make_unique<Scene>(world.world_description());
     scene->update(exposure.world);
   } catch (const std::exception& error) {
+    scene.reset();  // it may be half of the one world, half of the other
     for (const CameraId& id : due) stand_still(id, error.what());
     return;
   }
@@ -327,6 +329,18 @@ void Feed::Implementation::tell() {
   for (const auto& [number, told] : listeners) told();
 }
 
+// With the mutex held: forgets the view of no camera that was asked for longest ago. False: all show one.
+bool Feed::Implementation::make_room() {
+  auto oldest = views.end();
+  for (auto entry = views.begin(); entry != views.end(); ++entry) {
+    if (entry->second.camera) continue;
+    if (oldest == views.end() || entry->second.wanted < oldest->second.wanted) oldest = entry;
+  }
+  if (oldest == views.end()) return false;
+  views.erase(oldest);
+  return true;
+}
+
 Feed::Feed(server::WorldServer& world) : impl_(std::make_unique<Implementation>(world)) {
   impl_->exchange->take = [feed = impl_.get()](std::shared_ptr<Exposure> exposure) {
     asio::post(feed->io, [feed, exposure = std::move(exposure)]() mutable { feed->take(std::move(exposure)); });
@@ -360,7 +374,8 @@ Feed::Look Feed::look(std::string_view view) {
     const std::lock_guard lock(impl_->mutex);
     auto found = impl_->views.find(view);
     if (found == impl_->views.end()) {
-      if (impl_->views.size() >= kMostViews) return {nullptr, "too many cameras are asked for at the same time"};
+      if (impl_->views.size() >= kMostViews && !impl_->make_room())
+        return {nullptr, "too many cameras are asked for at the same time"};
       found = impl_->views.emplace(view, Implementation::View{}).first;
       is_new = true;
     }

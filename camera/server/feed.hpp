@@ -24,7 +24,7 @@ namespace kenaf::camera {
 class Feed {
  public:
   static constexpr double kWanted_s = 2;          // of wall-clock time
-  static constexpr std::size_t kMostViews = 256;  // asked for at the same time; further ones are refused
+  static constexpr std::size_t kMostViews = 256;  // asked for at the same time, those of no camera forgotten first; further ones are refused
 
   // The world server must be there until this has ended; whether it runs does not matter.
   explicit Feed(server::WorldServer& world);
