@@ -52,7 +52,10 @@ class PictureConnection final : public PictureReader, public std::enable_shared_
       : hub_(hub), socket_(std::move(socket)), path_(std::move(path)), ask_again_(hub.site.io), unread_(hub.site.io) {
     ++hub_.site.connections;
   }
-  ~PictureConnection() { --hub_.site.connections; }
+  ~PictureConnection() {
+    std::erase(hub_.picture_readers, this);  // it may end by an exception
+    --hub_.site.connections;
+  }
   PictureConnection(const PictureConnection&) = delete;
   PictureConnection& operator=(const PictureConnection&) = delete;
 

@@ -29,7 +29,10 @@ class OpenViewer final : public Viewer, public std::enable_shared_from_this<Open
       : hub_(hub), who_{++hub.last_operator}, socket_(std::move(stream)), pause_(hub.site.io) {
     ++hub_.site.connections;
   }
-  ~OpenViewer() { --hub_.site.connections; }
+  ~OpenViewer() {
+    std::erase(hub_.viewers, this);  // it may end by an exception
+    --hub_.site.connections;
+  }
   OpenViewer(const OpenViewer&) = delete;
   OpenViewer& operator=(const OpenViewer&) = delete;
 

@@ -35,6 +35,9 @@ class ImageConnection final : public ImageReader, public std::enable_shared_from
  public:
   ImageConnection(ImageDesk& desk, tcp::socket socket)
       : desk_(desk), socket_(std::move(socket)), look_again_(socket_.get_executor()), unread_(socket_.get_executor()) {}
+  ~ImageConnection() { std::erase(desk_.readers, this); }  // it may end by an exception
+  ImageConnection(const ImageConnection&) = delete;
+  ImageConnection& operator=(const ImageConnection&) = delete;
 
   void start();
   void look() override;
@@ -201,7 +204,6 @@ Bytes ImageDesk::make(const std::shared_ptr<const Frame>& frame) {
   if (made.size() > 2 * limits.connections) made.clear();  // of robots that are gone
   Made& last = made[frame->id];
   if (last.frame == frame) return last.bytes;
-  last.frame = frame;
   if (type == ImageType::raw) {
     const Picture& picture = frame->picture;
     last.bytes = std::make_shared<const std::vector<std::uint8_t>>(raw_picture(
@@ -210,6 +212,7 @@ Bytes ImageDesk::make(const std::shared_ptr<const Frame>& frame) {
     const auto jpeg = encoder.encode(frame->picture, jpeg_quality(type, 80));
     last.bytes = std::make_shared<const std::vector<std::uint8_t>>(jpeg.begin(), jpeg.end());
   }
+  last.frame = frame;  // not before: what is above may throw
   return last.bytes;
 }
 
