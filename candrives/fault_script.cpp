@@ -30,6 +30,8 @@ constexpr std::array kKinds = std::to_array<Named>({{"silent", FaultKind::silent
                                                     {"garbage", FaultKind::garbage},
                                                     {"healed", FaultKind::healed}});
 
+constexpr std::string_view kBlanks = " \t\r";
+
 // Words of a line, one taken after another.
 class Line {
  public:
@@ -39,13 +41,13 @@ class Line {
   // Takes `words` if they are next.
   bool take(std::string_view words) {
     if (!rest_.starts_with(words)) return false;
-    if (rest_.size() > words.size() && rest_[words.size()] != ' ') return false;
+    if (rest_.size() > words.size() && kBlanks.find(rest_[words.size()]) == kBlanks.npos) return false;
     rest_.remove_prefix(words.size());
     skip_blanks();
     return true;
   }
   std::string_view next() {
-    const std::string_view word = rest_.substr(0, rest_.find(' '));
+    const std::string_view word = rest_.substr(0, rest_.find_first_of(kBlanks));
     rest_.remove_prefix(word.size());
     skip_blanks();
     return word;
@@ -55,7 +57,7 @@ class Line {
   }
 
  private:
-  void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\r"), rest_.size())); }
+  void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(kBlanks), rest_.size())); }
 
   std::string_view text_, rest_;
 };

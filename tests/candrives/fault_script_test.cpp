@@ -41,6 +41,12 @@ TEST_CASE("faults in words", "[fault script]") {
   CHECK(read("inclinometer sdo wrong toggle").fault.kind == FaultKind::sdo_wrong_toggle);
   CHECK(read("gyro short pdos").fault.node == 8);
   CHECK(read("all healed").fault.node == 0);
+
+  fault = read("\tnode\t3\tsilent\tat\t5\r");  // of a file with tabs, written elsewhere
+  CHECK(fault.fault.kind == FaultKind::silent);
+  CHECK(fault.fault.node == 3);
+  CHECK(fault.delay == 5s);
+  CHECK(read("all healed\r").fault.kind == FaultKind::healed);
 }
 
 TEST_CASE("words that are no fault are refused with what would be one", "[fault script]") {
