@@ -6,6 +6,7 @@ const REPEAT_MS = 50;   // ten words in the time after which the server takes si
 const by = (id) => document.getElementById(id);
 
 export function createDriving(world, link) {
+  let coming = 0;   // placed by this page, not in the inventory yet
   const driving = { chosen: 0, update, placed, letGo, holding };
   const hands = watchHands(() => holding() !== null, speak);
   driving.held = hands.held;
@@ -31,7 +32,10 @@ export function createDriving(world, link) {
     hands.letGo();
     if (holding()) link.send({ type: "let-go", robot: driving.chosen });
   }
-  function placed(robot) { driving.chosen = robot; }
+  function placed(robot) {
+    coming = robot;
+    update();
+  }
 
   function show() {
     const robot = chosen(), mine = holding();
@@ -61,6 +65,10 @@ export function createDriving(world, link) {
     if (wanted.join() !== [...select.options].map((option) => option.value).join()) {
       select.replaceChildren(...[...world.robots.values()].map(({ about }) => new Option(about.name, about.id)));
     }
+    if (world.robots.has(coming)) {
+      driving.chosen = coming;
+      coming = 0;
+    }
     if (!chosen()) driving.chosen = world.robots.keys().next().value ?? 0;
     select.disabled = world.robots.size === 0;
     if (select.value !== `${driving.chosen}`) select.value = `${driving.chosen}`;
@@ -69,6 +77,7 @@ export function createDriving(world, link) {
 
   by("robot").addEventListener("change", (event) => {
     letGo();
+    coming = 0;
     driving.chosen = Number(event.target.value);
     update();
   });

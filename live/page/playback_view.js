@@ -90,7 +90,7 @@ export function createPlaybackView(list, shown, complain) {
     load(next, scenePath) {
       run = next;
       t = 0;
-      return stage.show(scenePath);
+      return stage.show(scenePath);   // has the bodies built at once: the old ones are of another run
     },
   };
 }

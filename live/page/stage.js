@@ -19,8 +19,9 @@ export function dispose(object) {
   });
 }
 
-// `dressed()` is called when the colours have changed; `complain` is told what is missing, in words; `eye` is where one looks from
-// at first, seen from what is followed. `sharpens`: a picture that was made simpler is drawn in full when nothing moves.
+// `dressed()` is called when the colours or the world have changed; `complain` is told what is missing, in words; `eye` is where
+// one looks from at first, seen from what is followed. `sharpens`: a picture that was made simpler is drawn in full when nothing
+// moves.
 export function createStage({ complain, dressed = () => {}, eye = [-1.6, -1.5, 1.25], sharpens = false }) {
   const canvas = document.getElementById("canvas");
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
@@ -46,15 +47,13 @@ export function createStage({ complain, dressed = () => {}, eye = [-1.6, -1.5, 1
   let mode = "follow", dirty = true, quality = 0, pictureTook_ms = 0, drawn = 0, drawn_ms = 0, sharp = true;
   const at = new THREE.Vector3();
 
-  let bytes = null, fixed = new THREE.Group();   // what never moves
+  let bytes = null, shows = 0, fixed = new THREE.Group();   // what never moves
   function dress() {   // in light or dark
     scene.background = colour("--sky");
     scene.fog = new THREE.Fog(scene.background, 25, 120);
-    if (bytes) {
-      scene.remove(fixed);
-      dispose(fixed);
-      scene.add(fixed = makeScene(bytes));
-    }
+    scene.remove(fixed);
+    dispose(fixed);
+    scene.add(fixed = bytes ? makeScene(bytes) : new THREE.Group());
     dressed();
     dirty = true;
   }
@@ -107,10 +106,13 @@ export function createStage({ complain, dressed = () => {}, eye = [-1.6, -1.5, 1
   return {
     scene,
     redraw() { dirty = true; },
-    // Shows that world; `path` is where the server has its bytes.
+    // Shows that world, and from now on none before it; `path` is where the server has its bytes.
     show(path) {
-      return fetchScene(path).then((answer) => { bytes = answer; dress(); })
-        .catch((error) => complain(`No world to see: ${error.message}`));
+      const number = ++shows, newest = () => number === shows;
+      bytes = null;
+      dress();
+      return fetchScene(path).then((answer) => { if (newest()) { bytes = answer; dress(); } })
+        .catch((error) => { if (newest()) complain(`No world to see: ${error.message}`); });
     },
     // Looks at the place p = [x, y, z] by the mode; behind it is where a robot with the rotation q = [w, x, y, z] has come from.
     follow(p, [w, x, y, z]) {
