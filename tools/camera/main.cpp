@@ -50,10 +50,10 @@ physics::World driven_world(const Options& options) {
   command.track_speed_mps.fill(options.track_mps);
   for (physics::JointCommand& flipper : command.flipper) flipper.value = options.flippers_rad;
   world.set_command(robot, command);
-  if (!world.robot_description(robot).mission_packages.empty()) {
-    world.set_mission_link(robot, 0, 0, options.pan_rad);
-    world.set_mission_link(robot, 0, 1, options.tilt_rad);
-  }
+  const auto& packages = world.robot_description(robot).mission_packages;
+  const std::size_t links = packages.empty() ? 0 : packages.front().links.size();
+  if (links > 0) world.set_mission_link(robot, 0, 0, options.pan_rad);
+  if (links > 1) world.set_mission_link(robot, 0, 1, options.tilt_rad);
   while (world.time_s() < options.seconds) world.step();
   return world;
 }
