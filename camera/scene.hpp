@@ -4,7 +4,7 @@
 // loose boxes and the parts of robots (hull with tracks, each arm) are instances in a second one, whose poses follow the
 // snapshots. A picture is made in the thread that calls, with no other thread, window or GPU.
 //
-// Thread safety: cast(), lit() and face() may be called by several threads between two updates; update() excludes them.
+// Thread safety: cast(), cast_any() and face() may be called by several threads between two updates; update() excludes them.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@ namespace kenaf::candrives {
 inline constexpr std::uint8_t kErrorGeneric = 0x01, kErrorCurrent = 0x02, kErrorVoltage = 0x04, kErrorTemperature = 0x08,
                               kErrorCommunication = 0x10, kErrorDeviceProfile = 0x20, kErrorManufacturer = 0x80;
 // The bit of an error code's class: 0x2xxx current, 0x3xxx voltage, 0x4xxx temperature, 0x81xx and 0x82xx communication,
-// 0x86xx, positioning, device profile; none of another. CiA 301, table 26; CiA 402-2, error codes.
+// 0x84xx to 0x86xx device profile, 0xFxxx manufacturer; none of another. CiA 301, table 26; CiA 402-2, error codes.
 std::uint8_t register_bit_of(std::uint16_t error_code);
 
 class ErrorState {

@@ -9,7 +9,7 @@
 namespace kenaf::live {
 
 struct Asset { std::string_view type; std::string bytes; };
-using Assets = std::map<std::string, Asset, std::less<>>;  // by path: "/", "/page.css", "/three/three.module.js"
+using Assets = std::map<std::string, Asset, std::less<>>;  // by path: "/", "/page.css", "/three/build/three.module.js"
 
 // From share/kenaf/page, or from the source tree and the system's three.js this was built with. Throws
 // std::runtime_error where there is no page. `first_page`, such as "index.html", is served as "/", and no other page.
