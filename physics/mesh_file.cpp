@@ -10,6 +10,8 @@
 #include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
 #include <charconv>
 #include <cstdint>
@@ -57,8 +59,9 @@ void keep_only_loader(Assimp::Importer& importer, const std::string& extension) 
 }
 
 // Assimp's Collada reader follows elements and instances of nodes by recursion, without a limit, takes anything with a
-// directory of a ZIP archive at its end for one, and believes accessors what they say of their arrays' lengths. Expat,
-// which has limits, looks at the file first.
+// directory of a ZIP archive at its end for one, and believes accessors what they say of their arrays' lengths, and
+// skins what they say of their bones. Expat, which has limits, looks at the file first. Both must see the same: a
+// document type, whose entities and defaults only Expat knows, is refused.
 struct ColladaCheck {
   static constexpr int kMostNested = 100;
   struct Accessor {
@@ -96,19 +99,26 @@ void collada_start(void* user, const XML_Char* element, const XML_Char** attribu
   auto& check = *static_cast<ColladaCheck*>(user);
   const std::string_view name = element;
   if (++check.depth > ColladaCheck::kMostNested) check.refusal = "has elements nested more than 100 deep";
+  if (name == "controller" || name == "animation")
+    check.refusal = "has skins or animations, which are not supported; export the mesh alone";
   if (name == "instance_node")
     check.refusal =
         "has an <instance_node>, which is not supported; export the nodes themselves, or an OBJ or STL file";
   const std::string_view count = attribute(attributes, "count");
   if (name.ends_with("_array")) {
-    check.array_lengths[std::string(attribute(attributes, "id"))] = count_in(check, count, 0);
+    // numbers are in a float_array alone; which of two of one id counts is assimp's to say
+    const std::uint64_t length = name == "float_array" ? count_in(check, count, 0) : 0;
+    const auto [array, first] = check.array_lengths.try_emplace(std::string(attribute(attributes, "id")), length);
+    if (!first) array->second = std::min(array->second, length);
   } else if (name == "accessor") {
+    if (check.in_accessor) check.refusal = "has an <accessor> in an <accessor>";
     const std::uint64_t offset = count_in(check, attribute(attributes, "offset"), 0);
     const std::uint64_t stride = count_in(check, attribute(attributes, "stride"), 1);
     std::string_view source = attribute(attributes, "source");
     if (source.starts_with('#')) source.remove_prefix(1);
-    check.accessors.push_back({std::string(source), offset + stride * count_in(check, count, 0), stride,
-                               XML_GetCurrentLineNumber(check.parser)});
+    // with a stride of 0 it still goes over one
+    const std::uint64_t reach = offset + std::max<std::uint64_t>(stride, 1) * count_in(check, count, 0);
+    check.accessors.push_back({std::string(source), reach, stride, XML_GetCurrentLineNumber(check.parser)});
     check.in_accessor = true;
     check.parameters = 0;
   } else if (name == "param" && check.in_accessor && ++check.parameters > check.accessors.back().stride) {
@@ -123,12 +133,19 @@ void collada_end(void* user, const XML_Char* element) {
   if (std::string_view(element) == "accessor") check.in_accessor = false;
 }
 
+void collada_document_type(void* user, const XML_Char*, const XML_Char*, const XML_Char*, int) {
+  auto& check = *static_cast<ColladaCheck*>(user);
+  check.refusal = "has a document type, which is not supported; leave out its <!DOCTYPE>";
+  XML_StopParser(check.parser, XML_FALSE);
+}
+
 void check_collada(std::string_view bytes) {
   const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), XML_ParserFree);
   ColladaCheck check;
   check.parser = parser.get();
   XML_SetUserData(parser.get(), &check);
   XML_SetElementHandler(parser.get(), collada_start, collada_end);
+  XML_SetStartDoctypeDeclHandler(parser.get(), collada_document_type);
   if (XML_Parse(parser.get(), bytes.data(), static_cast<int>(bytes.size()), 1) == XML_STATUS_OK) {
     for (const ColladaCheck::Accessor& accessor : check.accessors) {
       const auto array = check.array_lengths.find(accessor.array);
@@ -143,6 +160,18 @@ void check_collada(std::string_view bytes) {
   throw DescriptionError(fmt::format("is not a well-formed Collada file: {} (line {})",
                                      XML_ErrorString(XML_GetErrorCode(parser.get())),
                                      XML_GetCurrentLineNumber(parser.get())));
+}
+
+// Assimp cuts the ears off a polygon one by one, and looks at all of its corners for each.
+void check_polygons(const aiScene& scene) {
+  constexpr unsigned kMostCorners = 500;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f)
+      if (mesh.mFaces[f].mNumIndices > kMostCorners)
+        throw DescriptionError(fmt::format("has a polygon of {} corners, of at most {}: triangulate it",
+                                           mesh.mFaces[f].mNumIndices, kMostCorners));
+  }
 }
 
 Eigen::Affine3d from_assimp(const aiMatrix4x4& m) {
@@ -185,7 +214,10 @@ class Collector {
 
   void append(const aiMesh& mesh, const Eigen::Affine3d& X_FileNode) {
     std::vector<Eigen::Vector3d>& vertices = content_.surface.vertices;
-    if (mesh.mNumFaces > most_triangles_ - content_.surface.triangles.size())
+    // lines and points too, and what is left of polygons that could not be cut: instances multiply them
+    constexpr std::size_t kCorners = 3;
+    if (mesh.mNumFaces > most_triangles_ - content_.surface.triangles.size() - content_.other_faces ||
+        mesh.mNumVertices > kCorners * most_triangles_ - vertices.size())
       throw DescriptionError(
           fmt::format("has more triangles than the {} that are left for this world", most_triangles_));
     const std::size_t first = vertices.size();
@@ -241,7 +273,11 @@ MeshContent read_mesh(std::string_view bytes, MeshFormat format, const MeshPart&
     keep_only_loader(importer, extension);
     importer.SetIOHandler(new OneFile(bytes, name));  // which it deletes
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-    const aiScene* scene = importer.ReadFile(name, aiProcess_Triangulate);
+    const aiScene* scene = importer.ReadFile(name, 0);
+    if (scene) {
+      check_polygons(*scene);
+      scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+    }
     if (!scene || !scene->mRootNode)
       throw DescriptionError(fmt::format("cannot be read as a .{} mesh: {}", extension, importer.GetErrorString()));
     return Collector(*scene, part, most_triangles).collect();

@@ -23,8 +23,9 @@ struct MeshContent {
 
 // The triangles of all of a file's nodes; polygons are cut into triangles. Nothing else is opened: neither materials
 // nor pictures. A Collada file's <unit> scales, its <up_axis> does not turn (as in Gazebo). Throws DescriptionError with
-// what is wrong, without a place: no mesh of that format, no such submesh, no triangles, more than `most_triangles`, a
-// vertex that is not a number, Collada with <instance_node> or elements nested more than 100 deep.
+// what is wrong, without a place: no mesh of that format, no such submesh, no triangles, more than `most_triangles` with
+// points and lines, a polygon of more than 500 corners, a vertex that is not a number, Collada with <instance_node>, skins,
+// animations, a document type or elements nested more than 100 deep.
 MeshContent read_mesh(std::string_view bytes, MeshFormat format, const MeshPart& part, std::size_t most_triangles);
 
 }  // namespace kenaf::physics

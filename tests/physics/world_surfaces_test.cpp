@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <numbers>
 
+#include "physics/mesh_file.hpp"
 #include "physics/triangle_surface.hpp"
 #include "physics/world_description.hpp"
 #include "tests/runs/temporary_folder.hpp"
@@ -86,6 +87,18 @@ std::string collada(const std::string& nodes, const std::string& unit = "1") {
 std::string node(const std::string& name, const std::string& translation) {
   return "<node id=\"" + name + "\" name=\"" + name + "\"><translate>" + translation +
          "</translate><instance_geometry url=\"#wedge\"/></node>";
+}
+
+// What read_mesh() says of a Collada file in which `was` is replaced.
+std::string collada_error(const std::string& was, const std::string& is) {
+  std::string text = collada(node("a", "0 0 0"));
+  text.replace(text.find(was), was.size(), is);
+  try {
+    read_mesh(text, MeshFormat::dae, {}, 1000);
+  } catch (const kenaf::DescriptionError& error) {
+    return error.what();
+  }
+  return "";
 }
 
 std::string from_hex(const std::string& digits) {
@@ -289,7 +302,9 @@ TEST_CASE("U4: nothing outside of the world's folder is read") {
   write_file(outer / "meshes/mine.obj", "mtllib ../secret.obj\n" + tetrahedron_obj());
   const fs::path folder = outer.path() / "meshes";
   fs::create_symlink(outer.path() / "secret.obj", folder / "link.obj");
-  const auto error = [&](const std::string& uri) { return error_of_shape("<mesh><uri>" + uri + "</uri></mesh>", folder); };
+  const auto error = [&](const std::string& uri) {
+    return error_of_shape("<mesh><uri>" + uri + "</uri></mesh>", folder);
+  };
   for (const std::string& uri : {std::string("../secret.obj"), std::string("file://../secret.obj"),
                                  (outer.path() / "secret.obj").string(), std::string("link.obj")}) {
     INFO(uri);
@@ -365,4 +380,69 @@ TEST_CASE("U5: what would eat memory or stack is refused first") {
   png.replace(16, 8, std::string("\0\0\xea\x60\0\0\xea\x60", 8));
   write_file(folder / "a.png", png);
   CHECK(error_of_shape("<heightmap><uri>a.png</uri></heightmap>", folder.path()).find("t.sdf:3: ") == 0);
+}
+
+// The accessor goes over 3 x 3 = 9 numbers of the array "pa", which is on line 5.
+TEST_CASE("U5: a Collada file cannot say that an array is longer than it is") {
+  const std::string array = R"(<float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array>)";
+  const auto error = [&](const std::string& is) { return collada_error(array, is); };
+  CHECK(error(array) == "");
+  for (const std::string name : {"Name_array", "IDREF_array"})
+    CHECK_THAT(error("<" + name + " id=\"pa\" count=\"9\">0 0 0 1 0 0 0 1 0</" + name + ">"),
+               Catch::Contains("9 values of an array of 0 (line 6)"));
+  const std::string shorter = R"(<float_array id="pa" count="1">0</float_array>)";
+  CHECK_THAT(error(array + shorter), Catch::Contains("9 values of an array of 1 (line 6)"));
+  CHECK_THAT(error(shorter + array), Catch::Contains("9 values of an array of 1 (line 6)"));
+  CHECK_THAT(error(shorter + R"(<foo_array id="pa" count="9"/>)"), Catch::Contains("9 values of an array of 0"));
+  // with a stride of 0 an element still is a number
+  const std::string accessor =
+      R"(<accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor>)";
+  CHECK_THAT(collada_error(accessor, R"(<accessor source="#pa" count="10" stride="0"/>)"),
+             Catch::Contains("10 values of an array of 9"));
+  CHECK_THAT(collada_error(R"(stride="3">)", R"(stride="3"><accessor source="#pa"/>)"),
+             Catch::Contains("has an <accessor> in an <accessor>"));
+}
+
+TEST_CASE("U5: Collada with a document type, skins or animations is refused, empty libraries of them are not") {
+  const std::string root = "<COLLADA ", geometries = "<library_geometries>";
+  CHECK_THAT(collada_error(root, "<!DOCTYPE COLLADA [<!ATTLIST float_array count CDATA \"9\">]>\n" + root),
+             Catch::Contains("has a document type"));
+  CHECK_THAT(collada_error(root, "<!DOCTYPE COLLADA>\n" + root), Catch::Contains("has a document type"));
+  const auto with_library = [&](const std::string& library) { return collada_error(geometries, library + geometries); };
+  for (const char* library : {"<library_controllers><controller id=\"c\"/></library_controllers>",
+                              "<library_animations><animation id=\"c\"/></library_animations>"})
+    CHECK_THAT(with_library(library), Catch::Contains("has skins or animations") && Catch::Contains("(line 4)"));
+  CHECK(with_library("<library_controllers/><library_animations/>") == "");
+}
+
+TEST_CASE("U5: a polygon of more than 500 corners is not cut") {
+  const auto error = [](int corners) -> std::string {
+    std::string text, face = "f";
+    for (int i = 0; i < corners; ++i) {
+      const double angle = 2 * kPi * i / corners;
+      text += "v " + std::to_string(std::cos(angle)) + " " + std::to_string(std::sin(angle)) + " 0\n";
+      face += " " + std::to_string(i + 1);
+    }
+    try {
+      read_mesh(text + face + "\n", MeshFormat::obj, {}, 1000);
+    } catch (const kenaf::DescriptionError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  CHECK(error(500) == "");
+  CHECK_THAT(error(501), Catch::Contains("a polygon of 501 corners") && Catch::Contains("triangulate it"));
+}
+
+TEST_CASE("U5: lines and points count as triangles do, in every instance") {
+  std::string text = collada(node("a", "0 0 0") + node("b", "1 0 0"));
+  const std::string end = "</triangles>";
+  text.insert(text.find(end) + end.size(),
+              R"(<lines count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1</p></lines>)");
+  // a triangle and a line, twice
+  const MeshContent content = read_mesh(text, MeshFormat::dae, {}, 4);
+  CHECK(content.surface.triangles.size() == 2);
+  CHECK(content.other_faces == 2);
+  CHECK_THROWS_AS(read_mesh(text, MeshFormat::dae, {}, 3), kenaf::DescriptionError);
 }
