@@ -16,6 +16,12 @@ constexpr double kFree_m = 1e-5;
 // An iteration that changes no velocity by more than this share of what gravity does in a step is the last one.
 constexpr double kSolved = 1e-5;
 
+// Of a uniform box of that half size. Bullet takes a hull for a box that is larger by its margins.
+btVector3 box_inertia(double mass_kg, const btVector3& half) {
+  const btVector3 squares = half * half;
+  return mass_kg / 3 * btVector3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y());
+}
+
 }  // namespace
 
 Scene::Scene(const WorldDescription& description, const PhysicsSettings& settings)
@@ -73,14 +79,14 @@ void Scene::add_mesh(const TriangleMesh& mesh) {
 void Scene::add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W) {
   fixture.collider = std::make_unique<Collider>();
   fixture.collider->surfaces = {{.friction_along = friction, .friction_across = friction}};
-  btVector3 inertia(0, 0, 0);
-  if (mass_kg > 0) fixture.shape->calculateLocalInertia(mass_kg, inertia);
+  const btVector3 inertia = mass_kg > 0 ? box_inertia(mass_kg, fixture.half) : btVector3(0, 0, 0);
   fixture.body = std::make_unique<btRigidBody>(
       btRigidBody::btRigidBodyConstructionInfo(mass_kg, nullptr, fixture.shape.get(), inertia));
   fixture.body->setActivationState(DISABLE_DEACTIVATION);
   fixture.body->setUserPointer(fixture.collider.get());
   fixture.body->setWorldTransform(to_bullet(X_W));
   fixture.body->setInterpolationWorldTransform(to_bullet(X_W));
+  fixture.body->updateInertiaTensor();
   world_.addRigidBody(fixture.body.get());
 }
 

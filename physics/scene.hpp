@@ -61,6 +61,7 @@ class Scene {
     Fixture fixture;
   };
   void add_mesh(const TriangleMesh& mesh);
+  // Fixed without a mass, else a loose box.
   void add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W);
   double lift_needed(RobotModel& robot);
   // How far below the surface of a mesh's solid a point is; 0: outside of it.

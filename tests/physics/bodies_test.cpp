@@ -1,6 +1,7 @@
-// B1 falling, B2 sliding down a slope, B3 holding on a slope: what mechanics says of a block.
+// B1 falling, B2 sliding down a slope, B3 holding on a slope, B4 resting, B5 turning: what mechanics says of a block.
 #include <catch2/catch.hpp>
 
+#include "physics/scene.hpp"
 #include "tests/physics/scenes.hpp"
 
 using namespace kenaf::physics;
@@ -47,4 +48,24 @@ TEST_CASE("B4: a block at rest on level ground stays") {
   const BoxId box = world.add_box(loose_box({0.3, 0.2, 0.1}, {{1, 2, 0.05}, rotation_from({0, 0, 0.4})}, 5, 1));
   run(world, 10);
   CHECK((world.box_pose(box).p - Eigen::Vector3d(1, 2, 0.05)).norm() < 1e-4);
+}
+
+TEST_CASE("B5: a loose box turns as a uniform box of its size does, from its first step on") {
+  for (const bool turned : {false, true}) {
+    Scene scene({}, {});
+    const Pose X_WBox{{0, 0, 5}, rotation_from({0, 0, turned ? std::numbers::pi / 2 : 0})};
+    scene.add_box(BoxId{1}, loose_box({0.1, 0.2, 0.3}, X_WBox, 12, 1));
+    btRigidBody* const box = btRigidBody::upcast(scene.dynamics().getCollisionObjectArray()[0]);
+    REQUIRE(box);
+    // m / 12 (0.2^2 + 0.3^2), (0.1^2 + 0.3^2), (0.1^2 + 0.2^2) about its own axes
+    const Eigen::Vector3d inertia_W_kgm2 =
+        turned ? Eigen::Vector3d(0.10, 0.13, 0.05) : Eigen::Vector3d(0.13, 0.10, 0.05);
+    for (int axis = 0; axis < 3; ++axis) {
+      btVector3 impulse_nms(0, 0, 0);
+      impulse_nms[axis] = 0.01;
+      box->setAngularVelocity({0, 0, 0});
+      box->applyTorqueImpulse(impulse_nms);
+      CHECK(box->getAngularVelocity()[axis] == Approx(0.01 / inertia_W_kgm2[axis]).epsilon(1e-9));
+    }
+  }
 }
