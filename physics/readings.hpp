@@ -18,7 +18,7 @@ struct ImuReading {
   Eigen::Vector3d angular_velocity_radps, angular_acceleration_radps2;  // in B
   Eigen::Vector3d roll_pitch_yaw_rad;
 };
-struct EncoderReading { std::array<std::int64_t, kTrackCount> counts; };       // of the sprockets, since placement
+struct EncoderReading { std::array<std::int64_t, kTrackCount> counts; };       // of the sprockets, since add_robot or reset_sensor
 struct OdometryReading { double x_m, y_m, yaw_rad; };                          // from the encoders, since its reset
 struct TachometerReading { std::array<double, kTrackCount> spin_radps, angle_rad; };
 struct SonarReading { double range_m; };

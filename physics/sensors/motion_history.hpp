@@ -19,7 +19,7 @@ struct MotionSample {
   std::array<double, kTrackCount> track_a{};
   std::array<double, kFlipperCount> flipper_a{}, servo_rad{};
   double battery_v = 0;
-  Eigen::Vector3d odometry{0, 0, 0};  // x, y, yaw from the encoders since placement
+  Eigen::Vector3d odometry{0, 0, 0};  // x, y, yaw from the encoders since add_robot
   std::uint64_t touched = 0;          // bit i: sensor i is touched
 };
 
