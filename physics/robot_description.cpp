@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <numbers>
 #include <set>
 
@@ -89,6 +90,9 @@ FlipperDescription read_flipper(TomlReader table) {
       .start_angle_rad = table.number("start_angle_rad"),
       .belt_driven = table.boolean("belt_driven"),
   };
+  // else one drum is within the other, and the belt has no straight run
+  if (flipper.length_m <= std::abs(flipper.pivot_radius_m - flipper.tip_radius_m))
+    table.fail("length_m", "must be more than the difference of pivot_radius_m and tip_radius_m");
   if (flipper.start_angle_rad < flipper.min_angle_rad || flipper.start_angle_rad > flipper.max_angle_rad)
     table.fail("start_angle_rad", "must be between min_angle_rad and max_angle_rad");
   if (flipper.p_BPivot_m.x() <= 0 || flipper.p_BPivot_m.y() <= 0)
@@ -152,7 +156,7 @@ SensorDescription read_sensor(TomlReader& table) {
   }
   if (sensor.type == SensorType::range_scanner) {
     sensor.resolution_rad = table.number("resolution_rad", kPositive);
-    if (sensor.field_of_view_rad / sensor.resolution_rad > static_cast<double>(kMaxRays))
+    if (std::round(sensor.field_of_view_rad / sensor.resolution_rad) + 1 > static_cast<double>(kMaxRays))
       table.fail("resolution_rad", fmt::format("makes more than {} rays in a scan", kMaxRays));
   }
   table.finish();

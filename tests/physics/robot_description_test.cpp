@@ -77,6 +77,14 @@ TEST_CASE("What is wrong is said with file, line and column") {
   CHECK(error_with("[0.13, 0.44, 0.52]", "[0.13, 0.44, 5.2]").find("no rigid body") != std::string::npos);
   CHECK(error_with("pieces = 6", "pieces = 6.5").find("whole number") != std::string::npos);
   CHECK(error_with("belt_driven = true", "belt_driven = 1").find("true or false") != std::string::npos);
+  // the drums' radii, 0.055 and 0.04, differ by 0.015: at that length the small one touches the large one from within
+  CHECK(error_with("length_m = 0.145", "length_m = 0.01").find("flipper.length_m must be more than the difference") !=
+        std::string::npos);
+  CHECK(error_with("length_m = 0.145", "length_m = 0.016").empty());
+  // 3.14159265 / 0.00076718 = 4094.99: 4095 angles between 4096 rays. / 0.000767 = 4095.95: one more
+  CHECK(error_with("resolution_rad = 0.01745329", "resolution_rad = 0.00076718").empty());
+  CHECK(error_with("resolution_rad = 0.01745329", "resolution_rad = 0.000767").find("more than 4096 rays") !=
+        std::string::npos);
   CHECK(error_with("type = \"GPS\"", "type = \"gps\"").find("must be one of GroundTruth") != std::string::npos);
   CHECK(error_with("name = \"GPS\"", "name = \"INS\"").find("name of another sensor") != std::string::npos);
   CHECK(error_with("[servo]", "[servo").find("test.toml:") == 0);
