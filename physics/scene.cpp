@@ -132,11 +132,11 @@ Pose Scene::box_pose(BoxId id) const {
   return from_bullet(boxes_.at(id).body->getWorldTransform());
 }
 
-double Scene::lift_needed(RobotModel& robot) {
+double Scene::lift_needed(RobotModel& robot, double search_step_m) {
   struct Deepest : btCollisionWorld::ContactResultCallback {
     const btCollisionObject* self = nullptr;
     const std::vector<btRigidBody*>* own = nullptr;
-    double lift_m = 0;
+    double search_step_m = 0, lift_m = 0;
     bool needsCollision(btBroadphaseProxy* proxy) const override {
       return std::find(own->begin(), own->end(), proxy->m_clientObject) == own->end();
     }
@@ -146,12 +146,13 @@ double Scene::lift_needed(RobotModel& robot) {
       if (depth <= 0) return 0;
       const double up = (object0->getCollisionObject() == self ? 1 : -1) * point.m_normalWorldOnB.z();
       // a wall beside it, or an obstacle's underside: on, in steps, until it is above
-      constexpr double kSearchStep_m = 0.02, kSteepest = 0.3;
-      lift_m = std::max(lift_m, up > kSteepest ? depth / up : kSearchStep_m);
+      constexpr double kSteepest = 0.3;
+      lift_m = std::max(lift_m, up > kSteepest ? depth / up : search_step_m);
       return 0;
     }
   } deepest;
   deepest.own = &robot.bodies();
+  deepest.search_step_m = search_step_m;
   belt_ground_.set_probing(true);
   for (btRigidBody* body : robot.bodies()) {
     deepest.self = body;
@@ -178,13 +179,15 @@ double Scene::depth_in_mesh(const Eigen::Vector3d& p_W) const {
 }
 
 void Scene::place_free(RobotModel& robot, Pose X_WB, bool start_joints) {
-  constexpr int kMaxLifts = 1000;
+  constexpr int kMaxLifts = 1000, kLiftsToDouble = 100;  // over 2 km in all
+  double search_step_m = 0.02;
   // deep inside, it would touch none of the triangles
   X_WB.p.z() += depth_in_mesh(X_WB.p);
   robot.place(X_WB, start_joints);
-  for (int i = 0; i < kMaxLifts; ++i) {
-    const double lift_m = lift_needed(robot);
+  for (int i = 1; i <= kMaxLifts; ++i) {
+    const double lift_m = lift_needed(robot, search_step_m);
     if (lift_m <= 0) return;
+    if (i % kLiftsToDouble == 0) search_step_m *= 2;  // out of what is as high as a house
     X_WB.p.z() += lift_m + kFree_m;
     robot.place(X_WB, start_joints);
   }

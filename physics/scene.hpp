@@ -63,7 +63,8 @@ class Scene {
   void add_mesh(const TriangleMesh& mesh);
   // Fixed without a mass, else a loose box.
   void add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W);
-  double lift_needed(RobotModel& robot);
+  // 0: it is free. Where up is not the way out of what it touches: `search_step_m`.
+  double lift_needed(RobotModel& robot, double search_step_m);
   // How far below the surface of a mesh's solid a point is; 0: outside of it.
   double depth_in_mesh(const Eigen::Vector3d& p_W) const;
 

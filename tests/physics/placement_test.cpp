@@ -30,6 +30,18 @@ TEST_CASE("P1: a robot in a box is lifted onto it, one in the air stays there") 
   CHECK(world.truth(inside).X_WB.p.z() == Approx(0.49).margin(1e-3));
 }
 
+TEST_CASE("P1: a robot in a box as high as a house is lifted onto it too") {
+  WorldDescription description = ground();
+  description.boxes.push_back(fixed_box({4, 4, 30}, {0, 0, 15}));
+  World world(description, {}, 1);
+  const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
+  // its belly is 0.09 m below its centre; the steps of its search there are 0.16 m: 100 of 0.02, 0.04, 0.08 m are 14 m
+  CHECK(world.truth(id).X_WB.p.z() > 30.09 - 1e-3);
+  CHECK(world.truth(id).X_WB.p.z() < 30.09 + 0.17);
+  run(world, 2);
+  CHECK(world.truth(id).X_WB.p.z() == Approx(30.09).margin(1e-3));
+}
+
 TEST_CASE("P1: a robot dropped from 50 mm comes to rest") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {{0, 0, 0.14}, Eigen::Quaterniond::Identity()});
