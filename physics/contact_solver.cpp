@@ -136,8 +136,8 @@ btScalar ContactSolver::solve_running_gear(Belt& belt, btScalar time_step) {
     const double free_mps = belt.speed_mps - belt.viscous_impulse_ns / m;
     push(belt.viscous_impulse_ns, -free_mps / (1 / damping_ns + 1 / m), -1e9, 1e9);
   }
-  // without a load too: what rolling friction gave in the last step has to go
-  if (const double dry_ns = belt.dry_friction_ns + belt.rolling_resistance * belt.load_ns;
+  // without a load too: what rolling friction gave in the last step has to go. A sum of changes may end below 0
+  if (const double dry_ns = belt.dry_friction_ns + belt.rolling_resistance * std::max(belt.load_ns, 0.0);
       dry_ns > 0 || belt.friction_impulse_ns != 0)
     push(belt.friction_impulse_ns, belt.friction_impulse_ns - belt.speed_mps * m, -dry_ns, dry_ns);
   return changed;
