@@ -262,8 +262,11 @@ void World::teleport(RobotId id, const Pose& X_WB) {
 void World::set_in_motion(RobotId id, const RobotMotion& motion, const RobotCommand& command) {
   RobotEntry& entry = impl_->robot(id);
   const auto whole = [](double speed) { return std::isfinite(speed); };
+  const auto whole_joint = [](const JointCommand& joint) { return std::isfinite(joint.value); };
   if (!motion.v_WB_mps.allFinite() || !motion.w_WB_radps.allFinite() || !std::ranges::all_of(motion.track_mps, whole))
     throw std::invalid_argument("set_in_motion: a speed is not finite");
+  if (!std::ranges::all_of(command.track_speed_mps, whole) || !std::ranges::all_of(command.flipper, whole_joint))
+    throw std::invalid_argument("set_in_motion: the command is not finite");
   if (!entry.fault.empty()) return;
   entry.model->set_in_motion(motion, command);
   entry.sensors->forget_motion();  // it did not get there by accelerating

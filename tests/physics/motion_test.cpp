@@ -277,6 +277,8 @@ TEST_CASE("V10: what is no speed is refused, a teleport ends what was prescribed
   Robot robot = settled(load_robot("kenaf"));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(robot.world.set_in_motion(robot.id, ahead(nan), drive(0, 0)), std::invalid_argument);
+  CHECK_THROWS_AS(robot.world.set_in_motion(robot.id, ahead(0.1), drive(nan, 0)), std::invalid_argument);
+  CHECK_THROWS_AS(robot.world.set_in_motion(robot.id, ahead(0.1), drive(0, 0, nan)), std::invalid_argument);
   CHECK_THROWS_AS(robot.world.prescribe(robot.id, belts(nan, 0)), std::invalid_argument);
   robot.world.prescribe(robot.id, belts(0.3, 0.3));
   run(robot.world, 0.1);
