@@ -27,7 +27,7 @@ class ContactSolver {
     belt_ground_.make_room(kManyPairs * belts_.size());
   }
   void remove_belt(Belt* belt) { std::erase(belts_, belt); }
-  // For what leaves the world: contacts() no longer speaks of it.
+  // For what leaves its place or the world: contacts() no longer speaks of it.
   void forget_contacts_of(const btCollisionObject& object);
   // One step's impulses, written back as velocities. Each of `joints` is a FlipperJoint.
   void solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatcher& dispatcher,

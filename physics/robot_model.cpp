@@ -192,7 +192,8 @@ void RobotModel::place(const Pose& X_WB, bool start_joints) {
     body.setInterpolationAngularVelocity({0, 0, 0});
     body.clearForces();
     body.updateInertiaTensor();
-    // contacts of the old place must not pull on it
+    // contacts of the old place must not pull on it, nor a sensor feel them
+    solver_.forget_contacts_of(body);
     world_.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(body.getBroadphaseHandle(),
                                                                            world_.getDispatcher());
     world_.updateSingleAabb(&body);

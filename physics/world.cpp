@@ -86,7 +86,6 @@ struct World::Implementation {
     }
     scene->place_free(*entry.model, X_WB, true);
     entry.fault.clear();
-    touches.clear();
     constexpr std::size_t kManyTouches = 256;  // so that a step need not allocate
     touches.reserve(kManyTouches);
     record(id, entry);
@@ -255,7 +254,6 @@ void World::teleport(RobotId id, const Pose& X_WB) {
   if (!entry.fault.empty()) return impl_->build_robot(id, entry, X_WB_unit);
   impl_->scene->place_free(*entry.model, X_WB_unit, false);
   entry.sensors->forget_motion();
-  impl_->touches.clear();
   impl_->record(id, entry);
 }
 

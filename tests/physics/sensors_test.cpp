@@ -217,7 +217,12 @@ TEST_CASE("S8: a touch sensor feels an obstacle at its mount, and not the ground
   }
   CHECK(touched);
   // the track's front is 0.29 m ahead of the centre, the box begins at 0.4
-  CHECK(world.truth(id).X_WB.p.x() == Approx(0.11).margin(0.005));
+  const Pose X_WB = world.truth(id).X_WB;
+  CHECK(X_WB.p.x() == Approx(0.11).margin(0.005));
+  // 50 mm back nothing touches it; what did is still within 0.1 m of the sensor
+  world.step();
+  world.teleport(id, {X_WB.p - Eigen::Vector3d(0.05, 0, 0), X_WB.q});
+  CHECK_FALSE(read_one<TouchReading>(world, id).touched);
 }
 
 TEST_CASE("S9: currents follow force, the battery sags with them and runs down") {
