@@ -35,13 +35,17 @@ struct RobotEntry {
   DriveCurrents currents;   // 0 after it
 };
 
+bool is_number(const Pose& X) {
+  return X.p.allFinite() && X.q.coeffs().allFinite();
+}
+
 // What no robot on tracks does.
 constexpr double kFastest_mps = 50, kFastest_radps = 500, kLowest_m = -100, kFurthest_m = 1e5;
 
 std::string fault_of(const RobotTruth& truth, double t_s) {
   const double speed = truth.v_WB_mps.norm(), spin = truth.w_WB_radps.norm();
   const Eigen::Vector3d& p = truth.X_WB.p;
-  if (!p.allFinite() || !truth.X_WB.q.coeffs().allFinite() || !std::isfinite(speed) || !std::isfinite(spin))
+  if (!is_number(truth.X_WB) || !std::isfinite(speed) || !std::isfinite(spin))
     return fmt::format("its pose is no number at {:.3f} s", t_s);
   if (speed > kFastest_mps || spin > kFastest_radps)
     return fmt::format("it exploded: {:.0f} m/s and {:.0f} rad/s at {:.3f} s", speed, spin, t_s);
@@ -126,6 +130,12 @@ struct World::Implementation {
     entry.sensors->record(truth, time_s(), entry.currents.track_a, entry.currents.flipper_a, touches);
   }
 
+  // Loose ones that a robot which is no number has touched begin anew.
+  void put_back_boxes() {
+    for (const auto& [id, box] : boxes)
+      if (!is_number(scene->box_pose(id))) scene->move_box(id, box.X_WBox);
+  }
+
   void build() {
     // robots let go of the old scene before it goes
     for (auto& [id, entry] : robots) {
@@ -156,8 +166,10 @@ struct World::Implementation {
       if (entry.fault.empty()) entry.model->before_step(dt);
     scene->step(dt);
     ++steps;
+    bool any_fault = false;  // in this step
     for (auto& [id, entry] : robots) {
-      if (entry.fault.empty()) entry.model->after_step(dt);
+      const bool was_whole = entry.fault.empty();
+      if (was_whole) entry.model->after_step(dt);
       for (std::size_t p = 0; p < entry.mission.size(); ++p) {
         for (std::size_t l = 0; l < entry.mission[p].size(); ++l) {
           auto& link = entry.mission[p][l];
@@ -166,7 +178,9 @@ struct World::Implementation {
         }
       }
       record(id, entry);
+      any_fault = any_fault || (was_whole && !entry.fault.empty());
     }
+    if (any_fault) put_back_boxes();
   }
 };
 

@@ -106,7 +106,7 @@ class World {
   // What went wrong with a robot's simulation, in words; empty: nothing. Once it did, the robot is taken out of the
   // dynamics where it last was whole, until it is teleported or the world is reset: its pose is no longer a number, it
   // moves faster than anything on tracks can, or it fell out of the world. Its sensors go on to report that it stands
-  // there, all finite.
+  // there, all finite. A loose box that it left without a pose is back at its first one.
   const std::string& fault(RobotId id) const;
   // What the sensors have to report now, in the order of the description: each sensor whose period has passed since
   // its last report by this call. Two calls without a step between give nothing the second time.

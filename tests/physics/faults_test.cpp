@@ -1,5 +1,5 @@
 // F1 a robot that falls out of the world, F2 one that explodes, F3 one that is no number: each is named, and harms no
-// other.
+// other. F4 what it reports then, F5 what it stood on.
 #include <catch2/catch.hpp>
 
 #include "tests/physics/scenes.hpp"
@@ -89,4 +89,23 @@ TEST_CASE("F4: after a fault sensors report a robot that stands, in numbers, and
   CHECK(world.truth(id).X_WB.p.allFinite());
   run(world, 1);
   CHECK_THAT(world.fault(id), Contains("no number"));
+}
+
+TEST_CASE("F5: a loose box under a robot that is no number stays a box, and carries the next robot") {
+  RobotDescription wild = load_robot("kenaf");
+  wild.body.inertia_kgm2 = {1e-310, 1e-310, 1e-310};
+  World world(ground(), {}, 1);
+  const Pose X_WBox{{0, 0, 0.1}, Eigen::Quaterniond::Identity()};
+  const BoxId box = world.add_box(loose_box({2, 2, 0.2}, X_WBox, 10, 1));
+  const RobotId broken = world.add_robot(wild, "a", {{0, 0, 0.2}, Eigen::Quaterniond::Identity()});
+  world.set_command(broken, drive(0.3, 0.3));
+  run(world, 1);
+  REQUIRE_THAT(world.fault(broken), Contains("no number"));
+  CHECK((world.box_pose(box).p - X_WBox.p).norm() < 1e-3);
+  world.remove_robot(broken);
+  // its top is at 0.2 m, the belly 0.09 m below the robot's centre. 30 kg press four points by 0.4 mm into the ground
+  const RobotId next = world.add_robot(load_robot("kenaf"), "b", {{0, 0, 0.2}, Eigen::Quaterniond::Identity()});
+  run(world, 1);
+  CHECK(world.fault(next).empty());
+  CHECK(world.truth(next).X_WB.p.z() == Approx(0.29).margin(1e-3));
 }
