@@ -13,7 +13,7 @@ constexpr btScalar kConeSlack = 0.05;  // sine: an edge is touched from within i
 constexpr int kMeshSlices = 5, kBoxSlices = 3;
 
 // Features are numbered: kind and place in the low bits, whose ground in the high ones.
-constexpr std::uint32_t feature(std::uint32_t ground, std::uint32_t slice, std::uint32_t place) {
+constexpr std::uint64_t feature(std::uint64_t ground, std::uint32_t slice, std::uint32_t place) {
   return ground << 12 | slice << 8 | place;
 }
 
@@ -121,7 +121,7 @@ class BoxTouches {
   }
 
  private:
-  void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar share, bool edge, std::uint32_t id) {
+  void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar share, bool edge, std::uint64_t id) {
     // what is deeper along the slice than across it is a wall that the belt's side face meets
     if (-gap <= overlap_) out_.push_back({p, normal, gap, share, edge, id});
   }
@@ -197,7 +197,7 @@ class BoxTouches {
   }
 
   // A point of an edge against the belt's outline.
-  void edge_point(const BoxEdge& edge, const btVector3& p, btScalar share, std::uint32_t id) {
+  void edge_point(const BoxEdge& edge, const btVector3& p, btScalar share, std::uint64_t id) {
     const OutlineDistance at = distance_to_outline(belt_, p.x(), p.z());
     if (at.distance > kTouching_m || at.distance < -kDeepest_m) return;
     const int j1 = (edge.axis + 1) % 3, j2 = (edge.axis + 2) % 3;
@@ -311,7 +311,7 @@ class BoxTouches {
 
 void touch_plane(const BeltShape& belt, const btVector3& normal, btScalar offset, std::vector<BeltTouch>& out) {
   const btScalar in_plane = btSqrt(normal.x() * normal.x() + normal.z() * normal.z());
-  const auto touch = [&](btVector3 p, btScalar y, btScalar share, std::uint32_t id) {
+  const auto touch = [&](btVector3 p, btScalar y, btScalar share, std::uint64_t id) {
     p.setY(y);
     const btScalar gap = normal.dot(p) - offset;
     if (gap <= kTouching_m) out.push_back({p - normal * (gap / 2), normal, gap, share, false, id});
@@ -340,7 +340,7 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
       if (sides[i].cross(p - t.corner[i]).dot(t.normal) < 0) return false;
     return true;
   };
-  const auto face = [&](const btVector3& p, btScalar share, std::uint32_t id) {
+  const auto face = [&](const btVector3& p, btScalar share, std::uint64_t id) {
     const btScalar gap = t.normal.dot(p - t.corner[0]);
     if (gap <= kTouching_m && gap >= -kDeepest_m && inside(p))
       out.push_back({p - t.normal * (gap / 2), t.normal, gap, share, false, id});

@@ -23,7 +23,7 @@ struct BeltTouch {
   btScalar gap_m;         // negative: pressed in
   btScalar share;         // of a run's point: what of the contact's stiffness it stands for
   bool edge;              // an edge of the ground, not a face
-  std::uint32_t feature;  // the same one from step to step
+  std::uint64_t feature;  // the same one from step to step
 };
 
 // Half space below the plane normal_T . p = offset.

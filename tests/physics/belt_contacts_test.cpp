@@ -120,6 +120,19 @@ TEST_CASE("G6: level ground of triangles carries as a plane does, and its seams 
   }
 }
 
+TEST_CASE("G6: a world's last triangle is not taken for its first") {
+  const double z = -0.0499;
+  TriangleInT first{{{-1, -2, z}, {2, 0, z}, {-1, 2, z}}, {0, 0, 1}, {}, {}, 0}, far = first;
+  far.index = 1u << 20;  // a world has up to 2^21; numbers of 32 bits have 12 for the place within a triangle
+  std::vector<BeltTouch> of_first, of_far;
+  touch_triangle(belt(), first, of_first);
+  touch_triangle(belt(), far, of_far);
+  REQUIRE(!of_first.empty());
+  REQUIRE(of_far.size() == of_first.size());
+  for (std::size_t i = 0; i < of_far.size(); ++i)
+    CHECK(of_far[i].feature == of_first[i].feature + (std::uint64_t{1} << 32));
+}
+
 TEST_CASE("G7: a flipper's outline is two discs and their tangents") {
   // large disc of 55 mm at the pivot, small one of 40 mm at 145 mm: the tangent leans by asin(15 / 145)
   const BeltShape flipper{
