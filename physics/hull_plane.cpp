@@ -102,8 +102,6 @@ btCollisionAlgorithm* HullPlaneContacts::Create::CreateCollisionAlgorithm(btColl
 
 HullPlaneContacts::HullPlaneContacts(btCollisionDispatcher& dispatcher) {
   create_swapped_.m_swapped = true;
-  dispatcher.registerCollisionCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, STATIC_PLANE_PROXYTYPE, &create_);
-  dispatcher.registerCollisionCreateFunc(STATIC_PLANE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE, &create_swapped_);
   dispatcher.registerClosestPointsCreateFunc(CONVEX_HULL_SHAPE_PROXYTYPE, STATIC_PLANE_PROXYTYPE, &create_);
   dispatcher.registerClosestPointsCreateFunc(STATIC_PLANE_PROXYTYPE, CONVEX_HULL_SHAPE_PROXYTYPE, &create_swapped_);
 }
