@@ -103,8 +103,8 @@ TEST_CASE("in a browser: keys held drive the robot, letting go of them stops it,
 
 TEST_CASE("in a browser: a page that was open shows the world of the server that is started next") {
   support::TemporaryFolder profile;
+  Browser browser(profile.path());  // before the world: what it is started from is what it keeps open
   auto world = std::make_unique<ServedWorld>("", ViewLimits{}, "step-200");
-  Browser browser(profile.path());
   browser.open(world->url());
   const std::string shows = "document.getElementById('link')?.dataset.state === 'good' && ";
   browser.wait_for(shows + "document.getElementById('world').textContent === 'step-200'");
