@@ -36,7 +36,7 @@ void check(const std::filesystem::path& folder) {
   }
   take(check_noise(dataset, columns));
   const std::string counts =
-      fmt::format("{} runs; {} things refused, {} warned of", dataset.runs.size(), refused, warned);
+      fmt::format("{} runs; findings: {} refused, {} warned of", dataset.runs.size(), refused, warned);
   if (refused > 0) throw std::runtime_error(fmt::format("{}: {}", folder.string(), counts));
   std::printf("%s\n", counts.c_str());
 }

@@ -260,7 +260,7 @@ TEST_CASE("The command check ends with 2 where something is refused, and with 0 
   REQUIRE(test::kenaf_gap(folder, "simulate --manoeuvre straight-fast --out data").status == 0);
   auto outcome = test::kenaf_gap(folder, "check data");
   CHECK(outcome.status == 0);
-  CHECK(outcome.out == "1 runs; 0 things refused, 0 warned of\n");
+  CHECK(outcome.out == "1 runs; findings: 0 refused, 0 warned of\n");
   runs::Run run = scaled(runs::read_run(folder / "data/run-000.csv"), kPlace, 1000);
   runs::RunWriter writer(folder / "data/run-000.csv", run.columns);
   for (std::size_t i = 0; i < run.row_count(); ++i) {
@@ -272,6 +272,6 @@ TEST_CASE("The command check ends with 2 where something is refused, and with 0 
   outcome = test::kenaf_gap(folder, "check data");
   CHECK(outcome.status == 2);
   CHECK_THAT(outcome.out, Catch::StartsWith("run-000.csv: x_m: looks like millimetres"));
-  CHECK_THAT(outcome.error, Catch::Contains("data: 1 runs, 1 refused"));
+  CHECK_THAT(outcome.error, Catch::Contains("data: 1 runs; findings: 1 refused"));
   CHECK(test::kenaf_gap(folder, "check").status == 2);
 }
