@@ -75,8 +75,10 @@ class Teller {
   }
   void diagnosed(const std::string& name, bool could) {
     ++diagnosed_;
-    if (!could)
-      std::fprintf(stderr, "%s%s: could not be diagnosed\n", line_.on_terminal() ? "\r\033[K" : "", name.c_str());
+    if (!could) {
+      clear_progress_line();
+      std::fprintf(stderr, "%s: could not be diagnosed\n", name.c_str());
+    }
     tell("diagnosing", kMakingShare + (1 - kMakingShare) * diagnosed_ / cases_, diagnosed_);
   }
 
@@ -126,8 +128,8 @@ ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::pa
                     "numbers would",
                     folder.string(), options.cases, seed));
   }
-  runs::write_whole_file(folder / "commitment.txt",
-                         commitment);  // before "cases.part" goes, by which it is known till then
+  // before "cases.part" goes, by which the folder is known for a challenge till then
+  runs::write_whole_file(folder / "commitment.txt", commitment);
   runs::write_whole_file(folder / "key.enciphered", enciphered(text, seed));
   fs::remove_all(folder / "cases");
   fs::rename(part, folder / "cases");

@@ -26,7 +26,7 @@ void ProgressLine::show(std::string_view doing, double done) const {
   const double passed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const std::string left = done > 0.05 ? fmt::format(", about {} left", in_words(passed_s * (1 / done - 1))) : "";
   std::fputs(fmt::format("\r\033[K{:3.0f} %  {}{}", done * 100, doing, left).c_str(), stderr);
-  if (done >= 1) std::fputs("\r\033[K", stderr);
+  if (done >= 1) clear_progress_line();
 }
 
 void clear_progress_line() {

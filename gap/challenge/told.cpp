@@ -30,6 +30,7 @@ Told told_by(const std::string& report_json) try {
       told.effects.push_back({effect.at("name"), parameter, number(fit.at("value")), number(fit.at("ci95").at(0)),
                               number(fit.at("ci95").at(1))});
   told.shrink = number(json.at("gap").at("shrink"));
+  told.interrupted = json.contains("interrupted");
   json.at("isolability").at("effects").get_to(told.table);
   for (const Json& row : json.at("isolability").at("angle_deg")) {
     told.angle_deg.emplace_back();
@@ -45,9 +46,8 @@ Told told_by(const std::string& report_json) try {
 std::optional<Told> read_told(const std::filesystem::path& report_json) {
   if (!std::filesystem::exists(report_json)) return std::nullopt;
   try {
-    const std::string text = runs::read_whole_file(report_json);
-    Told told = told_by(text);
-    if (Json::parse(text).contains("interrupted")) return std::nullopt;  // its verdict is none that counts
+    Told told = told_by(runs::read_whole_file(report_json));
+    if (told.interrupted) return std::nullopt;
     return told;
   } catch (const std::exception& error) {
     throw std::runtime_error(fmt::format("{}: {}", report_json.string(), error.what()));

@@ -21,6 +21,7 @@ struct Told {
   std::vector<std::vector<std::string>> ambiguous_sets;
   std::vector<ToldEffect> effects;
   double shrink = std::numeric_limits<double>::quiet_NaN();  // on held-out runs
+  bool interrupted = false;                                  // then its verdict is none that counts
   // The isolability table.
   std::vector<std::string> table;
   std::vector<std::vector<double>> angle_deg;
