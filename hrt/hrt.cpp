@@ -227,14 +227,14 @@ int hrt_close(void) {
     }
     // the robot first: it stops
     const int code = guarded([&] { robot->close(); });
+    const std::string words(last_error);
     const int cameras_code = guarded([&] { cameras->close(); });
     {
       const std::lock_guard lock(h.mutex);
       h.under_way = nullptr;
     }
-    if (code != HRT_OK || cameras_code != HRT_OK) {
-      throw Error(code != HRT_OK ? code : cameras_code, std::string(last_error));
-    }
+    if (code != HRT_OK) throw Error(code, words);
+    if (cameras_code != HRT_OK) throw Error(cameras_code, std::string(last_error));
   });
 }
 
