@@ -74,6 +74,7 @@ void FlipperJoint::drive(const JointCommand& command, const FlipperDescription& 
     case JointMode::brake:
       break;
   }
+  servo_most_nm_ = torque;
   min_impulse_ = -torque * time_step_s;
   max_impulse_ = torque * time_step_s;
   // never past a limit within the next step; a load may press it past, then the stop pushes back
@@ -98,6 +99,7 @@ void FlipperJoint::prescribe(double angle_rad, double time_step_s) {
   constexpr double kAnyTorque_nm = 1e6;
   constexpr double kFastest_radps = 10;  // chosen: an arm that hung elsewhere at first gets there without a blow
   target_radps_ = std::clamp(frames::wrap_angle(angle_rad - angle_rad_) / time_step_s, -kFastest_radps, kFastest_radps);
+  servo_most_nm_ = kAnyTorque_nm;
   max_impulse_ = kAnyTorque_nm * time_step_s;
   min_impulse_ = -max_impulse_;
   softness_ = most_apart_rad_ = 0;

@@ -1,6 +1,7 @@
 // A hinge between a robot's body and a flipper, with a servo that is limited in speed and torque.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "physics/bullet.hpp"
@@ -45,6 +46,8 @@ class FlipperJoint : public btTypedConstraint {
   double servo_rad() const { return coupling_.rigid() ? angle_rad_ : servo_rad_; }
   double speed_radps() const;
   double torque_nm(double time_step_s) const { return row_impulse[5] / time_step_s; }  // + lifts the tip
+  // Of it, what the servo gives: not the mechanical stop, which holds for nothing.
+  double servo_nm(double time_step_s) const { return std::clamp(torque_nm(time_step_s), -servo_most_nm_, servo_most_nm_); }
 
   // An equation for the solver: angular_a . w_A + angular_b . w_B = velocity, held by an impulse between `low` and `high`.
   // The first three rows have v_A - v_B along x, y, z of W too.
@@ -74,6 +77,7 @@ class FlipperJoint : public btTypedConstraint {
   double angle_rad_ = 0;
   double target_radps_ = 0, min_impulse_ = 0, max_impulse_ = 0, softness_ = 0;
   ServoCoupling coupling_;
+  double servo_most_nm_ = 0;
   double followed_rad_ = 0;  // the commanded angle behind the lag
   double servo_rad_ = 0, servo_radps_ = 0, most_apart_rad_ = 0;  // unused where it is rigid
 };

@@ -282,7 +282,7 @@ double RobotModel::track_current_a(Track track, double time_step_s) const {
 
 double RobotModel::flipper_current_a(Flipper flipper, double time_step_s) const {
   const auto& joint = flippers_[flipper].joint;
-  return joint ? description.servo.amperes_per_nm * std::abs(joint->torque_nm(time_step_s)) : 0;
+  return joint ? description.servo.amperes_per_nm * std::abs(joint->servo_nm(time_step_s)) : 0;
 }
 
 double RobotModel::battery_current_a(double time_step_s) const {
@@ -294,7 +294,7 @@ double RobotModel::battery_current_a(double time_step_s) const {
   for (const Flipper which : {kFrontLeft, kFrontRight, kRearLeft, kRearRight}) {
     const auto& joint = flippers_[which].joint;
     if (!joint) continue;
-    const double torque = joint->torque_nm(time_step_s), speed = joint->speed_radps();
+    const double torque = joint->servo_nm(time_step_s), speed = joint->speed_radps();
     current +=
         physics::battery_current_a(flipper_current_a(which, time_step_s), std::abs(torque) / most_nm,
                                    std::copysign(speed / description.servo.max_speed_radps, torque * speed), voltage);

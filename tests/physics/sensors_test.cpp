@@ -252,6 +252,25 @@ TEST_CASE("S9: currents follow force, the battery sags with them and runs down")
   CHECK(truth.battery_left_s == Approx(3600 - 2));
 }
 
+TEST_CASE("S9: an arm that rests on its mechanical stop carries the robot without current") {
+  // arms that can go no higher than 0.6 rad below the belts, servos limp: the ground presses those that it rests on against
+  // their stops
+  RobotDescription robot = with_sensor(sensor_of(SensorType::drives));
+  robot.flipper.front().max_angle_rad = -0.6;
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(robot, "a", {});
+  RobotCommand command = drive(0, 0);
+  for (JointCommand& joint : command.flipper) joint = {JointMode::torque, 0};
+  world.set_command(id, command);
+  run(world, 3);
+  const RobotTruth truth = world.truth(id);
+  double carried_nm = 0;
+  for (const double torque : truth.flipper_nm) carried_nm += std::abs(torque);
+  CHECK(truth.X_WB.p.z() > 0.1);
+  CHECK(carried_nm > 2);  // which a servo would give for 0.5 A
+  for (const double current : read_one<DrivesReading>(world, id).flipper_a) CHECK(current < 0.01);
+}
+
 TEST_CASE("S10: a reset sensor starts from zero, an INS from the pose it is told") {
   RobotDescription robot = load_robot("kenaf");
   robot.sensors = {sensor_of(SensorType::encoder), sensor_of(SensorType::odometry), sensor_of(SensorType::ins)};
