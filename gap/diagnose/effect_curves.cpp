@@ -11,9 +11,11 @@ constexpr double kSpread[] = {0.25, 1};
 
 constexpr double kRoughReach = 2;
 
-// Times the length that a straight line through the inner one of two points has at the outer one.
+// Times the length that a straight line has: through the inner one of two points at the outer one, through the outer
+// one at the inner one.
 constexpr double kBent = 2;
 constexpr int kHalvings = 4;
+constexpr double kInward = 0.25;  // of the way from neutral to the innermost point
 
 std::size_t neutral_point(const EffectCurve& curve) {
   return static_cast<std::size_t>(std::ranges::find(curve.points, -1, &CurvePoint::column) - curve.points.begin());
@@ -62,6 +64,24 @@ void add_halves(const EffectCurves& curves, std::size_t curve, double length, st
     const double straight = inner_length * (outer.value - neutral) / (inner.value - neutral);
     if (inner_length < length && outer_length > std::max(length, kBent * straight))
       halves.push_back({curve, (inner.value + outer.value) / 2});
+  }
+}
+
+// Nearer to neutral than the innermost one of the points on a side, where that is longer than `length` and the next one
+// not as much longer as it is farther out: what the effect does all at once comes before.
+void add_inner(const EffectCurves& curves, std::size_t curve, double length, std::vector<NewPoint>& inner) {
+  const std::vector<CurvePoint>& points = curves.curves[curve].points;
+  const auto middle = static_cast<std::ptrdiff_t>(neutral_point(curves.curves[curve]));
+  const double neutral = points[static_cast<std::size_t>(middle)].value;
+  for (const std::ptrdiff_t outward : {-1, 1}) {
+    const std::ptrdiff_t last = middle + 2 * outward;
+    if (last < 0 || last >= std::ssize(points)) continue;
+    const CurvePoint &first = points[static_cast<std::size_t>(middle + outward)],
+                     &second = points[static_cast<std::size_t>(last)];
+    const double first_length = length_at(curves, first.column), second_length = length_at(curves, second.column);
+    const double straight = second_length * (first.value - neutral) / (second.value - neutral);
+    if (first_length > std::max(length, kBent * straight))
+      inner.push_back({curve, neutral + kInward * (first.value - neutral)});
   }
 }
 
@@ -135,10 +155,13 @@ void insert_points(EffectCurves& curves, std::span<const NewPoint> points, const
 void follow_bends(EffectCurves& curves, const std::function<void(std::span<const NewPoint>)>& simulate) {
   const double gap = std::sqrt(squared_length(curves.gap));
   for (int i = 0; i < kHalvings; ++i) {
-    std::vector<NewPoint> halves;
-    for (std::size_t c = 0; c < curves.curves.size(); ++c) add_halves(curves, c, gap, halves);
-    if (halves.empty()) return;
-    simulate(halves);
+    std::vector<NewPoint> points;
+    for (std::size_t c = 0; c < curves.curves.size(); ++c) {
+      add_halves(curves, c, gap, points);
+      add_inner(curves, c, gap, points);
+    }
+    if (points.empty()) return;
+    simulate(points);
   }
 }
 

@@ -65,8 +65,9 @@ void insert_points(EffectCurves& curves, std::span<const NewPoint> points, const
                    Fidelity fidelity);
 
 // A curve that moves little up to a value and much beyond it (drives that stall) is halved, up to four times, where it
-// becomes as long as the gap: between points that are far apart a straight line hides where it goes. `simulate` adds
-// points to these curves.
+// becomes as long as the gap: between points that are far apart a straight line hides where it goes. One that has done nearly all
+// by its innermost point (drives that stall before it) gets points nearer to neutral, up to four, each a quarter of the way to
+// the one before. `simulate` adds points to these curves.
 void follow_bends(EffectCurves& curves, const std::function<void(std::span<const NewPoint>)>& simulate);
 
 // Effects at their values, on top of the nominal ones.
