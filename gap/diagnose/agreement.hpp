@@ -14,11 +14,16 @@ namespace kenaf::gap {
 struct Agreement {
   double gained = 0;   // squared length that manoeuvres would explain beyond, each with values of its own
   double freedom = 0;  // how many values that are
+  // Squared length that they would gain, were the right model's simulator off by one sigma of each of its numbers: the same in
+  // all runs, so that it moves each manoeuvre's values its own way.
+  double of_numerics = 0;
 };
 // `groups`: of repeats, as repeats_of() has them. A value counts as a group's own where its effect moves that group by at
 // least `visible` squared floors. Of what the model explains in a group, `numerics` may be gained without counting. By curves.
+// `shapes`: what the simulator's numbers shift in each run, as OpenShapes::numerics has them; none: they are known.
 Agreement agreement(const EffectCurves& curves, const Model& model,
-                    const std::vector<std::vector<std::size_t>>& groups, double visible, double numerics);
+                    const std::vector<std::vector<std::size_t>>& groups, double visible, double numerics,
+                    const std::vector<Eigen::MatrixXd>& shapes);
 
 // Chance that a sum of `freedom` squared standard normals is larger (Wilson and Hilferty 1931: to 0.001 from three on); 1
 // without freedom.

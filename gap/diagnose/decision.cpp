@@ -1,12 +1,23 @@
 #include "gap/diagnose/decision.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "gap/diagnose/agreement.hpp"
+#include "gap/diagnose/isolability.hpp"
+#include "gap/diagnose/side_by_side.hpp"
 
 namespace kenaf::gap {
 namespace {
+
+// Of what a gap has beyond chance, so much must an effect account for before the floor is taken around it (chosen).
+constexpr double kFits = 0.5;
+
+// At the angle below which two effects cannot be told apart, the one that is not there leaves this share of what the
+// other one accounts for.
+const double kAlike = std::pow(std::sin(kToldApart_deg / 180 * std::numbers::pi), 2);
 
 bool has_curve(const Model& model, std::size_t curve) {
   return std::ranges::any_of(model.places, [&](const OnCurve& place) { return place.curve == curve; });
@@ -82,14 +93,18 @@ class Decider {
     if (!is_gap()) return d_;
     // from here on, what the simulation leaves open is taken around what fits best, no longer around the nominal model;
     // and a gap is one only if it is beyond that floor too
-    look_around(d_.singles.front());
-    if (!is_gap()) return d_;
+    if (fits(d_.singles.front())) {
+      look_around(d_.singles.front());
+      if (!is_gap()) return d_;
+    }
     take_effects();
+    if (!d_.beside.empty()) std::swap(curves_.curves, d_.beside);
     doubt();
     if (d_.doubts.empty())
       name();
     else
       d_.verdict = Verdict::unknown;
+    if (!d_.beside.empty()) std::swap(curves_.curves, d_.beside);
     return d_;
   }
 
@@ -114,6 +129,13 @@ class Decider {
     d_.p_gap = std::min(1.0, 2 * std::min(p_of_best_single(), d_.p_left));
     return d_.p_gap <= settings_.false_alarm &&
            (d_.p_left <= settings_.false_alarm / 2 || nominal_.left - d_.singles.front().left >= negligible_);
+  }
+
+  // Around a model that does not fit, the simulation may leave anything open: belts that fight each other, a robot that
+  // tips where the real one never was.
+  bool fits(const Model& model) const {
+    const double beyond_chance = nominal_.coherent - inflation_ * static_cast<double>(coherence_.cell_count());
+    return nominal_.coherent - model.coherent >= kFits * beyond_chance;
   }
 
   double of_numerics(const Model& model) const { return numerics_ * std::max(0.0, nominal_.left - model.left); }
@@ -149,11 +171,18 @@ class Decider {
       for (Model& model : d_.together) measure(model, curves_, coherence_);
       more = with_another(d_.best);
       if (!is_needed(d_.best, more)) return;
-      d_.best = more.front();
       d_.together = std::move(more);
+      stand_together();
       if (d_.best.places.size() == settings_.most_effects || p_left(d_.best) > settings_.surprise) return;
       more = with_another(d_.best);
     }
+  }
+
+  void stand_together() {
+    const std::vector<EffectCurve> alone = curves_.curves;
+    d_.together.front() = fit_side_by_side(curves_, coherence_, simulator_, std::move(d_.together.front()));
+    d_.best = d_.together.front();
+    d_.beside = std::exchange(curves_.curves, alone);
   }
 
   void doubt() {
@@ -161,8 +190,10 @@ class Decider {
       if (holds) d_.doubts.push_back(which);
     };
     d_.p_left = p_left(d_.best);
-    const Agreement agree = agreement(curves_, d_.best, coherence_.groups(), settings_.rival_margin, numerics_);
-    d_.p_agree = p_of_squares(agree.gained / inflation_, agree.freedom);
+    const Agreement agree =
+        agreement(curves_, d_.best, coherence_.groups(), settings_.rival_margin, numerics_, simulator_.numerics());
+    const double expected = inflation_ + agree.of_numerics / std::max(1.0, agree.freedom);
+    d_.p_agree = p_of_squares(agree.gained / expected, agree.freedom);
     doubt(d_.p_left <= settings_.surprise, Doubt::much_left);
     doubt(d_.p_agree <= settings_.surprise, Doubt::disagreement);
     doubt(at_an_end(d_.best, curves_, settings_.rival_margin * inflation_), Doubt::end_of_range);
@@ -174,7 +205,8 @@ class Decider {
     d_.verdict = Verdict::named;
     const std::vector<Model>& alternatives = d_.best.places.size() == 1 ? d_.singles : d_.together;
     for (std::size_t i = 0; i < d_.best.places.size(); ++i) {
-      d_.rivals[i] = rivals_of(d_.best.places[i], d_.best, alternatives, margin(d_.best));
+      const double accounted = left_without(curves_, d_.best, i) - d_.best.left;
+      d_.rivals[i] = rivals_of(d_.best.places[i], d_.best, alternatives, margin(d_.best) + kAlike * accounted);
       if (d_.rivals[i].size() > 1) d_.verdict = Verdict::ambiguous;
     }
   }

@@ -21,7 +21,9 @@ enum class Doubt {
   disagreement,  // manoeuvres want different values
   end_of_range,  // a value stands for something that its effect cannot do
   trifle,        // one of three effects or more accounts for too little
-  not_held_out,  // on runs held out of the fit too little of the gap is gone; found after decide()
+  // found after decide(), on runs held out of the fit:
+  not_held_out,    // too little of the gap is gone
+  beyond_repeats,  // more is left than repeats differ by
 };
 
 struct DecisionSettings {
@@ -43,6 +45,8 @@ struct Decision {
   Model best;                                     // no places: nominal
   std::vector<Model> singles;                     // best first
   std::vector<Model> together;                    // of several effects that were tried, of the largest number, best first
+  // Of several effects in `best`: all curves, those of its effects as they are beside one another. Else none: they are as they were.
+  std::vector<EffectCurve> beside;
   std::vector<Doubt> doubts;                      // where it is unknown, at least one
   std::vector<std::vector<std::size_t>> rivals;   // for each place of `best`: curves that fit as well, itself first
   double p_gap = 1;                               // of a gap that large by chance

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/repeats.hpp"
@@ -85,7 +86,8 @@ class Diagnoser {
             [this](std::span<const NewPoint> effects) {
               d_.floor = with_open_shapes(d_.nominal_floor, open_at(varied(d_.curves, effects, predictor_)));
               return d_.floor.whiteners;
-            }};
+            },
+            [this] { return d_.floor.numerics; }};
   }
 
   Spread spread() const {
@@ -122,29 +124,38 @@ class Diagnoser {
   }
 
   void weigh() {
-    const double nominal_left = squared_length(d_.curves.gap);
-    const Folds by_repeat = folds_by_repeat(d_.repeats), by_manoeuvre = folds_by_manoeuvre(d_.observations);
-    const double share = options_.decision.model_share, floor = floor_rms();
-    for (const Model& model : d_.decision.singles) {
-      if (d_.curves.curves[model.places[0].curve].visible < 1) continue;
-      const auto shift = [&](const auto& places_of_run) { return by_curves(d_.curves, model, places_of_run); };
-      const HeldOut held = hold_out(d_.curves, d_.floor, model, by_repeat, floor, options_.seed, shift);
-      const Interval value =
-          value_intervals(d_.curves, model, d_.floor.numerics, share, d_.decision.inflation, options_.seed).front();
-      d_.ranking.push_back(evidence(model.places[0], value, nominal_left - model.left, held.shrink));
-    }
-    std::ranges::stable_sort(d_.ranking, std::ranges::greater{},
-                             [](const EffectEvidence& e) { return e.heldout_shrink.value; });
-
-    const Model& best = d_.decision.best;
-    if (best.places.empty()) {
+    rank_singles();
+    if (d_.decision.best.places.empty()) {
       d_.gap.before = d_.gap.after = d_.floor.rms(residuals_);
-      d_.gap.floor = std::min(floor, d_.gap.before);
+      d_.gap.floor = std::min(floor_rms(), d_.gap.before);
       d_.gap.before_si = d_.gap.after_si = rms_si(residuals_);
       d_.where_left = d_.where;
       return;
     }
-    const HeldOut held = hold_out(d_.curves, d_.floor, best, by_repeat, floor, options_.seed,
+    const bool several = !d_.decision.beside.empty();
+    if (several) std::swap(d_.curves.curves, d_.decision.beside);
+    weigh_best();
+    if (several) std::swap(d_.curves.curves, d_.decision.beside);
+  }
+
+  void rank_singles() {
+    const Folds by_repeat = folds_by_repeat(d_.repeats);
+    const double nominal_left = squared_length(d_.curves.gap), floor = floor_rms();
+    for (const Model& model : d_.decision.singles) {
+      if (d_.curves.curves[model.places[0].curve].visible < 1) continue;
+      const auto shift = [&](const auto& places_of_run) { return by_curves(d_.curves, model, places_of_run); };
+      const HeldOut held = hold_out(d_.curves, d_.floor, model, by_repeat, floor, options_.seed, shift);
+      d_.ranking.push_back(evidence(model.places[0], intervals(model).front(), nominal_left - model.left, held.shrink));
+    }
+    std::ranges::stable_sort(d_.ranking, std::ranges::greater{},
+                             [](const EffectEvidence& e) { return e.heldout_shrink.value; });
+  }
+
+  void weigh_best() {
+    const Model& best = d_.decision.best;
+    const Folds by_manoeuvre = folds_by_manoeuvre(d_.observations);
+    const double floor = floor_rms();
+    const HeldOut held = hold_out(d_.curves, d_.floor, best, folds_by_repeat(d_.repeats), floor, options_.seed,
                                   [this](const std::vector<std::vector<OnCurve>>& places_of_run) {
                                     std::vector<Variation> variations;
                                     for (const std::vector<OnCurve>& places : places_of_run)
@@ -158,13 +169,18 @@ class Diagnoser {
             return by_curves(d_.curves, best, places_of_run);
           }).shrink;
     if (!is_borne_out(held)) doubt(Doubt::not_held_out);
+    if (d_.floor.from_repeats && !is_within_repeats(held, options_.decision.model_share)) doubt(Doubt::beyond_repeats);
     d_.where_left = places(held.left);
-    const std::vector<Interval> values =
-        value_intervals(d_.curves, best, d_.floor.numerics, share, d_.decision.inflation, options_.seed);
+    const std::vector<Interval> values = intervals(best);
     for (std::size_t i = 0; i < best.places.size(); ++i) {
-      const double without = best.places.size() == 1 ? nominal_left : left_without(d_.curves, best, i);
+      const double without = best.places.size() == 1 ? squared_length(d_.curves.gap) : left_without(d_.curves, best, i);
       d_.best.push_back(evidence(best.places[i], values[i], without - best.left, held.shrink));
     }
+  }
+
+  std::vector<Interval> intervals(const Model& model) const {
+    return value_intervals(d_.curves, model, d_.floor.numerics, options_.decision.model_share, d_.decision.inflation,
+                           options_.seed);
   }
 
   void doubt(Doubt why) {

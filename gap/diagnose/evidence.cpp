@@ -14,6 +14,7 @@ using Eigen::VectorXd;
 constexpr std::size_t kMostFolds = 5, kResamplings = 400;
 constexpr double kTwoSided95 = 1.96;
 constexpr double kBorneOut = 0.5;
+constexpr double kWithinRepeats = 1.25;
 
 double quantile(std::vector<double>& values, double share) {
   std::ranges::sort(values);
@@ -88,6 +89,10 @@ double shrink(double before, double after, double floor) {
 
 bool is_borne_out(const HeldOut& held) {
   return held.before <= held.floor || held.shrink.value >= kBorneOut;
+}
+
+bool is_within_repeats(const HeldOut& held, double model_share) {
+  return held.after <= std::hypot(kWithinRepeats * held.floor, model_share * held.before);
 }
 
 Refit::Refit(const EffectCurves& curves, const Model& model)

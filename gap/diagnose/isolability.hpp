@@ -12,6 +12,9 @@
 
 namespace kenaf::gap {
 
+// Two effects whose shifts are at a smaller angle cannot be told apart.
+inline constexpr double kToldApart_deg = 10;
+
 struct Isolability {
   std::vector<std::size_t> curves;  // that these runs show at all
   Eigen::MatrixXd angle_deg;        // between their shifts, 0 (the same) to 90 (nothing in common)

@@ -33,6 +33,8 @@ struct Simulator {
   std::function<std::vector<Shift>(std::span<const std::vector<NewPoint>>, Fidelity)> shifts;
   // Whiteners of the floor around a model.
   std::function<std::vector<Whitener>(std::span<const NewPoint>)> whiteners_around;
+  // What the simulator's numbers shift in each run, in the same floor, as OpenShapes::numerics has them.
+  std::function<std::vector<Eigen::MatrixXd>()> numerics{};
 };
 
 struct SearchSettings {

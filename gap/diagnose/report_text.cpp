@@ -90,6 +90,9 @@ std::vector<std::string> doubts_in_words(const Decision& decision) {
       case Doubt::not_held_out:
         words.push_back("on runs held out too little of the gap is gone");
         break;
+      case Doubt::beyond_repeats:
+        words.push_back("on runs held out more is left than repeats differ by");
+        break;
     }
   return words;
 }

@@ -28,23 +28,47 @@ Whole two_values(const Whole& effect, double second) {
 TEST_CASE("What manoeuvres would gain by values of their own is what the common one costs them") {
   const Whole effect = kShift * world().direction(0);
   const EffectCurves curves = world().curves({effect}, two_values(effect, 0.3));
-  const Agreement found = agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0);
+  const Agreement found = agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0, {});
   // of two springs a and b that want values 0.2 apart: a b / (a + b) 0.2^2
   const double a = effect.head(kBinsOfManoeuvre).squaredNorm(), b = effect.tail(kBinsOfManoeuvre).squaredNorm();
   CHECK(found.gained == Approx(a * b / (a + b) * 0.04));
   CHECK(found.freedom == 1);
   // what numerics may change of a gap does not count: here a tenth of some 400 x 0.17
-  CHECK(agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0.1).gained < found.gained - 10);
+  CHECK(agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0.1, {}).gained < found.gained - 10);
   const EffectCurves same = world().curves({effect}, two_values(effect, 0.5));
-  CHECK(agreement(same, world().fitted(same, {0}), LinearWorld::repeats, 9, 0).gained == Approx(0).margin(1e-9));
+  CHECK(agreement(same, world().fitted(same, {0}), LinearWorld::repeats, 9, 0, {}).gained == Approx(0).margin(1e-9));
 }
 
 TEST_CASE("A manoeuvre that does not show an effect has no value of its own for it") {
   Whole effect = kShift * world().direction(0);
   effect.tail(kBinsOfManoeuvre).setZero();
   const EffectCurves curves = world().curves({effect, kShift * world().direction(1)}, effect / 2);
-  CHECK(agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0).freedom == 0);
+  CHECK(agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0, {}).freedom == 0);
   CHECK(p_of_squares(100, 0) == 1);
+}
+
+TEST_CASE("Numbers of the simulator that move manoeuvres each its own way are expected to") {
+  // a shape that is the effect in the first manoeuvre, its opposite in the second: values of 0.1 and -0.1 that differ
+  // by 0.2 of a shift that is as long as that number times kShift in both together
+  const Whole effect = kShift * world().direction(0);
+  const EffectCurves curves = world().curves({effect}, 0.5 * effect);
+  Whole shape = 0.1 * effect;
+  shape.tail(kBinsOfManoeuvre) *= -1;
+  std::vector<Eigen::MatrixXd> shapes;
+  for (const Eigen::VectorXd& run : LinearWorld::by_run(shape)) {
+    shapes.emplace_back(run.size(), 4);
+    shapes.back() << run, -run, Eigen::VectorXd::Zero(run.size()), Eigen::VectorXd::Zero(run.size());
+  }
+  const Agreement found = agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0, shapes);
+  const double a = effect.head(kBinsOfManoeuvre).squaredNorm(), b = effect.tail(kBinsOfManoeuvre).squaredNorm();
+  CHECK(found.of_numerics == Approx(a * b / (a + b) * 0.04));
+  CHECK(found.gained == Approx(0).margin(1e-9));
+  // one that moves all manoeuvres by the same value makes none disagree
+  for (Eigen::MatrixXd& run : shapes) run.setZero();
+  const std::vector<Eigen::VectorXd> same = LinearWorld::by_run(0.1 * effect);
+  for (std::size_t r = 0; r < shapes.size(); ++r) shapes[r].col(0) = same[r];
+  CHECK(agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0, shapes).of_numerics ==
+        Approx(0).margin(1e-9));
 }
 
 TEST_CASE("The chance of a sum of squares, against the tables of chi-squared") {

@@ -83,6 +83,23 @@ TEST_CASE("Two effects that look alike to one degree are not told apart, but bot
     }
 }
 
+TEST_CASE("Below ten degrees they are not told apart however large the gap is, above they are") {
+  // 40 floors along one effect: the other one leaves sin^2 of the angle of 1600, 31 at 8 degrees and 107 at 15
+  for (const auto& [degrees, verdict] : {std::pair{8, Verdict::ambiguous}, std::pair{15, Verdict::named}}) {
+    std::vector<Whole> effects = orthogonal_effects();
+    const double angle = degrees * 0.017453;
+    effects[5] = std::cos(angle) * effects[2] + std::sin(angle) * kLength * world().direction(kEffects);
+    for (const std::size_t e : {2u, 5u}) effects[e] *= 2;
+    for (const std::size_t truth : {2u, 5u}) {
+      INFO(degrees << " degrees, " << truth);
+      const Decision decision = world().decide(effects, 0.5 * effects[truth] + LinearWorld::noise(3), quick());
+      CHECK(decision.verdict == verdict);
+      REQUIRE(decision.rivals.size() == 1);
+      CHECK(holds(decision, 0, truth));
+    }
+  }
+}
+
 TEST_CASE("At 60 degrees they are told apart") {
   std::vector<Whole> effects = orthogonal_effects();
   effects[5] = 0.5 * effects[2] + std::sqrt(0.75) * kLength * world().direction(kEffects);
@@ -208,6 +225,68 @@ TEST_CASE("Of two effects one has a look-alike: the other one is sure all the sa
   CHECK(decision.rivals[sure].size() == 1);
   CHECK(holds(decision, 1 - sure, 2));
   CHECK(holds(decision, 1 - sure, 5));
+}
+
+TEST_CASE("A floor that is wider around an effect excuses a gap only where that effect fits it") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  EffectCurves curves;
+  const auto verdict_of = [&](const Whole& gap) {
+    curves = world().curves(effects, gap);
+    Simulator simulator = world().simulator(effects);
+    // around effect 4 nothing can be known to less than 10 sigma
+    simulator.whiteners_around = [](std::span<const NewPoint> model) {
+      const bool wide = std::ranges::any_of(model, [](const NewPoint& effect) { return effect.curve == 4; });
+      const Eigen::VectorXd sigma = Eigen::VectorXd::Constant(LinearWorld::kBinsOfRun, wide ? 10 : 1);
+      return std::vector<Whitener>(LinearWorld::kRuns,
+                                   Whitener(sigma, Eigen::MatrixXd::Zero(LinearWorld::kBinsOfRun, 1)));
+    };
+    return decide(curves, world().coherence(), LinearWorld::spread(), simulator, quick(), 1).verdict;
+  };
+  // all of it is along the effect: 10 sigma, which are 1 in that floor
+  CHECK(verdict_of(10 * effects[4] / kLength + LinearWorld::noise(4)) == Verdict::none);
+  // of 20^2 + 10^2 squared it takes off a fifth: what is left is there all the same
+  CHECK(verdict_of(20 * world().direction(kEffects + 1) + 10 * effects[4] / kLength + LinearWorld::noise(4)) ==
+        Verdict::unknown);
+}
+
+TEST_CASE("Effects that change what the other one does are named at their values") {
+  // beside a half of effect 6, effect 1 does 1.9 times what it does alone: who corrects the sum of what they do alone by what
+  // was left of the last simulation goes 1.9 times as far as he should, and so back and forth
+  const std::vector<Whole> effects = orthogonal_effects();
+  const auto moved = [&](std::span<const NewPoint> asked) {
+    Whole whole = Whole::Zero(LinearWorld::kBins);
+    double one = 0, six = 0;
+    for (const NewPoint& effect : asked) {
+      whole += effect.value * effects[effect.curve];
+      if (effect.curve == 1) one = effect.value;
+      if (effect.curve == 6) six = effect.value;
+    }
+    return LinearWorld::by_run(whole + 1.8 * one * six * effects[1]);
+  };
+  const auto decision_of = [&](double one, double six, std::uint64_t seed) {
+    const std::vector<NewPoint> truth{{1, one}, {6, six}};
+    Whole gap = LinearWorld::noise(seed);
+    for (std::size_t r = 0; r < LinearWorld::kRuns; ++r)
+      gap.segment(static_cast<Eigen::Index>(r * LinearWorld::kBinsOfRun), LinearWorld::kBinsOfRun) += moved(truth)[r];
+    EffectCurves curves = world().curves(effects, gap);
+    Simulator simulator = world().simulator(effects);
+    simulator.shifts = [&](std::span<const std::vector<NewPoint>> asked, Fidelity) {
+      std::vector<Shift> shifts;
+      for (const std::vector<NewPoint>& effects_asked : asked) shifts.push_back(moved(effects_asked));
+      return shifts;
+    };
+    return decide(curves, world().coherence(), LinearWorld::spread(), simulator, quick(), 1);
+  };
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const Decision decision = decision_of(0.3, 0.5, seed);
+    INFO("seed " << seed);
+    CHECK(decision.verdict == Verdict::named);
+    REQUIRE(decision.best.places.size() == 2);
+    for (const OnCurve& place : decision.best.places)
+      CHECK(place.value == Approx(place.curve == 1 ? 0.3 : 0.5).margin(0.1));
+    // in the decision's own curves, not in those of each effect alone
+    CHECK(decision.beside.size() == effects.size());
+  }
 }
 
 TEST_CASE("What explains less than the negligible share of the noise is none, however sure it is") {

@@ -99,6 +99,22 @@ TEST_CASE("A model is borne out where half of the gap is gone on runs held out, 
   CHECK(is_borne_out(held_out(nothing, world().fitted(nothing, {0}))));
 }
 
+TEST_CASE(
+    "What is left on runs held out is within what repeats differ by, or a quarter more, but for the model's share") {
+  const auto is_within = [](double before, double after, double floor) {
+    HeldOut held;
+    held.before = before;
+    held.after = after;
+    held.floor = floor;
+    return is_within_repeats(held, 0.03);
+  };
+  CHECK(is_within(1, 0.49, 0.4));
+  CHECK_FALSE(is_within(1, 0.51, 0.4));
+  // of 20 floors 3 % are 0.6, beside 1.25 x 0.4 = 0.5: together 0.78
+  CHECK(is_within(20, 0.77, 0.4));
+  CHECK_FALSE(is_within(20, 0.79, 0.4));
+}
+
 TEST_CASE("A value that is held out is fitted without the runs it is for") {
   // run 0 alone shows 0.8, all others 0.2: by repeats, run 0 is held out with run 2, and gets the value of 1 and 3
   const Whole effect = 60 * world().direction(0);

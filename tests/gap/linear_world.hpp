@@ -91,7 +91,7 @@ class LinearWorld {
               for (const std::vector<gap::NewPoint>& effects : asked) shifts.push_back(shift_of(effects, fidelity));
               return shifts;
             },
-            [](std::span<const gap::NewPoint>) { return whiteners(); }};
+            [](std::span<const gap::NewPoint>) { return whiteners(); }, [] { return std::vector<Eigen::MatrixXd>{}; }};
   }
 
   gap::Coherence coherence() const { return {features, repeats, 1}; }

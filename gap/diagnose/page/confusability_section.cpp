@@ -15,7 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kAlike_deg = 10;       // cannot be told apart
 constexpr double kUnlike_deg = 60;      // no shade from here on
 constexpr std::size_t kMostPairs = 60;  // in words
 
@@ -44,7 +43,7 @@ std::string matrix(const Diagnosis& d, const std::vector<std::size_t>& order) {
   plot::HeatMap map;
   map.title = "How alike the effects look in these runs: angle between what they do, in degrees";
   map.legend =
-      fmt::format("0: the same (dark); 90: nothing in common; below {:.0f} they cannot be told apart", kAlike_deg);
+      fmt::format("0: the same (dark); 90: nothing in common; below {:.0f} they cannot be told apart", kToldApart_deg);
   map.width_px = kWide_px;
   std::vector<std::string> names;
   for (const std::size_t i : order) names.push_back(name_of(d.curves.curves[isolability.curves[i]]));
@@ -68,12 +67,12 @@ std::string pairs_in_words(const Diagnosis& d, const std::vector<std::size_t>& o
   for (std::size_t a = 0; a < order.size(); ++a)
     for (std::size_t b = a + 1; b < order.size(); ++b) {
       const double angle = d.isolability.angle_deg(static_cast<Index>(order[a]), static_cast<Index>(order[b]));
-      if (angle < kAlike_deg)
+      if (angle < kToldApart_deg)
         pairs.push_back(fmt::format("<li>{} and {} ({:.1f} degrees)</li>\n",
                                     plot::escaped(name_of(d.curves.curves[d.isolability.curves[order[a]]])),
                                     plot::escaped(name_of(d.curves.curves[d.isolability.curves[order[b]]])), angle));
     }
-  if (pairs.empty()) return paragraph(fmt::format("No two effects are within {:.0f} degrees.", kAlike_deg));
+  if (pairs.empty()) return paragraph(fmt::format("No two effects are within {:.0f} degrees.", kToldApart_deg));
   std::string html = paragraph("These runs cannot tell apart:") + "<ul>\n";
   for (std::size_t i = 0; i < std::min(kMostPairs, pairs.size()); ++i) html += pairs[i];
   if (pairs.size() > kMostPairs) html += fmt::format("<li>and {} more pairs</li>\n", pairs.size() - kMostPairs);
