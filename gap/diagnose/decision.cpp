@@ -204,9 +204,14 @@ class Decider {
   void name() {
     d_.verdict = Verdict::named;
     const std::vector<Model>& alternatives = d_.best.places.size() == 1 ? d_.singles : d_.together;
+    // a look-alike that leaves more than repeats differ by would get no name itself
+    const double most_left =
+        kWithinRepeats * kWithinRepeats * simulator_.repeats_around(d_.best.shift) + numerics_ * nominal_.left;
     for (std::size_t i = 0; i < d_.best.places.size(); ++i) {
       const double accounted = left_without(curves_, d_.best, i) - d_.best.left;
-      d_.rivals[i] = rivals_of(d_.best.places[i], d_.best, alternatives, margin(d_.best) + kAlike * accounted);
+      d_.rivals[i] = rivals_of(
+          d_.best.places[i], d_.best, alternatives,
+          std::max(margin(d_.best), std::min(margin(d_.best) + kAlike * accounted, most_left - d_.best.left)));
       if (d_.rivals[i].size() > 1) d_.verdict = Verdict::ambiguous;
     }
   }

@@ -87,20 +87,26 @@ class Diagnoser {
               d_.floor = with_open_shapes(d_.nominal_floor, open_at(varied(d_.curves, effects, predictor_)));
               return d_.floor.whiteners;
             },
-            [this] { return d_.floor.numerics; }};
+            [this] { return d_.floor.numerics; },
+            [this](const Shift& shift) { return std::pow(repeats_rms(shift), 2) * bins(); }};
   }
 
   Spread spread() const {
-    double bins = 0;
-    for (const VectorXd& run : residuals_) bins += static_cast<double>(run.size());
     return {inflation_from_repeats(d_.features, d_.floor, deviations_, options_.stretch_s),
-            std::pow(rms_of_repeats(d_.floor, d_.features, deviations_, d_.same_orders), 2) * bins};
+            std::pow(rms_of_repeats(d_.floor, d_.features, deviations_, d_.same_orders), 2) * bins()};
   }
 
-  // Around the best model: where the nominal robot falls in one repeat and not in the other, the real one need not.
-  double floor_rms() const {
+  double bins() const {
+    double bins = 0;
+    for (const VectorXd& run : residuals_) bins += static_cast<double>(run.size());
+    return bins;
+  }
+
+  double floor_rms() const { return repeats_rms(d_.decision.best.shift); }
+  // Around a model: where the nominal robot falls in one repeat and not in the other, the real one need not.
+  double repeats_rms(const Shift& shift) const {
     std::vector<VectorXd> left = residuals_;
-    for (std::size_t r = 0; r < left.size(); ++r) left[r] -= d_.decision.best.shift[r];
+    for (std::size_t r = 0; r < left.size(); ++r) left[r] -= shift[r];
     return rms_of_repeats(d_.floor, d_.features, deviations_from_repeats(d_.features, left, d_.same_orders),
                           d_.same_orders);
   }

@@ -14,7 +14,6 @@ using Eigen::VectorXd;
 constexpr std::size_t kMostFolds = 5, kResamplings = 400;
 constexpr double kTwoSided95 = 1.96;
 constexpr double kBorneOut = 0.5;
-constexpr double kWithinRepeats = 1.25;
 
 double quantile(std::vector<double>& values, double share) {
   std::ranges::sort(values);

@@ -36,7 +36,7 @@ struct HeldOut {
 // Whether half of the gap or more is gone on runs held out (chosen: of right names the least was 60 %, docs/gap-results.md).
 // An effect that takes off less is not what causes the gap. True where there is nothing to shrink.
 bool is_borne_out(const HeldOut& held);
-// Whether what is left on runs held out is what repeats differ by, or a quarter more (chosen: docs/gap-method.md), the share
+// Whether what is left on runs held out is what repeats differ by, or kWithinRepeats of it, the share
 // `model_share` of the gap aside, which even the right effect leaves. Sharper than chance in cells where the floor is wider than the noise.
 bool is_within_repeats(const HeldOut& held, double model_share);
 

@@ -35,7 +35,12 @@ struct Simulator {
   std::function<std::vector<Whitener>(std::span<const NewPoint>)> whiteners_around;
   // What the simulator's numbers shift in each run, in the same floor, as OpenShapes::numerics has them.
   std::function<std::vector<Eigen::MatrixXd>()> numerics{};
+  // Squared length of what repeats differ by beyond what a model's shift says of their starts, in the same floor.
+  std::function<double(const Shift&)> repeats_around{};
 };
+
+// Of the rms of what repeats differ by, so much may a model leave that explains a gap (chosen: docs/gap-method.md).
+inline constexpr double kWithinRepeats = 1.25;
 
 struct SearchSettings {
   std::size_t contenders = 8;   // single effects, and sets, that are refined, coarse

@@ -91,7 +91,8 @@ class LinearWorld {
               for (const std::vector<gap::NewPoint>& effects : asked) shifts.push_back(shift_of(effects, fidelity));
               return shifts;
             },
-            [](std::span<const gap::NewPoint>) { return whiteners(); }, [] { return std::vector<Eigen::MatrixXd>{}; }};
+            [](std::span<const gap::NewPoint>) { return whiteners(); }, [] { return std::vector<Eigen::MatrixXd>{}; },
+            [](const gap::Shift&) { return static_cast<double>(kBins); }};
   }
 
   gap::Coherence coherence() const { return {features, repeats, 1}; }
