@@ -4,6 +4,7 @@
 #include <sys/random.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -12,6 +13,8 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "gap/challenge/confinement.hpp"
 #include "gap/challenge/diagnose_cases.hpp"
@@ -92,7 +95,7 @@ class Teller {
   double cases_, made_ = 0, diagnosed_ = 0;
 };
 
-// The data of all cases; returns their key.
+// The data of all cases, but those that were made before; returns their key.
 ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller,
                         const std::atomic<bool>& stop) {
   ChallengeKey key{seed, {}};
@@ -100,12 +103,28 @@ ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::pa
   for_each_job(key.cases.size(), options.jobs, [&](std::size_t i) {
     if (stop) throw Interrupted();
     SealedCase& sealed = key.cases[i];
-    const fs::path data = folder / sealed.plan.name;
-    make_case(sealed.plan, data, 1);
-    sealed.data_sha256 = sha256_of_dataset(data);
+    if (std::optional<SealedCase> made = made_case(folder, sealed.plan.name, seed, options.cases)) {
+      sealed = *std::move(made);
+    } else {
+      const fs::path data = folder / sealed.plan.name;
+      fs::remove_all(data);
+      make_case(sealed.plan, data, 1);
+      sealed.data_sha256 = sha256_of_dataset(data);
+      keep_made_case(folder, sealed, seed, options.cases);
+    }
     teller.made();
   });
   return key;
+}
+
+// Of a folder of cases, all that belongs to none.
+void remove_all_but_cases(const fs::path& folder, const ChallengeKey& key) {
+  std::vector<fs::path> others;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (std::ranges::none_of(key.cases,
+                             [&](const SealedCase& one) { return entry.path().filename() == one.plan.name; }))
+      others.push_back(entry.path());
+  for (const fs::path& other : others) fs::remove_all(other);
 }
 
 // Cases and commitment, all or none; those that are there already are kept.
@@ -117,9 +136,9 @@ ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::pa
         fmt::format("{0}: is a challenge of {1} cases; give --cases {1}", folder.string(), key->cases.size()));
   }
   const fs::path part = folder / "cases.part";
-  fs::remove_all(part);
   fs::create_directories(part);
   ChallengeKey key = make_cases(options, seed, part, teller, stop);
+  remove_all_but_cases(part, key);
   const std::string text = key_text(key), commitment = commitment_text(text);
   if (fs::exists(folder / "commitment.txt") && runs::read_whole_file(folder / "commitment.txt") != commitment) {
     fs::remove_all(part);

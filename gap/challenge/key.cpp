@@ -119,14 +119,34 @@ unsigned char byte_of(std::string_view two_digits) {
 }
 
 // Its own inverse.
-std::string with_keystream(std::string bytes, std::uint64_t seed) {
+std::string with_keystream(std::string bytes, std::uint64_t seed, std::string_view of = "key") {
   std::string block;  // 64 hexadecimal digits, of which each byte takes two
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const std::size_t in_block = i % 32;
-    if (in_block == 0) block = sha256(fmt::format("key of a kenaf-gap challenge, seed {}, block {}", seed, i / 32));
+    if (in_block == 0) block = sha256(fmt::format("{} of a kenaf-gap challenge, seed {}, block {}", of, seed, i / 32));
     bytes[i] = static_cast<char>(bytes[i] ^ byte_of(std::string_view(block).substr(2 * in_block, 2)));
   }
   return bytes;
+}
+
+std::string in_digits(std::string_view bytes) {
+  std::string text;
+  for (const char byte : bytes) text += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+  return text + "\n";
+}
+
+std::string from_digits(std::string_view text) {
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < text.size(); i += 2) bytes += static_cast<char>(byte_of(text.substr(i, 2)));
+  return bytes;
+}
+
+fs::path made_case_file(const fs::path& folder, const std::string& name) {
+  return folder / (name + ".enciphered");
+}
+// A stream of its own for each: two texts under one stream would give each other away.
+std::string made_case_stream(const std::string& name, std::size_t cases) {
+  return fmt::format("{} of {}", name, cases);
 }
 
 }  // namespace
@@ -157,17 +177,31 @@ std::string commitment_text(const std::string& key_text) {
 }
 
 std::string enciphered(const std::string& key_text, std::uint64_t seed) {
-  const std::string bytes = with_keystream(key_text, seed);
-  std::string text;
-  for (const char byte : bytes) text += fmt::format("{:02x}", static_cast<unsigned char>(byte));
-  return text + "\n";
+  return in_digits(with_keystream(key_text, seed));
 }
 
 std::string deciphered(const std::string& text, std::uint64_t seed) {
-  std::string bytes;
-  for (std::size_t i = 0; i + 1 < text.size(); i += 2)
-    bytes += static_cast<char>(byte_of(std::string_view(text).substr(i, 2)));
-  return with_keystream(bytes, seed);
+  return with_keystream(from_digits(text), seed);
+}
+
+void keep_made_case(const fs::path& folder, const SealedCase& sealed, std::uint64_t seed, std::size_t cases) {
+  const std::string& name = sealed.plan.name;
+  runs::write_whole_file(made_case_file(folder, name),
+                         in_digits(with_keystream(key_text({seed, {sealed}}), seed, made_case_stream(name, cases))));
+}
+
+std::optional<SealedCase> made_case(const fs::path& folder, const std::string& name, std::uint64_t seed,
+                                    std::size_t cases) try {
+  const fs::path file = made_case_file(folder, name);
+  if (!fs::exists(file)) return std::nullopt;
+  const std::string text =
+      with_keystream(from_digits(runs::read_whole_file(file)), seed, made_case_stream(name, cases));
+  const ChallengeKey key = read_key(text);
+  if (key.seed != seed || key.cases.size() != 1 || key.cases[0].plan.name != name) return std::nullopt;
+  if (sha256_of_dataset(folder / name) != key.cases[0].data_sha256) return std::nullopt;
+  return key.cases[0];
+} catch (const std::exception&) {
+  return std::nullopt;  // what is there is damaged, and can be made again
 }
 
 std::optional<ChallengeKey> sealed_key(const fs::path& folder, std::uint64_t seed) try {

@@ -40,6 +40,14 @@ std::string commitment_text(const std::string& key_text);
 std::string enciphered(const std::string& key_text, std::uint64_t seed);
 std::string deciphered(const std::string& text, std::uint64_t seed);
 
+// A case beside its data in CASES while the others are made, enciphered with the seed, so that a challenge that is interrupted then
+// need not make it again: CASES/NAME.enciphered. `cases`: how many the challenge has, for the same seed plans others for another number.
+void keep_made_case(const std::filesystem::path& folder, const SealedCase& sealed, std::uint64_t seed,
+                    std::size_t cases);
+// Nothing where there is none, where seed or number are others, or where its data are no longer what was made.
+std::optional<SealedCase> made_case(const std::filesystem::path& folder, const std::string& name, std::uint64_t seed,
+                                    std::size_t cases);
+
 // The key of a challenge that was interrupted after its cases were made; nothing where it was not, where the seed is
 // another one, or where anything in DIR is no longer what was sealed.
 std::optional<ChallengeKey> sealed_key(const std::filesystem::path& folder, std::uint64_t seed);

@@ -421,6 +421,45 @@ TEST_CASE("A key that is enciphered is read with its seed only, and only where a
   CHECK_FALSE(sealed_key(folder.path(), 11));
 }
 
+TEST_CASE("A case that was made is kept for who has the seed, until its data are other ones") {
+  const TemporaryFolder folder;
+  write_challenge(folder);
+  const SealedCase sealed = open_key(folder.path()).cases.at(0);
+  const std::filesystem::path cases = folder.path() / "cases", kept = cases / "case-000.enciphered";
+  CHECK_FALSE(made_case(cases, "case-000", 11, 1));  // not there yet
+  keep_made_case(cases, sealed, 11, 1);
+  CHECK(read_file(kept).find("straight") == std::string::npos);
+  REQUIRE(made_case(cases, "case-000", 11, 1));
+  CHECK(key_text({11, {*made_case(cases, "case-000", 11, 1)}}) == key_text({11, {sealed}}));
+  CHECK_FALSE(made_case(cases, "case-000", 12, 1));
+  CHECK_FALSE(made_case(cases, "case-000", 11, 2));  // the same seed plans other cases
+  CHECK_FALSE(made_case(cases, "case-001", 11, 1));
+  // one text of a challenge does not give another one away: the same bytes are others in each
+  CHECK(read_file(kept).substr(0, 64) != enciphered(key_text({11, {sealed}}), 11).substr(0, 64));
+  write_file(cases / "case-000" / "run-000.csv", "t_s,x_m\n0,0\n1,2\n");
+  CHECK_FALSE(made_case(cases, "case-000", 11, 1));
+}
+
+TEST_CASE("A challenge that is interrupted while its cases are made goes on with those that are there") {
+  const TemporaryFolder folder;
+  write_challenge(folder);
+  // a challenge of one case, made, not sealed; what is in it is not what its seed would make, so that it is known again
+  std::filesystem::rename(folder / "cases", folder / "cases.part");
+  ChallengeKey key = read_key(read_file(folder / "key.json"));
+  key.cases[0].data_sha256 = sha256_of_dataset(folder.path() / "cases.part/case-000");
+  keep_made_case(folder.path() / "cases.part", key.cases[0], 11, 1);
+  for (const char* file : {"key.json", "commitment.txt"}) std::filesystem::remove(folder / file);
+  std::filesystem::create_directory(folder / "cases.part/case-001");  // of more cases that were asked for once
+  const test::Outcome outcome = test::kenaf_gap(folder, "challenge --out . --cases 1 --seed 11");
+  CAPTURE(outcome.error);
+  CHECK(outcome.status == 0);
+  CHECK(read_file(folder / "key.json") == key_text(key));
+  CHECK(std::filesystem::exists(folder / "cases/case-000"));
+  CHECK_FALSE(std::filesystem::exists(folder / "cases/case-000.enciphered"));
+  CHECK_FALSE(std::filesystem::exists(folder / "cases/case-001"));
+  CHECK_FALSE(std::filesystem::exists(folder / "cases.part"));
+}
+
 TEST_CASE("A challenge that was interrupted goes on with the cases and reports that it has") {
   const TemporaryFolder folder;
   write_challenge(folder);
