@@ -62,6 +62,12 @@ bool within_cone(const btVector3& outward, const btVector3& n1, const btVector3&
   return d1 - c * d2 >= -kConeSlack * sine2 && d2 - c * d1 >= -kConeSlack * sine2;
 }
 
+// Lugs lie across the belt: behind an edge that runs along it, or nearly, there is nothing for them to catch.
+bool lies_across(const btVector3& edge) {
+  constexpr btScalar kNearly = 0.5;  // the cosine of 60 degrees (chosen)
+  return btFabs(edge.y()) > kNearly * edge.length();
+}
+
 // Corner k of a box has the sign + of axis j where bit j of k is set. Edge e runs along axis e / 4.
 struct BoxEdge {
   int axis;
@@ -121,9 +127,9 @@ class BoxTouches {
   }
 
  private:
-  void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar share, bool edge, std::uint64_t id) {
+  void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar share, bool holds_lugs, std::uint64_t id) {
     // what is deeper along the slice than across it is a wall that the belt's side face meets
-    if (-gap <= overlap_) out_.push_back({p, normal, gap, share, edge, id});
+    if (-gap <= overlap_) out_.push_back({p, normal, gap, share, holds_lugs, id});
   }
 
   // The faces that are not beside the slices: axis, side, normal, and the normal's part in the slices, unit length.
@@ -203,7 +209,8 @@ class BoxTouches {
     const int j1 = (edge.axis + 1) % 3, j2 = (edge.axis + 2) % 3;
     const btVector3 normal = -at.outward;
     if (!within_cone(normal, box_.axes.getColumn(j1) * edge.sign(j1), box_.axes.getColumn(j2) * edge.sign(j2))) return;
-    add(p + at.outward * (at.distance / -2), normal, at.distance, share, true, id);
+    add(p + at.outward * (at.distance / -2), normal, at.distance, share,
+        lies_across(corner_[edge.to] - corner_[edge.from]), id);
   }
 
   // Whether a line reaches into the box that holds the belt.
@@ -371,7 +378,7 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
       if (at.distance > kTouching_m || at.distance < -kDeepest_m ||
           !within_cone(-at.outward, t.normal, t.neighbour_normal[i]))
         continue;
-      out.push_back({p - at.outward * (at.distance / 2), -at.outward, at.distance, slice_share, true,
+      out.push_back({p - at.outward * (at.distance / 2), -at.outward, at.distance, slice_share, lies_across(sides[i]),
                      feature(t.index, slice, static_cast<std::uint32_t>(33 + i))});
     }
   }

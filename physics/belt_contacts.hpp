@@ -22,7 +22,7 @@ struct BeltTouch {
   btVector3 normal_T;     // unit, out of the ground
   btScalar gap_m;         // negative: pressed in
   btScalar share;         // of a run's point: what of the contact's stiffness it stands for
-  bool edge;              // an edge of the ground, not a face
+  bool holds_lugs;        // an edge of the ground across the belt, or a corner, behind which lugs catch; not a face
   std::uint64_t feature;  // the same one from step to step
 };
 

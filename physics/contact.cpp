@@ -78,7 +78,7 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
 
   btScalar mu_along = surface_a.friction_along * surface_b.friction_along;
   const btScalar mu_across = surface_a.friction_across * surface_b.friction_across;
-  if (touch.edge) mu_along = grip_at_edge(mu_along, surface_a.lug_height_m);
+  if (touch.holds_lugs) mu_along = grip_at_edge(mu_along, surface_a.lug_height_m);
   btVector3 along;
   if (belt_a.length2() > kSideFace * kSideFace) {
     along = belt_a.normalized();

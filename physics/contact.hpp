@@ -33,7 +33,7 @@ struct Meeting {
 struct Touch {
   btVector3 p_W, normal_W;  // from B to A
   btScalar gap_m, share;
-  bool edge;
+  bool holds_lugs;
   btScalar* kept[3];  // where the impulses stay from step to step: normal, along, across
 };
 

@@ -112,7 +112,7 @@ void ContactSolver::add_belt_pair(BeltPair& pair, btScalar time_step) {
                       pair.X_WT.getBasis() * at.normal_T,
                       at.gap_m,
                       at.share,
-                      at.edge,
+                      at.holds_lugs,
                       {&contact.impulse[0], &contact.impulse[1], &contact.impulse[2]}};
     contacts_.emplace_back(meeting, touch, settings_, time_step);
   }

@@ -55,7 +55,7 @@ TEST_CASE("G2: an edge presses into an arc along the arc's own normal") {
   const auto out = on_box(belt(), {1, 1, 1}, {0.4 + r * c + 0.5, 0, -r * c - 0.5});
   REQUIRE(out.size() == 3);  // one in each slice
   for (const BeltTouch& touch : out) {
-    CHECK(touch.edge);
+    CHECK(touch.holds_lugs);
     CHECK(touch.gap_m == Approx(-2e-4).margin(1e-9));
     CHECK(touch.normal_T.x() == Approx(-c));
     CHECK(touch.normal_T.z() == Approx(c));
@@ -89,7 +89,7 @@ TEST_CASE("G4: a wall beside pushes sideways, and a wall ahead back") {
   REQUIRE(ahead.size() == 2);  // at both edges of the belt: the wall goes on between
   for (const BeltTouch& touch : ahead) {
     CHECK(touch.normal_T.x() == Approx(-1));
-    CHECK_FALSE(touch.edge);
+    CHECK_FALSE(touch.holds_lugs);
   }
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("G5: the vertical edge of a wall's corner is met between the slices") 
   const double half_diagonal = 0.1 * std::sqrt(2.0) / 2;
   const auto out = on_box(belt(), {0.1, 0.1, 1}, {0.45 - 2e-4 + half_diagonal, 0.02, 0}, std::numbers::pi / 4);
   REQUIRE(out.size() == 1);
-  CHECK(out[0].edge);
+  CHECK_FALSE(out[0].holds_lugs);  // lugs lie across the belt and pass along it
   CHECK(out[0].normal_T.x() == Approx(-1).margin(1e-3));
   CHECK(out[0].p_T.y() == Approx(0.02));
 }

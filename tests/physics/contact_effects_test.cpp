@@ -124,6 +124,28 @@ TEST_CASE("Lug height: on edges a belt holds up to the friction angle and the lu
   CHECK(moved_m(3, friction_angle + 0.1, ground()) == Approx(moved_m(1, friction_angle + 0.1, ground())).epsilon(1e-9));
 }
 
+// The same ridges along the robot, one under each belt (not under its middle, where a slice would be in the edge and see the
+// ridge's two faces): nothing for a lug to catch behind, so that the belts hold up to the friction angle alone, and beyond it
+// slide as a block does.
+TEST_CASE("Lug height: on edges along the belt lugs do nothing") {
+  RobotDescription robot = tracks_with({.lug_height_scale = 3});
+  robot.track.friction_along = 0.3;
+  robot.track.lug_height_m = 0.0005;
+  WorldDescription ridges;
+  ridges.start_poses.push_back({"start", {}});
+  for (const double y : {-0.45 * robot.track_gauge_m(), 0.45 * robot.track_gauge_m()})
+    ridges.boxes.push_back(
+        {"ridge",
+         {2, 0.1, 0.1},
+         {{0, y, -belly_below_m() - 0.1 / std::numbers::sqrt2}, rotation_from({std::numbers::pi / 4, 0, 0})},
+         1,
+         0});
+  const double friction_angle = std::atan(0.3);
+  CHECK(slid_m(robot, ridges, friction_angle - 0.02, 0, 0.2).x() < 1e-3);
+  CHECK(slid_m(robot, ridges, friction_angle + 0.1, 0, 0.4).x() ==
+        Approx(block_m(friction_angle + 0.1, 0.3, 0.4)).epsilon(0.03));
+}
+
 // All contacts are springs k with dampers d beside them: whatever bears whatever, what is left of the way down shrinks
 // as exp(-t k / d). Mass does not matter: 15 kg / (24 contacts x 20 kN s/m) is 30 microseconds.
 TEST_CASE("Ground compliance and damping: how deep a robot sinks, and how fast") {
