@@ -17,26 +17,48 @@ std::vector<OnCurve> common_fit(const EffectCurves& curves, const EffectSet& eff
   return fit_together(weighted_sum(runs, std::vector<double>(runs.size(), 1)), curves.curves, effects).places;
 }
 
-double gained_by_group(const EffectCurves& curves, const EffectSet& effects, const Products& group,
+// Which of a model's effects move a group by at least `visible`; to the others it can say nothing.
+std::vector<bool> shown_by(const EffectCurves& curves, const std::vector<OnCurve>& common,
+                           const std::vector<std::size_t>& group, double visible) {
+  std::vector<bool> shown;
+  for (const OnCurve& place : common) {
+    double moved = 0;
+    for (const std::size_t run : group) moved += shift_at(curves.shifts[run], {&place, 1}).squaredNorm();
+    shown.push_back(moved >= visible);
+  }
+  return shown;
+}
+
+// By values of its own for the effects that it shows, the others at the common ones.
+double gained_by_group(const EffectCurves& curves, const std::vector<bool>& shown, const Products& group,
                        const std::vector<OnCurve>& common, double numerics) {
+  EffectSet own;
+  std::vector<OnCurve> held;
+  for (std::size_t e = 0; e < common.size(); ++e)
+    if (shown[e])
+      own.push_back(common[e].curve);
+    else
+      held.push_back(common[e]);
+  if (own.empty()) return 0;
   const double left = left_with(group, common);
-  const double gained = left - fit_together(group, curves.curves, effects).left;
+  const double gained = left - fit_together(without_places(group, held), curves.curves, own).left;
   return std::max(0.0, gained - numerics * std::max(0.0, group.gap_gap - left));
 }
 
 // Had the runs been made by the model itself, with a column of `shapes` more.
 double gained_by_shape(const EffectCurves& curves, const Model& model,
-                       const std::vector<std::vector<std::size_t>>& groups, const std::vector<Eigen::MatrixXd>& shapes,
+                       const std::vector<std::vector<std::size_t>>& groups,
+                       const std::vector<std::vector<bool>>& shown_by_group, const std::vector<Eigen::MatrixXd>& shapes,
                        Eigen::Index column) {
   Whitened made;
   for (std::size_t r = 0; r < shapes.size(); ++r)
     made.push_back(shift_at(curves.shifts[r], model.places) + curves.whiteners[r](shapes[r].col(column)));
   const std::vector<Products> runs = products_of_runs(curves, made);
-  const EffectSet effects = effects_of(model);
-  const std::vector<OnCurve> common = common_fit(curves, effects, runs);
+  const std::vector<OnCurve> common = common_fit(curves, effects_of(model), runs);
   double gained = 0;
-  for (const std::vector<std::size_t>& group : groups)
-    gained += gained_by_group(curves, effects, weighted_sum(runs, once_each(group, runs.size())), common, 0);
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    gained +=
+        gained_by_group(curves, shown_by_group[g], weighted_sum(runs, once_each(groups[g], runs.size())), common, 0);
   return gained;
 }
 
@@ -49,20 +71,19 @@ Agreement agreement(const EffectCurves& curves, const Model& model, const std::v
   const std::vector<OnCurve> common = common_fit(curves, effects, runs);
   Agreement result;
   std::vector<double> own_values(effects.size(), 0);
+  std::vector<std::vector<bool>> shown_by_group;
   for (const std::vector<std::size_t>& group : groups) {
     const Products products = weighted_sum(runs, once_each(group, runs.size()));
-    result.gained += gained_by_group(curves, effects, products, common, numerics);
-    for (std::size_t e = 0; e < effects.size(); ++e) {
-      double moved = 0;
-      for (const std::size_t run : group) moved += shift_at(curves.shifts[run], {&common[e], 1}).squaredNorm();
-      if (moved >= visible) ++own_values[e];
-    }
+    shown_by_group.push_back(shown_by(curves, common, group, visible));
+    result.gained += gained_by_group(curves, shown_by_group.back(), products, common, numerics);
+    for (std::size_t e = 0; e < effects.size(); ++e)
+      if (shown_by_group.back()[e]) ++own_values[e];
   }
   for (const double values : own_values) result.freedom += std::max(0.0, values - 1);
   if (!shapes.empty())
     for (Eigen::Index c = 0; c < shapes.front().cols(); c += 2)
-      result.of_numerics += std::max(gained_by_shape(curves, model, groups, shapes, c),
-                                     gained_by_shape(curves, model, groups, shapes, c + 1));
+      result.of_numerics += std::max(gained_by_shape(curves, model, groups, shown_by_group, shapes, c),
+                                     gained_by_shape(curves, model, groups, shown_by_group, shapes, c + 1));
   return result;
 }
 

@@ -18,8 +18,8 @@ struct Agreement {
   // all runs, so that it moves each manoeuvre's values its own way.
   double of_numerics = 0;
 };
-// `groups`: of repeats, as repeats_of() has them. A value counts as a group's own where its effect moves that group by at
-// least `visible` squared floors. Of what the model explains in a group, `numerics` may be gained without counting. By curves.
+// `groups`: of repeats, as repeats_of() has them. A group has a value of its own of each effect that moves it by at least
+// `visible` squared floors; of the others it says nothing, so that they keep the common value there. Of what the model explains in a group, `numerics` may be gained without counting. By curves.
 // `shapes`: what the simulator's numbers shift in each run, as OpenShapes::numerics has them; none: they are known.
 Agreement agreement(const EffectCurves& curves, const Model& model,
                     const std::vector<std::vector<std::size_t>>& groups, double visible, double numerics,

@@ -42,35 +42,24 @@ OnCurve on_segment(std::size_t curve, const Segment& segment, double share) {
           segment.b.value - segment.a.value};
 }
 
-// The products of what is left of the gap once these places are taken off.
-Products without_places(const Products& p, std::span<const OnCurve> places) {
-  Products rest = p;
-  rest.gap_gap = left_with(p, places);
-  for (const OnCurve& place : places)
-    for (std::size_t i = 0; i < 2; ++i)
-      if (place.column[i] >= 0) rest.shift_gap -= place.weight[i] * p.shift_shift.col(place.column[i]);
-  return rest;
-}
-
 }  // namespace
 
 std::vector<Products> products_of_runs(const EffectCurves& curves, const std::vector<Eigen::VectorXd>& gap) {
   std::vector<Products> products;
   for (std::size_t r = 0; r < gap.size(); ++r)
-    products.push_back({gap[r].squaredNorm(), curves.shifts[r].transpose() * gap[r],
-                        curves.shifts[r].transpose() * curves.shifts[r], static_cast<double>(gap[r].size())});
+    products.push_back(
+        {gap[r].squaredNorm(), curves.shifts[r].transpose() * gap[r], curves.shifts[r].transpose() * curves.shifts[r]});
   return products;
 }
 
 Products weighted_sum(const std::vector<Products>& runs, std::span<const double> weights) {
   const auto columns = runs.front().shift_gap.size();
-  Products sum{0, Eigen::VectorXd::Zero(columns), Eigen::MatrixXd::Zero(columns, columns), 0};
+  Products sum{0, Eigen::VectorXd::Zero(columns), Eigen::MatrixXd::Zero(columns, columns)};
   for (std::size_t r = 0; r < runs.size(); ++r) {
     if (weights[r] == 0) continue;
     sum.gap_gap += weights[r] * runs[r].gap_gap;
     sum.shift_gap += weights[r] * runs[r].shift_gap;
     sum.shift_shift += weights[r] * runs[r].shift_shift;
-    sum.bins += weights[r] * runs[r].bins;
   }
   return sum;
 }
@@ -177,6 +166,15 @@ double left_with(const Products& p, std::span<const OnCurve> places) {
           left += one.weight[i] * two.weight[j] * shift_product(p, one.column[i], two.column[j]);
     }
   return left;
+}
+
+Products without_places(const Products& p, std::span<const OnCurve> places) {
+  Products rest = p;
+  rest.gap_gap = left_with(p, places);
+  for (const OnCurve& place : places)
+    for (std::size_t i = 0; i < 2; ++i)
+      if (place.column[i] >= 0) rest.shift_gap -= place.weight[i] * p.shift_shift.col(place.column[i]);
+  return rest;
 }
 
 Eigen::VectorXd shift_at(const Eigen::MatrixXd& shifts, std::span<const OnCurve> places) {

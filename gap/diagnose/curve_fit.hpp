@@ -19,7 +19,6 @@ struct Products {
   double gap_gap = 0;
   Eigen::VectorXd shift_gap;
   Eigen::MatrixXd shift_shift;
-  double bins = 0;
 };
 // Of the curves with `gap`, whitened, of each run.
 std::vector<Products> products_of_runs(const EffectCurves& curves, const std::vector<Eigen::VectorXd>& gap);
@@ -49,6 +48,8 @@ CurveFit fit_together(const Products& products, const std::vector<EffectCurve>& 
 
 // Squared length of what is left with effects at given places.
 double left_with(const Products& products, std::span<const OnCurve> places);
+// The products of that rest of the gap.
+Products without_places(const Products& products, std::span<const OnCurve> places);
 
 // The shift at given places, of a run whose points' shifts are the columns.
 Eigen::VectorXd shift_at(const Eigen::MatrixXd& shifts, std::span<const OnCurve> places);

@@ -43,7 +43,7 @@ std::vector<std::size_t> rivals_of(const OnCurve& place, const Model& chosen, co
 // Values at the end of a range, of effects that would go on there: one that does no more by then has as good a fit well
 // inside.
 bool at_an_end(const Model& model, const EffectCurves& curves, double margin) {
-  constexpr double kInside = 0.9;  // of the way from neutral
+  constexpr double kInside = 0.9;  // of the way from the present value
   const Products products = products_around(curves, model);
   const double left = left_with(products, model.places);
   for (std::size_t i = 0; i < model.places.size(); ++i) {
@@ -53,7 +53,8 @@ bool at_an_end(const Model& model, const EffectCurves& curves, double margin) {
     const bool at_max = place.value >= parameter.max && parameter.max != parameter.neutral;
     if (!at_min && !at_max) continue;
     std::vector<OnCurve> inside = model.places;
-    inside[i] = at_value(curves.curves, place.curve, parameter.neutral + kInside * (place.value - parameter.neutral));
+    const double present = present_value(curves.curves[place.curve]);
+    inside[i] = at_value(curves.curves, place.curve, present + kInside * (place.value - present));
     if (left_with(products, inside) - left > margin) return true;
   }
   return false;
@@ -87,8 +88,6 @@ class Decider {
 
   Decision decide() {
     d_.inflation = inflation_;
-    d_.chance_coherent = static_cast<double>(coherence_.cell_count());
-    d_.nominal_coherent = nominal_.coherent;
     d_.singles = singles();
     if (!is_gap()) return d_;
     // from here on, what the simulation leaves open is taken around what fits best, no longer around the nominal model;
@@ -165,17 +164,23 @@ class Decider {
     d_.best = d_.singles.front();
     std::vector<Model> more = with_another(d_.best);
     while (is_needed(d_.best, more)) {
-      look_around(more.front());
-      if (d_.best.places.size() == 1) d_.best = d_.singles.front();
-      measure(d_.best, curves_, coherence_);
-      for (Model& model : d_.together) measure(model, curves_, coherence_);
+      weigh_around(more.front());
       more = with_another(d_.best);
-      if (!is_needed(d_.best, more)) return;
+      if (!is_needed(d_.best, more)) return weigh_around(d_.best);
       d_.together = std::move(more);
       stand_together();
       if (d_.best.places.size() == settings_.most_effects || p_left(d_.best) > settings_.surprise) return;
       more = with_another(d_.best);
     }
+  }
+
+  // What was taken so far, in the floor around a model.
+  void weigh_around(const Model& model) {
+    look_around(model);
+    if (d_.best.places.size() == 1) d_.best = d_.singles.front();
+    measure(d_.best, curves_, coherence_);
+    for (Model& together : d_.together) measure(together, curves_, coherence_);
+    std::ranges::stable_sort(d_.together, {}, &Model::left);
   }
 
   void stand_together() {

@@ -53,7 +53,6 @@ struct Decision {
   double p_left = 1;                              // of as much left by chance
   double p_agree = 1;                             // that manoeuvres differ as much about the best model's values
   double inflation = 1;                           // of variances: how repeats differ beyond the floor
-  double nominal_coherent = 0, chance_coherent = 0;
 };
 
 // What noise and spread of repeats alone amount to.

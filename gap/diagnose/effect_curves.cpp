@@ -17,8 +17,8 @@ constexpr double kBent = 2;
 constexpr int kHalvings = 4;
 constexpr double kInward = 0.25;  // of the way from neutral to the innermost point
 
-std::size_t neutral_point(const EffectCurve& curve) {
-  return static_cast<std::size_t>(std::ranges::find(curve.points, -1, &CurvePoint::column) - curve.points.begin());
+std::ptrdiff_t present_point(const EffectCurve& curve) {
+  return std::ranges::find(curve.points, -1, &CurvePoint::column) - curve.points.begin();
 }
 
 bool has_obstacles(const Observations& observations) {
@@ -37,7 +37,7 @@ bool applies(const physics::EffectInfo& effect, const Observations& observations
 // A straight line between an exact point and a rough one near it would lead anywhere. But the ends of a curve stay:
 // without them no fit could go beyond the exact point.
 void forget_rough_points(EffectCurve& curve, double exact_value) {
-  const double neutral = curve.points[neutral_point(curve)].value, reach = kRoughReach * (exact_value - neutral);
+  const double neutral = present_value(curve), reach = kRoughReach * (exact_value - neutral);
   const double first = curve.points.front().value, last = curve.points.back().value;
   std::erase_if(curve.points, [&](const CurvePoint& point) {
     if (point.value == first || point.value == last) return false;
@@ -55,7 +55,7 @@ double length_at(const EffectCurves& curves, int column) {
 // Half way between neighbours to one side of neutral between which a bent curve becomes longer than `length`.
 void add_halves(const EffectCurves& curves, std::size_t curve, double length, std::vector<NewPoint>& halves) {
   const std::vector<CurvePoint>& points = curves.curves[curve].points;
-  const double neutral = points[neutral_point(curves.curves[curve])].value;
+  const double neutral = present_value(curves.curves[curve]);
   for (std::size_t i = 1; i < points.size(); ++i) {
     const bool outward = points[i].value > neutral;
     const CurvePoint &inner = points[outward ? i - 1 : i], &outer = points[outward ? i : i - 1];
@@ -71,7 +71,7 @@ void add_halves(const EffectCurves& curves, std::size_t curve, double length, st
 // not as much longer as it is farther out: what the effect does all at once comes before.
 void add_inner(const EffectCurves& curves, std::size_t curve, double length, std::vector<NewPoint>& inner) {
   const std::vector<CurvePoint>& points = curves.curves[curve].points;
-  const auto middle = static_cast<std::ptrdiff_t>(neutral_point(curves.curves[curve]));
+  const std::ptrdiff_t middle = present_point(curves.curves[curve]);
   const double neutral = points[static_cast<std::size_t>(middle)].value;
   for (const std::ptrdiff_t outward : {-1, 1}) {
     const std::ptrdiff_t last = middle + 2 * outward;
@@ -98,6 +98,10 @@ std::vector<EffectCurve> candidate_curves(const Observations& observations, std:
     }
   }
   return curves;
+}
+
+double present_value(const EffectCurve& curve) {
+  return curve.points[static_cast<std::size_t>(present_point(curve))].value;
 }
 
 double squared_length(const Whitened& runs) {

@@ -17,7 +17,7 @@ namespace kenaf::gap {
 
 struct CurvePoint {
   double value;     // of the parameter
-  int column;       // of EffectCurves::shifts; -1: the neutral value, which shifts nothing
+  int column;       // of EffectCurves::shifts; -1: the present value, which shifts nothing
   bool exact;       // every run was simulated, not only one of each group of repeats
 };
 
@@ -28,6 +28,9 @@ struct EffectCurve {
   // The largest length of the curve, in floors: below 1 these runs do not show the effect at any size.
   double visible = 0;
 };
+
+// The value that the robot's description has already, which shifts nothing: neutral, unless the effect is switched on there.
+double present_value(const EffectCurve& curve);
 
 struct EffectCurves {
   std::vector<EffectCurve> curves;

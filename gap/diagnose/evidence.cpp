@@ -190,10 +190,9 @@ std::vector<Interval> value_intervals(const EffectCurves& curves, const Model& m
   for (std::size_t e = 0; e < model.places.size(); ++e) {
     const EffectCurve& curve = curves.curves[model.places[e].curve];
     const double value = model.places[e].value;
-    const double neutral = curve.parameter->neutral;
     const auto i = static_cast<Eigen::Index>(e);
     const double of_runs = (quantile(resampled[e], 0.84) - quantile(resampled[e], 0.16)) / 2;
-    const double of_model = model_share / 2 * (value - neutral);
+    const double of_model = model_share / 2 * (value - present_value(curve));
     // resampled runs differ by the floor's noise too, and the floor has the numerics: together they would count twice
     const double sigma =
         std::sqrt(std::max({covariance(i, i), of_runs * of_runs, of_numerics[e]}) + of_model * of_model);

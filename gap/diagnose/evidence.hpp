@@ -14,7 +14,8 @@ namespace kenaf::gap {
 
 // Runs that are held out together: each run once.
 using Folds = std::vector<std::vector<std::size_t>>;
-// The first repeats of all manoeuvres, then the second ones, ...; runs without repeats are dealt out in turn.
+// Runs dealt out in turn, manoeuvre by manoeuvre, to as many folds as the most repeated one has runs, at most five: repeats
+// of a manoeuvre are in different folds. Where nothing is repeated, to as many folds as there are manoeuvres, at most five.
 Folds folds_by_repeat(const std::vector<std::vector<std::size_t>>& repeats);
 // All repeats of a manoeuvre together.
 Folds folds_by_manoeuvre(const Observations& observations);

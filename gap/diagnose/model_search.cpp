@@ -18,12 +18,6 @@ constexpr double kNear = 0.3;  // of the way to one of these
 // Sets that are simulated, for each contender: sums of curves rank roughly.
 constexpr std::size_t kSetsForAContender = 2;
 
-Shift shift_of(const EffectCurves& curves, std::span<const OnCurve> places) {
-  Shift shift;
-  for (std::size_t r = 0; r < curves.gap.size(); ++r) shift.push_back(shift_at(curves.raw_shifts[r], places));
-  return shift;
-}
-
 // The gap less what a simulation of the model had beyond the sum of its curves.
 Whitened gap_around(const EffectCurves& curves, const Model& model) {
   Whitened gap = whitened_difference(curves, model.shift, shift_of(curves, model.places));
@@ -87,7 +81,7 @@ double nearest_point(const EffectCurve& curve, const OnCurve& place) {
 // Values on either side of one at which an effect fits: a curve may bend, and a straight line to a point far away would
 // hide where it goes, so that fits creep along it. Only where there is no point yet.
 std::vector<double> bracket(const EffectCurve& curve, double value, Fidelity fidelity) {
-  const double neutral = std::ranges::find(curve.points, -1, &CurvePoint::column)->value;
+  const double neutral = present_value(curve);
   // a point next to the value says nothing of where the curve goes
   const auto is_known = [&](double wanted) {
     const double near = value + kNear * (wanted - value);
@@ -200,6 +194,12 @@ EffectSet effects_of(const Model& model) {
   return effects;
 }
 
+Shift shift_of(const EffectCurves& curves, std::span<const OnCurve> places) {
+  Shift shift;
+  for (const Eigen::MatrixXd& run : curves.raw_shifts) shift.push_back(shift_at(run, places));
+  return shift;
+}
+
 Whitened whitened_difference(const EffectCurves& curves, const std::vector<VectorXd>& a, const Shift& b) {
   Whitened result(a.size());
   for (std::size_t r = 0; r < a.size(); ++r) result[r] = curves.whiteners[r](a[r] - b[r]);
@@ -214,12 +214,11 @@ void measure(Model& model, const EffectCurves& curves, const Coherence& coherenc
 
 Products products_of(const EffectCurves& curves, const Whitened& gap) {
   const auto columns = curves.shifts.front().cols();
-  Products sum{0, VectorXd::Zero(columns), Eigen::MatrixXd::Zero(columns, columns), 0};
+  Products sum{0, VectorXd::Zero(columns), Eigen::MatrixXd::Zero(columns, columns)};
   for (std::size_t r = 0; r < gap.size(); ++r) {
     sum.gap_gap += gap[r].squaredNorm();
     sum.shift_gap.noalias() += curves.shifts[r].transpose() * gap[r];
     sum.shift_shift.noalias() += curves.shifts[r].transpose() * curves.shifts[r];
-    sum.bins += static_cast<double>(gap[r].size());
   }
   return sum;
 }

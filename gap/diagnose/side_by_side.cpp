@@ -17,16 +17,6 @@ struct Known {
   Shift shift;
 };
 
-double neutral_of(const EffectCurve& curve) {
-  return std::ranges::find(curve.points, -1, &CurvePoint::column)->value;
-}
-
-Shift alone(const EffectCurves& curves, const OnCurve& place) {
-  Shift shift;
-  for (const Eigen::MatrixXd& run : curves.raw_shifts) shift.push_back(shift_at(run, {&place, 1}));
-  return shift;
-}
-
 // On the straight line through two points.
 Known on_line(const Known& a, const Known& b, double value) {
   const double share = (value - a.value) / (b.value - a.value);
@@ -39,7 +29,7 @@ Known on_line(const Known& a, const Known& b, double value) {
 // range.
 std::vector<std::vector<NewPoint>> to_either_side(const EffectCurves& curves, const Model& model, std::size_t place) {
   const EffectCurve& curve = curves.curves[model.places[place].curve];
-  const double neutral = neutral_of(curve), value = model.places[place].value;
+  const double neutral = present_value(curve), value = model.places[place].value;
   std::vector<std::vector<NewPoint>> sides;
   for (const double factor : {1 / kToEitherSide, kToEitherSide}) {
     const double wanted = std::clamp(neutral + factor * (value - neutral), curve.parameter->min, curve.parameter->max);
@@ -54,9 +44,9 @@ std::vector<std::vector<NewPoint>> to_either_side(const EffectCurves& curves, co
 std::vector<Known> beside_others(const EffectCurves& curves, const Model& model, std::size_t place,
                                  const std::vector<std::vector<NewPoint>>& asked, std::span<const Shift> simulated) {
   const EffectCurve& curve = curves.curves[model.places[place].curve];
-  const double neutral = neutral_of(curve), value = model.places[place].value;
+  const double neutral = present_value(curve), value = model.places[place].value;
   const double end = value > neutral ? curve.parameter->max : curve.parameter->min;
-  const Known here{value, alone(curves, model.places[place])};
+  const Known here{value, shift_of(curves, {&model.places[place], 1})};
   std::vector<Known> points{here};
   for (std::size_t i = 0; i < asked.size(); ++i) {
     Known side{asked[i][place].value, here.shift};
@@ -90,7 +80,7 @@ void stand(EffectCurves& curves, const Simulator& simulator, Model& model) {
     }
   for (const OnCurve& place : model.places) {
     EffectCurve& curve = curves.curves[place.curve];
-    const double neutral = neutral_of(curve);
+    const double neutral = present_value(curve);
     std::erase_if(curve.points,
                   [&](const CurvePoint& point) { return (point.value - neutral) * (place.value - neutral) > 0; });
   }
@@ -101,7 +91,7 @@ void stand(EffectCurves& curves, const Simulator& simulator, Model& model) {
 }  // namespace
 
 Model fit_side_by_side(EffectCurves& curves, const Coherence& coherence, const Simulator& simulator, Model model) {
-  const auto is_neutral = [&](const OnCurve& place) { return place.value == neutral_of(curves.curves[place.curve]); };
+  const auto is_neutral = [&](const OnCurve& place) { return place.value == present_value(curves.curves[place.curve]); };
   const EffectSet effects = effects_of(model);
   for (int round = 0; round < kRounds; ++round) {
     // one that is not there has no side to stand on

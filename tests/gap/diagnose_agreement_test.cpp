@@ -47,6 +47,31 @@ TEST_CASE("A manoeuvre that does not show an effect has no value of its own for 
   CHECK(p_of_squares(100, 0) == 1);
 }
 
+TEST_CASE("A manoeuvre that hardly shows an effect has no value of its own either, and gains nothing by one") {
+  // the second one is moved by 2 floors at the value of 0.5, and measured where 1.0 would move it: 4 squared floors,
+  // for which a value of its own would have to be free
+  Whole effect = kShift * world().direction(0);
+  effect.tail(kBinsOfManoeuvre) *= 4 / effect.tail(kBinsOfManoeuvre).norm();
+  const EffectCurves curves = world().curves({effect}, two_values(effect, 1.0));
+  const Agreement found = agreement(curves, world().fitted(curves, {0}), LinearWorld::repeats, 9, 0, {});
+  CHECK(found.freedom == 0);
+  // only what the first one loses to the common value c: a (c - 0.5)^2, where c - 0.5 = 0.5 b / (a + b)
+  const double a = effect.head(kBinsOfManoeuvre).squaredNorm(), b = effect.tail(kBinsOfManoeuvre).squaredNorm();
+  REQUIRE(b == Approx(16));
+  CHECK(found.gained == Approx(a * 0.25 * b * b / ((a + b) * (a + b))));
+  CHECK(found.gained < 0.2);
+}
+
+TEST_CASE("An effect that a manoeuvre hardly shows is held there while the other one gets a value of its own") {
+  Whole hardly = kShift * world().direction(0);
+  hardly.tail(kBinsOfManoeuvre) *= 4 / hardly.tail(kBinsOfManoeuvre).norm();
+  const Whole shown = kShift * world().direction(1);
+  const EffectCurves curves = world().curves({hardly, shown}, two_values(hardly, 1.0) + 0.5 * shown);
+  const Agreement found = agreement(curves, world().fitted(curves, {0, 1}), LinearWorld::repeats, 9, 0, {});
+  CHECK(found.freedom == 1);  // of the one that both show
+  CHECK(found.gained < 1);    // it agrees; the 4 that a free value of the other one would gain are not its own
+}
+
 TEST_CASE("Numbers of the simulator that move manoeuvres each its own way are expected to") {
   // a shape that is the effect in the first manoeuvre, its opposite in the second: values of 0.1 and -0.1 that differ
   // by 0.2 of a shift that is as long as that number times kShift in both together

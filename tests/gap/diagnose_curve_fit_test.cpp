@@ -149,7 +149,6 @@ TEST_CASE("Weights of runs: a run counts as often as it is drawn") {
   // by how much each run shows of the effect, times its weight
   const double first = runs[0].shift_shift(3, 3), second = runs[2].shift_shift(3, 3);
   CHECK(value({3, 0, 1, 0}) == Approx((3 * first * 0.6 + second * 0.2) / (3 * first + second)));
-  CHECK(weighted_sum(runs, std::vector<double>{1, 1, 0, 2}).bins == 4 * LinearWorld::kBinsOfRun);
 }
 
 TEST_CASE("Energy of cells: of noise near their count, of a constant gap growing with the bins of a cell") {
