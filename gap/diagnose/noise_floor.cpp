@@ -133,8 +133,13 @@ NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vecto
   const auto deviations = deviations_from_repeats(features, residuals, repeats);
   const std::vector<std::size_t> full = full_bins(features);
   const std::vector<std::vector<bool>> shared = shared_bins(features, repeats);
-  NoiseFloor floor{std::vector<double>(channels, 0), {}, {}, false};
-  for (const OpenShapes& run : open) floor.numerics.push_back(run.numerics);
+  NoiseFloor floor{std::vector<double>(channels, 0), std::vector<VectorXd>(features.size()),
+                   std::vector<Whitener>(features.size()), false};
+  floor.noise_of_bin = floor.sigma_of_bin;
+  for (const OpenShapes& run : open) {
+    floor.numerics.push_back(run.numerics);
+    floor.roughness_of_bin.push_back(run.roughness);
+  }
   std::vector<std::vector<double>> jumps(channels);
   for (std::size_t r = 0; r < features.size(); ++r) {
     floor.from_repeats |= deviations[r].size() > 0;
@@ -150,11 +155,10 @@ NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vecto
 
   std::vector<std::vector<double>> sigma_of_run(features.size(), floor.sigma);
   const auto whiten = [&] {
-    floor.sigma_of_bin.clear();
-    floor.whiteners.clear();
     for (std::size_t r = 0; r < features.size(); ++r) {
-      floor.sigma_of_bin.push_back(hypot(sigma_of_bins(features[r], sigma_of_run[r], full), open[r].roughness));
-      floor.whiteners.emplace_back(floor.sigma_of_bin.back(), open[r].shapes);
+      floor.noise_of_bin[r] = sigma_of_bins(features[r], sigma_of_run[r], full);
+      floor.sigma_of_bin[r] = hypot(floor.noise_of_bin[r], floor.roughness_of_bin[r]);
+      floor.whiteners[r] = Whitener(floor.sigma_of_bin[r], open[r].shapes);
     }
   };
   whiten();
@@ -185,7 +189,8 @@ double rms_of_repeats(const NoiseFloor& floor, const std::vector<FeatureMap>& fe
 NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShapes>& open) {
   NoiseFloor result = floor;
   for (std::size_t r = 0; r < open.size(); ++r) {
-    result.sigma_of_bin[r] = result.sigma_of_bin[r].cwiseMax(hypot(floor.sigma_of_bin[r], open[r].roughness));
+    result.roughness_of_bin[r] = floor.roughness_of_bin[r].cwiseMax(open[r].roughness);
+    result.sigma_of_bin[r] = hypot(floor.noise_of_bin[r], result.roughness_of_bin[r]);
     result.whiteners[r] = Whitener(result.sigma_of_bin[r], open[r].shapes);
     result.numerics[r] = open[r].numerics;
   }

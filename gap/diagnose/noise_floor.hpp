@@ -34,10 +34,11 @@ class Whitener {
 struct NoiseFloor {
   std::vector<double> sigma;        // of a full bin of each channel, all of what is independent; 0: never measured. In the
                                     // middle one of all manoeuvres: where repeats differ by more, their bins have more
-  std::vector<Eigen::VectorXd> sigma_of_bin;  // of each run, with roughness
+  std::vector<Eigen::VectorXd> sigma_of_bin;  // of each run, noise and roughness together
   std::vector<Whitener> whiteners;  // of each run
   bool from_repeats = false;        // otherwise from the residuals alone, which a gap makes larger
   std::vector<Eigen::MatrixXd> numerics{};  // of each run, as OpenShapes has them
+  std::vector<Eigen::VectorXd> noise_of_bin{}, roughness_of_bin{};  // of each run: what sigma_of_bin is made of
 
   // Of all bins of all runs that are not empty, whitened: 1 is the floor, whatever its shapes.
   double rms(const std::vector<Eigen::VectorXd>& differences) const;

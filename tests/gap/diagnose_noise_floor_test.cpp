@@ -146,12 +146,18 @@ TEST_CASE("A shift along a shape s sigma long shrinks to 1 / sqrt(1 + s^2), one 
 }
 
 TEST_CASE("Around another model bins are as rough as the rougher one has them") {
-  const FeatureMap map(test::made_run(0.5, 0.125, {{"x_m", [](double) { return 0.0; }}}), 0.25);
-  const VectorXd none = VectorXd::Zero(2);
-  const NoiseFloor nominal = noise_floor({map}, {none}, {{0}}, {{MatrixXd::Zero(2, 1), none}});
-  const NoiseFloor around = with_open_shapes(nominal, {{MatrixXd::Zero(2, 1), (VectorXd(2) << 0, 5e-4).finished()}});
-  CHECK(around.sigma_of_bin[0][0] == Approx(5e-4));
-  CHECK(around.sigma_of_bin[0][1] == Approx(5e-4 * std::sqrt(2)));
+  // noise is x's resolution, 5e-4; roughness in units of it: of the nominal model, of the other one, and by hand
+  const FeatureMap map(test::made_run(1, 0.125, {{"x_m", [](double) { return 0.0; }}}), 0.25);
+  REQUIRE(map.bins().size() == 4);
+  const VectorXd none = VectorXd::Zero(4), nominal_rough = (VectorXd(4) << 0, 0, 1, 2).finished(),
+                 other_rough = (VectorXd(4) << 0, 1, 1, 1).finished();
+  const NoiseFloor nominal = noise_floor({map}, {none}, {{0}}, {{MatrixXd::Zero(4, 1), 5e-4 * nominal_rough}});
+  const NoiseFloor around = with_open_shapes(nominal, {{MatrixXd::Zero(4, 1), 5e-4 * other_rough}});
+  const double expected[] = {1, std::sqrt(2), std::sqrt(2), std::sqrt(5)};
+  for (Eigen::Index b = 0; b < 4; ++b) CHECK(around.sigma_of_bin[0][b] == Approx(5e-4 * expected[b]));
+  // and from there on to a third: the roughness of all that it was taken around before
+  const NoiseFloor third = with_open_shapes(around, {{MatrixXd::Zero(4, 1), none}});
+  for (Eigen::Index b = 0; b < 4; ++b) CHECK(third.sigma_of_bin[0][b] == Approx(5e-4 * expected[b]));
 }
 
 TEST_CASE("Repeats that differ as the floor says inflate nothing, a second of wander does") {
