@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gap/plausibility.hpp"
+#include "protocol/frames.hpp"
 #include "rollout/measured_motion.hpp"
 
 namespace kenaf::gap {
@@ -31,21 +32,35 @@ std::size_t resting_rows(const rollout::Manoeuvre& replay) {
   return rows;
 }
 
-double mean_of_first(std::span<const double> column, std::size_t rows, double otherwise) {
+double as_it_is(double difference) {
+  return difference;
+}
+
+// The mean of the first `rows`, from a first value on, the difference to which may have to be wrapped.
+double mean_of_first(std::span<const double> column, std::size_t rows, double first, double (*wrap)(double)) {
   double sum = 0;
   int count = 0;
   for (std::size_t i = 0; i < std::min(rows, column.size()); ++i)
-    if (!std::isnan(column[i])) sum += column[i], ++count;
-  return count > 0 ? sum / count : otherwise;
+    if (!std::isnan(column[i])) sum += wrap(column[i] - first), ++count;
+  return count > 0 ? first + sum / count : first;
 }
 
-// A log's single first pose has the whole noise of its sensor; the rows before the first order have less together.
+// A log's single first pose has the whole noise of its sensor; the rows before the first order have less together,
+// unless the robot was rolling when the log began.
 void start_at_mean(const Observation& observation, rollout::Manoeuvre& replay) {
   rollout::Start& start = *replay.start;
+  if (start.motion) return;
   const std::size_t rows = observation.resting_rows;
-  start.x_m = mean_of_first(observation.run.column("x_m"), rows, start.x_m);
-  start.y_m = mean_of_first(observation.run.column("y_m"), rows, start.y_m);
-  start.yaw_rad = mean_of_first(observation.run.column("yaw_rad"), rows, start.yaw_rad);
+  start.x_m = mean_of_first(observation.run.column("x_m"), rows, start.x_m, as_it_is);
+  start.y_m = mean_of_first(observation.run.column("y_m"), rows, start.y_m, as_it_is);
+  start.yaw_rad = mean_of_first(observation.run.column("yaw_rad"), rows, start.yaw_rad, frames::wrap_angle);
+}
+
+void count_time_from_zero(runs::Run& run) {
+  const auto column = std::ranges::find(run.columns, "t_s") - run.columns.begin();
+  std::vector<double>& time = run.values[static_cast<std::size_t>(column)];
+  const double first_s = time.front();
+  for (double& t_s : time) t_s -= first_s;
 }
 
 void prepare_replays(Observation& observation, const std::string& path) {
@@ -73,6 +88,11 @@ std::vector<runs::DatasetRun> drawn_evenly(const std::vector<runs::DatasetRun>& 
   for (std::size_t i = 0; i < all.size(); ++i) of_manoeuvre[{all[i].manoeuvre, all[i].world}].push_back(i);
   std::vector<std::vector<std::size_t>> groups;
   for (auto& [name, runs] : of_manoeuvre) groups.push_back(std::move(runs));
+  if (groups.size() > most) {  // no room for all manoeuvres: one run of as many, spread over their names
+    std::vector<std::vector<std::size_t>> kept;
+    for (std::size_t i = 0; i < most; ++i) kept.push_back(std::move(groups[i * groups.size() / most]));
+    groups = std::move(kept);
+  }
   std::ranges::stable_sort(groups, {}, &std::vector<std::size_t>::size);
   std::vector<std::size_t> drawn;
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -89,6 +109,7 @@ std::vector<runs::DatasetRun> drawn_evenly(const std::vector<runs::DatasetRun>& 
 
 Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const std::string& path) {
   Observation observation{entry.file, entry.manoeuvre, 0, std::move(run), {}, {}, 0};
+  count_time_from_zero(observation.run);
   observation.replay = rollout::replay_of(observation.run, path);
   prepare_replays(observation, path);
   return observation;
@@ -113,6 +134,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     Observation observation{entry.file, entry.manoeuvre, 0, {}, {}, {}, 0};
     observation.run = runs::read_run(folder / entry.file);
     check(observation.run, entry.file, folder, result);
+    count_time_from_zero(observation.run);
     const std::string path = (folder / entry.file).string();
     observation.replay = rollout::replay_of(observation.run, path);
     if (observation.replay.at_most_s() < kShortest_s) {

@@ -17,7 +17,7 @@ namespace kenaf::gap {
 struct Observation {
   std::string file, manoeuvre;  // runs that share a manoeuvre are its repeats
   std::size_t world;            // of Observations::worlds
-  runs::Run run;                // as measured; t_s from 0
+  runs::Run run;                // as measured, but that t_s is counted from 0 here
   rollout::Manoeuvre replay;    // its commands, from where it stood
   std::optional<rollout::Manoeuvre> measured;  // its tracks and flippers as they were measured, where they were
   std::size_t resting_rows;     // from the first row on, before it was told to move: their mean is the start

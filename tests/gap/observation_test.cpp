@@ -1,0 +1,76 @@
+// How a recorded run becomes commands to replay, from the place where the robot stood.
+#include "gap/diagnose/observation.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/gap/made_run.hpp"
+#include "tests/runs/temporary_folder.hpp"
+
+using namespace kenaf;
+using namespace kenaf::gap;
+
+namespace {
+
+// Told to stand until `go_s`, then to drive.
+runs::Run told_to_go(double go_s, std::vector<test::ColumnOfTime> others) {
+  const auto command = [go_s](double t_s) { return t_s < go_s ? 0 : 0.2; };
+  others.push_back({"cmd_track_left_mps", command});
+  others.push_back({"cmd_track_right_mps", command});
+  return test::made_run(3, 0.25, others);
+}
+
+double zero(double) {
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("A robot that looks backwards starts so: the mean of headings on either side of half a turn") {
+  // four rows at rest: 3.140, -3.141, 3.139, -3.140, of which the last three are 0.00219, -0.001 and 0.00319 from the
+  // first
+  const auto yaw = [](double t_s) {
+    const double rest[] = {3.140, -3.141, 3.139, -3.140};
+    return t_s < 1 ? rest[static_cast<int>(t_s / 0.25 + 0.5)] : 3.0;
+  };
+  const Observation seen = observation_of({}, told_to_go(1, {{"x_m", zero}, {"y_m", zero}, {"yaw_rad", yaw}}), "a.csv");
+  REQUIRE(seen.resting_rows == 4);
+  CHECK(seen.replay.start->yaw_rad == Approx(3.140 + (0.002185 - 0.001 + 0.003185) / 4).margin(1e-5));
+}
+
+TEST_CASE("Where the robot stands is the mean of its first rows, unless it rolls although it was told to stand") {
+  const auto x = [](double t_s) { return t_s < 0.1 ? 0.0 : 0.004; };
+  const auto rolls = [](double t_s) { return 0.3 * std::exp(-4 * t_s); };
+  std::vector<test::ColumnOfTime> stands{{"x_m", x}, {"y_m", zero}, {"yaw_rad", zero}};
+  CHECK(observation_of({}, told_to_go(1, stands), "a.csv").replay.start->x_m == Approx(0.003));
+  stands.push_back({"track_left_mps", rolls});
+  stands.push_back({"track_right_mps", rolls});
+  const Observation rolling = observation_of({}, told_to_go(1, stands), "a.csv");
+  REQUIRE(rolling.replay.start->motion);
+  CHECK(rolling.replay.start->x_m == 0);
+}
+
+TEST_CASE("A log whose clock does not begin at 0 is looked at from its own beginning") {
+  runs::Run run = told_to_go(1, {{"x_m", zero}, {"y_m", zero}, {"yaw_rad", zero}});
+  for (double& t_s : run.values[0]) t_s += 100;
+  const Observation seen = observation_of({}, run, "a.csv");
+  CHECK(seen.run.column("t_s").front() == 0);
+  CHECK(seen.run.column("t_s").back() == Approx(2.75));
+}
+
+TEST_CASE("Of more manoeuvres than places, runs are taken from some of all, not from the last ones") {
+  const test::TemporaryFolder folder;
+  std::string dataset = "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n";
+  const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
+  const runs::Run run = told_to_go(1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", x}});
+  for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
+    runs::write_run(folder / (std::string(name) + ".csv"), run);
+    dataset += "\n[[run]]\nfile = \"" + std::string(name) + ".csv\"\nmanoeuvre = \"" + name + "\"\n";
+  }
+  test::write_file(folder / "dataset.toml", dataset);
+  const Observations drawn = observe(folder.path(), {}, {}, 3);
+  REQUIRE(drawn.runs.size() == 3);
+  CHECK(drawn.runs[0].manoeuvre == "a");
+  CHECK(drawn.runs[1].manoeuvre == "c");
+  CHECK(drawn.runs[2].manoeuvre == "e");
+}
