@@ -48,7 +48,10 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
       options->diagnosis.progress = [line = ProgressLine()](const Progress& progress) {
         line.show(progress.doing, progress.done);
       };
-    if (reports) check_can_write(options->out);
+    if (reports) {
+      check_can_write(options->out);
+      check_keeps_inputs(options->out, options->dataset, options->diagnosis.robot);
+    }
     const Diagnosis result = diagnose(options->dataset, options->diagnosis);
     if (!reports) return;
     if (!result.interrupted.empty()) clear_progress_line();

@@ -18,8 +18,6 @@ namespace kenaf::gap {
 
 // Smaller effects need not be found: `none` is no error then.
 constexpr double kSurelySeen_floors = 2;
-// An effect that is no closer than kToldApart_deg to any other in the isolability table can be told from all of them; what is
-// outside the catalogue, where its look-alike is no closer.
 
 enum class Found {
   named,      // by its name

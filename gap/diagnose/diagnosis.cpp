@@ -52,7 +52,7 @@ class Diagnoser {
     weigh();
     d_.isolability = isolability(d_.curves);
     say("looking for the next manoeuvre", 0.93);
-    if (options_.propose_next) propose();
+    if (options_.propose_next && options_.ranks.rank == 0) propose();  // what only the report needs
     say("done", 1);
   }
 
@@ -120,13 +120,15 @@ class Diagnoser {
   EffectEvidence evidence(const OnCurve& place, const Interval& value, double explained, const Interval& shrink) const {
     const physics::EffectParameter& parameter = *d_.curves.curves[place.curve].parameter;
     const double same = kAtBound * (parameter.max - parameter.min);
+    // the neutral end is where an effect is not there: nothing lies beyond
+    const auto at = [&](double end) { return end != parameter.neutral && std::abs(place.value - end) < same; };
     const double gap = squared_length(d_.curves.gap);
     return {place.curve,
             value,
             gap > 0 ? explained / gap : 0,
             shrink,
             p_of_chance(explained),
-            std::abs(place.value - parameter.min) < same || std::abs(place.value - parameter.max) < same};
+            at(parameter.min) || at(parameter.max)};
   }
 
   void weigh() {
@@ -168,7 +170,12 @@ class Diagnoser {
                                       variations.push_back(varied(d_.curves, values_of(places), predictor_));
                                     return predictor_.shift_of_each(variations);
                                   });
-    d_.gap = {held.before, held.after, held.floor, held.shrink, {}, rms_si(residuals_), rms_si(held.left)};
+    d_.gap.before = held.before;
+    d_.gap.after = held.after;
+    d_.gap.floor = held.floor;
+    d_.gap.shrink = held.shrink;
+    d_.gap.before_si = rms_si(residuals_);
+    d_.gap.after_si = rms_si(held.left);
     if (by_manoeuvre.size() > 1)
       d_.gap.shrink_by_manoeuvre =
           hold_out(d_.curves, d_.floor, best, by_manoeuvre, floor, options_.seed, [&](const auto& places_of_run) {
@@ -225,7 +232,8 @@ class Diagnoser {
       rivals.assign(decision.singles.begin(),
                     decision.singles.begin() + std::min(std::ssize(decision.singles), std::ptrdiff_t{kRivals}));
     }
-    d_.next = rank_manoeuvres(d_.observations.robot, d_.curves, rivals, d_.floor, options_.span_s, options_.jobs);
+    d_.next = rank_manoeuvres(d_.observations.robot, d_.curves, rivals, d_.floor, options_.span_s, options_.jobs,
+                              options_.stop);
   }
 
   Diagnosis& d_;
@@ -258,6 +266,7 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
     diagnoser.run();
   } catch (const Stopped&) {
     d.interrupted = diagnoser.doing();
+    d.decision.verdict = Verdict::unknown;  // what is decided by then may still be doubted
   }
   diagnoser.finish();
   return d;

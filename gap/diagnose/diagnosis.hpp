@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -43,17 +44,19 @@ struct DiagnosisOptions {
 struct EffectEvidence {
   std::size_t curve;       // of Diagnosis::curves
   Interval value;          // of its parameter
-  double explains;         // share of the gap beyond the floor, on the runs it was fitted to
+  double explains;         // share of the squared gap, on the runs it was fitted to
   Interval heldout_shrink;
   double p_value;          // of as much explained by chance
-  bool at_bound;           // the fit ended at the end of the parameter's range
+  bool at_bound;           // the fit ended at the end of the parameter's range, which is not its neutral value
 };
 
-// The gap on runs held out of the fit, in floors and in units.
+// The gap on runs held out of the fit, in floors and in units. NaN: not measured, or not yet.
 struct GapMeasure {
-  double before = 0, after = 0, floor = 0;
-  Interval shrink;
-  Interval shrink_by_manoeuvre;  // with all repeats of a manoeuvre held out together; of curves
+  static constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+  double before = kNotMeasured, after = kNotMeasured, floor = kNotMeasured;
+  Interval shrink;  // 0 where no model was held out
+  Interval shrink_by_manoeuvre{kNotMeasured, kNotMeasured, kNotMeasured};  // with all repeats of a manoeuvre held out
+                                                                           // together, where there are several; of curves
   std::vector<double> before_si, after_si;  // of each of diagnosis_channels(); NaN: never measured
 };
 

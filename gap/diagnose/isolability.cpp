@@ -37,13 +37,6 @@ int direction_column(const EffectCurve& curve, const VectorXd& length) {
   return best;
 }
 
-// What motion capture and sensors would show, as bins of every channel.
-struct Simulated {
-  FeatureMap map;
-  std::vector<VectorXd> shift;               // of each rival
-  std::vector<std::vector<VectorXd>> slope;  // of each rival's values
-};
-
 physics::Effects effects_of(const physics::RobotDescription& robot, const EffectCurves& curves, const Model& model,
                             std::ptrdiff_t changed) {
   physics::Effects effects = robot.effects;
@@ -129,7 +122,7 @@ Isolability isolability(const EffectCurves& curves) {
 
 std::vector<NextManoeuvre> rank_manoeuvres(const physics::RobotDescription& robot, const EffectCurves& curves,
                                            std::span<const Model> rivals, const NoiseFloor& floor, double span_s,
-                                           unsigned threads) {
+                                           unsigned threads, const std::atomic<bool>* stop) {
   std::vector<NextManoeuvre> ranking;
   if (rivals.size() < 2) return ranking;
   std::vector<rollout::Manoeuvre> manoeuvres = rollout::shipped_manoeuvres();
@@ -144,6 +137,7 @@ std::vector<NextManoeuvre> rank_manoeuvres(const physics::RobotDescription& robo
       if (std::ranges::count(separates, place.curve) == 0) separates.push_back(place.curve);
   ranking.resize(manoeuvres.size());
   for_each_job(manoeuvres.size(), threads, [&](std::size_t m) {
+    if (stop != nullptr && *stop) throw Stopped();
     ranking[m] = {manoeuvres[m].name, separates, score_of(manoeuvres[m], robot, curves, rivals, floor, span_s)};
   });
   std::ranges::stable_sort(ranking, std::ranges::greater{}, &NextManoeuvre::expected_score);

@@ -13,7 +13,7 @@ namespace kenaf::gap {
 
 std::string_view verdict_name(Verdict verdict);
 // The stage at which the gap comes in: that of the named effect; otherwise the first passage, on the way from command
-// to sensor, that has a gap of its own.
+// to sensor, that has a gap of its own; `body` where none stands out by itself.
 std::string_view gap_stage(const Diagnosis& diagnosis);
 // On what gap and shrink were measured: "runs held out"; of a single run, "the run fitted to, as there is no other".
 std::string_view measured_on(const Diagnosis& diagnosis);
@@ -23,7 +23,7 @@ std::string name_of(const EffectCurve& curve);
 // Of each doubt a clause: "manoeuvres want different values (p < 0.0001)".
 std::vector<std::string> doubts_in_words(const Decision& decision);
 
-// At most 40 lines of at most 100 columns; the first one is the verdict.
+// At most 40 lines, of at most 100 columns unless names or warnings are long; the first one is the verdict.
 std::string diagnosis_text(const Diagnosis& diagnosis);
 // Of the format kenaf-gap-report/1.
 std::string diagnosis_json(const Diagnosis& diagnosis);
@@ -33,7 +33,13 @@ std::string diagnosis_html(const Diagnosis& diagnosis);
 // has one of these effects already.
 std::string corrected_robot_toml(const Diagnosis& diagnosis, const std::string& robot_name_or_path);
 
-// Writes report.json, report.html and, where an effect was named, robot.toml into `folder`, each whole or not at all.
+// Throws std::runtime_error in words where reports in `out` would replace what they are about, that is the dataset or the
+// description `robot` (empty: the dataset's), or a robot.toml that no diagnosis wrote. For asking before something long is
+// calculated.
+void check_keeps_inputs(const std::filesystem::path& out, const std::filesystem::path& dataset, const std::string& robot);
+
+// Writes report.json, report.html and, where an effect was named, robot.toml into `folder`, each whole or not at all. A
+// robot.toml of a diagnosis before is removed where nothing is named; where this one was interrupted, it stays.
 // Throws std::runtime_error where that cannot be done.
 void write_diagnosis(const Diagnosis& diagnosis, const std::filesystem::path& folder);
 

@@ -2,22 +2,54 @@
 
 #include <filesystem>
 
+#include "description/data_files.hpp"
 #include "gap/diagnose/report.hpp"
+#include "runs/dataset.hpp"
 #include "runs/whole_file.hpp"
 
 namespace kenaf::gap {
 
-void write_diagnosis(const Diagnosis& d, const std::filesystem::path& folder) {
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kRobotFile = "robot.toml";
+
+}  // namespace
+
+void check_keeps_inputs(const fs::path& out, const fs::path& dataset, const std::string& robot) {
+  const auto same = [](const fs::path& a, const fs::path& b) {
+    std::error_code neither_is_there;
+    return fs::equivalent(a, b, neither_is_there);
+  };
+  if (same(out, dataset))
+    throw std::runtime_error(fmt::format("{}: is the dataset; give another folder for the reports", out.string()));
+  const fs::path replaced = out / kRobotFile;
+  if (!fs::exists(replaced)) return;
+  const std::string name =
+      robot.empty() ? runs::resolve_beside(dataset, runs::read_dataset(dataset).robot, ".toml") : robot;
+  if (same(replaced, find_data_file("robots", name, ".toml")))
+    throw std::runtime_error(
+        fmt::format("{}: is the description that is to be diagnosed, and the report would replace it; give another "
+                    "folder for the reports",
+                    replaced.string()));
+  if (!fs::exists(out / "report.html") && !fs::exists(out / "report.json"))
+    throw std::runtime_error(
+        fmt::format("{}: is of no diagnosis, as no report is beside it, and would be replaced; give another folder for "
+                    "the reports",
+                    replaced.string()));
+}
+
+void write_diagnosis(const Diagnosis& d, const fs::path& folder) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  fs::create_directories(folder, error);
   if (error) throw std::runtime_error(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
   runs::write_whole_file(folder / "report.html", diagnosis_html(d));
-  const std::filesystem::path robot = folder / "robot.toml";
   const Verdict verdict = d.decision.verdict;
   if (verdict == Verdict::named || verdict == Verdict::ambiguous)
-    runs::write_whole_file(robot, corrected_robot_toml(d, d.observations.robot_name));
-  else
-    std::filesystem::remove(robot, error);  // of a diagnosis before, which it would belie
+    runs::write_whole_file(folder / kRobotFile, corrected_robot_toml(d, d.observations.robot_name));
+  else if (d.interrupted.empty())
+    fs::remove(folder / kRobotFile, error);  // of a diagnosis before, which it would belie
   runs::write_whole_file(folder / "report.json", diagnosis_json(d));
 }
 

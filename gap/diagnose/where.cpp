@@ -11,26 +11,6 @@ namespace {
 
 using Eigen::VectorXd;
 
-double beyond_chance(const Cell& cell) {
-  return std::max(0.0, cell.z * cell.z - 1);
-}
-
-// A shape that is taken off, as an offset of one count, leaves its negative where nothing was. A cell counts as it
-// stands out with shapes taken off, or without, whichever is less.
-std::vector<Cell> cells_that_stand_out(const NoiseFloor& floor, const Coherence& coherence,
-                                       const std::vector<VectorXd>& residual) {
-  std::vector<VectorXd> whitened, in_sigmas;
-  for (std::size_t r = 0; r < residual.size(); ++r) {
-    whitened.push_back(floor.whiteners[r](residual[r]));
-    in_sigmas.push_back(residual[r].cwiseQuotient(floor.sigma_of_bin[r]));
-  }
-  std::vector<Cell> cells = coherence.cells(whitened);
-  const std::vector<Cell> with_shapes = coherence.cells(in_sigmas);
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    if (std::abs(with_shapes[c].z) < std::abs(cells[c].z)) cells[c].z = with_shapes[c].z;
-  return cells;
-}
-
 std::vector<ChannelGap> channels_of(const std::vector<FeatureMap>& features, const NoiseFloor& floor,
                                     const std::vector<VectorXd>& residual) {
   std::vector<ChannelGap> channels(diagnosis_channels().size());
@@ -51,6 +31,24 @@ std::vector<ChannelGap> channels_of(const std::vector<FeatureMap>& features, con
 }
 
 }  // namespace
+
+double beyond_chance(const Cell& cell) {
+  return std::max(0.0, cell.z * cell.z - 1);
+}
+
+std::vector<Cell> cells_that_stand_out(const NoiseFloor& floor, const Coherence& coherence,
+                                       const std::vector<VectorXd>& residual) {
+  std::vector<VectorXd> whitened, in_sigmas;
+  for (std::size_t r = 0; r < residual.size(); ++r) {
+    whitened.push_back(floor.whiteners[r](residual[r]));
+    in_sigmas.push_back(residual[r].cwiseQuotient(floor.sigma_of_bin[r]));
+  }
+  std::vector<Cell> cells = coherence.cells(whitened);
+  const std::vector<Cell> with_shapes = coherence.cells(in_sigmas);
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    if (std::abs(with_shapes[c].z) < std::abs(cells[c].z)) cells[c].z = with_shapes[c].z;
+  return cells;
+}
 
 GapPlaces locate(const Observations& observations, const std::vector<FeatureMap>& features, const NoiseFloor& floor,
                  const std::vector<std::vector<std::size_t>>& repeats, const Coherence& coherence,

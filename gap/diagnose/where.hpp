@@ -32,6 +32,13 @@ struct GapPlaces {
   double beyond_chance = 0;          // what the shares are of: the sum over cells of squared floors
 };
 
+// What of a cell is beyond chance, in squared floors.
+double beyond_chance(const Cell& cell);
+// A shape that is taken off, as an offset of one count, leaves its negative where nothing was. A cell counts as it stands out
+// with shapes taken off, or without, whichever is less.
+std::vector<Cell> cells_that_stand_out(const NoiseFloor& floor, const Coherence& coherence,
+                                       const std::vector<Eigen::VectorXd>& residual);
+
 // `residual` in the channels' units; both of every run.
 GapPlaces locate(const Observations& observations, const std::vector<FeatureMap>& features, const NoiseFloor& floor,
                  const std::vector<std::vector<std::size_t>>& repeats, const Coherence& coherence,

@@ -68,6 +68,27 @@ TEST_CASE("Whoever mistypes is told by the program, which word, and where to loo
   }
 }
 
+TEST_CASE("A diagnosis replaces neither its dataset, nor the description it is asked about, nor somebody's own") {
+  const TemporaryFolder folder;
+  REQUIRE(kenaf_gap(folder, "simulate --manoeuvre straight --out real").status == 0);
+  std::filesystem::create_directory(folder / "mine");
+  test::write_file(folder / "mine/robot.toml", test::read_file(KENAF_SOURCE_DIR "/robots/kenaf.toml"));
+  const auto refused = [&](const std::string& arguments) {
+    const Outcome outcome = kenaf_gap(folder, "diagnose " + arguments);
+    CHECK(outcome.status == 2);
+    return outcome.error;
+  };
+  CHECK_THAT(refused("real --out real"), Catch::Contains("real: is the dataset"));
+  CHECK_THAT(refused("real --robot mine/robot.toml --out mine"),
+             Catch::Contains("mine/robot.toml: is the description that is to be diagnosed"));
+  CHECK_THAT(refused("real --out mine"), Catch::Contains("mine/robot.toml: is of no diagnosis"));
+  CHECK(test::read_file(folder / "mine/robot.toml") == test::read_file(KENAF_SOURCE_DIR "/robots/kenaf.toml"));
+  // of one that a diagnosis wrote: the next step of whoever confirms it
+  test::write_file(folder / "mine/report.json", "{}");
+  CHECK_THAT(refused("real --robot mine/robot.toml --out mine"), Catch::Contains("is the description"));
+  CHECK_THAT(refused("nowhere --robot mine/robot.toml --out other"), Catch::Contains("nowhere/dataset.toml"));
+}
+
 TEST_CASE("A list that cannot be written is no success") {
   const TemporaryFolder folder;
   for (const std::string list : {"effects", "effects --json", "manoeuvres"}) {

@@ -2,6 +2,7 @@
 // escaping; the simulated robot is 0.1 m ahead in x.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "description/data_files.hpp"
@@ -41,7 +42,7 @@ runs::Run run_ahead_by(double ahead_m) {
 EffectCurve curve_of(std::string_view name) {
   const physics::EffectInfo* effect = physics::find_effect(name);
   REQUIRE(effect != nullptr);
-  return {effect, &effect->parameters.front(), {}, 5};
+  return {effect, &effect->parameters.front(), {{effect->parameters.front().neutral, -1, true}}, 5};
 }
 
 Diagnosis two_manoeuvres() {
@@ -234,6 +235,23 @@ TEST_CASE("A diagnosis that was interrupted still has a page, which says so befo
   d.gap = {};
   const std::string late = page_of(d);
   CHECK_THAT(late, Contains("Unfinished") && Contains("Effects were not compared") && Contains("climb"));
+}
+
+TEST_CASE("A diagnosis that was interrupted names nothing, and leaves a robot.toml of one before as it is") {
+  const test::TemporaryFolder folder;
+  test::write_file(folder / "robot.toml", "mine");
+  Diagnosis d;
+  d.interrupted = "holding runs out";
+  d.decision.verdict = Verdict::unknown;
+  write_diagnosis(d, folder.path());
+  CHECK(test::read_file(folder / "robot.toml") == "mine");
+  const auto report = nlohmann::json::parse(test::read_file(folder / "report.json"));
+  CHECK(report["interrupted"] == "holding runs out");
+  CHECK(report["gap"]["before"].is_null());
+  CHECK(report["gap"]["shrink_by_manoeuvre"].is_null());
+  d.interrupted.clear();
+  write_diagnosis(d, folder.path());
+  CHECK_FALSE(std::filesystem::exists(folder / "robot.toml"));
 }
 
 TEST_CASE("Runs without repeats and without any visible effect have a page") {

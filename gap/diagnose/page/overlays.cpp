@@ -34,11 +34,11 @@ std::string without_side(std::string_view column) {
 std::vector<std::vector<double>> shares_by_group(const Diagnosis& d) {
   std::vector<std::vector<double>> shares(d.repeats.size(), std::vector<double>(diagnosis_channels().size(), 0));
   if (d.nominal.size() != d.features.size() || d.nominal_floor.whiteners.size() != d.features.size()) return shares;
-  std::vector<Eigen::VectorXd> whitened;
-  for (std::size_t r = 0; r < d.features.size(); ++r)
-    whitened.push_back(d.nominal_floor.whiteners[r](d.features[r].measured() - d.nominal[r]));
-  for (const Cell& cell : Coherence(d.features, d.repeats, d.options.stretch_s).cells(whitened))
-    shares[cell.group][cell.channel] += std::max(0.0, cell.z * cell.z - 1);
+  std::vector<Eigen::VectorXd> residual;
+  for (std::size_t r = 0; r < d.features.size(); ++r) residual.push_back(d.features[r].measured() - d.nominal[r]);
+  const Coherence coherence(d.features, d.repeats, d.options.stretch_s);
+  for (const Cell& cell : cells_that_stand_out(d.nominal_floor, coherence, residual))
+    shares[cell.group][cell.channel] += beyond_chance(cell);
   for (std::vector<double>& group : shares) {
     const double total = std::accumulate(group.begin(), group.end(), 0.0);
     for (double& share : group) share = total > 0 ? share / total : 0;

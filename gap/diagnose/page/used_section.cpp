@@ -120,23 +120,24 @@ std::string used_section(const Diagnosis& d, std::span<const Overlay> overlays) 
 
 std::string method_section(const Diagnosis& d) {
   return section_head("method", "How it was found, and what it cannot say") +
-         paragraph(fmt::format("The commands of each run are given to the simulated robot from the place where the "
-                               "real one stood, and the means "
-                               "of each channel over {} s are compared at the same times. Differences are counted in "
-                               "units of noise, which "
-                               "comes from repeats, and of what the simulation itself leaves open: the exact start, "
-                               "the contact's stiffness "
-                               "and damping, the time step. Each effect of the catalogue is simulated "
-                               "along its range and "
-                               "fitted, alone and together with others. How much a fit is worth is measured on runs "
-                               "that it has not seen. What chance "
-                               "alone does is drawn "
-                               "from the noise.",
-                               d.options.span_s)) +
+         paragraph(fmt::format(
+             "The commands of each run are given to the simulated robot from the place where the "
+             "real one stood, and the means "
+             "of each channel over {} s are compared at the same times. Differences are counted in "
+             "units of noise, which "
+             "comes from repeats, and of what the simulation itself leaves open: the exact start, "
+             "the contact's stiffness "
+             "and damping, the time step, the solver's iterations. Each effect of the catalogue is simulated "
+             "along its range and "
+             "fitted, alone and together with others. How much a fit is worth is measured on runs "
+             "that it has not seen. What chance "
+             "alone does is drawn "
+             "from the noise.",
+             d.options.span_s)) +
          "<ul>\n<li>A cause outside of the catalogue can look like one inside of it, if it does the same to these "
-         "runs.</li>\n"
-         "<li>Three or more effects together are not tried; they come out as unknown, or as the two that do "
-         "most.</li>\n"
+         "runs.</li>\n" +
+         fmt::format("<li>No more than {} effects are fitted together; more come out as unknown.</li>\n",
+                     d.options.decision.most_effects) +
          "<li>An interval covers noise, the choice of runs and the simulation's numerics; not that the model is "
          "another one.</li>\n"
          "<li>Where no run repeats another, the noise is taken from the runs themselves, and small gaps pass as "

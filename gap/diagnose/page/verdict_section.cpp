@@ -109,7 +109,7 @@ std::string effect_words(const Diagnosis& d, const EffectEvidence& evidence) {
   std::string html = fmt::format(
       "<p><b>{}</b> (stage: {}): {}. {} = {} with 95 % interval; without the effect it is {}{}.</p>\n",
       plot::escaped(name_of(curve)), physics::stage_name(curve.effect->stage), plot::escaped(curve.effect->summary),
-      curve.parameter->name, interval_text(evidence.value, unit), figure(curve.parameter->neutral), unit_suffix(unit));
+      curve.parameter->name, interval_text(evidence.value, unit), figure(present_value(curve)), unit_suffix(unit));
   if (evidence.at_bound)
     html += fmt::format(
         "<p class=\"warning\">The fit of {} ended at the end of its range ({} to {}{}): the true value may lie beyond, "
@@ -126,7 +126,7 @@ std::string value_figure(const Diagnosis& d, const EffectEvidence& evidence) {
   chart.title = fmt::format("Fitted {} with its 95 % interval", parameter_name(curve));
   chart.x_label =
       fmt::format("{} ({})", curve.parameter->name, curve.parameter->unit == "1" ? "ratio" : curve.parameter->unit);
-  chart.rows = {{"nominal", {{curve.parameter->neutral, Shape::ring, Ink::sim}}, figure(curve.parameter->neutral)},
+  chart.rows = {{"nominal", {{present_value(curve), Shape::ring, Ink::sim}}, figure(present_value(curve))},
                 {"fitted",
                  {{evidence.value.value, Shape::disc, Ink::third, plot::Range{evidence.value.from, evidence.value.to}}},
                  fmt::format("{:.4g}", evidence.value.value)}};
@@ -184,7 +184,7 @@ std::string verdict_section(const Diagnosis& d) {
           plot::escaped(advice(d)) + "</p>\n";
   for (const EffectEvidence& evidence : d.best) html += effect_words(d, evidence);
   html += "</section>\n";
-  if (!d.interrupted.empty() && d.gap.before == 0) return html;
+  if (!d.interrupted.empty() && std::isnan(d.gap.before)) return html;
   html += "<div class=\"figures\">\n" + gap_figure(d);
   if (!d.best.empty()) html += shrink_figure(d);
   for (const EffectEvidence& evidence : d.best) html += value_figure(d, evidence);
