@@ -127,6 +127,18 @@ void remove_all_but_cases(const fs::path& folder, const ChallengeKey& key) {
   for (const fs::path& other : others) fs::remove_all(other);
 }
 
+// Cases that somebody was making with another seed or number are not thrown away for a slip of the finger.
+void check_same_cases(const fs::path& folder, const Options& options, std::uint64_t seed) {
+  bool any = false;
+  for (const CasePlan& plan : plan_challenge(options.cases, seed)) {
+    if (made_case(folder, plan.name, seed, options.cases)) return;
+    any |= fs::exists(folder / (plan.name + ".enciphered"));
+  }
+  if (any)
+    throw std::runtime_error(
+        fmt::format("{}: holds cases of another --seed or --cases; give those, or another folder", folder.string()));
+}
+
 // Cases and commitment, all or none; those that are there already are kept.
 ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller,
                         const std::atomic<bool>& stop) {
@@ -137,6 +149,7 @@ ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::pa
   }
   const fs::path part = folder / "cases.part";
   fs::create_directories(part);
+  check_same_cases(part, options, seed);
   ChallengeKey key = make_cases(options, seed, part, teller, stop);
   remove_all_but_cases(part, key);
   const std::string text = key_text(key), commitment = commitment_text(text);

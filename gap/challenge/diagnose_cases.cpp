@@ -93,6 +93,7 @@ void diagnose_cases(const std::vector<CaseToDiagnose>& cases, unsigned at_once, 
   // held open, so that all cases are diagnosed by the same program even if another one is installed meanwhile
   const Descriptor program{::open("/proc/self/exe", O_PATH | O_CLOEXEC)};
   if (program.value < 0) throw failed("/proc/self/exe");
+  std::signal(SIGCHLD, SIG_DFL);  // who started this may have had it ignored, and then no process could be waited for
   if (at_once == 0) at_once = std::max(1U, std::thread::hardware_concurrency());
   std::map<pid_t, std::size_t> running;
   const auto end_all = [&] {

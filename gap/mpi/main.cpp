@@ -69,7 +69,8 @@ int run(int argc, char** argv, const Ranks& ranks) {
     if (ranks.rank > 0) return error.get_exit_code() == 0 ? 0 : kBadInput;
     return program.exit(error) == 0 ? 0 : kBadInput;
   } catch (const std::exception& error) {
-    if (ranks.rank == 0 || ranks.count == 1) std::fprintf(stderr, "kenaf-gap-mpi: %s\n", error.what());
+    // each may have what the others do not: a machine without the dataset, a full disk
+    std::fprintf(stderr, "kenaf-gap-mpi: process %d of %d: %s\n", ranks.rank, ranks.count, error.what());
     std::fflush(stderr);
     MPI_Abort(MPI_COMM_WORLD, kBadInput);  // another rank may wait for this one's results
   }

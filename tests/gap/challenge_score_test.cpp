@@ -460,6 +460,22 @@ TEST_CASE("A challenge that is interrupted while its cases are made goes on with
   CHECK_FALSE(std::filesystem::exists(folder / "cases.part"));
 }
 
+TEST_CASE("Cases that were being made are not thrown away for another seed or number") {
+  const TemporaryFolder folder;
+  write_challenge(folder);
+  std::filesystem::rename(folder / "cases", folder / "cases.part");
+  ChallengeKey key = read_key(read_file(folder / "key.json"));
+  key.cases[0].data_sha256 = sha256_of_dataset(folder.path() / "cases.part/case-000");
+  keep_made_case(folder.path() / "cases.part", key.cases[0], 11, 1);
+  for (const char* file : {"key.json", "commitment.txt"}) std::filesystem::remove(folder / file);
+  for (const char* slip : {"--cases 1 --seed 12", "--cases 2 --seed 11"}) {
+    const test::Outcome outcome = test::kenaf_gap(folder, "challenge --out . " + std::string(slip));
+    CHECK(outcome.status == 2);
+    CHECK_THAT(outcome.error, Catch::Contains("holds cases of another --seed or --cases"));
+  }
+  CHECK(made_case(folder / "cases.part", "case-000", 11, 1));
+}
+
 TEST_CASE("A challenge that was interrupted goes on with the cases and reports that it has") {
   const TemporaryFolder folder;
   write_challenge(folder);
