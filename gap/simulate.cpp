@@ -17,7 +17,6 @@
 namespace kenaf::gap {
 namespace {
 
-// Chosen: how well a robot is put on a mark by hand.
 constexpr int kMostRuns = 100000;
 
 // FNV-1a, http://www.isthe.com/chongo/tech/comp/fnv/, of everything that a run's noise depends on.

@@ -127,7 +127,8 @@ class BoxTouches {
   }
 
  private:
-  void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar share, bool holds_lugs, std::uint64_t id) {
+  void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar share, bool holds_lugs,
+           std::uint64_t id) {
     // what is deeper along the slice than across it is a wall that the belt's side face meets
     if (-gap <= overlap_) out_.push_back({p, normal, gap, share, holds_lugs, id});
   }

@@ -110,14 +110,4 @@ Eigen::VectorXd FeatureMap::of(const runs::Run& simulated) const {
   return means;
 }
 
-std::vector<double> FeatureMap::sample_residual(const runs::Run& simulated, std::size_t channel) const {
-  for (const Series& series : series_) {
-    if (series.channel != channel) continue;
-    std::vector<double> residual = simulated_at(simulated, series);
-    for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = series.value[i] - residual[i];
-    return residual;
-  }
-  return {};
-}
-
 }  // namespace kenaf::gap

@@ -30,8 +30,6 @@ class FeatureMap {
   // A simulated run at the times at which the channels were measured, interpolated, then likewise averaged. Where it
   // ended early its last value stands; a channel that it does not have is 0.
   Eigen::VectorXd of(const runs::Run& simulated) const;
-  // Samples of measured minus simulated of one channel, NaN where it was not measured.
-  std::vector<double> sample_residual(const runs::Run& simulated, std::size_t channel) const;
 
  private:
   struct Series {

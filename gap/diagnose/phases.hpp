@@ -1,5 +1,5 @@
-// The phases of a run, found from what was measured: standing, speeding up, cruise, turn, flippers, contact, climb, tip,
-// land, fall.
+// The phases of a run, found from what was measured: stand, speed change, slow down, cruise, turn, flippers, contact, climb,
+// descend, tip, land, fall. phases.cpp has the limits of each.
 // Thread safety: pure functions.
 #pragma once
 
@@ -17,7 +17,7 @@ struct PhaseSpan {
 };
 
 // In the order of time, without gaps, none shorter than 0.1 s. What was not measured is taken as not happening: without
-// pitch no climb. docs/gap-method.md defines each.
+// pitch no climb.
 std::vector<PhaseSpan> phases_of(const Observation& observation);
 
 }  // namespace kenaf::gap

@@ -114,13 +114,3 @@ TEST_CASE("Robot and simulation need not be sampled alike") {
     CHECK((simulated - map.measured()).norm() < 1e-12);
   }
 }
-
-TEST_CASE("Residuals of samples") {
-  const FeatureMap map(made_run(0.5, 0.1, {{"x_m", [](double t_s) { return t_s < 0.15 ? kNaN : ramp(t_s) + 1; }}}),
-                       0.25);
-  const std::size_t x = map.bins()[0].channel;
-  const std::vector<double> residual = map.sample_residual(made_run(0.5, 0.1, {{"x_m", ramp}}), x);
-  REQUIRE(residual.size() == 3);  // of those measured
-  for (const double value : residual) CHECK(value == Approx(1));
-  CHECK(map.sample_residual(made_run(0.5, 0.1, {{"x_m", ramp}}), x + 1).empty());
-}

@@ -124,9 +124,9 @@ TEST_CASE("Lug height: on edges a belt holds up to the friction angle and the lu
   CHECK(moved_m(3, friction_angle + 0.1, ground()) == Approx(moved_m(1, friction_angle + 0.1, ground())).epsilon(1e-9));
 }
 
-// The same ridges along the robot, one under each belt (not under its middle, where a slice would be in the edge and see the
-// ridge's two faces): nothing for a lug to catch behind, so that the belts hold up to the friction angle alone, and beyond it
-// slide as a block does.
+// The same ridges along the robot, one under each belt (not under its middle, where a slice would be in the edge and
+// see the ridge's two faces): nothing for a lug to catch behind, so that the belts hold up to the friction angle alone,
+// and beyond it slide as a block does.
 TEST_CASE("Lug height: on edges along the belt lugs do nothing") {
   RobotDescription robot = tracks_with({.lug_height_scale = 3});
   robot.track.friction_along = 0.3;
