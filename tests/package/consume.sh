@@ -17,6 +17,8 @@ expect_error() {
 }
 
 cmake --install "$build" --prefix "$work/prefix" >"$work/install.log"
+outside=$(grep -E '^-- (Installing|Up-to-date): ' "$work/install.log" | grep -vF ": $work/prefix/" || true)
+[ -z "$outside" ] || fail "installed outside of the prefix: $outside"
 
 mkdir "$work/project"
 cp "$source/examples/square.c" "$work/project/square.c"
@@ -52,13 +54,20 @@ expect_error "$work/pc_real" can
 
 (cd "$work" && cpack --config "$build/CPackConfig.cmake" -B "$work" >"$work/cpack.log" 2>&1) || { cat "$work/cpack.log"; fail "cpack"; }
 package=$(ls "$work"/kenaf_*.deb)
-dpkg-deb --contents "$package" >"$work/contents"
-for file in usr/bin/kenaf-world usr/bin/kenaf-relayd usr/bin/kenaf-draw usr/bin/kenaf-canlog usr/bin/kenaf-candrives usr/include/kenaf/hrt.h \
-            usr/share/kenaf/robots/kenaf.toml usr/share/kenaf/worlds/flat.sdf \
-            usr/share/kenaf/page/index.html usr/share/kenaf/page/three/three.module.js usr/share/kenaf/page/three/OrbitControls.js \
+dpkg-deb --fsys-tarfile "$package" | tar -t >"$work/contents"
+! grep -vE '^\./(usr/.*)?$' "$work/contents" || fail "the package installs outside of /usr"
+for file in bin/kenaf-world bin/kenaf-relayd bin/kenaf-draw bin/kenaf-canlog bin/kenaf-candrives bin/kenaf-gap include/kenaf/hrt.h \
+            share/kenaf/robots/kenaf.toml share/kenaf/worlds/flat.sdf \
+            share/kenaf/page/index.html share/kenaf/page/three/three.module.js share/kenaf/page/three/OrbitControls.js \
             lib/systemd/system/kenaf-relayd.service lib/systemd/system/kenaf-world.service \
-            libkenaf_sim.so.0 libkenaf_real.so.0 kenafConfig.cmake kenaf-sim.pc; do
-  grep -q "$file" "$work/contents" || { cat "$work/contents"; fail "$file is not in the package"; }
+            "lib/(.*/)?libkenaf_sim\.so\.0" "lib/(.*/)?libkenaf_real\.so\.0" "lib/(.*/)?kenafConfig.cmake" "lib/(.*/)?kenaf-sim.pc"; do
+  grep -qxE "\./usr/$file" "$work/contents" || { cat "$work/contents"; fail "$file is not in the package"; }
+done
+# The units start what the package installs.
+dpkg-deb -x "$package" "$work/root"
+for unit in "$work"/root/usr/lib/systemd/system/*.service; do
+  program=$(sed -n 's/^ExecStart=\([^ ]*\).*/\1/p' "$unit")
+  [[ $program != */* && -x $work/root/usr/bin/$program ]] || fail "$(basename "$unit") starts $program"
 done
 depends=$(dpkg-deb --field "$package" Depends)
 for library in libbullet libturbojpeg0; do
