@@ -17,6 +17,10 @@ set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
 # Contracted multiply-adds would let the same run differ between compilers and processors.
 add_compile_options(-ffp-contract=off)
 
+# What is installed says nothing of where it was built, neither by an assertion nor by the libraries' debug information.
+# In the other builds a debugger finds the files by their whole paths.
+add_compile_options("$<$<CONFIG:Release>:-ffile-prefix-map=${PROJECT_SOURCE_DIR}/=>")
+
 if(KENAF_SANITIZE)
   add_compile_options(-fsanitize=${KENAF_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${KENAF_SANITIZE})

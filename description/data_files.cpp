@@ -38,7 +38,6 @@ std::vector<fs::path> data_roots() {
       roots.push_back(prefix / "share" / "kenaf");
     }
   }
-  roots.emplace_back(KENAF_SOURCE_DATA_DIR);
   return roots;
 }
 

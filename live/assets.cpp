@@ -40,11 +40,8 @@ fs::path three_file(const fs::path& page, const char* installed, const char* bui
 }
 
 fs::path find_page() {
-  for (const fs::path& root : data_roots()) {
-    for (const char* folder : {"page", "live/page"}) {
-      if (fs::is_regular_file(root / folder / "index.html")) return root / folder;
-    }
-  }
+  for (const fs::path& root : data_roots())
+    if (fs::is_regular_file(root / "page" / "index.html")) return root / "page";
   throw std::runtime_error("the page is not installed: no page/index.html below share/kenaf");
 }
 

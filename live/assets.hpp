@@ -11,8 +11,8 @@ namespace kenaf::live {
 struct Asset { std::string_view type; std::string bytes; };
 using Assets = std::map<std::string, Asset, std::less<>>;  // by path: "/", "/page.css", "/three/build/three.module.js"
 
-// From share/kenaf/page, or from the source tree and the system's three.js this was built with. Throws
-// std::runtime_error where there is no page. `first_page`, such as "index.html", is served as "/", and no other page.
+// From share/kenaf/page; three.js from there too, or the system's, with which this was built. Throws std::runtime_error
+// where there is no page. `first_page`, such as "index.html", is served as "/", and no other page.
 Assets load_assets(std::string_view first_page);
 
 }  // namespace kenaf::live

@@ -5,8 +5,14 @@
 set -euo pipefail
 build=$1 source=$2
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+server=
+clean_up() {
+  [ -z "$server" ] || kill "$server" 2>/dev/null || true
+  rm -rf "$work"
+}
+trap clean_up EXIT
 fail() { echo "consume: $*" >&2; exit 1; }
+unset KENAF_DATA_DIR
 
 # One program, built against one library; it must start, and fail for the right reason: nothing is there to drive.
 expect_error() {
@@ -19,6 +25,10 @@ expect_error() {
 cmake --install "$build" --prefix "$work/prefix" >"$work/install.log"
 outside=$(grep -E '^-- (Installing|Up-to-date): ' "$work/install.log" | grep -vF ": $work/prefix/" || true)
 [ -z "$outside" ] || fail "installed outside of the prefix: $outside"
+
+# What is installed holds no path of the source tree, so it cannot need one.
+holding=$(LC_ALL=C grep -rlaP "(?<![\w./-])\Q$source\E(?![\w.-])" "$work/prefix" || true)
+[ -z "$holding" ] || fail "the source folder's path is in $holding"
 
 mkdir "$work/project"
 cp "$source/examples/square.c" "$work/project/square.c"
@@ -49,8 +59,17 @@ done
 expect_error "$work/pc_sim" relay
 expect_error "$work/pc_real" can
 
-# The installed world server finds its robots and worlds without the source tree.
-"$work/prefix/bin/kenaf-world" --help >/dev/null
+# The installed world server finds its robots and worlds.
+(cd "$work" && exec "$work/prefix/bin/kenaf-world" --port 0 --port-file port --view off --cameras off) \
+  >"$work/world.log" 2>&1 & server=$!
+for _ in $(seq 100); do
+  [ ! -s "$work/port" ] && kill -0 "$server" 2>/dev/null || break
+  sleep 0.1
+done
+[ -s "$work/port" ] || { cat "$work/world.log"; fail "the installed world server does not start"; }
+kill -TERM "$server"
+wait "$server" || { cat "$work/world.log"; fail "the installed world server does not stop"; }
+server=
 
 (cd "$work" && cpack --config "$build/CPackConfig.cmake" -B "$work" >"$work/cpack.log" 2>&1) || { cat "$work/cpack.log"; fail "cpack"; }
 package=$(ls "$work"/kenaf_*.deb)
