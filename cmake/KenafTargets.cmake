@@ -33,7 +33,7 @@ if(KENAF_FUZZ_COVERAGE)
 endif()
 
 add_library(kenaf_warnings INTERFACE)
-target_compile_options(kenaf_warnings INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror)
+target_compile_options(kenaf_warnings INTERFACE -Wall -Wextra -Wconversion -Wshadow)
 # g++ 12 warns wrongly of std::string's own operator+ in optimised builds (GCC bug 105651), and of <regex> under the
 # sanitizers (GCC bug 105562).
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
