@@ -38,10 +38,10 @@ printf '#include <kenaf/hrt.h>\n' | "$cc" -x c -std=c11 -I"$source/include" -E -
 [ "$(wc -l <"$work/declared")" -ge 20 ] || fail "found only $(wc -l <"$work/declared") functions in the header"
 diff "$work/declared" "$work/sim" >&2 || fail "the header and the libraries do not have the same functions"
 
-# 3. The soname is the short one, and each library has its own.
+# 3. The soname has the number of the interface, and each library has its own.
 for library in sim real; do
   [ "$library" = sim ] && file=$sim || file=$real
-  readelf -d "$file" | grep -q "SONAME.*\[libkenaf_$library\.so\.0\]" || fail "$file: the soname is not libkenaf_$library.so.0"
+  readelf -d "$file" | grep -q "SONAME.*\[libkenaf_$library\.so\.1\]" || fail "$file: the soname is not libkenaf_$library.so.1"
 done
 
 # 4. One object file links with either library, and the programs load.

@@ -79,7 +79,7 @@ for file in bin/kenaf-world bin/kenaf-relayd bin/kenaf-draw bin/kenaf-canlog bin
             share/kenaf/robots/kenaf.toml share/kenaf/worlds/flat.sdf \
             share/kenaf/page/index.html share/kenaf/page/three/three.module.js share/kenaf/page/three/OrbitControls.js \
             lib/systemd/system/kenaf-relayd.service lib/systemd/system/kenaf-world.service \
-            "lib/(.*/)?libkenaf_sim\.so\.0" "lib/(.*/)?libkenaf_real\.so\.0" "lib/(.*/)?kenafConfig.cmake" "lib/(.*/)?kenaf-sim.pc"; do
+            "lib/(.*/)?libkenaf_sim\.so\.1" "lib/(.*/)?libkenaf_real\.so\.1" "lib/(.*/)?kenafConfig.cmake" "lib/(.*/)?kenaf-sim.pc"; do
   grep -qxE "\./usr/$file" "$work/contents" || { cat "$work/contents"; fail "$file is not in the package"; }
 done
 # The units start what the package installs.
