@@ -1,42 +1,87 @@
-# What is installed beside the programs, find_package(kenaf), pkg-config, and the Debian package.
+# What is installed beside the programs, find_package(kenaf), pkg-config, and the Debian packages. A component of the
+# installation is a package: library, development, data, programs, mpi.
 include(CMakePackageConfigHelpers)
 
-install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kenaf")
-install(DIRECTORY robots worlds manoeuvres DESTINATION "${CMAKE_INSTALL_DATADIR}/kenaf"
+install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kenaf" COMPONENT development)
+install(DIRECTORY robots worlds manoeuvres DESTINATION "${CMAKE_INSTALL_DATADIR}/kenaf" COMPONENT data
   FILES_MATCHING PATTERN "*.toml" PATTERN "*.sdf" PATTERN "*.png" PATTERN "*.obj")
-install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
-install(DIRECTORY examples/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples" FILES_MATCHING
+install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
+install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" COMPONENT programs
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
+install(DIRECTORY examples/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples" COMPONENT programs FILES_MATCHING
   PATTERN "*.c" PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.hpp" PATTERN "*.script")
 
 set(cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kenaf")
-install(EXPORT kenafTargets NAMESPACE kenaf:: DESTINATION "${cmake_dir}")
+install(EXPORT kenafTargets NAMESPACE kenaf:: DESTINATION "${cmake_dir}" COMPONENT development)
 configure_package_config_file(cmake/kenafConfig.cmake.in "${CMAKE_CURRENT_BINARY_DIR}/kenafConfig.cmake"
   INSTALL_DESTINATION "${cmake_dir}")
 write_basic_package_version_file("${CMAKE_CURRENT_BINARY_DIR}/kenafConfigVersion.cmake"
   COMPATIBILITY SameMinorVersion)
 install(FILES "${CMAKE_CURRENT_BINARY_DIR}/kenafConfig.cmake" "${CMAKE_CURRENT_BINARY_DIR}/kenafConfigVersion.cmake"
-  DESTINATION "${cmake_dir}")
+  DESTINATION "${cmake_dir}" COMPONENT development)
 
 # Relative to the .pc file, so that `cmake --install --prefix` elsewhere still works.
 file(RELATIVE_PATH prefix_from_pc "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_INSTALL_PREFIX}")
 foreach(library real sim)
   configure_file(cmake/kenaf-${library}.pc.in "${CMAKE_CURRENT_BINARY_DIR}/kenaf-${library}.pc" @ONLY)
-  install(FILES "${CMAKE_CURRENT_BINARY_DIR}/kenaf-${library}.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+  install(FILES "${CMAKE_CURRENT_BINARY_DIR}/kenaf-${library}.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
+    COMPONENT development)
 endforeach()
 
 set(CPACK_GENERATOR DEB)
-set(CPACK_PACKAGE_NAME kenaf)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)  # a package for each component
+set(CPACK_COMPONENTS_ALL library development data programs)
 set(CPACK_PACKAGE_CONTACT "Kenaf maintainers <maintainers@kenaf.example>")
-set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
-set(CPACK_PACKAGE_DESCRIPTION "A C interface to a tracked rescue robot with four flippers, two libraries behind it that
-differ in what they drive - the robot over SocketCAN, or its simulation over UDP - and the
-simulator: a relay daemon and a world server that speaks the USARSim protocol.")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "")  # each package has its own
 set(CPACK_PACKAGING_INSTALL_PREFIX "/usr")
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_BINARY_DIR}/triggers")
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)  # each on the same version of the others
+
+# The libraries without the simulator: on a robot's computer Bullet, Embree and OpenMPI have no business.
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libkenaf${KENAF_ABI})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "control of a tracked rescue robot, or of its simulation
+Two libraries with one C interface: libkenaf_real drives the robot over SocketCAN, libkenaf_sim
+its simulation over UDP. A program is linked with one of them.")
+set(CPACK_COMPONENT_LIBRARY_DEPENDS data)  # the robot's description says what is on its bus
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_BINARY_DIR}/triggers")
 file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/triggers" "activate-noawait ldconfig\n")
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libkenaf-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "control of a tracked rescue robot: to build programs with
+The C header kenaf/hrt.h, and what finds the libraries: for CMake, find_package(kenaf), and for
+pkg-config, kenaf-sim and kenaf-real.")
+set(CPACK_COMPONENT_DEVELOPMENT_DEPENDS library)
+
+set(CPACK_DEBIAN_DATA_PACKAGE_NAME kenaf-data)
+set(CPACK_DEBIAN_DATA_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_DATA_DESCRIPTION "robots, worlds and manoeuvres of Kenaf
+Descriptions that the libraries read on the robot, and that the simulator makes its world of.")
+
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME kenaf)
+set(CPACK_DEBIAN_PROGRAMS_DESCRIPTION "simulator of a tracked rescue robot with four flippers
+A world server that speaks the USARSim protocol, with a page for browsers and the robot's cameras, the
+relay between it and programs on libkenaf_sim, simulated CANopen drives, and kenaf-gap, which measures
+how far simulation and robot are apart, and says why.")
+set(CPACK_COMPONENT_PROGRAMS_DEPENDS data)
+
+if(TARGET kenaf-gap-mpi)
+  list(APPEND CPACK_COMPONENTS_ALL mpi)
+  set(CPACK_DEBIAN_MPI_PACKAGE_NAME kenaf-gap-mpi)
+  set(CPACK_DEBIAN_MPI_DESCRIPTION "kenaf-gap's diagnosis by several processes
+Shares the work of kenaf-gap diagnose between the processes that mpirun starts, on one or more machines.")
+  set(CPACK_COMPONENT_MPI_DEPENDS data)
+  set(CPACK_DEBIAN_MPI_PACKAGE_RECOMMENDS mpi-default-bin)  # mpirun
+endif()
+
+foreach(component ${CPACK_COMPONENTS_ALL})
+  string(TOUPPER ${component} key)
+  install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/doc/${CPACK_DEBIAN_${key}_PACKAGE_NAME}" RENAME copyright
+    COMPONENT ${component})
+endforeach()
 include(CPack)

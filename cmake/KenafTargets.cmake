@@ -102,13 +102,19 @@ function(kenaf_compile_lightly)
   endif()
 endfunction()
 
-# kenaf_program(NAME sources...): an installed program, with its main() in main.cpp.
+# kenaf_program(NAME sources... [COMPONENT c]): an installed program, with its main() in main.cpp. The component says which
+# package it is in (KenafInstall.cmake).
 function(kenaf_program name)
-  add_executable(${name} ${ARGN})
-  list(FILTER ARGN INCLUDE REGEX "main\\.cpp$")
-  kenaf_compile_lightly(${ARGN})
+  cmake_parse_arguments(PROGRAM "" "COMPONENT" "" ${ARGN})
+  if(NOT PROGRAM_COMPONENT)
+    set(PROGRAM_COMPONENT programs)
+  endif()
+  set(sources ${PROGRAM_UNPARSED_ARGUMENTS})
+  add_executable(${name} ${sources})
+  list(FILTER sources INCLUDE REGEX "main\\.cpp$")
+  kenaf_compile_lightly(${sources})
   target_link_libraries(${name} PRIVATE kenaf_warnings)
-  install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT programs)
+  install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT ${PROGRAM_COMPONENT})
 endfunction()
 
 # kenaf_test_headers(): the program from which all tests have their precompiled headers. Comes before the first kenaf_test.

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# A stranger's project uses the installed package: by find_package, by pkg-config, and from the Debian package.
+# A stranger's project uses the installed package, by find_package and by pkg-config; the installed programs run without the
+# source tree; the Debian packages hold what each is for, and bring what it needs.
 #
 #   consume.sh BUILD_DIR SOURCE_DIR
 set -euo pipefail
@@ -22,45 +23,20 @@ expect_error() {
   grep -qi "$words" <<<"$output" || fail "$program did not say '$words': $output"
 }
 
-cmake --install "$build" --prefix "$work/prefix" >"$work/install.log"
-outside=$(grep -E '^-- (Installing|Up-to-date): ' "$work/install.log" | grep -vF ": $work/prefix/" || true)
+prefix=$work/prefix
+cmake --install "$build" --prefix "$prefix" >"$work/install.log"
+outside=$(grep -E '^-- (Installing|Up-to-date): ' "$work/install.log" | grep -vF ": $prefix/" || true)
 [ -z "$outside" ] || fail "installed outside of the prefix: $outside"
+(cd "$prefix" && find . ! -type d | sort) >"$work/installed"
 
 # What is installed holds no path of the source tree, so it cannot need one.
-holding=$(LC_ALL=C grep -rlaP "(?<![\w./-])\Q$source\E(?![\w.-])" "$work/prefix" || true)
+holding=$(LC_ALL=C grep -rlaP "(?<![\w./-])\Q$source\E(?![\w.-])" "$prefix" || true)
 [ -z "$holding" ] || fail "the source folder's path is in $holding"
 
-mkdir "$work/project"
-cp "$source/examples/square.c" "$work/project/square.c"
-cat >"$work/project/CMakeLists.txt" <<'END'
-cmake_minimum_required(VERSION 3.20)
-project(stranger C)
-find_package(kenaf 0.1 REQUIRED)
-add_library(square OBJECT square.c)
-target_include_directories(square PRIVATE $<TARGET_PROPERTY:kenaf::sim,INTERFACE_INCLUDE_DIRECTORIES>)
-foreach(library sim real)
-  add_executable(square_${library} $<TARGET_OBJECTS:square>)
-  target_link_libraries(square_${library} PRIVATE kenaf::${library})
-endforeach()
-END
-cmake -S "$work/project" -B "$work/project/build" -DCMAKE_PREFIX_PATH="$work/prefix" >"$work/cmake.log" 2>&1 || { cat "$work/cmake.log"; fail "find_package"; }
-cmake --build "$work/project/build" >"$work/build.log" 2>&1 || { cat "$work/build.log"; fail "the stranger's build"; }
-expect_error "$work/project/build/square_sim" relay
-expect_error "$work/project/build/square_real" can
-# The library finds the robots that were installed with it, from a program that was not.
-sed 's/^interface = .*/interface = "stranger0"/' "$source/robots/kenaf.toml" >"$work/prefix/share/kenaf/robots/stranger.toml"
-KENAF_ROBOT=stranger expect_error "$work/project/build/square_real" "no SocketCAN\|'stranger0'"
-
-pkgconfig=$(dirname "$(find "$work/prefix" -name kenaf-sim.pc)")
-for library in sim real; do
-  read -ra flags <<<"$(PKG_CONFIG_PATH=$pkgconfig pkg-config --cflags --libs "kenaf-$library")"
-  cc -Wall -Werror "$source/examples/square.c" -o "$work/pc_$library" "${flags[@]}" -Wl,-rpath,"$(dirname "$pkgconfig")"
-done
-expect_error "$work/pc_sim" relay
-expect_error "$work/pc_real" can
+version=$("$prefix/bin/kenaf-gap" --version)
 
 # The installed world server finds its robots and worlds.
-(cd "$work" && exec "$work/prefix/bin/kenaf-world" --port 0 --port-file port --view off --cameras off) \
+(cd "$work" && exec "$prefix/bin/kenaf-world" --port 0 --port-file port --view off --cameras off) \
   >"$work/world.log" 2>&1 & server=$!
 for _ in $(seq 100); do
   [ ! -s "$work/port" ] && kill -0 "$server" 2>/dev/null || break
@@ -71,25 +47,92 @@ kill -TERM "$server"
 wait "$server" || { cat "$work/world.log"; fail "the installed world server does not stop"; }
 server=
 
-(cd "$work" && cpack --config "$build/CPackConfig.cmake" -B "$work" >"$work/cpack.log" 2>&1) || { cat "$work/cpack.log"; fail "cpack"; }
-package=$(ls "$work"/kenaf_*.deb)
-dpkg-deb --fsys-tarfile "$package" | tar -t >"$work/contents"
-! grep -vE '^\./(usr/.*)?$' "$work/contents" || fail "the package installs outside of /usr"
-for file in bin/kenaf-world bin/kenaf-relayd bin/kenaf-draw bin/kenaf-canlog bin/kenaf-candrives bin/kenaf-gap include/kenaf/hrt.h \
-            share/kenaf/robots/kenaf.toml share/kenaf/worlds/flat.sdf \
-            share/kenaf/page/index.html share/kenaf/page/three/three.module.js share/kenaf/page/three/OrbitControls.js \
-            lib/systemd/system/kenaf-relayd.service lib/systemd/system/kenaf-world.service \
-            "lib/(.*/)?libkenaf_sim\.so\.1" "lib/(.*/)?libkenaf_real\.so\.1" "lib/(.*/)?kenafConfig.cmake" "lib/(.*/)?kenaf-sim.pc"; do
-  grep -qxE "\./usr/$file" "$work/contents" || { cat "$work/contents"; fail "$file is not in the package"; }
+mkdir "$work/project"
+cp "$source/examples/square.c" "$work/project/square.c"
+cat >"$work/project/CMakeLists.txt" <<'PROJECT'
+cmake_minimum_required(VERSION 3.20)
+project(stranger C)
+find_package(kenaf 0.1 REQUIRED)
+add_library(square OBJECT square.c)
+target_include_directories(square PRIVATE $<TARGET_PROPERTY:kenaf::sim,INTERFACE_INCLUDE_DIRECTORIES>)
+foreach(library sim real)
+  add_executable(square_${library} $<TARGET_OBJECTS:square>)
+  target_link_libraries(square_${library} PRIVATE kenaf::${library})
+endforeach()
+PROJECT
+cmake -S "$work/project" -B "$work/project/build" -DCMAKE_PREFIX_PATH="$prefix" >"$work/cmake.log" 2>&1 || { cat "$work/cmake.log"; fail "find_package"; }
+cmake --build "$work/project/build" >"$work/build.log" 2>&1 || { cat "$work/build.log"; fail "the stranger's build"; }
+expect_error "$work/project/build/square_sim" relay
+expect_error "$work/project/build/square_real" can
+# The library finds the robots that were installed with it, from a program that was not.
+sed 's/^interface = .*/interface = "stranger0"/' "$source/robots/kenaf.toml" >"$prefix/share/kenaf/robots/stranger.toml"
+KENAF_ROBOT=stranger expect_error "$work/project/build/square_real" "no SocketCAN\|'stranger0'"
+
+pkgconfig=$(dirname "$(find "$prefix" -name kenaf-sim.pc)")
+for library in sim real; do
+  read -ra flags <<<"$(PKG_CONFIG_PATH=$pkgconfig pkg-config --cflags --libs "kenaf-$library")"
+  cc -Wall -Werror "$source/examples/square.c" -o "$work/pc_$library" "${flags[@]}" -Wl,-rpath,"$(dirname "$pkgconfig")"
 done
-# The units start what the package installs.
-dpkg-deb -x "$package" "$work/root"
+expect_error "$work/pc_sim" relay
+expect_error "$work/pc_real" can
+
+# The Debian packages
+(cd "$work" && cpack --config "$build/CPackConfig.cmake" -B "$work" >"$work/cpack.log" 2>&1) || { cat "$work/cpack.log"; fail "cpack"; }
+abi=$(sed -n 's/^#define HRT_ABI //p' "$source/include/kenaf/hrt.h")
+library=libkenaf$abi
+packages=("$library" libkenaf-dev kenaf-data kenaf)
+[ ! -e "$prefix/bin/kenaf-gap-mpi" ] || packages+=(kenaf-gap-mpi)
+deb() { ls "$work/$1"_*.deb; }
+files() { cat "$work/$1.files"; }
+field() { dpkg-deb --field "$(deb "$1")" "$2"; }
+for package in "${packages[@]}"; do
+  [ -f "$(deb "$package")" ] || fail "there is no package $package"
+  dpkg-deb --fsys-tarfile "$(deb "$package")" | tar -t >"$work/$package.files"
+  ! files "$package" | grep -vE '^\./(usr/.*)?$' || fail "$package installs outside of /usr"
+  files "$package" | grep -qxF "./usr/share/doc/$package/copyright" || fail "$package has no copyright"
+  [ "$(field "$package" Version)" = "$version" ] || fail "$package is not of version $version"
+  dpkg-deb -x "$(deb "$package")" "$work/root"
+done
+
+# Whatever `cmake --install` installs is in one of them.
+for package in "${packages[@]}"; do files "$package"; done | grep -v '/$' | sed 's#^\./usr/#./#' | sort >"$work/packed"
+diff "$work/installed" "$work/packed" || fail "the packages hold other files than cmake --install installs"
+
+holds() {  # PACKAGE PATTERN...
+  local package=$1 pattern; shift
+  for pattern in "$@"; do
+    files "$package" | grep -qxE "\./usr/$pattern" || { files "$package"; fail "$pattern is not in $package"; }
+  done
+}
+holds "$library" "lib/(.*/)?libkenaf_sim\.so\.$abi" "lib/(.*/)?libkenaf_real\.so\.$abi"
+holds libkenaf-dev include/kenaf/hrt.h "lib/(.*/)?libkenaf_sim\.so" "lib/(.*/)?libkenaf_real\.so" \
+  "lib/(.*/)?cmake/kenaf/kenafConfig.cmake" "lib/(.*/)?pkgconfig/kenaf-sim.pc" "lib/(.*/)?pkgconfig/kenaf-real.pc"
+holds kenaf-data share/kenaf/robots/kenaf.toml share/kenaf/worlds/flat.sdf share/kenaf/manoeuvres/turn.toml
+holds kenaf bin/kenaf-world bin/kenaf-relayd bin/kenaf-draw bin/kenaf-canlog bin/kenaf-candrives bin/kenaf-gap \
+  lib/systemd/system/kenaf-relayd.service lib/systemd/system/kenaf-world.service \
+  share/kenaf/page/index.html share/kenaf/page/three/three.module.js share/kenaf/page/three/OrbitControls.js \
+  share/doc/kenaf/README.md share/doc/kenaf/docs/user-guide.md share/doc/kenaf/examples/square.c
+[ ! -e "$prefix/bin/kenaf-gap-mpi" ] || holds kenaf-gap-mpi bin/kenaf-gap-mpi
+
+# The units start what the packages install.
 for unit in "$work"/root/usr/lib/systemd/system/*.service; do
   program=$(sed -n 's/^ExecStart=\([^ ]*\).*/\1/p' "$unit")
   [[ $program != */* && -x $work/root/usr/bin/$program ]] || fail "$(basename "$unit") starts $program"
 done
-depends=$(dpkg-deb --field "$package" Depends)
-for library in libbullet libturbojpeg0; do
-  grep -q "$library" <<<"$depends" || fail "the package does not depend on $library"
-done
-echo "consume: find_package, pkg-config and $(basename "$package") work"
+
+needs() {  # PACKAGE WORDS...
+  local package=$1 words depends; shift
+  depends=$(field "$package" Depends)
+  for words in "$@"; do grep -qF "$words" <<<"$depends" || fail "$package does not depend on $words, but on $depends"; done
+}
+# A robot's computer gets neither physics nor cameras.
+needs "$library" "kenaf-data (= $version)" libturbojpeg0
+! field "$library" Depends | grep -E 'libbullet|libembree|libopenmpi' || fail "$library brings too much"
+dpkg-deb --ctrl-tarfile "$(deb "$library")" | tar -xO ./triggers | grep -q ldconfig || fail "$library does not call ldconfig"
+needs libkenaf-dev "$library (= $version)"
+needs kenaf "kenaf-data (= $version)" libbullet libturbojpeg0
+! field kenaf Depends | grep libopenmpi || fail "kenaf brings OpenMPI"
+[ ! -e "$prefix/bin/kenaf-gap-mpi" ] || needs kenaf-gap-mpi "kenaf-data (= $version)"
+[ "$(field kenaf-data Architecture)" = all ] || fail "kenaf-data is not for all architectures"
+
+echo "consume: find_package, pkg-config and ${packages[*]} work"
