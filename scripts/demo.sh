@@ -16,9 +16,9 @@ fail() { printf 'demo: %s\n' "$*" >&2; exit 1; }
 
 scripts/install-dependencies.sh build
 say "building (the first time takes a few minutes)"
-{ cmake --preset release -D KENAF_BUILD_TESTS=OFF -D KENAF_BUILD_BENCH=OFF && cmake --build --preset release --target kenaf-world kenaf-relayd kenaf-draw square_sim; } \
+{ cmake --preset install && cmake --build --preset install --target kenaf-world kenaf-relayd kenaf-draw square_sim; } \
   >"$out/build.log" 2>&1 || { tail -n 40 "$out/build.log" >&2; fail "the build failed, all of it is in $out/build.log"; }
-bin=build/release/bin
+bin=build/install/bin
 
 pids=()
 stop_all() {

@@ -2,7 +2,7 @@
 # Installs what is missing of the Debian 12 packages that Kenaf needs. docs/dependencies.md says what each is for.
 #
 #   scripts/install-dependencies.sh          to build, test and package
-#   scripts/install-dependencies.sh build    only to build and to run the demo
+#   scripts/install-dependencies.sh build    only to build, install and package, and to run the demo
 #   scripts/install-dependencies.sh bench    as without, and the engines that the benchmark compares with
 set -euo pipefail
 
@@ -11,6 +11,8 @@ packages=(
   libassimp-dev libboost-dev libboost-system-dev libbullet-dev libcairo2-dev libcli11-dev libeigen3-dev libembree-dev libexpat1-dev
   libfmt-dev libjs-three libncurses-dev libpng-dev libsdformat-dev libspdlog-dev libtomlplusplus-dev libturbojpeg0-dev nettle-dev
   nlohmann-json3-dev
+  # the package
+  dpkg-dev file
 )
 mode=${1:-all}
 case $mode in
@@ -23,8 +25,6 @@ case $mode in
       busybox-static can-utils cpio kmod qemu-system-x86 xz-utils
       # a diagnosis by several processes
       libopenmpi-dev openmpi-bin
-      # the package
-      dpkg-dev file
     )
     if [ "$mode" = bench ]; then packages+=(libmujoco-dev libode-dev); fi
     ;;
