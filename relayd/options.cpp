@@ -57,6 +57,7 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
       ->excludes(start_option);
   app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
+      ->transform(CLI::Transformer({{"warning", "warn"}}).description(""))  // the word that is logged
       ->capture_default_str();
   bool is_embedded = false;
   auto* embedded_flag =

@@ -32,7 +32,9 @@ int main(int argc, char** argv) {
   kenaf::server::ServerOptions options;
   std::string dialect = "ut2004", log_level = "info", port_file, view = "127.0.0.1:8080", token, cameras = "on",
               camera_port = "5003", camera_image = "good";
-  CLI::App app{"The Kenaf world server: simulated robots behind the USARSim protocol, a TCP connection for each."};
+  CLI::App app{"The Kenaf world server: simulated robots behind the USARSim protocol, a TCP connection for each.",
+               "kenaf-world"};
+  app.set_version_flag("--version", KENAF_VERSION);
   app.add_option("--world", options.world, "World: a shipped name or an SDF file")->capture_default_str();
   app.add_option("--robot", options.robot,
                  "What USARBot.Kenaf is: a shipped name or a TOML file. Other classes, such as USARBot.P2AT, keep "
@@ -60,7 +62,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--log-level", log_level, "What is logged")
       ->capture_default_str()
-      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}));
+      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
+      ->transform(CLI::Transformer({{"warning", "warn"}}).description(""));  // the word that is logged
   CLI11_PARSE(app, argc, argv);
   options.udk_dialect = dialect == "udk";
   spdlog::set_level(spdlog::level::from_str(log_level));

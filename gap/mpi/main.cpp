@@ -8,8 +8,10 @@
 #include <mpi.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string_view>
 
 #include "gap/commands.hpp"
 #include "gap/ranks.hpp"
@@ -77,9 +79,17 @@ int run(int argc, char** argv, const Ranks& ranks) {
   return 0;
 }
 
+bool only_asks(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc, [](std::string_view word) {
+    return word == "-h" || word == "--help" || word == "--version";
+  });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Outside of mpirun, MPI starts only on machines that could start processes on others; help is for all.
+  if (only_asks(argc, argv)) return run(argc, argv, {});
   MPI_Init(&argc, &argv);
   Ranks ranks;
   MPI_Comm_rank(MPI_COMM_WORLD, &ranks.rank);

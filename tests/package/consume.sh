@@ -33,10 +33,15 @@ outside=$(grep -E '^-- (Installing|Up-to-date): ' "$work/install.log" | grep -vF
 holding=$(LC_ALL=C grep -rlaP "(?<![\w./-])\Q$source\E(?![\w.-])" "$prefix" || true)
 [ -z "$holding" ] || fail "the source folder's path is in $holding"
 
-version=$("$prefix/bin/kenaf-gap" --version)
+programs=(kenaf-candrives kenaf-canlog kenaf-draw kenaf-gap kenaf-relayd kenaf-world)
+[ ! -e "$prefix/bin/kenaf-gap-mpi" ] || programs+=(kenaf-gap-mpi)
+version=$("$prefix/bin/kenaf-world" --version) || fail "kenaf-world does not tell its version"
+for program in "${programs[@]}"; do
+  [ "$("$prefix/bin/$program" --version)" = "$version" ] || fail "$program is not of version $version"
+done
 
 # The installed world server finds its robots and worlds.
-(cd "$work" && exec "$prefix/bin/kenaf-world" --port 0 --port-file port --view off --cameras off) \
+(cd "$work" && exec "$prefix/bin/kenaf-world" --port 0 --port-file port --view off --cameras off --log-level warning) \
   >"$work/world.log" 2>&1 & server=$!
 for _ in $(seq 100); do
   [ ! -s "$work/port" ] && kill -0 "$server" 2>/dev/null || break

@@ -40,6 +40,10 @@ TEST_CASE("all options") {
   CHECK(options->relay.world_server.port == 4000);
   CHECK_FALSE(is_loopback(options->relay.listen));
   CHECK(options->relay.placement.pose == std::array<double, 6>{1, 2, 3, -0.1, 0.2, 0.3});
+  CHECK(options->log_level == "warn");
+  options = read({"--log-level", "warning"}, status);
+  REQUIRE(options);
+  CHECK(options->log_level == "warn");
   options =
       read({"--embedded", "--world", "step-100", "--robot", "kenaf", "--speed", "0", "--start", "start_1"}, status);
   REQUIRE(options);
