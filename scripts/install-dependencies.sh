@@ -12,7 +12,7 @@ packages=(
   libfmt-dev libjs-three libncurses-dev libpng-dev libsdformat-dev libspdlog-dev libtomlplusplus-dev libturbojpeg0-dev nettle-dev
   nlohmann-json3-dev
   # the package
-  dpkg-dev file
+  dpkg-dev file help2man
 )
 mode=${1:-all}
 case $mode in

@@ -38,6 +38,7 @@ programs=(kenaf-candrives kenaf-canlog kenaf-draw kenaf-gap kenaf-relayd kenaf-w
 version=$("$prefix/bin/kenaf-world" --version) || fail "kenaf-world does not tell its version"
 for program in "${programs[@]}"; do
   [ "$("$prefix/bin/$program" --version)" = "$version" ] || fail "$program is not of version $version"
+  grep -q version "$prefix/share/man/man1/$program.1" || fail "$program has no manual page"
 done
 
 # The installed world server finds its robots and worlds.
@@ -114,10 +115,10 @@ holds libkenaf-dev include/kenaf/hrt.h "lib/(.*/)?libkenaf_sim\.so" "lib/(.*/)?l
   "lib/(.*/)?cmake/kenaf/kenafConfig.cmake" "lib/(.*/)?pkgconfig/kenaf-sim.pc" "lib/(.*/)?pkgconfig/kenaf-real.pc"
 holds kenaf-data share/kenaf/robots/kenaf.toml share/kenaf/worlds/flat.sdf share/kenaf/manoeuvres/turn.toml
 holds kenaf bin/kenaf-world bin/kenaf-relayd bin/kenaf-draw bin/kenaf-canlog bin/kenaf-candrives bin/kenaf-gap \
-  lib/systemd/system/kenaf-relayd.service lib/systemd/system/kenaf-world.service \
+  share/man/man1/kenaf-world.1 lib/systemd/system/kenaf-relayd.service lib/systemd/system/kenaf-world.service \
   share/kenaf/page/index.html share/kenaf/page/three/three.module.js share/kenaf/page/three/OrbitControls.js \
   share/doc/kenaf/README.md share/doc/kenaf/docs/user-guide.md share/doc/kenaf/examples/square.c
-[ ! -e "$prefix/bin/kenaf-gap-mpi" ] || holds kenaf-gap-mpi bin/kenaf-gap-mpi
+[ ! -e "$prefix/bin/kenaf-gap-mpi" ] || holds kenaf-gap-mpi bin/kenaf-gap-mpi share/man/man1/kenaf-gap-mpi.1
 
 # The units start what the packages install.
 for unit in "$work"/root/usr/lib/systemd/system/*.service; do
