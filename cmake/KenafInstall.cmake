@@ -81,7 +81,7 @@ endif()
 
 foreach(component ${CPACK_COMPONENTS_ALL})
   string(TOUPPER ${component} key)
-  install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/doc/${CPACK_DEBIAN_${key}_PACKAGE_NAME}" RENAME copyright
-    COMPONENT ${component})
+  install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DATAROOTDIR}/doc/${CPACK_DEBIAN_${key}_PACKAGE_NAME}"
+    RENAME copyright COMPONENT ${component})
 endforeach()
 include(CPack)

@@ -102,8 +102,8 @@ function(kenaf_compile_lightly)
   endif()
 endfunction()
 
-# kenaf_program(NAME sources... [COMPONENT c]): an installed program, with its main() in main.cpp. The component says which
-# package it is in (KenafInstall.cmake).
+# kenaf_program(NAME sources... [COMPONENT c]): an installed program, with its main() in main.cpp. The component says
+# which package it is in (KenafInstall.cmake).
 function(kenaf_program name)
   cmake_parse_arguments(PROGRAM "" "COMPONENT" "" ${ARGN})
   if(NOT PROGRAM_COMPONENT)
@@ -117,9 +117,9 @@ function(kenaf_program name)
   install(TARGETS ${name} RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT ${PROGRAM_COMPONENT})
 endfunction()
 
-# kenaf_manual(NAME "what it is" [COMPONENT c]): the program's manual page, made of what the program and its commands say of
-# themselves, so that the two never differ. Programs that are built for another machine cannot be asked, and those of a
-# sanitizer are not installed.
+# kenaf_manual(NAME "what it is" [COMPONENT c]): the program's manual page, made of what the program and its commands say
+# of themselves, so that the two never differ. Programs that are built for another machine cannot be asked, and those of
+# a sanitizer are not installed.
 if(NOT CMAKE_CROSSCOMPILING AND NOT KENAF_SANITIZE)
   find_program(KENAF_HELP2MAN help2man DOC "Makes the manual pages")
 endif()

@@ -11,9 +11,10 @@ namespace kenaf {
 // All places where they are looked for, in that order, whether they exist or not.
 std::vector<std::filesystem::path> data_roots();
 
-// The path of `name` + `extension` in `folder` ("robots", "worlds"): first below $KENAF_DATA_DIR, then below share/kenaf of
-// the install prefix or the build tree, which are found relative to the running program, and to the shared library that
-// asks. Where `name` contains a '/' or ends in `extension` it is a path and is returned as it is. Empty: not found anywhere.
+// The path of `name` + `extension` in `folder` ("robots", "worlds"): first below $KENAF_DATA_DIR, then below share/kenaf
+// of the install prefix or the build tree, which are found relative to the running program, and to the shared library
+// that asks. Where `name` contains a '/' or ends in `extension` it is a path and is returned as it is. Empty: not found
+// anywhere.
 std::filesystem::path find_data_file(std::string_view folder, const std::string& name, std::string_view extension);
 
 // All of `folder` that end in `extension`, by file name; where a name is in more than one of those places, the first.

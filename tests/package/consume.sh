@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# A stranger's project uses the installed package, by find_package and by pkg-config; the installed programs run without the
-# source tree; the Debian packages hold what each is for, and bring what it needs.
+# A stranger's project uses the installed package, by find_package and by pkg-config; the installed programs run without
+# the source tree; the Debian packages hold what each is for, and bring what it needs.
 #
 #   consume.sh BUILD_DIR SOURCE_DIR
 set -euo pipefail
@@ -129,12 +129,15 @@ done
 needs() {  # PACKAGE WORDS...
   local package=$1 words depends; shift
   depends=$(field "$package" Depends)
-  for words in "$@"; do grep -qF "$words" <<<"$depends" || fail "$package does not depend on $words, but on $depends"; done
+  for words in "$@"; do
+    grep -qF "$words" <<<"$depends" || fail "$package does not depend on $words, but on $depends"
+  done
 }
 # A robot's computer gets neither physics nor cameras.
 needs "$library" "kenaf-data (= $version)" libturbojpeg0
 ! field "$library" Depends | grep -E 'libbullet|libembree|libopenmpi' || fail "$library brings too much"
-dpkg-deb --ctrl-tarfile "$(deb "$library")" | tar -xO ./triggers | grep -q ldconfig || fail "$library does not call ldconfig"
+dpkg-deb --ctrl-tarfile "$(deb "$library")" | tar -xO ./triggers | grep -q ldconfig ||
+  fail "$library does not call ldconfig"
 needs libkenaf-dev "$library (= $version)"
 needs kenaf "kenaf-data (= $version)" libbullet libturbojpeg0
 ! field kenaf Depends | grep libopenmpi || fail "kenaf brings OpenMPI"
