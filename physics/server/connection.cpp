@@ -56,7 +56,7 @@ void Connection::flush() {
     if (error && error != asio::error::would_block) return close();
   }
   if (session_.out.size() > kMostUnread_bytes) {
-    spdlog::warn("{}: closed: it does not read what it is sent", session_.peer);
+    if (!session_.close) spdlog::warn("{}: closed: it does not read what it is sent", session_.peer);
     return close();
   }
   if (!session_.out.empty() && !waiting_) wait_until_writable();

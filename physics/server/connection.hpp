@@ -14,9 +14,6 @@ double steady_seconds();
 
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  // A client that does not read is let go beyond this; a few minutes of everything a robot reports.
-  static constexpr std::size_t kMostUnread_bytes = 8 << 20;
-
   // `closed` is called once, when the client is gone or was let go.
   Connection(boost::asio::ip::tcp::socket socket, Simulation& simulation, std::string peer,
              std::function<void(Connection&)> closed);

@@ -89,6 +89,7 @@ void Simulation::disconnect(const Session& session) {
 
 void Simulation::receive(Session& session, std::string_view bytes, double now_wall_s) {
   wall_s = now_wall_s;
+  if (session.close) return;
   if (!session.lines.push(bytes)) {
     ++session.bad_lines;
     complain(*this, session, "a line is longer than 64 KiB", "");
@@ -97,6 +98,13 @@ void Simulation::receive(Session& session, std::string_view bytes, double now_wa
     handle_line(session, *line);
     if (session.bad_lines > kMostBadLines) {
       spdlog::warn("{}: closed after {} lines that are no USARSim messages", session.peer, session.bad_lines);
+      session.close = true;
+      return;
+    }
+    // Here and not once all lines are obeyed: a packet has room for hundreds of requests of long answers, and all of
+    // them would hold up the world.
+    if (session.out.size() > kMostUnread_bytes) {
+      spdlog::warn("{}: closed: more than {} MiB wait for it", session.peer, kMostUnread_bytes >> 20);
       session.close = true;
       return;
     }

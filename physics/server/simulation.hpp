@@ -22,6 +22,7 @@ namespace kenaf::server {
 
 inline constexpr std::size_t kMostRobots = 64;
 inline constexpr std::uint64_t kMostBadLines = 1000;  // then the connection is closed
+inline constexpr std::size_t kMostUnread_bytes = 8 << 20;  // likewise; a few minutes of everything a robot reports
 
 // What CONTROL {Type Create} made.
 struct WorldObject {
@@ -39,7 +40,8 @@ struct Simulation {
   Session& connect(std::string peer);
   // It left, and its robot with it.
   void disconnect(const Session& session);
-  // Bytes from a client: its whole lines are obeyed at once, or kept for the frame they are meant for.
+  // Bytes from a client: its whole lines are obeyed at once, or kept for the frame they are meant for. One whose session
+  // is to be closed is not obeyed any more.
   void receive(Session& session, std::string_view bytes, double wall_s);
 
   struct Progress {

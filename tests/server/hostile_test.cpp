@@ -37,6 +37,25 @@ TEST_CASE("commands for one frame are bounded") {
   CHECK(talk.session->deferred.size() <= 65536);
 }
 
+TEST_CASE("one packet of many requests is answered until too much waits, then its client is let go") {
+  Conversation talk;
+  for (int i = 0; i < 1000; ++i) {
+    talk.send("CONTROL {Type Create} {ClassName Box} {Name Box" + std::to_string(i) + "} {Location 0,0,0}\r\n");
+  }
+  REQUIRE(talk.simulation.objects.size() == 1000);
+  std::string packet;
+  for (int i = 0; i < 780; ++i) packet += "CONTROL{Type GetSTA}\n";
+  REQUIRE(packet.size() <= 16384);  // what a connection reads at once
+  // An answer of 1000 objects is some 100 KB or more, so all of them would be 80 MB.
+  talk.session->out.clear();
+  talk.send(packet);
+  CHECK(talk.session->close);
+  CHECK(talk.session->out.size() > 8 << 20);
+  CHECK(talk.session->out.size() < 9 << 20);
+  talk.send(packet);  // what is still on its way is not obeyed
+  CHECK(talk.session->out.size() < 9 << 20);
+}
+
 TEST_CASE("a name from outside cannot break an answer's grammar, nor fill it") {
   Conversation talk;
   const std::string answer = talk.answer_to("SET {Type \x01\x02} {Name " + std::string(5000, 'n') + "}\r\n");
