@@ -95,7 +95,7 @@ Descriptor open_udp(const Address& address, Address& bound) {
   return fd;
 }
 
-Descriptor connect_tcp(const HostPort& server, std::chrono::milliseconds limit, int cancel_fd) {
+std::optional<Descriptor> connect_tcp(const HostPort& server, std::chrono::milliseconds limit, int cancel_fd) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = AI_NUMERICSERV;
@@ -111,6 +111,7 @@ Descriptor connect_tcp(const HostPort& server, std::chrono::milliseconds limit, 
     if (error == 0 && ::connect(fd.get(), at->ai_addr, at->ai_addrlen) != 0) {
       error = errno == EINPROGRESS ? finish_connect(fd.get(), limit, cancel_fd) : errno;
     }
+    if (error == ECANCELED) return std::nullopt;
     if (error != 0) continue;
     const int on = 1;
     ::setsockopt(fd.get(), IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -49,7 +50,7 @@ Address parse_address(std::string_view text);
 Descriptor open_udp(const Address& address, Address& bound);
 
 // A TCP connection that does not block, with TCP_NODELAY. Waits at most `limit`, and no longer once `cancel_fd` is
-// readable.
-Descriptor connect_tcp(const HostPort& server, std::chrono::milliseconds limit, int cancel_fd);
+// readable: nullopt, which says nothing about the server.
+std::optional<Descriptor> connect_tcp(const HostPort& server, std::chrono::milliseconds limit, int cancel_fd);
 
 }  // namespace kenaf::relayd

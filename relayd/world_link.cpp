@@ -77,9 +77,12 @@ void WorldLink::run(const std::atomic<bool>& stopping) {
     } catch (const std::exception& error) {
       why = error.what();
     }
-    if (was_up_ || take_requests()) pause = kFirstPause;
     if (stopping) return;
-    if (why.empty()) continue;  // asked to connect anew
+    if (take_requests() || why.empty()) {  // what failed is no answer to what is asked for now
+      pause = kFirstPause;
+      continue;
+    }
+    if (was_up_) pause = kFirstPause;
     why = fmt::format("no world server at {}:{}: {}", server_.host, server_.port, why);
     if (was_up_ || why != reported) spdlog::warn("{}; trying again", why);
     reported = why;
@@ -97,7 +100,9 @@ void WorldLink::run(const std::atomic<bool>& stopping) {
 std::string WorldLink::serve(const std::atomic<bool>& stopping) {
   take_requests();
   if (stopping) return {};
-  Connection connection{std::make_shared<Descriptor>(connect_tcp(server_, kConnectWithin, waker_.fd())),
+  std::optional<Descriptor> socket = connect_tcp(server_, kConnectWithin, waker_.fd());
+  if (!socket) return {};
+  Connection connection{std::make_shared<Descriptor>(std::move(*socket)),
                         WorldHandshake(placement_, request_.session, Clock::now())};
   std::array<char, 65536> bytes;
   std::array<pollfd, 2> watched{{{connection.socket->get(), POLLIN, 0}, {waker_.fd(), POLLIN, 0}}};

@@ -1,0 +1,82 @@
+// A relay in its own thread, for tests that talk to it over real sockets.
+#pragma once
+
+#include <spdlog/sinks/ringbuffer_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "relayd/relay.hpp"
+
+namespace kenaf::test {
+
+template <class Condition>
+bool eventually(Condition condition) {
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+// What the relay logs, instead of printing it.
+class LogCapture {
+ public:
+  LogCapture() : sink_(std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(200)), before_(spdlog::default_logger()) {
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("test", sink_));
+  }
+  ~LogCapture() { spdlog::set_default_logger(before_); }
+  int count(const std::string& part) const {
+    const auto lines = sink_->last_formatted();
+    return static_cast<int>(std::count_if(
+        lines.begin(), lines.end(), [&](const std::string& line) { return line.find(part) != std::string::npos; }));
+  }
+
+ private:
+  std::shared_ptr<spdlog::sinks::ringbuffer_sink_mt> sink_;
+  std::shared_ptr<spdlog::logger> before_;
+};
+
+class RunningRelay {
+ public:
+  explicit RunningRelay(std::uint16_t world_port) : relay_(options(world_port)), thread_([this] { relay_.run(); }) {}
+  ~RunningRelay() { stop(); }
+  std::uint16_t port() const { return relay_.address().port; }
+  void stop() {
+    if (!thread_.joinable()) return;
+    relay_.stop();
+    thread_.join();
+  }
+
+ private:
+  static relayd::RelayOptions options(std::uint16_t world_port) {
+    relayd::RelayOptions out;
+    out.world_server = {"127.0.0.1", world_port};
+    out.listen = {0x7f000001, 0};
+    return out;
+  }
+  LogCapture log_;  // before the relay, so that it lives longer
+
+ public:
+  const LogCapture& log() const { return log_; }
+
+ private:
+  relayd::Relay relay_;
+  std::thread thread_;
+};
+
+inline bool is_welcome(const relay::Datagram& datagram) {
+  return std::holds_alternative<relay::Welcome>(datagram);
+}
+inline relay::Refused refusal(const relay::Datagram& datagram) {
+  REQUIRE(std::holds_alternative<relay::Refused>(datagram));
+  return std::get<relay::Refused>(datagram);
+}
+
+}  // namespace kenaf::test
