@@ -162,6 +162,7 @@ void Relay::take(const SessionAnswer& answer) {
 void Relay::take(const LinkUp& up) {
   if (up.request != wanted_link_) return;
   world_ = up;
+  unanswered_sessions_ = 0;  // what the last connection left unanswered it took with it
   world_heard_ = world_pinged_ = Clock::now();
   spdlog::info("connected to the world server at {}:{}{}", options_.world_server.host, options_.world_server.port,
                up.extended ? "" : ", a plain USARSim server: no lock step, its own rate");

@@ -101,7 +101,9 @@ void FakeWorld::serve(int fd) {
       const ssize_t got = ::recv(fd, bytes.data(), bytes.size(), 0);
       if (got <= 0) return;
       splitter.push({bytes.data(), static_cast<std::size_t>(got)});
-      while (const auto line = splitter.next()) handle(std::string(*line), fd);
+      while (const auto line = splitter.next()) {
+        if (!handle(std::string(*line), fd)) return;
+      }
       if (has_robot_ && owes_frame_) {
         owes_frame_ = false;
         ++frame_;
@@ -115,7 +117,8 @@ void FakeWorld::serve(int fd) {
   }
 }
 
-void FakeWorld::handle(const std::string& line, int fd) {
+// False: it closes the connection.
+bool FakeWorld::handle(const std::string& line, int fd) {
   {
     const std::lock_guard lock(mutex_);
     lines_.push_back(line);
@@ -130,6 +133,8 @@ void FakeWorld::handle(const std::string& line, int fd) {
     send_text(fd, "GEO {Type GroundVehicle} {Name Kenaf} {WheelRadius 0.05} {WheelSeparation 0.4}\r\n");
   } else if (message.is("GETCONF") && type == "Encoder" && has_robot_) {
     send_text(fd, "CONF {Type Encoder} {Name Encoder} {Resolution 0.001}\r\n");
+  } else if (message.is("CONTROL") && ++controls_ == options_.closes_at_control) {
+    return false;
   } else if (message.is("CONTROL") && options_.extended) {
     period_s_ = number(message, "Period", period_s_);
     lockstep_ = message.find("Lockstep") == "True";
@@ -154,6 +159,7 @@ void FakeWorld::handle(const std::string& line, int fd) {
       send_frame(fd);
     }
   }
+  return true;
 }
 
 void FakeWorld::step() {

@@ -21,6 +21,7 @@ struct FakeWorldOptions {
   std::string garbage;     // sent before each frame
   std::size_t piece = 0;   // bytes a send() carries at most, 0: all
   bool accepts_robot = true;
+  int closes_at_control = 0;  // closes the connection instead of answering the n-th CONTROL in all, 0: none
 };
 
 class FakeWorld {
@@ -40,7 +41,7 @@ class FakeWorld {
  private:
   void run();
   void serve(int fd);
-  void handle(const std::string& line, int fd);
+  bool handle(const std::string& line, int fd);
   void step();
   void send_frame(int fd);
   void send_text(int fd, const std::string& text);
@@ -51,6 +52,7 @@ class FakeWorld {
   std::atomic<bool> stopping_{false}, mute_{false};
   std::atomic<int> connections_{0};
   std::atomic<double> x_m_{0}, speed_mps_{0};
+  int controls_ = 0;
   mutable std::mutex mutex_;
   std::vector<std::string> lines_;
 
