@@ -15,6 +15,9 @@ namespace {
 // A steering angle beyond it would be a turn on the spot.
 constexpr double kSteepestSteer_rad = 1.2;
 
+// Of a body velocity as clients send it, m/s and rad/s: more than any robot does, and few enough for sums of them.
+constexpr double kFastestAsked = 100;
+
 double clamped_speed(const SessionRobot& robot, double speed_mps) {
   const double most = robot.description->drive.max_speed_mps;
   return std::clamp(speed_mps, -most, most);
@@ -28,10 +31,14 @@ double surface_speed(const SessionRobot& robot, double value) {
   return clamped_speed(robot, speed_mps);
 }
 
+// Where one side cannot run as fast as that, both run slower: the robot is late, but on the curve that was asked for.
 void set_body_velocity(SessionRobot& robot, double linear_mps, double clockwise_radps) {
-  const double half_gauge_m = robot.description->track_gauge_m() / 2;
-  robot.command.track_speed_mps[physics::kLeft] = clamped_speed(robot, linear_mps + clockwise_radps * half_gauge_m);
-  robot.command.track_speed_mps[physics::kRight] = clamped_speed(robot, linear_mps - clockwise_radps * half_gauge_m);
+  const double turn_mps = clockwise_radps * robot.description->track_gauge_m() / 2;
+  const double faster_side_mps = std::abs(linear_mps) + std::abs(turn_mps);
+  const double most_mps = robot.description->drive.max_speed_mps;
+  const double share = faster_side_mps > most_mps ? most_mps / faster_side_mps : 1;
+  robot.command.track_speed_mps[physics::kLeft] = clamped_speed(robot, share * (linear_mps + turn_mps));
+  robot.command.track_speed_mps[physics::kRight] = clamped_speed(robot, share * (linear_mps - turn_mps));
 }
 
 void drive_skid(SessionRobot& robot, const MessageView& message) {
@@ -64,7 +71,8 @@ void drive_body_velocity(SessionRobot& robot, const MessageView& message) {
   auto& held = robot.body_velocity;
   held.linear_mps = number_of(message, "LinearVelocity").value_or(held.linear_mps);
   held.clockwise_radps = number_of(message, "RotationalVelocity").value_or(held.clockwise_radps);
-  set_body_velocity(robot, clamped_speed(robot, held.linear_mps), std::clamp(held.clockwise_radps, -100.0, 100.0));
+  set_body_velocity(robot, std::clamp(held.linear_mps, -kFastestAsked, kFastestAsked),
+                    std::clamp(held.clockwise_radps, -kFastestAsked, kFastestAsked));
 }
 
 // {Name n} opens a set, {Order}, {Value} and {Steer} fill it; what is missing is 0. Flippers do not steer.

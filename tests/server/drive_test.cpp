@@ -94,6 +94,28 @@ TEST_CASE("an Ackermann command drives the curve of its steering angle") {
   CHECK(kenaf.right_mps() == Approx(kenaf.radius_m()));
 }
 
+TEST_CASE("a curve at full speed is driven slower, not wider") {
+  Kenaf kenaf("USARBot.P2DX");
+  const auto& track = kenaf.description().track;
+  const double wheel_base_m = track.length_m - 2 * track.end_radius_m;
+  const double half_gauge_m = kenaf.description().track_gauge_m() / 2;
+  // Half the difference of the sides over half their sum: half the gauge over the radius of the curve, at any speed.
+  const auto bend = [&] { return (kenaf.left_mps() - kenaf.right_mps()) / (kenaf.left_mps() + kenaf.right_mps()); };
+  kenaf.send("DRIVE {Speed 100} {FrontSteer 0.1} {RearSteer 0} {Normalized True}\r\n");
+  CHECK(kenaf.left_mps() == Approx(kenaf.fastest_mps()));
+  CHECK(bend() == Approx(half_gauge_m * std::tan(0.1) / wheel_base_m));
+  kenaf.send("DRIVE {Speed -100} {FrontSteer 0.1}\r\n");
+  CHECK(kenaf.left_mps() == Approx(-kenaf.fastest_mps()));
+  CHECK(bend() == Approx(half_gauge_m * std::tan(0.1) / wheel_base_m));
+  // 1 rad/s at 10 m/s, which no P2DX reaches: a radius of 10 m all the same.
+  kenaf.send("DRIVE {LinearVelocity 10} {RotationalVelocity -1}\r\n");
+  CHECK(kenaf.right_mps() == Approx(kenaf.fastest_mps()));
+  CHECK(bend() == Approx(-half_gauge_m / 10));
+  kenaf.send("DRIVE {LinearVelocity 1e308} {RotationalVelocity 1e308}\r\n");
+  CHECK(kenaf.left_mps() == Approx(kenaf.fastest_mps()));
+  CHECK(std::abs(kenaf.right_mps()) <= kenaf.fastest_mps());
+}
+
 TEST_CASE("a body velocity is given to both tracks") {
   Kenaf kenaf;
   // 0.1 m/s ahead and 0.2 rad/s clockwise: left 0.1 + 0.2 gauge / 2.
