@@ -25,6 +25,7 @@ bool held_by(const Session& session, OperatorId who) {
 void release(Simulation& simulation, Session& session) {
   session.hold.reset();
   session.robot->command = standing_command();
+  forget_curve(*session.robot);
   simulation.apply_command(session);
   spdlog::info("robot {} is no longer driven by hand", session.robot->name);
 }

@@ -33,6 +33,12 @@ struct SessionRobot {
   std::vector<double> camera_field_of_view_rad;  // of each camera of the description, as zoomed; within its limits
 };
 
+// The client's command is over: a later DRIVE that names only a part of a curve finds the rest of it at 0.
+inline void forget_curve(SessionRobot& robot) {
+  robot.ackermann = {};
+  robot.body_velocity = {};
+}
+
 // Somebody who drives by hand: a connection of the live view. Never used twice in one server.
 enum class OperatorId : std::uint32_t {};
 

@@ -177,6 +177,7 @@ void Simulation::watch_silence(Session& session) {
   session.silent = true;
   SessionRobot& robot = *session.robot;
   robot.command.track_speed_mps = {};
+  forget_curve(robot);
   // A flipper that was told a speed or a torque would go on; one that was told an angle holds it.
   for (physics::JointCommand& joint : robot.command.flipper) {
     if (joint.mode != physics::JointMode::angle) joint = {physics::JointMode::brake, 0};
@@ -314,6 +315,8 @@ void Simulation::reset() {
     session->schedule.restart_at(0);
     if (!session->robot) continue;
     session->robot->command = resting_command(*session->robot->description);
+    forget_curve(*session->robot);
+    session->robot->normalized = false;
     session->robot->camera_field_of_view_rad = unzoomed(*session->robot->description);
     if (session->hold) session->hold->command = standing_command();
     apply_command(*session);

@@ -39,6 +39,19 @@ TEST_CASE("clients with a Session are told of a pause by an STA that repeats the
   CHECK(talk.last("STA").find("{Paused False}") != std::string::npos);
 }
 
+TEST_CASE("a reset forgets what earlier commands a later one would build on") {
+  Conversation talk = with_robot();
+  talk.send("DRIVE {Speed 50} {FrontSteer 0} {Normalized True}\r\n");
+  talk.send("DRIVE {LinearVelocity 0.4} {RotationalVelocity 0}\r\nCONTROL {Type Reset}\r\n");
+  talk.send("DRIVE {FrontSteer 0.1}\r\n");
+  CHECK(talk.command().track_speed_mps[physics::kLeft] == 0);
+  talk.send("DRIVE {RotationalVelocity 0}\r\n");
+  CHECK(talk.command().track_speed_mps[physics::kLeft] == 0);
+  talk.send("DRIVE {Left 2}\r\n");  // rad/s again, no per cent
+  CHECK(talk.command().track_speed_mps[physics::kLeft] ==
+        Approx(2 * talk.session->robot->description->drive.sprocket_radius_m));
+}
+
 TEST_CASE("a step runs exactly as long as it is asked to, pauses, and is answered when it is done") {
   Conversation talk = with_robot();
   CHECK(talk.answer_to("CONTROL {Type Step} {Time 0.5}\r\n").empty());

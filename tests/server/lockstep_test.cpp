@@ -204,6 +204,15 @@ TEST_CASE("a silent commander's robot stops, flippers hold their angle, and STA 
   CHECK(talk.command().track_speed_mps[physics::kRight] == 0);
 }
 
+TEST_CASE("a part of a curve does not bring back the speed that silence took") {
+  Framed talk("{Period 0.01} {CommandTimeout 0.3}");
+  talk.send("DRIVE {Speed 3} {FrontSteer 0}\r\n");
+  REQUIRE(talk.run(0.5));
+  REQUIRE(talk.session->silent);
+  talk.send("DRIVE {FrontSteer 0.1}\r\n");
+  CHECK(talk.left_mps() == 0);
+}
+
 TEST_CASE("whoever keeps commanding is not stopped, and a plain client never is") {
   Framed talk("{Period 0.01} {CommandTimeout 0.1}");
   for (int i = 0; i < 20; ++i) {

@@ -167,6 +167,19 @@ TEST_CASE("rule 3: let go of, the robot stands until its client says something n
   CHECK(desk.x() > before);
 }
 
+TEST_CASE("rule 3: a curve's parts from before are not completed by a part after it") {
+  Desk desk;
+  desk.send("DRIVE {Speed 5} {FrontSteer 0}\r\nDRIVE {LinearVelocity 0.4} {RotationalVelocity 0}\r\n");
+  REQUIRE(desk.take(kAnna).empty());
+  desk.send("DRIVE {Speed 5}\r\nDRIVE {LinearVelocity 0.4}\r\n");  // kept out, and not kept for later
+  REQUIRE(let_go(desk.simulation, desk.robot, kAnna).empty());
+  desk.send("DRIVE {FrontSteer 0.1}\r\n");
+  CHECK(desk.command().track_speed_mps == tracks(0, 0).track_speed_mps);
+  // 0.1 rad/s clockwise on the spot
+  desk.send("DRIVE {RotationalVelocity 0.1}\r\n");
+  CHECK(desk.command().track_speed_mps[physics::kLeft] == -desk.command().track_speed_mps[physics::kRight]);
+}
+
 TEST_CASE("rule 3: an operator whose connection ends lets go of all that he held") {
   Desk desk;
   std::uint32_t own = 0;
