@@ -48,6 +48,7 @@ struct ManualHold {
   physics::RobotCommand command;  // in force, in place of the client's
   double last_word_wall_s;
   bool silent = false;            // the command is to stand, until he says something
+  std::optional<std::uint64_t> stopped_in_step{};  // in which that was last commanded
 };
 
 struct Session {
@@ -69,6 +70,7 @@ struct Session {
   std::uint64_t command_timeout_steps = 0;  // 0: the robot keeps its command
   std::uint64_t last_command_step = 0;
   bool silent = false;
+  std::optional<std::uint64_t> stopped_in_step;  // because of silence; the last time
 
   std::uint64_t bad_lines = 0;
   LogLimiter bad_line_log{1, 5};
