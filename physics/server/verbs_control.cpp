@@ -79,7 +79,7 @@ void answer_session(const Simulation& simulation, Session& session) {
       .text("Status", "OK")
       .number("Period", static_cast<double>(session.schedule.period_steps()) * simulation.world.settings().time_step_s,
               session.formats.value)
-      .boolean("Lockstep", session.schedule.lockstep())
+      .boolean("Lockstep", session.schedule.numbered() && session.schedule.lockstep())  // it waits for frames only
       .end();
 }
 

@@ -27,6 +27,15 @@ TEST_CASE("a Session is answered with what is in force: whole time steps") {
         "RES {Time 0.000000000000} {Type Control} {Name Session} {Status OK} {Period 0.010000000000} {Lockstep True}");
 }
 
+TEST_CASE("lock step is not in force before there are frames to answer") {
+  Conversation talk;
+  talk.send(kPlace);
+  CHECK(talk.answer_to("CONTROL {Type Session} {Lockstep True}\r\n").ends_with("{Lockstep False}"));
+  CHECK(talk.run(1));
+  CHECK(talk.answer_to("CONTROL {Type Session} {Period 0.01}\r\n").ends_with("{Lockstep True}"));
+  CHECK_FALSE(talk.run(1));
+}
+
 TEST_CASE("a Session that makes no sense changes nothing") {
   Conversation talk;
   talk.send(kPlace);
