@@ -1,6 +1,6 @@
 // What a client can ask for, one function for each verb. Each obeys `message` for `session`, and writes its answer,
-// where the protocol has one, to session.out. What cannot be obeyed is ignored, as USARSim does, with a debug line in
-// the log.
+// where the protocol has one, to session.out. What cannot be obeyed is ignored, as USARSim does, with at most one
+// line in five seconds in the log.
 #pragma once
 
 #include <cstdint>
@@ -50,6 +50,8 @@ std::optional<bool> bool_of(const MessageView& message, std::string_view key);
 bool is_any_of(std::string_view text, std::initializer_list<std::string_view> words);  // without case
 // What a client sent, fit for a log line or an answer: printable, and not longer than 64 characters.
 std::string printable(std::string_view text);
+
+inline constexpr std::string_view kNoRobotYet = "a command before INIT placed a robot is ignored";
 
 // A warning about what a client sent, `text`: the first is a line in the log, more within 5 s are counted.
 void complain(const Simulation&, Session&, std::string_view what, std::string_view text);

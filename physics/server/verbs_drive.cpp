@@ -1,6 +1,4 @@
 // DRIVE in its skid, Ackermann, body-velocity and joint forms, and MULTIDRIVE.
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -121,7 +119,7 @@ void take_command(Simulation& simulation, Session& session) {
 }  // namespace
 
 void drive(Simulation& simulation, Session& session, const MessageView& message) {
-  if (!session.robot) return spdlog::debug("{}: DRIVE without a robot", session.peer);
+  if (!session.robot) return complain(simulation, session, kNoRobotYet, message.type);
   SessionRobot& robot = *session.robot;
   robot.normalized = bool_of(message, "Normalized").value_or(robot.normalized);
   robot.light = bool_of(message, "Light").value_or(robot.light);
@@ -139,7 +137,7 @@ void drive(Simulation& simulation, Session& session, const MessageView& message)
 }
 
 void multi_drive(Simulation& simulation, Session& session, const MessageView& message) {
-  if (!session.robot) return spdlog::debug("{}: MULTIDRIVE without a robot", session.peer);
+  if (!session.robot) return complain(simulation, session, kNoRobotYet, message.type);
   SessionRobot& robot = *session.robot;
   if (robot.description->has_flippers()) {
     const physics::RobotTruth truth = simulation.world.truth(robot.id);

@@ -1,6 +1,4 @@
 // SET in both dialects, and the camera mounts of MISPKG and ACT.
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -118,12 +116,13 @@ void set(Simulation& simulation, Session& session, const MessageView& message) {
   if (simulation.dialect == Dialect::ut2004) {
     answer(simulation, session, text_of(message, "Type"), text_of(message, "Name"), reason);
   } else if (!reason.empty()) {
-    spdlog::debug("{}: SET failed: {}", session.peer, reason);
+    complain(simulation, session, reason, message.type);
   }
 }
 
 void move_mission_package(Simulation& simulation, Session& session, const MessageView& message) {
-  if (!session.robot || session.hold) return;
+  if (!session.robot) return complain(simulation, session, kNoRobotYet, message.type);
+  if (session.hold) return;
   const SessionRobot& robot = *session.robot;
   const auto& packages = robot.description->mission_packages;
   const auto package = std::ranges::find_if(packages, [&](const physics::MissionPackageDescription& candidate) {

@@ -1,8 +1,34 @@
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
 #include <random>
+#include <sstream>
 
 #include "tests/server/conversation.hpp"
 
 namespace kenaf::server {
+
+namespace {
+
+// All that is logged, at the most talkative level.
+struct WholeLog {
+  std::ostringstream text;
+  std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
+
+  WholeLog() {
+    auto logger = std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text));
+    logger->set_level(spdlog::level::trace);
+    spdlog::set_default_logger(logger);
+  }
+  ~WholeLog() { spdlog::set_default_logger(before); }
+  WholeLog(const WholeLog&) = delete;
+  WholeLog& operator=(const WholeLog&) = delete;
+
+  std::ptrdiff_t lines() const { return std::ranges::count(text.view(), '\n'); }
+};
+
+}  // namespace
 
 TEST_CASE("lines that are no messages are survived, and a client of nothing but them is let go") {
   Conversation talk;
@@ -17,6 +43,23 @@ TEST_CASE("lines that are no messages are survived, and a client of nothing but 
   CHECK(talk.command().track_speed_mps[physics::kLeft] > 0);
   for (int i = 0; i < 1100; ++i) talk.send("{\r\n");
   CHECK(talk.session->close);
+}
+
+TEST_CASE("a thousand commands before INIT are one line in the log") {
+  const auto lines_logged = [](bool udk, std::string_view line) {
+    Conversation talk(fast(udk));
+    const WholeLog log;
+    for (int i = 0; i < 1000; ++i) talk.send(std::string(line) + "\r\n");
+    return log.lines();
+  };
+  for (const bool udk : {false, true}) {
+    CHECK(lines_logged(udk, "DRIVE {Left 1} {Right 1}") == 1);
+    CHECK(lines_logged(udk, "MULTIDRIVE {FRFlipper 1}") == 1);
+    CHECK(lines_logged(udk, "MISPKG {Name C} {Link 1} {Value 1}") == 1);
+  }
+  const std::string set = "SET {Type Joint} {Name FRFlipper} {Opcode Angle} {Params 1}";
+  CHECK(lines_logged(true, set) == 1);
+  CHECK(lines_logged(false, set) == 0);  // answered, each
 }
 
 TEST_CASE("a line without end is dropped, bounded in memory, and what follows it is understood") {
