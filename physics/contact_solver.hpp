@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/belt_ground.hpp"
+#include "physics/body_groups.hpp"
 #include "physics/bullet.hpp"
 #include "physics/contact.hpp"
 #include "physics/joint_rows.hpp"
@@ -21,15 +22,13 @@ class ContactSolver {
     contacts_.reserve(kManyContacts);  // without a robot: of boxes
   }
 
-  void add_belt(Belt* belt) {
-    belts_.push_back(belt);
-    contacts_.reserve(kManyContacts * belts_.size());
-    belt_ground_.make_room(kManyPairs * belts_.size());
-  }
-  void remove_belt(Belt* belt) { std::erase(belts_, belt); }
+  // `body`: that it belongs to, or one that is joined to that.
+  void add_belt(Belt* belt, const btRigidBody* body);
+  void remove_belt(Belt* belt);
   // For what leaves its place or the world: contacts() no longer speaks of it.
   void forget_contacts_of(const btCollisionObject& object);
-  // One step's impulses, written back as velocities. Each of `joints` is a FlipperJoint.
+  // One step's impulses, written back as velocities. Each of `joints` is a FlipperJoint. What one group of bodies does has
+  // no influence on how another is solved: each stops where nothing changes in it any more.
   void solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatcher& dispatcher,
              btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info);
   // Of the last step.
@@ -39,10 +38,19 @@ class ContactSolver {
   // Of one side of a robot, so that a step need not allocate. In a field of pallets each of its three belts is near ten or more.
   static constexpr std::size_t kManyContacts = 128, kManyPairs = 48;
 
+  struct BeltOfBody {
+    Belt* belt;
+    const btRigidBody* body;
+  };
+
   SolverBody* solver_body(const btCollisionObject& object);  // null: it is fixed
+  std::size_t group_of(const btCollisionObject& moving) const;
+  // Fills groups_, and which joints, belts and touches are in them.
+  void find_groups(btDispatcher& dispatcher, const btAlignedObjectArray<btTypedConstraint*>& joints);
+  void make_joints(const btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info);
   void make_contacts(btDispatcher& dispatcher, btScalar time_step);
   void start_belts();
-  btScalar iterate(btScalar time_step);  // gives the largest square of a change of velocity
+  btScalar iterate(std::size_t group, btScalar time_step);  // gives the largest square of a change of velocity
   void add_manifold(btPersistentManifold& manifold, btScalar time_step);
   void add_belt_pair(BeltPair& pair, btScalar time_step);
   static btScalar solve_running_gear(Belt& belt, btScalar time_step);  // gives the largest square of a speed change
@@ -50,9 +58,15 @@ class ContactSolver {
   ContactSettings settings_;
   BeltGround& belt_ground_;
   std::vector<SolverBody> bodies_;
+  std::vector<BeltOfBody> belts_;
+  BodyGroups groups_;
+  // Places in Bullet's list of joints, in belts_, and in touching_.
+  PlacesByGroup joints_by_group_, belts_by_group_, touching_by_group_;
+  std::vector<std::size_t> touching_;  // the number of a manifold that has contacts, or of a pair, counted on from those
+  // Group by group.
   std::vector<JointRows> joints_;
   std::vector<Contact> contacts_;
-  std::vector<Belt*> belts_;
+  std::vector<std::size_t> contacts_end_;  // of each group
 };
 
 }  // namespace kenaf::physics

@@ -23,22 +23,8 @@ void DynamicsWorld::predictUnconstraintMotion(btScalar time_step) {
   }
 }
 
-void DynamicsWorld::calculateSimulationIslands() {
-  // the joints' order follows from them; those of one robot are on one island
-  const auto same_robot = [this](int i) {
-    return &m_constraints[i]->getRigidBodyA() == &m_constraints[0]->getRigidBodyA();
-  };
-  for (int i = 1; i < m_constraints.size(); ++i)
-    if (!same_robot(i)) return btDiscreteDynamicsWorld::calculateSimulationIslands();
-}
-
 void DynamicsWorld::solveConstraints(btContactSolverInfo& info) {
-  m_sortedConstraints.resize(m_constraints.size());
-  for (int i = 0; i < m_constraints.size(); ++i) m_sortedConstraints[i] = m_constraints[i];
-  m_sortedConstraints.quickSort([](const btTypedConstraint* a, const btTypedConstraint* b) {
-    return a->getRigidBodyA().getIslandTag() < b->getRigidBodyA().getIslandTag();
-  });
-  solver_.solve(m_nonStaticRigidBodies, *getDispatcher(), m_sortedConstraints, info);
+  solver_.solve(m_nonStaticRigidBodies, *getDispatcher(), m_constraints, info);
 }
 
 void DynamicsWorld::integrateTransforms(btScalar time_step) {

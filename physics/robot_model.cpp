@@ -86,10 +86,12 @@ RobotModel::~RobotModel() {
 
 void RobotModel::enter_dynamics() {
   if (in_dynamics_) return;
-  for (Belt& belt : belts_) solver_.add_belt(&belt);
+  for (Belt& belt : belts_) solver_.add_belt(&belt, hull_.get());
   for (btRigidBody* body : body_list_) world_.addRigidBody(body);
-  for (FlipperBody& flipper : flippers_)
-    if (flipper.joint) world_.addConstraint(flipper.joint.get(), true);  // true: it does not collide with the hull
+  // the order in which they are solved
+  for (const Flipper which : {kRearLeft, kRearRight, kFrontLeft, kFrontRight})
+    if (const auto& joint = flippers_[which].joint)
+      world_.addConstraint(joint.get(), true);  // true: it does not collide with the hull
   in_dynamics_ = true;
 }
 

@@ -2,6 +2,8 @@
 // any compiler.
 #include <catch2/catch.hpp>
 #include <cstring>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <thread>
 
@@ -81,12 +83,48 @@ TEST_CASE("D2: worlds on two threads do not meet") {
   CHECK(got[1] == expected);
 }
 
-TEST_CASE("D3: another robot far away changes no bit") {
-  const auto hash = [](bool company) {
+namespace {
+
+// 2 s of one robot that comes before or after `others` further ones, 10 m apart, each with `their` command.
+std::uint64_t hash_in_company(const RobotCommand& own, int others, const RobotCommand& their = {}, bool first = true) {
+  World world(ground(), {}, 1);
+  const auto add = [&](const std::string& name, double x_m, const RobotCommand& command) {
+    const RobotId id = world.add_robot(load_robot("kenaf"), name, {{x_m, 0, 0}, Eigen::Quaterniond::Identity()});
+    world.set_command(id, command);
+    return id;
+  };
+  std::optional<RobotId> id;
+  if (first) id = add("a", 0, own);
+  for (int i = 1; i <= others; ++i) add("b" + std::to_string(i), 10 * i, their);
+  if (!first) id = add("a", 0, own);
+  Hash value;
+  for (int i = 0; i < 2000; ++i) {
+    world.step();
+    value.add(world.truth(*id));
+  }
+  return value.value;
+}
+
+}  // namespace
+
+TEST_CASE("D3: on a plane another robot far away changes no bit, whatever it does") {
+  const RobotCommand stand{}, straight = drive(0.3, 0.3), curve = drive(0.3, 0.1), spin = drive(0.3, -0.3);
+  for (const RobotCommand& own : {straight, curve}) {
+    const std::uint64_t alone = hash_in_company(own, 0);
+    for (const RobotCommand& their : {stand, straight, spin}) {
+      CHECK(hash_in_company(own, 1, their, true) == alone);
+      CHECK(hash_in_company(own, 1, their, false) == alone);
+    }
+    CHECK(hash_in_company(own, 2, spin) == alone);
+  }
+}
+
+TEST_CASE("D3: nor does a loose box far away that falls and tumbles") {
+  const auto hash = [](bool box) {
     World world(ground(), {}, 1);
+    if (box) world.add_box(loose_box({0.5, 0.3, 0.2}, {{10, 0, 2}, rotation_from({0.5, 0.3, 0})}, 5, 0.5));
     const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
-    if (company) world.add_robot(load_robot("kenaf"), "b", {{10, 0, 0}, Eigen::Quaterniond::Identity()});
-    world.set_command(id, drive(0.3, 0.1));
+    world.set_command(id, drive(0.3, 0.3));
     Hash value;
     for (int i = 0; i < 2000; ++i) {
       world.step();
