@@ -103,13 +103,16 @@ void ImageConnection::look() {
   if (!open_ || !request_ || sending_) return;
   const Feed::Look seen = desk_.feed.look(request_->view);
   const Clock::time_point now = Clock::now();
-  if (!seen.none.empty()) {
+  // A client of 2008 expects a picture and knows no words: it has nothing to do but wait for one.
+  const bool waits_for_picture = !request_->knows_words;
+  if (!seen.none.empty() && !waits_for_picture) {
     if (now < words_until_) return look_later(words_until_ - now);
     return send_words(seen.none);
   }
   const double waited_s = std::chrono::duration<double>(now - asked_).count();
   const bool is_new = seen.frame && (seen.frame->id != had_ || seen.frame->number != had_number_);
   if (is_new || (seen.frame && waited_s >= desk_.limits.repeat_s)) return answer(seen.frame);
+  if (!seen.frame && waits_for_picture) return look_later(kLookAgain);
   if (!seen.frame && waited_s >= desk_.limits.first_s) return send_words("the world server has no picture yet");
   const double until_s = (seen.frame ? desk_.limits.repeat_s : desk_.limits.first_s) - waited_s;
   look_later(std::min<Clock::duration>(kLookAgain, duration_of(until_s)));

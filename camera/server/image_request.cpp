@@ -16,6 +16,7 @@ std::optional<ImageRequest> ImageRequestParser::take(std::string_view& bytes) {
     ImageRequest request;
     request.kind = kind;
     request.view = view_;
+    request.knows_words = knows_words_;
     return request;
   };
   while (!bytes.empty()) {
@@ -31,6 +32,7 @@ std::optional<ImageRequest> ImageRequestParser::take(std::string_view& bytes) {
         if (byte == 'O') state_ = State::after_o;
         if (byte == 'U') state_ = State::part;
         if (byte == 'V') state_ = State::view_length;
+        if (byte == 'V' || byte == 'J') knows_words_ = true;
         if (byte == 'J') return whole(ImageRequest::Kind::jpeg);
         break;
       case State::part:

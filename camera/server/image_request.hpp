@@ -17,6 +17,7 @@ struct ImageRequest {
   Kind kind = Kind::picture;
   std::uint32_t x = 0, y = 0, width = 0, height = 0;  // of a part, as sent: whatever
   std::string view{};                          // V's bytes as sent; empty: the default
+  bool knows_words = false;                    // the client has sent V or J, so it knows what was added to USARSim's protocol
 };
 
 class ImageRequestParser {
@@ -31,6 +32,7 @@ class ImageRequestParser {
   std::array<unsigned char, 16> part_{};
   std::size_t count_ = 0, length_ = 0;         // of what is under way
   std::string coming_, view_;
+  bool knows_words_ = false;
 };
 
 }  // namespace kenaf::camera

@@ -222,7 +222,7 @@ TEST_CASE("I4: requests that pile up are one, and a silent reader has nothing dr
 TEST_CASE("I5: V chooses what is shown, also with two robots, and words say what there is") {
   CameraWorld world;
   ImageClient client(world.port());
-  Image image = client.ask();
+  Image image = client.ask("J");
   CHECK(image.type == 255);
   CHECK(image.words() == "there is no robot in the world, and so no camera");
   Robot first(world, "R1");
@@ -246,6 +246,19 @@ TEST_CASE("I5: V chooses what is shown, also with two robots, and words say what
   second.reset();
   CHECK(comes_true([&] { return client.ask().type == 255; }));
   CHECK(shown("") == "R1/Camera");
+}
+
+TEST_CASE("I5: an OK of a client that knows no words waits for the first picture, however long") {
+  ImageServerLimits limits;
+  limits.first_s = 0.1;
+  const bool chooses_a_part_first = GENERATE(false, true);  // U is as old as OK
+  CameraWorld world("flat", 1, ImageType::good, limits);
+  ImageClient client(world.port());
+  if (chooses_a_part_first) client.send(part_request(0, 0, 1, 1));
+  client.send("OK");
+  CHECK_FALSE(client.hears(500));
+  Robot robot(world, "R1");
+  CHECK(client.read().type == 2);
 }
 
 TEST_CASE("I5: robots may leave in mid-frame") {
