@@ -36,11 +36,12 @@ bool CommanderSession::is_commander(std::uint64_t session, const Address& from) 
 
 void CommanderSession::take(const relay::Hello& hello, const Address& from, TimePoint now) {
   if (const char* wrong = out_of_range(hello)) {
-    refuse(hello.session, from, relay::RefusedReason::bad_request, wrong);
+    if (answers_to_strangers_.allow(now)) refuse(hello.session, from, relay::RefusedReason::bad_request, wrong);
     return;
   }
   if (is_open()) {
     if (hello.session != hello_.session || from != commander_) {
+      if (!answers_to_strangers_.allow(now)) return;
       refuse(hello.session, from, relay::RefusedReason::busy,
              fmt::format("{} has commanded the robot for {:.1f} s", to_text(commander_), seconds(now - opened_)));
       return;
@@ -55,7 +56,8 @@ void CommanderSession::take(const relay::Hello& hello, const Address& from, Time
     return ended.session == hello.session && now - ended.when < kForgetEnded;
   };
   if (std::ranges::any_of(ended_, is_late_copy)) {
-    refuse(hello.session, from, relay::RefusedReason::unknown_session, "this session is over");
+    if (answers_to_strangers_.allow(now))
+      refuse(hello.session, from, relay::RefusedReason::unknown_session, "this session is over");
     return;
   }
   phase_ = Phase::opening;
@@ -111,7 +113,7 @@ void CommanderSession::on_frame(const WorldFrame& frame, TimePoint now) {
 
 void CommanderSession::take(const relay::Command& command, const Address& from, TimePoint now) {
   if (!is_commander(command.session, from)) {
-    if (command.session != hello_.session || phase_ == Phase::none) {
+    if ((command.session != hello_.session || phase_ == Phase::none) && answers_to_strangers_.allow(now)) {
       refuse(command.session, from, relay::RefusedReason::unknown_session,
              "the relay does not know this session; begin a new one with Hello");
     }
@@ -151,7 +153,7 @@ void CommanderSession::accept(const relay::Command& command) {
 
 void CommanderSession::take(const relay::Ping& ping, const Address& from, TimePoint now) {
   if (!is_commander(ping.session, from)) {
-    if (ping.session != hello_.session || phase_ == Phase::none) {
+    if ((ping.session != hello_.session || phase_ == Phase::none) && answers_to_strangers_.allow(now)) {
       refuse(ping.session, from, relay::RefusedReason::unknown_session, "the relay does not know this session");
     }
     return;

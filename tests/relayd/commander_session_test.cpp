@@ -102,6 +102,24 @@ TEST_CASE_METHOD(Fixture, "another commander is refused, and told who commands a
   CHECK(session.session() == 7);
 }
 
+TEST_CASE_METHOD(Fixture, "strangers get a hundred answers a second in all, and the commander all of his") {
+  const auto answers = [this](const auto& each) {
+    const std::size_t before = port.sent.size();
+    for (int i = 0; i < 10000; ++i) each(Address{0x0a000000u + static_cast<std::uint32_t>(i), 1111});
+    return port.sent.size() - before;
+  };
+  CHECK(answers([this](const Address& stranger) { from(stranger, relay::Ping{99, 1}); }) == 100);
+  CHECK(answers([this](const Address& stranger) { command(1, 0, 99, stranger); }) == 0);
+  open();
+  const std::size_t with_welcome = port.sent.size();
+  from(kFirst, relay::Command{7, 1, 0, {99, 0}, 0, {}});  // out of range
+  CHECK(port.sent.size() == with_welcome + 1);
+  now += 500ms;
+  CHECK(answers([this](const Address& stranger) { hello(stranger, 8); }) == 50);  // busy
+  now += 1h;
+  CHECK(answers([this](const Address& stranger) { from(stranger, relay::Hello{8, -1, 0.5, true, false}); }) == 100);
+}
+
 TEST_CASE_METHOD(Fixture, "an unknown session is told so, an unknown Bye is nobody's") {
   command(1, 0, 99);
   CHECK(refused() == relay::RefusedReason::unknown_session);
