@@ -2,23 +2,24 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <memory>
 #include <stdexcept>
 
 namespace kenaf::relayd {
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
 
 // Room for the commands of a second at 1 kHz, should the relay be held up. The kernel may grant less.
 constexpr int kReceiveBufferBytes = 1 << 20;
@@ -32,9 +33,9 @@ sockaddr_in to_sockaddr(const Address& address) {
 }
 
 // 0, or the errno with which the connection failed.
-int finish_connect(int fd, std::chrono::milliseconds limit, int cancel_fd) {
+int finish_connect(int fd, Clock::time_point until, int cancel_fd) {
   std::array<pollfd, 2> watched{{{fd, POLLOUT, 0}, {cancel_fd, POLLIN, 0}}};
-  const int ready = ::poll(watched.data(), watched.size(), static_cast<int>(limit.count()));
+  const int ready = ::poll(watched.data(), watched.size(), poll_timeout(until));
   if (ready < 0) return errno;
   if (watched[0].revents == 0) return ready == 0 ? ETIMEDOUT : ECANCELED;
   int error = 0;
@@ -95,21 +96,22 @@ Descriptor open_udp(const Address& address, Address& bound) {
   return fd;
 }
 
-std::optional<Descriptor> connect_tcp(const HostPort& server, std::chrono::milliseconds limit, int cancel_fd) {
-  addrinfo hints{};
-  hints.ai_socktype = SOCK_STREAM;
-  hints.ai_flags = AI_NUMERICSERV;
-  addrinfo* found = nullptr;
-  const int lookup = ::getaddrinfo(server.host.c_str(), std::to_string(server.port).c_str(), &hints, &found);
-  if (lookup != 0) throw std::runtime_error(::gai_strerror(lookup));
-  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
+int poll_timeout(Clock::time_point until) {
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+  return static_cast<int>(std::clamp<std::int64_t>(left, 0, 60000));
+}
 
+std::optional<Descriptor> connect_tcp(std::span<const Endpoint> endpoints, Clock::time_point deadline, int cancel_fd) {
   int error = EADDRNOTAVAIL;
-  for (const addrinfo* at = found; at != nullptr; at = at->ai_next) {
-    Descriptor fd(::socket(at->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+  for (std::size_t i = 0; i < endpoints.size(); ++i) {
+    const Endpoint& endpoint = endpoints[i];
+    Descriptor fd(::socket(endpoint.address.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     error = fd.get() < 0 ? errno : 0;
-    if (error == 0 && ::connect(fd.get(), at->ai_addr, at->ai_addrlen) != 0) {
-      error = errno == EINPROGRESS ? finish_connect(fd.get(), limit, cancel_fd) : errno;
+    if (error == 0 && ::connect(fd.get(), reinterpret_cast<const sockaddr*>(&endpoint.address), endpoint.size) != 0) {
+      // an address that is silent leaves as much time to each that follows
+      const Clock::time_point now = Clock::now();
+      const Clock::time_point until = now + (deadline - now) / static_cast<std::int64_t>(endpoints.size() - i);
+      error = errno == EINPROGRESS ? finish_connect(fd.get(), until, cancel_fd) : errno;
     }
     if (error == ECANCELED) return std::nullopt;
     if (error != 0) continue;

@@ -2,9 +2,12 @@
 // Functions throw std::runtime_error with words for a user unless they say otherwise.
 #pragma once
 
+#include <sys/socket.h>
+
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -49,8 +52,19 @@ Address parse_address(std::string_view text);
 // A bound UDP socket that does not block; `bound` becomes the address it got.
 Descriptor open_udp(const Address& address, Address& bound);
 
-// A TCP connection that does not block, with TCP_NODELAY. Waits at most `limit`, and no longer once `cancel_fd` is
-// readable: nullopt, which says nothing about the server.
-std::optional<Descriptor> connect_tcp(const HostPort& server, std::chrono::milliseconds limit, int cancel_fd);
+// For poll(): milliseconds until then, rounded up so that it does not return just before the time; a minute at most.
+int poll_timeout(std::chrono::steady_clock::time_point until);
+
+// What connect() takes, of whatever family.
+struct Endpoint {
+  sockaddr_storage address{};
+  socklen_t size = 0;
+};
+
+// A TCP connection to the first of `endpoints` that takes it, which does not block, with TCP_NODELAY. Waits until `deadline`
+// at most, shared among the endpoints, and no longer once `cancel_fd` is readable: nullopt, which says nothing about the
+// server.
+std::optional<Descriptor> connect_tcp(std::span<const Endpoint> endpoints, std::chrono::steady_clock::time_point deadline,
+                                      int cancel_fd);
 
 }  // namespace kenaf::relayd

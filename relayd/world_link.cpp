@@ -25,12 +25,6 @@ constexpr auto kLeaveWithin = 500ms;
 constexpr std::chrono::milliseconds kFirstPause = 50ms;
 constexpr std::chrono::milliseconds kLongestPause = 1s;
 
-// Milliseconds for poll(), rounded up so that it does not return just before the time.
-int poll_timeout(Clock::time_point until) {
-  const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
-  return static_cast<int>(std::clamp<std::int64_t>(left, 0, 60000));
-}
-
 // The few lines of a handshake always fit a fresh socket's buffer.
 void send_whole(int fd, const std::string& text) {
   if (text.empty()) return;
@@ -100,7 +94,10 @@ void WorldLink::run(const std::atomic<bool>& stopping) {
 std::string WorldLink::serve(const std::atomic<bool>& stopping) {
   take_requests();
   if (stopping) return {};
-  std::optional<Descriptor> socket = connect_tcp(server_, kConnectWithin, waker_.fd());
+  const auto deadline = Clock::now() + kConnectWithin;
+  const auto endpoints = lookup_.find(server_, deadline, waker_.fd());
+  if (!endpoints) return {};
+  std::optional<Descriptor> socket = connect_tcp(*endpoints, deadline, waker_.fd());
   if (!socket) return {};
   Connection connection{std::make_shared<Descriptor>(std::move(*socket)),
                         WorldHandshake(placement_, request_.session, Clock::now())};

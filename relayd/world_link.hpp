@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "protocol/usarsim_message.hpp"
+#include "relayd/address_lookup.hpp"
 #include "relayd/mailbox.hpp"
 #include "relayd/sensor_transform.hpp"
 #include "relayd/sockets.hpp"
@@ -67,6 +68,7 @@ class WorldLink {
   Waker waker_;
   LinkRequests requests_{waker_};
   LinkRequest request_;
+  AddressLookup lookup_;
   const std::atomic<bool>* stopping_ = nullptr;
   usarsim::MessageView message_;
   LogLimiter log_malformed_;
