@@ -50,7 +50,11 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
     if (recorder_) recorder_->add(*first, command_, estimate_.t_s);
     thread_ = start_quiet_thread([this, state = *first] { run(state); });
   } catch (...) {
-    transport_->close();
+    try {
+      transport_->close();
+    } catch (const std::exception&) {
+      // what went wrong first is what counts
+    }
     throw;
   }
 }
@@ -305,17 +309,27 @@ void Robot::close() {
     end_calls([](const Call&) { return true; }, HRT_E_CLOSED, failure_->what());
     program_acted_.notify_one();
   }
+  std::optional<Error> not_stopped;
   if (thread_.joinable()) {
     transport_->interrupt();
     thread_.join();
-    transport_->close();
+    try {
+      transport_->close();
+    } catch (const Error& error) {
+      not_stopped = error;
+    }
   }
   std::unique_ptr<Recorder> recorder;
   {
     const std::lock_guard lock(mutex_);
     recorder = std::move(recorder_);
   }
-  if (recorder) recorder->finish();
+  try {
+    if (recorder) recorder->finish();
+  } catch (const Error&) {
+    if (!not_stopped) throw;  // a robot that may still move is the worse news
+  }
+  if (not_stopped) throw *not_stopped;
 }
 
 // ---- The cycle thread ----

@@ -51,7 +51,7 @@ class Transport {
   // Makes wait_state return, now or at its next call; a state that is there already may be returned first.
   virtual void interrupt() = 0;
 
-  // Stops the robot and gives it back. Does not throw.
+  // Stops the robot and gives it back, also where it throws: Error where the robot did not show that it stopped.
   virtual void close() = 0;
 
   // What the robot goes on without, in words; "" where nothing is missing. As of the newest state, for the thread that waits for it.

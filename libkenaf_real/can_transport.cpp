@@ -138,10 +138,26 @@ void CanTransport::interrupt() {
 
 void CanTransport::close() {
   if (!session_) return;
-  if (!session_->lost) power_down(session_->cycle);
-  session_->master.stop_heartbeat();
-  session_->cycle.stop();
-  session_.reset();
+  const std::unique_ptr<Session> s = std::move(session_);
+  std::optional<Error> not_stopped;
+  const auto note = [&](int code, std::string_view what) {
+    not_stopped =
+        Error(code, fmt::format("closed, but not seen to stop: {}; without this program's heartbeat the drives "
+                                "stop by themselves after {} s",
+                                what, s->robot.master_silence_s));
+  };
+  try {
+    if (!s->lost) {
+      if (const std::string running = power_down(s->cycle); !running.empty()) note(HRT_E_DEVICE, running);
+    }
+  } catch (const Error& error) {
+    note(error.code(), error.what());
+  } catch (const canopen::BusError& error) {
+    note(HRT_E_LINK, error.what());
+  }
+  s->master.stop_heartbeat();
+  s->cycle.stop();
+  if (not_stopped) throw *not_stopped;
 }
 
 std::string CanTransport::warning() const {

@@ -156,6 +156,23 @@ bool stands(const BusCycle& cycle, std::size_t track) {
   return std::abs(velocity_from_drive(drive.units, cycle.image().drive(track).velocity)) < kStanding * drive.max_speed;
 }
 
+std::string not_stopped(const BusCycle& cycle, std::size_t i,
+                        const std::function<bool(const std::optional<Time>&)>& is_new) {
+  const std::string name = to_string(drive_node(cycle.bus(), i));
+  if (!is_new(cycle.image().drive(i).state_at)) return name + " is silent";
+  const PowerState state = state_of(cycle, i);
+  if (state != PowerState::operation_enabled) return name + " still runs";
+  return fmt::format("{} stays in the state \"{}\"", name, describe(state));
+}
+
+// One that does not take it stands all the same; what it does when the heartbeat ends is what it was told at the start.
+void end_watch(BusCycle& cycle, std::size_t i) try {
+  const canopen::MappedObject& watch = object::consumer_heartbeat_1;
+  cycle.master().write(drive_node(cycle.bus(), i),
+                       {watch.object, watch.type, 0, "end of the watch for the master's heartbeat"});
+} catch (const Error&) {
+}
+
 }  // namespace
 
 void power_up(BusCycle& cycle) {
@@ -171,21 +188,28 @@ void quick_stop(BusCycle& cycle) {
   cycle.send(orders);
 }
 
-void power_down(BusCycle& cycle) try {
-  quick_stop(cycle);
-  const Time until = cycle.master().now() + kPowerDown;
-  while (cycle.master().now() < until) {
+std::string power_down(BusCycle& cycle) {
+  const Time begin = cycle.master().now();
+  const auto is_new = [&](const std::optional<Time>& at) { return at && *at > begin; };
+  const auto has_stopped = [&](std::size_t i) {
+    const DriveInput& drive = cycle.image().drive(i);
+    const bool left = is_new(drive.state_at) && state_of(cycle, i) != PowerState::operation_enabled;
+    return left && (!canbus::is_track(i) || (is_new(drive.effort_at) && stands(cycle, i)));
+  };
+  std::string running;
+  do {
+    // in each cycle anew: a frame may get lost on its way to one drive
+    quick_stop(cycle);
     cycle.wait();
-    if (stands(cycle, relay::kLeft) && stands(cycle, relay::kRight) &&
-        state_of(cycle, 0) != PowerState::operation_enabled)
-      break;
-  }
+    running.clear();
+    for (std::size_t i = 0; i < kDriveCount; ++i) {
+      if (!has_stopped(i)) running += (running.empty() ? "" : ", ") + not_stopped(cycle, i, is_new);
+    }
+  } while (!running.empty() && cycle.master().now() < begin + kPowerDown);
   for (std::size_t i = 0; i < kDriveCount; ++i) {
-    cycle.master().write(drive_node(cycle.bus(), i),
-                         {object::consumer_heartbeat_1.object, object::consumer_heartbeat_1.type, 0,
-                          "end of the watch for the master's heartbeat"});
+    if (has_stopped(i)) end_watch(cycle, i);
   }
-} catch (const std::exception&) {
+  return running;
 }
 
 }  // namespace kenaf::real

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "canbus/robot_bus.hpp"
 #include "libkenaf_real/bus_cycle.hpp"
@@ -16,8 +17,9 @@ void power_up(BusCycle& cycle);
 // Quick stop for all, in one cycle. Does not wait.
 void quick_stop(BusCycle& cycle);
 
-// Quick stop; waits until the tracks stand, 0.3 s at most; then the drives no longer watch for the master's heartbeat, and
-// hold where they are. What fails is passed over: the drives stop by themselves when the heartbeat ends.
-void power_down(BusCycle& cycle);
+// Quick stop, told in each cycle until all drives show that they have left operation enabled and the tracks that they stand,
+// 0.3 s at most. Those that do no longer watch for the master's heartbeat, and hold where they are; the others keep their
+// watch, and so stop by themselves when the heartbeat ends. Returns these, in words; "" where there are none. Throws BusError.
+std::string power_down(BusCycle& cycle);
 
 }  // namespace kenaf::real

@@ -210,7 +210,9 @@ int hrt_kenaf_init_with(const hrt_config* config);
 /* Stops the tracks, ends a recording with the newest cycle, and gives the robot back. Calls that wait in other threads
  * return HRT_E_CLOSED. Also called when the process ends by exit() or by returning from main(). Without an open robot: HRT_OK,
  * also while another thread opens or closes it: an opening goes on.
- * HRT_E_RECORD: closed, but the recording is incomplete. */
+ * HRT_E_RECORD: closed, but the recording is incomplete. Of libkenaf_real also HRT_E_DEVICE and HRT_E_LINK: closed, but drives,
+ * which hrt_last_error() names, or the bus did not show that the robot stopped; its drives stop by themselves master_silence_s
+ * later. */
 int hrt_close(void);
 
 /* ---- Motions: blocking, closed-loop, one at a time ----

@@ -94,6 +94,7 @@ void FakeTransport::interrupt() {
 void FakeTransport::close() {
   const std::lock_guard lock(robot_->mutex);
   robot_->closed = true;
+  if (!robot_->close_error.empty()) throw Error(HRT_E_DEVICE, robot_->close_error);
 }
 
 }  // namespace test

@@ -30,6 +30,7 @@ struct FakeRobot {
   std::condition_variable changed;
   std::vector<DriveCommand> commands;  // commands[i] answers frame i + 1
   bool interrupted = false, closed = false;
+  std::string close_error;  // what close says of a robot that did not stop; "": it stopped
 };
 
 class FakeTransport final : public Transport {

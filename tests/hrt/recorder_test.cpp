@@ -161,6 +161,23 @@ TEST_CASE("R1 cycles go on while the disk makes the file of a recording") {
   CHECK(disk.written().row_count() >= 10);
 }
 
+TEST_CASE("closing a robot that does not show that it stopped says so, and the recording is whole all the same") {
+  const support::TemporaryFolder folder;
+  const auto robot = hrt::test::use_fake_robot();
+  robot->close_error = "closed, but track right (node 2) did not stop";
+  REQUIRE(hrt_kenaf_init() == HRT_OK);
+  REQUIRE(hrt_record_start(recording_in(folder).c_str()) == HRT_OK);
+  REQUIRE(hrt_sleep(0.1) == HRT_OK);
+  CHECK(hrt_close() == HRT_E_DEVICE);
+  CHECK(std::string(hrt_last_error()) == robot->close_error);
+  CHECK(std::filesystem::exists(recording_in(folder)));
+  // it is closed: there is nothing left to close, and it can be opened again
+  CHECK(hrt_close() == HRT_OK);
+  CHECK(hrt_kenaf_init() == HRT_OK);
+  robot->close_error.clear();
+  CHECK(hrt_close() == HRT_OK);
+}
+
 TEST_CASE("a lost robot is closed before a new one is opened, also while its recording waits for the disk") {
   const support::TemporaryFolder folder;
   StalledDisk disk(recording_in(folder));

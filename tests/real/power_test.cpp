@@ -1,0 +1,61 @@
+// From drives that hold to drives that obey, and back: no drive is let go of while it does not show that it stands, and
+// none that holds the robot is without torque while another program takes over.
+#include <catch2/catch.hpp>
+
+#include "hrt/error.hpp"
+#include "tests/real/robot_on_bus.hpp"
+
+using namespace kenaf;
+using namespace kenaf::real;
+using candrives::Sender;
+using canopen::PowerState;
+
+namespace {
+
+// The controlword of a frame that carries one, the first two bytes of an RPDO1.
+std::uint32_t controlword_of(const canopen::Frame& frame) {
+  return canopen::get_unsigned(frame.data, 0, 2);
+}
+
+hrt::Error error_of_closing(RobotOnBus& robot) {
+  try {
+    robot.transport.close();
+  } catch (const hrt::Error& error) {
+    return error;
+  }
+  return {HRT_OK, ""};
+}
+
+}  // namespace
+
+TEST_CASE("closing stops a track also where its first order to stop is lost") {
+  RobotOnBus robot;
+  robot.open();
+  robot.run(50, drive_at(0.2, 0.2));
+  bool was_lost = false;
+  robot.wire.alter = [&](canopen::Frame& frame, Sender sender) {
+    const bool first = sender == Sender::master && frame.id == 0x202 &&
+                       controlword_of(frame) == canopen::kControlQuickStop && !std::exchange(was_lost, true);
+    return !first;
+  };
+  CHECK(error_of_closing(robot).code() == HRT_OK);
+  CHECK(was_lost);
+  CHECK(robot.stands());
+  CHECK(robot.all_are(PowerState::quick_stop_active));
+}
+
+TEST_CASE("closing leaves a drive that does not stop to its own watch, and names it") {
+  RobotOnBus robot;
+  robot.open();
+  robot.run(50, drive_at(0.2, 0.2));
+  robot.wire.alter = [](canopen::Frame& frame, Sender sender) {
+    return sender != Sender::master || frame.id != 0x202 || controlword_of(frame) != canopen::kControlQuickStop;
+  };
+  const hrt::Error error = error_of_closing(robot);
+  CHECK(error.code() == HRT_E_DEVICE);
+  CHECK_THAT(error.what(), Catch::Contains("track right (node 2)") && Catch::Contains("operation enabled"));
+  CHECK_FALSE(Catch::Contains("track left").match(error.what()));
+  // it misses the heartbeat 0.1 s after the last one, and needs 0.2 m/s / 12.5 m/s^2 = 16 ms then
+  CHECK(robot.seconds_to_rest() <= 0.1 + 0.016 + 0.002);
+  CHECK(robot.all_are(PowerState::quick_stop_active));
+}
