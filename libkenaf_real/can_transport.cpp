@@ -76,6 +76,8 @@ hrt::Connection CanTransport::open(const hrt_config& config) try {
     send({});
   }
   return {.period_s = s.period_s, .lockstep = false};
+} catch (const OtherMaster& error) {
+  throw Error(HRT_E_REFUSED, error.what());
 } catch (const canbus::NoBus& error) {
   throw Error(HRT_E_DEVICE, error.what());
 } catch (const canopen::BusError& error) {
@@ -103,6 +105,10 @@ std::optional<relay::State> CanTransport::measure() try {
   s.newest = beat->number;
   s.round_trip_s = s.cycle.round_trip_s();
   return s.measured->update(s.cycle, *beat);
+} catch (const ControlLost&) {
+  session_->lost = true;
+  quick_stop(session_->cycle);
+  throw;
 } catch (const canopen::BusError& error) {
   session_->lost = true;
   throw Error(HRT_E_LINK, error.what());

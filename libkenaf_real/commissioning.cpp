@@ -46,15 +46,14 @@ std::string names(const std::vector<NamedNode>& nodes) {
   return out;
 }
 
+// A heartbeat of the master's node is refused by whoever waits for frames (Master::receive).
 void refuse_other_master(Master& master, const RobotBus& bus) {
-  const std::uint16_t its_heartbeat = static_cast<std::uint16_t>(canopen::kHeartbeatId + bus.master);
   const Time until = master.now() + to_time(bus.master_silence_s);
   while (const auto received = master.receive(until)) {
-    const bool heartbeat = received->frame.id == its_heartbeat;
-    if (!heartbeat && !is_sync(received->frame)) continue;
-    throw Error(HRT_E_REFUSED,
-                fmt::format("another program has the robot: {} is on {} already; end it first",
-                            heartbeat ? fmt::format("the heartbeat of node {}", bus.master) : "a SYNC", bus.interface));
+    if (!is_sync(received->frame)) continue;
+    throw Error(
+        HRT_E_REFUSED,
+        fmt::format("another program has the robot: a SYNC is on {} already; end that program first", bus.interface));
   }
 }
 
@@ -216,8 +215,8 @@ std::vector<SdoWrite> parameters_of(const RobotBus& bus, std::size_t i, double p
 
 NodeFacts commission(Master& master, const RobotBus& bus, double period_s, double patience_s) {
   refuse_other_master(master, bus);
+  master.start_heartbeat();  // from here on: who listens while the nodes start is to hear that there is a master
   reset_communication(master, bus, patience_s);
-  master.start_heartbeat();
   NodeFacts facts;
   for (std::size_t i = 0; i < canbus::kDriveCount; ++i)
     facts.rated_current_a[i] = set_up_drive(master, bus, i, period_s);

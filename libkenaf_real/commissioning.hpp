@@ -15,8 +15,8 @@ struct NodeFacts {
   double slope_unit_rad = 0;  // of the inclinometer's numbers
 };
 
-// Refuses a bus that already has a master; resets the communication of each node, and waits for all, `patience_s` at most;
-// writes everything that the description says; starts them. The master's heartbeat goes on from here.
+// Refuses a bus that already has a master; begins the master's heartbeat, which goes on from here; resets the communication of
+// each node, and waits for all, `patience_s` at most; writes everything that the description says; starts them.
 // Throws hrt::Error: HRT_E_REFUSED another program has the robot; HRT_E_DEVICE by name who does not answer, is not what
 // it should be, or refuses a value, and why.
 NodeFacts commission(Master& master, const canbus::RobotBus& bus, double period_s, double patience_s);

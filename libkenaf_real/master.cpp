@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hrt/error.hpp"
-
 namespace kenaf::real {
 namespace {
 
@@ -65,6 +63,7 @@ std::optional<ReceivedFrame> Master::receive(Time until) {
     }
     const Time wake = next_heartbeat_ ? std::min(until, *next_heartbeat_) : until;
     if (const std::optional<ReceivedFrame> frame = bus_.receive(wake)) {
+      refuse_own_heartbeat(*frame);
       if (watch_) watch_(*frame);
       return frame;
     }
@@ -75,6 +74,17 @@ std::optional<ReceivedFrame> Master::receive(Time until) {
     }
     if (after >= until) return std::nullopt;
   }
+}
+
+// The bus does not give back what this program sends.
+void Master::refuse_own_heartbeat(const ReceivedFrame& received) const {
+  const auto heartbeat = canopen::heartbeat_from(received.frame);
+  if (!heartbeat || heartbeat->node != own_node_) return;
+  throw OtherMaster(
+      HRT_E_LINK,
+      fmt::format("another program has the robot: the heartbeat of node {} is on the bus, and is not this one's; "
+                  "end one of the two, or is there a device with this number?",
+                  own_node_));
 }
 
 bool Master::wait_until(Time until, const std::function<bool()>& done) {

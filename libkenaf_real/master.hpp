@@ -11,6 +11,7 @@
 #include "canopen/bus.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/sdo_client.hpp"
+#include "hrt/error.hpp"
 
 namespace kenaf::real {
 
@@ -23,6 +24,17 @@ std::string to_string(const NamedNode& node);
 
 // Sees every frame that arrives, also while something else is waited for.
 using FrameWatch = std::function<void(const canopen::ReceivedFrame&)>;
+
+// The bus works and the drives obey, but not this program alone: they are to be told to stop, and nothing else.
+class ControlLost : public hrt::Error {
+ public:
+  using hrt::Error::Error;
+};
+// A heartbeat of this master's node came that is not its own. CiA 301, 7.2.8.2.2: a node id has one producer.
+class OtherMaster : public ControlLost {
+ public:
+  using ControlLost::ControlLost;
+};
 
 class Master {
  public:
@@ -37,7 +49,7 @@ class Master {
   void stop_heartbeat() { next_heartbeat_.reset(); }
 
   void watch(FrameWatch watch) { watch_ = std::move(watch); }
-  // As Bus::receive.
+  // As Bus::receive. Throws OtherMaster.
   std::optional<canopen::ReceivedFrame> receive(canopen::Time until);
   // Waits until `done` holds, looking after each frame; false: until has come, or interrupted.
   bool wait_until(canopen::Time until, const std::function<bool()>& done);
@@ -51,6 +63,7 @@ class Master {
   void write_if_there(const NamedNode& node, const canopen::SdoWrite& write);
 
  private:
+  void refuse_own_heartbeat(const canopen::ReceivedFrame& received) const;
   canopen::SdoOutcome run(canopen::SdoClient& client, const canopen::Frame& first);
 
   canopen::Bus& bus_;

@@ -175,11 +175,14 @@ void end_watch(BusCycle& cycle, std::size_t i) try {
 
 }  // namespace
 
-void power_up(BusCycle& cycle) {
+void power_up(BusCycle& cycle) try {
   enable_all(cycle);
   for (std::size_t i = 0; i < kDriveCount; ++i) write_mode(cycle, i, cycle.bus().drives[i].mode);
   home(cycle);
   cycle.watch_restarts();
+} catch (const Error&) {
+  quick_stop(cycle);  // those that are enabled, and may be moving home, do not wait until they miss the heartbeat
+  throw;
 }
 
 void quick_stop(BusCycle& cycle) {

@@ -11,7 +11,8 @@
 namespace kenaf::real {
 
 // Enables all drives, each with the target to stay where it is (tracks: speed 0), and homes flippers that ask for it, which
-// moves them. Faults that are left from before are reset. Throws hrt::Error(HRT_E_DEVICE) that names drive, state and error.
+// moves them. Faults that are left from before are reset. Throws hrt::Error(HRT_E_DEVICE) that names drive, state and error;
+// whatever it throws, all are told to stop.
 void power_up(BusCycle& cycle);
 
 // Quick stop for all, in one cycle. Does not wait.

@@ -125,7 +125,7 @@ std::optional<ReceivedFrame> SimulatedBus::deliver() {
   Frames frames;
   slaves_.on_frame(done.frame, now_, frames);
   put_all(frames);
-  if (done.is_own_sync) return ReceivedFrame{done.frame, now_};
+  if (done.is_own_sync || done.sender == Sender::other) return ReceivedFrame{done.frame, now_};
   return std::nullopt;
 }
 

@@ -19,7 +19,7 @@ namespace kenaf::candrives {
 inline constexpr canopen::Time kBitTime = std::chrono::microseconds(2);  // 500 kbit/s
 canopen::Time time_on_bus(const canopen::Frame& frame);
 
-enum class Sender { master, slaves };
+enum class Sender { master, slaves, other };  // other: somebody else on the bus, heard by both
 
 struct LoggedFrame {
   canopen::Time at;  // when it was received
@@ -43,6 +43,7 @@ class SimulatedBus final : public canopen::Bus {
   // ---- for tests ----
   RobotSlaves& slaves() { return slaves_; }
   void inject(const Fault& fault);
+  void send_as_other(const canopen::Frame& frame) { put(frame, Sender::other); }
   const std::vector<LoggedFrame>& log() const { return log_; }  // everything that was on the bus
   double load() const;                                        // share of the time in which it was busy
 
