@@ -25,6 +25,10 @@ constexpr Time kPowerDown = std::chrono::milliseconds(300);
 // Leaving quick stop straight to operation (CiA 402, transition 16) keeps the torque of flippers that carry the robot,
 // but not every drive can; after so many cycles it is left through "switch on disabled".
 constexpr int kHoldThroughQuickStop = 20;
+// The order that leads back is an edge to "enable" (candrives/power_states.hpp). A drive that stopped by itself,
+// because its master died, still has "enable" as its last controlword: so it hears "quick stop" first, which leads
+// nowhere from there (CiA 402-2, 10), and again every so many cycles, for a frame may get lost.
+constexpr int kEdgeEachCycles = 4;
 constexpr double kStanding = 0.01;  // of the full speed
 
 PowerState state_of(const BusCycle& cycle, std::size_t i) {
@@ -61,18 +65,24 @@ void run_until(BusCycle& cycle, Time patience, const std::function<DriveOrder(st
   }
 }
 
+std::uint16_t control_out_of_quick_stop(int cycles_in_it) {
+  if (cycles_in_it >= kHoldThroughQuickStop) return canopen::kControlDisableVoltage;
+  return cycles_in_it % kEdgeEachCycles == 1 ? canopen::kControlQuickStop : canopen::kControlEnable;
+}
+
 void enable_all(BusCycle& cycle) {
   std::array<int, kDriveCount> cycles_in_quick_stop{};
+  const auto controlword = [&](std::size_t i) {
+    if (!cycle.image().drive(i).state_at) return canopen::kControlDisableVoltage;
+    const PowerState state = state_of(cycle, i);
+    return state == PowerState::quick_stop_active
+               ? control_out_of_quick_stop(++cycles_in_quick_stop[i])
+               : canopen::control_towards_operation(state, cycle.sent()[i].controlword);
+  };
   run_until(
       cycle, kPowerUp,
       [&](std::size_t i) {
-        const PowerState state = state_of(cycle, i);
-        const bool hold = state == PowerState::quick_stop_active && ++cycles_in_quick_stop[i] < kHoldThroughQuickStop;
-        const bool known = cycle.image().drive(i).state_at.has_value();
-        return DriveOrder{!known ? canopen::kControlDisableVoltage
-                          : hold ? canopen::kControlEnable
-                                 : canopen::control_towards_operation(state, cycle.sent()[i].controlword),
-                          hold_target(cycle, i)};
+        return DriveOrder{controlword(i), hold_target(cycle, i)};
       },
       [&](std::size_t i) {
         return cycle.image().drive(i).state_at && state_of(cycle, i) == PowerState::operation_enabled;
