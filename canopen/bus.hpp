@@ -31,7 +31,7 @@ class Bus {
   // The next frame of another node, or a SYNC of start_sync; nullopt once `until` has come or interrupt() was called since
   // the last call. Throws BusError.
   virtual std::optional<ReceivedFrame> receive(Time until) = 0;
-  // Sends a SYNC every `period` from now on, by a clock that does not wait for this program; it ends with the program. Throws BusError.
+  // Sends a SYNC at once and then every `period`, by a clock that does not wait for this program; it ends with the program. Throws BusError.
   virtual void start_sync(Time period) = 0;
   virtual void stop_sync() = 0;
   virtual void interrupt() = 0;

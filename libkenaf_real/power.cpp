@@ -41,10 +41,28 @@ std::int32_t hold_target(const BusCycle& cycle, std::size_t i) {
 
 std::string not_enabled(const BusCycle& cycle, std::size_t i) {
   const DriveInput& drive = cycle.image().drive(i);
-  if (!drive.state_at) return fmt::format("{} sends no process data", to_string(drive_node(cycle.bus(), i)));
   return fmt::format("{} does not get enabled: it is in the state \"{}\" (statusword {:#06x}){}{}",
                      to_string(drive_node(cycle.bus(), i)), describe(state_of(cycle, i)), drive.statusword,
                      drive.emergency ? ": " : "", drive.emergency ? describe(*drive.emergency) : "");
+}
+
+void wait_in_set_up(BusCycle& cycle) {
+  if (!cycle.wait()) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");
+}
+
+// Nothing is told to any drive until all have been heard: what leads one on depends on the state in which it is, and
+// what is right for one without power takes the torque of one that holds the robot.
+void hear_all(BusCycle& cycle) {
+  const Time until = cycle.master().now() + kPowerUp;
+  for (std::size_t i = 0; i < kDriveCount;) {
+    if (cycle.image().drive(i).state_at) {
+      ++i;
+    } else if (cycle.master().now() > until) {
+      throw Error(HRT_E_DEVICE, to_string(drive_node(cycle.bus(), i)) + " sends no process data");
+    } else {
+      wait_in_set_up(cycle);
+    }
+  }
 }
 
 // Cycle by cycle, until `done` is true of all drives; `failure` says what it is where that takes too long.
@@ -52,7 +70,7 @@ void run_until(BusCycle& cycle, Time patience, const std::function<DriveOrder(st
                const std::function<bool(std::size_t)>& done, const std::function<std::string(std::size_t)>& failure) {
   const Time until = cycle.master().now() + patience;
   while (true) {
-    if (!cycle.wait()) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");
+    wait_in_set_up(cycle);
     std::optional<std::size_t> missing;
     DriveOrders orders;
     for (std::size_t i = 0; i < kDriveCount; ++i) {
@@ -73,7 +91,6 @@ std::uint16_t control_out_of_quick_stop(int cycles_in_it) {
 void enable_all(BusCycle& cycle) {
   std::array<int, kDriveCount> cycles_in_quick_stop{};
   const auto controlword = [&](std::size_t i) {
-    if (!cycle.image().drive(i).state_at) return canopen::kControlDisableVoltage;
     const PowerState state = state_of(cycle, i);
     return state == PowerState::quick_stop_active
                ? control_out_of_quick_stop(++cycles_in_quick_stop[i])
@@ -84,9 +101,7 @@ void enable_all(BusCycle& cycle) {
       [&](std::size_t i) {
         return DriveOrder{controlword(i), hold_target(cycle, i)};
       },
-      [&](std::size_t i) {
-        return cycle.image().drive(i).state_at && state_of(cycle, i) == PowerState::operation_enabled;
-      },
+      [&](std::size_t i) { return state_of(cycle, i) == PowerState::operation_enabled; },
       [&](std::size_t i) { return not_enabled(cycle, i); });
 }
 
@@ -186,6 +201,7 @@ void end_watch(BusCycle& cycle, std::size_t i) try {
 }  // namespace
 
 void power_up(BusCycle& cycle) try {
+  hear_all(cycle);
   enable_all(cycle);
   for (std::size_t i = 0; i < kDriveCount; ++i) write_mode(cycle, i, cycle.bus().drives[i].mode);
   home(cycle);

@@ -39,7 +39,7 @@ void SimulatedBus::start_sync(Time period) {
   check_up();
   if (master_dead_) return;
   sync_period_ = period;
-  next_sync_ = now_ + period;
+  next_sync_ = now_;
 }
 
 void SimulatedBus::stop_sync() {

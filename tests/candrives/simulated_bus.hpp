@@ -36,7 +36,7 @@ class SimulatedBus final : public canopen::Bus {
   canopen::Time now() const override { return now_; }
   void send(const canopen::Frame& frame) override;
   std::optional<canopen::ReceivedFrame> receive(canopen::Time until) override;
-  void start_sync(canopen::Time period) override;  // the first one a period from now
+  void start_sync(canopen::Time period) override;  // the first one at once, as the kernel does
   void stop_sync() override;
   void interrupt() override { interrupted_ = true; }
 

@@ -100,3 +100,19 @@ TEST_CASE("drives that hold the robot keep their torque while the next program t
     next.close();
   }
 }
+
+TEST_CASE("a drive that has not been heard yet is not told anything") {
+  RobotOnBus robot;
+  robot.open();
+  robot.transport.close();
+  REQUIRE(robot.all_are(PowerState::quick_stop_active));
+  bool was_missed = false;
+  std::set<PowerState> states;
+  robot.wire.alter = [&](canopen::Frame& frame, Sender sender) {
+    states.insert(robot.power(2));
+    return sender != Sender::slaves || frame.id != 0x183 || std::exchange(was_missed, true);
+  };
+  robot.open();
+  CHECK(was_missed);
+  CHECK(states == std::set{PowerState::operation_enabled, PowerState::quick_stop_active});
+}
