@@ -68,6 +68,7 @@ std::optional<Beat> BusCycle::wait() {
 }
 
 void BusCycle::send(const DriveOrders& orders) {
+  master_.check_pause();
   for (std::size_t i = 0; i < orders.size(); ++i) {
     const std::array<std::int64_t, 2> values{orders[i].controlword, orders[i].target};
     master_.send(pack(pdos_[i].command, bus_.drives[i].node, values));
@@ -76,7 +77,8 @@ void BusCycle::send(const DriveOrders& orders) {
   sent_ = orders;
 }
 
-// By the newest SYNC, not by the clock: a master that was held up finds the answers waiting, with the times at which they came.
+// By the newest SYNC, not by the clock: a master that was held up finds the answers waiting, with the times at which
+// they came.
 bool BusCycle::is_silent(const std::optional<Time>& at, double limit_s) const {
   return !at || (image_.sync_at() && *image_.sync_at() - *at > std::max(to_time(limit_s), 3 * period_));
 }

@@ -45,7 +45,7 @@ class BusCycle {
   // Waits for the next SYNC, and then until all nodes have answered it or 0.6 periods are over. nullopt: interrupted.
   // Throws hrt::Error(HRT_E_LINK): no SYNC comes any more.
   std::optional<Beat> wait();
-  // In force from the next SYNC on. `late`: it has come already.
+  // In force from the next SYNC on; late where it has come already. Throws HeldUp.
   void send(const DriveOrders& orders);
   const DriveOrders& sent() const { return sent_; }
   std::uint32_t late_orders() const { return late_; }

@@ -66,6 +66,7 @@ hrt::Connection CanTransport::open(const hrt_config& config) try {
   Session& s = *session_;
   s.lost = true;  // until all are enabled there is nothing to stop in an orderly way
   const NodeFacts facts = commission(s.master, s.robot, s.period_s, config.can_timeout_s);
+  s.master.watch_pauses(to_time(s.robot.master_silence_s));
   s.cycle.start();
   power_up(s.cycle);
   s.measured.emplace(s.robot, facts, s.period_s);
@@ -106,12 +107,16 @@ std::optional<relay::State> CanTransport::measure() try {
   s.round_trip_s = s.cycle.round_trip_s();
   return s.measured->update(s.cycle, *beat);
 } catch (const ControlLost&) {
-  session_->lost = true;
-  quick_stop(session_->cycle);
+  let_go();
   throw;
 } catch (const canopen::BusError& error) {
   session_->lost = true;
   throw Error(HRT_E_LINK, error.what());
+}
+
+void CanTransport::let_go() {
+  session_->lost = true;
+  try_quick_stop(session_->cycle);
 }
 
 // One drive does not obey any more: the others stop before anything else is done.
@@ -133,6 +138,9 @@ void CanTransport::send(const hrt::DriveCommand& command) try {
   const double elapsed_s = (s.answered == 0 ? 1 : s.newest - s.answered) * s.period_s;
   s.answered = s.newest;
   s.cycle.send(s.targets->step(command, s.cycle.image(), elapsed_s));
+} catch (const ControlLost&) {
+  let_go();
+  throw;
 } catch (const canopen::BusError& error) {
   session_->lost = true;
   throw Error(HRT_E_LINK, error.what());
@@ -157,6 +165,7 @@ void CanTransport::close() {
       if (const std::string running = power_down(s->cycle); !running.empty()) note(HRT_E_DEVICE, running);
     }
   } catch (const Error& error) {
+    try_quick_stop(s->cycle);
     note(error.code(), error.what());
   } catch (const canopen::BusError& error) {
     note(HRT_E_LINK, error.what());

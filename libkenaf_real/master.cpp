@@ -53,9 +53,21 @@ void Master::start_heartbeat() {
   if (!next_heartbeat_) next_heartbeat_ = now();
 }
 
+void Master::check_pause() {
+  if (!longest_pause_ || !next_heartbeat_) return;
+  const Time pause = now() - (*next_heartbeat_ - heartbeat_);
+  if (pause < *longest_pause_) return;
+  stop_heartbeat();
+  throw HeldUp(HRT_E_LINK,
+               fmt::format("this program was held up for {:.2f} s: its heartbeat was missed, and the drives stopped by "
+                           "themselves; hrt_close() and hrt_kenaf_init() start them again",
+                           std::chrono::duration<double>(pause).count()));
+}
+
 std::optional<ReceivedFrame> Master::receive(Time until) {
   interrupted_ = false;
   while (true) {
+    check_pause();
     const Time before = now();
     if (next_heartbeat_ && before >= *next_heartbeat_) {
       send(encode(canopen::Heartbeat{own_node_, canopen::NmtState::operational}));

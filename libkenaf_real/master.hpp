@@ -35,6 +35,11 @@ class OtherMaster : public ControlLost {
  public:
   using ControlLost::ControlLost;
 };
+// No heartbeat went out for so long that the drives have stopped by themselves.
+class HeldUp : public ControlLost {
+ public:
+  using ControlLost::ControlLost;
+};
 
 class Master {
  public:
@@ -47,9 +52,13 @@ class Master {
   // From now on a heartbeat goes out whenever one is due in receive().
   void start_heartbeat();
   void stop_heartbeat() { next_heartbeat_.reset(); }
+  // From now on the drives obey: a pause of `silence` in the heartbeat ends it, and is HeldUp from receive() and check_pause(),
+  // once, before anything else is sent. Drives whose watch began anew would take what comes next as if nothing had been.
+  void watch_pauses(canopen::Time silence) { longest_pause_ = silence; }
+  void check_pause();
 
   void watch(FrameWatch watch) { watch_ = std::move(watch); }
-  // As Bus::receive. Throws OtherMaster.
+  // As Bus::receive. Throws ControlLost.
   std::optional<canopen::ReceivedFrame> receive(canopen::Time until);
   // Waits until `done` holds, looking after each frame; false: until has come, or interrupted.
   bool wait_until(canopen::Time until, const std::function<bool()>& done);
@@ -69,7 +78,7 @@ class Master {
   canopen::Bus& bus_;
   canopen::NodeId own_node_;
   canopen::Time heartbeat_, answer_patience_;
-  std::optional<canopen::Time> next_heartbeat_;
+  std::optional<canopen::Time> next_heartbeat_, longest_pause_;
   FrameWatch watch_;
   bool interrupted_ = false;
 };

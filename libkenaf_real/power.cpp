@@ -207,7 +207,7 @@ void power_up(BusCycle& cycle) try {
   home(cycle);
   cycle.watch_restarts();
 } catch (const Error&) {
-  quick_stop(cycle);  // those that are enabled, and may be moving home, do not wait until they miss the heartbeat
+  try_quick_stop(cycle);  // those that are enabled, and may be moving home, do not wait until they miss the heartbeat
   throw;
 }
 
@@ -215,6 +215,9 @@ void quick_stop(BusCycle& cycle) {
   DriveOrders orders;
   for (std::size_t i = 0; i < kDriveCount; ++i) orders[i] = {canopen::kControlQuickStop, hold_target(cycle, i)};
   cycle.send(orders);
+}
+
+void try_quick_stop(BusCycle& cycle) try { quick_stop(cycle); } catch (const std::exception&) {
 }
 
 std::string power_down(BusCycle& cycle) {

@@ -17,6 +17,8 @@ void power_up(BusCycle& cycle);
 
 // Quick stop for all, in one cycle. Does not wait.
 void quick_stop(BusCycle& cycle);
+// The same for whoever has a worse error to tell than that the bus does not take it.
+void try_quick_stop(BusCycle& cycle);
 
 // Quick stop, told in each cycle until all drives show that they have left operation enabled and the tracks that they stand,
 // 0.3 s at most. Those that do no longer watch for the master's heartbeat, and hold where they are; the others keep their

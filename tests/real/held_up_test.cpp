@@ -1,0 +1,65 @@
+// A program that is held up (SIGSTOP, a machine that swaps, a debugger) and goes on: what it says then to drives that
+// have seen its heartbeat end.
+#include <catch2/catch.hpp>
+
+#include "hrt/error.hpp"
+#include "tests/real/robot_on_bus.hpp"
+
+using namespace kenaf;
+using namespace kenaf::real;
+using candrives::Sender;
+using canopen::PowerState;
+using std::chrono::milliseconds;
+
+namespace {
+
+// Controlwords that the master sends from now on, of any drive.
+std::shared_ptr<std::vector<std::uint16_t>> watch_controlwords(RobotOnBus& robot) {
+  auto words = std::make_shared<std::vector<std::uint16_t>>();
+  robot.wire.alter = [words](canopen::Frame& frame, Sender sender) {
+    if (sender == Sender::master && frame.id >= 0x201 && frame.id <= 0x206)
+      words->push_back(static_cast<std::uint16_t>(canopen::get_unsigned(frame.data, 0, 2)));
+    return true;
+  };
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("a program that was held up for longer than its drives wait for it says nothing but quick stop") {
+  // held up while it waits for a state, and between the state and its answer
+  for (const bool has_state : {false, true}) {
+    RobotOnBus robot;
+    robot.open();
+    robot.run(50, drive_at(0.2, 0.2));
+    if (has_state) (void)robot.transport.wait_state();
+    const canopen::Time begin = robot.wire.now();
+    robot.wire.run_until(begin + milliseconds(300));
+    REQUIRE(robot.all_are(PowerState::quick_stop_active));
+    const auto words = watch_controlwords(robot);
+    try {
+      if (has_state) robot.transport.send(drive_at(0.2, 0.2));
+      robot.run(3, drive_at(0.2, 0.2));
+      FAIL("it drives on");
+    } catch (const hrt::Error& error) {
+      CHECK(error.code() == HRT_E_LINK);
+      CHECK_THAT(error.what(), Catch::Contains("was held up for 0.3") && Catch::Contains("stopped by themselves"));
+    }
+    CHECK(*words == std::vector<std::uint16_t>(canbus::kDriveCount, canopen::kControlQuickStop));
+    for (const candrives::LoggedFrame& one : robot.wire.log())
+      CHECK_FALSE((one.at > begin + milliseconds(100) && one.frame.id == 0x77f));
+    robot.transport.close();
+    robot.open();
+    CHECK(robot.all_are(PowerState::operation_enabled));
+  }
+}
+
+TEST_CASE("a program that was held up for less than that goes on") {
+  RobotOnBus robot;
+  robot.open();
+  robot.run(50, drive_at(0.2, 0.2));
+  // the last heartbeat is 20 ms old at most, and the drives wait for 100 ms
+  robot.wire.run_until(robot.wire.now() + milliseconds(70));
+  robot.run(10, drive_at(0.2, 0.2));
+  CHECK(robot.all_are(PowerState::operation_enabled));
+}
