@@ -52,6 +52,9 @@ std::optional<Beat> BusCycle::wait() {
                 fmt::format("no SYNC on {} any more: is the interface still up? (`ip -details link show {}`)",
                             bus_.interface, bus_.interface));
   }
+  // After a hold-up more than one waits in the socket: answers to all of them would be taken within one period.
+  while (master_.now() - *image_.sync_at() >= period_ && master_.receive(master_.now())) {
+  }
   const Time answers_until = *image_.sync_at() + std::chrono::round<Time>(kAnswerShare * period_);
   if (master_.wait_until(answers_until, [this] { return image_.is_complete(); })) {
     round_trip_s_ = seconds(master_.now() - *image_.sync_at());

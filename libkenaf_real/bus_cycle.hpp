@@ -42,7 +42,8 @@ class BusCycle {
   void start();
   void stop();
 
-  // Waits for the next SYNC, and then until all nodes have answered it or 0.6 periods are over. nullopt: interrupted.
+  // Waits for the next SYNC, and then until all nodes have answered it or 0.6 periods are over; of several that wait, the newest
+  // alone is a beat. nullopt: interrupted.
   // Throws hrt::Error(HRT_E_LINK): no SYNC comes any more.
   std::optional<Beat> wait();
   // In force from the next SYNC on; late where it has come already. Throws HeldUp.

@@ -51,8 +51,7 @@ struct CanTransport::Session {
   BusCycle cycle;
   std::optional<MeasuredState> measured;
   std::optional<DriveTargets> targets;
-  std::uint32_t answered = 0, newest = 0;  // beats
-  // what of them, and of late orders, the opening took: known with the first state after it
+  // what of beats and of late orders the opening took: known with the first state after it
   std::uint32_t before = 0, late_before = 0;
   bool lost = false;
   std::atomic<double> round_trip_s = 0;
@@ -103,7 +102,6 @@ std::optional<relay::State> CanTransport::measure() try {
   const std::optional<Beat> beat = s.cycle.wait();
   if (!beat) return std::nullopt;
   if (const std::optional<std::size_t> drive = s.cycle.lost_drive()) lose(*drive);
-  s.newest = beat->number;
   s.round_trip_s = s.cycle.round_trip_s();
   return s.measured->update(s.cycle, *beat);
 } catch (const ControlLost&) {
@@ -134,10 +132,7 @@ void CanTransport::lose(std::size_t drive) {
 
 void CanTransport::send(const hrt::DriveCommand& command) try {
   Session& s = *session_;
-  // what came before the first answer, power-up and homing, is nothing that a ramp may make up for
-  const double elapsed_s = (s.answered == 0 ? 1 : s.newest - s.answered) * s.period_s;
-  s.answered = s.newest;
-  s.cycle.send(s.targets->step(command, s.cycle.image(), elapsed_s));
+  s.cycle.send(s.targets->step(command, s.cycle.image(), s.period_s));
 } catch (const ControlLost&) {
   let_go();
   throw;

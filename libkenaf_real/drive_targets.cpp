@@ -26,36 +26,36 @@ DriveTargets::DriveTargets(const canbus::RobotBus& bus, const ProcessImage& imag
   }
 }
 
-DriveOrders DriveTargets::step(const hrt::DriveCommand& command, const ProcessImage& image, double elapsed_s) {
+DriveOrders DriveTargets::step(const hrt::DriveCommand& command, const ProcessImage& image, double period_s) {
   DriveOrders orders;
-  for (std::size_t t = 0; t < relay::kTrackCount; ++t) orders[t] = track(t, command.track_speed_mps[t], elapsed_s);
+  for (std::size_t t = 0; t < relay::kTrackCount; ++t) orders[t] = track(t, command.track_speed_mps[t], period_s);
   for (std::size_t f = 0; f < relay::kFlipperCount; ++f) {
     const std::size_t drive = relay::kTrackCount + f;
     const bool told = (command.flipper_mask >> f & 1) != 0;
     const DriveOnBus& on_bus = bus_.drives[drive];
     // one that was not told anything stays also where that is outside of its limits
     if (told) hold_rad_[f] = std::clamp(command.flipper_rad[f], on_bus.min_position, on_bus.max_position);
-    orders[drive] = flipper(drive, told, image.drive(drive), elapsed_s);
+    orders[drive] = flipper(drive, told, image.drive(drive), period_s);
   }
   return orders;
 }
 
-DriveOrder DriveTargets::track(std::size_t i, double speed_mps, double elapsed_s) {
+DriveOrder DriveTargets::track(std::size_t i, double speed_mps, double period_s) {
   const DriveOnBus& drive = bus_.drives[i];
   const double wanted_mps = std::clamp(speed_mps, -drive.max_speed, drive.max_speed);
   // In cyclic velocity mode the drive follows each target at once: the ramp is the master's.
   const bool slower = std::abs(wanted_mps) < std::abs(track_mps_[i]);
   const double rate = slower ? drive.quick_stop_deceleration : drive.acceleration;
-  const double dv = drive.mode == DriveMode::cyclic_velocity ? rate * elapsed_s : 2 * drive.max_speed;
+  const double dv = drive.mode == DriveMode::cyclic_velocity ? rate * period_s : 2 * drive.max_speed;
   track_mps_[i] = std::clamp(wanted_mps, track_mps_[i] - dv, track_mps_[i] + dv);
   return {canopen::kControlEnable, velocity_to_drive(drive.units, track_mps_[i])};
 }
 
-DriveOrder DriveTargets::flipper(std::size_t i, bool told, const DriveInput& input, double elapsed_s) {
+DriveOrder DriveTargets::flipper(std::size_t i, bool told, const DriveInput& input, double period_s) {
   const DriveOnBus& drive = bus_.drives[i];
   const std::size_t f = i - relay::kTrackCount;
   if (drive.mode == DriveMode::cyclic_position) {
-    ramps_[f].step(hold_rad_[f], drive.max_speed, drive.acceleration, elapsed_s);
+    ramps_[f].step(hold_rad_[f], drive.max_speed, drive.acceleration, period_s);
     return {canopen::kControlEnable, position_to_drive(drive.units, ramps_[f].position)};
   }
   const std::int32_t target = position_to_drive(drive.units, hold_rad_[f]);

@@ -22,12 +22,13 @@ class DriveTargets {
   // The flippers stay where they are until they are told otherwise.
   DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image);
 
-  // A command out of range is cut to the description's limits. `elapsed_s` since the call before; in the first call a period.
-  DriveOrders step(const hrt::DriveCommand& command, const ProcessImage& image, double elapsed_s);
+  // A command out of range is cut to the description's limits. Ramps go on by one period a call, also where the call before is
+  // longer ago: a drive goes to each target within a period, and what was missed would be a jump beyond the limits.
+  DriveOrders step(const hrt::DriveCommand& command, const ProcessImage& image, double period_s);
 
  private:
-  DriveOrder track(std::size_t drive, double speed_mps, double elapsed_s);
-  DriveOrder flipper(std::size_t drive, bool told, const DriveInput& input, double elapsed_s);
+  DriveOrder track(std::size_t drive, double speed_mps, double period_s);
+  DriveOrder flipper(std::size_t drive, bool told, const DriveInput& input, double period_s);
 
   const canbus::RobotBus& bus_;
   std::array<double, relay::kTrackCount> track_mps_{};

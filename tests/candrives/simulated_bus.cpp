@@ -29,6 +29,11 @@ void SimulatedBus::send(const Frame& frame) {
 std::optional<ReceivedFrame> SimulatedBus::receive(Time until) {
   while (true) {
     check_up();
+    if (!in_socket_.empty()) {
+      const ReceivedFrame first = in_socket_.front();
+      in_socket_.pop_front();
+      return first;
+    }
     if (std::exchange(interrupted_, false)) return std::nullopt;
     if (auto received = step(until)) return received;
     if (now_ >= until) return std::nullopt;
@@ -68,12 +73,19 @@ void SimulatedBus::go_down(const std::string& words) {
   down_ = words;
   stop_sync();
   waiting_.clear();
+  in_socket_.clear();
   on_bus_.reset();
   frame_ends_ = Time::max();
 }
 
 void SimulatedBus::run_until(Time until) {
   while (now_ < until) step(until);
+}
+
+void SimulatedBus::hold_up_until(Time until) {
+  while (now_ < until) {
+    if (const auto received = step(until)) in_socket_.push_back(*received);
+  }
 }
 
 // ---- the bus ----

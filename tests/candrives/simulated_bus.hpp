@@ -5,6 +5,7 @@
 // time at 500 kbit/s (worst_case_bits) and reaches everybody at its end.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <string>
@@ -57,6 +58,10 @@ class SimulatedBus final : public canopen::Bus {
   void come_up() { down_.reset(); }
   // Time runs on without the master; what the slaves send is logged, and what was on its way to the master is lost to it.
   void run_until(canopen::Time until);
+  // The master is held up: time runs on, and what is sent to it waits in its socket.
+  void hold_up_until(canopen::Time until);
+  // Another master, or the same with a new socket, in which nothing waits.
+  void open_socket() { in_socket_.clear(); }
 
  private:
   struct Waiting {
@@ -77,6 +82,7 @@ class SimulatedBus final : public canopen::Bus {
   std::vector<Waiting> waiting_;
   std::optional<Waiting> on_bus_;
   canopen::Time frame_ends_ = canopen::Time::max();
+  std::deque<canopen::ReceivedFrame> in_socket_;
   std::optional<canopen::Time> sync_period_;
   canopen::Time next_sync_{};
   std::optional<std::string> down_;

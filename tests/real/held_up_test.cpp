@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "hrt/error.hpp"
+#include "tests/real/changed_robot.hpp"
 #include "tests/real/robot_on_bus.hpp"
 
 using namespace kenaf;
@@ -24,6 +25,19 @@ std::shared_ptr<std::vector<std::uint16_t>> watch_controlwords(RobotOnBus& robot
   return words;
 }
 
+// From SYNC to SYNC, of the target that a drive has: the last one that came. In its units.
+std::int32_t longest_step(const RobotOnBus& robot, std::uint16_t command_id) {
+  std::int32_t longest = 0;
+  std::optional<std::int32_t> newest, taken;
+  for (const candrives::LoggedFrame& one : robot.wire.log()) {
+    if (one.frame.id == command_id) newest = canopen::get_signed(one.frame.data, 2, 4);
+    if (!is_sync(one.frame) || !newest) continue;
+    longest = std::max(longest, std::abs(*newest - taken.value_or(*newest)));
+    taken = newest;
+  }
+  return longest;
+}
+
 }  // namespace
 
 TEST_CASE("a program that was held up for longer than its drives wait for it says nothing but quick stop") {
@@ -34,7 +48,7 @@ TEST_CASE("a program that was held up for longer than its drives wait for it say
     robot.run(50, drive_at(0.2, 0.2));
     if (has_state) (void)robot.transport.wait_state();
     const canopen::Time begin = robot.wire.now();
-    robot.wire.run_until(begin + milliseconds(300));
+    robot.wire.hold_up_until(begin + milliseconds(300));
     REQUIRE(robot.all_are(PowerState::quick_stop_active));
     const auto words = watch_controlwords(robot);
     try {
@@ -59,7 +73,30 @@ TEST_CASE("a program that was held up for less than that goes on") {
   robot.open();
   robot.run(50, drive_at(0.2, 0.2));
   // the last heartbeat is 20 ms old at most, and the drives wait for 100 ms
-  robot.wire.run_until(robot.wire.now() + milliseconds(70));
+  robot.wire.hold_up_until(robot.wire.now() + milliseconds(70));
   robot.run(10, drive_at(0.2, 0.2));
   CHECK(robot.all_are(PowerState::operation_enabled));
+}
+
+TEST_CASE("what was missed in a short hold-up is not made up for in one period") {
+  const ChangedRobot cyclic({{"profile velocity", "cyclic velocity"}, {"profile position", "cyclic position"}});
+  for (const bool has_state : {false, true}) {
+    RobotOnBus robot(cyclic.path());
+    robot.open();
+    hrt::DriveCommand command = drive_at(0.05, 0.05);
+    command.flipper_mask = 1;
+    command.flipper_rad[0] = 1;
+    const relay::State before = robot.run(30, command);  // full speed after 10: 1.5 rad/s / 15 rad/s^2 = 0.1 s
+    command.track_speed_mps = {0.4, 0.4};
+    if (has_state) (void)robot.transport.wait_state();
+    robot.wire.hold_up_until(robot.wire.now() + milliseconds(60));
+    if (has_state) robot.transport.send(command);
+    const relay::State after = robot.run(10, command);
+    // Full speed of the flipper is 0.015 rad a period, and the tracks' 5 m/s^2 are 0.05 m/s. An answer that was late
+    // and the one after it may be in one period.
+    const canbus::DriveUnits &flipper = robot.description.drives[2].units, &track = robot.description.drives[0].units;
+    CHECK(longest_step(robot, 0x203) <= 2 * (0.015 * std::abs(flipper.counts_per_unit) + 1));
+    CHECK(longest_step(robot, 0x201) <= 2 * (0.05 * std::abs(track.velocity_per_unit) + 1));
+    CHECK(after.frame - before.frame >= 15);  // and the cycles that were missed are counted
+  }
 }

@@ -55,7 +55,10 @@ struct RobotOnBus {
   explicit RobotOnBus(const std::string& robot = "kenaf")
       : description(canbus::load_robot_bus(robot)),
         wire(description, plant),
-        transport([this](const std::string&, std::span<const std::uint16_t>) { return std::make_unique<BorrowedBus>(wire); }) {
+        transport([this](const std::string&, std::span<const std::uint16_t>) {
+          wire.open_socket();
+          return std::make_unique<BorrowedBus>(wire);
+        }) {
     robot.copy(config.robot, sizeof config.robot - 1);
     config.robot[robot.size()] = '\0';
   }
