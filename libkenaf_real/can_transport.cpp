@@ -22,7 +22,6 @@ using hrt::Error;
 
 // The heading's bias is learnt in this time, while the robot stands; also what "standing" needs to be believed.
 constexpr double kStand_s = 0.5;
-constexpr canopen::Time kEmergencyFollows = std::chrono::milliseconds(20);
 
 canbus::RobotBus read_description(const hrt_config& config) {
   try {
@@ -101,7 +100,10 @@ std::optional<relay::State> CanTransport::measure() try {
   Session& s = *session_;
   const std::optional<Beat> beat = s.cycle.wait();
   if (!beat) return std::nullopt;
-  if (const std::optional<std::size_t> drive = s.cycle.lost_drive()) lose(*drive);
+  if (const std::optional<std::size_t> drive = s.cycle.lost_drive()) {
+    s.lost = true;
+    lose(s.cycle, *drive);
+  }
   s.round_trip_s = s.cycle.round_trip_s();
   return s.measured->update(s.cycle, *beat);
 } catch (const ControlLost&) {
@@ -115,19 +117,6 @@ std::optional<relay::State> CanTransport::measure() try {
 void CanTransport::let_go() {
   session_->lost = true;
   try_quick_stop(session_->cycle);
-}
-
-// One drive does not obey any more: the others stop before anything else is done.
-void CanTransport::lose(std::size_t drive) {
-  Session& s = *session_;
-  s.lost = true;
-  quick_stop(s.cycle);
-  const std::string loss = s.cycle.loss_of(drive);
-  s.master.wait_until(s.master.now() + kEmergencyFollows, [&] { return !s.cycle.emergency_of(drive).empty(); });
-  const std::string emergency = s.cycle.emergency_of(drive);
-  throw Error(HRT_E_DEVICE,
-              fmt::format("{}{}{}; all drives were told to stop; hrt_close() and hrt_kenaf_init() start them again",
-                          loss, emergency.empty() ? "" : ": ", emergency));
 }
 
 void CanTransport::send(const hrt::DriveCommand& command) try {

@@ -36,7 +36,6 @@ class CanTransport final : public hrt::Transport {
  private:
   struct Session;  // an open robot
   std::optional<relay::State> measure();  // as wait_state, in the beats and the late orders since SYNC began
-  [[noreturn]] void lose(std::size_t drive);
   void let_go();  // the robot is lost, and told to stop
 
   OpenBus open_bus_;

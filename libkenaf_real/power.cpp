@@ -21,6 +21,9 @@ namespace object = canopen::object;
 
 constexpr Time kPowerUp = std::chrono::seconds(3);  // relays and capacitors
 constexpr Time kModeChange = std::chrono::seconds(1);
+// A drive may say "attained" of the homing before for so long.
+constexpr Time kHomingBegins = std::chrono::milliseconds(100);
+constexpr Time kEmergencyFollows = std::chrono::milliseconds(20);  // its statusword
 constexpr Time kPowerDown = std::chrono::milliseconds(300);
 // Leaving quick stop straight to operation (CiA 402, transition 16) keeps the torque of flippers that carry the robot,
 // but not every drive can; after so many cycles it is left through "switch on disabled".
@@ -143,13 +146,13 @@ void home(BusCycle& cycle) {
   }
   if (patience_s == 0) return;
   const auto status = [&](std::size_t i) { return cycle.image().drive(i).statusword; };
-  // A statusword from before the start still says "attained" of an earlier homing; one cycle later it does not.
-  int cycles = 0;
+  const Time believed_from = cycle.master().now() + kHomingBegins;
+  const auto is_believed = [&] { return cycle.master().now() >= believed_from; };
   run_until(
       cycle, to_time(patience_s),
       [&](std::size_t i) {
-        if (i == 0) ++cycles;
-        if (homes(i) && (status(i) & canopen::kStatusError) != 0 && cycles > 2)
+        if (const std::optional<std::size_t> lost = cycle.lost_drive()) lose(cycle, *lost);
+        if (homes(i) && (status(i) & canopen::kStatusError) != 0 && is_believed())
           throw Error(HRT_E_DEVICE, fmt::format("{}: homing failed (statusword {:#06x})",
                                                 to_string(drive_node(cycle.bus(), i)), status(i)));
         const unsigned start = homes(i) ? canopen::kControlNewSetPoint : 0u;
@@ -157,7 +160,7 @@ void home(BusCycle& cycle) {
       },
       [&](std::size_t i) {
         constexpr unsigned kDone = canopen::kStatusHomingAttained | canopen::kStatusTargetReached;
-        return !homes(i) || (cycles > 2 && (status(i) & kDone) == kDone);
+        return !homes(i) || (is_believed() && (status(i) & kDone) == kDone);
       },
       [&](std::size_t i) {
         return fmt::format("{} was not home within {} s (statusword {:#06x})", to_string(drive_node(cycle.bus(), i)),
@@ -203,9 +206,9 @@ void end_watch(BusCycle& cycle, std::size_t i) try {
 void power_up(BusCycle& cycle) try {
   hear_all(cycle);
   enable_all(cycle);
+  cycle.watch_restarts();
   for (std::size_t i = 0; i < kDriveCount; ++i) write_mode(cycle, i, cycle.bus().drives[i].mode);
   home(cycle);
-  cycle.watch_restarts();
 } catch (const Error&) {
   try_quick_stop(cycle);  // those that are enabled, and may be moving home, do not wait until they miss the heartbeat
   throw;
@@ -218,6 +221,17 @@ void quick_stop(BusCycle& cycle) {
 }
 
 void try_quick_stop(BusCycle& cycle) try { quick_stop(cycle); } catch (const std::exception&) {
+}
+
+void lose(BusCycle& cycle, std::size_t drive) {
+  quick_stop(cycle);
+  const std::string loss = cycle.loss_of(drive);
+  Master& master = cycle.master();
+  master.wait_until(master.now() + kEmergencyFollows, [&] { return !cycle.emergency_of(drive).empty(); });
+  const std::string emergency = cycle.emergency_of(drive);
+  throw Error(HRT_E_DEVICE,
+              fmt::format("{}{}{}; all drives were told to stop; hrt_close() and hrt_kenaf_init() start them again",
+                          loss, emergency.empty() ? "" : ": ", emergency));
 }
 
 std::string power_down(BusCycle& cycle) {

@@ -20,6 +20,10 @@ void quick_stop(BusCycle& cycle);
 // The same for whoever has a worse error to tell than that the bus does not take it.
 void try_quick_stop(BusCycle& cycle);
 
+// One drive does not obey any more: the others stop before anything else is done. Throws hrt::Error(HRT_E_DEVICE) that names it
+// and what is wrong, with the words of its emergency message, for which it waits some milliseconds.
+[[noreturn]] void lose(BusCycle& cycle, std::size_t drive);
+
 // Quick stop, told in each cycle until all drives show that they have left operation enabled and the tracks that they stand,
 // 0.3 s at most. Those that do no longer watch for the master's heartbeat, and hold where they are; the others keep their
 // watch, and so stop by themselves when the heartbeat ends. Returns these, in words; "" where there are none. Throws BusError.
