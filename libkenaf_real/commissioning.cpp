@@ -116,12 +116,15 @@ void write_heartbeats(Master& master, const NamedNode& node, const RobotBus& bus
                make_write(object::producer_heartbeat_ms, std::lround(1e3 * bus.node_heartbeat_s), "own heartbeat"));
 }
 
-// CiA 402, 0x60C2: a time as number * 10^exponent s, with a number of 8 bits; the finest that fits.
+// CiA 402, 0x60C2: a time as number * 10^exponent s, with a number of 8 bits. In milliseconds where it is a whole
+// number of them, for many drives take no exponent but -3, their default; else the finest that fits.
 struct InterpolationTime {
   std::int64_t number;
   int exponent;
 };
 InterpolationTime interpolation_time(double period_s) {
+  const double milliseconds = 1e3 * period_s, whole = std::round(milliseconds);
+  if (whole >= 1 && whole <= 255 && std::abs(milliseconds - whole) < 1e-6) return {std::lround(whole), -3};
   int exponent = -6;
   while (period_s / std::pow(10.0, exponent) > 255) ++exponent;
   return {std::lround(period_s / std::pow(10.0, exponent)), exponent};
