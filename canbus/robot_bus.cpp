@@ -21,6 +21,7 @@ constexpr Range kCounts{.min = -1e9, .max = 1e9};
 constexpr Range kAngle{.min = -kTurn_rad, .max = kTurn_rad};
 // What is longer than this is not a stop: a commander that fell silent must not be noticed by what the robot ran into.
 constexpr double kLongestStop_s = 0.2;
+constexpr int kBitRate = 500'000;
 
 DriveMode read_mode(TomlReader& table, std::array<DriveMode, 2> choice) {
   const std::string text = table.text("mode");
@@ -189,6 +190,7 @@ RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for
   RobotBus bus{};
   bus.interface = table.text("interface");
   if (bus.interface.empty() || bus.interface.size() > 15) table.fail("interface", "must be of 1 to 15 characters");
+  bus.bit_rate = table.has("bit_rate") ? table.integer("bit_rate", 10'000, 1'000'000) : kBitRate;
   bus.master = static_cast<NodeId>(table.integer("master_node", 1, canopen::kMaxNode));
   bus.master_heartbeat_s = table.number("master_heartbeat_s", {.min = 0.005, .max = 0.1});
   bus.master_silence_s = table.number("master_silence_s", {.min = 0.01, .max = 0.2});

@@ -70,6 +70,7 @@ struct GyroOnBus {
 
 struct RobotBus {
   std::string interface;                 // "can0"
+  int bit_rate;                          // bits a second, as the interface is brought up: what of it a cycle may fill
   canopen::NodeId master;                // the node id whose heartbeat the drives watch
   double master_heartbeat_s, master_silence_s;  // sent so often; after this long without it the drives stop by themselves
   double node_heartbeat_s;               // how often nodes send theirs

@@ -17,7 +17,11 @@ using hrt::Error;
 
 // The answers' share of a period; the rest is for the commands to the drives.
 constexpr double kAnswerShare = 0.6;
-// SYNC is the kernel's: so long without one means that the interface is gone. Three periods where those are longer.
+// Of the bus: the rest is for frames that are repeated after an error, and so that SYNC finds the bus free.
+constexpr double kMostLoad = 0.7;
+// Two lost frames of a drive are no silence yet: kSilentDrive_s has two and a half of these.
+constexpr double kLongestPeriod_s = 0.02;
+// SYNC is the kernel's: so long without one means that the interface is gone.
 constexpr Time kLongestSync = std::chrono::milliseconds(100);
 
 double seconds(Time duration) {
@@ -25,6 +29,21 @@ double seconds(Time duration) {
 }
 
 }  // namespace
+
+void check_period(const canbus::RobotBus& bus, double period_s) {
+  if (period_s > kLongestPeriod_s) {
+    throw Error(HRT_E_CONFIG,
+                fmt::format("period_s is {}, but must be at most {} with this library: a drive that is silent is to be "
+                            "noticed after {} s",
+                            period_s, kLongestPeriod_s, kSilentDrive_s));
+  }
+  const double share = canbus::worst_case_bits_per_s(bus, period_s) / bus.bit_rate;
+  if (share <= kMostLoad) return;
+  throw Error(HRT_E_CONFIG,
+              fmt::format("period_s is {}: so short a cycle can fill {:.0f} % of {} bits a second (can.bit_rate of the "
+                          "robot's description), and must not fill more than {:.0f} %",
+                          period_s, 100 * share, bus.bit_rate, 100 * kMostLoad));
+}
 
 BusCycle::BusCycle(Master& master, const canbus::RobotBus& bus, double period_s)
     : master_(master), bus_(bus), period_(to_time(period_s)), image_(bus) {
@@ -46,7 +65,7 @@ void BusCycle::stop() {
 
 std::optional<Beat> BusCycle::wait() {
   const auto is_new = [this] { return image_.sync_at() && image_.sync_at() != answered_sync_at_; };
-  if (!master_.wait_until(master_.now() + std::max(kLongestSync, 3 * period_), is_new)) {
+  if (!master_.wait_until(master_.now() + kLongestSync, is_new)) {
     if (master_.was_interrupted()) return std::nullopt;
     throw Error(HRT_E_LINK,
                 fmt::format("no SYNC on {} any more: is the interface still up? (`ip -details link show {}`)",
@@ -83,7 +102,7 @@ void BusCycle::send(const DriveOrders& orders) {
 // By the newest SYNC, not by the clock: a master that was held up finds the answers waiting, with the times at which
 // they came.
 bool BusCycle::is_silent(const std::optional<Time>& at, double limit_s) const {
-  return !at || (image_.sync_at() && *image_.sync_at() - *at > std::max(to_time(limit_s), 3 * period_));
+  return !at || (image_.sync_at() && *image_.sync_at() - *at > to_time(limit_s));
 }
 
 std::optional<std::size_t> BusCycle::lost_drive() const {

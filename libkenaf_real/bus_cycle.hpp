@@ -15,6 +15,10 @@ namespace kenaf::real {
 // A drive that sent nothing for so long is lost; so is a sensor, without which the robot goes on.
 inline constexpr double kSilentDrive_s = 0.05, kSilentSensor_s = 0.1;
 
+// Throws hrt::Error(HRT_E_CONFIG): in so short a period the bus cannot carry a cycle, with room to spare for errors and for what
+// is not a cycle's; or it is so long that a drive's silence shows too late, or after less than two frames that got lost.
+void check_period(const canbus::RobotBus& bus, double period_s);
+
 struct DriveOrder {
   std::uint16_t controlword = 0;
   std::int32_t target = 0;  // position or velocity, by the drive's mode, in its units

@@ -27,6 +27,7 @@ canbus::RobotBus read_description(const hrt_config& config) {
   try {
     canbus::RobotBus bus = canbus::load_robot_bus(config.robot);
     if (config.can_interface[0] != '\0') bus.interface = config.can_interface;
+    check_period(bus, config.period_s);
     return bus;
   } catch (const DescriptionError& error) {
     throw Error(HRT_E_CONFIG, error.what());

@@ -130,7 +130,8 @@ typedef struct hrt_config {
   uint32_t cookie; /* set by hrt_config_default, checked by hrt_kenaf_init_with */
 
   /* Cycle and link. */
-  double period_s;          /* one cycle, robot time: 0.001 to 1, default 0.01 */
+  double period_s;          /* one cycle, robot time: 0.001 to 1, default 0.01; libkenaf_real: at most 0.02, and not so short
+                               that its bus would be too full (HRT_E_CONFIG): some 0.006 at 500 kbit/s */
   double command_timeout_s; /* silence after which the tracks stop, robot time: 0.01 to 10, not below period_s, default 0.1 */
   double link_timeout_s;    /* libkenaf_sim: silence of the link that is an error, wall clock: 0.05 to 10, default 0.5 */
   double connect_timeout_s; /* libkenaf_sim: how long init waits for the robot, wall clock: 0.05 to 60, default 3 */

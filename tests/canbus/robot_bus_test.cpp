@@ -48,6 +48,7 @@ std::string at_line(const std::string& text, const std::string& part) {
 TEST_CASE("the shipped robot's bus") {
   const RobotBus bus = load_robot_bus("kenaf");
   CHECK(bus.interface == "can0");
+  CHECK(bus.bit_rate == 500'000);
   CHECK(bus.master == 127);
   for (std::size_t i = 0; i < kDriveCount; ++i) CHECK(bus.drives[i].node == i + 1);
   CHECK(bus.drives[0].mode == DriveMode::profile_velocity);
@@ -101,6 +102,8 @@ TEST_CASE("one wrong value of the bus is named with its line") {
       {"axis = \"longitudinal\"", "axis = \"lateral\"", "is on the same axis of the sensor as roll", "pitch = {"},
       {"first_bit = 0", "first_bit = 56", "reaches beyond the eight bytes", "bits = 16"},
       {"interface = \"can0\"", "interface = \"an-interface-name-too-long\"", "must be of 1 to 15 characters"},
+      {"interface = \"can0\"", "interface = \"can0\"\nbit_rate = 2000000",
+       "can.bit_rate is 2000000, but must be from 10000 to 1000000", "bit_rate ="},
       {"bits = 16", "bits = 16\nspare = 1", "can.gyro.spare is not a known key", "spare = 1"},
   };
   for (const Case& one : cases) {

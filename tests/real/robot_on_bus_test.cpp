@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hrt/error.hpp"
+#include "libkenaf_real/bus_cycle.hpp"
 #include "tests/real/changed_robot.hpp"
 
 using namespace kenaf;
@@ -221,4 +222,39 @@ TEST_CASE("a SYNC that stops is a link that is lost") {
     CHECK(error.code() == HRT_E_LINK);
     CHECK_THAT(error.what(), Catch::Contains("no SYNC on can0"));
   }
+}
+
+TEST_CASE("a period that the bus cannot carry, or that is too long to notice a drive's silence in time, is refused") {
+  struct Case {
+    double period_s;
+    const char* says;
+  };
+  // By tests/canbus/bus_layout_test.cpp a cycle has 1964.5 bits, the heartbeats 8450 a second: 395 kbit/s at 0.0051 s,
+  // of which 350 (70 % of 500) are allowed; at 0.0058 s it is 347.
+  for (const Case& one : {Case{0.001, "can.bit_rate"}, Case{0.0051, "79 % of"}, Case{0.1, "0.02"}}) {
+    RobotOnBus robot;
+    robot.config.period_s = one.period_s;
+    try {
+      robot.open();
+      FAIL("it opened");
+    } catch (const hrt::Error& error) {
+      CHECK(error.code() == HRT_E_CONFIG);
+      CHECK_THAT(error.what(), Catch::Contains("period_s") && Catch::Contains(one.says));
+    }
+    CHECK(robot.wire.log().empty());  // nothing was sent
+  }
+  for (const double period_s : {0.0058, 0.02}) {
+    RobotOnBus robot;
+    robot.config.period_s = period_s;
+    robot.open();
+    CHECK(robot.run(10, {}).late_commands == 0);
+  }
+}
+
+TEST_CASE("a bus of twice the bit rate takes a shorter period") {
+  canbus::RobotBus bus = canbus::load_robot_bus("kenaf");
+  // 1964.5 bits / 0.004 s + 8450 a second: 500 kbit/s
+  CHECK_THROWS_AS(check_period(bus, 0.004), hrt::Error);
+  bus.bit_rate = 1'000'000;
+  CHECK_NOTHROW(check_period(bus, 0.004));
 }
