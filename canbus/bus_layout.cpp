@@ -12,7 +12,7 @@ using canopen::Pdo;
 using canopen::PdoDirection;
 namespace object = canopen::object;
 
-constexpr std::uint8_t kEachSync = 1;
+constexpr std::uint8_t kEachSync = 1, kEachFifthSync = 5;
 
 Frame frame_of(const Pdo& pdo) {
   Frame frame;
@@ -31,9 +31,9 @@ std::vector<Traffic> traffic_of(const RobotBus& bus, double period_s) {
   std::vector<Traffic> all{{canopen::kSync, cycles_per_s}};
   const auto add = [&](const Pdo& pdo) { all.push_back({frame_of(pdo), cycles_per_s / pdo.transmission}); };
   for (std::size_t i = 0; i < kDriveCount; ++i) {
-    const DrivePdos pdos = pdos_of(i, bus.drives[i].mode);
+    const DrivePdos pdos = pdos_of(bus, i);
     add(pdos.state);
-    add(pdos.effort);
+    if (pdos.has_effort) add(pdos.effort);
     add(pdos.command);
     if (pdos.has_battery) add(pdos.battery);
   }
@@ -55,19 +55,23 @@ std::vector<Traffic> traffic_of(const RobotBus& bus, double period_s) {
 
 }  // namespace
 
-DrivePdos pdos_of(std::size_t drive, canopen::DriveMode mode) {
-  const bool track = is_track(drive), has_battery = drive == 0;
+DrivePdos pdos_of(const RobotBus& bus, std::size_t drive) {
   using enum PdoDirection;
-  Pdo effort = track ? Pdo{transmit, 2, kEachSync, {object::velocity_actual, object::current_actual}}
-                     : Pdo{transmit, 2, 5, {object::current_actual}};
+  const bool track = is_track(drive);
+  Pdo effort{transmit, 2, track ? kEachSync : kEachFifthSync, {}};
+  if (track) effort.objects.push_back(object::velocity_actual);
+  if (bus.has_currents) effort.objects.push_back(object::current_actual);
+  const bool has_effort = !effort.objects.empty();
   return {.state = {transmit, 1, kEachSync, {object::statusword, object::position_actual}},
           .effort = std::move(effort),
           .battery = {transmit, 3, 10, {object::dc_link_voltage}},
           .command = {receive,
                       1,
                       kEachSync,
-                      {object::controlword, is_position(mode) ? object::target_position : object::target_velocity}},
-          .has_battery = has_battery};
+                      {object::controlword,
+                       is_position(bus.drives[drive].mode) ? object::target_position : object::target_velocity}},
+          .has_effort = has_effort,
+          .has_battery = bus.has_battery && drive == 0};
 }
 
 Pdo inclinometer_pdo() {

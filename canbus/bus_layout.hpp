@@ -19,9 +19,9 @@ struct DrivePdos {
   canopen::Pdo effort;    // TPDO2: tracks at each SYNC velocity, current; flippers at each fifth current
   canopen::Pdo battery;   // TPDO3, each tenth SYNC, of the left track alone: the voltage of its supply
   canopen::Pdo command;   // RPDO1, taken at SYNC: controlword and target velocity or position
-  bool has_battery;
+  bool has_effort, has_battery;  // false: not used, where the description says that drives have no currents, no voltage
 };
-DrivePdos pdos_of(std::size_t drive, canopen::DriveMode mode);
+DrivePdos pdos_of(const RobotBus& bus, std::size_t drive);
 canopen::Pdo inclinometer_pdo();  // TPDO1, each SYNC: longitudinal, lateral slope
 
 // The identifiers that the master has to hear: what its nodes send, SYNC, and another master's heartbeat.

@@ -197,6 +197,8 @@ RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for
   if (bus.master_silence_s < 2 * bus.master_heartbeat_s)
     table.fail("master_silence_s", "is less than two heartbeats: one late heartbeat would stop the robot");
   bus.node_heartbeat_s = table.number("node_heartbeat_s", {.min = 0.01, .max = 10});
+  bus.has_currents = !table.has("currents") || table.boolean("currents");
+  bus.has_battery = !table.has("battery") || table.boolean("battery");
   bus.answer_s = table.number("answer_s", {.min = 0.01, .max = 10});
   read_tracks(table.table("track"), file.table("drive"), bus);
   if (!file.has("flipper"))

@@ -35,7 +35,7 @@ std::int64_t limited(double value, canopen::ObjectType type) {
 
 Drive::Drive(const DriveSetup& setup, const Measured& motor)
     : Slave(setup.node, identity(setup), drive_pdos()), setup_(setup), motor_(motor), motion_(objects(), setup.scale) {
-  add_drive_objects(dictionary());
+  add_drive_objects(dictionary(), {setup.has_current, setup.has_voltage});
   on_reset();
 }
 
@@ -108,10 +108,12 @@ void Drive::refresh() {
   values.set(object::position_actual.object, motion_.position(motor_));
   values.set(object::velocity_actual.object,
              limited(motor_.velocity / setup_.scale.counts_per_velocity_unit, object::velocity_actual.type));
-  values.set(object::current_actual.object,
-             limited(motor_.current_a * 1e6 / static_cast<double>(option(object::rated_current)),
-                     object::current_actual.type));
-  values.set(object::dc_link_voltage.object, limited(motor_.supply_v * 1000, object::dc_link_voltage.type));
+  if (setup_.has_current)
+    values.set(object::current_actual.object,
+               limited(motor_.current_a * 1e6 / static_cast<double>(option(object::rated_current)),
+                       object::current_actual.type));
+  if (setup_.has_voltage)
+    values.set(object::dc_link_voltage.object, limited(motor_.supply_v * 1000, object::dc_link_voltage.type));
   values.set(object::following_error.object,
              limited(motion_.demand().position - motor_.position, object::following_error.type));
 }

@@ -15,6 +15,7 @@ struct DriveSetup {
   std::string name;
   MotorScale scale;
   bool absolute_encoder;  // false: position 0 where the motor is at power on, until homing
+  bool has_current = true, has_voltage = true;  // false: it lacks the objects 0x6075 and 0x6078; 0x6079
 };
 
 class Drive final : public Slave {

@@ -27,7 +27,7 @@ std::optional<SdoAbort> one_of(std::int64_t value, Values... allowed) {
 
 }  // namespace
 
-void add_drive_objects(Dictionary& objects) {
+void add_drive_objects(Dictionary& objects, OptionalDriveObjects has) {
   const auto fixed = [&](const canopen::MappedObject& at, std::int64_t value) {
     objects.add(at, Access::read_only, Mappable::no, value);
   };
@@ -59,10 +59,12 @@ void add_drive_objects(Dictionary& objects) {
 
   measured(object::position_actual);
   measured(object::velocity_actual);
-  measured(object::current_actual);
-  measured(object::dc_link_voltage);
+  if (has.current) {
+    measured(object::current_actual);
+    fixed(object::rated_current, 10'000);  // mA
+  }
+  if (has.voltage) measured(object::dc_link_voltage);
   measured(object::following_error);
-  fixed(object::rated_current, 10'000);  // mA
 
   command(object::target_position, 0);
   command(object::target_velocity, 0);

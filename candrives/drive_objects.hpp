@@ -26,8 +26,12 @@ inline constexpr std::int16_t kDisableDrive = 0, kSlowDownRamp = 1, kQuickStopRa
 // Abort connection option codes, object 0x6007, beside kAbortByQuickStop.
 inline constexpr std::int16_t kAbortNoAction = 0, kAbortByFault = 1, kAbortByDisableVoltage = 2;
 
+// What CiA 402 leaves to the drive: 0x6078 with 0x6075, and 0x6079.
+struct OptionalDriveObjects {
+  bool current, voltage;
+};
 // Values are as from a factory: gentle ramps, low speeds. What fits the robot its master writes.
-void add_drive_objects(Dictionary& objects);
+void add_drive_objects(Dictionary& objects, OptionalDriveObjects has);
 
 // CiA 402-2, default PDO mapping: the controlword and what goes with it, the statusword and what goes with it. Only the
 // first of each kind is valid at first.

@@ -44,9 +44,9 @@ Network::Network(const canbus::RobotBus& bus) : bus_(bus) {
   for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
     const NodeId node = bus.drives[i].node;
     names_[node] = canbus::kDriveNames[i];
-    const canbus::DrivePdos pdos = canbus::pdos_of(i, bus.drives[i].mode);
+    const canbus::DrivePdos pdos = canbus::pdos_of(bus, i);
     add(pdos.state, node, i);
-    add(pdos.effort, node, i);
+    if (pdos.has_effort) add(pdos.effort, node, i);
     if (pdos.has_battery) add(pdos.battery, node, i);
     add(pdos.command, node, i);
   }

@@ -47,7 +47,7 @@ void check_period(const canbus::RobotBus& bus, double period_s) {
 
 BusCycle::BusCycle(Master& master, const canbus::RobotBus& bus, double period_s)
     : master_(master), bus_(bus), period_(to_time(period_s)), image_(bus) {
-  for (std::size_t i = 0; i < pdos_.size(); ++i) pdos_[i] = canbus::pdos_of(i, bus.drives[i].mode);
+  for (std::size_t i = 0; i < pdos_.size(); ++i) pdos_[i] = canbus::pdos_of(bus, i);
   master_.watch([this](const canopen::ReceivedFrame& frame) { image_.on_frame(frame); });
 }
 

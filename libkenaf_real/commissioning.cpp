@@ -130,6 +130,24 @@ InterpolationTime interpolation_time(double period_s) {
   return {std::lround(period_s / std::pow(10.0, exponent)), exponent};
 }
 
+// What CiA 402 leaves to the drive, and its key in [can].
+std::string_view key_without(const Pdo& pdo) {
+  for (const MappedObject& mapped : pdo.objects) {
+    if (mapped.object == object::dc_link_voltage.object) return "battery";
+    if (mapped.object == object::current_actual.object) return "currents";
+  }
+  return "";
+}
+
+void write_pdo(Master& master, const NamedNode& node, const Pdo& pdo, const std::vector<SdoWrite>& writes) try {
+  for (const SdoWrite& write : writes) master.write(node, write);
+} catch (const Error& error) {
+  const std::string_view key = key_without(pdo);
+  if (error.code() != HRT_E_DEVICE || key.empty()) throw;
+  throw Error(error.code(),
+              fmt::format("{}; where its drives have no such object: `{} = false` in [can]", error.what(), key));
+}
+
 // Those that the node may have from its maker, and nobody here sends or takes, are switched off: no frame that is not
 // known.
 void write_pdos(Master& master, const NamedNode& node, const std::vector<Pdo>& used) {
@@ -142,13 +160,14 @@ void write_pdos(Master& master, const NamedNode& node, const std::vector<Pdo>& u
       if (found == used.end()) {
         master.write_if_there(node, writes.front());  // "made invalid"
       } else {
-        for (const SdoWrite& write : writes) master.write(node, write);
+        write_pdo(master, node, pdo, writes);
       }
     }
   }
 }
 
-double set_up_drive(Master& master, const RobotBus& bus, std::size_t i, double period_s) {
+// The rated current in A; nullopt: it does not say it, or is not asked.
+std::optional<double> set_up_drive(Master& master, const RobotBus& bus, std::size_t i, double period_s) {
   const NamedNode node = drive_node(bus, i);
   check_profile(master, node, canopen::kProfileDrive, "drive");
   check_modes(master, node, bus.drives[i]);
@@ -157,12 +176,15 @@ double set_up_drive(Master& master, const RobotBus& bus, std::size_t i, double p
   master.write_if_there(
       node, make_write(object::communication_error_behaviour, 1, "stay operational when the heartbeat is lost"));
   master.write_if_there(node, make_write(object::fault_reaction_option, kFaultReactionQuickStop, "fault reaction"));
-  const canbus::DrivePdos pdos = canbus::pdos_of(i, bus.drives[i].mode);
-  std::vector<Pdo> used{pdos.state, pdos.effort, pdos.command};
+  const canbus::DrivePdos pdos = canbus::pdos_of(bus, i);
+  std::vector<Pdo> used{pdos.state, pdos.command};
+  if (pdos.has_effort) used.push_back(pdos.effort);
   if (pdos.has_battery) used.push_back(pdos.battery);
   write_pdos(master, node, used);
   write_heartbeats(master, node, bus, true);
-  return 1e-3 * static_cast<double>(master.read(node, object::rated_current, "rated current in mA"));
+  const std::optional<std::int64_t> rated_ma =
+      bus.has_currents ? master.read_if_there(node, object::rated_current) : std::nullopt;
+  return rated_ma ? std::optional(1e-3 * static_cast<double>(*rated_ma)) : std::nullopt;
 }
 
 double set_up_inclinometer(Master& master, const RobotBus& bus) {
@@ -221,8 +243,11 @@ NodeFacts commission(Master& master, const RobotBus& bus, double period_s, doubl
   master.start_heartbeat();  // from here on: who listens while the nodes start is to hear that there is a master
   reset_communication(master, bus, patience_s);
   NodeFacts facts;
-  for (std::size_t i = 0; i < canbus::kDriveCount; ++i)
-    facts.rated_current_a[i] = set_up_drive(master, bus, i, period_s);
+  for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+    const std::optional<double> rated_a = set_up_drive(master, bus, i, period_s);
+    facts.rated_current_a[i] = rated_a.value_or(0);
+    facts.has_currents = facts.has_currents && rated_a;
+  }
   if (bus.inclinometer) facts.slope_unit_rad = set_up_inclinometer(master, bus);
   for (const NamedNode& node : nodes_of(bus))
     master.send(encode(canopen::NmtOrder{canopen::NmtCommand::start, node.node}));

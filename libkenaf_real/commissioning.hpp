@@ -12,6 +12,7 @@ namespace kenaf::real {
 // What the nodes say of themselves, beyond the description.
 struct NodeFacts {
   std::array<double, canbus::kDriveCount> rated_current_a{};
+  bool has_currents = true;   // false: without the rated current, in thousandths of which a drive says its own, that says nothing
   double slope_unit_rad = 0;  // of the inclinometer's numbers
 };
 

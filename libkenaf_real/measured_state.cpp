@@ -36,11 +36,13 @@ relay::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
   state.frame = beat.number;
   state.robot_time_s = beat.number * period_s_;
   state.late_commands = cycle.late_orders();
-  state.fields = relay::kHasEncoders | relay::kHasFlippers | relay::kHasCurrents;
+  state.fields = relay::kHasEncoders | relay::kHasFlippers;
+  const bool has_currents = bus_.has_currents && facts_.has_currents;
+  if (has_currents) state.fields |= relay::kHasCurrents;
   const ProcessImage& image = cycle.image();
   const double current_unit = 1e-3;  // CiA 402, 0x6078: thousandths of the rated current
   const auto current_a = [&](std::size_t i) {
-    return std::abs(image.drive(i).current_permil) * current_unit * facts_.rated_current_a[i];
+    return has_currents ? std::abs(image.drive(i).current_permil) * current_unit * facts_.rated_current_a[i] : 0;
   };
   for (std::size_t t = 0; t < relay::kTrackCount; ++t) {
     const DriveInput& drive = image.drive(t);

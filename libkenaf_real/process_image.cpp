@@ -10,7 +10,7 @@ using canopen::Time;
 
 std::array<canbus::DrivePdos, canbus::kDriveCount> pdos_of_all(const canbus::RobotBus& bus) {
   std::array<canbus::DrivePdos, canbus::kDriveCount> out;
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = canbus::pdos_of(i, bus.drives[i].mode);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = canbus::pdos_of(bus, i);
   return out;
 }
 
@@ -41,11 +41,11 @@ void ProcessImage::on_drive_frame(std::size_t i, const ReceivedFrame& received) 
     drive.statusword = static_cast<std::uint16_t>(values[0]);
     drive.position = static_cast<std::int32_t>(values[1]);
     drive.state_at = received.at;
-  } else if (frame.id == cob_id(pdos_[i].effort, node)) {
+  } else if (pdos_[i].has_effort && frame.id == cob_id(pdos_[i].effort, node)) {
     const std::size_t count = pdos_[i].effort.objects.size();
     if (!unpack(pdos_[i].effort, frame, std::span(values).first(count))) return;
     if (canbus::is_track(i)) drive.velocity = static_cast<std::int32_t>(values[0]);
-    drive.current_permil = static_cast<std::int16_t>(values[count - 1]);
+    if (bus_.has_currents) drive.current_permil = static_cast<std::int16_t>(values[count - 1]);
     drive.effort_at = received.at;
   } else if (pdos_[i].has_battery && frame.id == cob_id(pdos_[i].battery, node)) {
     if (unpack(pdos_[i].battery, frame, std::span(values).first(1))) battery_v_ = 1e-3 * static_cast<double>(values[0]);

@@ -22,7 +22,7 @@ ProcessImage image_at(const canbus::RobotBus& bus, std::int32_t counts) {
   ProcessImage image(bus);
   for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
     const std::int64_t values[] = {0x0637, counts};
-    image.on_frame({pack(canbus::pdos_of(i, bus.drives[i].mode).state, bus.drives[i].node, values), canopen::Time(1)});
+    image.on_frame({pack(canbus::pdos_of(bus, i).state, bus.drives[i].node, values), canopen::Time(1)});
   }
   return image;
 }
