@@ -32,9 +32,9 @@ DriveMode read_mode(TomlReader& table, std::array<DriveMode, 2> choice) {
                                  canopen::describe(choice[1])));
 }
 
-int read_direction(TomlReader& table) {
-  const int direction = table.integer("direction", -1, 1);
-  if (direction == 0) table.fail("direction", "is 0, but must be 1 or -1");
+int read_direction(TomlReader& table, std::string_view key = "direction") {
+  const int direction = table.integer(key, -1, 1);
+  if (direction == 0) table.fail(key, "is 0, but must be 1 or -1");
   return direction;
 }
 
@@ -85,6 +85,7 @@ Homing read_homing(TomlReader table) {
   Homing homing{};
   homing.method = static_cast<std::int8_t>(table.integer("method", -128, 127));
   homing.home_rad = table.number("home_rad", kAngle);
+  homing.offset_direction = table.has("offset_direction") ? read_direction(table, "offset_direction") : 1;
   homing.speed_radps = table.number("speed_radps", {.min = 0, .max = 3, .open_min = true});
   homing.acceleration_radps2 = table.number("acceleration_radps2", kPositive);
   homing.patience_s = table.number("patience_s", {.min = 0, .max = 120, .open_min = true});

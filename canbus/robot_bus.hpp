@@ -35,6 +35,7 @@ struct DriveUnits {
 struct Homing {
   std::int8_t method;        // CiA 402, table of homing methods: 37 = where it is now; others move
   double home_rad;           // flipper's angle at the home position
+  int offset_direction = 1;  // +1: at home the drive's position is its object 0x607C; -1: minus that, as others read CiA 402
   double speed_radps;
   double acceleration_radps2;
   double patience_s;         // for the homing of a flipper

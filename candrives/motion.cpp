@@ -148,7 +148,8 @@ void Motion::operate_homing(const Measured& motor, double step_s) {
   const auto before = homing_.phase();
   homing_.step(demand_, motor.position, motor.negative_switch, motor.positive_switch, step_s);
   if (homing_.phase() == before || homing_.phase() != Homing::Phase::attained) return;
-  offset_ = static_cast<std::int64_t>(number(object::home_offset)) - std::llround(homing_.home());
+  offset_ = scale_.home_offset_direction * static_cast<std::int64_t>(number(object::home_offset)) -
+            std::llround(homing_.home());
 }
 
 bool Motion::slow_down(SlowDown ramp, double step_s) {

@@ -25,7 +25,8 @@ struct Measured {
 // Units of the velocity and acceleration objects, which need not be those of the position.
 struct MotorScale {
   double counts_per_velocity_unit = 1, counts_per_acceleration_unit = 1;
-  double homing_max_lag = 0;  // counts
+  double homing_max_lag = 0;      // counts
+  int home_offset_direction = 1;  // -1: at home the position is minus object 0x607C
 };
 
 enum class SlowDown : std::uint8_t { profile_ramp, quick_stop_ramp };  // objects 0x6084, 0x6085

@@ -23,7 +23,8 @@ DriveSetup drive_setup(const canbus::RobotBus& bus, std::size_t drive) {
           .name = std::string(canbus::kDriveNames[drive]),
           .scale = {.counts_per_velocity_unit = counts_per_unit / std::abs(on_bus.units.velocity_per_unit),
                     .counts_per_acceleration_unit = counts_per_unit / on_bus.units.acceleration_per_unit,
-                    .homing_max_lag = kHomingMaxLag_rad * counts_per_unit},
+                    .homing_max_lag = kHomingMaxLag_rad * counts_per_unit,
+                    .home_offset_direction = on_bus.homing ? on_bus.homing->offset_direction : 1},
           .absolute_encoder = !canbus::is_track(drive) && !on_bus.homing,
           .has_current = bus.has_currents,
           .has_voltage = bus.has_battery};

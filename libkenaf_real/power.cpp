@@ -32,7 +32,8 @@ constexpr int kHoldThroughQuickStop = 20;
 // because its master died, still has "enable" as its last controlword: so it hears "quick stop" first, which leads
 // nowhere from there (CiA 402-2, 10), and again every so many cycles, for a frame may get lost.
 constexpr int kEdgeEachCycles = 4;
-constexpr double kStanding = 0.01;  // of the full speed
+constexpr double kHomeTolerance_rad = 0.05;  // between what a drive says after homing and what it was told
+constexpr double kStanding = 0.01;           // of the full speed
 
 PowerState state_of(const BusCycle& cycle, std::size_t i) {
   return canopen::power_state_of(cycle.image().drive(i).statusword);
@@ -128,12 +129,35 @@ void begin_homing(BusCycle& cycle, std::size_t i) {
   };
   const std::int64_t speed = std::abs(std::int64_t{velocity_to_drive(drive.units, homing.speed_radps)});
   write(object::homing_method, homing.method, "homing method");
-  write(object::home_offset, position_to_drive(drive.units, homing.home_rad), "position at home");
+  write(object::home_offset, std::int64_t{homing.offset_direction} * position_to_drive(drive.units, homing.home_rad),
+        "position at home");
   write(object::homing_speed_switch, speed, "homing speed");
   write(object::homing_speed_zero, speed, "homing speed");
   write(object::homing_acceleration, acceleration_to_drive(drive.units, homing.acceleration_radps2),
         "homing acceleration");
   write_mode(cycle, i, DriveMode::homing);
+}
+
+// CiA 402 can be read in two ways: at home the position is the home offset, or minus the offset. A flipper whose angle
+// has the wrong sign would be driven to the wrong side of the robot.
+void check_home(const BusCycle& cycle, std::size_t i) {
+  const canbus::DriveOnBus& drive = cycle.bus().drives[i];
+  const double home_rad = drive.homing->home_rad;
+  const double measured_rad = position_from_drive(drive.units, cycle.image().drive(i).position);
+  const double mirrored_rad = position_from_drive(drive.units, -position_to_drive(drive.units, home_rad));
+  const bool stays = drive.homing->method == 35 || drive.homing->method == 37;
+  // one that moves stops behind its switch, or goes on to wherever its maker thinks best: all that shows is the wrong
+  // sign
+  const double speed = drive.homing->speed_radps, stopping_rad = speed * speed / drive.homing->acceleration_radps2;
+  const double margin_rad = stays ? kHomeTolerance_rad : kHomeTolerance_rad + stopping_rad;
+  if (std::abs(measured_rad - home_rad) <= margin_rad) return;
+  if (!stays && std::abs(measured_rad - mirrored_rad) > margin_rad) return;
+  throw Error(
+      HRT_E_DEVICE,
+      fmt::format("{}: after homing it says that it is at {:.3f} rad, not at {:.3f} rad (home_rad); does its maker "
+                  "take the home offset (object 0x607C) with the other sign? offset_direction = {} in "
+                  "[can.flipper.homing]",
+                  to_string(drive_node(cycle.bus(), i)), measured_rad, home_rad, -drive.homing->offset_direction));
 }
 
 void home(BusCycle& cycle) {
@@ -174,6 +198,9 @@ void home(BusCycle& cycle) {
         return DriveOrder{canopen::kControlEnable, hold_target(cycle, i)};
       },
       [&](std::size_t i) { return i > 0 || ++cycles_down > 2; }, [&](std::size_t i) { return not_enabled(cycle, i); });
+  for (std::size_t i = 0; i < kDriveCount; ++i) {
+    if (homes(i)) check_home(cycle, i);
+  }
   for (std::size_t i = 0; i < kDriveCount; ++i) {
     if (homes(i)) write_mode(cycle, i, cycle.bus().drives[i].mode);
   }

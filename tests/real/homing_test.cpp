@@ -73,3 +73,35 @@ TEST_CASE("homing is not taken for done by what a drive says of the one before")
   for (const double angle_rad : robot.run(1, {}).flipper_rad) CHECK(angle_rad == Approx(-3.14).margin(0.03));
   CHECK(robot.wire.now() > *begun + std::chrono::seconds(6));
 }
+
+TEST_CASE("a drive that takes the home offset the other way round is named, and opens with the description's key") {
+  // Where offset_direction is -1, home then reads minus the offset: the simulated drives of that description do so.
+  std::string negated = kHomeHere;
+  const std::string key = "\noffset_direction = -1";
+  negated.insert(negated.find("\nhome_rad"), key);
+  const ChangedRobot plus = homed_by(kHomeHere), minus = homed_by(negated);
+  for (const auto& [drives, description] : {std::pair(&minus, &plus), std::pair(&plus, &minus)}) {
+    RobotOnBus robot(drives->path());
+    std::snprintf(robot.config.robot, sizeof robot.config.robot, "%s", description->path().c_str());
+    try {
+      robot.open();
+      FAIL("it opened");
+    } catch (const hrt::Error& error) {
+      CHECK(error.code() == HRT_E_DEVICE);
+      CHECK_THAT(error.what(), Catch::Contains("flipper front left (node 3)") && Catch::Contains("at -0.700 rad") &&
+                                   Catch::Contains("not at 0.700 rad") && Catch::Contains("offset_direction"));
+    }
+  }
+  RobotOnBus robot(minus.path());
+  robot.open();
+  for (const double angle_rad : robot.run(2, {}).flipper_rad) CHECK(angle_rad == Approx(0.7).margin(1e-3));
+}
+
+TEST_CASE("homing that moves is checked for the sign of the home offset") {
+  std::string negated = towards_switch();
+  negated.insert(negated.find("\nhome_rad"), "\noffset_direction = -1");
+  const ChangedRobot plus = homed_by(towards_switch()), minus = homed_by(negated);
+  RobotOnBus robot(minus.path());
+  std::snprintf(robot.config.robot, sizeof robot.config.robot, "%s", plus.path().c_str());
+  CHECK_THROWS_WITH(robot.open(), Catch::Contains("offset_direction"));
+}
