@@ -187,7 +187,7 @@ void SocketBus::send(const Frame& frame) {
     // ENOBUFS is the interface's queue, for which there is nothing to wait on but time
     if (errno != ENOBUFS && errno != EAGAIN) lost(errno);
     if (now() > latest) {
-      throw BusError(
+      throw canopen::BusFull(
           fmt::format("CAN interface '{}' takes no more frames: nobody acknowledges them, or the bus is off{}{}",
                       interface_, last_warning_.empty() ? "" : "; it reports: ", last_warning_));
     }

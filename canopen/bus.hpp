@@ -17,6 +17,12 @@ class BusError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// It takes no frame now, and may take one later: so far nobody acknowledges any, or the controller is to be back on the bus soon.
+class BusFull : public BusError {
+ public:
+  using BusError::BusError;
+};
+
 struct ReceivedFrame {
   Frame frame;
   Time at;  // when it was on the bus
@@ -26,7 +32,7 @@ class Bus {
  public:
   virtual ~Bus() = default;
   virtual Time now() const = 0;
-  // Throws BusError.
+  // Throws BusError; BusFull, having waited a little.
   virtual void send(const Frame& frame) = 0;
   // The next frame of another node, or a SYNC of start_sync; nullopt once `until` has come or interrupt() was called since
   // the last call. Throws BusError.

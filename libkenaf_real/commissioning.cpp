@@ -57,26 +57,41 @@ void refuse_other_master(Master& master, const RobotBus& bus) {
   }
 }
 
+// Waits for boot-up messages.
+void await_start(Master& master, std::vector<NamedNode>& missing, Time until) {
+  while (!missing.empty()) {
+    const auto received = master.receive(until);
+    if (!received) break;
+    const auto heartbeat = canopen::heartbeat_from(received->frame);
+    if (!heartbeat || heartbeat->state != canopen::NmtState::boot_up) continue;
+    std::erase_if(missing, [&](const NamedNode& node) { return node.node == heartbeat->node; });
+  }
+  if (master.was_interrupted()) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");
+}
+
+// A bus that takes no frame is one on which nobody has power yet: it is waited for as a node is.
 void reset_communication(Master& master, const RobotBus& bus, double patience_s) {
   std::vector<NamedNode> missing = nodes_of(bus);
   const Time until = master.now() + to_time(patience_s);
+  Time ask_at = master.now();
+  std::string bus_says;
   while (!missing.empty()) {
-    for (const NamedNode& node : missing)
-      master.send(encode(canopen::NmtOrder{canopen::NmtCommand::reset_communication, node.node}));
-    const Time ask_again = std::min(until, master.now() + kAskAgain);
-    while (!missing.empty()) {
-      const auto received = master.receive(ask_again);
-      if (!received) break;
-      const auto heartbeat = canopen::heartbeat_from(received->frame);
-      if (!heartbeat || heartbeat->state != canopen::NmtState::boot_up) continue;
-      std::erase_if(missing, [&](const NamedNode& node) { return node.node == heartbeat->node; });
+    try {
+      if (master.now() >= ask_at) {
+        ask_at = master.now() + kAskAgain;
+        for (const NamedNode& node : missing)
+          master.send(encode(canopen::NmtOrder{canopen::NmtCommand::reset_communication, node.node}));
+        bus_says.clear();
+      }
+      await_start(master, missing, std::min(until, ask_at));
+    } catch (const canopen::BusFull& error) {
+      bus_says = fmt::format(" ({})", error.what());
     }
-    if (master.was_interrupted()) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");
     if (!missing.empty() && master.now() >= until) {
       throw Error(HRT_E_DEVICE,
-                  fmt::format("on {} nobody started within {} s as: {}; are they powered, is the bit rate "
+                  fmt::format("on {} nobody started within {} s as: {}{}; are they powered, is the bit rate "
                               "right, are the nodes in [can] of the robot's description theirs?",
-                              bus.interface, patience_s, names(missing)));
+                              bus.interface, patience_s, names(missing), bus_says));
     }
   }
 }

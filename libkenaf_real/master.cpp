@@ -64,15 +64,22 @@ void Master::check_pause() {
                            std::chrono::duration<double>(pause).count()));
 }
 
+void Master::send_heartbeat() {
+  const Time before = now();
+  try {
+    send(encode(canopen::Heartbeat{own_node_, canopen::NmtState::operational}));
+    next_heartbeat_ = before + heartbeat_;
+  } catch (const canopen::BusFull&) {
+    next_heartbeat_ = now() + heartbeat_;  // whoever goes on all the same is to receive in between
+    throw;
+  }
+}
+
 std::optional<ReceivedFrame> Master::receive(Time until) {
   interrupted_ = false;
   while (true) {
     check_pause();
-    const Time before = now();
-    if (next_heartbeat_ && before >= *next_heartbeat_) {
-      send(encode(canopen::Heartbeat{own_node_, canopen::NmtState::operational}));
-      next_heartbeat_ = before + heartbeat_;
-    }
+    if (next_heartbeat_ && now() >= *next_heartbeat_) send_heartbeat();
     const Time wake = next_heartbeat_ ? std::min(until, *next_heartbeat_) : until;
     if (const std::optional<ReceivedFrame> frame = bus_.receive(wake)) {
       refuse_own_heartbeat(*frame);

@@ -72,6 +72,7 @@ class Master {
   void write_if_there(const NamedNode& node, const canopen::SdoWrite& write);
 
  private:
+  void send_heartbeat();
   void refuse_own_heartbeat(const canopen::ReceivedFrame& received) const;
   canopen::SdoOutcome run(canopen::SdoClient& client, const canopen::Frame& first);
 
