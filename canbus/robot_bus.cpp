@@ -201,6 +201,7 @@ RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for
   bus.has_currents = !table.has("currents") || table.boolean("currents");
   bus.has_battery = !table.has("battery") || table.boolean("battery");
   bus.answer_s = table.number("answer_s", {.min = 0.01, .max = 10});
+  if (file.has("track")) bus.track_gauge_m = 2 * file.table("track").vector3("left_center_m").y();
   read_tracks(table.table("track"), file.table("drive"), bus);
   if (!file.has("flipper"))
     table.fail("flipper", "has no [flipper] in this description: this library drives robots with four");

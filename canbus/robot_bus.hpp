@@ -77,6 +77,7 @@ struct RobotBus {
   double node_heartbeat_s;               // how often nodes send theirs
   double answer_s;                       // patience for each answer during set-up
   bool has_currents = true, has_battery = true;  // the drives measure their current, the left track's the voltage of its supply
+  double track_gauge_m;                  // between the tracks' centre lines; 0: the description does not say it
   double speed_loop_s;                   // time constant of the track drives' own speed control: for simulated ones alone
   std::array<DriveOnBus, kDriveCount> drives;
   std::optional<InclinometerOnBus> inclinometer;

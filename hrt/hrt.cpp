@@ -363,7 +363,7 @@ int hrt_show_status(void) {
     Snapshot snapshot;
     const int code = guarded([&] { robot->snapshot(snapshot); });
     std::string text = kenaf::hrt::status_text(kenaf::hrt::state_from(snapshot), kenaf::hrt::kLibraryName);
-    if (!snapshot.warning.empty()) text += "  without   " + snapshot.warning + "\n";
+    if (!snapshot.warning.empty()) text += "  warning   " + snapshot.warning + "\n";
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
     if (code != HRT_OK) throw Error(code, std::string(last_error));

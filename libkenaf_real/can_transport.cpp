@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <cmath>
 
 #include "canbus/bus_layout.hpp"
 #include "canbus/robot_bus.hpp"
@@ -22,6 +23,7 @@ using hrt::Error;
 
 // The heading's bias is learnt in this time, while the robot stands; also what "standing" needs to be believed.
 constexpr double kStand_s = 0.5;
+constexpr double kGaugeTolerance = 0.05;  // what belts of some width leave open
 
 canbus::RobotBus read_description(const hrt_config& config) {
   try {
@@ -32,6 +34,16 @@ canbus::RobotBus read_description(const hrt_config& config) {
   } catch (const DescriptionError& error) {
     throw Error(HRT_E_CONFIG, error.what());
   }
+}
+
+// Turns and, without a posture, the heading come from it.
+std::string warning_of_gauge(const canbus::RobotBus& robot, double configured_mm) {
+  const double described_mm = 1e3 * robot.track_gauge_m;
+  if (described_mm <= 0 || std::abs(configured_mm - described_mm) <= kGaugeTolerance * described_mm) return {};
+  return fmt::format(
+      "track_gauge_mm is {:.0f}, but the robot's description has tracks that are {:.0f} mm apart "
+      "([track] left_center_m): turns come out wrong",
+      configured_mm, described_mm);
 }
 
 }  // namespace
@@ -49,6 +61,7 @@ struct CanTransport::Session {
   std::unique_ptr<canopen::Bus> bus;
   Master master;
   BusCycle cycle;
+  std::string gauge_warning;  // "": none
   std::optional<MeasuredState> measured;
   std::optional<DriveTargets> targets;
   // what of beats and of late orders the opening took: known with the first state after it
@@ -63,6 +76,7 @@ CanTransport::~CanTransport() = default;
 hrt::Connection CanTransport::open(const hrt_config& config) try {
   session_ = std::make_unique<Session>(config, open_bus_);
   Session& s = *session_;
+  s.gauge_warning = warning_of_gauge(s.robot, config.track_gauge_mm);
   s.lost = true;  // until all are enabled there is nothing to stop in an orderly way
   const NodeFacts facts = commission(s.master, s.robot, s.period_s, config.can_timeout_s);
   s.master.watch_pauses(to_time(s.robot.master_silence_s));
@@ -161,7 +175,9 @@ void CanTransport::close() {
 }
 
 std::string CanTransport::warning() const {
-  return session_ && session_->measured ? session_->measured->warning() : std::string();
+  if (!session_ || !session_->measured) return {};
+  const std::string &of_now = session_->measured->warning(), &of_gauge = session_->gauge_warning;
+  return of_now + (of_now.empty() || of_gauge.empty() ? "" : "; ") + of_gauge;
 }
 
 double CanTransport::round_trip_s() const {

@@ -289,7 +289,8 @@ enum {
   HRT_STOPPED_BY_SILENCE = 1 << 2, /* the tracks were stopped because commands were too late */
   HRT_RECORDING = 1 << 3,          /* a recording is under way */
   HRT_IN_LOCKSTEP = 1 << 4,        /* robot time waits for this program */
-  HRT_DEGRADED = 1 << 5            /* the robot goes on without something: hrt_get_warning says what */
+  HRT_DEGRADED = 1 << 5            /* the robot goes on without something, or (libkenaf_real) with a configuration that does
+                                      not fit its description: hrt_get_warning says what */
 };
 
 /* What is known of the robot as of one cycle. */
@@ -349,7 +350,8 @@ int hrt_get_state(hrt_state* state);
 int hrt_wait_cycle(hrt_state* state);
 
 /* What the robot goes on without, one line of English such as "inclinometer (node 7) is silent: no posture, and the heading
- * is that of the tracks"; "" where nothing is missing. At most size - 1 bytes of it and a zero, also where the call fails on
+ * is that of the tracks"; "" where nothing is missing. Of libkenaf_real also that track_gauge_mm is more than 5 % off the
+ * description's. At most size - 1 bytes of it and a zero, also where the call fails on
  * something other than its arguments. HRT_E_NOT_INITIALISED; HRT_E_ARGUMENT: null or size 0; HRT_E_LINK: as of the last state. */
 int hrt_get_warning(char* text, size_t size);
 

@@ -49,6 +49,7 @@ TEST_CASE("the shipped robot's bus") {
   const RobotBus bus = load_robot_bus("kenaf");
   CHECK(bus.interface == "can0");
   CHECK(bus.bit_rate == 500'000);
+  CHECK(bus.track_gauge_m == Approx(0.2));
   CHECK(bus.master == 127);
   for (std::size_t i = 0; i < kDriveCount; ++i) CHECK(bus.drives[i].node == i + 1);
   CHECK(bus.drives[0].mode == DriveMode::profile_velocity);

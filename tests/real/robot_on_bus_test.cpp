@@ -224,6 +224,24 @@ TEST_CASE("a SYNC that stops is a link that is lost") {
   }
 }
 
+TEST_CASE("a track_gauge_mm that is not the described robot's is warned of") {
+  // the shipped robot's tracks are 0.2 m apart, which is the default
+  for (const auto& [gauge_mm, says] : {std::pair{205.0, ""}, {250.0, "track_gauge_mm is 250"}}) {
+    RobotOnBus robot;
+    robot.config.track_gauge_mm = gauge_mm;
+    robot.open();
+    robot.run(2, {});
+    CHECK_THAT(robot.transport.warning(), Catch::StartsWith(says));
+    CHECK(robot.transport.warning().empty() == (std::string(says) == ""));
+    if (robot.transport.warning().empty()) continue;
+    CHECK_THAT(robot.transport.warning(), Catch::Contains("200 mm"));
+    robot.wire.inject({candrives::FaultKind::silent, 7});
+    robot.run(15, {});
+    CHECK_THAT(robot.transport.warning(),
+               Catch::StartsWith("inclinometer (node 7) is silent") && Catch::Contains("track_gauge_mm is 250"));
+  }
+}
+
 TEST_CASE("a period that the bus cannot carry, or that is too long to notice a drive's silence in time, is refused") {
   struct Case {
     double period_s;
