@@ -45,6 +45,21 @@ Time read_clock(clockid_t clock) {
   return time_of(at);
 }
 
+struct BothClocks {
+  Time wall, monotonic;
+};
+// At one moment: a program that is held up between the two would see its wall clock set.
+BothClocks read_both_clocks() {
+  constexpr int kTries = 3;
+  BothClocks clocks{};
+  for (int i = 0; i < kTries; ++i) {
+    const Time before = read_clock(CLOCK_MONOTONIC);
+    clocks = {read_clock(CLOCK_REALTIME), read_clock(CLOCK_MONOTONIC)};
+    if (clocks.monotonic - before < std::chrono::milliseconds(1)) break;
+  }
+  return clocks;
+}
+
 timespec to_timespec(Time duration) {
   const auto seconds = std::chrono::floor<std::chrono::seconds>(duration);
   return {.tv_sec = static_cast<time_t>(seconds.count()), .tv_nsec = static_cast<long>((duration - seconds).count())};
@@ -234,17 +249,16 @@ std::optional<ReceivedFrame> SocketBus::read_frame() {
     }
     const std::optional<Frame> received = from_kernel(frame);
     if (!received) continue;
-    // the stamp is of the clock on the wall, which may be set while we run: only the frame's age is taken from it
-    Time age{0};
+    Time at = now();
     for (const cmsghdr* part = CMSG_FIRSTHDR(&message); part;
          part = CMSG_NXTHDR(&message, const_cast<cmsghdr*>(part))) {
       if (part->cmsg_level != SOL_SOCKET || part->cmsg_type != SCM_TIMESTAMPNS) continue;
       timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(part), sizeof stamp);
-      age = read_clock(CLOCK_REALTIME) - time_of(stamp);
+      const BothClocks clocks = read_both_clocks();
+      at = received_at(wall_clock_, time_of(stamp), clocks.wall, clocks.monotonic);
     }
-    const bool is_age = age >= Time(0) && age < std::chrono::seconds(1);
-    return ReceivedFrame{*received, now() - (is_age ? age : Time(0))};
+    return ReceivedFrame{*received, at};
   }
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "canbus/wall_clock.hpp"
 #include "canopen/bus.hpp"
 
 namespace kenaf::canbus {
@@ -43,6 +44,7 @@ class SocketBus final : public canopen::Bus {
 
   std::string interface_;
   int raw_ = -1, broadcast_manager_ = -1, interrupt_ = -1;
+  WallClock wall_clock_;
   std::string last_warning_;  // the newest error frame in words, "" after none: "no acknowledgement: is anybody else on the bus?"
 };
 
