@@ -53,7 +53,9 @@ void refuse_other_master(Master& master, const RobotBus& bus) {
     if (!is_sync(received->frame)) continue;
     throw Error(
         HRT_E_REFUSED,
-        fmt::format("another program has the robot: a SYNC is on {} already; end that program first", bus.interface));
+        fmt::format("another program has the robot: a SYNC is on {} already; end that program first, or where it is "
+                    "dead, a child that it forked and left behind",
+                    bus.interface));
   }
 }
 

@@ -41,7 +41,9 @@
  *   but not from a signal handler. hrt_go_forward and hrt_turning are motions: one at a time, a second one is told
  *   HRT_E_BUSY. Sleeping and waiting may go on in any number of threads beside it. hrt_stop and hrt_get_state never
  *   wait for the robot. The library runs threads of its own, with all signals blocked. A child of fork() must
- *   not use the robot of its parent; where it ends by exit(), its parent's robot goes on.
+ *   not use the robot of its parent; where it ends by exit(), its parent's robot goes on. One that lives on without exec()
+ *   keeps the bus of libkenaf_real open: where its parent dies, the drives stop, but the bus's SYNC goes on, and the next
+ *   hrt_kenaf_init is told HRT_E_REFUSED until the child ends.
  *
  * Pictures
  *   hrt_get_picture gives the newest picture of one of the robot's cameras, and how old it is. Pictures are no part of

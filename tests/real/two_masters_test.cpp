@@ -68,6 +68,14 @@ TEST_CASE("a master that turns up while the nodes start, or the drives are enabl
   }
 }
 
+TEST_CASE("a SYNC without a master is named with what may keep it going") {
+  RobotOnBus robot;
+  robot.wire.start_sync(milliseconds(10));
+  const Refusal refusal = refusal_of([&] { robot.open(); });
+  CHECK(refusal.code == HRT_E_REFUSED);
+  CHECK_THAT(refusal.text, Catch::Contains("a SYNC is on can0") && Catch::Contains("forked"));
+}
+
 TEST_CASE("a second master's heartbeat in the loop stops the robot at once") {
   RobotOnBus robot;
   robot.open();
