@@ -29,10 +29,11 @@ hrt_state state_from(const Snapshot& snapshot) {
   state.size = sizeof state;
   state.valid = measured.fields & kValidBits;
   const auto flag = [](bool on, std::uint32_t bit) { return on ? bit : 0u; };
-  state.activity = flag(snapshot.motion_active, HRT_MOTION_ACTIVE) | flag(snapshot.paused, HRT_PAUSED) |
-                   flag((measured.events & relay::kStoppedBySilence) != 0, HRT_STOPPED_BY_SILENCE) |
-                   flag(snapshot.recording, HRT_RECORDING) | flag(snapshot.lockstep, HRT_IN_LOCKSTEP) |
-                   flag(!snapshot.warning.empty(), HRT_DEGRADED);
+  state.activity =
+      flag(snapshot.motion_active, HRT_MOTION_ACTIVE) | flag(snapshot.paused, HRT_PAUSED) |
+      flag(snapshot.stopped_by_silence || (measured.events & relay::kStoppedBySilence) != 0, HRT_STOPPED_BY_SILENCE) |
+      flag(snapshot.recording, HRT_RECORDING) | flag(snapshot.lockstep, HRT_IN_LOCKSTEP) |
+      flag(!snapshot.warning.empty(), HRT_DEGRADED);
   state.flippers_commanded = snapshot.commanded.flipper_mask;
   state.cycle = measured.frame;
   state.time_s = measured.robot_time_s;

@@ -150,7 +150,7 @@ void Robot::wait_beside(const std::function<bool()>& wait_a_little) {
 void Robot::begin_motion() {
   if (motion_active()) throw Error(HRT_E_BUSY, "a motion is under way in another thread; hrt_stop() ends it");
   if (!estimate_.has_encoders) throw Error(HRT_E_DEVICE, "this robot reports no track encoders");
-  user_track_mps_ = {};
+  set_user_tracks({});
   motion_track_mps_ = {};
 }
 
@@ -205,12 +205,17 @@ void Robot::note_setting() {
   program_acted_.notify_one();
 }
 
+void Robot::set_user_tracks(const std::array<double, kTrackCount>& mps) {
+  user_track_mps_ = mps;
+  stopped_by_silence_ = false;
+}
+
 void Robot::set_tracks(double left_mps, double right_mps) {
   const std::unique_lock lock = lock_open();
   end_calls([](const Call& call) { return call.kind == Kind::motion; }, HRT_E_STOPPED,
             "hrt_set_tracks() of another thread ended this motion");
   goal_heading_rad_.reset();
-  user_track_mps_ = {left_mps, right_mps};
+  set_user_tracks({left_mps, right_mps});
   note_setting();
 }
 
@@ -228,7 +233,7 @@ void Robot::stop() {
   end_calls([](const Call& call) { return call.kind == Kind::motion || call.kind == Kind::flippers; }, HRT_E_STOPPED,
             "hrt_stop() ended this call");
   goal_heading_rad_.reset();
-  user_track_mps_ = {};
+  set_user_tracks({});
   for (std::size_t i = 0; i < kFlipperCount; ++i) {
     if (flipper_is_off(i, kFlipperArrived_rad)) flipper_rad_[i] = measured_.flipper_rad[i];
   }
@@ -252,6 +257,7 @@ void Robot::snapshot(Snapshot& out) {
     out.paused = transport_->is_paused();
   }
   out.motion_active = motion_active();
+  out.stopped_by_silence = stopped_by_silence_;
   out.recording = recorder_ != nullptr;
   out.lockstep = connection_.lockstep;
   if (failure_) throw *failure_;
@@ -419,7 +425,10 @@ void Robot::look_at_due() {
 void Robot::compose_command() {
   if (!calls_.empty()) last_call_t_s_ = estimate_.t_s;
   const double silent_s = estimate_.t_s - last_call_t_s_ - kCycleRounding * connection_.period_s;
-  if (silent_s > config_.command_timeout_s) user_track_mps_ = {};
+  if (silent_s > config_.command_timeout_s && user_track_mps_ != std::array<double, kTrackCount>{}) {
+    user_track_mps_ = {};
+    stopped_by_silence_ = true;
+  }
   command_.track_speed_mps = motion_active() ? motion_track_mps_ : user_track_mps_;
   if (closing_) command_.track_speed_mps = {};
   command_.flipper_mask = flipper_mask_;

@@ -36,7 +36,7 @@ struct Snapshot {
   std::uint64_t lost_cycles = 0;
   double round_trip_s = 0;
   std::string warning;
-  bool motion_active = false, paused = false, recording = false, lockstep = false;
+  bool motion_active = false, paused = false, stopped_by_silence = false, recording = false, lockstep = false;
 };
 
 // Thread safety: every function may be called from any thread. All of them throw Error with the codes that hrt.h names.
@@ -117,6 +117,7 @@ class Robot {
   double motion_heading() const;
   bool motion_active() const;
   void begin_motion();
+  void set_user_tracks(const std::array<double, kTrackCount>& mps);
   bool flipper_is_off(std::size_t flipper, double tolerance_rad) const;
 
   const hrt_config config_;
@@ -136,6 +137,7 @@ class Robot {
   std::string warning_;
   DriveCommand command_;  // the newest answer, in force from the next cycle on
   std::array<double, kTrackCount> user_track_mps_{};
+  bool stopped_by_silence_ = false;  // those speeds, and none has been asked for since
   std::array<double, kTrackCount> motion_track_mps_{};
   std::uint8_t flipper_mask_ = 0;  // what the program wants, as DriveCommand has it
   std::array<double, kFlipperCount> flipper_rad_{};

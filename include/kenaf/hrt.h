@@ -288,7 +288,8 @@ enum {
 enum {
   HRT_MOTION_ACTIVE = 1 << 0,      /* a motion is under way */
   HRT_PAUSED = 1 << 1,             /* somebody has stopped the simulation's clock */
-  HRT_STOPPED_BY_SILENCE = 1 << 2, /* the tracks were stopped because commands were too late */
+  HRT_STOPPED_BY_SILENCE = 1 << 2, /* the tracks were stopped because no hrt_ call came within command_timeout_s, until
+                                      they are commanded anew; libkenaf_sim also: because no command came from the library */
   HRT_RECORDING = 1 << 3,          /* a recording is under way */
   HRT_IN_LOCKSTEP = 1 << 4,        /* robot time waits for this program */
   HRT_DEGRADED = 1 << 5            /* the robot goes on without something, or (libkenaf_real) with a configuration that does

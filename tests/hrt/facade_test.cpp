@@ -524,6 +524,44 @@ TEST_CASE("F5 track speeds hold while the program calls, and stop command_timeou
   CHECK(state.commanded_track_mmps[0] == 0);  // stopped for good, until commanded anew
 }
 
+TEST_CASE("F5 tracks that were stopped by silence are said to be, until they are commanded anew") {
+  const auto robot = use_fake_robot();
+  robot->lockstep = false;
+  robot->runs_alone = true;
+  const Open open;
+  const auto is_stopped_by_silence = [] {
+    hrt_state state = hrt_state_init();
+    REQUIRE(hrt_get_state(&state) == HRT_OK);
+    return (state.activity & HRT_STOPPED_BY_SILENCE) != 0;
+  };
+  const auto be_silent = [&] {
+    const std::size_t begin = [&] {
+      const std::lock_guard lock(robot->mutex);
+      return robot->commands.size();
+    }();
+    // the timeout is ten cycles
+    for (bool passed = false; !passed;) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      const std::lock_guard lock(robot->mutex);
+      passed = robot->commands.size() > begin + 20;
+    }
+  };
+  be_silent();
+  CHECK_FALSE(is_stopped_by_silence());  // they stood
+  const std::pair<const char*, std::function<int()>> anew[] = {{"tracks", [] { return hrt_set_tracks(0, 0); }},
+                                                               {"stop", [] { return hrt_stop(); }},
+                                                               {"motion", [] { return hrt_go_forward(1); }}};
+  for (const auto& [what, command] : anew) {
+    REQUIRE(hrt_set_tracks(100, 100) == HRT_OK);
+    be_silent();
+    CAPTURE(what);
+    CHECK(is_stopped_by_silence());
+    CHECK(is_stopped_by_silence());  // asking changes nothing
+    REQUIRE(command() == HRT_OK);
+    CHECK_FALSE(is_stopped_by_silence());
+  }
+}
+
 TEST_CASE("F5 a sleep of no time counts as a call") {
   // Where this thread was kept from calling for half of the timeout, which is a hundred cycles, it tells nothing.
   for (bool told = false; !told;) {
