@@ -241,12 +241,15 @@ int hrt_turning(double deg);
 /* ---- Direct control: does not block ---- */
 
 /* Commands both track speeds, -2000 to 2000 mm/s, from the next cycle on, until changed or until command_timeout_s
- * after the last hrt_ call. The drives limit their acceleration. Ends a motion under way (HRT_E_STOPPED there).
+ * after the last hrt_ call. The drives limit their acceleration. The robot cuts speeds to its own greatest one (libkenaf_real: of
+ * its description); hrt_state.commanded_track_mmps and recordings have what was asked for. Ends a motion under way (HRT_E_STOPPED there).
  * HRT_E_NOT_INITIALISED, HRT_E_ARGUMENT, HRT_E_LINK. */
 int hrt_set_tracks(double left_mmps, double right_mmps);
 
 /* Commands one flipper, or HRT_ALL_FLIPPERS, to an angle, -360 to 360 degrees: 0 straight out, positive tip up. The
- * flipper moves at its own speed, within the limits of its drive, and holds the angle; see hrt_wait_flippers.
+ * flipper moves at its own speed, within the limits of its drive, and holds the angle; see hrt_wait_flippers. Beyond the range
+ * of its joint it goes to the range's end (libkenaf_sim: first to the same direction within the range, where there is one);
+ * hrt_state.commanded_flipper_deg and recordings have what was asked for, for which hrt_wait_flippers waits.
  * HRT_E_NOT_INITIALISED, HRT_E_ARGUMENT, HRT_E_LINK. */
 int hrt_set_flipper(int flipper, double deg);
 
@@ -325,7 +328,7 @@ typedef struct hrt_state {
    * does not know it: a control program must not need it. */
   double pose_x_mm, pose_y_mm, pose_z_mm, pose_roll_deg, pose_pitch_deg, pose_yaw_deg;
 
-  /* What the newest answer to the robot commands. */
+  /* What the newest answer to the robot commands, before the robot cuts it to what it can. */
   double commanded_track_mmps[2];
   double commanded_flipper_deg[4];
 
