@@ -58,7 +58,14 @@ exec 3>input
 said drives.log 'nodes on vcan0'
 
 begin 1; tell all healed; kill -9 "$program"; stands "program killed" "$mark"; end 2>/dev/null
-begin 2; tell all healed; kill -STOP "$program"; stands "program stopped (SIGSTOP)" "$mark"; end 2>/dev/null
+begin 2; tell all healed; kill -STOP "$program"; stands "program stopped (SIGSTOP)" "$mark"
+# It goes on, with beats of the bus in its socket: nothing that it says may enable a drive (bits 0 to 3 of the controlword).
+candump -L vcan0 >resumed & watching=$!
+pause 0.5; kill -CONT "$program"; said program.log "lost: this program was held up for"
+pause 0.5; kill "$watching"; wait "$watching" 2>/dev/null
+grep -E ' 20[1-6]#[0-9A-F]F' resumed && fail "2: it has enabled drives that had stopped by themselves"
+grep -qE ' 20[1-6]#0200' resumed || fail "2: it has not told the drives to stop"
+end 2>/dev/null
 begin 3 120; said program.log hanging; tell all healed; stands "program's own thread hangs" "$mark"; end 2>/dev/null
 
 begin 4; tell all healed; ip link set vcan0 down; stands "interface down" "$mark"
