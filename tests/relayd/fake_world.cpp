@@ -133,7 +133,7 @@ bool FakeWorld::handle(const std::string& line, int fd) {
     send_text(fd, "GEO {Type GroundVehicle} {Name Kenaf} {WheelRadius 0.05} {WheelSeparation 0.4}\r\n");
   } else if (message.is("GETCONF") && type == "Encoder" && has_robot_) {
     send_text(fd, "CONF {Type Encoder} {Name Encoder} {Resolution 0.001}\r\n");
-  } else if (message.is("CONTROL") && ++controls_ == options_.closes_at_control) {
+  } else if (message.is("CONTROL") && closes_at_control_.exchange(false)) {
     return false;
   } else if (message.is("CONTROL") && options_.extended) {
     period_s_ = number(message, "Period", period_s_);

@@ -21,7 +21,6 @@ struct FakeWorldOptions {
   std::string garbage;     // sent before each frame
   std::size_t piece = 0;   // bytes a send() carries at most, 0: all
   bool accepts_robot = true;
-  int closes_at_control = 0;  // closes the connection instead of answering the n-th CONTROL in all, 0: none
 };
 
 class FakeWorld {
@@ -37,6 +36,7 @@ class FakeWorld {
   double x_m() const { return x_m_; }
   double speed_mps() const { return speed_mps_; }
   void mute(bool on) { mute_ = on; }  // keeps the connection and says nothing
+  void close_at_control() { closes_at_control_ = true; }  // the next one, instead of answering; then it is there again
 
  private:
   void run();
@@ -49,10 +49,9 @@ class FakeWorld {
   const FakeWorldOptions options_;
   relayd::Descriptor listener_;
   std::uint16_t port_ = 0;
-  std::atomic<bool> stopping_{false}, mute_{false};
+  std::atomic<bool> stopping_{false}, mute_{false}, closes_at_control_{false};
   std::atomic<int> connections_{0};
   std::atomic<double> x_m_{0}, speed_mps_{0};
-  int controls_ = 0;
   mutable std::mutex mutex_;
   std::vector<std::string> lines_;
 
