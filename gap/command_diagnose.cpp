@@ -31,8 +31,9 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
   command->add_option("--without", diagnosis.without, "takes effects out of the catalogue, by name, parted by commas")
       ->delimiter(',')
       ->type_name("EFFECT");
-  command->add_flag("!--no-next", diagnosis.propose_next,
-                    "proposes no manoeuvres to drive next, which takes simulations of its own");
+  command->add_flag_callback(
+      "--no-next", [&diagnosis] { diagnosis.propose_next = false; },
+      "leaves out which manoeuvre to drive next, which takes simulations of its own");
   command->add_option("--jobs", diagnosis.jobs, "threads; 0: one a core")
       ->check(whole_number(kMostJobs))
       ->capture_default_str();
