@@ -299,6 +299,10 @@ TEST_CASE("An overlay shows the channels with most of the gap, of left and right
     CHECK(overlay.channels == std::vector<std::size_t>{channel("track_left_mps"), channel("x_m")});
     CHECK(overlay.shares[0] > overlay.shares[1]);
   }
+  // of the whole gap: both manoeuvres have about half of it, and what is not shown the rest
+  const double sum = overlays[0].shares[0] + overlays[0].shares[1] + overlays[1].shares[0] + overlays[1].shares[1];
+  CHECK(sum < 1);
+  CHECK(overlays[0].shares[0] < 0.5);
 }
 
 TEST_CASE("Of many manoeuvres those with most of the gap are drawn, in the order of the dataset") {

@@ -28,7 +28,7 @@ constexpr double kClimbs_m = 0.05;   // of height: seen from the side
 constexpr double kAround_m = 0.2;    // of the body's centre: the robot is about 0.5 m long
 constexpr double kBeside_m = 0.1;    // likewise, of a path seen from above
 constexpr double kWholeGap_px = 50;  // radius of a disc that has all of the gap
-constexpr double kLabelled = 0.01;   // share of the gap of a phase that has a label
+constexpr double kLabelled = 0.01;   // share of the gap of a phase or a chart that has a label
 constexpr double kApart = 0.2;       // of the path's extent, from label to label
 
 std::vector<Point> drawn_over_time(const runs::Run& run, std::size_t channel) {
@@ -127,7 +127,7 @@ Chart channel_figure(const Diagnosis& d, const Overlay& overlay, std::size_t ind
   const std::size_t channel = overlay.channels[index];
   const Channel& shown = diagnosis_channels()[channel];
   Chart chart;
-  chart.title = overlay.shares[index] > 0
+  chart.title = overlay.shares[index] >= kLabelled
                     ? fmt::format("{} over time ({} of the gap)", shown.column, percent(overlay.shares[index]))
                     : fmt::format("{} over time", shown.column);
   chart.x_label = "t (s)";

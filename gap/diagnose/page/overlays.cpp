@@ -30,7 +30,7 @@ std::string without_side(std::string_view column) {
   return family;
 }
 
-// [group][channel], of what is beyond chance in the group; all 0 where nothing is, or nothing is known.
+// [group][channel], of what is beyond chance in all runs; all 0 where nothing is, or nothing is known.
 std::vector<std::vector<double>> shares_by_group(const Diagnosis& d) {
   std::vector<std::vector<double>> shares(d.repeats.size(), std::vector<double>(diagnosis_channels().size(), 0));
   if (d.nominal.size() != d.features.size() || d.nominal_floor.whiteners.size() != d.features.size()) return shares;
@@ -39,10 +39,10 @@ std::vector<std::vector<double>> shares_by_group(const Diagnosis& d) {
   const Coherence coherence(d.features, d.repeats, d.options.stretch_s);
   for (const Cell& cell : cells_that_stand_out(d.nominal_floor, coherence, residual))
     shares[cell.group][cell.channel] += beyond_chance(cell);
-  for (std::vector<double>& group : shares) {
-    const double total = std::accumulate(group.begin(), group.end(), 0.0);
+  double total = 0;
+  for (const std::vector<double>& group : shares) total = std::accumulate(group.begin(), group.end(), total);
+  for (std::vector<double>& group : shares)
     for (double& share : group) share = total > 0 ? share / total : 0;
-  }
   return shares;
 }
 
@@ -62,8 +62,9 @@ std::vector<std::size_t> telling_channels(const runs::Run& run, const std::vecto
     return shares[a] != shares[b] ? shares[a] > shares[b] : preference(a) < preference(b);
   });
   std::vector<std::size_t> chosen;
+  const double worth_showing = kWorthShowing * std::accumulate(shares.begin(), shares.end(), 0.0);
   for (const std::size_t c : sorted) {
-    if (chosen.size() == kMostChannels || (chosen.size() >= kLeastChannels && shares[c] < kWorthShowing)) break;
+    if (chosen.size() == kMostChannels || (chosen.size() >= kLeastChannels && shares[c] <= worth_showing)) break;
     const std::string family = without_side(diagnosis_channels()[c].column);
     if (std::ranges::none_of(
             chosen, [&](std::size_t other) { return without_side(diagnosis_channels()[other].column) == family; }))

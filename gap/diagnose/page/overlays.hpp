@@ -13,7 +13,7 @@ namespace kenaf::gap {
 struct Overlay {
   std::size_t group, run;            // of Diagnosis::repeats; its representative
   std::vector<std::size_t> channels; // that show most of the gap in this manoeuvre, of diagnosis_channels()
-  std::vector<double> shares;        // of what is beyond chance in this manoeuvre; of each of these channels
+  std::vector<double> shares;        // of each of these channels, of what is beyond chance in all runs
   runs::Run nominal;
   std::optional<runs::Run> corrected;  // with the best model, where there is one
 };
