@@ -440,15 +440,24 @@ TEST_CASE("A case that was made is kept for who has the seed, until its data are
   CHECK_FALSE(made_case(cases, "case-000", 11, 1));
 }
 
-TEST_CASE("A challenge that is interrupted while its cases are made goes on with those that are there") {
-  const TemporaryFolder folder;
+namespace {
+
+// Of one case with seed 11, made, not sealed; what is in it is not what its seed would make, so that it is known again.
+ChallengeKey write_half_made_challenge(const TemporaryFolder& folder) {
   write_challenge(folder);
-  // a challenge of one case, made, not sealed; what is in it is not what its seed would make, so that it is known again
   std::filesystem::rename(folder / "cases", folder / "cases.part");
   ChallengeKey key = read_key(read_file(folder / "key.json"));
   key.cases[0].data_sha256 = sha256_of_dataset(folder.path() / "cases.part/case-000");
   keep_made_case(folder.path() / "cases.part", key.cases[0], 11, 1);
   for (const char* file : {"key.json", "commitment.txt"}) std::filesystem::remove(folder / file);
+  return key;
+}
+
+}  // namespace
+
+TEST_CASE("A challenge that is interrupted while its cases are made goes on with those that are there") {
+  const TemporaryFolder folder;
+  const ChallengeKey key = write_half_made_challenge(folder);
   std::filesystem::create_directory(folder / "cases.part/case-001");  // of more cases that were asked for once
   const test::Outcome outcome = test::kenaf_gap(folder, "challenge --out . --cases 1 --seed 11");
   CAPTURE(outcome.error);
@@ -462,12 +471,7 @@ TEST_CASE("A challenge that is interrupted while its cases are made goes on with
 
 TEST_CASE("Cases that were being made are not thrown away for another seed or number") {
   const TemporaryFolder folder;
-  write_challenge(folder);
-  std::filesystem::rename(folder / "cases", folder / "cases.part");
-  ChallengeKey key = read_key(read_file(folder / "key.json"));
-  key.cases[0].data_sha256 = sha256_of_dataset(folder.path() / "cases.part/case-000");
-  keep_made_case(folder.path() / "cases.part", key.cases[0], 11, 1);
-  for (const char* file : {"key.json", "commitment.txt"}) std::filesystem::remove(folder / file);
+  write_half_made_challenge(folder);
   for (const char* slip : {"--cases 1 --seed 12", "--cases 2 --seed 11"}) {
     const test::Outcome outcome = test::kenaf_gap(folder, "challenge --out . " + std::string(slip));
     CHECK(outcome.status == 2);
