@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "protocol/reachable_angle.hpp"
+
 namespace kenaf::real {
 
 using canbus::DriveOnBus;
@@ -34,7 +36,10 @@ DriveOrders DriveTargets::step(const hrt::DriveCommand& command, const ProcessIm
     const bool told = (command.flipper_mask >> f & 1) != 0;
     const DriveOnBus& on_bus = bus_.drives[drive];
     // one that was not told anything stays also where that is outside of its limits
-    if (told) hold_rad_[f] = std::clamp(command.flipper_rad[f], on_bus.min_position, on_bus.max_position);
+    if (told)
+      hold_rad_[f] = frames::reachable_angle(command.flipper_rad[f],
+                                             position_from_drive(on_bus.units, image.drive(drive).position),
+                                             on_bus.min_position, on_bus.max_position);
     orders[drive] = flipper(drive, told, image.drive(drive), period_s);
   }
   return orders;

@@ -22,7 +22,8 @@ class DriveTargets {
   // The flippers stay where they are until they are told otherwise.
   DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image);
 
-  // A command out of range is cut to the description's limits. Ramps go on by one period a call, also where the call before is
+  // A speed out of range is cut to the description's limit; a flipper's angle is taken to the same direction within the limits
+  // or, where there is none, to the nearer limit. Ramps go on by one period a call, also where the call before is
   // longer ago: a drive goes to each target within a period, and what was missed would be a jump beyond the limits.
   DriveOrders step(const hrt::DriveCommand& command, const ProcessImage& image, double period_s);
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/reachable_angle.hpp"
 #include "protocol/frames.hpp"
+#include "protocol/reachable_angle.hpp"
 
 namespace kenaf::physics {
 namespace {
@@ -56,7 +56,7 @@ void FlipperJoint::drive(const JointCommand& command, const FlipperDescription& 
   if (command.mode != JointMode::angle) followed_rad_ = at;
   switch (command.mode) {
     case JointMode::angle: {
-      double target = reachable_angle(command.value, at, flipper.min_angle_rad, flipper.max_angle_rad);
+      double target = frames::reachable_angle(command.value, at, flipper.min_angle_rad, flipper.max_angle_rad);
       if (coupling_.lag_s > 0) {
         followed_rad_ -= std::expm1(-time_step_s / coupling_.lag_s) * (target - followed_rad_);
         target = followed_rad_;

@@ -248,7 +248,7 @@ int hrt_set_tracks(double left_mmps, double right_mmps);
 
 /* Commands one flipper, or HRT_ALL_FLIPPERS, to an angle, -360 to 360 degrees: 0 straight out, positive tip up. The
  * flipper moves at its own speed, within the limits of its drive, and holds the angle; see hrt_wait_flippers. Beyond the range
- * of its joint it goes to the range's end (libkenaf_sim: first to the same direction within the range, where there is one);
+ * of its joint it goes to the same direction within the range or, where there is none, to the nearer end;
  * hrt_state.commanded_flipper_deg and recordings have what was asked for, for which hrt_wait_flippers waits.
  * HRT_E_NOT_INITIALISED, HRT_E_ARGUMENT, HRT_E_LINK. */
 int hrt_set_flipper(int flipper, double deg);

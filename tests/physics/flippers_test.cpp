@@ -1,7 +1,6 @@
 // F1 speed limit, F2 lifting, F3 torque limit, F4 modes, F5 limits of travel, F6 the flipper's own belt.
 #include <catch2/catch.hpp>
 
-#include "physics/reachable_angle.hpp"
 #include "tests/physics/scenes.hpp"
 
 using namespace kenaf::physics;
@@ -81,16 +80,6 @@ TEST_CASE("F4: speed, torque and brake modes") {
   world.set_command(id, command);
   run(world, 0.5);
   CHECK(world.truth(id).flipper_radps[kFrontLeft] == Approx(1.5).epsilon(0.01));
-}
-
-TEST_CASE("F5: the same direction within the limits, the nearest one") {
-  const double pi = std::numbers::pi;
-  CHECK(reachable_angle(0.5, 0, -2, 2) == Approx(0.5));
-  CHECK(reachable_angle(0.5 + 2 * pi, 0, -2, 2) == Approx(0.5));
-  CHECK(reachable_angle(3, 0, -2, 2) == Approx(2));
-  CHECK(reachable_angle(-3, 0, -2, 2) == Approx(-2));
-  CHECK(reachable_angle(1, 6, -2 * pi, 2 * pi) == Approx(1));
-  CHECK(reachable_angle(1, -4, -2 * pi, 2 * pi) == Approx(1 - 2 * pi));
 }
 
 TEST_CASE("F5: a flipper goes through the whole of its travel and stops at its end") {

@@ -8,11 +8,13 @@
 //   F5 angles come back in (-pi, pi], from UT2004's 0..2pi too
 //   F6 tip up is negative for USARSim's front flippers, positive for its rear ones
 //   F7 spin times radius is surface speed
+//   F8 a joint with limits turns to the same direction within them, the nearest one, or to the nearer limit
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "protocol/frames.hpp"
+#include "protocol/reachable_angle.hpp"
 
 using namespace kenaf::frames;
 using kenaf::relay::Flipper;
@@ -98,4 +100,13 @@ TEST_CASE("F7 a sprocket of 0.05 m that spins with 2 rad/s moves its belt with 0
   CHECK(surface_speed_from_spin(2, 0.05) == Approx(0.1));
   CHECK(spin_from_surface_speed(0.1, 0.05) == Approx(2));
   CHECK(spin_from_surface_speed(-0.1, 0.05) == Approx(-2));
+}
+
+TEST_CASE("F8 a joint with limits turns to the same direction within them, the nearest one, or to the nearer limit") {
+  CHECK(reachable_angle(0.5, 0, -2, 2) == Approx(0.5));
+  CHECK(reachable_angle(0.5 + 2 * pi, 0, -2, 2) == Approx(0.5));
+  CHECK(reachable_angle(3, 0, -2, 2) == Approx(2));
+  CHECK(reachable_angle(-3, 0, -2, 2) == Approx(-2));
+  CHECK(reachable_angle(1, 6, -2 * pi, 2 * pi) == Approx(1));
+  CHECK(reachable_angle(1, -4, -2 * pi, 2 * pi) == Approx(1 - 2 * pi));
 }

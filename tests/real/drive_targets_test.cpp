@@ -1,6 +1,7 @@
 // What the drives are told: limits, ramps, the handshake; and that nothing moves that was not told to.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "libkenaf_real/drive_targets.hpp"
 
@@ -61,7 +62,9 @@ TEST_CASE("a cyclic track speed is ramped by the description's acceleration, a p
   CHECK(direct.step(command, image, 0.01)[0].target == std::lround(0.2 * units));
 }
 
-TEST_CASE("what is beyond the description's limits is cut to them") {
+TEST_CASE(
+    "a speed beyond the limit is cut to it, a flipper goes to the same direction within its range as the simulated one "
+    "does") {
   const canbus::RobotBus bus = bus_with(DriveMode::profile_velocity, DriveMode::profile_position);
   const ProcessImage image = image_at(bus, 0);
   DriveTargets targets(bus, image);
@@ -71,7 +74,7 @@ TEST_CASE("what is beyond the description's limits is cut to them") {
   command.flipper_rad[0] = 6;
   const DriveOrders orders = targets.step(command, image, 0.01);
   CHECK(orders[0].target == std::lround(0.5 * bus.drives[0].units.velocity_per_unit));
-  CHECK(orders[2].target == position_to_drive(bus.drives[2].units, 3.14159265));
+  CHECK(orders[2].target == position_to_drive(bus.drives[2].units, 6 - 2 * std::numbers::pi));
   CHECK((orders[2].controlword & canopen::kControlNewSetPoint) != 0);
   CHECK((orders[3].controlword & canopen::kControlNewSetPoint) == 0);  // was never told anything: no set-point
 }
@@ -91,11 +94,10 @@ TEST_CASE("a flipper that stands outside of its limits stays there until it is t
     }
     hrt::DriveCommand command;
     command.flipper_mask = 1;
-    command.flipper_rad[0] = 5;
+    command.flipper_rad[0] = 3;
     const DriveOrders orders = targets.step(command, image, 0.01);
-    // 15 rad/s^2 in 10 ms: 0.15 rad/s, and so 0.0015 rad; a drive in profile mode has its own ramp to the end of the
-    // range
-    const double first_rad = mode == DriveMode::cyclic_position ? 4 - 0.0015 : bus.drives[2].max_position;
+    // 15 rad/s^2 in 10 ms: 0.15 rad/s, and so 0.0015 rad; a drive in profile mode has its own ramp
+    const double first_rad = mode == DriveMode::cyclic_position ? 4 - 0.0015 : 3;
     CHECK(orders[2].target == Approx(position_to_drive(bus.drives[2].units, first_rad)).margin(1));
     CHECK(orders[3].target == outside);
   }

@@ -1,4 +1,4 @@
-#include "physics/reachable_angle.hpp"
+#include "protocol/reachable_angle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,12 @@
 
 #include "protocol/frames.hpp"
 
-namespace kenaf::physics {
+namespace kenaf::frames {
 
 double reachable_angle(double wanted, double present, double min, double max) {
   constexpr double kTurn = 2 * std::numbers::pi;
   double best = 0, best_distance = std::numeric_limits<double>::infinity();
-  wanted = frames::wrap_angle(wanted);
+  wanted = wrap_angle(wanted);
   const double first = wanted + kTurn * std::ceil((min - wanted) / kTurn - 1e-9);
   for (double angle = first; angle <= max + 1e-9; angle += kTurn) {
     if (std::abs(angle - present) < best_distance) {
@@ -21,8 +21,8 @@ double reachable_angle(double wanted, double present, double min, double max) {
     }
   }
   if (std::isfinite(best_distance)) return best;
-  const double to_min = std::abs(frames::wrap_angle(wanted - min)), to_max = std::abs(frames::wrap_angle(wanted - max));
+  const double to_min = std::abs(wrap_angle(wanted - min)), to_max = std::abs(wrap_angle(wanted - max));
   return to_min < to_max ? min : max;
 }
 
-}  // namespace kenaf::physics
+}  // namespace kenaf::frames
