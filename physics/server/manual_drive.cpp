@@ -89,7 +89,7 @@ std::string_view drive_by_hand(Simulation& simulation, std::uint32_t id, Operato
   session->hold->command = within_limits(*session->robot->description, command);
   session->hold->last_word_wall_s = simulation.wall_s;
   session->hold->silent = false;
-  session->hold->stopped_in_step.reset();  // in a pause he may speak and fall silent in one step, again and again
+  session->hold->stop.over();
   simulation.apply_command(*session);
   return {};
 }
@@ -144,10 +144,7 @@ void watch_operator(Simulation& simulation, Session& session) {
   if (!hold.silent && simulation.wall_s < hold.last_word_wall_s + kOperatorSilence_s) return;
   hold.silent = true;
   hold.command = standing_command();
-  // Once a step: each command is a draw of command_loss, and how often a step is looked at is up to the wall clock.
-  if (hold.stopped_in_step == simulation.world.step_count()) return;
-  hold.stopped_in_step = simulation.world.step_count();
-  simulation.apply_command(session);  // step after step: command_loss may take any one of them
+  if (hold.stop.due(simulation.world.step_count())) simulation.apply_command(session);
 }
 
 }  // namespace kenaf::server

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "physics/server/dialect.hpp"
@@ -39,6 +40,19 @@ inline void forget_curve(SessionRobot& robot) {
   robot.body_velocity = {};
 }
 
+// The stop of somebody who is silent, which is commanded in every step, for command_loss may take any one of them, and once
+// in a step: each command is a draw of command_loss, and how often a step is looked at is up to the wall clock.
+class SilenceStop {
+ public:
+  // The first time in this step; true.
+  bool due(std::uint64_t step) { return std::exchange(commanded_in_, step) != step; }
+  // He has spoken. In a pause he may do so and fall silent in one step, again and again.
+  void over() { commanded_in_.reset(); }
+
+ private:
+  std::optional<std::uint64_t> commanded_in_;
+};
+
 // Somebody who drives by hand: a connection of the live view. Never used twice in one server.
 enum class OperatorId : std::uint32_t {};
 
@@ -48,7 +62,7 @@ struct ManualHold {
   physics::RobotCommand command;  // in force, in place of the client's
   double last_word_wall_s;
   bool silent = false;            // the command is to stand, until he says something
-  std::optional<std::uint64_t> stopped_in_step{};  // in which that was last commanded
+  SilenceStop stop{};
 };
 
 struct Session {
@@ -70,7 +84,7 @@ struct Session {
   std::uint64_t command_timeout_steps = 0;  // 0: the robot keeps its command
   std::uint64_t last_command_step = 0;
   bool silent = false;
-  std::optional<std::uint64_t> stopped_in_step;  // because of silence; the last time
+  SilenceStop stop;
 
   std::uint64_t bad_lines = 0;
   LogLimiter bad_line_log{1, 5};

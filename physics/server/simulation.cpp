@@ -175,9 +175,7 @@ void Simulation::watch_silence(Session& session) {
   if (session.command_timeout_steps == 0) return;
   if (world.step_count() < session.last_command_step + session.command_timeout_steps) return;
   session.silent = true;
-  // Once a step: each command is a draw of command_loss, and how often a step is looked at is up to the wall clock.
-  if (session.stopped_in_step == world.step_count()) return;
-  session.stopped_in_step = world.step_count();
+  if (!session.stop.due(world.step_count())) return;
   SessionRobot& robot = *session.robot;
   robot.command.track_speed_mps = {};
   forget_curve(robot);
@@ -185,7 +183,7 @@ void Simulation::watch_silence(Session& session) {
   for (physics::JointCommand& joint : robot.command.flipper) {
     if (joint.mode != physics::JointMode::angle) joint = {physics::JointMode::brake, 0};
   }
-  apply_command(session);  // step after step: command_loss may take any one of them
+  apply_command(session);
 }
 
 void Simulation::apply_command(const Session& session) {
@@ -315,7 +313,7 @@ void Simulation::reset() {
     session->deferred.clear();
     session->last_command_step = 0;
     session->silent = false;
-    session->stopped_in_step.reset();
+    session->stop.over();
     session->schedule.restart_at(0);
     if (!session->robot) continue;
     session->robot->command = resting_command(*session->robot->description);
@@ -324,7 +322,7 @@ void Simulation::reset() {
     session->robot->camera_field_of_view_rad = unzoomed(*session->robot->description);
     if (session->hold) {
       session->hold->command = standing_command();
-      session->hold->stopped_in_step.reset();
+      session->hold->stop.over();
     }
     apply_command(*session);
   }

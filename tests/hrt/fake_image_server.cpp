@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "hrt/picture_codec.hpp"
+#include "tests/support/loopback.hpp"
 
 namespace kenaf::hrt::test {
 
@@ -62,9 +63,7 @@ void FakeImageServer::Connection::answer(std::uint8_t type, const Bytes8& data) 
 
 FakeImageServer::FakeImageServer(std::function<void(Connection&)> serve) : serve_(std::move(serve)) {
   listener_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  sockaddr_in address = kenaf::test::loopback(0);
   socklen_t size = sizeof address;
   if (listener_ < 0 || bind(listener_, reinterpret_cast<sockaddr*>(&address), size) < 0 || listen(listener_, 8) < 0 ||
       getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size) < 0) {

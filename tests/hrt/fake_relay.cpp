@@ -12,18 +12,13 @@
 #include <map>
 #include <stdexcept>
 
+#include "tests/support/loopback.hpp"
+
 namespace kenaf::hrt::test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  return address;
-}
+using kenaf::test::loopback;
 
 // A bound UDP socket on a free port.
 int bound_socket(std::uint16_t& port) {

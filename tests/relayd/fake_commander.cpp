@@ -1,13 +1,13 @@
 #include "tests/relayd/fake_commander.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 
 #include <array>
 #include <chrono>
 #include <stdexcept>
+
+#include "tests/support/loopback.hpp"
 
 namespace kenaf::test {
 
@@ -21,11 +21,8 @@ constexpr int kResend_ms = 4;
 
 FakeCommander::FakeCommander(std::uint16_t relay_port, std::uint64_t session)
     : fd_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)), session_(session) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(relay_port);
-  if (::connect(fd_.get(), reinterpret_cast<sockaddr*>(&address), sizeof address) != 0) {
+  const sockaddr_in address = loopback(relay_port);
+  if (::connect(fd_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     throw std::runtime_error("connect");
   }
 }

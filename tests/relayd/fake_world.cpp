@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -14,6 +13,7 @@
 #include <stdexcept>
 
 #include "tests/relayd/allocations.hpp"
+#include "tests/support/loopback.hpp"
 
 namespace kenaf::test {
 
@@ -33,10 +33,7 @@ FakeWorld::FakeWorld(const FakeWorldOptions& options) : options_(options) {
   listener_ = relayd::Descriptor(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const int on = 1;
   ::setsockopt(listener_.get(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(options.port);
+  sockaddr_in address = loopback(options.port);
   socklen_t size = sizeof address;
   if (::bind(listener_.get(), reinterpret_cast<sockaddr*>(&address), size) != 0 || ::listen(listener_.get(), 4) != 0) {
     throw std::runtime_error("fake world cannot listen");

@@ -1,6 +1,5 @@
 // The relay's connection to the world server: how it begins, breaks, and begins anew.
 #include <fmt/format.h>
-#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 
@@ -12,19 +11,12 @@
 #include "tests/relayd/fake_commander.hpp"
 #include "tests/relayd/fake_world.hpp"
 #include "tests/relayd/running_relay.hpp"
+#include "tests/support/loopback.hpp"
 
 using namespace kenaf;
 using namespace kenaf::test;
 
 namespace {
-
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(port);
-  return address;
-}
 
 // Whether the system lets us connect to `port` at once; the connection is kept in `kept`.
 bool connects_at_once(std::uint16_t port, std::vector<relayd::Descriptor>& kept) {

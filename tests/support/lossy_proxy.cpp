@@ -1,7 +1,6 @@
 #include "tests/support/lossy_proxy.hpp"
 
 #include <arpa/inet.h>
-#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -13,25 +12,20 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/loopback.hpp"
+
 namespace kenaf::support {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using test::loopback;
 
 struct Held {
   bool to_server;
   std::vector<std::byte> bytes;
   Clock::time_point due;
 };
-
-sockaddr_in loopback(std::uint16_t port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(port);
-  return address;
-}
 
 int checked(int result) {
   if (result < 0) throw std::system_error(errno, std::generic_category(), "lossy proxy");
