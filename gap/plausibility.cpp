@@ -38,6 +38,13 @@ std::vector<Finding> check_run(const runs::Run& run, const std::string& file, co
   return findings;
 }
 
+std::vector<Finding> check_units(const runs::Run& run, const std::string& file) {
+  RunChecks checks(run, file, nullptr);
+  checks.check_ranges();
+  checks.check_scales();
+  return checks.take();
+}
+
 std::vector<Finding> check_noise(const runs::Dataset& dataset,
                                  std::span<const std::vector<std::string>> columns_of_runs) {
   std::set<std::string> known;

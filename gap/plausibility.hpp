@@ -34,6 +34,9 @@ bool any_refused(std::span<const Finding> findings);
 // Of one run. `robot`: whose limits it has; null: not known, and fewer things are certain.
 std::vector<Finding> check_run(const runs::Run& run, const std::string& file, const physics::RobotDescription* robot);
 
+// Of one run, only whether its numbers are in the units that its columns say, as far as that shows without a robot.
+std::vector<Finding> check_units(const runs::Run& run, const std::string& file);
+
 // Of a dataset as a whole: its noise. `runs` as Dataset::runs lists them. Without those of check_run().
 std::vector<Finding> check_noise(const runs::Dataset& dataset,
                                  std::span<const std::vector<std::string>> columns_of_runs);

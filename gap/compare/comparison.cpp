@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string_view>
 
 #include "gap/compare/pair_runs.hpp"
+#include "gap/plausibility.hpp"
 
 namespace kenaf::gap {
 
@@ -37,7 +39,13 @@ void match(ComparedRun& run, const CompareOptions& options) {
 }
 
 PoseFrames frames_of(const runs::DatasetRun& run, const fs::path& folder) {
-  PoseFrames frames = pose_frames(runs::read_run(folder / run.file));
+  const runs::Run columns = runs::read_run(folder / run.file);
+  PoseFrames frames = pose_frames(columns);
+  if (!frames.unusable.empty()) return frames;
+  constexpr std::string_view kOfPose[] = {"x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad"};
+  for (const Finding& finding : check_units(columns, run.file))
+    if (finding.severity == Finding::Severity::refuse && std::ranges::count(kOfPose, finding.column) > 0)
+      frames.unusable = finding.column + " " + finding.text;
   if (!run.fault.empty()) frames.unusable = "its simulation went wrong: " + run.fault;
   return frames;
 }

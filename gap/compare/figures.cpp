@@ -9,6 +9,7 @@
 
 #include "gap/compare/report_numbers.hpp"
 #include "gap/compare/world_section.hpp"
+#include "gap/plot/simplify.hpp"
 
 namespace kenaf::gap {
 
@@ -25,6 +26,7 @@ constexpr std::size_t kJoinedPairs = 60;
 constexpr double kAround_m = 0.2, kBelow_m = 0.2;
 constexpr double kAside_m = 0.1;  // less than that beside a line along x is seen better in numbers
 constexpr double kTimeHeight_px = 270;
+constexpr std::size_t kColumns = 900;  // of a line over time: no more detail can be seen
 const Point kBreak{std::numeric_limits<double>::quiet_NaN(), 0};
 
 // About kJoinedPairs of the matched pairs, evenly over the real run, at `x_m` and `height`.
@@ -51,6 +53,7 @@ Line error_line(const ComparedRun& run, const std::vector<FrameError>& errors, d
   for (std::size_t i = 0; i < errors.size(); ++i) {
     line.points.emplace_back(run.real[i].t_s, scale * std::abs(errors[i].*quantity));
   }
+  line.points = plot::envelope(line.points, kColumns);
   return line;
 }
 
@@ -129,6 +132,7 @@ Chart pitch_figure(const ComparedRun& run, double width_px) {
   for (const FramePair& pair : run.matching.pairs) {
     sim.points.emplace_back(run.real[pair.real].t_s, degrees(run.sim[pair.sim].pitch_rad));
   }
+  for (Line* line : {&real, &sim}) line->points = plot::envelope(line->points, kColumns);
   chart.lines = {std::move(real), std::move(sim)};
   return chart;
 }

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <optional>
+#include <vector>
 
 #include "gap/compare/figures.hpp"
 #include "gap/compare/report.hpp"
@@ -18,6 +20,7 @@ namespace {
 using plot::escaped;
 
 constexpr double kWide_px = 1100, kHalf_px = 540;
+constexpr std::size_t kMostDrawn = 50;  // runs: no browser opens the figures of thousands
 
 constexpr std::string_view kPageStyle = R"(body { background: var(--paper); color: var(--ink); max-width: 1100px;
   margin: 24px auto; padding: 0 16px; font: 15px/1.45 system-ui, "DejaVu Sans", "Liberation Sans", Arial, sans-serif; }
@@ -61,7 +64,20 @@ std::string cells(const Summary& summary, double scale, int decimals) {
                      number(scale * summary.rms(), decimals), number(scale * summary.max(), decimals));
 }
 
-std::string summary_table(const Comparison& comparison) {
+// Of many runs those with the largest mean errors, in the order of the comparison.
+std::vector<std::size_t> drawn_runs(const Comparison& comparison) {
+  std::vector<std::size_t> runs(comparison.runs.size());
+  std::iota(runs.begin(), runs.end(), 0);
+  if (runs.size() <= kMostDrawn) return runs;
+  std::ranges::stable_sort(runs, std::ranges::greater{}, [&](std::size_t run) {
+    return comparison.runs[run].errors.matched_summary.position_m.mean();
+  });
+  runs.resize(kMostDrawn);
+  std::ranges::sort(runs);
+  return runs;
+}
+
+std::string summary_table(const Comparison& comparison, const std::vector<std::size_t>& drawn) {
   std::string html =
       "<div class=\"tables\"><table>\n<tr><th rowspan=\"3\">run</th><th rowspan=\"3\">frames</th>"
       "<th class=\"group\" colspan=\"9\">matched frames</th><th class=\"group\" colspan=\"6\">same time</th></tr>\n<tr>"
@@ -73,8 +89,9 @@ std::string summary_table(const Comparison& comparison) {
   for (const SummaryRow& row : summary_rows(comparison)) {
     const bool is_run = row.kind == SummaryRow::Kind::run;
     html += is_run ? "<tr>" : "<tr class=\"sum\">";
-    html += is_run ? fmt::format("<td><a href=\"#run-{}\">{}</a></td>", row.run, escaped(row.title))
-                   : fmt::format("<td>{}</td>", escaped(row.title));
+    html += is_run && std::ranges::binary_search(drawn, row.run)
+                ? fmt::format("<td><a href=\"#run-{}\">{}</a></td>", row.run, escaped(row.title))
+                : fmt::format("<td>{}</td>", escaped(row.title));
     html += fmt::format("<td>{:.0f}</td>", row.matched.position_m.weight());
     html += cells(row.matched.position_m, kMillimetres, 1) + cells(row.matched.pitch_rad, kDegrees, 2) +
             cells(row.matched.time_s, 1, 2) + cells(row.same_time.position_m, kMillimetres, 1) +
@@ -151,7 +168,11 @@ std::string dataset_line(std::string_view which, const runs::Dataset& dataset, c
 std::string comparison_html(const Comparison& comparison) {
   Worlds worlds;
   std::string sections;
-  for (std::size_t i = 0; i < comparison.runs.size(); ++i) sections += run_section(comparison, i, worlds);
+  const std::vector<std::size_t> drawn = drawn_runs(comparison);
+  if (drawn.size() < comparison.runs.size())
+    sections += fmt::format("<p>Of {} runs the {} with the largest errors are drawn.</p>\n", comparison.runs.size(),
+                            drawn.size());
+  for (const std::size_t run : drawn) sections += run_section(comparison, run, worlds);
 
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -169,7 +190,7 @@ std::string comparison_html(const Comparison& comparison) {
       "frame is; it means little while the robot stands) and under same time (errors without matching). All are sizes, "
       "without sign.</p>\n";
   for (const std::string& note : worlds.notes) html += fmt::format("<p>{}</p>\n", escaped(note));
-  return html + summary_table(comparison) + sections + left_out_list(comparison) + "</body>\n</html>\n";
+  return html + summary_table(comparison, drawn) + sections + left_out_list(comparison) + "</body>\n</html>\n";
 }
 
 }  // namespace kenaf::gap

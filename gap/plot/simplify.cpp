@@ -58,7 +58,10 @@ std::vector<Vector2d> envelope(std::span<const Vector2d> points, std::size_t col
   std::vector<Vector2d> kept;
   for (std::size_t begin = 0; begin < points.size();) {
     std::size_t end = begin + 1;
-    while (end < points.size() && column_of(points[end]) == column_of(points[begin])) ++end;
+    const auto is_with_first = [&](const Vector2d& p) {
+      return std::isfinite(p.y()) && std::isfinite(points[begin].y()) && column_of(p) == column_of(points[begin]);
+    };
+    while (end < points.size() && is_with_first(points[end])) ++end;
     const auto [low, high] = std::minmax_element(points.begin() + static_cast<std::ptrdiff_t>(begin),
                                                  points.begin() + static_cast<std::ptrdiff_t>(end), by_y);
     std::array<std::size_t, 4> corners{begin, static_cast<std::size_t>(low - points.begin()),

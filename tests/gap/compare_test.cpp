@@ -1,4 +1,6 @@
 // kenaf-gap compare as a user runs it: the files that it writes, the numbers in them, and how it refuses.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -160,6 +162,21 @@ TEST_CASE("A run without a place is left out in words, with its counterpart, whe
   CHECK_THAT(nothing.error, Catch::Contains("nothing is left to compare") &&
                                 Catch::Contains("real run-0.csv (blind): x_m and z_m were not measured"));
   CHECK_FALSE(fs::exists(folder / "none"));
+}
+
+TEST_CASE("A run whose numbers are in other units than its columns say is left out, and why is said") {
+  const TemporaryFolder folder;
+  make_dataset(folder / "real", {{"drive"}});
+  make_dataset(folder / "sim", {{"drive"}});
+  std::string millimetres = "t_s,x_m,y_m,z_m,cmd_track_left_mps,cmd_track_right_mps\n";
+  for (int i = 0; i <= 80; ++i) {
+    const double t_s = 0.05 * i;
+    millimetres += fmt::format("{},{},0,100,0.2,0.2\n", t_s, 200 * t_s);
+  }
+  write_file(folder / "real/run-0.csv", millimetres);
+  const Outcome outcome = kenaf_gap(folder, "compare real sim --out out");
+  CHECK(outcome.status == 2);
+  CHECK_THAT(outcome.error, Catch::Contains("real run-0.csv (drive): x_m") && Catch::Contains("millimetres"));
 }
 
 TEST_CASE("A world that does not load takes only the ground away") {
