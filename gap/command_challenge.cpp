@@ -23,6 +23,7 @@
 #include "gap/challenge/sha256.hpp"
 #include "gap/challenge/told.hpp"
 #include "gap/commands.hpp"
+#include "gap/diagnose/prediction.hpp"
 #include "gap/interrupt.hpp"
 #include "gap/option_checks.hpp"
 #include "gap/parallel.hpp"
@@ -36,8 +37,6 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMostCases = 10000;
 constexpr double kMakingShare = 0.3;  // of the time, for the time left
-
-struct Interrupted {};
 
 struct Options {
   std::string out;
@@ -71,24 +70,28 @@ void check_folder(const fs::path& folder, bool seed_given) {
 class Teller {
  public:
   explicit Teller(std::size_t cases) : cases_(static_cast<double>(cases)) {}
-  void made() {
+  void all_were_made() { line_.skip(kMakingShare); }
+  // `before`: by who was here before, as with diagnosed().
+  void made(bool before) {
     const std::lock_guard lock(mutex_);
     ++made_;
-    tell("making cases", kMakingShare * made_ / cases_, made_);
+    tell("making cases", kMakingShare * made_ / cases_, made_, before);
   }
-  void diagnosed(const std::string& name, bool could) {
+  void diagnosed(const std::string& name, bool could, bool before) {
     ++diagnosed_;
     if (!could) {
       clear_progress_line();
       std::fprintf(stderr, "%s: could not be diagnosed\n", name.c_str());
     }
-    tell("diagnosing", kMakingShare + (1 - kMakingShare) * diagnosed_ / cases_, diagnosed_);
+    tell("diagnosing", kMakingShare + (1 - kMakingShare) * diagnosed_ / cases_, diagnosed_, before);
   }
 
  private:
-  void tell(std::string_view doing, double done, double count) {
-    line_.show(fmt::format("{} ({} of {})", doing, count, cases_), done);
-    if (!line_.on_terminal()) std::fputs(fmt::format("{}: {} of {}\n", doing, count, cases_).c_str(), stderr);
+  void tell(std::string_view doing, double done, double count, bool before) {
+    if (before) line_.skip(done);
+    const std::string what = fmt::format("{} ({} of {})", doing, count, cases_);
+    line_.show(what, done);
+    if (!line_.on_terminal()) std::fputs((what + "\n").c_str(), stderr);
   }
   std::mutex mutex_;
   ProgressLine line_;
@@ -101,18 +104,19 @@ ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::pa
   ChallengeKey key{seed, {}};
   for (CasePlan& plan : plan_challenge(options.cases, seed)) key.cases.push_back({std::move(plan), {}});
   for_each_job(key.cases.size(), options.jobs, [&](std::size_t i) {
-    if (stop) throw Interrupted();
+    if (stop) throw Stopped();
     SealedCase& sealed = key.cases[i];
-    if (std::optional<SealedCase> made = made_case(folder, sealed.plan.name, seed, options.cases)) {
+    std::optional<SealedCase> made = made_case(folder, sealed.plan.name, seed, options.cases);
+    if (made) {
       sealed = *std::move(made);
     } else {
       const fs::path data = folder / sealed.plan.name;
       fs::remove_all(data);
-      make_case(sealed.plan, data, 1);
+      make_case(sealed.plan, data, 1, &stop);
       sealed.data_sha256 = sha256_of_dataset(data);
       keep_made_case(folder, sealed, seed, options.cases);
     }
-    teller.made();
+    teller.made(made.has_value());
   });
   return key;
 }
@@ -143,10 +147,16 @@ void check_same_cases(const fs::path& folder, const Options& options, std::uint6
 ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller,
                         const std::atomic<bool>& stop) {
   if (auto key = sealed_key(folder, seed)) {
-    if (key->cases.size() == options.cases) return *std::move(key);
+    if (key->cases.size() == options.cases) {
+      teller.all_were_made();
+      return *std::move(key);
+    }
     throw std::runtime_error(
         fmt::format("{0}: is a challenge of {1} cases; give --cases {1}", folder.string(), key->cases.size()));
   }
+  if (is_sealed_by_another(folder, seed))
+    throw std::runtime_error(
+        fmt::format("{}: is sealed with another --seed; give that one, or another folder", folder.string()));
   const fs::path part = folder / "cases.part";
   fs::create_directories(part);
   check_same_cases(part, options, seed);
@@ -191,7 +201,7 @@ std::size_t run(const Options& options, std::uint64_t seed) {
       runs::write_whole_file(one.data / "without.txt", one.without.front() + "\n");
     }
     if (is_diagnosed(one)) {
-      teller.diagnosed(plan.name, true);
+      teller.diagnosed(plan.name, true, true);
     } else {
       left.push_back(std::move(one));
       names.push_back(plan.name);
@@ -202,10 +212,10 @@ std::size_t run(const Options& options, std::uint64_t seed) {
   std::size_t diagnosed = key.cases.size() - left.size();
   diagnose_cases(left, options.jobs, stop, [&](std::size_t i, bool could) {
     could = could && is_diagnosed(left[i]);
-    teller.diagnosed(names[i], could);
+    teller.diagnosed(names[i], could, false);
     diagnosed += could ? 1 : 0;
   });
-  if (stop) throw Interrupted();
+  if (stop) throw Stopped();
   if (diagnosed == 0)
     throw std::runtime_error(
         fmt::format("no case could be diagnosed; why is in {}", (left[0].report / "diagnose.log").string()));
@@ -242,7 +252,7 @@ void add_challenge_command(CLI::App& program) {
     std::size_t diagnosed = 0;
     try {
       diagnosed = run(*options, seed);
-    } catch (const Interrupted&) {
+    } catch (const Stopped&) {
       throw goes_on("interrupted");
     } catch (const std::exception& error) {
       if (options->seed || !is_challenge(options->out)) throw;

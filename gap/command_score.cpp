@@ -62,7 +62,7 @@ void add_score_command(CLI::App& program) {
       cases.push_back({std::move(sealed), std::move(told), {}});
     }
     check_can_write(folder);
-    const ProgressLine line;
+    ProgressLine line;
     std::mutex mutex;
     double done = 0;
     if (options->shrinks)

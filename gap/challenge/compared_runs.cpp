@@ -10,16 +10,17 @@ constexpr std::size_t kMostRuns = 100;  // all runs of a case
 
 std::vector<FeatureMap> features_of(const Observations& observations) {
   std::vector<FeatureMap> features;
-  for (const Observation& run : observations.runs) features.emplace_back(run.run, DiagnosisOptions().span_s);
+  for (const Observation& run : observations.runs)
+    features.emplace_back(run.run, DiagnosisOptions().span_s, observations.not_simulated);
   return features;
 }
 
 }  // namespace
 
-ComparedRuns::ComparedRuns(const std::filesystem::path& dataset, unsigned threads)
+ComparedRuns::ComparedRuns(const std::filesystem::path& dataset, unsigned threads, const std::atomic<bool>* stop)
     : observations(observe(dataset, "", "", kMostRuns)),
       features(features_of(observations)),
-      predictor(observations, features, repeats_of(observations), threads),
+      predictor(observations, features, repeats_of(observations), threads, stop),
       same_orders(same_orders_of(observations)) {
   predictor.simulate_nominal();
   for (std::size_t r = 0; r < features.size(); ++r)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <cstddef>
 #include <filesystem>
 #include <vector>
@@ -14,8 +15,8 @@
 namespace kenaf::gap {
 
 struct ComparedRuns {
-  // Reads and simulates; throws as observe() does. Deterministic, on any number of threads.
-  ComparedRuns(const std::filesystem::path& dataset, unsigned threads);
+  // Reads and simulates; throws as observe() does, and Stopped as the predictor does. Deterministic, on any number of threads.
+  ComparedRuns(const std::filesystem::path& dataset, unsigned threads, const std::atomic<bool>* stop = nullptr);
   ComparedRuns(const ComparedRuns&) = delete;  // `predictor` refers to the others
   ComparedRuns& operator=(const ComparedRuns&) = delete;
 

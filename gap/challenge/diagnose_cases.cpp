@@ -72,6 +72,7 @@ pid_t start(const CaseToDiagnose& one, int program) {
     if (const char* value = std::getenv(name)) environment.push_back(fmt::format("{}={}", name, value));
   const std::vector<char*> argv = pointers(arguments), envp = pointers(environment);
   const Confinement confinement(readable(one.data), {one.report});
+  if (can_confine() && !confinement.confines()) throw failed("the diagnosis cannot be confined to its case");
 
   const pid_t process = ::fork();
   if (process < 0) throw failed("no process can be started");

@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "kenaf-gap-key/1";
+constexpr std::string_view kBeginning = "{\n \"format\"";  // of each key's text
 // Beyond these nobody scores a case within his lifetime.
 constexpr int kMostRepeats = 100, kMostIterations = 1000;
 constexpr double kShortestStep_s = 1e-5, kLongestStep_s = 0.01;
@@ -213,6 +214,13 @@ std::optional<ChallengeKey> sealed_key(const fs::path& folder, std::uint64_t see
   return key;
 } catch (const std::exception&) {
   return std::nullopt;  // what is there is damaged, and all of it can be made again
+}
+
+bool is_sealed_by_another(const fs::path& folder, std::uint64_t seed) try {
+  const fs::path file = folder / "key.enciphered";
+  return fs::exists(file) && !deciphered(runs::read_whole_file(file), seed).starts_with(kBeginning);
+} catch (const std::exception&) {
+  return false;  // damaged, and by that nobody's
 }
 
 ChallengeKey open_key(const fs::path& folder) {

@@ -29,6 +29,15 @@ constexpr double kSmallestPlay = 0.01;  // 3 mrad of backlash: of less there is 
 constexpr double kFurthest = 0.95;      // of the way to the end of a parameter's range
 constexpr double kCloseToPlanned = 0.9;
 
+struct Work {
+  unsigned jobs;
+  const std::atomic<bool>* stop;  // may be null
+};
+
+void check_goes_on(const Work& work) {
+  if (work.stop != nullptr && *work.stop) throw Stopped();
+}
+
 struct Recipe {
   physics::Effects effects;
   std::string foreign;
@@ -100,7 +109,7 @@ runs::Run make_run(const CasePlan& plan, const Recipe& recipe, const std::string
 }
 
 void write_cases_runs(const CasePlan& plan, const Recipe& recipe, const std::vector<std::string>& manoeuvres,
-                      std::uint64_t seed, const fs::path& folder, unsigned jobs) {
+                      std::uint64_t seed, const fs::path& folder, const Work& work) {
   fs::create_directories(folder);
   runs::Dataset dataset{
       .source = "real", .robot = kRobot, .world = "flat", .description = plan.name, .noise = {}, .runs = {}};
@@ -109,7 +118,8 @@ void write_cases_runs(const CasePlan& plan, const Recipe& recipe, const std::vec
     const rollout::Manoeuvre manoeuvre = rollout::load_manoeuvre(manoeuvres[i / repeats]);
     dataset.runs.push_back({fmt::format("run-{:03}.csv", i), manoeuvre.name, manoeuvre.world});
   }
-  for_each_job(dataset.runs.size(), jobs, [&](std::size_t i) {
+  for_each_job(dataset.runs.size(), work.jobs, [&](std::size_t i) {
+    check_goes_on(work);
     runs::write_run(folder / dataset.runs[i].file,
                     make_run(plan, recipe, dataset.runs[i].manoeuvre, mixed(seed, i + 2)));
   });
@@ -119,10 +129,10 @@ void write_cases_runs(const CasePlan& plan, const Recipe& recipe, const std::vec
 // How large gaps look beside the noise of runs in which nothing is hidden.
 class Scale {
  public:
-  Scale(const CasePlan& plan, unsigned jobs) : jobs_(jobs) {
+  Scale(const CasePlan& plan, const Work& work) : work_(work) {
     const TemporaryFolder folder;
-    write_cases_runs(plan, {}, plan.manoeuvres, mixed(plan.seed, 0), folder.path, jobs);
-    runs_.emplace(folder.path, jobs);
+    write_cases_runs(plan, {}, plan.manoeuvres, mixed(plan.seed, 0), folder.path, work);
+    runs_.emplace(folder.path, work.jobs, work.stop);
     floor_ = floor_around(*runs_, runs_->predictor.unvaried());
     floor_rms_ = rms_of_repeats(*runs_, floor_, runs_->residuals);
   }
@@ -153,7 +163,8 @@ class Scale {
   Shift shift_of_foreign(const std::string& foreign, double amount) {
     const Observations& observed = runs_->observations;
     Shift shift(runs_->features.size());
-    for_each_job(shift.size(), jobs_, [&](std::size_t r) {
+    for_each_job(shift.size(), work_.jobs, [&](std::size_t r) {
+      check_goes_on(work_);
       const physics::RobotDescription robot = with_foreign(observed.robot, foreign, amount);
       rollout::Manoeuvre replay = observed.runs[r].replay;
       obey_foreign(replay, foreign, amount);
@@ -166,7 +177,7 @@ class Scale {
     return shift;
   }
 
-  unsigned jobs_;
+  Work work_;
   std::optional<ComparedRuns> runs_;
   NoiseFloor floor_;
   double floor_rms_ = 1;
@@ -233,7 +244,8 @@ physics::Effects hidden_effects_in_model(const CasePlan& plan) {
   return effects;
 }
 
-void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs) {
+void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs, const std::atomic<bool>* stop) {
+  const Work work{jobs, stop};
   std::mt19937_64 random(mixed(plan.seed, 1));
   const bool upward = (random() & 1) != 0;
   std::vector<std::vector<std::string>> sets{plan.manoeuvres};
@@ -246,7 +258,7 @@ void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs) {
     CasePlan candidate = plan;
     candidate.manoeuvres = set;
     if (std::ranges::count(set, candidate.unseen) > 0) continue;
-    Scale scale(candidate, jobs);
+    Scale scale(candidate, work);
     double reached = 1e9;
     for (HiddenEffect& hidden : candidate.effects) reached = std::min(reached, size_effect(hidden, scale, upward));
     if (!plan.foreign.empty()) {
@@ -264,11 +276,11 @@ void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs) {
     if (size == kCloseToPlanned && (!is_outside(plan.stratum) || best.look_alike.angle_deg >= kToldApart_deg)) break;
   }
   plan = best;
-  write_cases_runs(plan, recipe_of(plan), plan.manoeuvres, mixed(plan.seed, 2), folder, jobs);
+  write_cases_runs(plan, recipe_of(plan), plan.manoeuvres, mixed(plan.seed, 2), folder, work);
 }
 
 void make_unseen(const CasePlan& plan, const fs::path& folder, unsigned jobs) {
-  write_cases_runs(plan, recipe_of(plan), {plan.unseen}, mixed(plan.seed, 3), folder, jobs);
+  write_cases_runs(plan, recipe_of(plan), {plan.unseen}, mixed(plan.seed, 3), folder, {jobs, nullptr});
 }
 
 }  // namespace kenaf::gap

@@ -480,6 +480,20 @@ TEST_CASE("Cases that were being made are not thrown away for another seed or nu
   CHECK(made_case(folder / "cases.part", "case-000", 11, 1));
 }
 
+TEST_CASE("A sealed challenge is not made again for a slip in its seed") {
+  const TemporaryFolder folder;
+  write_challenge(folder);
+  write_file(folder / "key.enciphered", enciphered(read_file(folder / "key.json"), 11));
+  std::filesystem::remove(folder / "key.json");
+  CHECK(is_sealed_by_another(folder.path(), 12));
+  CHECK_FALSE(is_sealed_by_another(folder.path(), 11));
+  const test::Outcome outcome = test::kenaf_gap(folder, "challenge --out . --cases 1 --seed 12");
+  CHECK(outcome.status == 2);
+  CHECK_THAT(outcome.error, Catch::Contains("is sealed with another --seed"));
+  write_file(folder / "key.enciphered", "damaged");
+  CHECK_FALSE(is_sealed_by_another(folder.path(), 12));
+}
+
 TEST_CASE("A challenge that was interrupted goes on with the cases and reports that it has") {
   const TemporaryFolder folder;
   write_challenge(folder);

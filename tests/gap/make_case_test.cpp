@@ -1,11 +1,13 @@
 // The data of a challenge's cases: what is hidden is as large as asked, and is not to be read anywhere.
 #include "gap/challenge/make_case.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "gap/challenge/look_alike.hpp"
 #include "gap/challenge/shrinks.hpp"
+#include "gap/diagnose/prediction.hpp"
 #include "runs/dataset.hpp"
 #include "tests/runs/temporary_folder.hpp"
 
@@ -26,6 +28,18 @@ std::filesystem::path robot_without_gap(const std::string& manoeuvre, const std:
 }
 
 }  // namespace
+
+TEST_CASE("A case that is being made ends when it is asked to") {
+  const TemporaryFolder folder;
+  CasePlan plan;
+  plan.manoeuvres = {"straight"};
+  plan.unseen = "arc";
+  const std::atomic<bool> stop = true;
+  CHECK_THROWS_AS(make_case(plan, folder / "none", 1, &stop), Stopped);
+  plan.stratum = Stratum::single;
+  plan.effects = {{"encoder_scale", "scale", 4, 0}};
+  CHECK_THROWS_AS(make_case(plan, folder / "single", 1, &stop), Stopped);
+}
 
 TEST_CASE("A case is made: its effect is as large as asked, and its folder does not say which it is", "[long]") {
   const TemporaryFolder folder;
