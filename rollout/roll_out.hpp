@@ -51,4 +51,7 @@ RollOut roll_out(const physics::RobotDescription& robot, const physics::WorldDes
 // White noise of the columns that have one, 1 sigma, in their units: as a dataset states it.
 std::map<std::string, double> column_noise(const physics::RobotDescription& robot, const RollOutOptions& options);
 
+// The columns of a run of this robot: what its sensors measure, and what of it is commanded.
+std::vector<std::string> recorded_columns(const physics::RobotDescription& robot);
+
 }  // namespace kenaf::rollout

@@ -88,6 +88,11 @@ std::map<std::string, double> column_noise(const RobotDescription& nominal, cons
   return noise;
 }
 
+std::vector<std::string> recorded_columns(const RobotDescription& nominal) {
+  const RobotDescription robot = instrumented(nominal, 0);
+  return RunRecorder(robot, {}).take().columns;
+}
+
 RunRecorder::RunRecorder(const RobotDescription& robot, const RollOutOptions& options)
     : robot_(robot),
       mocap_noise_m_(options.mocap_noise_m * options.noise_scale),

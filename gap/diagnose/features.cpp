@@ -1,5 +1,6 @@
 #include "gap/diagnose/features.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -27,12 +28,14 @@ void unwrap(std::vector<double>& angles) {
 
 }  // namespace
 
-FeatureMap::FeatureMap(const runs::Run& measured, double span_s) : span_s_(span_s) {
+FeatureMap::FeatureMap(const runs::Run& measured, double span_s, std::span<const std::string> left_out)
+    : span_s_(span_s) {
   const std::span<const double> time = measured.column("t_s");
   const std::vector<bool> upright = upright_rows(measured);
   std::vector<double> means;
   for (std::size_t c = 0; c < diagnosis_channels().size(); ++c) {
     const Channel& channel = diagnosis_channels()[c];
+    if (std::ranges::find(left_out, channel.column) != left_out.end()) continue;
     const std::span<const double> column = measured.column(channel.column);
     Series series{c, {}, {}};
     for (std::size_t i = 0; i < column.size(); ++i) {

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "runs/run_file.hpp"
@@ -21,8 +22,8 @@ struct Bin {
 
 class FeatureMap {
  public:
-  // Bins of every channel that was measured, channel by channel, in the order of time.
-  FeatureMap(const runs::Run& measured, double span_s);
+  // Bins of every channel that was measured, but those of columns `left_out`, channel by channel, in the order of time.
+  FeatureMap(const runs::Run& measured, double span_s, std::span<const std::string> left_out = {});
 
   std::span<const Bin> bins() const { return bins_; }
   double span_s() const { return span_s_; }

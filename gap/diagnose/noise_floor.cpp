@@ -128,7 +128,8 @@ double NoiseFloor::rms(const std::vector<VectorXd>& differences) const {
 }
 
 NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vector<VectorXd>& residuals,
-                       const std::vector<std::vector<std::size_t>>& repeats, const std::vector<OpenShapes>& open) {
+                       const std::vector<std::vector<std::size_t>>& repeats, const std::vector<OpenShapes>& open,
+                       std::span<const double> stated) {
   const std::size_t channels = diagnosis_channels().size();
   const auto deviations = deviations_from_repeats(features, residuals, repeats);
   const std::vector<std::size_t> full = full_bins(features);
@@ -148,10 +149,13 @@ NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vecto
     else
       add_second_differences(features[r], residuals[r], std::vector<bool>(features[r].bins().size(), true), jumps);
   }
+  const auto noise_of = [&](std::size_t c) {
+    const bool is_stated = !floor.from_repeats && !stated.empty() && stated[c] > 0;
+    if (is_stated) return stated[c] / std::sqrt(static_cast<double>(full[c]));
+    return jumps[c].empty() ? 0 : kMadToSigma * median(jumps[c]);
+  };
   for (std::size_t c = 0; c < channels; ++c)
-    if (full[c] > 0)
-      floor.sigma[c] =
-          std::max(diagnosis_channels()[c].resolution, jumps[c].empty() ? 0 : kMadToSigma * median(jumps[c]));
+    if (full[c] > 0) floor.sigma[c] = std::max(diagnosis_channels()[c].resolution, noise_of(c));
 
   std::vector<std::vector<double>> sigma_of_run(features.size(), floor.sigma);
   const auto whiten = [&] {

@@ -36,7 +36,7 @@ struct NoiseFloor {
                                     // middle one of all manoeuvres: where repeats differ by more, their bins have more
   std::vector<Eigen::VectorXd> sigma_of_bin;  // of each run, noise and roughness together
   std::vector<Whitener> whiteners;  // of each run
-  bool from_repeats = false;        // otherwise from the residuals alone, which a gap makes larger
+  bool from_repeats = false;        // otherwise as stated, or from the residuals alone, which a gap makes larger
   std::vector<Eigen::MatrixXd> numerics{};  // of each run, as OpenShapes has them
   std::vector<Eigen::VectorXd> noise_of_bin{}, roughness_of_bin{};  // of each run: what sigma_of_bin is made of
 
@@ -65,9 +65,11 @@ struct OpenShapes {
 std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Predictor& predictor,
                                     const Variation& model, double start_sigma_m, double start_sigma_rad);
 
-// `residuals`: measured minus nominal, of each run.
+// `residuals`: measured minus nominal, of each run. `stated`: for each of diagnosis_channels() the noise of one sample, 1 sigma,
+// as somebody knows it, 0 where nobody does; empty: of none. It stands in for the residuals, where no run repeats another.
 NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vector<Eigen::VectorXd>& residuals,
-                       const std::vector<std::vector<std::size_t>>& repeats, const std::vector<OpenShapes>& open);
+                       const std::vector<std::vector<std::size_t>>& repeats, const std::vector<OpenShapes>& open,
+                       std::span<const double> stated = {});
 
 // The rms of what repeats differ by, whitened, over the bins that more than one of them has; 1 without repeats.
 double rms_of_repeats(const NoiseFloor& floor, const std::vector<FeatureMap>& features,

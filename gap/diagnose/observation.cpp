@@ -7,9 +7,11 @@
 #include <map>
 #include <utility>
 
+#include "gap/diagnose/channels.hpp"
 #include "gap/plausibility.hpp"
 #include "protocol/frames.hpp"
 #include "rollout/measured_motion.hpp"
+#include "rollout/roll_out.hpp"
 
 namespace kenaf::gap {
 namespace {
@@ -105,6 +107,20 @@ std::vector<runs::DatasetRun> drawn_evenly(const std::vector<runs::DatasetRun>& 
   return result;
 }
 
+std::vector<std::string> channels_not_simulated(const Observations& observations) {
+  const std::vector<std::string> simulated = rollout::recorded_columns(observations.robot);
+  std::vector<std::string> result;
+  for (const Channel& channel : diagnosis_channels()) {
+    const std::string column(channel.column);
+    const auto measures = [&](const Observation& observation) {
+      return std::ranges::any_of(observation.run.column(column), [](double value) { return !std::isnan(value); });
+    };
+    if (std::ranges::count(simulated, column) == 0 && std::ranges::any_of(observations.runs, measures))
+      result.push_back(column);
+  }
+  return result;
+}
+
 }  // namespace
 
 Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const std::string& path) {
@@ -154,6 +170,13 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     throw runs::RunFileError(fmt::format("{}: none of its {} runs can be used{}", folder.string(),
                                          result.dataset.runs.size(),
                                          result.warnings.empty() ? "" : "; the first one: " + result.warnings.front()));
+  std::vector<std::vector<std::string>> columns;
+  for (const Observation& run : result.runs) columns.push_back(run.run.columns);
+  for (const Finding& finding : check_noise(result.dataset, columns)) result.warnings.push_back(in_words(finding));
+  result.not_simulated = channels_not_simulated(result);
+  for (const std::string& column : result.not_simulated)
+    result.warnings.push_back(
+        fmt::format("{}: measured, but the described robot has no sensor for it: not compared", column));
   return result;
 }
 

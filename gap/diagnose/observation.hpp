@@ -29,7 +29,8 @@ struct Observations {
   physics::RobotDescription robot;  // the nominal model
   std::vector<physics::WorldDescription> worlds;
   std::vector<Observation> runs;
-  std::vector<std::string> warnings;  // what was left out and why, in words
+  std::vector<std::string> not_simulated;  // channels that were measured, but by no sensor of the described robot
+  std::vector<std::string> warnings;       // what was left out and why, in words
 };
 
 // One run of a dataset, of world 0. `path` names its file in errors. Throws runs::RunFileError where it has no commands or no start.
@@ -40,6 +41,8 @@ Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const s
 // short, or whose simulation went wrong, is left out with a warning. Throws runs::RunFileError or
 // DescriptionError with file, line and column where one cannot be read or cannot be what it says it is
 // (gap/plausibility.hpp), or none is left.
+//
+// A channel that the described robot does not have cannot be compared, and is told by a warning.
 Observations observe(const std::filesystem::path& folder, const std::string& robot, const std::string& world,
                      std::size_t most_runs);
 

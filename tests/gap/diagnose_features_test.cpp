@@ -98,6 +98,15 @@ TEST_CASE("Empty cells are left out, and the simulated run is taken where someth
   CHECK(map.of(made_run(1.5, 0.1, {{"y_m", ramp}}))[0] == 0);
 }
 
+TEST_CASE("Channels that are left out have no bins") {
+  const auto run = made_run(1, 0.1, {{"x_m", ramp}, {"gyro_z_radps", ramp}});
+  CHECK(FeatureMap(run, 0.5).bins().size() == 4);
+  const std::vector<std::string> left_out{"gyro_z_radps"};
+  const FeatureMap map(run, 0.5, left_out);
+  REQUIRE(map.bins().size() == 2);
+  CHECK(map.measured() == FeatureMap(made_run(1, 0.1, {{"x_m", ramp}}), 0.5).measured());
+}
+
 TEST_CASE("A simulated run that ends early holds its last value") {
   const FeatureMap map(made_run(2, 0.1, {{"x_m", ramp}}), 0.5);
   const Eigen::VectorXd simulated = map.of(made_run(1, 0.1, {{"x_m", ramp}}));

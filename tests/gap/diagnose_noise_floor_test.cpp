@@ -46,6 +46,20 @@ MatrixXd as_matrix(const Whitener& whitener, Eigen::Index size) {
 
 }  // namespace
 
+// What somebody knows of a sample is sigma / sqrt(2) of a bin of two samples.
+TEST_CASE("A noise that is stated stands where nothing repeats, and gives way to repeats") {
+  std::mt19937_64 random(4);
+  const std::vector<FeatureMap> features(2, long_map());
+  const std::vector<OpenShapes> closed(2, {MatrixXd::Zero(kBins, 1), VectorXd::Zero(kBins)});
+  const std::vector<VectorXd> residuals{white(0.02, random), white(0.02, random)};
+  std::vector<double> stated(diagnosis_channels().size(), 0);
+  CHECK(sigma_of_x(noise_floor(features, residuals, {{0}, {1}}, closed, stated)) == Approx(0.02).epsilon(0.15));
+  stated[long_map().bins()[0].channel] = 0.1;
+  const double alone = sigma_of_x(noise_floor(features, residuals, {{0}, {1}}, closed, stated));
+  CHECK(alone == Approx(0.1 / std::sqrt(2)));
+  CHECK(sigma_of_x(noise_floor(features, residuals, {{0, 1}}, closed, stated)) == Approx(0.02).epsilon(0.15));
+}
+
 // A median of absolute values knows sigma to 1.17 / sqrt(n); that neighbouring second differences share bins makes it
 // about 1.6 / sqrt(n): 2.6 % of 4000 bins, so 10 % is nearly four sigma.
 TEST_CASE("White noise is found again, from residuals and from repeats, also under a gap that changes slowly") {

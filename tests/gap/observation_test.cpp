@@ -1,8 +1,10 @@
 // How a recorded run becomes commands to replay, from the place where the robot stood.
 #include "gap/diagnose/observation.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <string>
 
 #include "tests/gap/made_run.hpp"
 #include "tests/runs/temporary_folder.hpp"
@@ -56,6 +58,28 @@ TEST_CASE("A log whose clock does not begin at 0 is looked at from its own begin
   const Observation seen = observation_of({}, run, "a.csv");
   CHECK(seen.run.column("t_s").front() == 0);
   CHECK(seen.run.column("t_s").back() == Approx(2.75));
+}
+
+TEST_CASE("What the described robot has no sensor for is told, and not compared with nothing") {
+  const test::TemporaryFolder folder;
+  const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
+  const auto turn_rate = [](double t_s) { return t_s < 1 ? 0 : 0.2; };
+  runs::write_run(folder / "a.csv",
+                  told_to_go(1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", x}, {"gyro_z_radps", turn_rate}}));
+  for (const auto& [robot, has_gyro] : {std::pair{"kenaf", true}, {"p2dx", false}}) {
+    test::write_file(folder / "dataset.toml", "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"" +
+                                                  std::string(robot) +
+                                                  "\"\nworld = \"flat\"\n[noise]\ngyro_y_radps = 0.1\n"
+                                                  "[[run]]\nfile = \"a.csv\"\n");
+    const Observations seen = observe(folder.path(), "", "", 10);
+    const auto says = [&](const std::string& words) {
+      return std::ranges::any_of(seen.warnings,
+                                 [&](const std::string& w) { return w.find(words) != std::string::npos; });
+    };
+    CHECK(seen.not_simulated == (has_gyro ? std::vector<std::string>{} : std::vector<std::string>{"gyro_z_radps"}));
+    CHECK(says("gyro_z_radps: measured, but the described robot has no sensor for it") == !has_gyro);
+    CHECK(says("gyro_y_radps: has a [noise], but no run has such a column"));
+  }
 }
 
 TEST_CASE("Of more manoeuvres than places, runs are taken from some of all, not from the last ones") {
