@@ -46,7 +46,7 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
     options->diagnosis.stop = &interruption();
     const bool reports = options->diagnosis.ranks.rank == 0;
     if (reports)
-      options->diagnosis.progress = [line = ProgressLine()](const Progress& progress) {
+      options->diagnosis.progress = [line = ProgressLine()](const Progress& progress) mutable {
         line.show(progress.doing, progress.done);
       };
     if (reports) {
@@ -57,8 +57,7 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
     if (!reports) return;
     if (!result.interrupted.empty()) clear_progress_line();
     std::fputs(diagnosis_text(result).c_str(), stdout);
-    write_diagnosis(result, options->out);
-    std::printf("\n%s/report.html has the figures\n", options->out.c_str());
+    std::printf("\n%s has the figures\n", write_diagnosis(result, options->out).c_str());
   });
 }
 

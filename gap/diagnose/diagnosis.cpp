@@ -20,23 +20,33 @@ using Eigen::VectorXd;
 constexpr std::size_t kRivals = 4;
 constexpr double kAtBound = 1e-3;  // of the range
 
+std::vector<double> stated_noise(const runs::Dataset& dataset) {
+  std::vector<double> stated;
+  for (const Channel& channel : diagnosis_channels()) {
+    const auto noise = dataset.noise.find(std::string(channel.column));
+    stated.push_back(noise == dataset.noise.end() ? 0 : noise->second);
+  }
+  return stated;
+}
+
 class Diagnoser {
  public:
   Diagnoser(Diagnosis& d, const DiagnosisOptions& options)
       : d_(d),
         options_(options),
-        predictor_(d.observations, d.features, repeats_of(d.observations), options.jobs, options.stop, options.ranks) {}
+        predictor_(d.observations, d.features, d.repeats, options.jobs, options.stop, options.ranks,
+                   [this](std::size_t roll_outs) { tell(roll_outs); }) {}
 
   void run() {
-    say("simulating the nominal robot", 0.01);
+    begin({"simulating the nominal robot", 0, 0.01, 1});
     predictor_.simulate_nominal();
-    d_.repeats = predictor_.repeats();
     d_.same_orders = same_orders_of(d_.observations);
     d_.nominal = predictor_.nominal();
     for (std::size_t r = 0; r < d_.features.size(); ++r)
       residuals_.push_back(d_.features[r].measured() - d_.nominal[r]);
-    say("measuring the noise floor", 0.03);
-    d_.nominal_floor = noise_floor(d_.features, residuals_, d_.same_orders, open_at(predictor_.unvaried()));
+    begin({"measuring the noise floor", 0.01, 0.1, 20});
+    d_.nominal_floor = noise_floor(d_.features, residuals_, d_.same_orders, open_at(predictor_.unvaried()),
+                                   stated_noise(d_.observations.dataset));
     d_.floor = d_.nominal_floor;
     deviations_ = deviations_from_repeats(d_.features, residuals_, d_.same_orders);
     coherence_.emplace(d_.features, d_.repeats, options_.stretch_s);
@@ -44,25 +54,39 @@ class Diagnoser {
     d_.stages = stage_gaps(d_.features, d_.nominal_floor, *coherence_, residuals_,
                            predictor_.nominal_with_measured_drives(), d_.observations);
 
-    say("comparing effects", 0.1);
+    begin({"comparing effects", 0.1, 0.5, 60});
     d_.curves = scan_effects(candidate_curves(d_.observations, options_.without), residuals_, d_.floor, predictor_);
-    say("fitting effects", 0.5);
+    begin({"fitting effects", 0.5, 0.85, 60});
     d_.decision = decide(d_.curves, *coherence_, spread(), simulator(), options_.decision, options_.seed);
-    say("holding runs out", 0.85);
+    begin({"holding runs out", 0.85, 0.93, 5});
     weigh();
     d_.isolability = isolability(d_.curves);
-    say("looking for the next manoeuvre", 0.93);
+    begin({"looking for the next manoeuvre", 0.93, 1, 1});
     if (options_.propose_next && options_.ranks.rank == 0) propose();  // what only the report needs
-    say("done", 1);
+    begin({"done", 1, 1, 1});
   }
 
   void finish() { d_.roll_outs = predictor_.roll_outs(); }
-  std::string_view doing() const { return doing_; }
+  std::string_view doing() const { return stage_.doing; }
 
  private:
-  void say(std::string_view doing, double done) {
-    doing_ = doing;
-    if (options_.progress) options_.progress({doing, done});
+  struct Stage {
+    std::string_view doing;
+    double from, to;           // shares of the whole time, of a usual diagnosis
+    double roll_outs_per_run;  // of a usual one; how many there will be is not known before
+  };
+
+  void begin(const Stage& stage) {
+    stage_ = stage;
+    begun_at_ = predictor_.roll_outs();
+    tell(begun_at_);
+  }
+
+  void tell(std::size_t roll_outs) const {
+    if (!options_.progress) return;
+    const double usual = stage_.roll_outs_per_run * static_cast<double>(d_.observations.runs.size());
+    const double part = static_cast<double>(roll_outs - begun_at_) / usual;
+    options_.progress({stage_.doing, stage_.to - (stage_.to - stage_.from) * std::exp(-part)});
   }
 
   std::vector<OpenShapes> open_at(const Variation& model) {
@@ -134,6 +158,7 @@ class Diagnoser {
   void weigh() {
     rank_singles();
     if (d_.decision.best.places.empty()) {
+      d_.gap.shrink = {0, 0, 0};
       d_.gap.before = d_.gap.after = d_.floor.rms(residuals_);
       d_.gap.floor = std::min(floor_rms(), d_.gap.before);
       d_.gap.before_si = d_.gap.after_si = rms_si(residuals_);
@@ -214,8 +239,8 @@ class Diagnoser {
     return squares;
   }
 
-  // Where the verdict leaves a choice, the models between which it is.
-  void propose() {
+  // Where the verdict leaves a choice, the models between which it is. Nothing of the verdict depends on it.
+  void propose() try {
     const Decision& decision = d_.decision;
     std::vector<Model> rivals;
     if (decision.verdict == Verdict::ambiguous) {
@@ -234,6 +259,9 @@ class Diagnoser {
     }
     d_.next = rank_manoeuvres(d_.observations.robot, d_.curves, rivals, d_.floor, options_.span_s, options_.jobs,
                               options_.stop);
+  } catch (const Stopped&) {
+    d_.next_interrupted = true;
+    d_.observations.warnings.emplace_back("interrupted while looking for the next manoeuvre, which is not told");
   }
 
   Diagnosis& d_;
@@ -241,7 +269,8 @@ class Diagnoser {
   Predictor predictor_;
   std::vector<VectorXd> residuals_, deviations_;
   std::optional<Coherence> coherence_;
-  std::string_view doing_ = "reading the runs";
+  Stage stage_{"reading the runs", 0, 0, 1};
+  std::size_t begun_at_ = 0;  // roll-outs
 };
 
 void check_names(const std::vector<std::string>& without) {
@@ -259,9 +288,18 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
   d.options.progress = {};
   d.options.stop = nullptr;
   d.observations = observe(folder, options.robot, options.world, options.most_runs);
-  for (const Observation& run : d.observations.runs) d.features.emplace_back(run.run, options.span_s);
+  for (const Observation& run : d.observations.runs)
+    d.features.emplace_back(run.run, options.span_s, d.observations.not_simulated);
+  if (std::ranges::all_of(d.features, [](const FeatureMap& map) { return map.bins().empty(); }))
+    throw runs::RunFileError(
+        fmt::format("{}: nothing that was measured can be compared: the described robot has no sensor for any of it",
+                    folder.string()));
+  d.repeats = repeats_of(d.observations);
+  if (candidate_curves(d.observations, options.without).empty())
+    throw std::invalid_argument("--without leaves no effect to look for");
   Diagnoser diagnoser(d, options);
   d.decision.verdict = Verdict::unknown;  // until it is known
+  d.decision.p_gap = d.decision.p_left = d.decision.p_agree = GapMeasure::kNotMeasured;
   try {
     diagnoser.run();
   } catch (const Stopped&) {

@@ -54,7 +54,7 @@ struct EffectEvidence {
 struct GapMeasure {
   static constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
   double before = kNotMeasured, after = kNotMeasured, floor = kNotMeasured;
-  Interval shrink;  // 0 where no model was held out
+  Interval shrink{kNotMeasured, kNotMeasured, kNotMeasured};  // 0 where there is no model to hold out
   Interval shrink_by_manoeuvre{kNotMeasured, kNotMeasured, kNotMeasured};  // with all repeats of a manoeuvre held out
                                                                            // together, where there are several; of curves
   std::vector<double> before_si, after_si;  // of each of diagnosis_channels(); NaN: never measured
@@ -77,6 +77,7 @@ struct Diagnosis {
   Isolability isolability;
   std::vector<NextManoeuvre> next;        // where something is ambiguous or unknown
   std::size_t roll_outs = 0;
+  bool next_interrupted = false;          // `next` was asked for and not worked out; all else is complete
   std::string interrupted;                // what was under way when it was stopped; empty: it is complete
 };
 

@@ -1,6 +1,9 @@
 #include "gap/diagnose/prediction.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <map>
+#include <thread>
 #include <utility>
 
 #include "gap/diagnose/repeats.hpp"
@@ -19,13 +22,14 @@ constexpr double kCoarse =
 
 Predictor::Predictor(const Observations& observations, const std::vector<FeatureMap>& features,
                      std::vector<std::vector<std::size_t>> repeats, unsigned threads, const std::atomic<bool>* stop,
-                     Ranks ranks)
+                     Ranks ranks, std::function<void(std::size_t)> progress)
     : observations_(observations),
       features_(features),
       repeats_(std::move(repeats)),
       threads_(threads),
       stop_(stop),
-      ranks_(std::move(ranks)) {
+      ranks_(std::move(ranks)),
+      progress_(std::move(progress)) {
   for (const std::vector<std::size_t>& group : repeats_)
     representatives_.push_back(representative(observations_, group));
 }
@@ -36,10 +40,14 @@ std::vector<VectorXd> Predictor::all_of(std::size_t count, const std::function<V
   if (ranks > 1 ? ranks_.any(stop) : stop) throw Stopped();
   std::vector<VectorXd> results(count);
   const std::size_t own = count / ranks + (rank < count % ranks ? 1 : 0);
+  const std::thread::id asking = std::this_thread::get_id();
+  std::atomic<std::size_t> done = 0;
   for_each_job(own, threads_, [&](std::size_t i) {
     // one rank alone may end at once; of several all end together
     if (ranks == 1 && stop_ != nullptr && *stop_) throw Stopped();
     results[rank + i * ranks] = job(rank + i * ranks);
+    done += ranks;
+    if (progress_ && std::this_thread::get_id() == asking) progress_(roll_outs_ + std::min<std::size_t>(done, count));
   });
   if (ranks > 1) ranks_.share(results);
   roll_outs_ += count;

@@ -37,10 +37,11 @@ struct Stopped {};
 class Predictor {
  public:
   // Both must outlive this; `features` has one map for each run. Once `stop`, if there is one, is true, simulations throw
-  // Stopped.
+  // Stopped. `progress`, if any, is called between simulations with how many are done, by the thread that asked for them.
   Predictor(const Observations& observations, const std::vector<FeatureMap>& features,
             std::vector<std::vector<std::size_t>> repeats, unsigned threads,
-            const std::atomic<bool>* stop = nullptr, Ranks ranks = {});
+            const std::atomic<bool>* stop = nullptr, Ranks ranks = {},
+            std::function<void(std::size_t)> progress = {});
 
   // All runs once; comes first.
   void simulate_nominal();
@@ -75,6 +76,7 @@ class Predictor {
   unsigned threads_;
   const std::atomic<bool>* stop_;
   Ranks ranks_;
+  std::function<void(std::size_t)> progress_;
   std::vector<Eigen::VectorXd> nominal_;
   std::vector<Eigen::VectorXd> coarse_nominal_;  // of each group's representative, once asked for
   std::size_t roll_outs_ = 0;

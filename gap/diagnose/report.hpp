@@ -38,9 +38,10 @@ std::string corrected_robot_toml(const Diagnosis& diagnosis, const std::string& 
 // calculated.
 void check_keeps_inputs(const std::filesystem::path& out, const std::filesystem::path& dataset, const std::string& robot);
 
-// Writes report.json, report.html and, where an effect was named, robot.toml into `folder`, each whole or not at all. A
-// robot.toml of a diagnosis before is removed where nothing is named; where this one was interrupted, it stays.
+// Writes report.json, report.html and, where an effect was named, robot.toml into `folder`, each whole or not at all; returns
+// where the page is. A robot.toml of a diagnosis before is removed where nothing is named. Where this one was interrupted, it
+// stays, and so do reports of a complete one: then these are report.partial.json and report.partial.html.
 // Throws std::runtime_error where that cannot be done.
-void write_diagnosis(const Diagnosis& diagnosis, const std::filesystem::path& folder);
+std::filesystem::path write_diagnosis(const Diagnosis& diagnosis, const std::filesystem::path& folder);
 
 }  // namespace kenaf::gap

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "description/data_files.hpp"
 #include "gap/diagnose/report.hpp"
@@ -13,7 +14,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kRobotFile = "robot.toml";
+constexpr const char *kRobotFile = "robot.toml", *kPage = "report.html", *kReport = "report.json";
+// Of a diagnosis that was interrupted where a complete one's are.
+constexpr const char *kPartialPage = "report.partial.html", *kPartialReport = "report.partial.json";
+
+bool has_complete_report(const fs::path& folder) {
+  if (!fs::exists(folder / kReport)) return false;
+  const auto report = nlohmann::json::parse(runs::read_whole_file(folder / kReport), nullptr, false);
+  return report.is_object() && report.contains("verdict") && !report.contains("interrupted");
+}
 
 }  // namespace
 
@@ -33,24 +42,31 @@ void check_keeps_inputs(const fs::path& out, const fs::path& dataset, const std:
         fmt::format("{}: is the description that is to be diagnosed, and the report would replace it; give another "
                     "folder for the reports",
                     replaced.string()));
-  if (!fs::exists(out / "report.html") && !fs::exists(out / "report.json"))
+  if (!fs::exists(out / kPage) && !fs::exists(out / kReport))
     throw std::runtime_error(
         fmt::format("{}: is of no diagnosis, as no report is beside it, and would be replaced; give another folder for "
                     "the reports",
                     replaced.string()));
 }
 
-void write_diagnosis(const Diagnosis& d, const fs::path& folder) {
+fs::path write_diagnosis(const Diagnosis& d, const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw std::runtime_error(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-  runs::write_whole_file(folder / "report.html", diagnosis_html(d));
+  if (!d.interrupted.empty() && has_complete_report(folder)) {
+    runs::write_whole_file(folder / kPartialPage, diagnosis_html(d));
+    runs::write_whole_file(folder / kPartialReport, diagnosis_json(d));
+    return folder / kPartialPage;
+  }
+  runs::write_whole_file(folder / kPage, diagnosis_html(d));
   const Verdict verdict = d.decision.verdict;
   if (verdict == Verdict::named || verdict == Verdict::ambiguous)
     runs::write_whole_file(folder / kRobotFile, corrected_robot_toml(d, d.observations.robot_name));
   else if (d.interrupted.empty())
     fs::remove(folder / kRobotFile, error);  // of a diagnosis before, which it would belie
-  runs::write_whole_file(folder / "report.json", diagnosis_json(d));
+  runs::write_whole_file(folder / kReport, diagnosis_json(d));
+  for (const char* partial : {kPartialPage, kPartialReport}) fs::remove(folder / partial, error);
+  return folder / kPage;
 }
 
 }  // namespace kenaf::gap

@@ -22,8 +22,10 @@ Json names_of(const Diagnosis& d, const std::vector<std::size_t>& curves) {
 }
 
 Json where_json(const Diagnosis& d) {
-  Json where{
-      {"stage", gap_stage(d)}, {"stages", Json::array()}, {"channels", Json::array()}, {"phases", Json::array()}};
+  Json where{{"stage", d.stages.empty() ? Json(nullptr) : Json(gap_stage(d))},
+             {"stages", Json::array()},
+             {"channels", Json::array()},
+             {"phases", Json::array()}};
   for (const StageGap& stage : d.stages)
     if (stage.bins > 0)
       where["stages"].push_back({{"passage", passage_name(stage.passage)},
@@ -72,7 +74,8 @@ Json si_json(const std::vector<double>& values) {
 
 Json gap_json(const Diagnosis& d) {
   Json files = Json::array();
-  for (const Observation& run : d.observations.runs) files.push_back(run.file);
+  if (d.observations.runs.size() > 1 && std::isfinite(d.gap.before))
+    for (const Observation& run : d.observations.runs) files.push_back(run.file);
   return {{"before", number(d.gap.before)},
           {"after", number(d.gap.after)},
           {"floor", number(d.gap.floor)},
@@ -81,7 +84,8 @@ Json gap_json(const Diagnosis& d) {
           {"shrink_by_manoeuvre", number(d.gap.shrink_by_manoeuvre.value)},
           {"before_si", si_json(d.gap.before_si)},
           {"after_si", si_json(d.gap.after_si)},
-          {"heldout_runs", files}};
+          {"heldout_runs", files},
+          {"measured_on", measured_on(d)}};
 }
 
 }  // namespace
@@ -106,9 +110,9 @@ std::string diagnosis_json(const Diagnosis& d) {
   json["ranking"] = Json::array();
   for (const EffectEvidence& evidence : d.ranking) json["ranking"].push_back(effect_json(d, evidence));
   json["gap"] = gap_json(d);
-  json["p_gap"] = d.decision.p_gap;
-  json["p_left"] = d.decision.p_left;
-  json["p_agree"] = d.decision.p_agree;
+  json["p_gap"] = number(d.decision.p_gap);
+  json["p_left"] = number(d.decision.p_left);
+  json["p_agree"] = number(d.decision.p_agree);
   json["doubts"] = doubts_in_words(d.decision);
   Json angles = Json::array();
   for (Eigen::Index i = 0; i < d.isolability.angle_deg.rows(); ++i) {

@@ -16,6 +16,12 @@ bool reads_as(const std::string& text, const toml::table& root) try {
   return false;
 }
 
+// A whole number in TOML is of another type.
+std::string as_float(double value) {
+  const std::string text = fmt::format("{}", value);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+}
+
 }  // namespace
 
 std::string corrected_robot_toml(const Diagnosis& d, const std::string& robot_name_or_path) {
@@ -32,7 +38,7 @@ std::string corrected_robot_toml(const Diagnosis& d, const std::string& robot_na
     if (!effects.contains(curve.effect->name)) effects.insert(curve.effect->name, toml::table{});
     effects[curve.effect->name].as_table()->insert_or_assign(curve.parameter->name, place.value);
     added += fmt::format("\n[effects.{}]                # found by a diagnosis of runs\n{} = {}\n", curve.effect->name,
-                         curve.parameter->name, place.value);
+                         curve.parameter->name, as_float(place.value));
   }
   if (!replaces && reads_as(text + added, root)) return text + added;
   std::ostringstream out;

@@ -27,6 +27,14 @@ std::string set_text(const Diagnosis& d, const std::vector<std::size_t>& curves)
   return names.size() == 1 ? names.front() : fmt::format("one of {{{}}}", fmt::join(names, ", "));
 }
 
+std::string_view noise_source(const Diagnosis& d) {
+  if (d.floor.whiteners.empty()) return "not measured yet";
+  if (d.floor.from_repeats) return "from their repeats";
+  return d.observations.dataset.noise.empty()
+             ? "from the runs themselves, as none repeats another: less sure"
+             : "as stated, or from the runs themselves, as none repeats another: less sure";
+}
+
 std::string verdict_line(const Diagnosis& d) {
   if (!d.interrupted.empty())
     return fmt::format("UNFINISHED: interrupted while {}; what is known until then follows", d.interrupted);
@@ -100,9 +108,8 @@ std::vector<std::string> doubts_in_words(const Decision& decision) {
 std::string diagnosis_text(const Diagnosis& d) {
   std::string text = verdict_line(d) + "\n";
   const auto out = std::back_inserter(text);
-  fmt::format_to(
-      out, "{} runs of {} manoeuvres; noise {}\n", d.observations.runs.size(), d.repeats.size(),
-      d.floor.from_repeats ? "from their repeats" : "from the runs themselves, as none repeats another: less sure");
+  fmt::format_to(out, "{} runs of {} manoeuvres; noise {}\n", d.observations.runs.size(), d.repeats.size(),
+                 noise_source(d));
   for (std::size_t i = 0; i < std::min(kWarnings, d.observations.warnings.size()); ++i)
     fmt::format_to(out, "warning: {}\n", d.observations.warnings[i]);
   if (d.observations.warnings.size() > kWarnings)
@@ -117,7 +124,7 @@ std::string diagnosis_text(const Diagnosis& d) {
                      d.gap.shrink.value * 100, d.gap.floor, d.gap.shrink.from * 100, d.gap.shrink.to * 100);
     fmt::format_to(out, "\n");
   }
-  if (d.decision.verdict != Verdict::none || !d.interrupted.empty()) {
+  if (d.decision.verdict != Verdict::none && !d.stages.empty()) {
     fmt::format_to(out, "\nWhere: {}\n", gap_stage(d));
     for (const StageGap& stage : d.stages)
       if (stage.bins > 0)
@@ -140,6 +147,7 @@ std::string diagnosis_text(const Diagnosis& d) {
     for (std::size_t i = 0; i < std::min(kRanking, d.ranking.size()); ++i)
       fmt::format_to(out, "  {:>4.0f} %  {}\n", d.ranking[i].heldout_shrink.value * 100, value_text(d, d.ranking[i]));
   }
+  if (d.next_interrupted) fmt::format_to(out, "\nWhat would tell more was not worked out: interrupted\n");
   if (!d.next.empty()) {
     fmt::format_to(out, "\nWhat would tell more: ");
     for (std::size_t i = 0; i < std::min(kNext, d.next.size()); ++i)

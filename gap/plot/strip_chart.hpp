@@ -23,7 +23,7 @@ struct StripChart {
   std::vector<Strip> strips;
   std::string legend;                    // what the shade means
   std::string least, most;               // at the ends of the scale of shades
-  double label_px = 190, width_px = 1060;
+  double label_px = 190, width_px = 1060;  // labels get more where they need it, up to half of the width
 };
 
 // One <svg> element, for the style sheet of chart.hpp. Without strips it says "nothing to show". A name without room in its

@@ -33,6 +33,14 @@ double text_width_px(std::string_view text) {
   return kMeanLetter_px * static_cast<double>(text.size());
 }
 
+std::string end_of(std::string_view text, double width_px) {
+  if (text_width_px(text) <= width_px) return std::string(text);
+  const auto is_inside_letter = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; };  // of UTF-8
+  while (!text.empty() && (text_width_px(text) + kMeanLetter_px > width_px || is_inside_letter(text.front())))
+    text.remove_prefix(1);
+  return "\u2026" + std::string(text);
+}
+
 std::string shaded_box(double x_px, double y_px, double width_px, double height_px, double strength,
                        std::string_view hint) {
   return fmt::format(

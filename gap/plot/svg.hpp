@@ -15,6 +15,8 @@ std::string text_at(double x_px, double y_px, std::string_view text, std::string
 
 // About the width of text at the charts' font size: whoever needs room for it must take a little more.
 double text_width_px(std::string_view text);
+// All of the text where it has room in `width_px`; else its end, after an ellipsis: of long names the ends differ.
+std::string end_of(std::string_view text, double width_px);
 
 // A box shaded by `strength`, from 0 to 1, so that dark text on it stays readable. `hint` shows under the pointer.
 std::string shaded_box(double x_px, double y_px, double width_px, double height_px, double strength,

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "gap/progress_line.hpp"
 #include "physics/effects.hpp"
 
 using namespace kenaf;
@@ -87,6 +88,25 @@ TEST_CASE("A diagnosis replaces neither its dataset, nor the description it is a
   test::write_file(folder / "mine/report.json", "{}");
   CHECK_THAT(refused("real --robot mine/robot.toml --out mine"), Catch::Contains("is the description"));
   CHECK_THAT(refused("nowhere --robot mine/robot.toml --out other"), Catch::Contains("nowhere/dataset.toml"));
+}
+
+TEST_CASE("A catalogue of which nothing is left is no catalogue") {
+  const TemporaryFolder folder;
+  REQUIRE(kenaf_gap(folder, "simulate --manoeuvre straight --out real").status == 0);
+  std::string all;
+  for (const auto& effect : nlohmann::json::parse(kenaf_gap(folder, "effects --json").out))
+    all += (all.empty() ? "" : ",") + effect["name"].get<std::string>();
+  const Outcome outcome = kenaf_gap(folder, "diagnose real --out out --without " + all);
+  CHECK(outcome.status == 2);
+  CHECK_THAT(outcome.error, Catch::Contains("--without leaves no effect"));
+  CHECK_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+TEST_CASE("The time left is reckoned from what was done meanwhile, not from what was there before") {
+  // a half in 60 s: another 60 s; of 0.6, of which 0.5 was there, a fifth of what there was to do: 4 times 60 s
+  CHECK(gap::time_left(0, 0.5, 60) == ", about 60 s left");
+  CHECK(gap::time_left(0.5, 0.6, 60) == ", about 4 min left");
+  CHECK(gap::time_left(0.5, 0.51, 60).empty());
 }
 
 TEST_CASE("A list that cannot be written is no success") {

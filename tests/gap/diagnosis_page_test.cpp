@@ -180,6 +180,12 @@ TEST_CASE("A robot with effects has the one that was found among them, however i
   CHECK(effects.command_delay_s == 0.05);
 }
 
+TEST_CASE("A value that is a whole number is written as a float, and the description keeps its comments") {
+  Diagnosis d = two_manoeuvres();
+  d.decision.best.places = {{0, 1}};
+  CHECK_THAT(corrected_robot_toml(d, "kenaf"), Contains("# found by a diagnosis of runs\nlag_s = 1.0\n"));
+}
+
 TEST_CASE("Each verdict says what it means and what to do next") {
   Diagnosis d = two_manoeuvres();
   d.decision.verdict = Verdict::ambiguous;
@@ -248,10 +254,50 @@ TEST_CASE("A diagnosis that was interrupted names nothing, and leaves a robot.to
   const auto report = nlohmann::json::parse(test::read_file(folder / "report.json"));
   CHECK(report["interrupted"] == "holding runs out");
   CHECK(report["gap"]["before"].is_null());
+  CHECK(report["gap"]["shrink"].is_null());
   CHECK(report["gap"]["shrink_by_manoeuvre"].is_null());
+  CHECK(report["gap"]["heldout_runs"].empty());
+  CHECK(report["where"]["stage"].is_null());
+  CHECK_THAT(diagnosis_text(d), Contains("noise not measured yet") && !Contains("Where:"));
   d.interrupted.clear();
   write_diagnosis(d, folder.path());
   CHECK_FALSE(std::filesystem::exists(folder / "robot.toml"));
+}
+
+TEST_CASE("A diagnosis that was interrupted leaves the reports of a complete one, until there is another one") {
+  const test::TemporaryFolder folder;
+  Diagnosis d;
+  d.interrupted = "comparing effects";
+  CHECK(write_diagnosis(d, folder.path()) == folder / "report.html");  // there is no other one
+  d.interrupted.clear();
+  CHECK(write_diagnosis(d, folder.path()) == folder / "report.html");
+  const std::string complete = test::read_file(folder / "report.json");
+  d.interrupted = "comparing effects";
+  CHECK(write_diagnosis(d, folder.path()) == folder / "report.partial.html");
+  CHECK(test::read_file(folder / "report.json") == complete);
+  CHECK(nlohmann::json::parse(test::read_file(folder / "report.partial.json")).contains("interrupted"));
+  d.interrupted.clear();
+  write_diagnosis(d, folder.path());
+  CHECK_FALSE(std::filesystem::exists(folder / "report.partial.html"));
+  CHECK_FALSE(std::filesystem::exists(folder / "report.partial.json"));
+}
+
+TEST_CASE("Of one run nothing is held out, and the report says so") {
+  Diagnosis d = two_manoeuvres();
+  CHECK(nlohmann::json::parse(diagnosis_json(d))["gap"]["heldout_runs"].size() == 3);
+  d.observations.runs.resize(1);
+  d.repeats = {{0}};
+  d.where.phases.clear();
+  const auto gap = nlohmann::json::parse(diagnosis_json(d))["gap"];
+  CHECK(gap["heldout_runs"].empty());
+  CHECK(gap["measured_on"] == "the run fitted to, as there is no other");
+}
+
+TEST_CASE("Where the search for the next manoeuvre was interrupted, the verdict stands") {
+  Diagnosis d = two_manoeuvres();
+  d.next_interrupted = true;
+  CHECK_THAT(page_of(d), Contains("The gap is explained by drive_lag") && Contains("It was not worked out before"));
+  CHECK_THAT(diagnosis_text(d), Catch::StartsWith("NAMED: drive_lag"));
 }
 
 TEST_CASE("Runs without repeats and without any visible effect have a page") {

@@ -93,6 +93,21 @@ TEST_CASE("Strips share their axis, a name without room is still found under the
   CHECK_THAT(to_svg(StripChart{}), Catch::Contains("nothing to show"));
 }
 
+TEST_CASE("Names of strips get the room that they need, up to half of the chart, then their ends are shown") {
+  StripChart chart;
+  chart.strips = {{"step-200-flippers (run-001.csv)", {{0, 1, 1, "climb", ""}}}};
+  CHECK_THAT(to_svg(chart), Catch::Contains(">step-200-flippers (run-001.csv)</text>"));
+  chart.strips[0].label = std::string(200, 'a') + "the-end.csv";
+  CHECK_THAT(to_svg(chart), Catch::Contains("athe-end.csv</text>") && !Catch::Contains(chart.strips[0].label));
+  // letters of two bytes are kept whole
+  for (const double width_px : {60.0, 63.0, 66.0, 69.0, 72.0}) {
+    chart.strips[0].label = "\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9";
+    chart.label_px = width_px;
+    chart.width_px = 2 * width_px;
+    CHECK(fault_of_xml(to_svg(chart)).empty());
+  }
+}
+
 TEST_CASE("Discs stand at their places with their words, one without a place is left out") {
   Chart chart;
   chart.lines = {{{{0, 0}, {1, 1}}, Ink::faint, Stroke::solid, ""}};
@@ -116,4 +131,9 @@ TEST_CASE("A dense line keeps what a picture shows of it: the extremes of every 
   CHECK(std::ranges::count(few, 50, [](const Point& p) { return p.y(); }) == 1);
   CHECK(std::ranges::is_sorted(few, {}, [](const Point& p) { return p.x(); }));
   CHECK(envelope(std::span(noise).first(50), 100).size() == 50);
+  // a break stays one, and hides nothing beside it
+  noise[5001].y() = std::numeric_limits<double>::quiet_NaN();
+  const auto broken = envelope(noise, 100);
+  CHECK(std::ranges::count_if(broken, [](const Point& p) { return std::isnan(p.y()); }) == 1);
+  CHECK(std::ranges::count(broken, 50, [](const Point& p) { return p.y(); }) == 1);
 }

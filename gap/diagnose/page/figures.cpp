@@ -11,6 +11,7 @@
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/page/words.hpp"
 #include "gap/plot/simplify.hpp"
+#include "gap/plot/svg.hpp"
 
 namespace kenaf::gap {
 namespace {
@@ -24,6 +25,7 @@ using plot::Stroke;
 constexpr std::size_t kColumns = 450;      // of a chart of half width: no more detail can be seen
 constexpr std::size_t kPathPoints = 4000;  // likewise of a path
 constexpr double kChannelHeight_px = 240;
+constexpr double kTitle_px = 360;    // of a chart of half width, in letters of usual size: titles are larger
 constexpr double kClimbs_m = 0.05;   // of height: seen from the side
 constexpr double kAround_m = 0.2;    // of the body's centre: the robot is about 0.5 m long
 constexpr double kBeside_m = 0.1;    // likewise, of a path seen from above
@@ -217,8 +219,9 @@ Chart places_figure(const Diagnosis& d, const Overlay& overlay) {
   Chart chart =
       place_chart(d, overlay, {{path_of(real, from_side), Ink::faint, Stroke::solid, "real path"}}, from_side);
   if (places.empty()) return chart;
-  chart.title =
-      fmt::format("{}: gap by place, from {}", group_title(d, overlay.group), from_side ? "the right" : "above");
+  const std::string_view what = from_side ? ": gap by place, from the right" : ": gap by place, from above";
+  chart.title = plot::end_of(group_title(d, overlay.group), kTitle_px - plot::text_width_px(what));
+  chart.title += what;
   const double left = d.where.beyond_chance > 0 ? d.where_left.beyond_chance / d.where.beyond_chance : 0;
   const auto [west, east] = std::ranges::minmax(places, {}, &Place::x_m);
   const double width_m = east.x_m - west.x_m;

@@ -67,7 +67,8 @@ std::string noise_table(const Diagnosis& d) {
              d.options.span_s,
              d.nominal_floor.from_repeats
                  ? "from how repeats differ"
-                 : "from the runs themselves, as none repeats another (less sure: a gap makes it larger)")) +
+                 : "as stated by the dataset where it is, else from the runs themselves, as none repeats another (less "
+                   "sure: a gap makes it larger)")) +
          to_html(table);
 }
 
@@ -87,7 +88,8 @@ std::string next_section(const Diagnosis& d) {
   std::string html = section_head("next", "What to drive next");
   if (!d.options.propose_next) return html + paragraph("It was not asked for.");
   if (d.next.empty()) {
-    if (!d.interrupted.empty()) return html + paragraph("It was not worked out before the diagnosis ended.");
+    if (!d.interrupted.empty() || d.next_interrupted)
+      return html + paragraph("It was not worked out before the diagnosis ended.");
     return html +
            paragraph(
                "Nothing has to be told apart. Any manoeuvre that is not in this dataset is a test of the verdict.");
