@@ -3,6 +3,8 @@
 //
 // Units: SI at the robot (surface speed of a track, angle of a flipper, 0 = straight out, positive tip up); a drive's own
 // units on the bus. The functions at the end convert between the two, and nothing else does.
+//
+// Thread safety: values and pure functions, but for load_robot_bus, which reads the environment and files.
 #pragma once
 
 #include <array>

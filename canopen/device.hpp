@@ -1,4 +1,5 @@
 // Objects that every CANopen device has, and those of an inclinometer. CiA 301, 7.5.2; CiA 410, 5.
+// Thread safety: constants and pure functions.
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,8 @@
 //            ^                                                                                        | quick stop
 //            | fault reset                                                                            v
 //          fault  <-- fault reaction active  <---------- (any state, by the drive)           quick stop active
+//
+// Thread safety: values and pure functions.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // Emergency messages: a device's error when it occurs, and the all-clear. CiA 301, 7.2.7; codes: CiA 301 table 26 and
-// CiA 402-2, error codes (IEC 61800-7-201, 7.4).
+// CiA 402-2, error codes (IEC 61800-7-201, 7.4). Thread safety: values and pure functions.
 #pragma once
 
 #include <array>

@@ -2,6 +2,8 @@
 //
 // CANopen's standards, as cited in this room: CiA 301 version 4.2 (application layer), CiA 402 (IEC 61800-7-201, drives),
 // CiA 410 (inclinometers). Everything in this room is free of sockets and clocks: frames and times go in, frames come out.
+//
+// Thread safety: values and pure functions.
 #pragma once
 
 #include <array>

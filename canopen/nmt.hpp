@@ -1,5 +1,5 @@
 // Network management: which node a frame is of, states, commands, heartbeat, SYNC. CiA 301, 7.2.5 (SYNC), 7.2.8 (NMT) and
-// 7.3.3 (predefined connection set).
+// 7.3.3 (predefined connection set). Thread safety: values and pure functions.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,6 @@
 // Where the files that ship with the project are found: robots/, worlds/, manoeuvres/.
+//
+// Thread safety: any thread, while none changes the environment.
 #pragma once
 
 #include <filesystem>

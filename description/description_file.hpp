@@ -1,4 +1,4 @@
-// Finds and reads the file of a robot's or a world's description.
+// Finds and reads the file of a robot's or a world's description. Thread safety: as data_files.hpp.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // Reads a TOML table completely: each key once, with its unit's range, and no key left over. What is wrong is said
-// with file, line and column.
+// with file, line and column. Thread safety: parse_toml is pure; a TomlReader belongs to one thread.
 #pragma once
 
 #include <toml++/toml.h>

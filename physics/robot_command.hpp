@@ -1,4 +1,4 @@
-// What a robot in the world can be told to do. SI units, frames of REP 103.
+// What a robot in the world can be told to do. SI units, frames of REP 103. Thread safety: values.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // The wire format of camera pictures: USARSim's image server (UPIS) and what Kenaf adds to it. For both ends: libkenaf_sim
-// reads answers with it, the world server may write them with it. docs/world-server-protocol.md has the page.
+// reads answers with it, the world server may write them with it. docs/cameras.md has the page.
 //
 //   request   'O' 'K'                  the picture, as the server's option says (USARSim)
 //             'J'                      the picture, as JPEG

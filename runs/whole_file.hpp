@@ -1,4 +1,6 @@
 // Files that are whole or absent: written aside in `<file>.part`, then renamed.
+//
+// Thread safety: any thread; one writer of a file at a time, since two would share its part file.
 #pragma once
 
 #include <filesystem>

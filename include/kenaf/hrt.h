@@ -97,7 +97,8 @@ enum {
   HRT_E_CONFIG = -4,          /* the configuration file or an environment variable is wrong: file, line, column named */
   HRT_E_LINK = -5,            /* no answer from the robot or its simulation; only hrt_close and a new init help. Of
                                  hrt_get_picture also: none from the cameras, and its next call tries again */
-  HRT_E_REFUSED = -6,         /* the relay answered, but gives no robot; its reason is in hrt_last_error() */
+  HRT_E_REFUSED = -6,         /* the relay answered, but gives no robot; libkenaf_real: another program has the robot. The
+                                 reason is in hrt_last_error() */
   HRT_E_TIMEOUT = -7,         /* the goal was not reached within its time limit (robot time) */
   HRT_E_STUCK = -8,           /* the sensors show no progress, or a track's current stayed above stuck_current_a */
   HRT_E_STOPPED = -9,         /* hrt_stop or hrt_set_tracks of another thread ended this motion */
