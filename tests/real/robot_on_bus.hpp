@@ -8,7 +8,7 @@
 #include "canopen/drive.hpp"
 #include "hrt/config.hpp"
 #include "libkenaf_real/can_transport.hpp"
-#include "tests/candrives/simulated_bus.hpp"
+#include "tests/support/simulated_bus.hpp"
 
 namespace kenaf::real {
 

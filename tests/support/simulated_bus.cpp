@@ -1,4 +1,4 @@
-#include "tests/candrives/simulated_bus.hpp"
+#include "tests/support/simulated_bus.hpp"
 
 #include <algorithm>
 #include <utility>
