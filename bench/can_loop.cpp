@@ -5,7 +5,7 @@
 //
 // Starts kenaf-candrives with ideal motors on the interface, opens the robot, commands both tracks in each cycle, and
 // prints by wall clock: the time between two cycles as the program sees them, and from SYNC to the last node's answer.
-// No limit: what it prints is the machine's, and in an emulated one some 14 times more than on a real one.
+// No limit: what it prints is the machine's.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
