@@ -8,6 +8,7 @@ install(DIRECTORY robots worlds manoeuvres DESTINATION "${CMAKE_INSTALL_DATADIR}
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
 install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" COMPONENT programs
   FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
+install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_DOCDIR}/include/kenaf" COMPONENT programs)  # pages lead to it
 install(DIRECTORY examples/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples" COMPONENT programs FILES_MATCHING
   PATTERN "*.c" PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.hpp" PATTERN "*.script")
 
@@ -39,7 +40,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)  # each on the same version of the others
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)  # on the same version of the others
 
 # The libraries without the simulator: on a robot's computer Bullet, Embree and OpenMPI have no business.
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libkenaf${KENAF_ABI})
@@ -47,9 +48,16 @@ set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "control of a tracked rescue robot, or of its simulation
 Two libraries with one C interface: libkenaf_real drives the robot over SocketCAN, libkenaf_sim
 its simulation over UDP. A program is linked with one of them.")
-set(CPACK_COMPONENT_LIBRARY_DEPENDS data)  # the robot's description says what is on its bus
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_BINARY_DIR}/triggers")
+# The robot's description says what is on its bus. Not the same version: libraries of two interfaces may be installed
+# beside each other, and of the data there is one.
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "kenaf-data (>= ${PROJECT_VERSION})")
 file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/triggers" "activate-noawait ldconfig\n")
+# what dpkg-shlibdeps writes into the package of a program that is linked with one of them
+set(needed "libkenaf${KENAF_ABI} (>= ${PROJECT_VERSION})")
+file(WRITE "${CMAKE_CURRENT_BINARY_DIR}/shlibs"
+  "libkenaf_real ${KENAF_ABI} ${needed}\nlibkenaf_sim ${KENAF_ABI} ${needed}\n")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA
+  "${CMAKE_CURRENT_BINARY_DIR}/triggers;${CMAKE_CURRENT_BINARY_DIR}/shlibs")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libkenaf-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)

@@ -33,8 +33,10 @@ outside=$(grep -E '^-- (Installing|Up-to-date): ' "$work/install.log" | grep -vF
 holding=$(LC_ALL=C grep -rlaP "(?<![\w./-])\Q$source\E(?![\w.-])" "$prefix" || true)
 [ -z "$holding" ] || fail "the source folder's path is in $holding"
 
-programs=(kenaf-candrives kenaf-canlog kenaf-draw kenaf-gap kenaf-relayd kenaf-world)
-[ ! -e "$prefix/bin/kenaf-gap-mpi" ] || programs+=(kenaf-gap-mpi)
+programs=(kenaf-candrives kenaf-canlog kenaf-draw kenaf-relayd kenaf-world)
+for program in kenaf-gap kenaf-gap-mpi; do  # a build may be without them
+  [ ! -e "$prefix/bin/$program" ] || programs+=("$program")
+done
 version=$("$prefix/bin/kenaf-world" --version) || fail "kenaf-world does not tell its version"
 for program in "${programs[@]}"; do
   [ "$("$prefix/bin/$program" --version)" = "$version" ] || fail "$program is not of version $version"
@@ -114,10 +116,12 @@ holds "$library" "lib/(.*/)?libkenaf_sim\.so\.$abi" "lib/(.*/)?libkenaf_real\.so
 holds libkenaf-dev include/kenaf/hrt.h "lib/(.*/)?libkenaf_sim\.so" "lib/(.*/)?libkenaf_real\.so" \
   "lib/(.*/)?cmake/kenaf/kenafConfig.cmake" "lib/(.*/)?pkgconfig/kenaf-sim.pc" "lib/(.*/)?pkgconfig/kenaf-real.pc"
 holds kenaf-data share/kenaf/robots/kenaf.toml share/kenaf/worlds/flat.sdf share/kenaf/manoeuvres/turn.toml
-holds kenaf bin/kenaf-world bin/kenaf-relayd bin/kenaf-draw bin/kenaf-canlog bin/kenaf-candrives bin/kenaf-gap \
+holds kenaf bin/kenaf-world bin/kenaf-relayd bin/kenaf-draw bin/kenaf-canlog bin/kenaf-candrives \
   share/man/man1/kenaf-world.1 lib/systemd/system/kenaf-relayd.service lib/systemd/system/kenaf-world.service \
   share/kenaf/page/index.html share/kenaf/page/three/three.module.js share/kenaf/page/three/OrbitControls.js \
-  share/doc/kenaf/README.md share/doc/kenaf/docs/user-guide.md share/doc/kenaf/examples/square.c
+  share/doc/kenaf/README.md share/doc/kenaf/docs/user-guide.md share/doc/kenaf/examples/square.c \
+  share/doc/kenaf/include/kenaf/hrt.h
+[ ! -e "$prefix/bin/kenaf-gap" ] || holds kenaf bin/kenaf-gap share/man/man1/kenaf-gap.1
 [ ! -e "$prefix/bin/kenaf-gap-mpi" ] || holds kenaf-gap-mpi bin/kenaf-gap-mpi share/man/man1/kenaf-gap-mpi.1
 
 # The units start what the packages install.
@@ -134,10 +138,15 @@ needs() {  # PACKAGE WORDS...
   done
 }
 # A robot's computer gets neither physics nor cameras.
-needs "$library" "kenaf-data (= $version)" libturbojpeg0
+needs "$library" "kenaf-data (>= $version)" libturbojpeg0
 ! field "$library" Depends | grep -E 'libbullet|libembree|libopenmpi' || fail "$library brings too much"
-dpkg-deb --ctrl-tarfile "$(deb "$library")" | tar -xO ./triggers | grep -q ldconfig ||
-  fail "$library does not call ldconfig"
+control() { dpkg-deb --ctrl-tarfile "$(deb "$1")" | tar -xO "./$2"; }
+grep -q ldconfig <<<"$(control "$library" triggers)" || fail "$library does not call ldconfig"
+# Another's package of a program on one of the libraries gets its dependency from this.
+for name in libkenaf_sim libkenaf_real; do
+  grep -qxF "$name $abi $library (>= $version)" <<<"$(control "$library" shlibs)" ||
+    fail "$library does not say which package $name is in"
+done
 needs libkenaf-dev "$library (= $version)"
 needs kenaf "kenaf-data (= $version)" libbullet libturbojpeg0
 ! field kenaf Depends | grep libopenmpi || fail "kenaf brings OpenMPI"
