@@ -42,7 +42,8 @@ port_of() {
 }
 
 rm -f "$out"/{world,relay}.port "$out"/square.csv "$out"/square.png
-"$bin/kenaf-world" --world flat --port 0 --port-file "$out/world.port" >"$out/world.log" 2>&1 & pids+=($!)
+"$bin/kenaf-world" --world flat --port 0 --port-file "$out/world.port" --view off --cameras off \
+  >"$out/world.log" 2>&1 & pids+=($!)
 world_port=$(port_of "$out/world.port" "${pids[0]}" "$out/world.log") || fail "the world server did not start"
 say "world server on port $world_port"
 

@@ -5,7 +5,7 @@
 #   scripts/test.sh release asan    only the named parts, of:
 #       release   g++, as installed: all tests, the CAN bus, the package
 #       asan      clang, address and undefined behaviour sanitizers: the rooms that take input from others, but for long runs
-#       fuzz      the fuzzers of that build, 1 s each
+#       fuzz      the fuzzers of that build, 1 s each: all but kenaf-gap's
 #       tsan      g++, thread sanitizer: the relay and the libraries
 #       asan-all  asan with all rooms; then all fuzzers, FUZZ_SECONDS each (default 60). Takes most of an hour.
 #
