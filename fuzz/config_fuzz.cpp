@@ -1,23 +1,82 @@
-// The configuration file's parser: any text gives either a valid configuration or an error with a place; never both.
+// The configuration from a file and from the environment: any text gives either a valid configuration or an error with
+// its place; never both. An address in it is HOST:PORT or is refused.
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <map>
+#include <string>
 #include <string_view>
 
 #include "hrt/config.hpp"
 #include "hrt/error.hpp"
+#include "libkenaf_sim/host_port.hpp"
+
+using namespace kenaf;
+
+namespace {
+
+void check(bool fine) {
+  if (!fine) std::abort();
+}
+
+bool same(const hrt_config& a, const hrt_config& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+void read_as_file(std::string_view text) {
+  hrt_config config = hrt::default_config();
+  try {
+    hrt::apply_toml(text, "fuzz.toml", config);
+  } catch (const hrt::Error& error) {
+    check(error.code() == HRT_E_CONFIG && std::string_view(error.what()).starts_with("fuzz.toml:"));
+    check(same(config, hrt::default_config()));
+    return;
+  }
+  hrt::check_config(config);  // throws, and so ends the fuzzer, where the parser let something through
+}
+
+// Lines of NAME=VALUE.
+std::map<std::string, std::string> variables_of(std::string_view text) {
+  std::map<std::string, std::string> variables;
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    if (const std::size_t equals = line.find('='); equals != line.npos)
+      variables.emplace(line.substr(0, equals), line.substr(equals + 1));
+  }
+  return variables;
+}
+
+void read_as_environment(std::string_view text) {
+  const std::map<std::string, std::string> variables = variables_of(text);
+  hrt_config config = hrt::default_config();
+  try {
+    hrt::apply_environment(
+        [&](const char* name) {
+          const auto found = variables.find(name);
+          return found == variables.end() ? nullptr : found->second.c_str();
+        },
+        config);
+  } catch (const hrt::Error& error) {
+    check(error.code() == HRT_E_CONFIG && std::string_view(error.what()).starts_with("environment variable KENAF_"));
+    check(same(config, hrt::default_config()));
+    return;
+  }
+  hrt::check_config(config);
+  try {
+    const sim::HostPort relay = sim::parse_host_port("relay", config.relay);
+    check(!relay.host.empty() && std::stoi(relay.port) >= 1 && std::stoi(relay.port) <= 65535);
+  } catch (const hrt::Error& error) {
+    check(error.code() == HRT_E_CONFIG);
+  }
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  hrt_config config = kenaf::hrt::default_config();
-  const hrt_config before = config;
-  try {
-    kenaf::hrt::apply_toml(text, "fuzz.toml", config);
-  } catch (const kenaf::hrt::Error& error) {
-    const bool has_place = std::string_view(error.what()).starts_with("fuzz.toml:");
-    if (error.code() != HRT_E_CONFIG || !has_place || std::memcmp(&config, &before, sizeof config) != 0) std::abort();
-    return 0;
-  }
-  kenaf::hrt::check_config(config);  // throws, and so ends the fuzzer, where the parser let something through
+  read_as_file(text);
+  read_as_environment(text);
   return 0;
 }

@@ -8,10 +8,19 @@
 
 namespace kenaf::sim {
 
+struct HostPort {
+  std::string host;  // without the brackets of an IPv6 address; never empty
+  std::string port;  // decimal digits: 1 to 65535
+};
+
+// `key`: the configuration's, for messages. "[::1]:45454" is an IPv6 address. Throws Error(HRT_E_CONFIG) where it is not
+// HOST:PORT.
+HostPort parse_host_port(const char* key, const std::string& host_port);
+
 using Addresses = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
 
-// `key`: the configuration's, for messages; `socket_type`: SOCK_DGRAM or SOCK_STREAM. "[::1]:45454" is an IPv6 address. At least one
-// address. Throws Error(HRT_E_CONFIG): not HOST:PORT, or no such host.
+// `socket_type`: SOCK_DGRAM or SOCK_STREAM. At least one address. Throws Error(HRT_E_CONFIG): as parse_host_port, or no such
+// host.
 Addresses look_up(const char* key, const std::string& host_port, int socket_type);
 
 }  // namespace kenaf::sim

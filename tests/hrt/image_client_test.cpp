@@ -262,4 +262,5 @@ TEST_CASE("I4 nobody there, and no address") {
   }
   check_failure(gone, HRT_E_LINK, "nobody serves camera pictures at " + gone);
   check_failure("localhost", HRT_E_CONFIG, "camera_server must be HOST:PORT");
+  check_failure("[]:5003", HRT_E_CONFIG, "camera_server must be HOST:PORT");
 }
