@@ -78,6 +78,7 @@ std::size_t check_columns(const std::vector<Cell>& cells, const Place& place) {
   std::set<std::string_view> names;
   for (const Cell& cell : cells) {
     if (cell.text.empty()) fail(place, cell.column, "a column without a name");
+    if (cell.text.find('\r') != cell.text.npos) fail(place, cell.column, "a column's name has a line end in it");
     if (!names.insert(cell.text).second)
       fail(place, cell.column, "the column " + in_quotes(cell.text) + " is named twice");
   }
@@ -216,8 +217,8 @@ RunWriter::RunWriter(std::filesystem::path file, std::vector<std::string> column
   const Place place{name, 1};
   std::vector<Cell> cells;
   split(line_, cells);
-  if (cells.size() != columns.size() || line_.find_first_of("\r\n\"") != std::string::npos) {
-    fail(place, 1, "a column's name has a comma, a quote or a line end in it");
+  if (!std::ranges::equal(cells, columns, {}, &Cell::text) || line_.find('\n') != std::string::npos) {
+    fail(place, 1, "a column's name has a comma, a line end or a blank beside it in it");
   }
   time_column_ = check_columns(cells, place);
   line_ += '\n';

@@ -67,6 +67,7 @@ TEST_CASE("What is refused of a run, with its line and column") {
   CHECK_THAT(refusal_of_run("x_m,t_s\n1,\n"), Catch::StartsWith("run.csv:2:3: the row has no time"));
   CHECK_THAT(refusal_of_run("x_m,t_s\n1,0.5\n1,0.5\n"), Catch::StartsWith("run.csv:3:3: t_s does not grow"));
   CHECK_THAT(refusal_of_run("t_s\n2\n1\n"), Catch::StartsWith("run.csv:3:1: t_s does not grow"));
+  CHECK_THAT(refusal_of_run("t_s,a\rb\n"), Catch::StartsWith("run.csv:1:5: a column's name has a line end in it"));
   // A decimal comma makes one cell too many, and that is what is said.
   CHECK_THAT(refusal_of_run("t_s,x_m\n0,0,5\n"), Catch::Contains("3 cells"));
 }
@@ -100,6 +101,13 @@ TEST_CASE("What is written reads back as the same bits, and empty cells stay emp
   CHECK(read_file(folder / "run.csv").starts_with("t_s,x_m,y_m\n0,0.1,-0\n0.01,0.3333333333333333,\n"));
 }
 
+TEST_CASE("Names of columns that the reader takes are written as they are") {
+  const TemporaryFolder folder;
+  const std::string text = "t_s,\"speed of 1\" track\",it's,caf\xC3\xA9 (m/s)\n0,1,2,3\n";
+  write_run(folder / "run.csv", parse_run(text, "run.csv"));
+  CHECK(read_file(folder / "run.csv") == text);
+}
+
 TEST_CASE("The file is whole or absent, an interrupted run leaves its rows in the part file") {
   const TemporaryFolder folder;
   {
@@ -127,6 +135,8 @@ TEST_CASE("The writer refuses what the reader would refuse, and goes on") {
   CHECK_THROWS_AS(RunWriter(folder / "a.csv", {"t_s", "t_s"}), RunFileError);
   CHECK_THROWS_AS(RunWriter(folder / "a.csv", {"t_s", "x,m"}), RunFileError);
   CHECK_THROWS_AS(RunWriter(folder / "a.csv", {"t_s", "x\nm"}), RunFileError);
+  CHECK_THROWS_AS(RunWriter(folder / "a.csv", {"t_s", "x\rm"}), RunFileError);
+  CHECK_THROWS_AS(RunWriter(folder / "a.csv", {"t_s", " x_m"}), RunFileError);
   CHECK_THROWS_AS(RunWriter(folder / "no/such/folder/a.csv", {"t_s"}), RunFileError);
 
   RunWriter writer(folder / "run.csv", {"t_s", "x_m"});
