@@ -53,13 +53,17 @@ void finish_part_file(int descriptor, const fs::path& file) {
 
 void write_whole_file(const fs::path& file, std::string_view bytes) {
   const int descriptor = open_part_file(file);
+  bool closed = false;
   try {
     append_to_part_file(descriptor, file, bytes);
+    closed = true;
+    finish_part_file(descriptor, file);
   } catch (...) {
-    ::close(descriptor);
+    if (!closed) ::close(descriptor);
+    std::error_code ignored;
+    fs::remove(part_of(file), ignored);
     throw;
   }
-  finish_part_file(descriptor, file);
 }
 
 void read_in_chunks(const fs::path& file, const std::function<void(std::string_view)>& take) {

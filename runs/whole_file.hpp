@@ -10,7 +10,8 @@
 
 namespace kenaf::runs {
 
-// Replaces `file` by `bytes`, or leaves it as it was and throws RunFileError. Its folder must exist.
+// Replaces `file` by `bytes`, or leaves it as it was, with no part file beside it, and throws RunFileError. Its folder must
+// exist.
 void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
 
 // All bytes of a file. Throws RunFileError where it cannot be read.

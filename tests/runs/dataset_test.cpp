@@ -115,6 +115,17 @@ TEST_CASE("A dataset that could not be read back is not written") {
   CHECK_FALSE(std::filesystem::exists(folder / "dataset.toml"));
 }
 
+TEST_CASE("A dataset that a full disk does not take leaves nothing behind") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const TemporaryFolder folder;
+  kenaf::test::write_file(folder / "dataset.toml", "of before");
+  std::filesystem::create_symlink("/dev/full", folder / "dataset.toml.part");
+  const Dataset dataset{"sim", "kenaf", "flat", "", {}, {{"run-000.csv", "square", ""}}};
+  CHECK_THROWS_WITH(write_dataset(folder.path(), dataset), Catch::Contains("No space left"));
+  CHECK_FALSE(std::filesystem::is_symlink(folder / "dataset.toml.part"));
+  CHECK(kenaf::test::read_file(folder / "dataset.toml") == "of before");
+}
+
 TEST_CASE("A file beside dataset.toml becomes its path, a shipped name stays") {
   CHECK(resolve_beside("data/real", "mine.toml", ".toml") == "data/real/mine.toml");
   CHECK(resolve_beside("data/real", "/etc/mine.toml", ".toml") == "/etc/mine.toml");
