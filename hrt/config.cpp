@@ -5,7 +5,6 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -94,7 +93,9 @@ std::string set_from_toml(std::string_view name, const toml::node& node, hrt_con
   for (const NumberKey& key : kNumberKeys) {
     if (name != key.name) continue;
     if (!node.is_number()) return fmt::format("{} must be a number", name);
-    return set_number(key, *node.value<double>(), config);
+    // not value<double>(), which has none of an integer beyond 2^53
+    const double value = node.is_integer() ? static_cast<double>(**node.as_integer()) : **node.as_floating_point();
+    return set_number(key, value, config);
   }
   for (const FlagKey& key : kFlagKeys) {
     if (name != key.name) continue;
@@ -124,9 +125,14 @@ std::optional<bool> flag_from(std::string_view text) {
   return std::nullopt;
 }
 
+// Of ASCII alone: what std::toupper makes of an 'i' is the program's locale's.
+char capital(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
 std::string variable_name(const char* key) {
   std::string name = "KENAF_";
-  for (const char* c = key; *c != '\0'; ++c) name += static_cast<char>(std::toupper(static_cast<unsigned char>(*c)));
+  for (const char* c = key; *c != '\0'; ++c) name += capital(*c);
   return name;
 }
 

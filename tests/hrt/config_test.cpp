@@ -1,5 +1,6 @@
 // Configuration: defaults, TOML, environment, ranges, and where an error is said to be.
 #include <catch2/catch.hpp>
+#include <clocale>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -117,6 +118,8 @@ TEST_CASE("what is wrong in a file is named with line and column, and nothing is
   CHECK_THAT(toml_error("robot = \"\""), Catch::Contains("robot must not be empty"));
   CHECK_THAT(toml_error("[motion]\nmax_speed_mmps = 3"), Catch::Contains("unknown key 'motion'"));
   CHECK_THAT(toml_error("period_s = nan"), Catch::Contains("period_s must be from"));
+  // 2^53 + 1, which no double is
+  CHECK_THAT(toml_error("period_s = 9007199254740993"), Catch::Contains("period_s must be from 0.001 to 1, not 9"));
   CHECK_THAT(toml_error("period_s = = 3"), Catch::StartsWith("kenaf.toml:1:12: "));
 }
 
@@ -138,6 +141,18 @@ TEST_CASE("the environment overrides the file") {
   CHECK(config.reset_robot == 0);
   CHECK(std::string(config.relay) == "127.0.0.1:1");
   CHECK(std::string(config.robot) == "marmotte");
+}
+
+TEST_CASE("the variables have the same names in every locale") {
+  // a Turkish i has its dot as a capital too
+  if (std::setlocale(LC_CTYPE, "tr_TR.UTF-8") == nullptr) {
+    WARN("skipped: there is no locale tr_TR.UTF-8");
+    return;
+  }
+  hrt_config config = default_config();
+  apply_environment(environment_of({{"KENAF_PERIOD_S", "0.02"}}), config);
+  std::setlocale(LC_CTYPE, "C");
+  CHECK(config.period_s == 0.02);
 }
 
 TEST_CASE("a personal file applies where nothing else does, and a named file must be there") {
