@@ -61,16 +61,17 @@ const Estimate& Estimator::update(const relay::State& state) {
   const double turned_rad =
       (moved_m[relay::kRight] - moved_m[relay::kLeft]) / settings_.track_gauge_m * settings_.turn_efficiency;
   if ((state.fields & relay::kHasPosture) != 0) {
-    if (!has_posture_) {
-      raw_heading_rad_ = now.heading_rad = state.posture_rad[2];
-      start_heading_rad_ += now.heading_rad - before_rad;  // odometry does not jump where the sensor begins late
-    } else if (posture_gap_s_ > kPostureLost_s) {
-      // it may have begun anew, from any heading: the robot's goes on from where the encoders brought it
+    if (first) {
+      raw_heading_rad_ = now.heading_rad = start_heading_rad_ = state.posture_rad[2];
+    } else if (!has_posture_ || posture_gap_s_ > kPostureLost_s) {
+      // it begins late, or anew, from any heading: the robot's goes on from where the encoders brought it, as a motion
+      // under way wants it
       posture_offset_rad_ = before_rad - state.posture_rad[2];
       raw_heading_rad_ = before_rad;
     } else {
       raw_heading_rad_ += frames::wrap_angle(state.posture_rad[2] + posture_offset_rad_ - raw_heading_rad_);
-      now.heading_rad += (raw_heading_rad_ - now.heading_rad) * -std::expm1(-now.dt_s / kHeadingSmoothing_s);
+      const double since_last_s = posture_gap_s_ + now.dt_s;
+      now.heading_rad += (raw_heading_rad_ - now.heading_rad) * -std::expm1(-since_last_s / kHeadingSmoothing_s);
     }
     has_posture_ = true;
     posture_gap_s_ = gap_turn_rad_ = 0;

@@ -77,8 +77,30 @@ TEST_CASE("a sensor that begins late or pauses makes nothing jump") {
   Estimate now = estimator.update(late);
   CHECK(now.odometry_x_m == 0);
   CHECK(now.odometry_yaw_rad == 0);
+  // What hrt.h tells of the sensor's yaw is yaw_deg; a motion under way holds a heading, which was 0.
+  CHECK(now.heading_rad == 0);
   now = estimator.update(state_at(3, 5.1, 5.3));  // no posture: the heading stays, it does not become the encoders'
-  CHECK(now.heading_rad == 1);
+  CHECK(now.heading_rad == 0);
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    late = state_at(4 + i, 5.1, 5.3);
+    late.fields |= relay::kHasPosture;
+    late.posture_rad[2] = 1.2;
+    now = estimator.update(late);
+  }
+  CHECK(now.heading_rad == Approx(0.2));  // from 1 to 1.2 it turned
+}
+
+TEST_CASE("a posture sensor slower than the cycle is followed as fast as one that is not") {
+  Estimator estimator({0.2, 1});
+  relay::State state = state_at(1, 0, 0);
+  state.fields |= relay::kHasPosture;
+  (void)estimator.update(state);
+  for (std::uint32_t i = 2; i <= 10; ++i) (void)estimator.update(state_at(i, 0, 0));
+  state.frame = 11;
+  state.robot_time_s = 0.11;
+  state.posture_rad[2] = 1;
+  // 0.1 s after the value before: 1 - e^(-0.1 / 0.05)
+  CHECK(estimator.update(state).heading_rad == Approx(0.864665));
 }
 
 TEST_CASE(
