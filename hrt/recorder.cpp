@@ -20,9 +20,9 @@ double whole_nanoseconds(double t_s) {
   return static_cast<double>(std::llround(t_s * 1e9)) / 1e9;
 }
 
-runs::RunWriter open_writer(const std::string& path) {
+std::unique_ptr<runs::RunWriter> open_writer(const std::string& path) {
   try {
-    return {path, record_columns()};
+    return std::make_unique<runs::RunWriter>(path, record_columns());
   } catch (const std::exception& error) {
     throw Error(HRT_E_RECORD, fmt::format("the recording cannot be begun: {}", error.what()));
   }
@@ -121,7 +121,7 @@ void Recorder::write_rows() {
     lock.unlock();
     std::string failure;
     try {
-      writer_.add_row(row);
+      writer_->add_row(row);
     } catch (const std::exception& error) {
       failure = error.what();
     }
@@ -139,14 +139,16 @@ void Recorder::finish() {
   if (thread_.joinable()) {
     thread_.join();
     try {
-      if (failure_.empty() && started_) writer_.finish();
+      if (failure_.empty() && started_ && lost_ == 0) writer_->finish();
     } catch (const std::exception& error) {
       failure_ = error.what();
     }
+    writer_.reset();
   }
   if (!failure_.empty()) throw Error(HRT_E_RECORD, fmt::format("the recording is not whole: {}", failure_));
   if (lost_ > 0) {
-    throw Error(HRT_E_RECORD, fmt::format("{}: {} rows are missing: the disk was too slow", path_, lost_));
+    throw Error(HRT_E_RECORD,
+                fmt::format("{0}: {1} rows are missing: the disk was too slow; {0}.part has the others", path_, lost_));
   }
 }
 

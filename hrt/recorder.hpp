@@ -4,6 +4,7 @@
 #include <array>
 #include <condition_variable>
 #include <cstddef>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -36,7 +37,8 @@ class Recorder {
   // state no later than the one before is left out.
   void add(const relay::State& state, const DriveCommand& command, double t_s);
 
-  // Writes what is queued and closes the file. Throws Error(HRT_E_RECORD): not whole, with the reason.
+  // Writes what is queued and closes the file. Throws Error(HRT_E_RECORD): not whole, with the reason; what there is stays in
+  // the part file.
   void finish();
 
  private:
@@ -44,7 +46,7 @@ class Recorder {
 
   std::string path_;
   bool wait_when_full_;
-  runs::RunWriter writer_;
+  std::unique_ptr<runs::RunWriter> writer_;  // until finish()
   std::mutex mutex_;
   std::condition_variable row_added_, row_taken_;
   std::vector<RecordRow> queue_;  // a ring of kQueueRows

@@ -452,9 +452,9 @@ int hrt_get_picture(const char* camera, int format, void* data, size_t capacity,
 
 /* Records every cycle from the newest one on into a CSV file of the format kenaf-runs/1 (SI units): what was commanded,
  * what was measured, the pose where it is known. A row's command is the one in force from that row's time on. A
- * thread of its own writes to <path>.part, which hrt_record_stop renames to `path`: it is whole or absent. No cycle
- * waits for the disk; only in lock step, where robot time waits too, a row that finds 8192 others before it gives the disk 0.1 s
- * until it is lost. A file of that name is replaced.
+ * thread of its own writes to <path>.part, which hrt_record_stop renames to `path`: it is whole or absent, and what is not
+ * whole stays there. No cycle waits for the disk; only in lock step, where robot time waits too, a row that finds 8192 others
+ * before it gives the disk 0.1 s until it is lost. A file of that name is replaced.
  * HRT_E_NOT_INITIALISED; HRT_E_BUSY: a recording is under way; HRT_E_ARGUMENT: null or empty; HRT_E_RECORD: the file
  * cannot be made; HRT_E_LINK. */
 int hrt_record_start(const char* path);

@@ -100,6 +100,7 @@ TEST_CASE("R1 R2 a disk that stalls for as many cycles as the queue holds costs 
 
 TEST_CASE("R1 R3 one that stalls for longer loses rows, still without a wait, and the recording says how many") {
   const support::TemporaryFolder folder;
+  std::ofstream(recording_in(folder)) << "of before";
   StalledDisk disk(recording_in(folder));
   Recorder recorder(recording_in(folder), false);
   constexpr std::uint32_t kRows = 3 * Recorder::kQueueRows;
@@ -117,6 +118,11 @@ TEST_CASE("R1 R3 one that stalls for longer loses rows, still without a wait, an
   CHECK(run.row_count() >= Recorder::kQueueRows);
   CHECK(run.row_count() < Recorder::kQueueRows + 2048);
   CHECK_THAT(said, Catch::Contains(std::to_string(kRows - run.row_count()) + " rows are missing"));
+  // one with holes is no recording: it stays aside, and what was recorded before stays too
+  CHECK(std::filesystem::exists(recording_in(folder) + ".part"));
+  std::string text;
+  std::getline(std::ifstream(recording_in(folder)), text);
+  CHECK(text == "of before");
 }
 
 TEST_CASE("R1 R2 a robot that does not wait for its program is answered in every cycle while the disk stalls") {
