@@ -47,7 +47,7 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
     last_call_t_s_ = estimate_.t_s;
     due_.push_back({gettid()});
     if (config_.record[0] != '\0') recorder_ = std::make_unique<Recorder>(config_.record, connection_.lockstep);
-    if (recorder_) recorder_->add(*first, command_, estimate_.t_s);
+    if (recorder_) recorder_->add(*first, in_force_, estimate_.t_s);
     thread_ = start_quiet_thread([this, state = *first] { run(state); });
   } catch (...) {
     try {
@@ -289,7 +289,7 @@ void Robot::record_start(const std::string& path) {
   auto recorder = std::make_unique<Recorder>(path, connection_.lockstep);
   const std::unique_lock lock = lock_open();
   recorder_ = std::move(recorder);
-  recorder_->add(measured_, command_, estimate_.t_s);
+  recorder_->add(measured_, in_force_, estimate_.t_s);
   note_setting();
 }
 
@@ -369,9 +369,10 @@ std::optional<DriveCommand> Robot::answer(const relay::State& state) {
     lost_cycles_ += state.frame - estimate_.frame - 1;
     measured_ = state;
     measured_at_ = Clock::now();
+    in_force_ = command_;
     estimate_ = estimator_.update(state);
     warning_ = transport_->warning();
-    if (recorder_) recorder_->add(state, command_, estimate_.t_s);
+    if (recorder_) recorder_->add(state, in_force_, estimate_.t_s);
   }
   step_calls();
   if (connection_.lockstep) {

@@ -135,7 +135,8 @@ class Robot {
   Estimate estimate_;
   std::uint64_t lost_cycles_ = 0;
   std::string warning_;
-  DriveCommand command_;  // the newest answer, in force from the next cycle on
+  DriveCommand command_;   // the newest answer, in force from the next cycle on
+  DriveCommand in_force_;  // the answer before it: in force since measured_
   std::array<double, kTrackCount> user_track_mps_{};
   bool stopped_by_silence_ = false;  // those speeds, and none has been asked for since
   std::array<double, kTrackCount> motion_track_mps_{};

@@ -1,7 +1,7 @@
 // A recording beside the cycle, on a disk that stalls: a pipe that nobody reads stands for it, so that how long it
 // stalls is the test's to say and not a clock's.
 //   R1 no cycle waits for the disk; R2 what the queue holds is not lost; R3 what is lost is counted and said; R4 the
-//   environment variable records as the call does
+//   environment variable records as the call does; R5 a row has the command in force
 #include "hrt/recorder.hpp"
 
 #include <fcntl.h>
@@ -241,6 +241,29 @@ TEST_CASE("R3 a recording that gets no row leaves the file of its name as it is"
   std::string text;
   std::getline(std::ifstream(recording_in(folder)), text);
   CHECK(text == "of before");
+}
+
+TEST_CASE("R5 a recording that begins between two cycles has the command in force in its first row") {
+  const support::TemporaryFolder folder;
+  const auto robot = hrt::test::use_fake_robot();
+  robot->lockstep = false;
+  REQUIRE(hrt_kenaf_init() == HRT_OK);
+  REQUIRE(hrt_sleep(0.1) == HRT_OK);
+  std::jthread driver([](const std::stop_token& stop) {  // another speed in each cycle, or nearly
+    for (int i = 0; !stop.stop_requested(); ++i) hrt_set_tracks(i % 1000, i % 1000);
+  });
+  for (int i = 0; i < 10; ++i) {
+    CHECK(hrt_record_start(recording_in(folder).c_str()) == HRT_OK);
+    CHECK(hrt_record_stop() == HRT_OK);
+    const runs::Run run = runs::read_run(recording_in(folder));
+    REQUIRE(run.row_count() > 0);
+    // Frame f is answered by commands[f - 1], which is in force from frame f + 1 on
+    const auto frame = static_cast<std::size_t>(run.column("frame")[0]);
+    const std::lock_guard lock(robot->mutex);
+    CHECK(run.column("cmd_track_left_mps")[0] == robot->commands.at(frame - 2).track_speed_mps[0]);
+  }
+  driver = {};
+  CHECK(hrt_close() == HRT_OK);
 }
 
 TEST_CASE("R4 KENAF_RECORD records the same as the call, from the first cycle on") {
