@@ -49,7 +49,7 @@ RecordRow record_row(const relay::State& state, const DriveCommand& command, dou
   const auto put_all = [&](const auto& values, bool measured) {
     for (const double value : values) put(measured ? value : std::numeric_limits<double>::quiet_NaN());
   };
-  const auto has = [&](relay::StateField field) { return (state.fields & field) != 0; };
+  const auto has = [&](relay::StateField field) { return relay::is_new(state.fields, field); };
 
   put(t_s);
   put_all(command.track_speed_mps, true);

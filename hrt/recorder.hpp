@@ -19,7 +19,7 @@ inline constexpr std::size_t kRecordColumns = 40;
 using RecordRow = std::array<double, kRecordColumns>;
 const std::vector<std::string>& record_columns();
 
-// One row: `state` with the command that is in force from its time on. NaN where it was not measured.
+// One row: `state` with the command that is in force from its time on. NaN where nothing was measured since the state before.
 RecordRow record_row(const relay::State& state, const DriveCommand& command, double t_s);
 
 // Thread safety: add() belongs to one thread at a time; finish() comes after the last add().

@@ -19,7 +19,8 @@ constexpr std::size_t kHeaderBytes = 16;
 constexpr std::size_t kLengthOffset = 6;
 
 constexpr std::uint8_t kFlipperMaskBits = (1u << kFlipperCount) - 1;
-constexpr std::uint32_t kStateFieldBits = (kHasGroundTruth << 1) - 1;
+constexpr std::uint32_t kEveryField = (kHasGroundTruth << 1) - 1;
+constexpr std::uint32_t kStateFieldBits = kEveryField | held(kEveryField);
 constexpr std::uint32_t kStateEventBits = (kWorldPaused << 1) - 1;
 
 // Each overload lists the payload of one kind in its order on the wire. The Writer and the Reader walk the same list,

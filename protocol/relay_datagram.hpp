@@ -78,6 +78,18 @@ enum StateField : std::uint32_t {
   kHasGroundTruth = 1u << 6,   // p_WB_m, orientation_rad: only a simulator knows it
 };
 
+// A StateField so many places further up: its sensor said nothing since the State before, and the value is the last one.
+inline constexpr int kHeldShift = 16;
+
+constexpr std::uint32_t held(std::uint32_t fields) {
+  return fields << kHeldShift;
+}
+
+// Known, and not only held.
+constexpr bool is_new(std::uint32_t fields, StateField field) {
+  return (fields & field) != 0 && (fields & held(field)) == 0;
+}
+
 // What happened, beside what was measured.
 enum StateEvent : std::uint32_t {
   kWorldServerLost = 1u << 0,  // the connection to the world server broke; the session is over
@@ -90,7 +102,7 @@ struct State {
   std::uint32_t frame;             // starts at 1, one more for each State of the session: a gap is a lost State
   std::uint32_t acknowledged;      // sequence of the newest Command handed to the world server, 0 = none
   std::uint32_t late_commands;     // Commands of this session that arrived after the frame they were meant for
-  std::uint32_t fields;            // StateField bits
+  std::uint32_t fields;            // StateField bits, and held() ones
   std::uint32_t events;            // StateEvent bits
   double robot_time_s;
   std::array<double, 3> posture_rad;           // roll, pitch, yaw

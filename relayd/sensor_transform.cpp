@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "protocol/frames.hpp"
 
@@ -62,6 +63,11 @@ bool SensorTransform::take(const MessageView& message) {
   return false;
 }
 
+void SensorTransform::note(relay::StateField field) {
+  known_fields_ |= field;
+  new_fields_ |= field;
+}
+
 void SensorTransform::take_sensor(const MessageView& message) {
   relay::State& state = frame_.state;
   Vector3 v;
@@ -70,18 +76,18 @@ void SensorTransform::take_sensor(const MessageView& message) {
   } else if (is_type(message, "INS")) {
     if (!read(message, "Orientation", v)) return;
     state.posture_rad = frames::rep103_angles_from_usarsim(v);
-    state.fields |= relay::kHasPosture;
+    note(relay::kHasPosture);
     has_ins_ = true;
   } else if (is_type(message, "IMU")) {
     if (!has_ins_ && read(message, "Rotation", v)) {
       state.posture_rad = frames::rep103_angles_from_usarsim(v);
-      state.fields |= relay::kHasPosture;
+      note(relay::kHasPosture);
     }
     Vector3 acceleration;
     if (!read(message, "AngularVel", v) || !read(message, "XYZAcceleration", acceleration)) return;
     state.gyro_radps = frames::rep103_vector_from_usarsim(v);
     state.acceleration_mps2 = frames::rep103_vector_from_usarsim(acceleration);
-    state.fields |= relay::kHasInertial;
+    note(relay::kHasInertial);
   } else if (is_type(message, "Tachometer")) {
     // A robot with more wheels lists them in an order only it knows.
     std::array<double, relay::kTrackCount> spin_radps;
@@ -92,18 +98,18 @@ void SensorTransform::take_sensor(const MessageView& message) {
     if (read(message, "TrackCurrent", track_a) && read(message, "FlipperCurrent", flipper_a)) {
       state.track_a = track_a;
       state.flipper_a = flipper_a;
-      state.fields |= relay::kHasCurrents;
+      note(relay::kHasCurrents);
     }
     if (const auto voltage = read(message, "BatteryVoltage")) {
       state.battery_v = *voltage;
-      state.fields |= relay::kHasBattery;
+      note(relay::kHasBattery);
     }
   } else if (is_type(message, "GroundTruth")) {
     Vector3 angles;
     if (!read(message, "Location", v) || !read(message, "Orientation", angles)) return;
     state.p_WB_m = frames::rep103_vector_from_usarsim(v);
     state.orientation_rad = frames::rep103_angles_from_usarsim(angles);
-    state.fields |= relay::kHasGroundTruth;
+    note(relay::kHasGroundTruth);
   }
 }
 
@@ -124,8 +130,11 @@ void SensorTransform::take_ticks(const MessageView& message) {
 void SensorTransform::take_tick(std::string_view name, std::string_view ticks) {
   const auto count = usarsim::parse_number(ticks);
   if (!count || std::abs(*count) > kMostOfAnything) return;
-  if (contains_ignoring_case(name, "left")) ticks_[relay::kLeft] = count;
-  if (contains_ignoring_case(name, "right")) ticks_[relay::kRight] = count;
+  for (const auto& [track, side] : {std::pair{relay::kLeft, "left"}, {relay::kRight, "right"}}) {
+    if (!contains_ignoring_case(name, side)) continue;
+    ticks_[track] = count;
+    has_new_ticks_ = true;
+  }
 }
 
 bool SensorTransform::take_status(const MessageView& message) {
@@ -135,6 +144,9 @@ bool SensorTransform::take_status(const MessageView& message) {
   frame_.interval_s = frame_.number == 0 ? 0 : *time - state.robot_time_s;
   state.robot_time_s = *time;
   const auto number = read(message, "Frame");
+  // The world tells that it was paused, or goes on, by another STA of the same frame: what was new in that still is.
+  if (number && std::llround(*number) == frame_.number)
+    new_fields_ |= known_fields_ & ~(state.fields >> relay::kHeldShift);
   frame_.numbered = number.has_value();
   frame_.number = number ? std::llround(*number) : frame_.number + 1;
   state.late_commands = static_cast<std::uint32_t>(std::clamp(read(message, "Late").value_or(0), 0.0, 4e9));
@@ -150,28 +162,34 @@ bool SensorTransform::take_status(const MessageView& message) {
     for (std::size_t i = 0; i < relay::kFlipperCount; ++i) {
       state.flipper_rad[i] = frames::tip_up_from_usarsim_flipper(static_cast<relay::Flipper>(i), joint_rad[i]);
     }
-    state.fields |= relay::kHasFlippers;
+    note(relay::kHasFlippers);
   }
   finish_tracks();
+  state.fields = known_fields_ | relay::held(known_fields_ & ~new_fields_);
+  new_fields_ = 0;
   return true;
 }
 
 // Here and not where the ticks are read: the wheel radius may come after them, and only STA has a time.
 void SensorTransform::finish_tracks() {
+  ticks_interval_s_ += frame_.interval_s;
+  const bool has_new_ticks = std::exchange(has_new_ticks_, false);
   if (!ticks_[relay::kLeft] || !ticks_[relay::kRight]) return;
   relay::State& state = frame_.state;
+  const bool first = (known_fields_ & relay::kHasEncoders) == 0;
   const double wheel_radius_m = wheel_radius_m_.value_or(kDefaultWheelRadius_m);
   for (std::size_t i = 0; i < relay::kTrackCount; ++i) {
     state.track_m[i] = *ticks_[i] * resolution_rad_ * wheel_radius_m;
     if (spin_radps_) {
       state.track_mps[i] = frames::surface_speed_from_spin((*spin_radps_)[i], wheel_radius_m);
-    } else if (frame_.interval_s > 1e-6) {
-      const bool first = (state.fields & relay::kHasEncoders) == 0;
-      state.track_mps[i] = first ? 0 : (state.track_m[i] - earlier_track_m_[i]) / frame_.interval_s;
+    } else if (has_new_ticks && ticks_interval_s_ > 1e-6) {
+      state.track_mps[i] = first ? 0 : (state.track_m[i] - earlier_track_m_[i]) / ticks_interval_s_;
     }
   }
+  if (!has_new_ticks) return;
   earlier_track_m_ = state.track_m;
-  state.fields |= relay::kHasEncoders;
+  ticks_interval_s_ = 0;
+  note(relay::kHasEncoders);
 }
 
 }  // namespace kenaf::relayd

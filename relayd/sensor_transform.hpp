@@ -9,7 +9,7 @@
 //   p_WB, orientation   SEN GroundTruth
 //   time, counts        STA {Time} {Frame} {Late} {Silent} {Paused}
 //
-// Between two messages a value holds. Thread safety: one object, one thread. No allocation.
+// Between two messages a value holds, and State.fields says so. Thread safety: one object, one thread. No allocation.
 #pragma once
 
 #include <array>
@@ -44,6 +44,7 @@ class SensorTransform {
   std::optional<double> wheel_radius_m() const { return wheel_radius_m_; }
 
  private:
+  void note(relay::StateField field);
   void take_sensor(const usarsim::MessageView& message);
   void take_ticks(const usarsim::MessageView& message);
   void take_tick(std::string_view name, std::string_view ticks);
@@ -57,6 +58,9 @@ class SensorTransform {
   std::array<double, relay::kTrackCount> earlier_track_m_{};
   std::optional<std::array<double, relay::kTrackCount>> spin_radps_;
   bool has_ins_ = false;
+  bool has_new_ticks_ = false;
+  double ticks_interval_s_ = 0;                      // robot time since the STA that had new ones
+  std::uint32_t known_fields_ = 0, new_fields_ = 0;  // ever, and since the STA before
 };
 
 }  // namespace kenaf::relayd

@@ -277,7 +277,8 @@ double hrt_time(void);
 
 /* ---- State ---- */
 
-/* Bits of hrt_state.valid: which members were measured. Members whose bit is missing are 0. */
+/* Bits of hrt_state.valid: which members were measured. Members whose bit is missing are 0. A sensor slower than the cycle
+ * keeps bit and value until it measures again; a recording has it in the cycles alone in which it did. */
 enum {
   HRT_HAS_POSTURE = 1 << 0,  /* roll, pitch, yaw by the robot's posture sensor */
   HRT_HAS_ENCODERS = 1 << 1, /* track_mm, track_mmps, odometry */

@@ -1,15 +1,17 @@
 // A recording beside the cycle, on a disk that stalls: a pipe that nobody reads stands for it, so that how long it
 // stalls is the test's to say and not a clock's.
 //   R1 no cycle waits for the disk; R2 what the queue holds is not lost; R3 what is lost is counted and said; R4 the
-//   environment variable records as the call does; R5 a row has the command in force
+//   environment variable records as the call does; R5 a row has what was measured for it and the command in force
 #include "hrt/recorder.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -241,6 +243,21 @@ TEST_CASE("R3 a recording that gets no row leaves the file of its name as it is"
   std::string text;
   std::getline(std::ifstream(recording_in(folder)), text);
   CHECK(text == "of before");
+}
+
+TEST_CASE("R5 a value that is only held is not recorded as measured") {
+  relay::State state = state_of(7);
+  state.posture_rad = {0.1, 0.2, 0.3};
+  state.battery_v = 24;
+  state.fields = relay::kHasPosture | relay::kHasBattery | relay::held(relay::kHasPosture);
+  const hrt::RecordRow row = hrt::record_row(state, DriveCommand{}, 0);
+  const auto cell = [&](const char* name) {
+    const auto& columns = hrt::record_columns();
+    return row[static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin())];
+  };
+  CHECK(cell("battery_v") == 24);
+  CHECK(std::isnan(cell("posture_yaw_rad")));
+  CHECK(std::isnan(cell("track_left_m")));
 }
 
 TEST_CASE("R5 a recording that begins between two cycles has the command in force in its first row") {

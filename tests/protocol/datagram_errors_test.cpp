@@ -101,6 +101,7 @@ TEST_CASE("Flags, masks and enumerations out of their range are refused") {
   CHECK(error_of(with(encoded(Command{1, 1, 0, {}, 0, {}}), 40, 0x10)) == DecodeError::bad_value);
   const std::vector<std::byte> state = encoded(empty_state());
   CHECK(error_of(with(state, 28, 0x80)) == DecodeError::bad_value);  // a field bit that does not exist
+  CHECK(error_of(with(state, 30, 0x80)) == DecodeError::bad_value);  // one that would be held
   CHECK(error_of(with(state, 32, 0x08)) == DecodeError::bad_value);  // an event bit that does not exist
   const std::vector<std::byte> refused = encoded(Refused{1, RefusedReason::busy, {}, 3});
   CHECK(error_of(with(refused, 16, 0)) == DecodeError::bad_value);

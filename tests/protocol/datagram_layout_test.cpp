@@ -74,7 +74,7 @@ TEST_CASE("State is 284 bytes") {
   state.frame = 1;
   state.acknowledged = 2;
   state.late_commands = 3;
-  state.fields = kHasPosture | kHasGroundTruth;
+  state.fields = kHasPosture | kHasGroundTruth | held(kHasPosture);
   state.events = kWorldPaused;
   state.robot_time_s = 1;
   state.posture_rad = {2, 0, 0};
@@ -89,7 +89,7 @@ TEST_CASE("State is 284 bytes") {
   state.p_WB_m = {1, -1, 0.5};
   state.orientation_rad = {0.5, 1, -1};
   check_bytes(state, "4b 4e 41 46 01 05 1c 01 " + kSession +
-                         "01 00 00 00 02 00 00 00 03 00 00 00 41 00 00 00 04 00 00 00 " + kOne + kTwo + kZero + kZero +
+                         "01 00 00 00 02 00 00 00 03 00 00 00 41 00 01 00 04 00 00 00 " + kOne + kTwo + kZero + kZero +
                          kZero + kTwo + kZero + kZero + kZero + kTwo + kOne + kTwo + kTwo + kOne + kHalf + kOne + kOne +
                          kTwo + kMinusOne + kHalf + kHalf + kMinusOne + kTwo + kOne + kTwo + kOne + kMinusOne + kHalf +
                          kHalf + kOne + kMinusOne);

@@ -129,6 +129,44 @@ TEST_CASE("STA counts frames, without a number the relay counts") {
   CHECK(transform.frame().state.events == 0);
 }
 
+TEST_CASE("what was not measured since the STA before holds, and is marked as held") {
+  SensorTransform transform;
+  const auto fields_after = [&](std::initializer_list<std::string_view> lines) {
+    for (const std::string_view line : lines) take(transform, line);
+    return transform.frame().state.fields;
+  };
+  const std::string_view ins = "SEN {Type INS} {Orientation 0,0,-0.3}",
+                         drives = "SEN {Type Drives} {BatteryVoltage 24}";
+  CHECK(fields_after({ins, drives, "STA {Time 1.0} {Frame 1}"}) == (relay::kHasPosture | relay::kHasBattery));
+  CHECK(fields_after({ins, "STA {Time 1.01} {Frame 2}"}) ==
+        (relay::kHasPosture | relay::kHasBattery | relay::held(relay::kHasBattery)));
+  // the same frame again, as the world was paused: its posture is as new as it was
+  CHECK(fields_after({"STA {Time 1.01} {Frame 2} {Paused True}"}) ==
+        (relay::kHasPosture | relay::kHasBattery | relay::held(relay::kHasBattery)));
+  CHECK(fields_after({"STA {Time 1.02} {Frame 3}"}) ==
+        (relay::kHasPosture | relay::kHasBattery | relay::held(relay::kHasPosture | relay::kHasBattery)));
+  CHECK(transform.frame().state.posture_rad[2] == Approx(0.3));
+  CHECK(fields_after({ins, drives, "STA {Time 1.03} {Frame 4}"}) == (relay::kHasPosture | relay::kHasBattery));
+}
+
+TEST_CASE("encoders slower than STA: the speed is the change of travel by the time between two of their words") {
+  SensorTransform transform;
+  take(transform, "GEO {WheelRadius 0.05}");
+  take(transform, "CONF {Type Encoder} {Resolution 0.001}");
+  take(transform, "SEN {Type Encoder} {Name ECLeft Tick 0} {Name ECRight Tick 0}");
+  take(transform, "STA {Time 1.0}");
+  take(transform, "STA {Time 1.1}");
+  CHECK(transform.frame().state.fields == (relay::kHasEncoders | relay::held(relay::kHasEncoders)));
+  take(transform, "SEN {Type Encoder} {Name ECLeft Tick 400} {Name ECRight Tick -200}");
+  take(transform, "STA {Time 1.2}");
+  CHECK(transform.frame().state.fields == relay::kHasEncoders);
+  // 400 x 0.001 x 0.05 m in 0.2 s = 0.1 m/s
+  CHECK(transform.frame().state.track_mps[0] == Approx(0.1));
+  CHECK(transform.frame().state.track_mps[1] == Approx(-0.05));
+  take(transform, "STA {Time 1.3}");
+  CHECK(transform.frame().state.track_mps[0] == Approx(0.1));
+}
+
 TEST_CASE("values that are no values change nothing") {
   const auto state =
       after({"SEN {Type GroundTruth} {Location nan,0,0} {Orientation 0,0,0}",
