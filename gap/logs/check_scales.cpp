@@ -14,6 +14,9 @@ constexpr double kSameWay = 1.4;
 constexpr double kLeastMove_m = 0.1, kLeastTurn_rad = 0.2;
 constexpr double kDegreesInARadian = 180 / std::numbers::pi;
 constexpr double kMostSpeed_mps = 5;  // of a robot that is not known
+// A robot slides against its tracks on a slope alone. Elsewhere it goes as far as they do, or less for slip; when it
+// turns, far less.
+constexpr double kLevel_rad = 0.1, kLeastGrip = 0.5, kLeastGripInTurns = 0.15, kMostGrip = 1.25;
 
 std::string length_unit(double factor) {
   return factor > 300 ? "millimetres" : "centimetres";
@@ -113,6 +116,53 @@ void RunChecks::check_turned_sign(const std::string& name, const std::string& ot
       fmt::format("has the sign turned against {} (correlation {:.2f}): {}", other, relation->correlation, what_to_do));
 }
 
+void RunChecks::check_against_tracks(const std::string& name, const std::optional<Relation>& relation,
+                                     const std::optional<Relation>& on_level, double enough, double least_ratio,
+                                     double most_ratio, const std::string& what_to_do) {
+  const auto against = [&](const std::optional<Relation>& one) {
+    return one && one->correlation <= -kTogether && one->first >= enough && one->second >= 2 * kLeastMove_m;
+  };
+  if (!against(relation) || found(name)) return;
+  if (against(on_level) && on_level->ratio >= least_ratio && on_level->ratio <= most_ratio)
+    return add(Severity::refuse, name,
+               fmt::format("has the sign turned against the tracks (correlation {:.2f}): {}", on_level->correlation,
+                           what_to_do));
+  add(Severity::warn, name,
+      fmt::format("goes against the tracks (correlation {:.2f}), as a robot does that slides down a slope; on level "
+                  "ground the sign would be turned: {}",
+                  relation->correlation, what_to_do));
+}
+
+// Slip and blocked robots only make the pose's way shorter.
+void RunChecks::check_pose_against_tracks() {
+  const auto along = relate(forward(), belts(0.5, 0.5)), turning = relate(upright_angle("yaw_rad"), belts(-1, 1));
+  const bool knows_slope = has("pitch_rad") || has("posture_pitch_rad");
+  const double way_m = distance_of_belts(), farthest_m = farthest_from_start();
+  constexpr double kSlide_m = 1;  // without its tracks: down a slope, off an edge
+  if (farthest_m > kLengthFactor * (way_m + 0.1) && farthest_m > kLengthFactor * kSlide_m && has("cmd_track_left_mps"))
+    add(Severity::refuse, "x_m",
+        fmt::format("looks like {} together with y_m: the robot is up to {:.4g} from its start, but its tracks went "
+                    "{:.3g} m; columns are in metres",
+                    length_unit(farthest_m / (way_m + 0.1)), farthest_m, way_m));
+  check_against_tracks("x_m", along, knows_slope ? relate(forward(kLevel_rad), belts(0.5, 0.5)) : along,
+                       2 * kLeastMove_m, kLeastGrip, kMostGrip,
+                       "x is forward at the start, and yaw the heading of the robot's front");
+  if (turning && turning->correlation >= kTogether && robot_ != nullptr && !found("yaw_rad")) {
+    // Slip makes a robot turn less than its tracks say, never several times as much.
+    const double turned = turning->ratio * robot_->track_gauge_m();
+    if (turned > kAngleFactor && turning->first > kLeastTurn_rad * kDegreesInARadian / 4)
+      add(Severity::refuse, "yaw_rad",
+          fmt::format(
+              "looks like degrees: the robot turns {:.3g} times what its tracks make it; columns are in radians",
+              turned));
+  }
+  const double by_gauge = robot_ != nullptr ? 1 / robot_->track_gauge_m() : 0;
+  check_against_tracks(
+      "yaw_rad", turning, knows_slope ? relate(upright_angle("yaw_rad", kLevel_rad), belts(-1, 1)) : turning,
+      2 * kLeastTurn_rad, kLeastGripInTurns * by_gauge, robot_ != nullptr ? kMostGrip * by_gauge : 1e300,
+      "a left turn is positive, and then the right track is the faster one");
+}
+
 void RunChecks::check_scales() {
   for (const std::string side : kSides) {
     const std::string command = "cmd_track_" + side + "_mps", speed = "track_" + side + "_mps",
@@ -154,30 +204,7 @@ void RunChecks::check_scales() {
     check_turned_sign(angle, gyro, relation, kLeastTurn_rad, kLeastTurn_rad,
                       "x forward, y left, z up: roll is positive right side down, pitch nose down, yaw to the left");
   }
-
-  // Pose against tracks. Slip and blocked robots only make the pose's way shorter.
-  const Course ahead = forward();
-  const auto along = relate(ahead, belts(0.5, 0.5)), turning = relate(upright_angle("yaw_rad"), belts(-1, 1));
-  const double way_m = distance_of_belts(), farthest_m = farthest_from_start();
-  constexpr double kSlide_m = 1;  // without its tracks: down a slope, off an edge
-  if (farthest_m > kLengthFactor * (way_m + 0.1) && farthest_m > kLengthFactor * kSlide_m && has("cmd_track_left_mps"))
-    add(Severity::refuse, "x_m",
-        fmt::format("looks like {} together with y_m: the robot is up to {:.4g} from its start, but its tracks went "
-                    "{:.3g} m; columns are in metres",
-                    length_unit(farthest_m / (way_m + 0.1)), farthest_m, way_m));
-  check_turned_sign("x_m", "the tracks", along, 2 * kLeastMove_m, 2 * kLeastMove_m,
-                    "x is forward at the start, and yaw the heading of the robot's front");
-  if (turning && turning->correlation >= kTogether && robot_ != nullptr && !found("yaw_rad")) {
-    // Slip makes a robot turn less than its tracks say, never several times as much.
-    const double turned = turning->ratio * robot_->track_gauge_m();
-    if (turned > kAngleFactor && turning->first > kLeastTurn_rad * kDegreesInARadian / 4)
-      add(Severity::refuse, "yaw_rad",
-          fmt::format(
-              "looks like degrees: the robot turns {:.3g} times what its tracks make it; columns are in radians",
-              turned));
-  }
-  check_turned_sign("yaw_rad", "the tracks", turning, 2 * kLeastTurn_rad, 2 * kLeastMove_m,
-                    "a left turn is positive, and then the right track is the faster one");
+  check_pose_against_tracks();
 }
 
 void RunChecks::check_ranges() {

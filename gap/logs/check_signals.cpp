@@ -10,6 +10,8 @@ namespace {
 // Chosen.
 constexpr double kMoves_m = 0.1, kCarries_m = 0.3, kSeen_m = 0.2, kTurns_rad = 0.3;
 constexpr std::size_t kFewestValues = 10;
+// A gyro's bias is no such turn, and slip no such difference of tracks; a gauge where no robot is known.
+constexpr double kTurnWithin_s = 2, kTurnsByTracks_rad = 1, kWidest_m = 1;
 
 // The same number in all rows that have one, to the last bit: no sensor that works does that for long.
 bool constant(std::span<const double> column) {
@@ -68,6 +70,18 @@ void RunChecks::check_commands() {
         "is zero all the time, nothing else is commanded, and the robot stands: this run tells nothing");
 }
 
+bool RunChecks::turns() const {
+  if (has("gyro_z_radps")) {
+    const Course turned = rate("gyro_z_radps");
+    for (const double t_s : turned.t_s)
+      if (std::abs(mean_rate(turned, t_s, kTurnWithin_s)) * kTurnWithin_s > kTurns_rad) return true;
+    return false;
+  }
+  if (!has("track_left_mps") && !has("track_left_m")) return false;
+  const double gauge_m = robot_ != nullptr ? robot_->track_gauge_m() : kWidest_m;
+  return range(belts(-1, 1).value) > kTurnsByTracks_rad * gauge_m;
+}
+
 void RunChecks::check_constants() {
   const bool pose_moves = farthest_from_start() > kSeen_m;
   for (const std::string side : kSides) {
@@ -104,9 +118,13 @@ void RunChecks::check_constants() {
             "never changes, nor does y_m, while the tracks go {:.3g} m: the pose is frozen; leave the cells empty "
             "where nothing was measured",
             way_m));
-  else if (constant(column("yaw_rad")))
+  else if (constant(column("yaw_rad")) && turns())
     add(Severity::refuse, "yaw_rad",
-        "never changes while the robot drives: the heading is not measured; leave the column out");
+        "never changes while the robot turns: the heading is not measured; leave the column out");
+  else if (constant(column("yaw_rad")))
+    add(Severity::warn, "yaw_rad",
+        "never changes while the robot drives: either the heading is not measured, and the column is to be left out, "
+        "or it is written in steps larger than it changed");
   for (const std::string name :
        {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps", "acc_x_mps2", "acc_y_mps2", "acc_z_mps2"})
     if (constant(column(name)))
@@ -124,7 +142,7 @@ void RunChecks::check_pose() {
             : "is missing or empty, and the tracks were not measured either: there is nothing to compare with");
     return;
   }
-  if (found("x_m")) return;  // in another unit every step is a jump
+  if (refused("x_m")) return;  // in another unit every step is a jump
 
   constexpr double kLate_s = 0.5, kStart_s = 0.3, kStill_mps = 0.1, kFrozen_s = 1, kFrozenBelts_m = 0.2;
   constexpr double kJump_m = 0.1, kFall_mps = 5, kJump_rad = 0.5, kTumble_radps = 15, kSpeeds = 5;

@@ -6,8 +6,7 @@
 namespace kenaf::gap {
 namespace {
 
-// Both chosen.
-constexpr double kUpright_rad = 1, kFewestPoints = 15;
+constexpr double kFewestPoints = 15;  // chosen
 
 }  // namespace
 
@@ -19,26 +18,33 @@ bool RunChecks::found(const std::string& name) const {
   return std::ranges::find(findings_, name, &Finding::column) != findings_.end();
 }
 
+bool RunChecks::refused(const std::string& name) const {
+  return std::ranges::any_of(findings_, [&](const Finding& finding) {
+    return finding.column == name && finding.severity == Severity::refuse;
+  });
+}
+
 Course RunChecks::adding(const std::string& name) const {
   const auto t_s = column("t_s"), values = column(name);
   return course_of(t_s, values, longest_gap_s(median_step(t_s, values)));
 }
 
-std::vector<bool> RunChecks::upright() const {
-  const auto roll = column("roll_rad"), pitch = column("pitch_rad");
+std::vector<bool> RunChecks::upright(double most_tilt_rad) const {
+  const auto tilt = [this](const std::string& name) { return column(has(name) ? name : "posture_" + name); };
+  const auto roll = tilt("roll_rad"), pitch = tilt("pitch_rad");
   std::vector<bool> upright(run_.row_count());
   double roll_rad = 0, pitch_rad = 0;
   for (std::size_t i = 0; i < upright.size(); ++i) {
     if (i < roll.size() && !std::isnan(roll[i])) roll_rad = roll[i];
     if (i < pitch.size() && !std::isnan(pitch[i])) pitch_rad = pitch[i];
-    upright[i] = std::max(std::abs(roll_rad), std::abs(pitch_rad)) < kUpright_rad;
+    upright[i] = std::max(std::abs(roll_rad), std::abs(pitch_rad)) < most_tilt_rad;
   }
   return upright;
 }
 
-Course RunChecks::upright_angle(const std::string& name) const {
+Course RunChecks::upright_angle(const std::string& name, double most_tilt_rad) const {
   const auto t_s = column("t_s"), values = column(name);
-  const std::vector<bool> stands = upright();
+  const std::vector<bool> stands = upright(most_tilt_rad);
   std::vector<double> kept(values.begin(), values.end());
   for (std::size_t i = 0; i < kept.size(); ++i)
     if (!stands[i]) kept[i] = std::numeric_limits<double>::quiet_NaN();
@@ -57,13 +63,14 @@ Course RunChecks::rate(const std::string& name) const {
   return course_of_rate(t_s, values, longest_gap_s(median_step(t_s, values)));
 }
 
-Course RunChecks::forward() const {
+Course RunChecks::forward(double most_tilt_rad) const {
   const auto t_s = column("t_s"), x = column("x_m"), y = column("y_m"), yaw = column("yaw_rad");
   Course course;
   if (x.empty() || y.empty() || yaw.empty()) return course;
+  const std::vector<bool> stands = upright(most_tilt_rad);
   std::size_t last = 0;
   for (std::size_t i = 0; i < t_s.size(); ++i) {
-    if (std::isnan(x[i] + y[i] + yaw[i])) continue;
+    if (std::isnan(x[i] + y[i] + yaw[i]) || !stands[i]) continue;
     double sum = 0;
     if (!course.t_s.empty()) {
       const double heading = yaw[last] + 0.5 * std::remainder(yaw[i] - yaw[last], 2 * std::numbers::pi);

@@ -15,6 +15,7 @@
 namespace kenaf::gap {
 
 inline constexpr std::array<const char*, 2> kSides = {"left", "right"};  // as in the columns of tracks
+inline constexpr double kUpright_rad = 1;                                // chosen
 
 // How two quantities go together that should be the same: their mean rates over windows of 0.2 s or more.
 struct Relation {
@@ -46,13 +47,15 @@ class RunChecks {
     findings_.push_back({severity, file_, at_line, name, text});
   }
   bool found(const std::string& name) const;         // something is said of it already
+  bool refused(const std::string& name) const;
 
   Course adding(const std::string& name) const;      // of a column that adds up: travel, an angle
   // Of roll, pitch or yaw, unwrapped, where the robot is upright: near pitch pi/2 yaw jumps, and upside down all turn.
-  Course upright_angle(const std::string& name) const;
-  std::vector<bool> upright() const;                 // each row; by the newest roll and pitch, where there are any
+  Course upright_angle(const std::string& name, double most_tilt_rad = kUpright_rad) const;
+  // Each row; by the newest roll and pitch, the pose's or else the posture sensor's, where there are any.
+  std::vector<bool> upright(double most_tilt_rad = kUpright_rad) const;
   Course rate(const std::string& name) const;        // of a column of rates
-  Course forward() const;                            // of the pose, along its heading
+  Course forward(double most_tilt_rad = INFINITY) const;  // of the pose, along its heading
   Course belts(double left, double right) const;     // measured, else commanded
   std::optional<Relation> relate(const Course& first, const Course& second) const;
   // Of the values instead, about their means, as a slow servo follows in value and not in rate. An empty cell holds the
@@ -66,6 +69,13 @@ class RunChecks {
                         double enough);
   void check_turned_sign(const std::string& name, const std::string& other, const std::optional<Relation>& relation,
                          double enough_first, double enough_second, const std::string& what_to_do);
+  void check_pose_against_tracks();
+  // `on_level` is the same relation where nothing pulls the robot down a slope, and the ratio of a robot that obeys its
+  // tracks lies between the two given.
+  void check_against_tracks(const std::string& name, const std::optional<Relation>& relation,
+                            const std::optional<Relation>& on_level, double enough, double least_ratio,
+                            double most_ratio, const std::string& what_to_do);
+  bool turns() const;                                // by its gyro, or where there is none by its measured tracks
 
   const runs::Run& run_;
   std::string file_;

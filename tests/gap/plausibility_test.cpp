@@ -11,6 +11,7 @@
 #include "physics/world_description.hpp"
 #include "rollout/roll_out.hpp"
 #include "tests/gap/kenaf_gap.hpp"
+#include "tests/gap/made_run.hpp"
 
 using namespace kenaf;
 using Severity = gap::Finding::Severity;
@@ -77,6 +78,24 @@ const std::vector<std::string> kPlace = {"x_m", "y_m", "z_m"}, kAngles = {"roll_
                                kSpeeds = {"track_left_mps", "track_right_mps"},
                                kTravels = {"track_left_m", "track_right_m"},
                                kFlippers = {"flipper_fl_rad", "flipper_fr_rad", "flipper_rl_rad", "flipper_rr_rad"};
+
+// 4 s of tracks at 0.2 m/s under a robot that goes straight at `speed_mps`.
+runs::Run carried(double speed_mps, double pitch_rad) {
+  const auto level = [](double) { return 0.0; };
+  const auto track = [](double t_s) { return t_s < 0.5 ? 0 : 0.2; };
+  const auto way = [speed_mps](double t_s) { return t_s < 0.5 ? 0 : speed_mps * (t_s - 0.5); };
+  return test::made_run(4, 0.01,
+                        {{"cmd_track_left_mps", track},
+                         {"cmd_track_right_mps", track},
+                         {"track_left_mps", track},
+                         {"track_right_mps", track},
+                         {"x_m", way},
+                         {"y_m", level},
+                         {"z_m", [&](double t_s) { return 1 - std::tan(pitch_rad) * way(t_s); }},
+                         {"roll_rad", level},
+                         {"pitch_rad", [pitch_rad](double) { return pitch_rad; }},
+                         {"yaw_rad", [](double t_s) { return 0.001 * std::sin(t_s); }}});
+}
 
 }  // namespace
 
@@ -186,6 +205,40 @@ TEST_CASE("Signs that are turned are refused, and sides that are exchanged") {
   runs::Run exchanged = driven("random-speeds");
   std::swap(column(exchanged, "track_left_mps"), column(exchanged, "track_right_mps"));
   CHECK_THAT(found(exchanged), Catch::Contains("left and right are exchanged"));
+}
+
+TEST_CASE("A robot that slides down a ramp against its tracks is warned of, whatever its speed") {
+  for (const double speed_mps : {-0.1, -0.2, -0.5}) {
+    const auto findings = gap::check_run(carried(speed_mps, -0.5), "run.csv", &robot());
+    INFO(words(findings));
+    CHECK_FALSE(gap::any_refused(findings));
+    CHECK_THAT(words(findings), Catch::StartsWith("warning: run.csv: x_m: goes against the tracks"));
+  }
+  // on level ground nothing but a turned sign does that, where it goes as far as the tracks
+  CHECK_THAT(found(carried(-0.2, 0)), Catch::StartsWith("run.csv: x_m: has the sign turned against the tracks"));
+  CHECK_THAT(found(carried(-0.5, 0)), Catch::StartsWith("warning: run.csv: x_m: goes against the tracks"));
+  CHECK(found(carried(0.2, -0.5)) == "");
+}
+
+TEST_CASE("A heading that never changes is refused where something else saw a turn") {
+  const auto with = [](const std::string& name, double value) {
+    runs::Run run = changed(carried(0.2, 0), {"yaw_rad"}, [](double) { return 0.0; });
+    if (name == "gyro_z_radps") {
+      run.columns.push_back(name);
+      run.values.emplace_back(run.row_count());
+      for (std::size_t i = 0; i < run.row_count(); ++i) run.values.back()[i] = value + (i % 2 == 0 ? 0.001 : 0);
+    } else if (!name.empty()) {
+      for (double& speed : column(run, name)) speed = value;
+    }
+    return found(run);
+  };
+  const std::string straight = with("", 0);  // in whole degrees
+  CHECK_THAT(straight, Catch::StartsWith("warning: run.csv: yaw_rad: never changes while the robot drives"));
+  CHECK(with("gyro_z_radps", 0.02) == straight);  // a bias of a degree a second
+  CHECK_THAT(with("gyro_z_radps", 0.3), Catch::Contains("run.csv: yaw_rad: never changes while the robot turns") &&
+                                            !Catch::Contains("warning: run.csv: yaw_rad"));
+  // 0.1 m/s apart for 4 s are 2 rad at the robot's gauge of 0.2 m
+  CHECK_THAT(with("track_left_mps", 0.1), Catch::Contains("run.csv: yaw_rad: never changes while the robot turns"));
 }
 
 TEST_CASE("Time in milliseconds is told by what adds up, gaps, odd steps and other clocks are warned of") {
