@@ -40,11 +40,13 @@ std::string world_of(const CollectRequest& request, const RecordedRun& run,
                   run.file.string(), run.manoeuvre));
 }
 
-// Asked for by the dataset's name of it, or by another path to the same description.
+// Asked for by the dataset's name of it, or by a path to the same description. A file here that has that name may have
+// been changed since it was copied.
 bool is_robot_of(const runs::Dataset& dataset, const CollectRequest& request) {
-  if (request.robot == dataset.robot) return true;
   const fs::path asked = request.robot;
-  return asked.extension() == ".toml" && asked.filename() == dataset.robot &&
+  const bool is_path = asked.extension() == ".toml";
+  if (request.robot == dataset.robot && !(is_path && fs::exists(asked))) return true;
+  return is_path && asked.filename() == dataset.robot &&
          runs::read_whole_file(asked) == runs::read_whole_file(request.out / dataset.robot);
 }
 
@@ -84,7 +86,8 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
   result.extended = there.has_value();
   if (there && !request.robot.empty() && !is_robot_of(*there, request))
     throw std::invalid_argument(fmt::format("{}: its robot is '{}', not '{}'; give another folder with --out",
-                                            request.out.string(), there->robot, request.robot));
+                                            request.out.string(),
+                                            runs::resolve_beside(request.out, there->robot, ".toml"), request.robot));
   if (there && there->source != request.source)
     throw std::invalid_argument(
         fmt::format("{}: its source is '{}', not '{}'", request.out.string(), there->source, request.source));

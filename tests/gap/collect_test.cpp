@@ -1,5 +1,6 @@
 // Recorded runs become a dataset, and more are added to it; nothing that was there is changed.
 #include <catch2/catch.hpp>
+#include <set>
 
 #include "description/data_files.hpp"
 #include "runs/dataset.hpp"
@@ -88,7 +89,45 @@ TEST_CASE("A dataset with a world and a robot of its own is added to from anothe
   REQUIRE(dataset.runs.size() == 3);
   for (const runs::DatasetRun& run : dataset.runs) CHECK(run.world.empty());  // the dataset's
   write_file(folder / "mine/my.toml", read_file(folder / "mine/my.toml") + "\n# another one\n");
-  CHECK_THAT(kenaf_gap(folder, with_both).error, Catch::Contains("its robot is 'my.toml', not 'mine/my.toml'"));
+  CHECK_THAT(kenaf_gap(folder, with_both).error, Catch::Contains("its robot is 'data/my.toml', not 'mine/my.toml'"));
+}
+
+TEST_CASE("A robot that was changed since its dataset was made is not that dataset's") {
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  const std::string kenaf = read_file(find_data_file("robots", "kenaf", ".toml"));
+  write_file(folder / "my.toml", kenaf);
+  const std::string command = "dataset a.csv --manoeuvre straight --robot my.toml --out data";
+  REQUIRE(kenaf_gap(folder, command).status == 0);
+  CHECK(kenaf_gap(folder, command).status == 0);
+  write_file(folder / "my.toml", kenaf + "\n# another one\n");
+  const Outcome changed = kenaf_gap(folder, command);
+  CHECK(changed.status == 2);
+  CHECK_THAT(changed.error, Catch::Contains("its robot is 'data/my.toml', not 'my.toml'"));
+  CHECK(runs::read_dataset(folder / "data").runs.size() == 2);
+  std::filesystem::remove(folder / "my.toml");  // the dataset's name of its own
+  CHECK(kenaf_gap(folder, command).status == 0);
+}
+
+TEST_CASE("A disk that gets full leaves nothing behind") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  write_file(folder / "hall.sdf", read_file(find_data_file("worlds", "flat", ".sdf")));
+  REQUIRE(kenaf_gap(folder, "dataset a.csv --manoeuvre straight --out data").status == 0);
+  const std::string before = read_file(folder / "data/dataset.toml");
+  for (const char* file : {"dataset.toml.part", "hall.sdf.part"}) {
+    INFO(file);
+    std::filesystem::create_symlink("/dev/full", folder.path() / "data" / file);
+    const Outcome full = kenaf_gap(folder, "dataset a.csv --manoeuvre straight --world hall.sdf --out data");
+    CHECK(full.status == 2);
+    CHECK_THAT(full.error, Catch::Contains("No space left"));
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "data"))
+      names.insert(entry.path().filename().string());
+    CHECK(names == std::set<std::string>{"a.csv", "dataset.toml"});
+    CHECK(read_file(folder / "data/dataset.toml") == before);
+  }
 }
 
 TEST_CASE("A file of the dataset that is called like an unfinished copy stays") {
