@@ -40,7 +40,7 @@ std::vector<double> column_at(const runs::Run& run, std::string_view column, std
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isnan(values[i])) cells.push_back({time[i] - time.front(), values[i]});
   if (cells.empty()) return {};
-  const bool angle = column == "roll_rad" || column == "pitch_rad" || column == "yaw_rad";
+  const bool angle = column.ends_with("roll_rad") || column.ends_with("pitch_rad") || column.ends_with("yaw_rad");
   const double hole_s = hole_of(cells);
   std::vector<double> result;
   result.reserve(times_s.size());

@@ -15,10 +15,12 @@ struct ReckonedPath {
   std::vector<double> x_m, y_m, yaw_rad;  // of each row; frame W: from (0, 0), with the first measured yaw, or 0
 };
 
-// Nothing where not both tracks' travel or speed was measured.
+// By the pose's angles, or the posture sensor's (posture_yaw_rad, ...), whose zero is not the world's. Nothing where not both
+// tracks' travel or speed was measured.
 std::optional<ReckonedPath> reckon(const runs::Run& run, const physics::RobotDescription& robot);
 
-// A track's travel at each row, from its encoder or its speed; a hole holds what was before. All 0 where neither was measured.
+// A track's travel at each row, from its encoder or its speed; a hole holds what was before, and one at the start what comes
+// first. All 0 where neither was measured.
 std::vector<double> travel_of(const runs::Run& run, std::string_view track);
 
 }  // namespace kenaf::gap

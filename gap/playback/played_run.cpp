@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/prediction.hpp"
@@ -44,6 +45,16 @@ double standing_height_m(const physics::RobotDescription& robot) {
   return robot.track.end_radius_m - robot.track.p_BT_m.z();
 }
 
+std::map<std::string, std::vector<double>> channels_of(const runs::Run& run, std::span<const double> times_s) {
+  std::map<std::string, std::vector<double>> channels;
+  const auto add = [&](std::string_view column) {
+    if (auto values = column_at(run, column, times_s); known(values)) channels[std::string(column)] = std::move(values);
+  };
+  for (const Channel& channel : diagnosis_channels()) add(channel.column);
+  for (const std::string_view command : kCommands) add(command);
+  return channels;
+}
+
 PlayedBody body_of(std::string_view kind, const runs::Run& run, std::span<const double> times_s) {
   PlayedBody body;
   body.kind = kind;
@@ -61,11 +72,7 @@ PlayedBody body_of(std::string_view kind, const runs::Run& run, std::span<const 
   travel.values.emplace_back(run.column("t_s").begin(), run.column("t_s").end());
   for (const std::string_view belt : kBelts) travel.values.push_back(travel_of(run, belt));
   for (std::size_t i = 0; i < 2; ++i) body.track_m[i] = held(column_at(travel, kBelts[i], times_s), count, 0);
-  const auto add = [&](std::string_view column) {
-    if (auto values = column_at(run, column, times_s); known(values)) body.channels[std::string(column)] = values;
-  };
-  for (const Channel& channel : diagnosis_channels()) add(channel.column);
-  for (const std::string_view command : kCommands) add(command);
+  body.channels = channels_of(run, times_s);
   return body;
 }
 
@@ -143,10 +150,8 @@ PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const st
   const runs::Run posed = with_pose(run, robots.nominal, from, played.notes);
   played.bodies.push_back(body_of("recorded", posed, played.times_s));
   played.bodies.front().pose_from = from;
-  // what was reckoned is no measurement
-  if (from == PoseFrom::dead_reckoning)
-    std::erase_if(played.bodies.front().channels,
-                  [&](const auto& channel) { return !known(run.column(channel.first)); });
+  // what was reckoned is no measurement, and may stand in the place of one
+  if (from == PoseFrom::dead_reckoning) played.bodies.front().channels = channels_of(run, played.times_s);
   if (!entry.fault.empty()) played.notes.push_back("This run's own simulation went wrong: " + entry.fault);
 
   Observation observation{entry.file, entry.manoeuvre, 0, posed, {}, {}, 0};

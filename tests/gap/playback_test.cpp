@@ -149,6 +149,39 @@ TEST_CASE("P3: dead reckoning where no pose was measured") {
   CHECK_FALSE(reckon(test::made_run(1, 0.01, {{"track_left_m", metre}}), kenaf));
 }
 
+TEST_CASE("P3: dead reckoning where tracks and angles have holes, or the angles are the posture sensor's") {
+  const physics::RobotDescription kenaf = physics::load_robot("kenaf");
+  const auto metre = [](double t_s) { return t_s; };
+  // encoders that count from 5 m and tell it from 0.1 s on: from 5.1 to 5.99 m
+  const auto late = [](double t_s) { return t_s < 0.095 ? kNotMeasured : 5 + t_s; };
+  const auto begun = reckon(test::made_run(1.001, 0.01, {{"track_left_m", late}, {"track_right_m", late}}), kenaf);
+  REQUIRE(begun);
+  CHECK(begun->x_m.back() == Approx(0.89));
+  // the sensor's zero is anywhere: the run begins along x, and turns by a quarter while it goes from 0.5 m on
+  const auto turned =
+      reckon(test::made_run(2.001, 0.01,
+                            {{"track_left_m", metre},
+                             {"track_right_m", metre},
+                             {"posture_yaw_rad", [](double t_s) { return t_s < 0.5 ? 2 : 2 + std::numbers::pi / 2; }}}),
+             kenaf);
+  REQUIRE(turned);
+  CHECK(turned->yaw_rad.front() == 0);
+  CHECK(turned->yaw_rad.back() == Approx(std::numbers::pi / 2).margin(1e-3));
+  CHECK(turned->x_m.back() == Approx(0.5).margin(0.06));  // smoothed over 0.05 s, at 1 m/s
+  CHECK(turned->y_m.back() == Approx(1.49).margin(0.06));
+  // twice a second, at 0.5 rad/s: 1.75 rad at 3.5 s, which is the last one; belts alone know of no turn
+  const auto slow =
+      reckon(test::made_run(
+                 4.001, 0.01,
+                 {{"track_left_m", metre},
+                  {"track_right_m", metre},
+                  {"yaw_rad",
+                   [](double t_s) { return std::abs(std::remainder(t_s, 0.5)) < 1e-6 ? 0.5 * t_s : kNotMeasured; }}}),
+             kenaf);
+  REQUIRE(slow);
+  CHECK(slow->yaw_rad.back() == Approx(1.75).margin(0.03));
+}
+
 TEST_CASE("P4: a report's phases and whose they are") {
   const ReportedPlaces places = parse_reported_places(kReport);
   CHECK(places.verdict == "named");
@@ -219,6 +252,18 @@ TEST_CASE("P5: without a pose the page is told so, and where dead reckoning has 
   CHECK(run["bodies"].size() == 2);
   CHECK(run["marks"].empty());
   CHECK(run["notes"][0].get<std::string>().find("dead reckoning") != std::string::npos);
+
+  // what is called recorded is the file's, also where dead reckoning makes another of it: 0.1 rad/s for 1.5 s
+  runs::Run turning = half_speed(false);
+  turning.columns.emplace_back("yaw_rad");
+  turning.values.emplace_back();
+  for (const double t_s : turning.column("t_s")) turning.values.back().push_back(0.1 * t_s);
+  runs::write_run(recorded.folder / "yaw.csv", turning);
+  const Playback heading = load_playback({recorded.folder / "yaw.csv", "", "", "", ""});
+  const json with_yaw = json::parse(played_run_json(heading, 0, prepare_run(heading, 0)));
+  CHECK(with_yaw["bodies"][0]["pose_from"] == "dead reckoning");
+  CHECK(with_yaw["bodies"][0]["channels"]["yaw_rad"][150].get<double>() == Approx(0.15));
+  CHECK_FALSE(with_yaw["bodies"][0]["channels"].contains("x_m"));
 
   // nothing at all: the file still plays, by itself, with its simulation left out and why
   runs::write_run(recorded.folder / "only-currents.csv", test::made_run(1, 0.1, {{"track_left_a", still}}));
