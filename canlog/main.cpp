@@ -4,14 +4,16 @@
 //   candump -L can0 | kenaf-canlog --figures
 //   kenaf-canlog --check --robot kenaf square.log
 //
-// Exit status: 0, 1 where --check found a rule broken, 2 bad input.
+// Exit status: 0, 1 where --check found a rule broken, 2 bad input, or what comes out cannot be written.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 #include <fstream>
 #include <iostream>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -71,6 +73,12 @@ bool print_violations(const Options& options, const canlog::Log& log, const canl
   return found.empty();
 }
 
+// What was printed may not have gone anywhere, on a full disk.
+void finish_output() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw std::runtime_error("standard output cannot be written; is its disk full?");
+}
+
 int run(const Options& options) {
   const canlog::Network network(canbus::load_robot_bus(options.robot));
   const canlog::Log log = load_log(options);
@@ -82,7 +90,9 @@ int run(const Options& options) {
   if (log.frames.empty()) throw std::runtime_error(options.log + ": no frame in it; is it of `candump -L`?");
   if (!options.check && !options.figures) print_words(log, network);
   if (options.figures) fmt::print("{}", to_text(figures_of(log, network), options.bit_rate));
-  return options.check && !print_violations(options, log, network) ? kBroken : 0;
+  const bool broken = options.check && !print_violations(options, log, network);
+  finish_output();
+  return broken ? kBroken : 0;
 }
 
 }  // namespace
@@ -116,7 +126,8 @@ int main(int argc, char** argv) {
   try {
     return run(options);
   } catch (const std::exception& error) {
-    fmt::print(stderr, "kenaf-canlog: {}\n", error.what());
+    // not fmt::print, which throws where standard error is on the full disk too
+    std::fprintf(stderr, "kenaf-canlog: %s\n", error.what());
     return kBadInput;
   }
 }

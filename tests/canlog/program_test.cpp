@@ -1,5 +1,6 @@
 // The program kenaf-canlog: what it prints of a log, and how it ends.
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -64,6 +65,16 @@ TEST_CASE("kenaf-canlog passes over bad lines by name, and over another bus") {
   CHECK_THAT(ended.text, Catch::Contains("LOG:1: \"nonsense\" is no time") &&
                              Catch::Contains("1 lines are not of can0") && Catch::Contains("track left: boot-up"));
   CHECK_THAT(run(kLog, {"--figures"}).text, Catch::Contains("2 frames") && Catch::Contains("of 500 kbit/s"));
+}
+
+TEST_CASE("kenaf-canlog ends with 2 where its words cannot be written") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const support::TemporaryFolder folder;
+  const std::string log = folder.path() / "bus.log";
+  std::ofstream(log) << kLog;
+  support::Process program({KENAF_CANLOG, log, "--robot", std::string(KENAF_SOURCE_DIR) + "/robots/kenaf.toml"},
+                           "/dev/full");
+  CHECK(program.wait_for(std::chrono::seconds(20)) == 2);
 }
 
 TEST_CASE("kenaf-canlog ends with 2 where there is nothing to read") {
