@@ -19,17 +19,17 @@ constexpr int kDevices = 8;
 constexpr double kCrossPeriod_s = 0.05;  // a held cross acts as a key that repeats
 
 enum Axis : unsigned { kLeftStickY = 1, kRightStickX = 3, kCrossX = 6, kCrossY = 7 };
-constexpr unsigned kDeadmanButton = 4;
+constexpr unsigned kEmergencyButton = 1, kDeadmanButton = 4;
 
 constexpr auto kButtons = std::to_array<std::pair<unsigned, Action>>({
-    {0, Action::posture_2},          // A
-    {1, Action::emergency_stop},     // B
-    {2, Action::posture_3},          // X
-    {3, Action::posture_4},          // Y
-    {5, Action::faster},             // RB
-    {6, Action::slower},             // back
-    {7, Action::release_emergency},  // start
-    {10, Action::posture_5},         // right stick
+    {0, Action::posture_2},                      // A
+    {kEmergencyButton, Action::emergency_stop},  // B
+    {2, Action::posture_3},                      // X
+    {3, Action::posture_4},                      // Y
+    {5, Action::faster},                         // RB
+    {6, Action::slower},                         // back
+    {7, Action::release_emergency},              // start
+    {10, Action::posture_5},                     // right stick
 });
 
 // 0 within kRest, from there on rising to 1 without a jump.
@@ -47,18 +47,20 @@ std::optional<Action> action_of_cross(unsigned axis, int value) {
 }  // namespace
 
 std::optional<Action> GamepadState::take(const js_event& event) {
-  const bool is_initial = (event.type & JS_EVENT_INIT) != 0;  // where everything is when the device is opened
+  // Where everything is when the device is opened, and again after the kernel had to drop events: what was let go of
+  // meanwhile counts, and what was pressed only where it stops.
+  const bool is_initial = (event.type & JS_EVENT_INIT) != 0;
   const int type = event.type & ~JS_EVENT_INIT;
   if (type == JS_EVENT_AXIS) {
     if (event.number == kLeftStickY) sticks_.forward = -deflection(event.value);
     if (event.number == kRightStickX) sticks_.turn = -deflection(event.value);
     const bool is_cross = event.number == kCrossX || event.number == kCrossY;
-    if (is_cross && !is_initial) cross_ = action_of_cross(event.number, event.value);
+    if (is_cross && (!is_initial || event.value == 0)) cross_ = action_of_cross(event.number, event.value);
     return std::nullopt;
   }
-  if (type != JS_EVENT_BUTTON || is_initial) return std::nullopt;
-  if (event.number == kDeadmanButton) sticks_.deadman = event.value != 0;
-  if (event.value == 0) return std::nullopt;
+  if (type != JS_EVENT_BUTTON) return std::nullopt;
+  if (event.number == kDeadmanButton && (!is_initial || event.value == 0)) sticks_.deadman = event.value != 0;
+  if (event.value == 0 || (is_initial && event.number != kEmergencyButton)) return std::nullopt;
   const auto found = std::ranges::find(kButtons, unsigned{event.number}, &std::pair<unsigned, Action>::first);
   return found == kButtons.end() ? std::nullopt : std::optional(found->second);
 }

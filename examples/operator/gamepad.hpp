@@ -20,7 +20,8 @@
 namespace kenaf::teleop {
 
 // What the gamepad's events add up to. A dead-man that is held when the gamepad is plugged in counts only once it
-// was let go and pressed.
+// was let go and pressed. The kernel tells where everything is when the device is opened, and again where it had to drop
+// events because nobody read them: then a dead-man or a cross that is let go of counts, and a pressed emergency stop does.
 class GamepadState {
  public:
   // The action of a button that was pressed, if it has one.

@@ -217,6 +217,27 @@ TEST_CASE("G1 a gamepad by the kernel's events") {
   CHECK_FALSE(pad.cross());
 }
 
+TEST_CASE("G1 after dropped events what was let go of is let go of, and the emergency stop is not lost") {
+  GamepadState pad;
+  pad.take(event(kButton, 4, 1));
+  pad.take(event(kAxis, 7, -32767));
+  REQUIRE(pad.sticks().deadman);
+  REQUIRE(pad.cross() == Action::front_up);
+  // the kernel tells everything anew: the dead-man and A are still held, and so is the cross
+  CHECK_FALSE(pad.take(event(kButton | kInitial, 0, 1)));
+  CHECK_FALSE(pad.take(event(kButton | kInitial, 4, 1)));
+  pad.take(event(kAxis | kInitial, 7, -32767));
+  CHECK(pad.sticks().deadman);
+  CHECK(pad.cross() == Action::front_up);
+  // and once more: both were let go of, and B is pressed
+  CHECK_FALSE(pad.take(event(kButton | kInitial, 4, 0)));
+  pad.take(event(kAxis | kInitial, 7, 0));
+  CHECK_FALSE(pad.sticks().deadman);
+  CHECK_FALSE(pad.cross());
+  CHECK(pad.take(event(kButton | kInitial, 1, 1)) == Action::emergency_stop);
+  CHECK_FALSE(pad.take(event(kButton | kInitial, 1, 0)));
+}
+
 TEST_CASE("G1 a gamepad that is unplugged while it drives lets go of the dead-man, plugged in again it counts anew") {
   // A pipe with a name gives the same bytes, and the same end, as a device that is unplugged.
   const support::TemporaryFolder folder;
