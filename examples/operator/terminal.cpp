@@ -13,7 +13,7 @@ namespace kenaf::teleop {
 namespace {
 
 constexpr int kEscape_ms = 25;  // after an escape: what comes later is no part of a key's sequence
-constexpr int kCtrlC = 3;
+constexpr int kCtrlC = 3, kEscape = 27;
 
 void define_tones() {
   if (!has_colors()) return;
@@ -72,6 +72,20 @@ std::string name_of_key(int key) {
   }
 }
 
+// After an escape: takes the rest of a key's sequence that terminfo does not know (control-left is "\x1b[1;5D"), whose
+// digits would be keys of their own. A key that was pressed after Esc, or with Alt, stays: it may be the emergency
+// stop.
+void skip_unknown_sequence() {
+  const auto is_of_sequence = [](int byte) { return byte >= ' ' && byte <= '~'; };
+  int byte = getch();
+  if (byte == '[' || byte == 'O') {
+    do byte = getch();
+    while (is_of_sequence(byte) && (byte < '@' || byte == '['));  // "\x1b[[A" is F1 on Linux' console
+    if (is_of_sequence(byte)) return;
+  }
+  if (byte != ERR) ungetch(byte);
+}
+
 }  // namespace
 
 Terminal::Terminal() {
@@ -113,7 +127,9 @@ void Terminal::show(const Canvas& canvas) {
 
 std::optional<std::string> Terminal::key() {
   const int key = getch();
-  return key == ERR ? std::nullopt : std::optional(name_of_key(key));
+  if (key == ERR) return std::nullopt;
+  if (key == kEscape) skip_unknown_sequence();
+  return name_of_key(key);
 }
 
 }  // namespace kenaf::teleop

@@ -18,7 +18,7 @@ class Terminal {
 
   // Says so instead where the terminal is smaller than the canvas.
   void show(const Canvas& canvas);
-  // A key that came, without waiting; nullopt: none did. Unknown ones are "?".
+  // A key that came, without waiting; nullopt: none did. Unknown ones are "?", whatever bytes the terminal sends for them.
   std::optional<std::string> key();
 };
 

@@ -5,6 +5,7 @@
 //   C2 The screen shows what the status says; a terminal that becomes too small is told so, and keys act even so.
 //   C3 Ended by a key or by a signal, it says Bye and leaves the terminal as it was.
 //   C4 Without a terminal it says what to do.
+//   C5 The bytes of a key that the terminal's description lacks are no keys of their own.
 // Nothing here is asked to come within a time: each is waited for, at most 20 s.
 #include <pty.h>
 #include <signal.h>
@@ -22,6 +23,7 @@
 #include <thread>
 
 #include "examples/operator/link.hpp"
+#include "examples/operator/postures.hpp"
 #include "examples/operator/udp.hpp"
 #include "tests/support/process.hpp"
 
@@ -34,12 +36,12 @@ const std::string kProgram = KENAF_BIN_DIR "/operator_console";
 
 class ConsoleInTerminal {
  public:
-  ConsoleInTerminal() : socket_(UdpSocket::bound_to(resolve("127.0.0.1:0"))) {
+  explicit ConsoleInTerminal(const char* terminal = "xterm") : socket_(UdpSocket::bound_to(resolve("127.0.0.1:0"))) {
     const std::string control = "127.0.0.1:" + std::to_string(socket_.port());
     winsize size{24, 80, 0, 0};
     pid_ = ::forkpty(&master_, nullptr, nullptr, &size);
     if (pid_ == 0) {
-      ::setenv("TERM", "xterm", 1);
+      ::setenv("TERM", terminal, 1);
       ::execl(kProgram.c_str(), kProgram.c_str(), "--control", control.c_str(), "--gamepad", "none", nullptr);
       ::_exit(127);
     }
@@ -168,6 +170,24 @@ TEST_CASE("C1 C2 keys in a terminal become wishes, statuses a screen") {
   console.type("Q");
   CHECK(console.exit_status() == 0);
   CHECK(console.eventually([&] { return console.said_bye(); }));
+}
+
+TEST_CASE("C5 keys that the terminal's description lacks do nothing, and a key after Esc is not lost") {
+  ConsoleInTerminal console("screen");  // which knows no key with control or shift
+  REQUIRE(console.eventually([&] { return console.screen_has("operator's console"); }));
+  // control-left, shift-F5, F5 of Linux' console, control-End: in each is the key of a posture or of the emergency stop
+  for (const char* sequence : {"\x1b[1;5D", "\x1b[15;2~", "\x1b[[E", "\x1bO5F"}) console.type(sequence);
+  console.type("3");
+  REQUIRE(console.eventually([&] { return console.wish().flipper_order > 0; }));
+  CHECK(console.wish().flipper_order == 1);
+  CHECK(console.wish().flipper_deg == kPostures[2].flipper_deg);
+  CHECK_FALSE(console.wish().emergency_stop);
+  console.type("\x1b");
+  console.type("4");
+  REQUIRE(console.eventually([&] { return console.wish().flipper_order == 2; }));
+  console.type("\x1b\x1b[1;5De");
+  REQUIRE(console.eventually([&] { return console.wish().emergency_stop; }));
+  CHECK(console.wish().flipper_order == 2);
 }
 
 TEST_CASE("C3 a signal or a key ends it, and leaves the terminal as it was") {
