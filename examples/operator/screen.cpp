@@ -107,8 +107,12 @@ std::string words_of(const Status& status) {
   return "";
 }
 
+std::string figure(bool has, double value, int digits) {
+  return has ? fmt::format("{:.{}f}", value, digits) : "-";
+}
+
 std::string measured(bool has, double value, int digits) {
-  return has ? fmt::format("{:7.{}f}", value, digits) : "      -";
+  return fmt::format("{:>7}", figure(has, value, digits));
 }
 
 template <std::size_t n>
@@ -274,14 +278,18 @@ std::string plain_line(const View& view) {
   const std::optional<double> silence_s = view.health.silence_s(view.now_s);
   if (view.status == nullptr || !silence_s) return fmt::format("nothing heard from {}", view.control);
   const Status& status = *view.status;
-  std::string line = fmt::format(
-      "{:<14} t {:.2f} s  rtt {:.0f} ms  heard {:.2f} s ago  lost {:.0f}/{:.0f} %  tracks {:.0f} {:.0f} mm/s  nose up "
-      "{:.1f}  "
-      "flippers {:.0f} {:.0f} {:.0f} {:.0f}  battery {:.1f} V",
-      name_of(status.mode), status.robot_time_s, 1e3 * view.health.round_trip_s().value_or(0), *silence_s,
-      view.health.loss_up_percent(), view.health.loss_down_percent(), status.track_mmps[kLeft],
-      status.track_mmps[kRight], -status.posture_deg[1], status.flipper_deg[kFrontLeft],
-      status.flipper_deg[kFrontRight], status.flipper_deg[kRearLeft], status.flipper_deg[kRearRight], status.battery_v);
+  const auto if_has = [&](std::uint32_t field, double value, int digits) {
+    return figure((status.fields & field) != 0, value, digits);
+  };
+  std::string line =
+      fmt::format("{:<14} t {:.2f} s  rtt {:.0f} ms  heard {:.2f} s ago  lost {:.0f}/{:.0f} %", name_of(status.mode),
+                  status.robot_time_s, 1e3 * view.health.round_trip_s().value_or(0), *silence_s,
+                  view.health.loss_up_percent(), view.health.loss_down_percent());
+  line += "  tracks";
+  for (const double mmps : status.track_mmps) line += ' ' + if_has(kHasEncoders, mmps, 0);
+  line += " mm/s  nose up " + if_has(kHasPosture, -status.posture_deg[1], 1) + "  flippers";
+  for (const double deg : status.flipper_deg) line += ' ' + if_has(kHasFlippers, deg, 0);
+  line += "  battery " + if_has(kHasBattery, status.battery_v, 1) + " V";
   if (status.mode == Mode::halted) line += fmt::format("  halted by {}", name_of(status.halt));
   if (status.mode == Mode::no_robot) line += fmt::format("  {}", teleop::view(status.message));
   return line;

@@ -49,7 +49,8 @@ void draw_posture(Canvas& canvas, std::size_t row, std::size_t column, const Sta
 
 Canvas draw_screen(const View& view);
 
-// Such as "driving  rtt 203 ms  silence 0.04 s  loss 5/4 %  tracks 200 200 mm/s  nose up 23.4  x 842 mm ...".
+// Such as "driving  t 8.10 s  rtt 203 ms  heard 0.04 s ago  lost 5/4 %  tracks 200 200 mm/s  nose up 23.4  flippers 57 57 0 0 ...".
+// "-" stands for a figure that was not measured.
 std::string plain_line(const View& view);
 
 }  // namespace kenaf::teleop

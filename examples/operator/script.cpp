@@ -33,18 +33,22 @@ double flippers_off_deg(const Status& status, const Desk& desk) {
   return largest;
 }
 
-double value_of(std::string_view name, const Status& status, const Desk& desk) {
+// Nothing where it was not measured: the 0 that stands there then is no reading.
+std::optional<double> value_of(std::string_view name, const Status& status, const Desk& desk) {
+  const auto measured = [&](std::uint32_t field, double value) {
+    return (status.fields & field) != 0 ? std::optional(value) : std::nullopt;
+  };
   const bool has_pose = (status.fields & kHasPose) != 0;
   if (name == "time_s") return status.robot_time_s;
-  if (name == "x_mm") return has_pose ? status.pose_mm[0] : status.odometry[0];
-  if (name == "y_mm") return has_pose ? status.pose_mm[1] : status.odometry[1];
-  if (name == "z_mm") return status.pose_mm[2];
-  if (name == "nose_up_deg") return -status.posture_deg[1];
-  if (name == "roll_deg") return status.posture_deg[0];
-  if (name == "yaw_deg") return status.odometry[2];
-  if (name == "track_mmps") return (status.track_mmps[kLeft] + status.track_mmps[kRight]) / 2;
-  if (name == "flipper_off_deg") return flippers_off_deg(status, desk);
-  return status.battery_v;
+  if (name == "x_mm") return has_pose ? status.pose_mm[0] : measured(kHasEncoders, status.odometry[0]);
+  if (name == "y_mm") return has_pose ? status.pose_mm[1] : measured(kHasEncoders, status.odometry[1]);
+  if (name == "z_mm") return measured(kHasPose, status.pose_mm[2]);
+  if (name == "nose_up_deg") return measured(kHasPosture, -status.posture_deg[1]);
+  if (name == "roll_deg") return measured(kHasPosture, status.posture_deg[0]);
+  if (name == "yaw_deg") return measured(kHasEncoders, status.odometry[2]);
+  if (name == "track_mmps") return measured(kHasEncoders, (status.track_mmps[kLeft] + status.track_mmps[kRight]) / 2);
+  if (name == "flipper_off_deg") return measured(kHasFlippers, flippers_off_deg(status, desk));
+  return measured(kHasBattery, status.battery_v);
 }
 
 class LineReader {
@@ -170,8 +174,9 @@ std::string words_of(const Condition& condition) {
 
 bool holds(const Condition& condition, const Status& status, const Desk& desk) {
   if (condition.comparison == '=') return name_of(status.mode) == condition.word;
-  const double value = value_of(condition.name, status, desk);
-  return condition.comparison == '>' ? value > condition.number : value < condition.number;
+  const std::optional<double> value = value_of(condition.name, status, desk);
+  if (!value) return false;
+  return condition.comparison == '>' ? *value > condition.number : *value < condition.number;
 }
 
 Script read_script(std::string_view text) {

@@ -33,6 +33,7 @@ struct Condition {
   double number;
   std::string word;
 };
+// False of what was not measured.
 bool holds(const Condition& condition, const Status& status, const Desk& desk);
 
 struct Step {

@@ -101,6 +101,13 @@ TEST_CASE("V2 what was not measured is not shown as a number") {
   CHECK(has(text, "driven       -      -  mm/s"));
   CHECK_FALSE(has(text, "nose"));
   CHECK(has(text, "(by the tracks)"));
+
+  scene.health.heard(scene.status, 9.9);
+  CHECK(has(plain_line(scene.view(10)), "  tracks - - mm/s  nose up -  flippers - - - -  battery - V"));
+  scene.status.fields = kHasEncoders | kHasFlippers;
+  CHECK(has(plain_line(scene.view(10)), "  tracks 198 201 mm/s  nose up -  flippers 58 58 -20 -20  battery - V"));
+  scene.status.fields = status_to_show().fields;
+  CHECK(has(plain_line(scene.view(10)), "  nose up 23.4  flippers 58 58 -20 -20  battery 25.6 V"));
 }
 
 TEST_CASE("V3 the posture is drawn as it is") {

@@ -3,9 +3,11 @@
 //   P2 A held key is pressed as a keyboard does: at once, after 0.4 s, then every 40 ms; and let go at the end.
 //   P3 `within` counts the robot's time; silence has a limit of its own.
 //   P4 After a halt he notices, lets go, and presses again.
+//   P5 Nobody sees what was not measured.
 #include "examples/operator/script.hpp"
 
 #include <catch2/catch.hpp>
+#include <utility>
 #include <vector>
 
 using namespace kenaf::teleop;
@@ -115,6 +117,7 @@ TEST_CASE("P1 flippers are there only once the control process has heard of them
   Desk desk;
   const Condition there{"flipper_off_deg", '<', 5, {}};
   Status status = status_at(1);
+  status.fields = kHasFlippers;
   CHECK(holds(there, status, desk));
   desk.act(Action::posture_2, 0, &status);
   CHECK_FALSE(holds(there, status, desk));  // order 1 is on its way
@@ -124,6 +127,28 @@ TEST_CASE("P1 flippers are there only once the control process has heard of them
   CHECK_FALSE(holds(there, status, desk));
   status.flipper_deg = {4, 0, 0, 0};
   CHECK(holds(there, status, desk));
+}
+
+TEST_CASE("P5 of what was not measured no condition holds") {
+  const Desk desk;
+  Status status = status_at(1);
+  const auto holds_beside_zero = [&](const std::string& name) {
+    return holds({name, '<', 1, {}}, status, desk) || holds({name, '>', -1, {}}, status, desk);
+  };
+  using Field = std::pair<const char*, std::uint32_t>;
+  for (const auto& [name, field] :
+       {Field{"x_mm", kHasPose}, Field{"x_mm", kHasEncoders}, Field{"y_mm", kHasEncoders}, Field{"z_mm", kHasPose},
+        Field{"nose_up_deg", kHasPosture}, Field{"roll_deg", kHasPosture}, Field{"yaw_deg", kHasEncoders},
+        Field{"track_mmps", kHasEncoders}, Field{"flipper_off_deg", kHasFlippers}, Field{"battery_v", kHasBattery}}) {
+    INFO(name);
+    status.fields = ~std::uint32_t{0} & ~field;
+    if (std::string_view(name) == "x_mm" || std::string_view(name) == "y_mm") status.fields = 0;  // either will do
+    CHECK_FALSE(holds_beside_zero(name));
+    status.fields = field;
+    CHECK(holds_beside_zero(name));
+  }
+  status.fields = 0;
+  CHECK(holds({"time_s", '>', 0.5, {}}, status, desk));
 }
 
 TEST_CASE("P4 after a halt he notices, lets go, and presses again") {
