@@ -65,6 +65,5 @@ static int climb(void) {
 int main(void) {
   if (!check("init", hrt_kenaf_init())) return 1;
   int done = climb();
-  hrt_close();
-  return done ? 0 : 1;
+  return check("close", hrt_close()) && done ? 0 : 1;
 }

@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
   }
   if (result != HRT_OK) fprintf(stderr, "save_picture: %s: %s\n", hrt_error_name(result), hrt_last_error());
   free(file);
-  hrt_close();
-  return saved == count ? 0 : 1;
+  result = hrt_close();
+  if (result != HRT_OK) fprintf(stderr, "save_picture: close: %s: %s\n", hrt_error_name(result), hrt_last_error());
+  return result == HRT_OK && saved == count ? 0 : 1;
 }

@@ -4,17 +4,22 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* Says what failed; true where it did. */
+static int failed(const char* what, int result) {
+  if (result == HRT_OK) return 0;
+  fprintf(stderr, "status_monitor: %s: %s: %s\n", what, hrt_error_name(result), hrt_last_error());
+  return 1;
+}
+
 int main(int argc, char** argv) {
   int count = argc > 1 ? atoi(argv[1]) : 10;
   hrt_config config = hrt_config_default();
   int result = hrt_config_load(&config);
   config.reset_robot = 0;
   if (result == HRT_OK) result = hrt_kenaf_init_with(&config);
-  for (int i = 0; i < count && result == HRT_OK; ++i) {
-    if (i > 0) result = hrt_sleep(0.5);
-    if (result == HRT_OK) result = hrt_show_status();
+  int bad = failed("init", result);
+  for (int i = 0; i < count && !bad; ++i) {
+    bad = (i > 0 && failed("sleep", hrt_sleep(0.5))) || failed("state", hrt_show_status());
   }
-  if (result != HRT_OK) fprintf(stderr, "status_monitor: %s: %s\n", hrt_error_name(result), hrt_last_error());
-  hrt_close();
-  return result == HRT_OK ? 0 : 1;
+  return failed("close", hrt_close()) || bad;
 }

@@ -15,6 +15,11 @@ std::string words_of(int result) {
   return fmt::format("{}: {}", hrt_error_name(result), hrt_last_error());
 }
 
+// A recording may be incomplete, or drives did not show that they stopped.
+void log_close(int result) {
+  if (result != HRT_OK) fmt::print(stderr, "operator_control: the robot was closed, but {}\n", words_of(result));
+}
+
 // "run.csv" for the first time, then "run-2.csv": a robot that was lost does not cost the recording until then.
 std::string recording(const std::string& path, int times_opened) {
   if (path.empty() || times_opened <= 1) return path;
@@ -30,7 +35,7 @@ Robot::Robot(const hrt_config& config) : config_(config), record_(config.record)
 
 Robot::~Robot() {
   if (opening_.valid()) opening_.wait();
-  hrt_close();
+  log_close(hrt_close());
 }
 
 void Robot::begin_opening() {
@@ -39,7 +44,7 @@ void Robot::begin_opening() {
   std::snprintf(config.record, sizeof config.record, "%s", recording(record_, times_opened_ + 1).c_str());
   if (message_.empty()) message_ = "the robot is being opened";
   opening_ = std::async(std::launch::async, [config] {
-    hrt_close();
+    log_close(hrt_close());
     const int result = hrt_kenaf_init_with(&config);
     return Opened{result, result == HRT_OK ? "" : words_of(result)};  // words are kept for each thread
   });
