@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "camera/server/view_name.hpp"
 #include "live/json_writer.hpp"
 
 namespace kenaf::live {
@@ -112,6 +113,7 @@ std::string inventory_message(const WorldState& state) {
   for (const RobotState& robot : state.robots) {
     out.comma().open('{').key("id").integer(robot.id).key("name").text(robot.name);
     out.key("class").text(robot.class_name).key("placed").boolean(!robot.has_client);
+    out.key("view").text(kenaf::camera::view_of(robot.robot));
     write_dimensions(out, robot.dimensions);
     write_cameras(out, robot);
     out.close('}');

@@ -18,7 +18,16 @@ std::string quoted(std::string_view text) {
   return '"' + out + '"';
 }
 
+bool is_meant(const RobotSnapshot& robot, std::string_view words) {
+  if (words.starts_with('#')) return words == view_of(robot.id);
+  return usarsim::equal_ignoring_case(robot.name, words);
+}
+
 }  // namespace
+
+std::string view_of(physics::RobotId robot) {
+  return '#' + std::to_string(static_cast<std::uint32_t>(robot));
+}
 
 std::optional<CameraId> find_view(const std::vector<RobotSnapshot>& robots, std::string_view view) {
   const std::size_t slash = view.rfind('/');
@@ -27,7 +36,7 @@ std::optional<CameraId> find_view(const std::vector<RobotSnapshot>& robots, std:
   const std::string_view camera_name = view.substr(names_robot ? slash + 1 : 0);
   for (auto found = robots.rbegin(); found != robots.rend(); ++found) {  // clang 14 knows no std::views::reverse
     const RobotSnapshot& robot = *found;
-    if (names_robot && !usarsim::equal_ignoring_case(robot.name, robot_name)) continue;
+    if (names_robot && !is_meant(robot, robot_name)) continue;
     const auto& cameras = robot.description->cameras;
     for (std::size_t i = 0; i < cameras.size(); ++i) {
       const bool is_default = view.empty();

@@ -31,6 +31,20 @@ TEST_CASE("a view is a camera of a robot, of the one placed last that has it whe
   }
 }
 
+TEST_CASE("a robot is meant by its id where others have its name") {
+  const std::vector<RobotSnapshot> robots{robot(1, "Kenaf", "kenaf"), robot(12, "Kenaf", "kenaf"),
+                                          robot(13, "#1", "kenaf")};
+  using physics::RobotId;
+  CHECK(view_of(RobotId{12}) == "#12");
+  CHECK(find_view(robots, "Kenaf/Camera") == CameraId{RobotId{12}, 0});
+  CHECK(find_view(robots, "#1/Camera") == CameraId{RobotId{1}, 0});  // not the robot that is called so
+  CHECK(find_view(robots, "#12/birdseye") == CameraId{RobotId{12}, 1});
+  for (const char* none : {"#2/Camera", "#/Camera", "#01/Camera", "#1", "#1/Third", "#-1/Camera"}) {
+    INFO(none);
+    CHECK(find_view(robots, none) == std::nullopt);
+  }
+}
+
 TEST_CASE("where there is none, words say what there is instead") {
   const std::vector<RobotSnapshot> kenaf{robot(1, "R1", "kenaf")}, bus{robot(1, "Bus", "p2at")};
   CHECK(no_such_view(kenaf, "x\n\"") == "there is no camera \"x?\"\"; there is R1/Camera, R1/BirdsEye");

@@ -144,6 +144,8 @@ TEST_CASE("an inventory says what everything is, and is new when somebody comes 
   CHECK(robot["track"]["length"] == 0.58);
   CHECK(robot["flipper"]["at"] == json::array({0.225, 0.17, -0.025}));
   CHECK(robot["max_speed"] == 0.5);
+  one.robots[0].robot = kenaf::physics::RobotId{31};
+  CHECK(json::parse(inventory_message(one))["robots"][0]["view"] == "#31");
   two = one;
   two.robots[0].X_WB.p.x() = 1;
   CHECK(same_inventory(one, two));

@@ -83,6 +83,7 @@ TEST_CASE("a picture's path names a camera, alone or of a robot") {
   CHECK(path("/Camera.mjpg") == "Camera stream");
   CHECK(path("/R1/Camera.jpg") == "R1/Camera picture");
   CHECK(path("/a%20b%2fc/Camera.mjpg") == "a b/c/Camera stream");
+  CHECK(path("/%233/Camera.mjpg") == "#3/Camera stream");
   CHECK(path("/%4.jpg") == "%4 picture");
   CHECK(path("/100%zz.jpg") == "100%zz picture");
   for (const char* none : {"", "/", "/.jpg", "Camera.jpg", "/Camera", "/Camera.jpg/"}) CHECK(path(none) == "none");
