@@ -46,7 +46,7 @@ const link = connect({
   refused(message) { health.refused(message.reason); },
 });
 const driving = createDriving(world, link);
-const timeControls = createTimeControls(world, link);
+const timeControls = createTimeControls(world, link, driving.letGoOfKeys);
 const instruments = createInstruments();
 const posture = createPosture();
 const timeline = createTimeline();
@@ -54,9 +54,11 @@ const pictures = createPictures(world, chosen);
 const cameraHand = createCameraHand(link, driving);
 const health = createLinkHealth(world, link);
 
-// Driving and figures work without it, where a browser has no WebGL.
+// Driving and figures work without it, where a browser has no WebGL. Pictures wait for it: their streams never end, and those of
+// a few windows are all the connections that a browser has to one server.
 let view = null;
 import("./view_3d.js").then(({ createView }) => {
   view = createView(world, chosen, health.refused);
   view.syncObjects();
-}).catch((error) => health.refused(`No 3D view: ${error.message}`));
+  return view.shown;
+}).catch((error) => health.refused(`No 3D view: ${error.message}`)).finally(pictures.start);

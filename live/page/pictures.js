@@ -1,5 +1,5 @@
 // What the cameras of the chosen robot see, and how old it is. A picture is MJPEG, which a browser shows by itself; its stream
-// is closed when nobody sees it, so that the server draws nothing for a hidden page.
+// is closed when nobody sees it, so that the server draws nothing for a hidden page. Nothing is fetched before start().
 import { address } from "./connection.js";
 
 const MOST = 4;            // a browser has six connections to one server
@@ -8,10 +8,10 @@ const OLD_S = 0.5;         // while time runs: something is too slow
 
 export function createPictures(world, chosen) {
   const section = document.getElementById("pictures");
-  let shown = "", figures = [];
+  let started = false, shown = "", figures = [];
 
   function fetchPicture(picture, robot, camera) {
-    picture.src = address(`/camera/${encodeURIComponent(robot.name)}/${encodeURIComponent(camera.name)}.mjpg`);
+    picture.src = address(`/camera/${encodeURIComponent(robot.view)}/${encodeURIComponent(camera.name)}.mjpg`);
   }
 
   function clear(words) {
@@ -51,7 +51,7 @@ export function createPictures(world, chosen) {
     if (!world.pictures) words = "the cameras are off";
     else if (!robot) words = "no robot, no picture";
     else if (cameras.length === 0) words = "this robot has no camera";
-    else if (!document.hidden && world.you) wanted = `${robot.about.id} ${robot.about.name}`;
+    else if (started && !document.hidden && world.you) wanted = robot.about.view;
     if (wanted !== shown || (!wanted && section.textContent !== words)) {
       shown = wanted;
       if (wanted) build(robot.about); else clear(words);
@@ -65,5 +65,11 @@ export function createPictures(world, chosen) {
 
   document.addEventListener("visibilitychange", update);
   update();
-  return { update };
+  return {
+    update,
+    start() {
+      started = true;
+      update();
+    },
+  };
 }
