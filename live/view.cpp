@@ -1,10 +1,12 @@
 #include "live/view.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/websocket.hpp>
 #include <chrono>
+#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
@@ -163,7 +165,11 @@ std::unique_ptr<View> open_view(server::WorldServer& world, const ViewOptions& o
   if (!options.on) return nullptr;
   try {
     auto view = std::make_unique<View>(world, options, ViewLimits{}, cameras);
-    spdlog::info("live view: {}", view->url());
+    const std::string url = view->url();
+    spdlog::info("live view: {}", url);
+    // A token that was made is known from here alone, however little is logged.
+    const bool made_token = options.token.empty() && url.find("#token=") != std::string::npos;
+    if (made_token && !spdlog::should_log(spdlog::level::info)) fmt::print(stderr, "live view: {}\n", url);
     return view;
   } catch (const std::runtime_error& error) {
     spdlog::warn("no live view: {}", error.what());

@@ -43,7 +43,8 @@ class View {
   std::unique_ptr<Implementation> impl_;
 };
 
-// As programs start it: says in the log where it is, or why it is not there, and the program goes on without it.
+// As programs start it: says in the log where it is, or why it is not there, and the program goes on without it. With a token
+// that was made it says on standard error where it is, if the log does not.
 std::unique_ptr<View> open_view(server::WorldServer& world, const ViewOptions& options, camera::Feed* cameras);
 
 }  // namespace kenaf::live

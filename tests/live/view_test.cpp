@@ -1,13 +1,18 @@
 // The live view through real sockets. No test depends on how fast this machine is.
-#include <fstream>
+#include <fcntl.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <vector>
 
 #include "protocol/usarsim_message.hpp"
 #include "tests/live/served_world.hpp"
 #include "tests/live/web_client.hpp"
+#include "tests/support/process.hpp"
 #include "tests/support/usarsim_client.hpp"
 
 #if defined(__has_feature)
@@ -131,6 +136,33 @@ TEST_CASE("another address than loopback makes itself a token") {
   CHECK(View(server, anywhere).url().find("#token=") != std::string::npos);
   anywhere.token = "chosen";
   CHECK(View(server, anywhere).url().ends_with("#token=chosen"));
+}
+
+TEST_CASE("a token that was made is told, however little is logged") {
+  server::ServerOptions options;
+  options.port = 0;
+  server::WorldServer server(options);
+  support::TemporaryFolder folder;
+  const auto said_with = [&](const ViewOptions& view_options) {
+    const std::string path = folder.path() / "stderr";
+    const int before = ::dup(STDERR_FILENO),
+              file = ::open(path.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0600);
+    const auto level = spdlog::get_level();
+    spdlog::set_level(spdlog::level::off);
+    ::dup2(file, STDERR_FILENO);
+    const std::string url = open_view(server, view_options, nullptr)->url();
+    ::dup2(before, STDERR_FILENO);
+    spdlog::set_level(level);
+    ::close(file);
+    ::close(before);
+    std::ifstream in(path);
+    const std::string said((std::istreambuf_iterator<char>(in)), {});
+    if (!said.empty()) CHECK(said == "live view: " + url + "\n");
+    return !said.empty();
+  };
+  CHECK(said_with({true, "0.0.0.0", 0, ""}));
+  CHECK_FALSE(said_with({true, "0.0.0.0", 0, "chosen"}));
+  CHECK_FALSE(said_with({true, "127.0.0.1", 0, ""}));
 }
 
 TEST_CASE("a view with a page that waits for an answer ends before its world, which never ran") {
