@@ -9,7 +9,7 @@ const clamp = (value, [least, most]) => Math.max(least, Math.min(most, value));
 const degrees = (radians) => radians * 180 / Math.PI;
 
 export function createCameraHand(link, driving) {
-  let wish = null, robotId = 0, spoke_ms = -Infinity, sent = "";
+  let wish = null, robotId = 0, wished_ms = -Infinity, unsaid = false, sent = "";
 
   // The first camera that turns or zooms, with where it is now; null where there is none, or the robot is not yours.
   function camera() {
@@ -18,8 +18,11 @@ export function createCameraHand(link, driving) {
     return index < 0 || !robot.now.cameras ? null : { robot, about: robot.about.cameras[index], now: robot.now.cameras[index] };
   }
 
-  function speak(seen) {
-    spoke_ms = performance.now();
+  // A slider changes more often than the server reads: its newest place goes with the next beat.
+  function speak() {
+    const seen = camera();
+    if (!seen || !wish || !unsaid || !link.isHeard()) return;
+    unsaid = false;
     const { about, robot } = seen;
     const order = { type: "look", robot: robot.about.id, camera: about.name, fov: wish.fov };
     if (about.pan) order.pan = wish.pan;
@@ -58,7 +61,8 @@ export function createCameraHand(link, driving) {
     wish.pan = clamp(wish.pan, seen.about.pan ?? [0, 0]);
     wish.tilt = clamp(wish.tilt, seen.about.tilt ?? [0, 0]);
     wish.fov = clamp(wish.fov, seen.about.fov);
-    speak(seen);
+    unsaid = true;
+    wished_ms = performance.now();
     show(seen);
   }
   by("look-pan").addEventListener("input", (event) => change((to) => { to.pan = -event.target.value * Math.PI / 180; }));
@@ -67,7 +71,7 @@ export function createCameraHand(link, driving) {
     to.fov = fov[1] * (fov[0] / fov[1]) ** (event.target.value / 100);
   }));
 
-  setInterval(() => {
+  function turnByKeys() {
     const held = driving.held, sign = (plus, minus) => (held.has(plus) ? 1 : 0) - (held.has(minus) ? 1 : 0);
     const pan = sign("look-left", "look-right"), tilt = sign("look-down", "look-up"), zoom = sign("zoom-out", "zoom-in");
     if (held.has("look-ahead")) change((to) => { to.pan = to.tilt = 0; });
@@ -78,6 +82,10 @@ export function createCameraHand(link, driving) {
       to.tilt += tilt * TURN * step_s;
       to.fov *= Math.exp(zoom * ZOOM * step_s);
     });
+  }
+  setInterval(() => {
+    turnByKeys();
+    speak();
   }, STEP_MS);
 
   return {
@@ -88,8 +96,9 @@ export function createCameraHand(link, driving) {
         wish = null;
         return;
       }
-      const follows = !wish || robotId !== seen.robot.about.id || performance.now() > spoke_ms + FOLLOW_MS;
+      const follows = !wish || robotId !== seen.robot.about.id || performance.now() > wished_ms + FOLLOW_MS;
       if (!follows) return;
+      unsaid = false;
       robotId = seen.robot.about.id;
       wish = { pan: seen.now.pan ?? 0, tilt: seen.now.tilt ?? 0, fov: seen.now.fov };
       sent = "";

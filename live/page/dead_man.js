@@ -1,5 +1,5 @@
 // What the operator holds down, by keys, buttons and the stick. Everything is let go of when the window loses the focus or
-// is hidden: nobody drives who does not look.
+// is hidden: nobody drives who does not look. So it is when a list or a menu opens, which keeps to itself that a key came up.
 const KEYS = {
   KeyW: "forward", ArrowUp: "forward", KeyS: "back", ArrowDown: "back",
   KeyA: "left", ArrowLeft: "left", KeyD: "right", ArrowRight: "right",
@@ -11,16 +11,19 @@ const KEYS = {
 // Whether the element with the focus needs the key for itself.
 export function keyIsTaken(event) {
   if (event.ctrlKey || event.altKey || event.metaKey) return true;
-  if (event.target instanceof HTMLSelectElement) return true;
+  if (event.target instanceof HTMLSelectElement) return event.key !== "Escape";
   return event.target instanceof HTMLInputElement && event.code.startsWith("Arrow");
 }
 
 // `active()`: whether keys drive now. `changed()`: after each change.
 export function watchHands(active, changed) {
-  const hands = { held: new Set(), stick: { x: 0, y: 0 }, letGo };
+  const hands = { held: new Set(), stick: { x: 0, y: 0 }, areFull, letGo };
+  let pointer = null;   // the one that has the stick
 
+  function areFull() { return hands.held.size > 0 || hands.stick.x !== 0 || hands.stick.y !== 0; }
   function letGo() {
     hands.held.clear();
+    pointer = null;   // the stick moves again once it is pressed again
     hands.stick.x = hands.stick.y = 0;
     drawStick();
     for (const button of document.querySelectorAll("[data-held]")) button.removeAttribute("data-held");
@@ -44,7 +47,17 @@ export function watchHands(active, changed) {
   });
   addEventListener("blur", letGo);
   addEventListener("pagehide", letGo);
+  addEventListener("contextmenu", (event) => { if (!event.defaultPrevented) letGo(); });
   document.addEventListener("visibilitychange", () => { if (document.hidden) letGo(); });
+
+  // After a choice by mouse or finger the keys drive again; one by the keyboard goes on in its list.
+  for (const select of document.querySelectorAll("select")) {
+    let byPointer = false;
+    select.addEventListener("focus", letGo);
+    select.addEventListener("pointerdown", () => { byPointer = true; letGo(); });
+    select.addEventListener("keydown", () => { byPointer = false; });
+    select.addEventListener("change", () => { if (byPointer) select.blur(); });
+  }
 
   for (const button of document.querySelectorAll("[data-hold]")) {
     const name = button.dataset.hold;
@@ -65,20 +78,36 @@ export function watchHands(active, changed) {
   function drawStick() {
     knob.style.translate = `${hands.stick.x * 2.5}rem ${-hands.stick.y * 2.5}rem`;
   }
+  function restStick() {
+    pointer = null;
+    hands.stick.x = hands.stick.y = 0;
+    drawStick();
+    changed();
+  }
+  // A pointer moves more often than the server reads: what it changes goes with the next repeated word, begin and end at once.
   function moveStick(event) {
     const box = stick.getBoundingClientRect();
     const x = (event.clientX - box.x) / box.width * 2 - 1, y = 1 - (event.clientY - box.y) / box.height * 2;
     const length = Math.max(1, Math.hypot(x, y));
     const dead = (v) => (Math.abs(v) < 0.12 ? 0 : v);
+    const rested = hands.stick.x === 0 && hands.stick.y === 0;
     hands.stick.x = dead(x / length);
     hands.stick.y = dead(y / length);
     drawStick();
-    changed();
+    if (rested !== (hands.stick.x === 0 && hands.stick.y === 0)) changed();
   }
-  stick.addEventListener("pointerdown", (event) => { stick.setPointerCapture(event.pointerId); moveStick(event); });
-  stick.addEventListener("pointermove", (event) => { if (stick.hasPointerCapture(event.pointerId)) moveStick(event); });
+  stick.addEventListener("pointerdown", (event) => {
+    stick.setPointerCapture(event.pointerId);
+    pointer = event.pointerId;
+    moveStick(event);
+  });
+  stick.addEventListener("pointermove", (event) => {
+    if (event.pointerId !== pointer) return;
+    if (event.buttons && document.hasFocus()) moveStick(event); else letGo();
+  });
   for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
-    stick.addEventListener(end, () => { hands.stick.x = hands.stick.y = 0; drawStick(); changed(); });
+    stick.addEventListener(end, (event) => { if (event.pointerId === pointer) restStick(); });
   }
+  stick.addEventListener("contextmenu", (event) => event.preventDefault());   // a finger that rests on it opens none
   return hands;
 }

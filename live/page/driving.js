@@ -6,31 +6,49 @@ const REPEAT_MS = 50;   // ten words in the time after which the server takes si
 const by = (id) => document.getElementById(id);
 
 export function createDriving(world, link) {
-  let coming = 0;   // placed by this page, not in the inventory yet
-  const driving = { chosen: 0, update, placed, letGo, holding };
+  let coming = 0;    // placed by this page, not in the inventory yet
+  let leaving = 0;   // let go of or removed, though the newest state is from before
+  const driving = { chosen: 0, update, placed, holding };
   const hands = watchHands(() => holding() !== null, speak);
   driving.held = hands.held;
+  driving.letGoOfKeys = hands.letGo;
 
   const chosen = () => world.robots.get(driving.chosen) ?? null;
   // The robot that is yours, or null.
   function holding() {
     const robot = chosen();
-    return robot?.now && robot.now.holder === world.you ? robot : null;
+    return robot?.now && robot.now.holder === world.you && driving.chosen !== leaving ? robot : null;
   }
   const pace = () => Number(by("pace").value) / 100;
   const message = (robot) => ({ ...command(hands.held, hands.stick, pace(), robot.about), robot: driving.chosen });
 
+  // What is said on a dead link arrives when it is back, and is obeyed then: nothing but to stand.
   function speak() {
     const robot = holding();
-    if (robot) link.send(message(robot));
+    if (robot && (link.isHeard() || !isMoving(message(robot)))) link.send(message(robot));
     show();
   }
-  setInterval(() => { if (!document.hidden && holding()) link.send(message(holding())); }, REPEAT_MS);
+  setInterval(() => {
+    if (!link.isHeard()) {
+      if (hands.areFull()) hands.letGo();
+    } else if (!document.hidden && holding()) {
+      link.send(message(holding()));
+    }
+  }, REPEAT_MS);
 
-  function take() { if (chosen()) link.send({ type: "take", robot: driving.chosen }); }
-  function letGo() {
+  function take() {
+    if (!chosen()) return;
+    leaving = 0;
+    link.send({ type: "take", robot: driving.chosen });
+  }
+  function leave(word) {
     hands.letGo();
-    if (holding()) link.send({ type: "let-go", robot: driving.chosen });
+    link.send({ type: word, robot: driving.chosen });
+    leaving = driving.chosen;
+    show();
+  }
+  function letGo() {
+    if (holding()) leave("let-go"); else hands.letGo();
   }
   function placed(robot) {
     coming = robot;
@@ -39,7 +57,7 @@ export function createDriving(world, link) {
 
   function show() {
     const robot = chosen(), mine = holding();
-    const holder = robot?.now?.holder ?? 0;
+    const holder = driving.chosen === leaving ? 0 : robot?.now?.holder ?? 0;
     let state = "none", text = "Not driving";
     if (!robot) text = world.robots.size ? text : "No robot is in the world: place one, or start a program";
     else if (mine && isMoving(message(mine))) [state, text] = ["driving", `Driving ${mine.about.name}`];
@@ -60,6 +78,7 @@ export function createDriving(world, link) {
 
   // The list follows the robots; the choice stays while its robot does.
   function update() {
+    if (leaving && world.robots.get(leaving)?.now?.holder !== world.you) leaving = 0;
     const select = by("robot");
     const wanted = [...world.robots.values()].map(({ about }) => `${about.id}`);
     if (wanted.join() !== [...select.options].map((option) => option.value).join()) {
@@ -84,7 +103,7 @@ export function createDriving(world, link) {
   by("take").addEventListener("click", take);
   by("let-go").addEventListener("click", letGo);
   by("place").addEventListener("click", () => { letGo(); link.send({ type: "place" }); });
-  by("remove").addEventListener("click", () => { hands.letGo(); link.send({ type: "remove", robot: driving.chosen }); });
+  by("remove").addEventListener("click", () => leave("remove"));
   by("pace").addEventListener("input", show);
   addEventListener("keydown", (event) => {
     if (event.repeat || keyIsTaken(event)) return;

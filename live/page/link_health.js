@@ -1,13 +1,11 @@
 // Whether what is shown is still true: the age of the newest message, states that were dropped, the round trip.
-const STALE_MS = 500;
-
 export function createLinkHealth(world, link) {
   const chip = document.getElementById("link"), notice = document.getElementById("notice");
   let refused_ms = -1e9;
 
   function update() {
     const age_ms = link.received_ms === null ? Infinity : performance.now() - link.received_ms;
-    const bad = !link.open || age_ms > STALE_MS;
+    const bad = !link.isHeard();
     let text = "not connected";
     if (link.open) {
       const others = world.viewers > 1 ? ` \u00b7 ${world.viewers} viewers` : "";

@@ -3,12 +3,14 @@ import { keyIsTaken } from "./dead_man.js";
 
 const by = (id) => document.getElementById(id);
 
-export function createTimeControls(world, link) {
+// `letGoOfKeys()`: before a question, which keeps to itself that a key came up.
+export function createTimeControls(world, link, letGoOfKeys) {
   const pause = () => link.send({ type: "pause", on: !world.paused });
   by("pause").addEventListener("click", pause);
   by("step").addEventListener("click", () => link.send({ type: "step", time: 0.1 }));
   by("speed").addEventListener("change", (event) => link.send({ type: "speed", value: Number(event.target.value) }));
   by("reset").addEventListener("click", () => {
+    letGoOfKeys();
     if (confirm("Put the whole world back to its start? Programs that drive in it go on.")) link.send({ type: "reset" });
   });
   addEventListener("keydown", (event) => {

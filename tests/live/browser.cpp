@@ -144,6 +144,11 @@ void Browser::key(std::string_view code, bool down) {
   call("Input.dispatchKeyEvent", {{"type", down ? "rawKeyDown" : "keyUp"}, {"code", code}, {"key", code}});
 }
 
+void Browser::mouse(const std::string& what, double x, double y) {
+  call("Input.dispatchMouseEvent",
+       {{"type", what}, {"x", x}, {"y", y}, {"button", "left"}, {"buttons", 1}, {"clickCount", 1}});
+}
+
 json Browser::evaluate(const std::string& expression) {
   const json answer =
       call("Runtime.evaluate", {{"expression", expression}, {"returnByValue", true}, {"awaitPromise", true}});

@@ -26,6 +26,8 @@ class Browser {
   void resize(int width, int height, bool phone = false);
   void set_dark(bool dark);
   void key(std::string_view code, bool down);  // a KeyboardEvent.code: "KeyW"
+  // "mousePressed", "mouseMoved" or "mouseReleased" of the left button, which is down meanwhile.
+  void mouse(const std::string& what, double x, double y);
   // What the expression is worth; a promise is waited for. Throws where it throws.
   nlohmann::json evaluate(const std::string& expression);
   // Until the expression is true.

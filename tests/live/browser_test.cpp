@@ -4,57 +4,15 @@
 // What the robot does is asked of the world server by a second page, not of the browser that drives.
 #include <catch2/catch.hpp>
 #include <chrono>
-#include <filesystem>
 #include <memory>
 #include <thread>
 
-#include "tests/live/browser.hpp"
-#include "tests/live/served_world.hpp"
-#include "tests/live/web_client.hpp"
-#include "tests/support/process.hpp"
+#include "tests/live/browser_desk.hpp"
 #include "tests/support/usarsim_client.hpp"
 
 namespace kenaf::live {
 
-namespace {
-
 using nlohmann::json;
-
-struct Desk {
-  support::TemporaryFolder profile;
-  ServedWorld world{"", {}, "step-200"};
-  Browser browser{profile.path()};
-  std::filesystem::path pictures = std::filesystem::path(KENAF_BIN_DIR) / ".." / "live-view";
-
-  Desk() {
-    std::filesystem::create_directories(pictures);
-    browser.resize(1280, 800);
-    browser.open(world.url());
-    browser.wait_for("document.getElementById('link')?.dataset.state === 'good'");
-  }
-  // The state of the first robot, once `condition` holds of it.
-  template <typename Condition>
-  json robot_with(Condition condition) {
-    WebClient witness(world.port());  // its own each time: one that is not read for 10 s is let go of
-    REQUIRE(witness.open_websocket());
-    for (;;) {
-      const json state = witness.message_of("state");
-      if (!state["robots"].empty() && condition(state["robots"][0])) return state["robots"][0];
-    }
-  }
-  void state_is(const std::string& state) {
-    browser.wait_for("document.getElementById('drive-state').dataset.state === '" + state + "'");
-  }
-};
-
-bool drives(const json& robot) {
-  return robot["track_mps"][0] > 0.1;
-}
-bool stands(const json& robot) {
-  return robot["command"]["track"] == json::array({0, 0}) && std::abs(robot["track_mps"][0].get<double>()) < 0.01;
-}
-
-}  // namespace
 
 TEST_CASE("in a browser: keys held drive the robot, letting go of them stops it, and so does looking away") {
   Desk desk;
@@ -166,6 +124,27 @@ TEST_CASE("in a browser: both cameras' pictures are shown, turned by keys, and n
   desk.browser.wait_for(shown);
   CHECK(desk.browser.complaints().empty());
   for (const std::string& complaint : desk.browser.complaints()) UNSCOPED_INFO(complaint);
+}
+
+TEST_CASE("in a browser: of two robots of one name each shows its own pictures") {
+  Desk desk;
+  support::UsarsimClient one(desk.world.usarsim_port()), two(desk.world.usarsim_port());
+  one.send("INIT {ClassName USARBot.Kenaf} {Name Kenaf} {Location 0,0,0}\r\n");
+  two.send("INIT {ClassName USARBot.Kenaf} {Name Kenaf} {Location 0,3,0}\r\n");
+  desk.browser.wait_for("document.getElementById('robot').options.length === 2");
+  const std::string shown = "document.querySelector('#pictures img')?.naturalWidth === 640";
+  const auto address = [&] {
+    return desk.browser.evaluate("document.querySelector('#pictures img').src").get<std::string>();
+  };
+  desk.browser.wait_for(shown);
+  const std::string first = address();
+  desk.browser.evaluate(
+      "(() => { const list = document.getElementById('robot'); list.selectedIndex = 1;"
+      "  list.dispatchEvent(new Event('change')); })()");
+  desk.browser.wait_for(shown + " && document.querySelector('#pictures img').src !== '" + first + "'");
+  const std::string second = address();
+  CHECK(first.find("/camera/%23") != std::string::npos);
+  CHECK(second.find("/camera/%23") != std::string::npos);
 }
 
 TEST_CASE(
