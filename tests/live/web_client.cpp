@@ -83,7 +83,9 @@ void WebClient::send_text(std::string_view text) {
   send(frame);
 }
 
+// A long message comes in fragments, between which there may be pings: RFC 6455 section 5.4.
 std::optional<nlohmann::json> WebClient::message() {
+  std::string text;
   for (;;) {
     try {
       const std::string head = take(2);
@@ -97,7 +99,10 @@ std::optional<nlohmann::json> WebClient::message() {
       const int opcode = head[0] & 0x0f;
       if (opcode == 8) return std::nullopt;
       if (opcode == 9) send(std::string("\x8a\x80\0\0\0\0", 6));  // a ping: somebody is here
-      if (opcode == 1) return nlohmann::json::parse(payload);
+      if (opcode > 1) continue;
+      text += payload;
+      const bool is_last = (head[0] & 0x80) != 0;
+      if (is_last) return nlohmann::json::parse(text);
     } catch (const nlohmann::json::exception&) {
       throw;
     } catch (const std::runtime_error& error) {
