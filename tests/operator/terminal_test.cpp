@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
+#include <utmp.h>
 
 #include <array>
 #include <catch2/catch.hpp>
@@ -39,14 +40,19 @@ class ConsoleInTerminal {
   explicit ConsoleInTerminal(const char* terminal = "xterm") : socket_(UdpSocket::bound_to(resolve("127.0.0.1:0"))) {
     const std::string control = "127.0.0.1:" + std::to_string(socket_.port());
     winsize size{24, 80, 0, 0};
-    pid_ = ::forkpty(&master_, nullptr, nullptr, &size);
+    int slave = -1;
+    REQUIRE(::openpty(&master_, &slave, nullptr, nullptr, &size) == 0);
+    ::tcgetattr(master_, &before_);  // of the terminal, whose two ends share them; the console is quick to change them
+    pid_ = ::fork();
     if (pid_ == 0) {
+      ::close(master_);
+      ::login_tty(slave);
       ::setenv("TERM", terminal, 1);
       ::execl(kProgram.c_str(), kProgram.c_str(), "--control", control.c_str(), "--gamepad", "none", nullptr);
       ::_exit(127);
     }
+    ::close(slave);
     REQUIRE(pid_ > 0);
-    ::tcgetattr(master_, &before_);  // of the terminal, whose two ends share them
   }
   ~ConsoleInTerminal() {
     if (!has_ended_) ::kill(pid_, SIGKILL);
