@@ -194,6 +194,10 @@ std::span<const double> Run::column(std::string_view name) const {
   return values[static_cast<std::size_t>(found - columns.begin())];
 }
 
+bool any_measured(std::span<const double> column) {
+  return std::ranges::any_of(column, [](double value) { return !std::isnan(value); });
+}
+
 Run read_run(const std::filesystem::path& file) {
   const std::string name = file.string();
   RunReader reader(name);

@@ -36,6 +36,9 @@ struct Run {
   std::span<const double> column(std::string_view name) const;
 };
 
+// Whether a column has any cell that is not NaN.
+bool any_measured(std::span<const double> column);
+
 // Reads a run. Throws RunFileError: no such file, no t_s, times not strictly increasing, a cell that is no finite
 // number, a row with another count of cells, a column named twice or not at all, more than 2^24 values (an hour of 40
 // columns at 100 Hz is less). Unknown columns are kept. However long the file, memory is bounded by its values.

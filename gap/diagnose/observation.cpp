@@ -113,7 +113,7 @@ std::vector<std::string> channels_not_simulated(const Observations& observations
   for (const Channel& channel : diagnosis_channels()) {
     const std::string column(channel.column);
     const auto measures = [&](const Observation& observation) {
-      return std::ranges::any_of(observation.run.column(column), [](double value) { return !std::isnan(value); });
+      return runs::any_measured(observation.run.column(column));
     };
     if (std::ranges::count(simulated, column) == 0 && std::ranges::any_of(observations.runs, measures))
       result.push_back(column);

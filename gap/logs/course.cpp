@@ -62,10 +62,6 @@ double median_step(std::span<const double> t_s, std::span<const double> value) {
   return *middle;
 }
 
-bool has_values(std::span<const double> column) {
-  return std::ranges::any_of(column, [](double value) { return !std::isnan(value); });
-}
-
 double longest_gap_s(double median_step_s) {
   return std::max(0.25, 5 * median_step_s);
 }

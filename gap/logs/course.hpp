@@ -26,7 +26,6 @@ double mean_rate(const Course& course, double t_s, double window_s);
 
 // Of the steps between the times that have a value; NaN with fewer than two.
 double median_step(std::span<const double> t_s, std::span<const double> value);
-bool has_values(std::span<const double> column);
 
 // How courses are made and compared where a log says nothing else. All chosen.
 constexpr double kStepsPerWindow = 4;              // windows overlap

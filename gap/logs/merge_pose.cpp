@@ -88,7 +88,7 @@ MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const M
     if (!measured[i]) continue;
     const std::string name = kPoseColumns[i];
     auto found = std::ranges::find(out.columns, name);
-    if (found != out.columns.end() && has_values(out.column(name))) {
+    if (found != out.columns.end() && runs::any_measured(out.column(name))) {
       const std::string kept = "recorded_" + name;
       if (!out.column(kept).empty() || std::ranges::find(out.columns, kept) != out.columns.end())
         throw runs::RunFileError(

@@ -11,7 +11,7 @@ constexpr double kFewestPoints = 15;  // chosen
 }  // namespace
 
 bool RunChecks::has(const std::string& name) const {
-  return has_values(column(name));
+  return runs::any_measured(column(name));
 }
 
 bool RunChecks::found(const std::string& name) const {

@@ -108,11 +108,13 @@ std::vector<CourseSeenTwice> courses_seen_twice(const runs::Run& run, const Moti
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name = std::string("gyro_") + kAxes[axis] + "_radps";
     const auto rate = run.column(name);
-    if (has_values(rate)) add_turn(axis, name, course_of_rate(t_s, rate, longest_gap_s(median_step(t_s, rate))));
+    if (runs::any_measured(rate))
+      add_turn(axis, name, course_of_rate(t_s, rate, longest_gap_s(median_step(t_s, rate))));
   }
   for (const std::string prefix : {"posture_", ""}) {
     if (has_turn) break;
-    const bool tilt = has_values(run.column(prefix + "roll_rad")) && has_values(run.column(prefix + "pitch_rad"));
+    const bool tilt =
+        runs::any_measured(run.column(prefix + "roll_rad")) && runs::any_measured(run.column(prefix + "pitch_rad"));
     const BodyCourses courses = courses_of(poses_of(run, prefix, tilt, false));
     for (std::size_t axis = tilt ? 0 : 2; axis < 3; ++axis) add_turn(axis, prefix + "yaw_rad", courses.turn[axis]);
   }

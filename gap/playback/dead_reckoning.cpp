@@ -13,13 +13,9 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kAngleColumns{"roll_rad", "pitch_rad", "yaw_rad"};
 
-bool any_measured(std::span<const double> column) {
-  return std::ranges::any_of(column, [](double value) { return !std::isnan(value); });
-}
-
 bool has_travel(const runs::Run& run, std::string_view track) {
-  return any_measured(run.column(fmt::format("track_{}_m", track))) ||
-         any_measured(run.column(fmt::format("track_{}_mps", track)));
+  return runs::any_measured(run.column(fmt::format("track_{}_m", track))) ||
+         runs::any_measured(run.column(fmt::format("track_{}_mps", track)));
 }
 
 // At each row, straight between measured cells: the estimator takes a sensor that is slower than kPostureLost_s for
@@ -35,10 +31,10 @@ std::vector<double> travel_of(const runs::Run& run, std::string_view track) {
   const auto time = run.column("t_s"), travel = run.column(fmt::format("track_{}_m", track)),
              speed = run.column(fmt::format("track_{}_mps", track));
   std::vector<double> result(time.size(), 0);
-  if (any_measured(travel)) {
+  if (runs::any_measured(travel)) {
     double last_m = *std::ranges::find_if(travel, [](double value) { return !std::isnan(value); });
     for (std::size_t i = 0; i < result.size(); ++i) result[i] = last_m = std::isnan(travel[i]) ? last_m : travel[i];
-  } else if (any_measured(speed)) {
+  } else if (runs::any_measured(speed)) {
     double speed_mps = 0;
     for (std::size_t i = 0; i < result.size(); ++i) {
       if (i > 0) result[i] = result[i - 1] + speed_mps * (time[i] - time[i - 1]);

@@ -20,10 +20,6 @@ constexpr std::array<std::string_view, 3> kPosition{"x_m", "y_m", "z_m"}, kAngle
 constexpr std::array<std::string_view, 2> kBelts{"left", "right"};
 constexpr std::string_view kCommands[] = {"cmd_track_left_mps", "cmd_track_right_mps"};
 
-bool known(std::span<const double> column) {
-  return std::ranges::any_of(column, [](double value) { return !std::isnan(value); });
-}
-
 // A hole holds what was before it.
 std::vector<double> held(std::vector<double> values, std::size_t count, double otherwise) {
   if (values.empty()) values.assign(count, otherwise);
@@ -48,7 +44,8 @@ double standing_height_m(const physics::RobotDescription& robot) {
 std::map<std::string, std::vector<double>> channels_of(const runs::Run& run, std::span<const double> times_s) {
   std::map<std::string, std::vector<double>> channels;
   const auto add = [&](std::string_view column) {
-    if (auto values = column_at(run, column, times_s); known(values)) channels[std::string(column)] = std::move(values);
+    if (auto values = column_at(run, column, times_s); runs::any_measured(values))
+      channels[std::string(column)] = std::move(values);
   };
   for (const Channel& channel : diagnosis_channels()) add(channel.column);
   for (const std::string_view command : kCommands) add(command);
@@ -79,7 +76,7 @@ PlayedBody body_of(std::string_view kind, const runs::Run& run, std::span<const 
 // The recorded run with a pose in it, as far as there is any.
 runs::Run with_pose(const runs::Run& run, const physics::RobotDescription& robot, PoseFrom& from,
                     std::vector<std::string>& notes) {
-  const auto has = [&run](std::string_view column) { return known(run.column(column)); };
+  const auto has = [&run](std::string_view column) { return runs::any_measured(run.column(column)); };
   if (has("x_m") && has("y_m") && has("yaw_rad")) {
     from = PoseFrom::measured;
     return run;

@@ -47,8 +47,7 @@ std::vector<std::vector<double>> shares_by_group(const Diagnosis& d) {
 }
 
 bool measured(const runs::Run& run, std::size_t channel) {
-  const std::span<const double> column = run.column(diagnosis_channels()[channel].column);
-  return !std::ranges::all_of(column, [](double value) { return std::isnan(value); });
+  return runs::any_measured(run.column(diagnosis_channels()[channel].column));
 }
 
 std::vector<std::size_t> telling_channels(const runs::Run& run, const std::vector<double>& shares) {
