@@ -20,6 +20,7 @@
 #include "gap/challenge/diagnose_cases.hpp"
 #include "gap/challenge/key.hpp"
 #include "gap/challenge/make_case.hpp"
+#include "gap/challenge/sealed_data.hpp"
 #include "gap/challenge/sha256.hpp"
 #include "gap/challenge/told.hpp"
 #include "gap/commands.hpp"
@@ -36,7 +37,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMostCases = 10000;
-constexpr double kMakingShare = 0.3;  // of the time, for the time left
+constexpr double kMakingShare = 0.3, kMakingAgainShare = 0.03;  // of the time, for the time left
 
 struct Options {
   std::string out;
@@ -70,26 +71,30 @@ void check_folder(const fs::path& folder, bool seed_given) {
 class Teller {
  public:
   explicit Teller(std::size_t cases) : cases_(static_cast<double>(cases)) {}
-  void all_were_made() { line_.skip(kMakingShare); }
   // `before`: by who was here before, as with diagnosed().
   void made(bool before) {
     const std::lock_guard lock(mutex_);
     ++made_;
-    tell("making cases", kMakingShare * made_ / cases_, made_, before);
+    tell("making cases", kMakingShare * made_ / cases_, made_, cases_, before);
   }
+  void made_again(std::size_t made, std::size_t missing) {
+    const auto count = static_cast<double>(made), of = static_cast<double>(missing);
+    tell("making data again", kMakingAgainShare * count / of, count, of, false);
+  }
+  void all_were_made() { line_.skip(kMakingShare); }
   void diagnosed(const std::string& name, bool could, bool before) {
     ++diagnosed_;
     if (!could) {
       clear_progress_line();
       std::fprintf(stderr, "%s: could not be diagnosed\n", name.c_str());
     }
-    tell("diagnosing", kMakingShare + (1 - kMakingShare) * diagnosed_ / cases_, diagnosed_, before);
+    tell("diagnosing", kMakingShare + (1 - kMakingShare) * diagnosed_ / cases_, diagnosed_, cases_, before);
   }
 
  private:
-  void tell(std::string_view doing, double done, double count, bool before) {
+  void tell(std::string_view doing, double done, double count, double of, bool before) {
     if (before) line_.skip(done);
-    const std::string what = fmt::format("{} ({} of {})", doing, count, cases_);
+    const std::string what = fmt::format("{} ({} of {})", doing, count, of);
     line_.show(what, done);
     if (!line_.on_terminal()) std::fputs((what + "\n").c_str(), stderr);
   }
@@ -143,16 +148,18 @@ void check_same_cases(const fs::path& folder, const Options& options, std::uint6
         fmt::format("{}: holds cases of another --seed or --cases; give those, or another folder", folder.string()));
 }
 
-// Cases and commitment, all or none; those that are there already are kept.
+// Cases and commitment; those that are there already are kept, and of a sealed challenge the others are made from its
+// key.
 ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller,
                         const std::atomic<bool>& stop) {
   if (auto key = sealed_key(folder, seed)) {
-    if (key->cases.size() == options.cases) {
-      teller.all_were_made();
-      return *std::move(key);
-    }
-    throw std::runtime_error(
-        fmt::format("{0}: is a challenge of {1} cases; give --cases {1}", folder.string(), key->cases.size()));
+    if (key->cases.size() != options.cases)
+      throw std::runtime_error(
+          fmt::format("{0}: is a challenge of {1} cases; give --cases {1}", folder.string(), key->cases.size()));
+    make_missing_data(folder, *key, options.jobs, &stop,
+                      [&](std::size_t made, std::size_t missing) { teller.made_again(made, missing); });
+    teller.all_were_made();
+    return *std::move(key);
   }
   if (is_sealed_by_another(folder, seed))
     throw std::runtime_error(

@@ -104,14 +104,6 @@ SealedCase case_of(const Json& json) {
   return sealed;
 }
 
-// The first case whose data are no longer those that were sealed.
-std::optional<fs::path> first_changed(const fs::path& folder, const ChallengeKey& key) {
-  for (const SealedCase& sealed : key.cases)
-    if (const fs::path data = case_folder(folder, sealed.plan.name); sha256_of_dataset(data) != sealed.data_sha256)
-      return data;
-  return std::nullopt;
-}
-
 unsigned char byte_of(std::string_view two_digits) {
   unsigned char byte = 0;
   if (std::from_chars(two_digits.begin(), two_digits.end(), byte, 16).ptr != two_digits.end())
@@ -209,9 +201,7 @@ std::optional<ChallengeKey> sealed_key(const fs::path& folder, std::uint64_t see
   if (!fs::exists(folder / "commitment.txt") || !fs::exists(folder / "key.enciphered")) return std::nullopt;
   const std::string text = deciphered(runs::read_whole_file(folder / "key.enciphered"), seed);
   if (runs::read_whole_file(folder / "commitment.txt") != commitment_text(text)) return std::nullopt;
-  ChallengeKey key = read_key(text);
-  if (first_changed(folder, key)) return std::nullopt;
-  return key;
+  return read_key(text);
 } catch (const std::exception&) {
   return std::nullopt;  // what is there is damaged, and all of it can be made again
 }
@@ -234,8 +224,10 @@ ChallengeKey open_key(const fs::path& folder) {
     throw std::runtime_error(fmt::format(
         "{}: key.json is not the key that commitment.txt was made from; one of them was changed", folder.string()));
   ChallengeKey key = read_key(text);
-  if (const auto data = first_changed(folder, key))
-    throw std::runtime_error(fmt::format("{}: is not the data that was sealed; it was changed", data->string()));
+  for (const SealedCase& sealed : key.cases)
+    if (const fs::path data = case_folder(folder, sealed.plan.name);
+        fs::exists(data) && sha256_of_dataset(data) != sealed.data_sha256)
+      throw std::runtime_error(fmt::format("{}: is not the data that was sealed; it was changed", data.string()));
   return key;
 }
 

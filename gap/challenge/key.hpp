@@ -49,13 +49,13 @@ std::optional<SealedCase> made_case(const std::filesystem::path& folder, const s
                                     std::size_t cases);
 
 // The key of a challenge that was interrupted after its cases were made; nothing where it was not, where the seed is
-// another one, or where anything in DIR is no longer what was sealed.
+// another one, or where key or commitment is no longer what was sealed.
 std::optional<ChallengeKey> sealed_key(const std::filesystem::path& folder, std::uint64_t seed);
 // Whether a challenge was sealed there with another seed, so that this one could not go on with it.
 bool is_sealed_by_another(const std::filesystem::path& folder, std::uint64_t seed);
 
 // Reads DIR/key.json. Throws std::runtime_error in words where it is not there yet, is not the one that
-// DIR/commitment.txt was made from, or a case's data is no longer that which was diagnosed.
+// DIR/commitment.txt was made from, or the data of a case that is there is no longer that which was diagnosed.
 ChallengeKey open_key(const std::filesystem::path& folder);
 
 std::filesystem::path case_folder(const std::filesystem::path& folder, const std::string& name);    // DIR/cases/NAME

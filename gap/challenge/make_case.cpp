@@ -34,10 +34,6 @@ struct Work {
   const std::atomic<bool>* stop;  // may be null
 };
 
-void check_goes_on(const Work& work) {
-  if (work.stop != nullptr && *work.stop) throw Stopped();
-}
-
 struct Recipe {
   physics::Effects effects;
   std::string foreign;
@@ -119,7 +115,7 @@ void write_cases_runs(const CasePlan& plan, const Recipe& recipe, const std::vec
     dataset.runs.push_back({fmt::format("run-{:03}.csv", i), manoeuvre.name, manoeuvre.world});
   }
   for_each_job(dataset.runs.size(), work.jobs, [&](std::size_t i) {
-    check_goes_on(work);
+    check_goes_on(work.stop);
     runs::write_run(folder / dataset.runs[i].file,
                     make_run(plan, recipe, dataset.runs[i].manoeuvre, mixed(seed, i + 2)));
   });
@@ -164,7 +160,7 @@ class Scale {
     const Observations& observed = runs_->observations;
     Shift shift(runs_->features.size());
     for_each_job(shift.size(), work_.jobs, [&](std::size_t r) {
-      check_goes_on(work_);
+      check_goes_on(work_.stop);
       const physics::RobotDescription robot = with_foreign(observed.robot, foreign, amount);
       rollout::Manoeuvre replay = observed.runs[r].replay;
       obey_foreign(replay, foreign, amount);
@@ -276,7 +272,11 @@ void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs, const std:
     if (size == kCloseToPlanned && (!is_outside(plan.stratum) || best.look_alike.angle_deg >= kToldApart_deg)) break;
   }
   plan = best;
-  write_cases_runs(plan, recipe_of(plan), plan.manoeuvres, mixed(plan.seed, 2), folder, work);
+  make_again(plan, folder, jobs, stop);
+}
+
+void make_again(const CasePlan& plan, const fs::path& folder, unsigned jobs, const std::atomic<bool>* stop) {
+  write_cases_runs(plan, recipe_of(plan), plan.manoeuvres, mixed(plan.seed, 2), folder, {jobs, stop});
 }
 
 void make_unseen(const CasePlan& plan, const fs::path& folder, unsigned jobs) {

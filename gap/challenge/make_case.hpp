@@ -17,6 +17,9 @@ namespace kenaf::gap {
 // is in `folder` by then is to be thrown away.
 void make_case(CasePlan& plan, const std::filesystem::path& folder, unsigned jobs, const std::atomic<bool>* stop = nullptr);
 
+// Writes the dataset of a case whose plan make_case() has completed once more: the same files. Else as make_case().
+void make_again(const CasePlan& plan, const std::filesystem::path& folder, unsigned jobs, const std::atomic<bool>* stop = nullptr);
+
 // What of the catalogue is hidden in a case that is made: as its robot has it, and as a model of it would (value_in_model).
 physics::Effects hidden_effects(const CasePlan& plan);
 physics::Effects hidden_effects_in_model(const CasePlan& plan);

@@ -137,7 +137,7 @@ std::vector<NextManoeuvre> rank_manoeuvres(const physics::RobotDescription& robo
       if (std::ranges::count(separates, place.curve) == 0) separates.push_back(place.curve);
   ranking.resize(manoeuvres.size());
   for_each_job(manoeuvres.size(), threads, [&](std::size_t m) {
-    if (stop != nullptr && *stop) throw Stopped();
+    check_goes_on(stop);
     ranking[m] = {manoeuvres[m].name, separates, score_of(manoeuvres[m], robot, curves, rivals, floor, span_s)};
   });
   std::ranges::stable_sort(ranking, std::ranges::greater{}, &NextManoeuvre::expected_score);

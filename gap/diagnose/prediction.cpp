@@ -20,6 +20,10 @@ constexpr double kCoarse =
     2;  // time steps: a shift, the difference of two simulations with the same step, hardly changes
 }
 
+void check_goes_on(const std::atomic<bool>* stop) {
+  if (stop != nullptr && *stop) throw Stopped();
+}
+
 Predictor::Predictor(const Observations& observations, const std::vector<FeatureMap>& features,
                      std::vector<std::vector<std::size_t>> repeats, unsigned threads, const std::atomic<bool>* stop,
                      Ranks ranks, std::function<void(std::size_t)> progress)
@@ -44,7 +48,7 @@ std::vector<VectorXd> Predictor::all_of(std::size_t count, const std::function<V
   std::atomic<std::size_t> done = 0;
   for_each_job(own, threads_, [&](std::size_t i) {
     // one rank alone may end at once; of several all end together
-    if (ranks == 1 && stop_ != nullptr && *stop_) throw Stopped();
+    if (ranks == 1) check_goes_on(stop_);
     results[rank + i * ranks] = job(rank + i * ranks);
     done += ranks;
     if (progress_ && std::this_thread::get_id() == asking) progress_(roll_outs_ + std::min<std::size_t>(done, count));

@@ -33,6 +33,8 @@ enum class Fidelity {
 
 // Thrown by a simulation that was asked to stop.
 struct Stopped {};
+// Throws it if `stop`, if there is one, is set.
+void check_goes_on(const std::atomic<bool>* stop);
 
 class Predictor {
  public:

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "gap/challenge/look_alike.hpp"
+#include "gap/challenge/sealed_data.hpp"
+#include "gap/challenge/sha256.hpp"
 #include "gap/challenge/shrinks.hpp"
 #include "gap/diagnose/prediction.hpp"
 #include "runs/dataset.hpp"
@@ -39,6 +41,41 @@ TEST_CASE("A case that is being made ends when it is asked to") {
   plan.stratum = Stratum::single;
   plan.effects = {{"encoder_scale", "scale", 4, 0}};
   CHECK_THROWS_AS(make_case(plan, folder / "single", 1, &stop), Stopped);
+}
+
+TEST_CASE("Data of a sealed challenge that are gone or changed are made again, the same ones") {
+  const TemporaryFolder folder;
+  SealedCase sealed;
+  sealed.plan.name = "case-000";
+  sealed.plan.manoeuvres = {"straight"};
+  sealed.plan.unseen = "arc";
+  sealed.plan.seed = 3;
+  const std::filesystem::path data = case_folder(folder.path(), "case-000");
+  make_case(sealed.plan, data, 1);
+  sealed.data_sha256 = sha256_of_dataset(data);
+  const std::string run = test::read_file(data / "run-001.csv");
+  std::size_t made = 0;
+  const auto make_missing = [&] {
+    made = 0;
+    make_missing_data(folder.path(), {3, {sealed}}, 1, nullptr,
+                      [&](std::size_t so_far, std::size_t) { made = so_far; });
+  };
+  make_missing();
+  CHECK(made == 0);
+  std::filesystem::remove_all(data);
+  CHECK_FALSE(has_sealed_data(folder.path(), sealed));
+  make_missing();
+  CHECK(made == 1);
+  CHECK(test::read_file(data / "run-001.csv") == run);
+  test::write_file(data / "run-001.csv", "t_s,x_m\n0,0\n1,2\n");
+  make_missing();
+  CHECK(made == 1);
+  CHECK(has_sealed_data(folder.path(), sealed));
+
+  sealed.data_sha256 = "of another program";
+  CHECK_THROWS_WITH(make_missing(), Catch::Contains("not what was sealed"));
+  CHECK(test::read_file(data / "run-001.csv") == run);  // nothing is replaced by what is not right
+  CHECK_FALSE(std::filesystem::exists(data.string() + ".part"));
 }
 
 TEST_CASE("A case is made: its effect is as large as asked, and its folder does not say which it is", "[long]") {
