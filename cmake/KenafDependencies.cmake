@@ -2,6 +2,9 @@
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+# Eigen would ask the processor for its caches, cut products to fit them, and so add up in another order on another
+# processor: a diagnosis would not be the same bit for bit. Of all targets, as these functions are inline.
+add_compile_definitions(EIGEN_NO_CPUID)
 find_package(fmt 9 REQUIRED)
 find_package(spdlog 1.10 REQUIRED)
 find_package(CLI11 2 REQUIRED)

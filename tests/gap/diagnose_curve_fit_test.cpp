@@ -38,6 +38,12 @@ EffectCurves bent(const std::vector<std::pair<double, Eigen::Vector2d>>& points,
 
 }  // namespace
 
+TEST_CASE("Products are summed in the same order whatever caches the processor has") {
+  CHECK(Eigen::l1CacheSize() == Eigen::internal::defaultL1CacheSize);
+  CHECK(Eigen::l2CacheSize() == Eigen::internal::defaultL2CacheSize);
+  CHECK(Eigen::l3CacheSize() == Eigen::internal::defaultL3CacheSize);
+}
+
 TEST_CASE("One effect alone is found exactly, with nothing left") {
   const Whole shift = 20 * world().direction(0);
   for (const double value : {-0.9, -0.1, 0.0, 0.25, 0.7}) {
