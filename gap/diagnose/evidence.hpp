@@ -34,7 +34,7 @@ struct HeldOut {
   Interval shrink;
 };  // with a single fold nothing can be held out: it is of the runs that the model was fitted to
 
-// Whether half of the gap or more is gone on runs held out (chosen: of right names the least was 60 %, docs/gap-results.md).
+// Whether half of the gap or more is gone on runs held out (chosen: of right names the least was 59 %, docs/gap-results.md).
 // An effect that takes off less is not what causes the gap. True where there is nothing to shrink.
 bool is_borne_out(const HeldOut& held);
 // Whether what is left on runs held out is what repeats differ by, or kWithinRepeats of it, the share
