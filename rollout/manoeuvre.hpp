@@ -56,7 +56,7 @@ struct TimedCommand {
   physics::RobotCommand command;
 };
 
-// A start that is not the world's: that of a recorded run.
+// A start that is not the world's: that of a recorded run, where the robot is once it has settled.
 struct Start {
   double x_m, y_m, yaw_rad;
   std::optional<double> z_m;  // empty: on the ground

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "physics/terrain_effects.hpp"
+#include "protocol/frames.hpp"
 #include "rollout/driver.hpp"
 #include "rollout/run_recorder.hpp"
 
@@ -23,6 +24,7 @@ using FlipperAngles = std::array<double, physics::kFlipperCount>;
 constexpr double kSettle_s = 0.5;  // a robot that is put down stands still after that
 constexpr double kFold_s = 5;      // flippers get from anywhere to anywhere in that
 constexpr double kStill_radps = 0.005;
+constexpr double kMisplaced_m = 1e-5, kMisplaced_rad = 1e-5;
 constexpr double kInTheAir_m = 0.01;  // a recorded start that is higher than this above the ground is a drop
 
 std::uint64_t steps_per_sample(const RollOutOptions& options) {
@@ -79,6 +81,19 @@ struct Scene {
   }
 };
 
+// From where a robot must be put down to come to rest at X_WB, if put down there it came to rest at X_WB_settled.
+Pose aimed_off(const Pose& X_WB, const Pose& X_WB_settled) {
+  const auto yaw = [](const Pose& X) { return physics::roll_pitch_yaw(X.q).z(); };
+  const Eigen::Vector3d miss = X_WB.p - X_WB_settled.p;
+  return {X_WB.p + Eigen::Vector3d(miss.x(), miss.y(), 0),
+          physics::rotation_from({0, 0, yaw(X_WB) + frames::wrap_angle(yaw(X_WB) - yaw(X_WB_settled))})};
+}
+
+bool is_off(const Pose& X_WB, const Pose& X_WB_settled) {
+  const Pose aim = aimed_off(X_WB, X_WB_settled);
+  return (aim.p - X_WB.p).norm() > kMisplaced_m || aim.q.angularDistance(X_WB.q) > kMisplaced_rad;
+}
+
 // At rest at the start pose, joints included, sensors counting from here.
 void put_at_start(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, const FlipperAngles& flippers,
                   const Pose& X_WB) {
@@ -101,7 +116,13 @@ void put_at_start(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuv
   }
   scene.hold(rest, kSettle_s);
 
-  const Pose X_WB_settled = scene.world.truth(scene.robot).X_WB;
+  Pose X_WB_settled = scene.world.truth(scene.robot).X_WB;
+  // A recorded start is where the robot stood. One that comes down on its flippers moves by millimetres.
+  if (manoeuvre.start && is_off(X_WB, X_WB_settled)) {
+    scene.world.teleport(scene.robot, aimed_off(X_WB, X_WB_settled));
+    scene.hold(rest, kSettle_s);
+    X_WB_settled = scene.world.truth(scene.robot).X_WB;
+  }
   double lift_m = manoeuvre.start_lift_m;
   if (manoeuvre.start && manoeuvre.start->z_m && *manoeuvre.start->z_m > X_WB_settled.p.z() + kInTheAir_m)
     lift_m = *manoeuvre.start->z_m - X_WB_settled.p.z();
