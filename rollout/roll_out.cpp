@@ -94,9 +94,9 @@ bool is_off(const Pose& X_WB, const Pose& X_WB_settled) {
   return (aim.p - X_WB.p).norm() > kMisplaced_m || aim.q.angularDistance(X_WB.q) > kMisplaced_rad;
 }
 
-// At rest at the start pose, joints included, sensors counting from here.
-void put_at_start(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, const FlipperAngles& flippers,
-                  const Pose& X_WB) {
+// At rest, joints included; where it has settled.
+Pose put_down(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, const FlipperAngles& flippers,
+              const Pose& X_WB) {
   const bool alike = std::ranges::count(flippers, flippers.front()) == std::ssize(flippers);
   if (robot.has_flippers() && alike)
     robot.flipper.front().start_angle_rad =
@@ -115,13 +115,20 @@ void put_at_start(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuv
     scene.world.teleport(scene.robot, X_WB);
   }
   scene.hold(rest, kSettle_s);
+  return scene.world.truth(scene.robot).X_WB;
+}
 
-  Pose X_WB_settled = scene.world.truth(scene.robot).X_WB;
-  // A recorded start is where the robot stood. One that comes down on its flippers moves by millimetres.
+// At rest at the start pose, sensors counting from here.
+void put_at_start(Scene& scene, const RobotDescription& robot, const Manoeuvre& manoeuvre,
+                  const FlipperAngles& flippers, const Pose& X_WB) {
+  Pose X_WB_settled = put_down(scene, robot, manoeuvre, flippers, X_WB);
+  // A recorded start is where the robot stood. One that comes down on its flippers moves by millimetres; and how it is put
+  // down decides which forces friction holds, so it is put down anew, and not moved.
   if (manoeuvre.start && is_off(X_WB, X_WB_settled)) {
-    scene.world.teleport(scene.robot, aimed_off(X_WB, X_WB_settled));
-    scene.hold(rest, kSettle_s);
-    X_WB_settled = scene.world.truth(scene.robot).X_WB;
+    scene.world.remove_robot(scene.robot);
+    scene.world.reset();
+    scene.contacts = 0;
+    X_WB_settled = put_down(scene, robot, manoeuvre, flippers, aimed_off(X_WB, X_WB_settled));
   }
   double lift_m = manoeuvre.start_lift_m;
   if (manoeuvre.start && manoeuvre.start->z_m && *manoeuvre.start->z_m > X_WB_settled.p.z() + kInTheAir_m)
