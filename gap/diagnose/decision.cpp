@@ -97,6 +97,7 @@ class Decider {
       if (!is_gap()) return d_;
     }
     take_effects();
+    if (d_.best.places.size() == 1) stand_alone();
     if (!d_.beside.empty()) std::swap(curves_.curves, d_.beside);
     doubt();
     if (d_.doubts.empty())
@@ -188,6 +189,12 @@ class Decider {
     d_.together.front() = fit_side_by_side(curves_, coherence_, simulator_, std::move(d_.together.front()));
     d_.best = d_.together.front();
     d_.beside = std::exchange(curves_.curves, alone);
+  }
+
+  void stand_alone() {
+    const std::vector<EffectCurve> before = curves_.curves;
+    d_.best = d_.singles.front() = fit_side_by_side(curves_, coherence_, simulator_, std::move(d_.best));
+    d_.beside = std::exchange(curves_.curves, before);
   }
 
   void doubt() {

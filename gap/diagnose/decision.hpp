@@ -45,7 +45,7 @@ struct Decision {
   Model best;                                     // no places: nominal
   std::vector<Model> singles;                     // best first
   std::vector<Model> together;                    // of several effects that were tried, of the largest number, best first
-  // Of several effects in `best`: all curves, those of its effects as they are beside one another. Else none: they are as they were.
+  // All curves, those of the effects in `best` as they are where they stand beside one another (side_by_side.hpp). None without effects.
   std::vector<EffectCurve> beside;
   std::vector<Doubt> doubts;                      // where it is unknown, at least one
   std::vector<std::vector<std::size_t>> rivals;   // for each place of `best`: curves that fit as well, itself first

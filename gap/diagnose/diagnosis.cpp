@@ -156,6 +156,8 @@ class Diagnoser {
   }
 
   void weigh() {
+    const bool stands = !d_.decision.beside.empty(), alone = d_.decision.best.places.size() == 1;
+    if (stands && alone) std::swap(d_.curves.curves, d_.decision.beside);
     rank_singles();
     if (d_.decision.best.places.empty()) {
       d_.gap.shrink = {0, 0, 0};
@@ -165,10 +167,9 @@ class Diagnoser {
       d_.where_left = d_.where;
       return;
     }
-    const bool several = !d_.decision.beside.empty();
-    if (several) std::swap(d_.curves.curves, d_.decision.beside);
+    if (stands && !alone) std::swap(d_.curves.curves, d_.decision.beside);
     weigh_best();
-    if (several) std::swap(d_.curves.curves, d_.decision.beside);
+    if (stands) std::swap(d_.curves.curves, d_.decision.beside);
   }
 
   void rank_singles() {

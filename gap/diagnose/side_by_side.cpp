@@ -2,13 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace kenaf::gap {
 namespace {
 
-constexpr double kToEitherSide = 1.1;  // times the way from neutral
-constexpr double kStraightTo = 0.5;    // of the way from neutral: a curve has to come back to what it is there
+// How far to either side, of the way from neutral: so far that it shifts by several floors, for two simulations of what
+// is rough differ by up to two, and a slope that is mostly roughness makes a value look surer than it is. Chosen.
+constexpr double kNearest = 0.1, kFarthest = 0.5, kShifted_floors = 6;
+// A side that shifts by as many times more than that is round a bend: it is sought nearer.
+constexpr double kRoundABend = 2;
+constexpr int kTries = 4;
+constexpr double kStraightTo = 0.5;  // of the way from neutral: a curve has to come back to what it is there
 constexpr int kRounds = 3;
 constexpr double kGained = 1e-3;  // share of what is left that a round must gain to be followed by another one
 
@@ -25,56 +31,95 @@ Known on_line(const Known& a, const Known& b, double value) {
   return result;
 }
 
-// The model with one value a little nearer to neutral, and with it a little farther out unless it is at the end of its
-// range.
-std::vector<std::vector<NewPoint>> to_either_side(const EffectCurves& curves, const Model& model, std::size_t place) {
-  const EffectCurve& curve = curves.curves[model.places[place].curve];
-  const double neutral = present_value(curve), value = model.places[place].value;
-  std::vector<std::vector<NewPoint>> sides;
-  for (const double factor : {1 / kToEitherSide, kToEitherSide}) {
-    const double wanted = std::clamp(neutral + factor * (value - neutral), curve.parameter->min, curve.parameter->max);
-    if (wanted == value) continue;
-    sides.push_back(values_of(model.places));
-    sides.back()[place].value = wanted;
+double length_of(const EffectCurves& curves, const Shift& shift) {
+  double squares = 0;
+  for (std::size_t r = 0; r < shift.size(); ++r) squares += curves.whiteners[r](shift[r]).squaredNorm();
+  return std::sqrt(squares);
+}
+
+Shift difference(Shift a, const Shift& b) {
+  for (std::size_t r = 0; r < a.size(); ++r) a[r] -= b[r];
+  return a;
+}
+
+// The model with one of its values a share of the way from neutral nearer to it, or farther out.
+struct Side {
+  std::size_t place;
+  bool outward;
+  double share;
+  double value = 0;
+  Shift step{};  // from the model to here
+};
+
+double value_at(const EffectCurves& curves, const Model& model, const Side& side) {
+  const EffectCurve& curve = curves.curves[model.places[side.place].curve];
+  const double neutral = present_value(curve), factor = side.outward ? 1 + side.share : 1 / (1 + side.share);
+  return std::clamp(neutral + factor * (model.places[side.place].value - neutral), curve.parameter->min,
+                    curve.parameter->max);
+}
+
+// Both sides of each value, but for the outer one of a value at the end of its range.
+std::vector<Side> to_either_side(const EffectCurves& curves, const Simulator& simulator, const Model& model) {
+  std::vector<Side> sides;
+  std::vector<double> lengths;  // of each effect alone
+  for (std::size_t i = 0; i < model.places.size(); ++i) {
+    lengths.push_back(length_of(curves, shift_of(curves, {&model.places[i], 1})));
+    for (const bool outward : {false, true}) {
+      const Side side{i, outward, std::clamp(kShifted_floors / lengths[i], kNearest, kFarthest)};
+      if (value_at(curves, model, side) != model.places[i].value) sides.push_back(side);
+    }
+  }
+  std::vector<std::size_t> to_seek(sides.size());
+  std::iota(to_seek.begin(), to_seek.end(), std::size_t{0});
+  for (int i = 0; i < kTries && !to_seek.empty(); ++i) {
+    std::vector<std::vector<NewPoint>> asked;
+    for (const std::size_t s : to_seek) {
+      sides[s].value = value_at(curves, model, sides[s]);
+      asked.push_back(values_of(model.places));
+      asked.back()[sides[s].place].value = sides[s].value;
+    }
+    std::vector<Shift> simulated = simulator.shifts(asked, Fidelity::every_run);
+    std::vector<std::size_t> bent;
+    for (std::size_t a = 0; a < asked.size(); ++a) {
+      Side& side = sides[to_seek[a]];
+      side.step = difference(std::move(simulated[a]), model.shift);
+      const double moved = length_of(curves, side.step);
+      const double expected = std::max(kShifted_floors, side.share * lengths[side.place]);
+      if (moved <= kRoundABend * expected) continue;
+      side.share *= std::sqrt(expected / moved);
+      bent.push_back(to_seek[a]);
+    }
+    to_seek = std::move(bent);
   }
   return sides;
 }
 
 // What the effect shifts on top of the others, where it stands, to either side, and straight on from there.
 std::vector<Known> beside_others(const EffectCurves& curves, const Model& model, std::size_t place,
-                                 const std::vector<std::vector<NewPoint>>& asked, std::span<const Shift> simulated) {
+                                 const std::vector<Side>& sides) {
   const EffectCurve& curve = curves.curves[model.places[place].curve];
   const double neutral = present_value(curve), value = model.places[place].value;
   const double end = value > neutral ? curve.parameter->max : curve.parameter->min;
   const Known here{value, shift_of(curves, {&model.places[place], 1})};
   std::vector<Known> points{here};
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    Known side{asked[i][place].value, here.shift};
-    for (std::size_t r = 0; r < side.shift.size(); ++r) side.shift[r] += simulated[i][r] - model.shift[r];
-    const bool inner = std::abs(side.value - neutral) < std::abs(value - neutral);
-    const double straight_to = inner ? neutral + kStraightTo * (value - neutral) : end;
-    if (straight_to != side.value) points.push_back(on_line(here, side, straight_to));
-    points.push_back(std::move(side));
+  for (const Side& side : sides) {
+    if (side.place != place) continue;
+    Known known{side.value, here.shift};
+    for (std::size_t r = 0; r < known.shift.size(); ++r) known.shift[r] += side.step[r];
+    const double straight_to = side.outward ? end : neutral + kStraightTo * (value - neutral);
+    if (straight_to != side.value) points.push_back(on_line(here, known, straight_to));
+    points.push_back(std::move(known));
   }
   return points;
 }
 
 // Points of the curves where the model's effects stand, instead of those that they have alone on this side of neutral.
 void stand(EffectCurves& curves, const Simulator& simulator, Model& model) {
-  std::vector<std::vector<NewPoint>> asked;
-  std::vector<std::size_t> first;
-  std::vector<std::vector<std::vector<NewPoint>>> sides;
-  for (std::size_t i = 0; i < model.places.size(); ++i) {
-    sides.push_back(to_either_side(curves, model, i));
-    first.push_back(asked.size());
-    asked.insert(asked.end(), sides[i].begin(), sides[i].end());
-  }
-  const std::vector<Shift> simulated = simulator.shifts(asked, Fidelity::every_run);
+  const std::vector<Side> sides = to_either_side(curves, simulator, model);
   std::vector<NewPoint> points;
   std::vector<Shift> shifts;
   for (std::size_t i = 0; i < model.places.size(); ++i)
-    for (Known& known :
-         beside_others(curves, model, i, sides[i], std::span(simulated).subspan(first[i], sides[i].size()))) {
+    for (Known& known : beside_others(curves, model, i, sides)) {
       points.push_back({model.places[i].curve, known.value});
       shifts.push_back(std::move(known.shift));
     }
@@ -91,11 +136,13 @@ void stand(EffectCurves& curves, const Simulator& simulator, Model& model) {
 }  // namespace
 
 Model fit_side_by_side(EffectCurves& curves, const Coherence& coherence, const Simulator& simulator, Model model) {
-  const auto is_neutral = [&](const OnCurve& place) { return place.value == present_value(curves.curves[place.curve]); };
+  const auto is_neutral = [&](const OnCurve& place) {
+    return place.value == present_value(curves.curves[place.curve]);
+  };
   const EffectSet effects = effects_of(model);
   for (int round = 0; round < kRounds; ++round) {
     // one that is not there has no side to stand on
-    if (effects.size() < 2 || std::ranges::any_of(model.places, is_neutral)) break;
+    if (std::ranges::any_of(model.places, is_neutral)) break;
     stand(curves, simulator, model);
     Model better{fit_together(products_around(curves, model), curves.curves, effects).places, {}, true};
     const std::vector<std::vector<NewPoint>> asked{values_of(better.places)};
