@@ -144,6 +144,12 @@ std::string made_case_stream(const std::string& name, std::size_t cases) {
 
 }  // namespace
 
+bool is_sealed_dataset(const fs::path& dataset, const SealedCase& sealed) try {
+  return sha256_of_dataset(dataset) == sealed.data_sha256;
+} catch (const std::exception&) {
+  return false;  // none, or not all of it
+}
+
 std::string key_text(const ChallengeKey& key) {
   Json json{{"format", kFormat},
             {"seed", key.seed},
@@ -191,7 +197,7 @@ std::optional<SealedCase> made_case(const fs::path& folder, const std::string& n
       with_keystream(from_digits(runs::read_whole_file(file)), seed, made_case_stream(name, cases));
   const ChallengeKey key = read_key(text);
   if (key.seed != seed || key.cases.size() != 1 || key.cases[0].plan.name != name) return std::nullopt;
-  if (sha256_of_dataset(folder / name) != key.cases[0].data_sha256) return std::nullopt;
+  if (!is_sealed_dataset(folder / name, key.cases[0])) return std::nullopt;
   return key.cases[0];
 } catch (const std::exception&) {
   return std::nullopt;  // what is there is damaged, and can be made again
@@ -226,7 +232,7 @@ ChallengeKey open_key(const fs::path& folder) {
   ChallengeKey key = read_key(text);
   for (const SealedCase& sealed : key.cases)
     if (const fs::path data = case_folder(folder, sealed.plan.name);
-        fs::exists(data) && sha256_of_dataset(data) != sealed.data_sha256)
+        fs::exists(data) && !is_sealed_dataset(data, sealed))
       throw std::runtime_error(fmt::format("{}: is not the data that was sealed; it was changed", data.string()));
   return key;
 }

@@ -22,6 +22,9 @@ struct SealedCase {
   std::string data_sha256;  // of its dataset
 };
 
+// Whether this folder holds that dataset, all of it and as it was sealed.
+bool is_sealed_dataset(const std::filesystem::path& dataset, const SealedCase& sealed);
+
 struct ChallengeKey {
   std::uint64_t seed = 0;
   std::vector<SealedCase> cases;

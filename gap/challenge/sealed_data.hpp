@@ -14,9 +14,6 @@
 
 namespace kenaf::gap {
 
-// Whether DIR/cases/NAME is the dataset that was sealed.
-bool has_sealed_data(const std::filesystem::path& folder, const SealedCase& sealed);
-
 // Makes each dataset of `key` that is not in DIR/cases as it was sealed; others are left alone. After each it tells
 // `progress` how many of the missing ones are made. Throws std::runtime_error where what is made is not what was sealed,
 // by another version of the program or another kind of machine: no dataset is replaced by it. Throws Stopped soon after

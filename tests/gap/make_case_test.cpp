@@ -63,14 +63,14 @@ TEST_CASE("Data of a sealed challenge that are gone or changed are made again, t
   make_missing();
   CHECK(made == 0);
   std::filesystem::remove_all(data);
-  CHECK_FALSE(has_sealed_data(folder.path(), sealed));
+  CHECK_FALSE(is_sealed_dataset(case_folder(folder.path(), sealed.plan.name), sealed));
   make_missing();
   CHECK(made == 1);
   CHECK(test::read_file(data / "run-001.csv") == run);
   test::write_file(data / "run-001.csv", "t_s,x_m\n0,0\n1,2\n");
   make_missing();
   CHECK(made == 1);
-  CHECK(has_sealed_data(folder.path(), sealed));
+  CHECK(is_sealed_dataset(case_folder(folder.path(), sealed.plan.name), sealed));
 
   sealed.data_sha256 = "of another program";
   CHECK_THROWS_WITH(make_missing(), Catch::Contains("not what was sealed"));
