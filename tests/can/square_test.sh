@@ -34,7 +34,7 @@ cp bus.log drives.log real.csv "$results"
 exit "$status"
 END
 mkdir "$work/bus" && cd "$work/bus" || exit 1
-"$with_vcan" --timeout 280 --writable . bash "$work/on_bus.sh" "$here" "$bin" || { cat drives.log; fail "1: over libkenaf_real"; }
+"$with_vcan" --timeout 800 --writable . bash "$work/on_bus.sh" "$here" "$bin" || { cat drives.log; fail "1: over libkenaf_real"; }
 cat drives.log
 
 "$bin/compare_paths" "$work/sim.csv" real.csv 5 1 || fail "2: the paths differ by more than 5 mm and 1 degree"

@@ -19,7 +19,7 @@ echo "way: $way"
 mkdir "$work/writable, indeed"
 cd "$work/writable, indeed" || exit 1
 status=0
-KENAF_VCAN_TEST=$'two\nlines' "$with_vcan" --timeout 250 --writable . bash -c '
+KENAF_VCAN_TEST=$'two\nlines' "$with_vcan" --timeout 800 --writable . bash -c '
   printf "<%s>" "$@" "$KENAF_VCAN_TEST" "$PWD"
   echo "to standard error" >&2
   read -r line && echo "there is input: $line"
