@@ -40,6 +40,10 @@ void FlipperJoint::after_step(double time_step_s) {
 
 void FlipperJoint::restart(double angle_rad) {
   angle_rad_ = followed_rad_ = servo_rad_ = angle_rad;
+  come_to_rest();
+}
+
+void FlipperJoint::come_to_rest() {
   servo_radps_ = 0;
   row_impulse = {};
 }

@@ -32,8 +32,10 @@ class FlipperJoint : public btTypedConstraint {
 
   // Reads the angle from the bodies; call once after each step.
   void after_step(double time_step_s);
-  // Places it without history, as after a teleport.
+  // Places it without history.
   void restart(double angle_rad);
+  // At rest, as after a teleport. Who lifts a robot turns no servo: it and the arm stay as far apart as they are.
+  void come_to_rest();
   // Sets the servo for the next step.
   void drive(const JointCommand& command, const FlipperDescription& flipper, const FlipperServoDescription& servo,
              double time_step_s);

@@ -207,7 +207,10 @@ void RobotModel::place(const Pose& X_WB, bool start_joints) {
     const double angle = start_joints ? description.flipper.front().start_angle_rad : flipper.joint->angle_rad();
     const btTransform tip_up(btQuaternion(btVector3(0, -1, 0), angle));
     put(*flipper.body, X * flipper.X_BodyPivot * tip_up * flipper.X_FlipperCom);
-    flipper.joint->restart(angle);
+    if (start_joints)
+      flipper.joint->restart(angle);
+    else
+      flipper.joint->come_to_rest();
   }
   for (const Track side : {kLeft, kRight}) {
     belts_[side].speed_mps = 0;

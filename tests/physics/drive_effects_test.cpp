@@ -185,6 +185,18 @@ TEST_CASE("Flipper backlash: the arm hangs at the end of its play, on the side t
   }
 }
 
+TEST_CASE("Who lifts a robot turns no servo: with play the arms stay as far from theirs as they were") {
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(even_arms({.flipper_backlash_rad = 0.2}), "a", {});
+  world.set_command(id, drive(0, 0, 0.4, 2.6));
+  run(world, 3);
+  world.teleport(id, {{0, 0, 0.3}, Eigen::Quaterniond::Identity()});
+  const RobotTruth lifted = world.truth(id);
+  CHECK(lifted.flipper_rad[kFrontLeft] == Approx(0.3).margin(1e-3));  // half of the play below its servo
+  CHECK(lifted.servo_rad[kFrontLeft] == Approx(0.4).margin(1e-3));
+  CHECK(lifted.flipper_radps[kFrontLeft] == 0);
+}
+
 TEST_CASE("Flipper compliance: the arm gives way by torque times compliance") {
   for (const double step_s : {0.001, 0.005}) {
     World world(ground(), {.time_step_s = step_s}, 1);
