@@ -1,6 +1,6 @@
 // Effects beside one another: a robot that is heavier and whose mass is higher up tips elsewhere, and what a little more of
 // one does to it there is not what it does to the nominal robot. One alone may bend between neutral and where it stands, too: play
-// of a hundredth of a degree does nearly as much as play of a tenth.
+// of 0.03 degrees does nearly as much as play of 0.2.
 //
 // The search adds what each effect does alone and corrects the sum by simulation at one place. That finds which effects they
 // are; for their values, for whether manoeuvres agree on them and for their intervals it takes the slopes where they stand.
@@ -14,8 +14,7 @@ namespace kenaf::gap {
 // `model` fitted again by what its effects do where they stand, beside one another; never worse than it was. Curves of its effects
 // are those from here on: every run simulated at its values and a tenth to a half of the way from neutral to either side of each,
 // as far as it takes to see more than roughness (less where it bends there), and straight on from there to half of the way and to
-// the end of the range.
-// Columns of before stay. A model with an effect at its neutral value stays as it is.
+// the end of the range. Columns of before stay. A model with an effect at its neutral value stays as it is.
 Model fit_side_by_side(EffectCurves& curves, const Coherence& coherence, const Simulator& simulator, Model model);
 
 }  // namespace kenaf::gap
