@@ -97,7 +97,7 @@ class Decider {
       if (!is_gap()) return d_;
     }
     take_effects();
-    if (d_.best.places.size() == 1) stand_alone();
+    if (d_.best.places.size() == 1) stand(d_.singles.front());
     if (!d_.beside.empty()) std::swap(curves_.curves, d_.beside);
     doubt();
     if (d_.doubts.empty())
@@ -169,7 +169,7 @@ class Decider {
       more = with_another(d_.best);
       if (!is_needed(d_.best, more)) return weigh_around(d_.best);
       d_.together = std::move(more);
-      stand_together();
+      stand(d_.together.front());
       if (d_.best.places.size() == settings_.most_effects || p_left(d_.best) > settings_.surprise) return;
       more = with_another(d_.best);
     }
@@ -184,16 +184,10 @@ class Decider {
     std::ranges::stable_sort(d_.together, {}, &Model::left);
   }
 
-  void stand_together() {
-    const std::vector<EffectCurve> alone = curves_.curves;
-    d_.together.front() = fit_side_by_side(curves_, coherence_, simulator_, std::move(d_.together.front()));
-    d_.best = d_.together.front();
-    d_.beside = std::exchange(curves_.curves, alone);
-  }
-
-  void stand_alone() {
+  // Takes it, fitted where it stands.
+  void stand(Model& model) {
     const std::vector<EffectCurve> before = curves_.curves;
-    d_.best = d_.singles.front() = fit_side_by_side(curves_, coherence_, simulator_, std::move(d_.best));
+    d_.best = model = fit_side_by_side(curves_, coherence_, simulator_, std::move(model));
     d_.beside = std::exchange(curves_.curves, before);
   }
 

@@ -31,24 +31,13 @@ Known on_line(const Known& a, const Known& b, double value) {
   return result;
 }
 
-double length_of(const EffectCurves& curves, const Shift& shift) {
-  double squares = 0;
-  for (std::size_t r = 0; r < shift.size(); ++r) squares += curves.whiteners[r](shift[r]).squaredNorm();
-  return std::sqrt(squares);
-}
-
-Shift difference(Shift a, const Shift& b) {
-  for (std::size_t r = 0; r < a.size(); ++r) a[r] -= b[r];
-  return a;
-}
-
 // The model with one of its values a share of the way from neutral nearer to it, or farther out.
 struct Side {
   std::size_t place;
   bool outward;
   double share;
   double value = 0;
-  Shift step{};  // from the model to here
+  Shift shift{};  // of the model here
 };
 
 double value_at(const EffectCurves& curves, const Model& model, const Side& side) {
@@ -62,8 +51,11 @@ double value_at(const EffectCurves& curves, const Model& model, const Side& side
 std::vector<Side> to_either_side(const EffectCurves& curves, const Simulator& simulator, const Model& model) {
   std::vector<Side> sides;
   std::vector<double> lengths;  // of each effect alone
+  Shift nothing;
+  for (const Eigen::VectorXd& run : model.shift) nothing.push_back(Eigen::VectorXd::Zero(run.size()));
   for (std::size_t i = 0; i < model.places.size(); ++i) {
-    lengths.push_back(length_of(curves, shift_of(curves, {&model.places[i], 1})));
+    const Shift alone = shift_of(curves, {&model.places[i], 1});
+    lengths.push_back(std::sqrt(squared_length(whitened_difference(curves, alone, nothing))));
     for (const bool outward : {false, true}) {
       const Side side{i, outward, std::clamp(kShifted_floors / lengths[i], kNearest, kFarthest)};
       if (value_at(curves, model, side) != model.places[i].value) sides.push_back(side);
@@ -82,8 +74,8 @@ std::vector<Side> to_either_side(const EffectCurves& curves, const Simulator& si
     std::vector<std::size_t> bent;
     for (std::size_t a = 0; a < asked.size(); ++a) {
       Side& side = sides[to_seek[a]];
-      side.step = difference(std::move(simulated[a]), model.shift);
-      const double moved = length_of(curves, side.step);
+      side.shift = std::move(simulated[a]);
+      const double moved = std::sqrt(squared_length(whitened_difference(curves, side.shift, model.shift)));
       const double expected = std::max(kShifted_floors, side.share * lengths[side.place]);
       if (moved <= kRoundABend * expected) continue;
       side.share *= std::sqrt(expected / moved);
@@ -105,7 +97,7 @@ std::vector<Known> beside_others(const EffectCurves& curves, const Model& model,
   for (const Side& side : sides) {
     if (side.place != place) continue;
     Known known{side.value, here.shift};
-    for (std::size_t r = 0; r < known.shift.size(); ++r) known.shift[r] += side.step[r];
+    for (std::size_t r = 0; r < known.shift.size(); ++r) known.shift[r] += side.shift[r] - model.shift[r];
     const double straight_to = side.outward ? end : neutral + kStraightTo * (value - neutral);
     if (straight_to != side.value) points.push_back(on_line(here, known, straight_to));
     points.push_back(std::move(known));
