@@ -89,9 +89,8 @@ Pose aimed_off(const Pose& X_WB, const Pose& X_WB_settled) {
           physics::rotation_from({0, 0, yaw(X_WB) + frames::wrap_angle(yaw(X_WB) - yaw(X_WB_settled))})};
 }
 
-bool is_off(const Pose& X_WB, const Pose& X_WB_settled) {
-  const Pose aim = aimed_off(X_WB, X_WB_settled);
-  return (aim.p - X_WB.p).norm() > kMisplaced_m || aim.q.angularDistance(X_WB.q) > kMisplaced_rad;
+bool apart(const Pose& X_WB, const Pose& other) {
+  return (other.p - X_WB.p).norm() > kMisplaced_m || other.q.angularDistance(X_WB.q) > kMisplaced_rad;
 }
 
 // At rest, joints included; where it has settled.
@@ -124,11 +123,12 @@ void put_at_start(Scene& scene, const RobotDescription& robot, const Manoeuvre& 
   Pose X_WB_settled = put_down(scene, robot, manoeuvre, flippers, X_WB);
   // A recorded start is where the robot stood. One that comes down on its flippers moves by millimetres; and how it is put
   // down decides which forces friction holds, so it is put down anew, and not moved.
-  if (manoeuvre.start && is_off(X_WB, X_WB_settled)) {
+  const Pose X_WB_aim = manoeuvre.start ? aimed_off(X_WB, X_WB_settled) : X_WB;
+  if (apart(X_WB, X_WB_aim)) {
     scene.world.remove_robot(scene.robot);
     scene.world.reset();
     scene.contacts = 0;
-    X_WB_settled = put_down(scene, robot, manoeuvre, flippers, aimed_off(X_WB, X_WB_settled));
+    X_WB_settled = put_down(scene, robot, manoeuvre, flippers, X_WB_aim);
   }
   double lift_m = manoeuvre.start_lift_m;
   if (manoeuvre.start && manoeuvre.start->z_m && *manoeuvre.start->z_m > X_WB_settled.p.z() + kInTheAir_m)
