@@ -2,13 +2,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
-#include <regex>
 
 #include "gap/plot/chart.hpp"
 #include "gap/plot/heat_map.hpp"
 #include "gap/plot/row_chart.hpp"
 #include "gap/plot/simplify.hpp"
 #include "gap/plot/strip_chart.hpp"
+#include "tests/gap/svg_attributes.hpp"
 #include "tests/gap/well_formed.hpp"
 
 using namespace kenaf::gap::plot;
@@ -16,13 +16,10 @@ using kenaf::test::fault_of_xml;
 
 namespace {
 
-// The numbers that the first group of each match of `pattern` holds.
-std::vector<double> all(const std::string& svg, const std::string& pattern) {
-  const std::regex regex(pattern);
-  std::vector<double> numbers;
-  for (auto i = std::sregex_iterator(svg.begin(), svg.end(), regex); i != std::sregex_iterator(); ++i)
-    numbers.push_back(std::stod((*i)[1]));
-  return numbers;
+std::vector<double> numbers(const std::string& svg, const std::string& attribute) {
+  std::vector<double> all;
+  for (const std::string& value : kenaf::test::attributes(svg, attribute)) all.push_back(std::stod(value));
+  return all;
 }
 
 }  // namespace
@@ -36,7 +33,7 @@ TEST_CASE("Rows lie on one axis: marks at their values, beyond the view at its e
       {"a", {{25, Shape::disc, Ink::real, Range{10, 40}}}, "25 %"}, {"b & c", {{150}}, ""}, {"d", {{-7}}, ""}};
   const std::string svg = to_svg(chart);
   CHECK(fault_of_xml(svg).empty());
-  CHECK(all(svg, "cx=\"([0-9.]+)\"") == std::vector<double>{250, 1000, 0});
+  CHECK(numbers(svg, "cx") == std::vector<double>{250, 1000, 0});
   CHECK_THAT(svg, Catch::Contains("M100.0 12.0H400.0") && Catch::Contains("b &amp; c") && Catch::Contains("25 %"));
 }
 
@@ -47,7 +44,7 @@ TEST_CASE("On a logarithmic axis a factor of ten is as long everywhere, and what
   chart.logarithmic = true;
   chart.view = Range{0.1, 100};  // three factors of ten on 1000 px
   chart.rows = {{"a", {{1}, {10}}, ""}, {"b", {{0}}, ""}};
-  const std::vector<double> at = all(to_svg(chart), "cx=\"([0-9.]+)\"");
+  const std::vector<double> at = numbers(to_svg(chart), "cx");
   REQUIRE(at.size() == 3);
   CHECK(at[0] == Approx(1000 / 3.0).margin(0.06));  // written with one decimal
   CHECK(at[1] == Approx(2000 / 3.0).margin(0.06));
@@ -70,7 +67,7 @@ TEST_CASE("A heat map has a number in each cell and shades it by strength") {
   map.cells = {{{}, {"7", 1, "one and two"}}, {{"7", 0.5, ""}, {}}};
   const std::string svg = to_svg(map);
   CHECK(fault_of_xml(svg).empty());
-  const std::vector<double> shades = all(svg, "fill-opacity=\"([0-9.]+)\"");
+  const std::vector<double> shades = numbers(svg, "fill-opacity");
   REQUIRE(shades.size() == 2);
   CHECK(shades[0] == Approx(2 * shades[1]));
   CHECK(shades[0] < 0.7);  // text on it stays readable
