@@ -1,11 +1,9 @@
 #include "gap/playback/playback_server.hpp"
 
-#include <algorithm>
-#include <charconv>
 #include <optional>
 #include <utility>
-#include <variant>
 
+#include "gap/playback/playback_path.hpp"
 #include "gap/playback/shelf.hpp"
 #include "live/scene_bytes.hpp"
 #include "live/web_server.hpp"
@@ -41,17 +39,13 @@ struct PlaybackServer::Implementation {
     shelf.look(playback.first);
   }
 
-  // "", "/3" or "/3/scene".
-  live::Reply answer(std::string_view rest) {
-    if (rest.empty()) return {http::status::ok, kJson, list};
-    rest.remove_prefix(1);
-    std::size_t run = 0;
-    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), run);
-    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
-    const bool known = error == std::errc() && run < playback.runs.size();
-    if (!known || (!rest.empty() && rest != "/scene"))
+  live::Reply answer(std::string_view path) {
+    const std::optional<PlaybackPath> asked = parse_playback_path(path);
+    if (asked && !asked->run) return {http::status::ok, kJson, list};
+    if (!asked || *asked->run >= playback.runs.size())
       return live::reply_in_words(http::status::not_found, "There is no such run.\n");
-    if (rest == "/scene") return {http::status::ok, "application/octet-stream", scenes[playback.runs[run].world]};
+    const std::size_t run = *asked->run;
+    if (asked->scene) return {http::status::ok, "application/octet-stream", scenes[playback.runs[run].world]};
     const Shelf::Look look = shelf.look(run);
     if (!look.failure.empty()) return live::reply_in_words(http::status::internal_server_error, look.failure + "\n");
     // the page asks again

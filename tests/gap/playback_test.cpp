@@ -21,6 +21,7 @@
 
 #include "gap/playback/columns_in_time.hpp"
 #include "gap/playback/dead_reckoning.hpp"
+#include "gap/playback/playback_path.hpp"
 #include "gap/playback/playback_server.hpp"
 #include "gap/playback/shelf.hpp"
 #include "tests/gap/kenaf_gap.hpp"
@@ -315,6 +316,19 @@ TEST_CASE("P6: what is made is made once and kept, and what fails is told and tr
   CHECK(made == 3);
   wait_for(3);
   CHECK(made == 4);
+}
+
+TEST_CASE("P6: what a page may ask for") {
+  const auto path = [](std::string_view text) {
+    const auto found = parse_playback_path(text);
+    if (!found) return std::string("none");
+    return (found->run ? std::to_string(*found->run) : "list") + (found->scene ? " scene" : "");
+  };
+  CHECK(path("") == "list");
+  CHECK(path("/3") == "3");
+  CHECK(path("/12/scene") == "12 scene");
+  for (const char* none : {"/", "3", "//3", "/-1", "/+1", "/ 1", "/3/", "/3/scenes", "/scene", "/3scene", "/99999999999999999999"})
+    CHECK(path(none) == "none");
 }
 
 TEST_CASE("P6: a page asks for the list, a run and its world, by the rules of the live view") {
