@@ -85,8 +85,9 @@ TEST_CASE("A break parts a line, without a finite point the chart says so") {
   Chart chart;
   chart.lines = {{{{0, 0}, {1, 1}, {nan, 0}, {2, 0}, {3, nan}}, Ink::real, Stroke::solid, ""}};
   const std::string svg = to_svg(chart);
-  const std::string path = svg.substr(svg.find("class=\"line real solid\""));
-  std::string strokes = kenaf::test::attributes(path, "d").front();
+  const std::size_t line = svg.find("class=\"line real solid\" d=\"");
+  REQUIRE(line != std::string::npos);
+  std::string strokes = kenaf::test::attributes(svg.substr(line), "d").front();
   CHECK_THAT(strokes, Catch::EndsWith("h0.1"));
   std::erase_if(strokes, [](char c) { return std::isalpha(static_cast<unsigned char>(c)) == 0; });
   CHECK(strokes == "MLMh");
