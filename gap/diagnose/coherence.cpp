@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include "gap/diagnose/channels.hpp"
+
 namespace kenaf::gap {
 
 Coherence::Coherence(const std::vector<FeatureMap>& features, std::vector<std::vector<std::size_t>> groups,
@@ -40,6 +42,15 @@ double Coherence::energy(const std::vector<Eigen::VectorXd>& whitened) const {
   double energy = 0;
   for (const Cell& cell : cells(whitened)) energy += cell.z * cell.z;
   return energy;
+}
+
+std::vector<ChannelEnergy> Coherence::by_channel(const std::vector<Eigen::VectorXd>& whitened) const {
+  std::vector<ChannelEnergy> channels(diagnosis_channels().size());
+  for (const Cell& cell : cells(whitened)) {
+    channels[cell.channel].energy += cell.z * cell.z;
+    ++channels[cell.channel].cells;
+  }
+  return channels;
 }
 
 }  // namespace kenaf::gap

@@ -1,23 +1,32 @@
 #include "gap/diagnose/undone.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace kenaf::gap {
+namespace {
+
+std::vector<double> lengths_by_channel(const EffectCurves& curves, const Coherence& coherence, const Shift& shift) {
+  Whitened whitened;
+  for (std::size_t r = 0; r < shift.size(); ++r) whitened.push_back(curves.whiteners[r](shift[r]));
+  std::vector<double> lengths;
+  for (const ChannelEnergy& channel : coherence.by_channel(whitened)) lengths.push_back(std::sqrt(channel.energy));
+  return lengths;
+}
+
+}  // namespace
 
 std::optional<Undone> undone(const EffectCurves& curves, const Model& model, const Coherence& coherence) {
-  if (model.places.size() < 2) return std::nullopt;
-  const auto by_channel = [&](const Shift& shift) {
-    Whitened whitened;
-    for (std::size_t r = 0; r < shift.size(); ++r) whitened.push_back(curves.whiteners[r](shift[r]));
-    return coherence.by_channel(whitened);
-  };
-  std::vector<double> largest(coherence.by_channel({}).size(), 0);
+  std::optional<Undone> most;
+  if (model.places.size() < 2) return most;
+  const std::vector<double> together = lengths_by_channel(curves, coherence, model.shift);
   for (const OnCurve& place : model.places) {
-    const std::vector<ChannelEnergy> alone = by_channel(shift_of(curves, {&place, 1}));
-    for (std::size_t c = 0; c < alone.size(); ++c) largest[c] = std::max(largest[c], std::sqrt(alone[c].energy));
+    const std::vector<double> alone = lengths_by_channel(curves, coherence, shift_of(curves, {&place, 1}));
+    for (std::size_t c = 0; c < alone.size(); ++c) {
+      if (alone[c] < kSeenAlone || together[c] > kUndone * alone[c]) continue;
+      if (!most || together[c] * most->alone < most->together * alone[c]) most = Undone{c, alone[c], together[c]};
+    }
   }
-  return std::nullopt;
+  return most;
 }
 
 }  // namespace kenaf::gap

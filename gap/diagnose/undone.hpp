@@ -15,12 +15,13 @@ namespace kenaf::gap {
 
 struct Undone {
   std::size_t channel;  // of diagnosis_channels()
-  double alone;         // floors by which the effect that does most there moves it alone, repeats and neighbouring bins averaged
+  double alone;         // floors by which one of the effects moves it, repeats and neighbouring bins averaged
   double together;      // floors by which all of them do
 };
-// The channel with the smallest `together` for its `alone`, of those with at least kSeenAlone floors in which it is at most
-// kUndone; none with a single effect. What each does alone is taken by its curve.
-inline constexpr double kSeenAlone = 20, kUndone = 0.05;  // chosen: docs/gap-method.md
+// Of an effect that moves a channel by that many floors at least, all may leave that share. Chosen: docs/gap-method.md.
+inline constexpr double kSeenAlone = 20, kUndone = 0.05;
+
+// Where most is undone. What each does alone is taken from its curve.
 std::optional<Undone> undone(const EffectCurves& curves, const Model& model, const Coherence& coherence);
 
 }  // namespace kenaf::gap
