@@ -204,8 +204,6 @@ class Decider {
     doubt(d_.p_agree <= settings_.surprise, Doubt::disagreement);
     doubt(at_an_end(d_.best, curves_, settings_.rival_margin * inflation_), Doubt::end_of_range);
     doubt(has_trifle(d_.best, curves_, due(d_.best)), Doubt::trifle);
-    d_.left_in_channel = left_in_channel(curves_, d_.best, coherence_, numerics_, inflation_);
-    doubt(d_.left_in_channel.p <= settings_.surprise, Doubt::channel_left);
     d_.undone = undone(curves_, d_.best, coherence_);
     doubt(d_.undone.has_value(), Doubt::undone);
     for (const OnCurve& place : d_.best.places) d_.rivals.push_back({place.curve});

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "gap/diagnose/chance.hpp"
-#include "gap/diagnose/left_in_channel.hpp"
 #include "gap/diagnose/model_search.hpp"
 #include "gap/diagnose/undone.hpp"
 
@@ -24,7 +23,6 @@ enum class Doubt {
   disagreement,  // manoeuvres want different values
   end_of_range,  // a value stands for something that its effect cannot do
   trifle,        // one of three effects or more accounts for too little
-  channel_left,  // in one channel more is left than chance leaves
   undone,        // one effect takes back what another one does
   // found after decide(), on runs held out of the fit:
   not_held_out,    // too little of the gap is gone
@@ -57,7 +55,6 @@ struct Decision {
   double p_gap = 1;                               // of a gap that large by chance
   double p_left = 1;                              // of as much left by chance
   double p_agree = 1;                             // that manoeuvres differ as much about the best model's values
-  LeftInChannel left_in_channel;
   std::optional<Undone> undone;
   double inflation = 1;                           // of variances: how repeats differ beyond the floor
 };

@@ -95,11 +95,6 @@ std::vector<std::string> doubts_in_words(const Decision& decision) {
       case Doubt::trifle:
         words.push_back("of so many effects one accounts for too little");
         break;
-      case Doubt::channel_left:
-        words.push_back(fmt::format("in {} more is left than chance leaves ({})",
-                                    diagnosis_channels()[decision.left_in_channel.channel].column,
-                                    chance(decision.left_in_channel.p)));
-        break;
       case Doubt::undone:
         words.push_back(fmt::format(
             "effects undo each other: one of them moves {} by {:.0f} floors, all together by {:.0f}",

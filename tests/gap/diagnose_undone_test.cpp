@@ -1,9 +1,7 @@
-// What all channels together do not show: effects that undo each other in one of them, and a rest that is too large for
-// one.
+// Effects of which one takes back, in a channel, what another one does.
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "gap/diagnose/left_in_channel.hpp"
 #include "gap/diagnose/undone.hpp"
 #include "tests/gap/linear_world.hpp"
 
@@ -17,7 +15,6 @@ namespace {
 
 // The world's channels.
 enum class Pose { x, y, z, yaw };
-constexpr const char* kPoseColumns[] = {"x_m", "y_m", "z_m", "yaw_rad"};
 
 // The same in all bins of a channel, of that length in floors.
 Whole in_channel(Pose channel, double length) {
@@ -40,10 +37,6 @@ std::vector<Whole> opposing_effects() {
   return {in_channel(Pose::x, 80) + in_channel(Pose::yaw, 200), in_channel(Pose::yaw, -200), in_channel(Pose::z, 80)};
 }
 
-bool is_of(std::size_t channel, Pose pose) {
-  return std::string_view(diagnosis_channels()[channel].column) == kPoseColumns[static_cast<std::size_t>(pose)];
-}
-
 }  // namespace
 
 TEST_CASE("Effects of which one takes back what the other one does are no name for a gap that shows neither") {
@@ -54,7 +47,7 @@ TEST_CASE("Effects of which one takes back what the other one does are no name f
   CHECK(decision.verdict == Verdict::unknown);
   CHECK(decision.doubts == std::vector<Doubt>{Doubt::undone});
   REQUIRE(decision.undone.has_value());
-  CHECK(is_of(decision.undone->channel, Pose::yaw));
+  CHECK(diagnosis_channels()[decision.undone->channel].column == std::string("yaw_rad"));
   CHECK(decision.undone->alone == Approx(100).margin(10));  // 0.5 of 200; 40 of 80 is known to 1 / 40 of it
   CHECK(decision.undone->together < 4);                     // nothing but noise of 1 floor
 }
@@ -82,37 +75,4 @@ TEST_CASE("Undone is what many floors are taken back of, to a twentieth, by seve
 
   const EffectCurves curves = world().curves(opposing_effects(), 0.5 * opposing_effects()[0]);
   CHECK_FALSE(undone(curves, world().fitted(curves, {0}), world().coherence()).has_value());
-}
-
-TEST_CASE("What is left in one channel is not excused by others with less than chance") {
-  // Without noise, a square of 40 is left in the 6 cells of a channel, of which the chance is 5e-7; in all 24 cells it
-  // is 2 %.
-  const std::vector<Whole> all = opposing_effects();
-  const Decision decision = world().decide(all, 0.5 * all[2] + in_channel(Pose::y, std::sqrt(40.0)), few_draws());
-  REQUIRE(decision.best.places.size() == 1);
-  CHECK(decision.verdict == Verdict::unknown);
-  CHECK(decision.p_left > DecisionSettings{}.surprise);
-  CHECK(decision.doubts == std::vector<Doubt>{Doubt::channel_left});
-  CHECK(is_of(decision.left_in_channel.channel, Pose::y));
-  CHECK(decision.left_in_channel.p < 1e-4);
-}
-
-TEST_CASE(
-    "The chance of what is left in a channel counts all channels, the simulator's share, and how repeats differ") {
-  // in 6 cells; chi-squared with 6 degrees of freedom reaches 16.81 by a chance of 1 %, in one of four channels of 4 %
-  const std::vector<Whole> all = opposing_effects();
-  const EffectCurves curves = world().curves(all, 0.5 * all[2] + in_channel(Pose::y, std::sqrt(16.81)));
-  const Model model = world().fitted(curves, {2});
-  const auto p = [&](double numerics, double inflation) {
-    const LeftInChannel left = left_in_channel(curves, model, world().coherence(), numerics, inflation);
-    CHECK(is_of(left.channel, Pose::y));
-    return left.p;
-  };
-  CHECK(p(0, 1) == Approx(0.04).epsilon(0.03));
-  // half of 16.81 are 8.405: 21 % in one channel
-  CHECK(p(0, 2) == Approx(4 * 0.2099).epsilon(0.03));
-  CHECK(p(0.5, 1) == Approx(4 * 0.2099).epsilon(0.03));
-
-  const EffectCurves nothing = world().curves(all, Whole::Zero(LinearWorld::kBins));
-  CHECK(left_in_channel(nothing, world().fitted(nothing, {2}), world().coherence(), 0, 1).p == 1);
 }
