@@ -9,6 +9,7 @@
 using namespace kenaf;
 using namespace kenaf::gap;
 using test::LinearWorld;
+using test::quick;
 using test::Whole;
 using test::world;
 
@@ -21,13 +22,6 @@ std::vector<Whole> orthogonal_effects() {
   std::vector<Whole> effects;
   for (std::size_t i = 0; i < kEffects; ++i) effects.push_back(kLength * world().direction(i));
   return effects;
-}
-
-// Draws enough for probabilities down to 0.0025, and no more.
-DecisionSettings quick() {
-  DecisionSettings settings;
-  settings.null_draws = 500;
-  return settings;
 }
 
 bool holds(const Decision& decision, std::size_t place, std::size_t curve) {

@@ -8,6 +8,7 @@
 using namespace kenaf;
 using namespace kenaf::gap;
 using test::LinearWorld;
+using test::quick;
 using test::Whole;
 using test::world;
 
@@ -26,12 +27,6 @@ Whole in_channel(Pose channel, double length) {
   return whole;
 }
 
-DecisionSettings few_draws() {
-  DecisionSettings settings;
-  settings.null_draws = 500;
-  return settings;
-}
-
 // At 1, the first one moves the robot on and turns it, the second one turns it back, the third one lifts it.
 std::vector<Whole> opposing_effects() {
   return {in_channel(Pose::x, 80) + in_channel(Pose::yaw, 200), in_channel(Pose::yaw, -200), in_channel(Pose::z, 80)};
@@ -42,7 +37,7 @@ std::vector<Whole> opposing_effects() {
 TEST_CASE("Effects of which one takes back what the other one does are no name for a gap that shows neither") {
   // what moves the robot on by 40 floors, and is in no catalogue, is the first one at 0.5 and the second one at 0.5
   const Decision decision =
-      world().decide(opposing_effects(), in_channel(Pose::x, 40) + LinearWorld::noise(1), few_draws());
+      world().decide(opposing_effects(), in_channel(Pose::x, 40) + LinearWorld::noise(1), quick());
   REQUIRE(decision.best.places.size() == 2);
   CHECK(decision.verdict == Verdict::unknown);
   CHECK(decision.doubts == std::vector<Doubt>{Doubt::undone});
@@ -55,7 +50,7 @@ TEST_CASE("Effects of which one takes back what the other one does are no name f
 TEST_CASE("Effects that work against each other are named where what is left of both is seen") {
   // 0.5 x 200 - 0.3 x 200 = 40 floors are left
   const std::vector<Whole> all = opposing_effects();
-  const Decision decision = world().decide(all, 0.5 * all[0] + 0.3 * all[1] + LinearWorld::noise(1), few_draws());
+  const Decision decision = world().decide(all, 0.5 * all[0] + 0.3 * all[1] + LinearWorld::noise(1), quick());
   CHECK(decision.verdict == Verdict::named);
   REQUIRE(decision.best.places.size() == 2);
   CHECK_FALSE(decision.undone.has_value());

@@ -137,4 +137,11 @@ inline const LinearWorld& world() {
   return world;
 }
 
+// Draws enough for probabilities down to 0.0025, and no more.
+inline gap::DecisionSettings quick() {
+  gap::DecisionSettings settings;
+  settings.null_draws = 500;
+  return settings;
+}
+
 }  // namespace kenaf::test
