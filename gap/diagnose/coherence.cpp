@@ -44,10 +44,13 @@ double Coherence::energy(const std::vector<Eigen::VectorXd>& whitened) const {
   return energy;
 }
 
-std::vector<double> Coherence::energy_by_channel(const std::vector<Eigen::VectorXd>& whitened) const {
-  std::vector<double> energy(diagnosis_channels().size(), 0);
-  for (const Cell& cell : cells(whitened)) energy[cell.channel] += cell.z * cell.z;
-  return energy;
+std::vector<ChannelEnergy> Coherence::by_channel(const std::vector<Eigen::VectorXd>& whitened) const {
+  std::vector<ChannelEnergy> channels(diagnosis_channels().size());
+  for (const Cell& cell : cells(whitened)) {
+    channels[cell.channel].energy += cell.z * cell.z;
+    ++channels[cell.channel].cells;
+  }
+  return channels;
 }
 
 }  // namespace kenaf::gap

@@ -20,6 +20,12 @@ struct Cell {
   double z;             // standard normal by chance
 };
 
+// Of the cells of one channel.
+struct ChannelEnergy {
+  double energy = 0;  // sum of z^2
+  std::size_t cells = 0;
+};
+
 class Coherence {
  public:
   Coherence(const std::vector<FeatureMap>& features, std::vector<std::vector<std::size_t>> groups, double stretch_s);
@@ -31,7 +37,7 @@ class Coherence {
   // Sum of z^2 over all cells: by chance near cell_count().
   double energy(const std::vector<Eigen::VectorXd>& whitened) const;
   // The same of each of diagnosis_channels().
-  std::vector<double> energy_by_channel(const std::vector<Eigen::VectorXd>& whitened) const;
+  std::vector<ChannelEnergy> by_channel(const std::vector<Eigen::VectorXd>& whitened) const;
 
  private:
   std::vector<std::vector<std::size_t>> groups_;

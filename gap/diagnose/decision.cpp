@@ -201,6 +201,8 @@ class Decider {
     const double expected = inflation_ + agree.of_numerics / std::max(1.0, agree.freedom);
     d_.p_agree = p_of_squares(agree.gained / expected, agree.freedom);
     doubt(d_.p_left <= settings_.surprise, Doubt::much_left);
+    d_.left_in_drive = left_in_drives(curves_, d_.best, coherence_, inflation_);
+    doubt(d_.left_in_drive && d_.left_in_drive->p <= settings_.surprise, Doubt::left_in_drive);
     doubt(d_.p_agree <= settings_.surprise, Doubt::disagreement);
     doubt(at_an_end(d_.best, curves_, settings_.rival_margin * inflation_), Doubt::end_of_range);
     doubt(has_trifle(d_.best, curves_, due(d_.best)), Doubt::trifle);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gap/diagnose/chance.hpp"
+#include "gap/diagnose/left_in_drives.hpp"
 #include "gap/diagnose/model_search.hpp"
 #include "gap/diagnose/undone.hpp"
 
@@ -19,11 +20,12 @@ enum class Verdict { none, named, ambiguous, unknown };
 
 // Why the best model is not believed, each of which makes the verdict unknown.
 enum class Doubt {
-  much_left,     // more than chance leaves
-  disagreement,  // manoeuvres want different values
-  end_of_range,  // a value stands for something that its effect cannot do
-  trifle,        // one of three effects or more accounts for too little
-  undone,        // one effect takes back what another one does
+  much_left,      // more than chance leaves
+  left_in_drive,  // the same in a single channel of the drives
+  disagreement,   // manoeuvres want different values
+  end_of_range,   // a value stands for something that its effect cannot do
+  trifle,         // one of three effects or more accounts for too little
+  undone,         // one effect takes back what another one does
   // found after decide(), on runs held out of the fit:
   not_held_out,    // too little of the gap is gone
   beyond_repeats,  // more is left than repeats differ by
@@ -55,6 +57,7 @@ struct Decision {
   double p_gap = 1;                               // of a gap that large by chance
   double p_left = 1;                              // of as much left by chance
   double p_agree = 1;                             // that manoeuvres differ as much about the best model's values
+  std::optional<LeftInDrive> left_in_drive;
   std::optional<Undone> undone;
   double inflation = 1;                           // of variances: how repeats differ beyond the floor
 };

@@ -86,6 +86,11 @@ std::vector<std::string> doubts_in_words(const Decision& decision) {
       case Doubt::much_left:
         words.push_back(fmt::format("more is left than chance leaves ({})", chance(decision.p_left)));
         break;
+      case Doubt::left_in_drive:
+        words.push_back(fmt::format("in {} {:.0f} % of the squared gap is left, more than chance leaves ({})",
+                                    diagnosis_channels()[decision.left_in_drive->channel].column,
+                                    100 * decision.left_in_drive->share, chance(decision.left_in_drive->p)));
+        break;
       case Doubt::disagreement:
         words.push_back(fmt::format("manoeuvres want different values ({})", chance(decision.p_agree)));
         break;

@@ -8,8 +8,8 @@ namespace {
 std::vector<double> lengths_by_channel(const EffectCurves& curves, const Coherence& coherence, const Shift& shift) {
   Whitened whitened;
   for (std::size_t r = 0; r < shift.size(); ++r) whitened.push_back(curves.whiteners[r](shift[r]));
-  std::vector<double> lengths = coherence.energy_by_channel(whitened);
-  for (double& length : lengths) length = std::sqrt(length);
+  std::vector<double> lengths;
+  for (const ChannelEnergy& channel : coherence.by_channel(whitened)) lengths.push_back(std::sqrt(channel.energy));
   return lengths;
 }
 

@@ -182,9 +182,9 @@ TEST_CASE("Energy of cells: of noise near their count, of a constant gap growing
 TEST_CASE("A cell says which group, channel and second it is") {
   Whole gap = Whole::Zero(LinearWorld::kBins);
   gap.segment(2 * LinearWorld::kBinsOfRun + 12 + 4, 4)
-      .setConstant(3);  // run 2: the second group; y_m; the second second
+      .setConstant(3);  // run 2: the second group; the voltage; the second second
   for (const Cell& cell : world().coherence().cells(LinearWorld::by_run(gap))) {
-    const bool here = cell.group == 1 && diagnosis_channels()[cell.channel].column == "y_m" && cell.stretch == 1;
+    const bool here = cell.group == 1 && diagnosis_channels()[cell.channel].column == "battery_v" && cell.stretch == 1;
     CHECK(cell.z == Approx(here ? 12 / std::sqrt(8.0) : 0).margin(1e-12));
   }
 }

@@ -1,6 +1,5 @@
 // Effects of which one takes back, in a channel, what another one does.
 #include <catch2/catch.hpp>
-#include <cmath>
 
 #include "gap/diagnose/undone.hpp"
 #include "tests/gap/linear_world.hpp"
@@ -11,25 +10,14 @@ using test::LinearWorld;
 using test::quick;
 using test::Whole;
 using test::world;
+using test::WorldChannel;
 
 namespace {
 
-// The world's channels.
-enum class Pose { x, y, z, yaw };
-
-// The same in all bins of a channel, of that length in floors.
-Whole in_channel(Pose channel, double length) {
-  constexpr double kBinsOfChannel = 48;
-  Whole whole = Whole::Zero(LinearWorld::kBins);
-  for (std::size_t i = 0; i < LinearWorld::kBins; ++i)
-    if (i % LinearWorld::kBinsOfRun / 12 == static_cast<std::size_t>(channel))
-      whole[static_cast<Eigen::Index>(i)] = length / std::sqrt(kBinsOfChannel);
-  return whole;
-}
-
-// At 1, the first one moves the robot on and turns it, the second one turns it back, the third one lifts it.
+// At 1, the first one moves the robot on and turns it, the second one turns it back, the third one drains its battery.
 std::vector<Whole> opposing_effects() {
-  return {in_channel(Pose::x, 80) + in_channel(Pose::yaw, 200), in_channel(Pose::yaw, -200), in_channel(Pose::z, 80)};
+  return {LinearWorld::in_channel(WorldChannel::x, 80) + LinearWorld::in_channel(WorldChannel::yaw, 200),
+          LinearWorld::in_channel(WorldChannel::yaw, -200), LinearWorld::in_channel(WorldChannel::battery, 80)};
 }
 
 }  // namespace
@@ -37,7 +25,7 @@ std::vector<Whole> opposing_effects() {
 TEST_CASE("Effects of which one takes back what the other one does are no name for a gap that shows neither") {
   // what moves the robot on by 40 floors, and is in no catalogue, is the first one at 0.5 and the second one at 0.5
   const Decision decision =
-      world().decide(opposing_effects(), in_channel(Pose::x, 40) + LinearWorld::noise(1), quick());
+      world().decide(opposing_effects(), LinearWorld::in_channel(WorldChannel::x, 40) + LinearWorld::noise(1), quick());
   REQUIRE(decision.best.places.size() == 2);
   CHECK(decision.verdict == Verdict::unknown);
   CHECK(decision.doubts == std::vector<Doubt>{Doubt::undone});

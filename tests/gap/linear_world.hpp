@@ -1,7 +1,7 @@
 // A world in which the diagnosis' statistics have answers by hand: noise of sigma 1 in every bin, and effects whose shifts
 // are fixed vectors times their parameter, so that any two add and every curve is straight.
 //
-// Two manoeuvres of 3 s, twice each, four channels: 192 bins of 0.25 s. A direction is constant in a cell (one channel in
+// Two manoeuvres of 3 s, twice each, four channels, two of them of the drives: 192 bins of 0.25 s. A direction is constant in a cell (one channel in
 // one second of a manoeuvre, in both repeats: 8 bins) and of length 1; directions 0 to 23 are orthonormal.
 #pragma once
 
@@ -18,13 +18,16 @@ namespace kenaf::test {
 
 using Whole = Eigen::VectorXd;  // all bins of all runs, one after another
 
+// The channels, in the order of their bins.
+enum class WorldChannel { track, battery, x, yaw };
+
 class LinearWorld {
  public:
   static constexpr std::size_t kRuns = 4, kBinsOfRun = 48, kBins = kRuns * kBinsOfRun, kCells = 24;
 
   LinearWorld() {
     const auto zero = [](double) { return 0.0; };
-    const runs::Run run = made_run(3, 0.05, {{"x_m", zero}, {"y_m", zero}, {"z_m", zero}, {"yaw_rad", zero}});
+    const runs::Run run = made_run(3, 0.05, {{"track_left_mps", zero}, {"battery_v", zero}, {"x_m", zero}, {"yaw_rad", zero}});
     for (std::size_t r = 0; r < kRuns; ++r) features.emplace_back(run, 0.25);
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal;
@@ -40,6 +43,17 @@ class LinearWorld {
       whole[static_cast<Eigen::Index>(i)] =
           cells_(static_cast<Eigen::Index>(cell), static_cast<Eigen::Index>(number)) / std::sqrt(8.0);
     }
+    return whole;
+  }
+
+  // The same in all bins of a channel, of that length in floors. Second manoeuvre: the same, or the opposite of it.
+  static Whole in_channel(WorldChannel channel, double length, double second_manoeuvre = 1) {
+    constexpr double kBinsOfChannel = 48;
+    Whole whole = Whole::Zero(kBins);
+    for (std::size_t i = 0; i < kBins; ++i)
+      if (i % kBinsOfRun / 12 == static_cast<std::size_t>(channel))
+        whole[static_cast<Eigen::Index>(i)] =
+            length / std::sqrt(kBinsOfChannel) * (i < kBins / 2 ? 1 : second_manoeuvre);
     return whole;
   }
 
