@@ -200,6 +200,12 @@ Shift shift_of(const EffectCurves& curves, std::span<const OnCurve> places) {
   return shift;
 }
 
+Whitened whitened(const EffectCurves& curves, const Shift& shift) {
+  Whitened result(shift.size());
+  for (std::size_t r = 0; r < shift.size(); ++r) result[r] = curves.whiteners[r](shift[r]);
+  return result;
+}
+
 Whitened whitened_difference(const EffectCurves& curves, const std::vector<VectorXd>& a, const Shift& b) {
   Whitened result(a.size());
   for (std::size_t r = 0; r < a.size(); ++r) result[r] = curves.whiteners[r](a[r] - b[r]);

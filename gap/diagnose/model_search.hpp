@@ -57,6 +57,7 @@ using EffectSet = std::vector<std::size_t>;
 EffectSet effects_of(const Model& model);
 // By curves, of effects at these places together.
 Shift shift_of(const EffectCurves& curves, std::span<const OnCurve> places);
+Whitened whitened(const EffectCurves& curves, const Shift& shift);
 Whitened whitened_difference(const EffectCurves& curves, const std::vector<Eigen::VectorXd>& a, const Shift& b);
 // Inner products of all runs together.
 Products products_of(const EffectCurves& curves, const Whitened& gap);

@@ -51,11 +51,8 @@ double value_at(const EffectCurves& curves, const Model& model, const Side& side
 std::vector<Side> to_either_side(const EffectCurves& curves, const Simulator& simulator, const Model& model) {
   std::vector<Side> sides;
   std::vector<double> lengths;  // of each effect alone
-  Shift nothing;
-  for (const Eigen::VectorXd& run : model.shift) nothing.push_back(Eigen::VectorXd::Zero(run.size()));
   for (std::size_t i = 0; i < model.places.size(); ++i) {
-    const Shift alone = shift_of(curves, {&model.places[i], 1});
-    lengths.push_back(std::sqrt(squared_length(whitened_difference(curves, alone, nothing))));
+    lengths.push_back(std::sqrt(squared_length(whitened(curves, shift_of(curves, {&model.places[i], 1})))));
     for (const bool outward : {false, true}) {
       const Side side{i, outward, std::clamp(kShifted_floors / lengths[i], kNearest, kFarthest)};
       if (value_at(curves, model, side) != model.places[i].value) sides.push_back(side);

@@ -6,10 +6,9 @@ namespace kenaf::gap {
 namespace {
 
 std::vector<double> lengths_by_channel(const EffectCurves& curves, const Coherence& coherence, const Shift& shift) {
-  Whitened whitened;
-  for (std::size_t r = 0; r < shift.size(); ++r) whitened.push_back(curves.whiteners[r](shift[r]));
   std::vector<double> lengths;
-  for (const ChannelEnergy& channel : coherence.by_channel(whitened)) lengths.push_back(std::sqrt(channel.energy));
+  for (const ChannelEnergy& channel : coherence.by_channel(whitened(curves, shift)))
+    lengths.push_back(std::sqrt(channel.energy));
   return lengths;
 }
 
