@@ -26,7 +26,6 @@ constexpr const char* kRobot = "kenaf";
 constexpr int kHalvings = 12;
 constexpr double kSmallestShare = 1e-5, kCloseEnough = 1.05;
 constexpr double kSmallestPlay = 0.01;  // 3 mrad of backlash: of less there is little but the give of the teeth
-constexpr double kFurthest = 0.95;      // of the way to the end of a parameter's range
 constexpr double kCloseToPlanned = 0.9;
 
 struct Work {
@@ -198,16 +197,14 @@ std::pair<double, double> share_for(double wanted, double smallest_share, SizeAt
 
 // Sets the value so that the effect is as large as planned; returns its size over what was planned. Where it cannot be
 // so large to one side of neutral, it is sought on the other one.
-double size_effect(HiddenEffect& hidden, Scale& scale, bool upward_first) {
+double size_effect(const CasePlan& plan, HiddenEffect& hidden, Scale& scale, bool upward_first) {
   const physics::EffectParameter& parameter = parameter_of(hidden);
   const double planned = hidden.floors;
   double best = -1;
   for (const bool upward : {upward_first, !upward_first}) {
-    const double end = upward ? parameter.max : parameter.min;
-    if (end == parameter.neutral || best >= kCloseToPlanned) continue;
-    const auto value_at = [&](double share) {
-      return parameter.neutral + kFurthest * share * (end - parameter.neutral);
-    };
+    const double furthest = furthest_value(plan, parameter, upward);
+    if (furthest == parameter.neutral || best >= kCloseToPlanned) continue;
+    const auto value_at = [&](double share) { return parameter.neutral + share * (furthest - parameter.neutral); };
     const double smallest = parameter.value == &physics::Effects::flipper_backlash_rad ? kSmallestPlay : kSmallestShare;
     const auto [share, floors] = share_for(planned, smallest, [&](double part) {
       physics::Effects effects;
@@ -256,7 +253,8 @@ void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs, const std:
     if (std::ranges::count(set, candidate.unseen) > 0) continue;
     Scale scale(candidate, work);
     double reached = 1e9;
-    for (HiddenEffect& hidden : candidate.effects) reached = std::min(reached, size_effect(hidden, scale, upward));
+    for (HiddenEffect& hidden : candidate.effects)
+      reached = std::min(reached, size_effect(candidate, hidden, scale, upward));
     if (!plan.foreign.empty()) {
       std::tie(candidate.foreign_amount, candidate.foreign_floors) =
           share_for(plan.foreign_floors, kSmallestShare,

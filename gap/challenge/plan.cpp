@@ -31,6 +31,7 @@ constexpr std::string_view kStratumNames[] = {"none", "single", "pair", "withhel
 // Shares of the strata, in the order of Stratum: of 150 cases there is a single and a withheld one for each effect.
 constexpr double kShare[] = {0.3, 0.26, 0.11, 0.26, 0.07};
 constexpr double kRounding = 1e-6;
+constexpr double kFurthest = 0.95;  // of the way to the end of a parameter's range
 
 struct Named {
   std::string effect, parameter;
@@ -69,6 +70,16 @@ std::vector<Stratum> strata(std::size_t cases, Random& random) {
   return result;
 }
 
+// What a value of the "real" side is multiplied by, to be one of the model's contacts.
+double scale_in_model(const CasePlan& plan, const physics::EffectParameter& parameter) {
+  const physics::PhysicsSettings usual;
+  if (parameter.value == &physics::Effects::ground_compliance_scale)
+    return usual.contact_stiffness_npm / plan.physics.contact_stiffness_npm;
+  if (parameter.value == &physics::Effects::ground_damping_scale)
+    return plan.physics.contact_damping_nspm / usual.contact_damping_nspm;
+  return 1;
+}
+
 }  // namespace
 
 std::string_view stratum_name(Stratum stratum) {
@@ -90,14 +101,14 @@ const physics::EffectParameter& parameter_of(const HiddenEffect& hidden) {
 }
 
 double value_in_model(const CasePlan& plan, const HiddenEffect& hidden) {
-  const physics::EffectParameter& parameter = parameter_of(hidden);
-  const physics::PhysicsSettings usual;
-  double value = hidden.value;
-  if (parameter.value == &physics::Effects::ground_compliance_scale)
-    value *= usual.contact_stiffness_npm / plan.physics.contact_stiffness_npm;
-  if (parameter.value == &physics::Effects::ground_damping_scale)
-    value *= plan.physics.contact_damping_nspm / usual.contact_damping_nspm;
-  return std::clamp(value, parameter.min, parameter.max);
+  return hidden.value * scale_in_model(plan, parameter_of(hidden));
+}
+
+double furthest_value(const CasePlan& plan, const physics::EffectParameter& parameter, bool upward) {
+  const double scale = scale_in_model(plan, parameter);
+  const double end =
+      upward ? std::min(parameter.max, parameter.max / scale) : std::max(parameter.min, parameter.min / scale);
+  return parameter.neutral + kFurthest * (end - parameter.neutral);
 }
 
 std::vector<std::vector<std::string>> manoeuvre_sets() {

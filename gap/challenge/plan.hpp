@@ -55,8 +55,12 @@ struct CasePlan {
 const physics::EffectParameter& parameter_of(const HiddenEffect& hidden);
 
 // The value that a model with the simulator's own contacts needs for the same: the give of the ground and its damping multiply
-// those of the "real" side's contacts, which are others. Within the parameter's range.
+// those of the "real" side's contacts, which are others.
 double value_in_model(const CasePlan& plan, const HiddenEffect& hidden);
+
+// The furthest value from neutral that a case may hide: within the parameter's range on the "real" side and in the model, for a
+// diagnosis cannot find what is beyond.
+double furthest_value(const CasePlan& plan, const physics::EffectParameter& parameter, bool upward);
 
 // Nothing hidden in three of ten; of the rest each effect of the catalogue alone in turn, each withheld in turn, pairs
 // and foreign ones by chance. In an order that says nothing.

@@ -95,3 +95,27 @@ TEST_CASE("Each case hides what its stratum says, as large as it says, and diffe
   CHECK(smallest < 0.7);
   CHECK(largest > 4);
 }
+
+TEST_CASE("No value is hidden that a model cannot have") {
+  // Contacts half as stiff and with twice the damping of the model's, whose own ranges end at 50 and 20: half of that is left.
+  CasePlan plan;
+  plan.physics.contact_stiffness_npm /= 2;
+  plan.physics.contact_damping_nspm *= 2;
+  const gap::HiddenEffect compliance{"ground_compliance", "scale", 3, 0}, damping{"ground_damping", "scale", 3, 0},
+      mass{"mass", "scale", 3, 0};
+  const auto furthest = [&](const gap::HiddenEffect& hidden, bool upward) {
+    return furthest_value(plan, parameter_of(hidden), upward);
+  };
+  CHECK(furthest(compliance, true) == Approx(1 + 0.95 * (25 - 1)));
+  CHECK(furthest(damping, true) == Approx(1 + 0.95 * (10 - 1)));
+  // downward it is the robot's own range that ends first: 0.2 and 0.1
+  CHECK(furthest(compliance, false) == Approx(1 - 0.95 * (1 - 0.2)));
+  CHECK(furthest(damping, false) == Approx(1 - 0.95 * (1 - 0.1)));
+  const auto& parameter = parameter_of(mass);
+  CHECK(furthest(mass, true) == Approx(1 + 0.95 * (parameter.max - 1)));
+
+  // twice as stiff: downward the model's range ends first, at 0.2 of its contacts, which are 0.4 of the robot's
+  plan.physics.contact_stiffness_npm *= 4;
+  CHECK(furthest(compliance, false) == Approx(1 - 0.95 * (1 - 0.4)));
+  CHECK(furthest(compliance, true) == Approx(1 + 0.95 * (50 - 1)));
+}
