@@ -16,7 +16,7 @@ namespace {
 
 void print(const std::vector<Finding>& findings) {
   for (const Finding& finding : findings)
-    std::printf("%s%s\n", finding.severity == Finding::Severity::warn ? "warning: " : "", in_words(finding).c_str());
+    std::printf("%s%s\n", finding.severity != Finding::Severity::refuse ? "warning: " : "", in_words(finding).c_str());
 }
 
 // One run in memory at a time, however many there are. Throws where something is refused.
@@ -27,7 +27,7 @@ void check(const std::filesystem::path& folder) {
   std::size_t refused = 0, warned = 0;
   const auto take = [&](const std::vector<Finding>& findings) {
     print(findings);
-    for (const Finding& finding : findings) ++(finding.severity == Finding::Severity::warn ? warned : refused);
+    for (const Finding& finding : findings) ++(finding.severity == Finding::Severity::refuse ? refused : warned);
   };
   for (const runs::DatasetRun& entry : dataset.runs) {
     const runs::Run run = runs::read_run(folder / entry.file);

@@ -54,7 +54,7 @@ void add_dataset_command(CLI::App& program) {
     for (const std::string& text : options->runs) asked.runs.push_back(run_from(text, options->manoeuvre));
     const CollectedDataset result = collect_dataset(asked);
     for (const Finding& finding : result.findings)
-      std::fprintf(stderr, "kenaf-gap: %s%s\n", finding.severity == Finding::Severity::warn ? "warning: " : "",
+      std::fprintf(stderr, "kenaf-gap: %s%s\n", finding.severity != Finding::Severity::refuse ? "warning: " : "",
                    in_words(finding).c_str());
     if (result.refused)
       throw std::runtime_error("nothing was written; where a run is right all the same, give --unchecked");

@@ -1,8 +1,9 @@
 // Is a log what it says it is? Units, signs, clocks, sensors that are dead, poses that jump: what the format cannot
 // refuse and a diagnosis would take for a difference between robot and simulator.
 //
-// What is certain is refused, what is likely is warned of; a log that is right has no finding. A robot that slips,
-// falls or stands still is right, and so is one that already moves in its first row.
+// What is certain is refused, what is likely is warned of, and of a sensor that is certainly dead the column alone is
+// no use; a log that is right has no finding. A robot that slips, falls or stands still is right, and so is one that
+// already moves in its first row.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -19,7 +20,11 @@
 namespace kenaf::gap {
 
 struct Finding {
-  enum class Severity { warn, refuse };
+  enum class Severity {
+    warn,
+    dead,  // the column holds no measurement: a diagnosis takes it for one that was never measured
+    refuse,
+  };
   Severity severity;
   std::string file;    // as the dataset names it; "dataset.toml" where it is of all runs
   std::size_t line;    // of the file, from 1, as read_run() counts; 0: of the whole column or file

@@ -54,12 +54,12 @@ struct CasePlan {
 // Of the catalogue, which must have it: a plan hides nothing else, and a key that is read is checked for it.
 const physics::EffectParameter& parameter_of(const HiddenEffect& hidden);
 
-// The value that a model with the simulator's own contacts needs for the same: the give of the ground and its damping multiply
-// those of the "real" side's contacts, which are others.
+// The value that a model with the simulator's own contacts needs for the same: the give of the ground and its damping
+// multiply those of the "real" side's contacts, which are others.
 double value_in_model(const CasePlan& plan, const HiddenEffect& hidden);
 
-// The furthest value from neutral that a case may hide: within the parameter's range on the "real" side and in the model, for a
-// diagnosis cannot find what is beyond.
+// The furthest value from neutral that a case may hide: within the parameter's range on the "real" side and in the
+// model, for a diagnosis cannot find what is beyond.
 double furthest_value(const CasePlan& plan, const physics::EffectParameter& parameter, bool upward);
 
 // Nothing hidden in three of ten; of the rest each effect of the catalogue alone in turn, each withheld in turn, pairs

@@ -73,14 +73,21 @@ void prepare_replays(Observation& observation, const std::string& path) {
   start_at_mean(observation, *observation.measured);
 }
 
-// Throws where something is certainly wrong.
-void check(const runs::Run& run, const std::string& file, const fs::path& folder, Observations& result) {
-  const std::vector<Finding> findings = check_run(run, file, &result.robot);
-  for (const Finding& finding : findings)
+void empty_column(runs::Run& run, const std::string& name) {
+  for (std::size_t c = 0; c < run.columns.size(); ++c)
+    if (run.columns[c] == name) std::ranges::fill(run.values[c], std::nan(""));
+}
+
+// Empties the columns of dead sensors. Throws where something is certainly wrong.
+void check(runs::Run& run, const std::string& file, const fs::path& folder, Observations& result) {
+  for (const Finding& finding : check_run(run, file, &result.robot)) {
+    const std::string words = in_words(finding);
     if (finding.severity == Finding::Severity::refuse)
-      throw runs::RunFileError(fmt::format("{}/{}", folder.string(), in_words(finding)));
-    else
-      result.warnings.push_back(in_words(finding));
+      throw runs::RunFileError(fmt::format("{}/{}", folder.string(), words));
+    const bool is_dead = finding.severity == Finding::Severity::dead;
+    if (is_dead) empty_column(run, finding.column);
+    result.warnings.push_back(is_dead ? words + " (left out)" : words);
+  }
 }
 
 // At most `most` of them, from every manoeuvre as many as possible, spread over the dataset.

@@ -17,7 +17,7 @@ namespace kenaf::gap {
 struct Observation {
   std::string file, manoeuvre;  // runs that share a manoeuvre are its repeats
   std::size_t world;            // of Observations::worlds
-  runs::Run run;                // as measured, but that t_s is counted from 0 here
+  runs::Run run;                // as measured, but that t_s is counted from 0 here and dead sensors have no values
   rollout::Manoeuvre replay;    // its commands, from where it stood
   std::optional<rollout::Manoeuvre> measured;  // its tracks and flippers as they were measured, where they were
   std::size_t resting_rows;     // from the first row on, before it was told to move: their mean is the start
@@ -36,13 +36,14 @@ struct Observations {
 // One run of a dataset, of world 0. `path` names its file in errors. Throws runs::RunFileError where it has no commands or no start.
 Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const std::string& path);
 
-// Reads a dataset, but no more than `most_runs` of it, drawn evenly from all manoeuvres: more runs would take longer and
-// tell little more. `robot` and `world` are used instead of the dataset's own where they are not empty. A run that is too
-// short, or whose simulation went wrong, is left out with a warning. Throws runs::RunFileError or
+// Reads a dataset, but no more than `most_runs` of it, drawn evenly from all manoeuvres: more runs would take longer
+// and tell little more. `robot` and `world` are used instead of the dataset's own where they are not empty. A run that
+// is too short, or whose simulation went wrong, is left out with a warning. Throws runs::RunFileError or
 // DescriptionError with file, line and column where one cannot be read or cannot be what it says it is
 // (gap/plausibility.hpp), or none is left.
 //
-// A channel that the described robot does not have cannot be compared, and is told by a warning.
+// A channel that the described robot does not have cannot be compared, and is told by a warning. A run's sensor that is
+// certainly dead has no values in that run here, told likewise: it would be taken for a gap.
 Observations observe(const std::filesystem::path& folder, const std::string& robot, const std::string& world,
                      std::size_t most_runs);
 

@@ -100,7 +100,7 @@ void RunChecks::check_constants() {
               other || pose_moves ? "; leave the cells empty" : ", or the track is blocked"));
     }
     if (const std::string name = "track_" + side + "_a"; constant(column(name)))
-      add(Severity::warn, name,
+      add(Severity::dead, name,
           "never changes while the track is driven; leave the cells empty where it is not measured");
   }
   for (const std::string_view flipper : runs::kFlippers) {
@@ -128,7 +128,7 @@ void RunChecks::check_constants() {
   for (const std::string name :
        {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps", "acc_x_mps2", "acc_y_mps2", "acc_z_mps2"})
     if (constant(column(name)))
-      add(Severity::warn, name, "never changes while the robot drives: the sensor is dead; leave the cells empty");
+      add(Severity::dead, name, "never changes while the robot drives: the sensor is dead; leave the cells empty");
 }
 
 void RunChecks::check_pose() {

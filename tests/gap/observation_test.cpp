@@ -82,6 +82,36 @@ TEST_CASE("What the described robot has no sensor for is told, and not compared 
   }
 }
 
+TEST_CASE("A sensor that is dead in a run is taken for one that was not measured in it, and told") {
+  const test::TemporaryFolder folder;
+  const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
+  const auto dead = [](double) { return 0.5; };
+  const auto rate = [](double t_s) { return t_s < 1 ? 0.001 : 0.002 * t_s; };
+  const auto write = [&](const char* name, double (*gyro)(double), double (*current)(double)) {
+    runs::write_run(
+        folder / name,
+        told_to_go(1,
+                   {{"x_m", x}, {"y_m", zero}, {"yaw_rad", rate}, {"gyro_z_radps", gyro}, {"track_left_a", current}}));
+  };
+  write("dead.csv", dead, dead);
+  write("right.csv", rate, x);
+  test::write_file(folder / "dataset.toml",
+                   "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n"
+                   "[[run]]\nfile = \"dead.csv\"\n[[run]]\nfile = \"right.csv\"\n");
+  const Observations seen = observe(folder.path(), "", "", 10);
+  REQUIRE(seen.runs.size() == 2);
+  for (const char* name : {"gyro_z_radps", "track_left_a"}) {
+    CHECK_FALSE(runs::any_measured(seen.runs[0].run.column(name)));
+    CHECK(runs::any_measured(seen.runs[1].run.column(name)));
+  }
+  CHECK(runs::any_measured(seen.runs[0].run.column("x_m")));
+  REQUIRE(seen.warnings.size() == 2);
+  CHECK_THAT(seen.warnings[0],
+             Catch::StartsWith("dead.csv: track_left_a: never changes") && Catch::EndsWith("(left out)"));
+  CHECK_THAT(seen.warnings[1],
+             Catch::StartsWith("dead.csv: gyro_z_radps: never changes") && Catch::EndsWith("(left out)"));
+}
+
 TEST_CASE("Of more manoeuvres than places, runs are taken from some of all, not from the last ones") {
   const test::TemporaryFolder folder;
   std::string dataset = "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n";

@@ -97,7 +97,8 @@ TEST_CASE("Each case hides what its stratum says, as large as it says, and diffe
 }
 
 TEST_CASE("No value is hidden that a model cannot have") {
-  // Contacts half as stiff and with twice the damping of the model's, whose own ranges end at 50 and 20: half of that is left.
+  // Contacts half as stiff and with twice the damping of the model's, whose own ranges end at 50 and 20: half of that
+  // is left.
   CasePlan plan;
   plan.physics.contact_stiffness_npm /= 2;
   plan.physics.contact_damping_nspm *= 2;

@@ -63,7 +63,7 @@ runs::Run scaled(const runs::Run& run, const std::vector<std::string>& names, do
 std::string words(const std::vector<gap::Finding>& findings) {
   std::string text;
   for (const auto& finding : findings)
-    text += (finding.severity == Severity::warn ? "warning: " : "") + gap::in_words(finding) + "\n";
+    text += (finding.severity != Severity::refuse ? "warning: " : "") + gap::in_words(finding) + "\n";
   return text;
 }
 
