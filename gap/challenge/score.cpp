@@ -50,17 +50,40 @@ bool is_large(const std::optional<Shrinks>& shrinks) {
   return shrinks && shrinks->before >= kGapToShrink * shrinks->floor;
 }
 
-void count_intervals(const ScoredCase& scored, Count& covered) {
-  for (const HiddenEffect& hidden : scored.sealed.plan.effects) {
-    if (std::ranges::count(scored.told->named, reported_name(hidden.effect, hidden.parameter)) == 0) continue;
-    const double value = value_in_model(scored.sealed.plan, hidden);
-    for (const ToldEffect& told : scored.told->effects)
-      if (told.effect == hidden.effect && told.parameter == hidden.parameter)
-        covered.add(told.from <= value && value <= told.to);
-  }
+// Its interval by ranks, which asks nothing of how the values are spread.
+Figure median_figure(std::string_view id, std::string_view what, std::vector<double> values) {
+  Figure figure{id, what, "", values.size()};
+  if (values.empty()) return figure;
+  std::ranges::sort(values);
+  const auto n = static_cast<double>(values.size());
+  const auto at = [&](double rank) { return values[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };
+  const double half = kTwoSided95 * std::sqrt(n) / 2;
+  figure.value = (at(std::floor((n - 1) / 2)) + at(std::ceil((n - 1) / 2))) / 2;
+  figure.from = at(std::floor(n / 2 - half));
+  figure.to = at(std::ceil(n / 2 + half));
+  return figure;
 }
 
 }  // namespace
+
+double ScoredInterval::off() const {
+  const double half = hidden > value ? to - value : value - from;
+  return hidden == value ? 0 : std::abs(hidden - value) / half;
+}
+
+std::vector<ScoredInterval> scored_intervals(const ScoredCase& scored) {
+  const CasePlan& plan = scored.sealed.plan;
+  std::vector<ScoredInterval> intervals;
+  if (is_outside(plan.stratum) || !scored.told) return intervals;
+  for (const HiddenEffect& hidden : plan.effects) {
+    const std::string name = reported_name(hidden.effect, hidden.parameter);
+    if (std::ranges::count(scored.told->named, name) == 0) continue;
+    for (const ToldEffect& told : scored.told->effects)
+      if (told.effect == hidden.effect && told.parameter == hidden.parameter)
+        intervals.push_back({name, value_in_model(plan, hidden), told.value, told.from, told.to});
+  }
+  return intervals;
+}
 
 Share wilson(std::size_t hits, std::size_t cases) {
   if (cases == 0) return {0, 0, 1};
@@ -72,14 +95,17 @@ Share wilson(std::size_t hits, std::size_t cases) {
 
 std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
   Count singles, alone, pairs, outside, outside_apart, none, wrong, wrong_apart, covered, close, close_unseen;
-  std::vector<double> heldout, unseen;
+  std::vector<double> heldout, unseen, off;
   for (const ScoredCase& scored : cases) {
     const Judgement judgement = judge(scored.sealed.plan, scored.told);
     const Stratum stratum = scored.sealed.plan.stratum;
     wrong.add(judgement.names_wrong);
     if (!is_outside(stratum) || judgement.can_be_told_apart) wrong_apart.add(judgement.names_wrong);
     if (stratum == Stratum::none) none.add(judgement.right);
-    if (!judgement.hidden.empty() && scored.told) count_intervals(scored, covered);
+    for (const ScoredInterval& interval : scored_intervals(scored)) {
+      covered.add(interval.holds());
+      off.push_back(interval.off());
+    }
     if (judgement.is_small) continue;
     if (stratum == Stratum::single) singles.add(judgement.right);
     if (stratum == Stratum::single && judgement.can_be_told_apart) alone.add(judgement.named_alone);
@@ -111,6 +137,7 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
                    outside_apart, 0, 1),
       share_figure("wrong_name_apart", "reports that name what is not hidden, without those that cannot be told apart",
                    "", wrong_apart, 0, 1),
+      median_figure("interval_off", "the middle one of the named values, in half intervals beside the hidden one", off),
       share_figure("shrink_heldout_close", "held-out shrinks within 0.05 of it", "", close, 0, 1),
       share_figure("shrink_unseen_close", "the same on a manoeuvre that was not seen", "", close_unseen, 0, 1),
   };

@@ -33,6 +33,18 @@ struct Share {
 };
 Share wilson(std::size_t hits, std::size_t cases);
 
+// The 95 % interval of a hidden effect that a report names, beside what is hidden, as a model has it (value_in_model).
+struct ScoredInterval {
+  std::string name;  // as reports name it
+  double hidden, value, from, to;
+
+  bool holds() const { return from <= hidden && hidden <= to; }
+  // How far beside the value what is hidden lies, in half widths of the interval: of that side, as ranges cut intervals
+  // off.
+  double off() const;
+};
+std::vector<ScoredInterval> scored_intervals(const ScoredCase& scored);
+
 // Each target of the challenge, and after them what has none.
 std::vector<Figure> figures(const std::vector<ScoredCase>& cases);
 

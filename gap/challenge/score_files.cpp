@@ -36,7 +36,7 @@ std::string told_text(const std::optional<Told>& told) {
 
 std::string value_text(const Figure& figure, double value) {
   const bool is_share = !figure.id.starts_with("shrink") || figure.id.ends_with("close");
-  return is_share ? fmt::format("{:.1f} %", 100 * value) : fmt::format("{:.3f}", value);
+  return is_share && figure.id != "interval_off" ? fmt::format("{:.1f} %", 100 * value) : fmt::format("{:.3f}", value);
 }
 
 const char* met_text(const Figure& figure) {
@@ -61,6 +61,28 @@ std::string case_rows(const std::vector<ScoredCase>& cases, bool small) {
              : "| case | stratum | hidden | looks like | manoeuvres | report |\n|---|---|---|---|---|---|\n" + rows;
 }
 
+std::string interval_rows(const std::vector<ScoredCase>& cases) {
+  std::string rows;
+  for (const ScoredCase& scored : cases)
+    for (const ScoredInterval& interval : scored_intervals(scored))
+      if (!interval.holds())
+        rows += fmt::format("| {} | {} | {:.4g} | {:.4g} | {:.4g} to {:.4g} |\n", scored.sealed.plan.name,
+                            interval.name, interval.hidden, interval.value, interval.from, interval.to);
+  return rows.empty()
+             ? "none\n"
+             : "| case | effect | hidden, as a model has it | value | 95 % interval |\n|---|---|---|---|---|\n" + rows;
+}
+
+Json intervals_json(const ScoredCase& scored) {
+  Json intervals = Json::array();
+  for (const ScoredInterval& interval : scored_intervals(scored))
+    intervals.push_back({{"name", interval.name},
+                         {"hidden", interval.hidden},
+                         {"value", interval.value},
+                         {"ci95", {interval.from, interval.to}}});
+  return intervals;
+}
+
 Json shrinks_json(const std::optional<Shrinks>& shrinks) {
   if (!shrinks) return nullptr;
   return {
@@ -80,6 +102,7 @@ Json case_json(const ScoredCase& scored) {
           {"named_alone", judgement.named_alone},
           {"can_be_told_apart", judgement.can_be_told_apart},
           {"names_wrong", judgement.names_wrong},
+          {"intervals", intervals_json(scored)},
           {"shrink_heldout", shrinks_json(scored.shrinks.heldout)},
           {"shrink_unseen", shrinks_json(scored.shrinks.unseen)}};
 }
@@ -119,6 +142,7 @@ std::string score_markdown(const std::vector<ScoredCase>& cases) {
     text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", outside.name, outside.cases, outside.unknown, outside.none,
                         outside.ambiguous, outside.named);
   text += "\n### Reports that are not right\n\n" + case_rows(cases, false);
+  text += "\n### Intervals that do not hold what is hidden\n\n" + interval_rows(cases);
   text += "\n### Smaller than 2 floors and called none: no error\n\n" + case_rows(cases, true);
   return text;
 }

@@ -213,6 +213,32 @@ TEST_CASE("Intervals are asked of hidden effects that are named") {
   CHECK_FALSE(figure(times(20, scored(plan, holds), 0, scored(plan, beside)), "interval_covers").met);
 }
 
+TEST_CASE("How wide intervals are shows in how far the middle value is beside what is hidden") {
+  // 1.2 is hidden. Half widths of the side on which it lies: 0.04 of 0.1, 0.05 of 0.1, 0.1 of 0.05.
+  const CasePlan plan = plan_of(Stratum::single, {kMass});
+  const auto with = [&](double value, double from, double to) {
+    Told report = told("named", {"mass"});
+    report.effects = {{"mass", "scale", value, from, to}};
+    return scored(plan, report);
+  };
+  const std::vector<ScoredCase> cases{with(1.16, 1.15, 1.26), with(1.25, 1.15, 1.26), with(1.1, 1.0, 1.15)};
+  CHECK(figure(cases, "interval_off").cases == 3);
+  CHECK(figure(cases, "interval_off").value == Approx(0.5));
+  // of so few, anywhere between the least and the most
+  CHECK(figure(cases, "interval_off").from == Approx(0.4));
+  CHECK(figure(cases, "interval_off").to == Approx(2));
+  CHECK(figure({scored(plan, told("unknown"))}, "interval_off").cases == 0);
+  CHECK(figure({scored(plan_of(Stratum::withheld, {kMass}), cases[0].told)}, "interval_off").cases == 0);
+
+  // the one that does not hold it is listed, and in score.json are all
+  const std::string text = score_markdown(cases);
+  CHECK(text.find("| case-000 | mass | 1.2 | 1.1 | 1 to 1.15 |") != std::string::npos);
+  CHECK(text.find("1.15 to 1.26") == std::string::npos);
+  const auto json = nlohmann::json::parse(score_json(cases));
+  CHECK(json["cases"][0]["intervals"][0]["hidden"] == 1.2);
+  CHECK(json["cases"][0]["intervals"][0]["ci95"][1] == 1.26);
+}
+
 TEST_CASE("Ground that gives is measured in contacts of the model, not in those of the robot") {
   // The robot's contacts are half as stiff as the model's (100 for 200 kN/m): ground that gives 3 times as much gives 6
   // times as much as the model's own. Twice the damping: 1.5 times that is 3 times the model's.
