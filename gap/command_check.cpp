@@ -9,6 +9,7 @@
 #include <string>
 
 #include "gap/commands.hpp"
+#include "gap/logs/copies.hpp"
 #include "gap/plausibility.hpp"
 
 namespace kenaf::gap {
@@ -25,6 +26,7 @@ void check(const std::filesystem::path& folder) {
   const physics::RobotDescription robot = physics::load_robot(runs::resolve_beside(folder, dataset.robot, ".toml"));
   std::vector<std::vector<std::string>> columns;
   std::size_t refused = 0, warned = 0;
+  KnownRuns known_runs;
   const auto take = [&](const std::vector<Finding>& findings) {
     print(findings);
     for (const Finding& finding : findings) ++(finding.severity == Finding::Severity::refuse ? refused : warned);
@@ -32,6 +34,7 @@ void check(const std::filesystem::path& folder) {
   for (const runs::DatasetRun& entry : dataset.runs) {
     const runs::Run run = runs::read_run(folder / entry.file);
     columns.push_back(run.columns);
+    if (const auto copy = known_runs.copy(run, entry.file)) take({*copy});
     if (entry.fault.empty()) take(check_run(run, entry.file, &robot));
   }
   take(check_noise(dataset, columns));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "gap/diagnose/channels.hpp"
+#include "gap/logs/copies.hpp"
 #include "gap/plausibility.hpp"
 #include "protocol/frames.hpp"
 #include "rollout/measured_motion.hpp"
@@ -149,6 +150,8 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     result.warnings.push_back(fmt::format("{} of {} runs are used, drawn evenly from all manoeuvres", entries.size(),
                                           result.dataset.runs.size()));
   std::map<std::string, std::size_t> worlds;
+  KnownRuns known_runs;
+  std::vector<Finding> copies;
   for (const runs::DatasetRun& entry : entries) {
     if (!entry.fault.empty()) {
       result.warnings.push_back(fmt::format("{}: its simulation went wrong; left out", entry.file));
@@ -156,6 +159,10 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     }
     Observation observation{entry.file, entry.manoeuvre, 0, {}, {}, {}, 0};
     observation.run = runs::read_run(folder / entry.file);
+    if (const auto copy = known_runs.copy(observation.run, entry.file)) {
+      copies.push_back(*copy);
+      continue;
+    }
     check(observation.run, entry.file, folder, result);
     count_time_from_zero(observation.run);
     const std::string path = (folder / entry.file).string();
@@ -173,6 +180,10 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     prepare_replays(observation, path);
     result.runs.push_back(std::move(observation));
   }
+  if (!copies.empty())
+    result.warnings.push_back(
+        in_words(copies.front()) +
+        (copies.size() == 1 ? " (left out)" : fmt::format(" (left out, as {} more)", copies.size() - 1)));
   if (result.runs.empty())
     throw runs::RunFileError(fmt::format("{}: none of its {} runs can be used{}", folder.string(),
                                          result.dataset.runs.size(),

@@ -38,9 +38,9 @@ Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const s
 
 // Reads a dataset, but no more than `most_runs` of it, drawn evenly from all manoeuvres: more runs would take longer
 // and tell little more. `robot` and `world` are used instead of the dataset's own where they are not empty. A run that
-// is too short, or whose simulation went wrong, is left out with a warning. Throws runs::RunFileError or
-// DescriptionError with file, line and column where one cannot be read or cannot be what it says it is
-// (gap/plausibility.hpp), or none is left.
+// is too short, a copy of another one, or whose simulation went wrong, is left out with a warning. Throws
+// runs::RunFileError or DescriptionError with file, line and column where one cannot be read or cannot be what it says
+// it is (gap/plausibility.hpp), or none is left.
 //
 // A channel that the described robot does not have cannot be compared, and is told by a warning. A run's sensor that is
 // certainly dead has no values in that run here, told likewise: it would be taken for a gap.

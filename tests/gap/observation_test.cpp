@@ -112,12 +112,34 @@ TEST_CASE("A sensor that is dead in a run is taken for one that was not measured
              Catch::StartsWith("dead.csv: gyro_z_radps: never changes") && Catch::EndsWith("(left out)"));
 }
 
+TEST_CASE("A run that was copied is no repeat: it is left out, and told once") {
+  const test::TemporaryFolder folder;
+  const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
+  const auto other = [](double t_s) { return t_s < 1 ? 0.001 : 0.2 * (t_s - 1); };
+  const runs::Run run = told_to_go(1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", x}});
+  std::string dataset = "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n";
+  for (const std::string name : {"a", "b", "c", "d"}) {
+    // one value of c is another one, in its first row
+    runs::write_run(folder / (name + ".csv"),
+                    name == "c" ? told_to_go(1, {{"x_m", other}, {"y_m", zero}, {"yaw_rad", x}}) : run);
+    dataset += "[[run]]\nfile = \"" + name + ".csv\"\nmanoeuvre = \"straight\"\n";
+  }
+  test::write_file(folder / "dataset.toml", dataset);
+  const Observations seen = observe(folder.path(), "", "", 10);
+  REQUIRE(seen.runs.size() == 2);
+  CHECK(seen.runs[0].file == "a.csv");
+  CHECK(seen.runs[1].file == "c.csv");
+  REQUIRE(seen.warnings.size() == 1);
+  CHECK(seen.warnings[0] == "b.csv: holds the same numbers as a.csv; a copy is no repeat (left out, as 1 more)");
+}
+
 TEST_CASE("Of more manoeuvres than places, runs are taken from some of all, not from the last ones") {
   const test::TemporaryFolder folder;
   std::string dataset = "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n";
   const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
-  const runs::Run run = told_to_go(1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", x}});
+  runs::Run run = told_to_go(1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", x}});
   for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
+    for (double& x_m : run.values[1]) x_m += 0.001;  // copies of one run would be left out
     runs::write_run(folder / (std::string(name) + ".csv"), run);
     dataset += "\n[[run]]\nfile = \"" + std::string(name) + ".csv\"\nmanoeuvre = \"" + name + "\"\n";
   }
