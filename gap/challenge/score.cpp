@@ -26,7 +26,8 @@ Figure share_figure(std::string_view id, std::string_view what, std::string_view
                     double least, double most) {
   const Share share = wilson(count.hits, count.cases);
   return {id,          what,       target,   count.cases,
-          share.value, share.from, share.to, count.cases > 0 && share.value >= least && share.value <= most};
+          share.value, share.from, share.to, count.cases > 0 && share.value >= least && share.value <= most,
+          true};
 }
 
 // Of the mean of absolute differences.

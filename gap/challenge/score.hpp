@@ -25,6 +25,7 @@ struct Figure {
   std::size_t cases = 0;
   double value = 0, from = 0, to = 0;  // with its 95 % interval; means nothing without cases
   bool met = false;                    // the value itself, whatever the interval
+  bool is_share = false;               // told in percent
 };
 
 // 95 % interval of a share, after Wilson (1927).

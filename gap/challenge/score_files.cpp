@@ -35,14 +35,17 @@ std::string told_text(const std::optional<Told>& told) {
 }
 
 std::string value_text(const Figure& figure, double value) {
-  const bool is_share = !figure.id.starts_with("shrink") || figure.id.ends_with("close");
-  return is_share && figure.id != "interval_off" ? fmt::format("{:.1f} %", 100 * value) : fmt::format("{:.3f}", value);
+  return figure.is_share ? fmt::format("{:.1f} %", 100 * value) : fmt::format("{:.3f}", value);
 }
 
 const char* met_text(const Figure& figure) {
   if (figure.target.empty()) return "";
   if (figure.cases == 0) return "no cases";
   return figure.met ? "met" : "**missed**";
+}
+
+std::string table(std::string_view head, const std::string& rows) {
+  return rows.empty() ? "none\n" : std::string(head) + rows;
 }
 
 std::string case_rows(const std::vector<ScoredCase>& cases, bool small) {
@@ -56,9 +59,7 @@ std::string case_rows(const std::vector<ScoredCase>& cases, bool small) {
                         look_alike_text(scored.sealed.plan), fmt::join(scored.sealed.plan.manoeuvres, ", "),
                         told_text(scored.told));
   }
-  return rows.empty()
-             ? "none\n"
-             : "| case | stratum | hidden | looks like | manoeuvres | report |\n|---|---|---|---|---|---|\n" + rows;
+  return table("| case | stratum | hidden | looks like | manoeuvres | report |\n|---|---|---|---|---|---|\n", rows);
 }
 
 std::string interval_rows(const std::vector<ScoredCase>& cases) {
@@ -68,9 +69,7 @@ std::string interval_rows(const std::vector<ScoredCase>& cases) {
       if (!interval.holds())
         rows += fmt::format("| {} | {} | {:.4g} | {:.4g} | {:.4g} to {:.4g} |\n", scored.sealed.plan.name,
                             interval.name, interval.hidden, interval.value, interval.from, interval.to);
-  return rows.empty()
-             ? "none\n"
-             : "| case | effect | hidden, as a model has it | value | 95 % interval |\n|---|---|---|---|---|\n" + rows;
+  return table("| case | effect | hidden, as a model has it | value | 95 % interval |\n|---|---|---|---|---|\n", rows);
 }
 
 Json intervals_json(const ScoredCase& scored) {
