@@ -9,15 +9,15 @@
 
 namespace kenaf::gap {
 
-Coherence::Coherence(const std::vector<FeatureMap>& features, std::vector<std::vector<std::size_t>> groups,
+Coherence::Coherence(const std::vector<StageFeatures>& features, std::vector<std::vector<std::size_t>> groups,
                      double stretch_s)
     : groups_(std::move(groups)), stretch_s_(stretch_s), cell_of_(features.size()) {
   std::map<std::tuple<std::size_t, std::size_t, std::size_t>, std::size_t> known;
   for (std::size_t g = 0; g < groups_.size(); ++g)
     for (const std::size_t r : groups_[g])
-      for (const Bin& bin : features[r].bins()) {
+      for (const Bin& bin : features[r].bins) {
         const auto stretch =
-            static_cast<std::size_t>((static_cast<double>(bin.span) + 0.5) * features[r].span_s() / stretch_s);
+            static_cast<std::size_t>((static_cast<double>(bin.span) + 0.5) * features[r].span_s / stretch_s);
         const auto [cell, is_new] = known.try_emplace({g, bin.channel, stretch}, cells_.size());
         if (is_new) {
           cells_.push_back({g, bin.channel, stretch, 0});

@@ -8,7 +8,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "gap/diagnose/features.hpp"
+#include "gap/diagnose/stage_features.hpp"
 #include "gap/diagnose/noise_floor.hpp"
 
 namespace kenaf::gap {
@@ -28,7 +28,7 @@ struct ChannelEnergy {
 
 class Coherence {
  public:
-  Coherence(const std::vector<FeatureMap>& features, std::vector<std::vector<std::size_t>> groups, double stretch_s);
+  Coherence(const std::vector<StageFeatures>& features, std::vector<std::vector<std::size_t>> groups, double stretch_s);
 
   const std::vector<std::vector<std::size_t>>& groups() const { return groups_; }
   std::size_t cell_count() const { return cells_.size(); }

@@ -44,24 +44,16 @@ OnCurve on_segment(std::size_t curve, const Segment& segment, double share) {
 
 }  // namespace
 
-std::vector<Products> products_of_runs(const EffectCurves& curves, const std::vector<Eigen::VectorXd>& gap) {
-  std::vector<Products> products;
-  for (std::size_t r = 0; r < gap.size(); ++r)
-    products.push_back(
-        {gap[r].squaredNorm(), curves.shifts[r].transpose() * gap[r], curves.shifts[r].transpose() * curves.shifts[r]});
-  return products;
-}
-
-Products weighted_sum(const std::vector<Products>& runs, std::span<const double> weights) {
-  const auto columns = runs.front().shift_gap.size();
-  Products sum{0, Eigen::VectorXd::Zero(columns), Eigen::MatrixXd::Zero(columns, columns)};
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    if (weights[r] == 0) continue;
-    sum.gap_gap += weights[r] * runs[r].gap_gap;
-    sum.shift_gap += weights[r] * runs[r].shift_gap;
-    sum.shift_shift += weights[r] * runs[r].shift_shift;
+Products products_of(const StageData& data, const std::vector<GroupWhitener>& whiteners,
+                     const std::vector<Eigen::MatrixXd>& shifts, const GroupVectors& target) {
+  std::vector<Eigen::MatrixXd> columns;
+  for (std::size_t g = 0; g < target.size(); ++g) {
+    columns.emplace_back(target[g].size(), shifts[g].cols() + 1);
+    columns.back() << shifts[g], target[g];
   }
-  return sum;
+  const Eigen::MatrixXd all = inner_products(data, whiteners, columns);
+  const Eigen::Index count = all.cols() - 1;
+  return {all(count, count), all.col(count).head(count), all.topLeftCorner(count, count)};
 }
 
 OnCurve at_value(const std::vector<EffectCurve>& curves, std::size_t curve, double value) {
@@ -183,6 +175,18 @@ Eigen::VectorXd shift_at(const Eigen::MatrixXd& shifts, std::span<const OnCurve>
     for (std::size_t i = 0; i < 2; ++i)
       if (place.column[i] >= 0) shift += place.weight[i] * shifts.col(place.column[i]);
   return shift;
+}
+
+GroupVectors shift_of(const EffectCurves& curves, std::span<const OnCurve> places) {
+  GroupVectors shift;
+  for (const Eigen::MatrixXd& group : curves.shifts) shift.push_back(shift_at(group, places));
+  return shift;
+}
+
+Settings settings_of(std::span<const OnCurve> places) {
+  Settings settings;
+  for (const OnCurve& place : places) settings.push_back({place.curve, place.value});
+  return settings;
 }
 
 }  // namespace kenaf::gap

@@ -1,6 +1,6 @@
 // Least squares on effect curves: the values of effects, alone or together, that explain most of a gap.
 //
-// Only inner products are needed, so a fit to any selection or weighting of runs costs next to nothing.
+// Only inner products are needed.
 // Effects are taken to add: that holds for small ones, and is corrected where a fit is confirmed by simulation.
 // Thread safety: values and pure functions.
 #pragma once
@@ -14,15 +14,15 @@
 
 namespace kenaf::gap {
 
-// Inner products of one run, or of a weighted sum of runs.
+// Inner products of all columns of the curves, and of what they are fitted to.
 struct Products {
   double gap_gap = 0;
   Eigen::VectorXd shift_gap;
   Eigen::MatrixXd shift_shift;
 };
-// Of the curves with `gap`, whitened, of each run.
-std::vector<Products> products_of_runs(const EffectCurves& curves, const std::vector<Eigen::VectorXd>& gap);
-Products weighted_sum(const std::vector<Products>& runs, std::span<const double> weights);
+// `target`: what is to be explained, of each group.
+Products products_of(const StageData& data, const std::vector<GroupWhitener>& whiteners,
+                     const std::vector<Eigen::MatrixXd>& shifts, const GroupVectors& target);
 
 // A place on a curve, as weights of at most two of its columns.
 struct OnCurve {
@@ -51,7 +51,9 @@ double left_with(const Products& products, std::span<const OnCurve> places);
 // The products of that rest of the gap.
 Products without_places(const Products& products, std::span<const OnCurve> places);
 
-// The shift at given places, of a run whose points' shifts are the columns.
+// The shift at given places, of a group whose points' shifts are the columns; of all groups.
 Eigen::VectorXd shift_at(const Eigen::MatrixXd& shifts, std::span<const OnCurve> places);
+GroupVectors shift_of(const EffectCurves& curves, std::span<const OnCurve> places);
+Settings settings_of(std::span<const OnCurve> places);
 
 }  // namespace kenaf::gap

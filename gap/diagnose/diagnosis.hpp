@@ -7,21 +7,18 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "gap/diagnose/decision.hpp"
-#include "gap/diagnose/evidence.hpp"
-#include "gap/diagnose/isolability.hpp"
 #include "gap/diagnose/observation.hpp"
-#include "gap/diagnose/stages.hpp"
-#include "gap/diagnose/where.hpp"
+#include "gap/diagnose/prediction.hpp"
+#include "gap/diagnose/stage_diagnosis.hpp"
 
 namespace kenaf::gap {
 
 struct Progress {
-  std::string_view doing;  // "comparing effects"
+  std::string_view doing;  // "drive to body"
   double done;             // share of everything, as far as it can be foreseen; never falls
 };
 
@@ -40,51 +37,28 @@ struct DiagnosisOptions {
   Ranks ranks;                                     // that make this diagnosis together
 };
 
-// What one effect explains, by itself or as one of the best model.
-struct EffectEvidence {
-  std::size_t curve;       // of Diagnosis::curves
-  Interval value;          // of its parameter
-  double explains;         // share of the squared gap, on the runs it was fitted to
-  Interval heldout_shrink;
-  double p_value;          // of as much explained by chance
-  bool at_bound;           // the fit ended at the end of the parameter's range, which is not its neutral value
-};
-
-// The gap on runs held out of the fit, in floors and in units. NaN: not measured, or not yet.
-struct GapMeasure {
-  static constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-  double before = kNotMeasured, after = kNotMeasured, floor = kNotMeasured;
-  Interval shrink{kNotMeasured, kNotMeasured, kNotMeasured};  // 0 where there is no model to hold out
-  Interval shrink_by_manoeuvre{kNotMeasured, kNotMeasured, kNotMeasured};  // with all repeats of a manoeuvre held out
-                                                                           // together, where there are several; of curves
-  std::vector<double> before_si, after_si;  // of each of diagnosis_channels(); NaN: never measured
-};
-
 struct Diagnosis {
   DiagnosisOptions options;               // that it was made with, without `progress` and `stop`
   Observations observations;
-  std::vector<FeatureMap> features;
+  ComparedFeatures features;
   std::vector<std::vector<std::size_t>> repeats, same_orders;
-  std::vector<Eigen::VectorXd> nominal;   // simulated features of each run
-  NoiseFloor nominal_floor, floor;        // around the nominal model; around the best one
-  GapPlaces where, where_left;            // before, and after the best model
-  std::vector<StageGap> stages;           // from command to sensor
-  EffectCurves curves;
-  Decision decision;
-  GapMeasure gap;
-  std::vector<EffectEvidence> best;       // of the effects of decision.best
-  std::vector<EffectEvidence> ranking;    // of all effects that these runs show, each alone, best first
-  Isolability isolability;
-  std::vector<NextManoeuvre> next;        // where something is ambiguous or unknown
+  std::vector<Candidate> candidates;
+  std::vector<StageDiagnosis> stages;     // that these runs measure, from command to sensor
+  Verdict verdict = Verdict::unknown;     // of all stages together
+  bool complete = false;                  // of all stages
+  std::optional<std::size_t> largest_stage;  // of `stages`: the one that holds most of the gap, where there is one
   std::size_t roll_outs = 0;
-  bool next_interrupted = false;          // `next` was asked for and not worked out; all else is complete
   std::string interrupted;                // what was under way when it was stopped; empty: it is complete
 };
 
 Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& options);
 
-// The effects of the best model on top of those of the robot.
-physics::Effects corrected_effects(const Diagnosis& diagnosis);
+// `none` where all stages are; `ambiguous` where one is; else `named` where one is; else `unknown`.
+Verdict whole_verdict(const std::vector<StageDiagnosis>& stages);
+
+// Every named effect, or where nothing is named every effect of the best models, once each, at its value in the stage that
+// shows it best.
+Settings corrections(const Diagnosis& diagnosis);
 
 // What people call a group of repeats: its manoeuvre; with its first file where other groups are called the same, or it
 // has no name.

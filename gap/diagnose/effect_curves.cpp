@@ -8,6 +8,7 @@ namespace {
 
 // Parts of the way from neutral to an end of the range.
 constexpr double kSpread[] = {0.25, 1};
+constexpr double kOneStep = 0.25;
 
 constexpr double kRoughReach = 2;
 
@@ -17,175 +18,151 @@ constexpr double kBent = 2;
 constexpr int kHalvings = 4;
 constexpr double kInward = 0.25;  // of the way from neutral to the innermost point
 
-std::ptrdiff_t present_point(const EffectCurve& curve) {
-  return std::ranges::find(curve.points, -1, &CurvePoint::column) - curve.points.begin();
-}
-
-bool has_obstacles(const Observations& observations) {
-  return std::ranges::any_of(observations.worlds, [](const physics::WorldDescription& world) {
-    return !world.boxes.empty() || !world.meshes.empty();
-  });
-}
-
-bool applies(const physics::EffectInfo& effect, const Observations& observations) {
-  if (effect.name == "command_loss") return false;
-  if (effect.name.starts_with("flipper_")) return observations.robot.has_flippers();
-  if (effect.name.starts_with("obstacle_")) return has_obstacles(observations);
-  return true;
-}
-
 // A straight line between an exact point and a rough one near it would lead anywhere. But the ends of a curve stay:
 // without them no fit could go beyond the exact point.
-void forget_rough_points(EffectCurve& curve, double exact_value) {
-  const double neutral = present_value(curve), reach = kRoughReach * (exact_value - neutral);
+void forget_rough_points(EffectCurve& curve, double present, double exact_value) {
+  const double reach = kRoughReach * (exact_value - present);
   const double first = curve.points.front().value, last = curve.points.back().value;
   std::erase_if(curve.points, [&](const CurvePoint& point) {
     if (point.value == first || point.value == last) return false;
-    const double from_neutral = point.value - neutral;
-    return !point.exact && from_neutral * reach > 0 && std::abs(from_neutral) < std::abs(reach);
+    const double from_present = point.value - present;
+    return !point.exact && from_present * reach > 0 && std::abs(from_present) < std::abs(reach);
   });
 }
 
-double length_at(const EffectCurves& curves, int column) {
+double length_of_column(const EffectCurves& curves, const StageData& data, int column) {
   double squares = 0;
-  for (const Eigen::MatrixXd& shift : curves.shifts) squares += shift.col(column).squaredNorm();
+  for (std::size_t g = 0; g < data.groups.size(); ++g)
+    squares += (curves.shifts[g].col(column).array().square() / data.groups[g].variance.array()).sum();
   return std::sqrt(squares);
 }
 
-// Half way between neighbours to one side of neutral between which a bent curve becomes longer than `length`.
-void add_halves(const EffectCurves& curves, std::size_t curve, double length, std::vector<NewPoint>& halves) {
-  const std::vector<CurvePoint>& points = curves.curves[curve].points;
-  const double neutral = present_value(curves.curves[curve]);
+// Half way between neighbours to one side of the present value between which a bent curve becomes longer than `length`.
+void add_halves(const EffectCurves& curves, const StageData& data, std::size_t c, double length,
+                std::vector<Setting>& halves) {
+  const std::vector<CurvePoint>& points = curves.curves[c].points;
+  const double present = curves.candidates[c].present;
   for (std::size_t i = 1; i < points.size(); ++i) {
-    const bool outward = points[i].value > neutral;
+    const bool outward = points[i].value > present;
     const CurvePoint &inner = points[outward ? i - 1 : i], &outer = points[outward ? i : i - 1];
     if (inner.column < 0 || outer.column < 0) continue;
-    const double inner_length = length_at(curves, inner.column), outer_length = length_at(curves, outer.column);
-    const double straight = inner_length * (outer.value - neutral) / (inner.value - neutral);
+    const double inner_length = length_of_column(curves, data, inner.column),
+                 outer_length = length_of_column(curves, data, outer.column);
+    const double straight = inner_length * (outer.value - present) / (inner.value - present);
     if (inner_length < length && outer_length > std::max(length, kBent * straight))
-      halves.push_back({curve, (inner.value + outer.value) / 2});
+      halves.push_back({c, (inner.value + outer.value) / 2});
   }
 }
 
-// Nearer to neutral than the innermost one of the points on a side, where that is longer than `length` and the next one
-// not as much longer as it is farther out: what the effect does all at once comes before.
-void add_inner(const EffectCurves& curves, std::size_t curve, double length, std::vector<NewPoint>& inner) {
-  const std::vector<CurvePoint>& points = curves.curves[curve].points;
-  const std::ptrdiff_t middle = present_point(curves.curves[curve]);
-  const double neutral = points[static_cast<std::size_t>(middle)].value;
+// Nearer to the present value than the innermost one of the points on a side, where that is longer than `length` and the next
+// one not as much longer as it is farther out: what the effect does all at once comes before.
+void add_inner(const EffectCurves& curves, const StageData& data, std::size_t c, double length,
+               std::vector<Setting>& inner) {
+  const std::vector<CurvePoint>& points = curves.curves[c].points;
+  const double present = curves.candidates[c].present;
+  const std::ptrdiff_t middle = std::ranges::find(points, -1, &CurvePoint::column) - points.begin();
   for (const std::ptrdiff_t outward : {-1, 1}) {
     const std::ptrdiff_t last = middle + 2 * outward;
     if (last < 0 || last >= std::ssize(points)) continue;
     const CurvePoint &first = points[static_cast<std::size_t>(middle + outward)],
                      &second = points[static_cast<std::size_t>(last)];
-    const double first_length = length_at(curves, first.column), second_length = length_at(curves, second.column);
-    const double straight = second_length * (first.value - neutral) / (second.value - neutral);
+    const double first_length = length_of_column(curves, data, first.column),
+                 second_length = length_of_column(curves, data, second.column);
+    const double straight = second_length * (first.value - present) / (second.value - present);
     if (first_length > std::max(length, kBent * straight))
-      inner.push_back({curve, neutral + kInward * (first.value - neutral)});
+      inner.push_back({c, present + kInward * (first.value - present)});
   }
+}
+
+// Parts of the way from the present value to each end.
+std::vector<Setting> parts_of_ranges(const EffectCurves& curves, std::span<const std::size_t> chosen,
+                                     std::span<const double> parts) {
+  std::vector<Setting> points;
+  for (const std::size_t c : chosen) {
+    const Candidate& candidate = curves.candidates[c];
+    for (const double end : {candidate.min, candidate.max})
+      for (const double part : parts)
+        if (end != candidate.present) points.push_back({c, candidate.present + part * (end - candidate.present)});
+  }
+  return points;
 }
 
 }  // namespace
 
-std::vector<EffectCurve> candidate_curves(const Observations& observations, std::span<const std::string> without) {
-  std::vector<EffectCurve> curves;
-  for (const physics::EffectInfo& effect : physics::effect_catalogue()) {
-    if (!applies(effect, observations) || std::ranges::find(without, effect.name) != without.end()) continue;
-    // an effect is one number to be found: each of its parameters is a candidate of its own
-    for (const physics::EffectParameter& parameter : effect.parameters) {
-      const double present = observations.robot.effects.*parameter.value;
-      curves.push_back({&effect, &parameter, {{present, -1, true}}, 0});
-    }
-  }
+double length_in_noise(const StageData& data, const GroupVectors& difference) {
+  double squares = 0;
+  for (std::size_t g = 0; g < data.groups.size(); ++g)
+    squares += (difference[g].array().square() / data.groups[g].variance.array()).sum();
+  return std::sqrt(squares);
+}
+
+EffectCurves empty_curves(const StageData& data, std::span<const Candidate> candidates) {
+  EffectCurves curves{candidates, {}, {}};
+  for (std::size_t c = 0; c < candidates.size(); ++c)
+    curves.curves.push_back({c, {{candidates[c].present, -1, true}}, 0});
+  for (const StageGroup& group : data.groups) curves.shifts.emplace_back(std::ssize(group.bins), 0);
   return curves;
 }
 
-double present_value(const EffectCurve& curve) {
-  return curve.points[static_cast<std::size_t>(present_point(curve))].value;
+void add_spread(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
+                const Simulate& simulate) {
+  add_points(curves, data, parts_of_ranges(curves, chosen, kSpread), Fidelity::coarse, simulate);
 }
 
-double squared_length(const Whitened& runs) {
-  double sum = 0;
-  for (const Eigen::VectorXd& run : runs) sum += run.squaredNorm();
-  return sum;
+void add_one_step(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
+                  const Simulate& simulate) {
+  std::vector<Setting> points;
+  for (const std::size_t c : chosen) {
+    const Candidate& candidate = curves.candidates[c];
+    const double end = candidate.max != candidate.present ? candidate.max : candidate.min;
+    points.push_back({c, candidate.present + kOneStep * (end - candidate.present)});
+  }
+  add_points(curves, data, points, Fidelity::coarse, simulate);
 }
 
-void set_whiteners(EffectCurves& curves, std::vector<Whitener> whiteners) {
-  curves.whiteners = std::move(whiteners);
-  for (std::size_t r = 0; r < curves.residual.size(); ++r) {
-    curves.gap[r] = curves.whiteners[r](curves.residual[r]);
-    for (Eigen::Index c = 0; c < curves.shifts[r].cols(); ++c)
-      curves.shifts[r].col(c) = curves.whiteners[r](curves.raw_shifts[r].col(c));
+void follow_bends(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
+                  const Simulate& simulate) {
+  GroupVectors residual;
+  for (const StageGroup& group : data.groups) residual.push_back(group.residual);
+  const double gap = length_in_noise(data, residual);
+  for (int i = 0; i < kHalvings; ++i) {
+    std::vector<Setting> points;
+    for (const std::size_t c : chosen) {
+      add_halves(curves, data, c, gap, points);
+      add_inner(curves, data, c, gap, points);
+    }
+    if (points.empty()) return;
+    add_points(curves, data, points, Fidelity::coarse, simulate);
   }
 }
 
-Variation varied(const EffectCurves& curves, std::span<const NewPoint> effects, const Predictor& predictor) {
-  Variation variation = predictor.unvaried();
-  for (const NewPoint& effect : effects) variation.effects.*curves.curves[effect.curve].parameter->value = effect.value;
-  return variation;
+void add_points(EffectCurves& curves, const StageData& data, std::span<const Setting> points, Fidelity fidelity,
+                const Simulate& simulate) {
+  if (points.empty()) return;
+  std::vector<Settings> asked;
+  for (const Setting& point : points) asked.push_back({point});
+  insert_points(curves, data, points, simulate(asked, fidelity), fidelity);
 }
 
-void add_points(EffectCurves& curves, std::span<const NewPoint> points, Fidelity fidelity, Predictor& predictor) {
-  std::vector<Variation> variations;
-  for (const NewPoint& point : points) variations.push_back(varied(curves, {&point, 1}, predictor));
-  insert_points(curves, points, predictor.shifts(variations, fidelity), fidelity);
-}
-
-void insert_points(EffectCurves& curves, std::span<const NewPoint> points, const std::vector<Shift>& shifts,
-                   Fidelity fidelity) {
+void insert_points(EffectCurves& curves, const StageData& data, std::span<const Setting> points,
+                   const std::vector<GroupVectors>& shifts, Fidelity fidelity) {
   const auto first = static_cast<int>(curves.shifts.front().cols());
-  for (std::size_t r = 0; r < curves.shifts.size(); ++r) {
-    for (auto* matrix : {&curves.raw_shifts[r], &curves.shifts[r]})
-      matrix->conservativeResize(Eigen::NoChange, first + std::ssize(points));
-    for (std::size_t p = 0; p < points.size(); ++p) {
-      const auto column = first + static_cast<Eigen::Index>(p);
-      curves.raw_shifts[r].col(column) = shifts[p][r];
-      curves.shifts[r].col(column) = curves.whiteners[r](shifts[p][r]);
-    }
+  for (std::size_t g = 0; g < curves.shifts.size(); ++g) {
+    curves.shifts[g].conservativeResize(Eigen::NoChange, first + std::ssize(points));
+    for (std::size_t p = 0; p < points.size(); ++p)
+      curves.shifts[g].col(first + static_cast<Eigen::Index>(p)) = shifts[p][g];
   }
   for (std::size_t p = 0; p < points.size(); ++p) {
-    EffectCurve& curve = curves.curves[points[p].curve];
+    EffectCurve& curve = curves.curves[points[p].candidate];
     const CurvePoint added{points[p].value, first + static_cast<int>(p), fidelity == Fidelity::every_run};
-    if (added.exact) forget_rough_points(curve, added.value);
+    if (added.exact) forget_rough_points(curve, curves.candidates[curve.candidate].present, added.value);
     const auto place = std::ranges::lower_bound(curve.points, added.value, {}, &CurvePoint::value);
     if (place != curve.points.end() && place->value == added.value)
       *place = added;
     else
       curve.points.insert(place, added);
-    curve.visible = std::max(curve.visible, length_at(curves, added.column));
+    curve.visible = std::max(curve.visible, length_of_column(curves, data, added.column));
   }
-}
-
-void follow_bends(EffectCurves& curves, const std::function<void(std::span<const NewPoint>)>& simulate) {
-  const double gap = std::sqrt(squared_length(curves.gap));
-  for (int i = 0; i < kHalvings; ++i) {
-    std::vector<NewPoint> points;
-    for (std::size_t c = 0; c < curves.curves.size(); ++c) {
-      add_halves(curves, c, gap, points);
-      add_inner(curves, c, gap, points);
-    }
-    if (points.empty()) return;
-    simulate(points);
-  }
-}
-
-EffectCurves scan_effects(std::vector<EffectCurve> candidates, const std::vector<Eigen::VectorXd>& residuals,
-                          const NoiseFloor& floor, Predictor& predictor) {
-  EffectCurves curves{std::move(candidates), residuals, {}, {}, residuals, {}};
-  for (const Eigen::VectorXd& run : residuals) curves.raw_shifts.emplace_back(run.size(), 0);
-  curves.shifts = curves.raw_shifts;
-  set_whiteners(curves, floor.whiteners);
-  std::vector<NewPoint> points;
-  for (std::size_t c = 0; c < curves.curves.size(); ++c) {
-    const double neutral = curves.curves[c].points.front().value;
-    for (const double end : {curves.curves[c].parameter->min, curves.curves[c].parameter->max})
-      for (const double part : kSpread)
-        if (end != neutral) points.push_back({c, neutral + part * (end - neutral)});
-  }
-  add_points(curves, points, Fidelity::coarse, predictor);
-  follow_bends(curves,
-               [&](std::span<const NewPoint> halves) { add_points(curves, halves, Fidelity::coarse, predictor); });
-  return curves;
 }
 
 }  // namespace kenaf::gap

@@ -6,200 +6,274 @@
 #include <map>
 #include <random>
 
+#include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/significance.hpp"
+#include "gap/parallel.hpp"
+
 namespace kenaf::gap {
 namespace {
 
+using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kMostFolds = 5, kResamplings = 400;
 constexpr double kTwoSided95 = 1.96;
-constexpr double kBorneOut = 0.5;
+// Manoeuvres that differ no more than this probability allows are taken to agree.
+constexpr double kAgree = 0.05;
 
 double quantile(std::vector<double>& values, double share) {
   std::ranges::sort(values);
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
-// How often each run is drawn.
-std::vector<double> resample(std::size_t runs, std::mt19937_64& random) {
-  std::vector<double> weights(runs, 0);
-  for (std::size_t i = 0; i < runs; ++i) ++weights[random() % runs];
-  return weights;
-}
-
-// How the model's shift changes with each value, whitened, by its curves.
-Eigen::MatrixXd slopes(const EffectCurves& curves, const Model& model, std::size_t run) {
-  Eigen::MatrixXd result(curves.gap[run].size(), std::ssize(model.places));
-  for (std::size_t i = 0; i < model.places.size(); ++i) {
-    const OnCurve& place = model.places[i];
-    VectorXd difference = VectorXd::Zero(result.rows());
-    if (place.column[1] >= 0) difference += curves.shifts[run].col(place.column[1]);
-    if (place.column[0] >= 0) difference -= curves.shifts[run].col(place.column[0]);
-    result.col(static_cast<Eigen::Index>(i)) = difference / place.segment;
-  }
-  return result;
-}
-
-// Of each value: what it would be, were the simulator's numbers other ones. The floor takes each run's shapes for its
-// own; but these are the same numbers in all runs, so that more runs do not make them known.
-std::vector<double> variances_of_numerics(const Refit& refit, const std::vector<Eigen::MatrixXd>& numerics,
-                                          std::size_t effects) {
-  std::vector<double> variances(effects, 0);
-  if (numerics.empty() || numerics.front().cols() == 0) return variances;
-  const std::vector<OnCurve> as_they_are = refit(std::vector<double>(numerics.size(), 1));
-  for (Eigen::Index c = 0; c < numerics.front().cols(); c += 2) {
-    const std::vector<OnCurve> up = refit.with(numerics, c), down = refit.with(numerics, c + 1);
-    for (std::size_t e = 0; e < effects; ++e) {
-      const double value = as_they_are[e].value;
-      variances[e] += std::pow(std::max(std::abs(up[e].value - value), std::abs(down[e].value - value)), 2);
-    }
-  }
-  return variances;
-}
-
-}  // namespace
-
-Folds folds_by_repeat(const std::vector<std::vector<std::size_t>>& repeats) {
-  std::size_t most = 1;
-  for (const auto& group : repeats) most = std::max(most, group.size());
-  const std::size_t count = std::min(kMostFolds, most > 1 ? most : repeats.size());
+Folds dealt_out(const std::vector<std::vector<std::size_t>>& blocks, std::size_t count) {
   Folds folds(count);
   std::size_t next = 0;
-  for (const auto& group : repeats)
-    for (const std::size_t run : group) folds[next++ % count].push_back(run);
+  for (const auto& block : blocks) {
+    folds[next % count].insert(folds[next % count].end(), block.begin(), block.end());
+    ++next;
+  }
   std::erase_if(folds, [](const auto& fold) { return fold.empty(); });
   return folds;
 }
 
-Folds folds_by_manoeuvre(const Observations& observations) {
-  std::map<std::string, std::size_t> known;
-  Folds folds;
-  for (std::size_t r = 0; r < observations.runs.size(); ++r) {
-    const auto [fold, is_new] = known.try_emplace(observations.runs[r].manoeuvre, folds.size());
-    if (is_new) folds.emplace_back();
-    folds[fold->second].push_back(r);
+// How the model's shift changes with each value, of one group, by its curves.
+MatrixXd slopes(const StandingModel& standing, std::size_t group) {
+  const MatrixXd& shifts = standing.curves.shifts[group];
+  MatrixXd result = MatrixXd::Zero(shifts.rows(), std::ssize(standing.model.places));
+  for (std::size_t i = 0; i < standing.model.places.size(); ++i) {
+    const OnCurve& place = standing.model.places[i];
+    auto slope = result.col(static_cast<Index>(i));
+    if (place.column[1] >= 0) slope += shifts.col(place.column[1]);
+    if (place.column[0] >= 0) slope -= shifts.col(place.column[0]);
+    slope /= place.segment;
   }
-  return folds;
-}
-
-double shrink(double before, double after, double floor) {
-  return before > floor ? 1 - (after - floor) / (before - floor) : 0;
-}
-
-bool is_borne_out(const HeldOut& held) {
-  return held.before <= held.floor || held.shrink.value >= kBorneOut;
-}
-
-bool is_within_repeats(const HeldOut& held, double model_share) {
-  return held.after <= std::hypot(kWithinRepeats * held.floor, model_share * held.before);
-}
-
-Refit::Refit(const EffectCurves& curves, const Model& model)
-    : curves_(curves), effects_(effects_of(model)), runs_(products_of_runs_around(curves, model)) {}
-
-std::vector<OnCurve> Refit::operator()(std::span<const double> weights) const {
-  return fit_together(weighted_sum(runs_, weights), curves_.curves, effects_).places;
-}
-
-std::vector<OnCurve> Refit::with(const std::vector<Eigen::MatrixXd>& added, Eigen::Index column) const {
-  Products sum = weighted_sum(runs_, std::vector<double>(runs_.size(), 1));
-  double squares = 0;
-  for (std::size_t r = 0; r < runs_.size(); ++r) {
-    const VectorXd whitened = curves_.whiteners[r](added[r].col(column));
-    sum.shift_gap.noalias() += curves_.shifts[r].transpose() * whitened;
-    squares += whitened.squaredNorm();
-  }
-  // the same for all values, so that the most it may be will do
-  sum.gap_gap = std::pow(std::sqrt(sum.gap_gap) + std::sqrt(squares), 2);
-  return fit_together(sum, curves_.curves, effects_).places;
-}
-
-Shift by_curves(const EffectCurves& curves, const Model& model,
-                const std::vector<std::vector<OnCurve>>& places_of_run) {
-  Shift shift;
-  for (std::size_t r = 0; r < places_of_run.size(); ++r)
-    shift.push_back(model.shift[r] - shift_at(curves.raw_shifts[r], model.places) +
-                    shift_at(curves.raw_shifts[r], places_of_run[r]));
-  return shift;
-}
-
-HeldOut hold_out(const EffectCurves& curves, const NoiseFloor& floor, const Model& model, const Folds& folds,
-                 double floor_rms, std::uint64_t seed,
-                 const std::function<Shift(const std::vector<std::vector<OnCurve>>&)>& shift_of) {
-  const std::size_t runs = curves.gap.size();
-  const Refit refit(curves, model);
-  std::vector<std::vector<OnCurve>> places_of_run(runs, model.places);
-  for (const std::vector<std::size_t>& fold : folds) {
-    if (folds.size() < 2) break;
-    std::vector<double> weights(runs, 1);
-    for (const std::size_t r : fold) weights[r] = 0;
-    const std::vector<OnCurve> places = refit(weights);
-    for (const std::size_t r : fold) places_of_run[r] = places;
-  }
-  const Shift shift = shift_of(places_of_run);
-  HeldOut result;
-  std::vector<double> before, after, bins;
-  for (std::size_t r = 0; r < runs; ++r) {
-    result.left.push_back(curves.residual[r] - shift[r]);
-    before.push_back(floor.whiteners[r](curves.residual[r]).squaredNorm());
-    after.push_back(floor.whiteners[r](result.left[r]).squaredNorm());
-    bins.push_back(static_cast<double>(curves.residual[r].size()));
-  }
-  const auto rms = [&](const std::vector<double>& squares, std::span<const double> weights) {
-    double sum = 0, count = 0;
-    for (std::size_t r = 0; r < runs; ++r) sum += weights[r] * squares[r], count += weights[r] * bins[r];
-    return std::sqrt(sum / count);
-  };
-  const std::vector<double> all(runs, 1);
-  result.before = rms(before, all);
-  result.after = rms(after, all);
-  result.floor = std::min(floor_rms, result.before);
-  result.shrink.value = shrink(result.before, result.after, result.floor);
-  std::mt19937_64 random(seed);
-  std::vector<double> resampled;
-  for (std::size_t i = 0; i < kResamplings; ++i) {
-    const std::vector<double> weights = resample(runs, random);
-    resampled.push_back(shrink(rms(before, weights), rms(after, weights), result.floor));
-  }
-  result.shrink.from = std::min(result.shrink.value, quantile(resampled, 0.025));
-  result.shrink.to = std::max(result.shrink.value, quantile(resampled, 0.975));
   return result;
 }
 
-std::vector<Interval> value_intervals(const EffectCurves& curves, const Model& model,
-                                      const std::vector<Eigen::MatrixXd>& numerics, double model_share,
-                                      double inflation, std::uint64_t seed) {
-  const auto effects = std::ssize(model.places);
-  const std::size_t runs = curves.gap.size();
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(effects, effects);
-  for (std::size_t r = 0; r < runs; ++r) {
-    const Eigen::MatrixXd slope = slopes(curves, model, r);
-    information += slope.transpose() * slope;
-  }
-  const Eigen::MatrixXd covariance = inflation * information.completeOrthogonalDecomposition().pseudoInverse();
+// What one manoeuvre says of one value, the others held.
+struct OwnValue {
+  double offset, information;  // from the common value; 1 / variance
+};
 
-  const Refit refit(curves, model);
-  std::mt19937_64 random(seed);
-  std::vector<std::vector<double>> resampled(model.places.size());
-  for (std::size_t i = 0; i < kResamplings; ++i) {
-    const std::vector<OnCurve> places = refit(resample(runs, random));
-    for (std::size_t e = 0; e < places.size(); ++e) resampled[e].push_back(places[e].value);
+// Spread between manoeuvres by the method of moments, and the variance of the mean with it.
+struct RandomEffect {
+  double spread = 0, p_agree = 1, variance_of_mean = 0, offset = 0;
+};
+
+RandomEffect random_effect(const std::vector<OwnValue>& own) {
+  double weights = 0, squares = 0, sum = 0;
+  for (const auto& [offset, information] : own) {
+    weights += information, squares += information * information, sum += information * offset;
   }
-  const std::vector<double> of_numerics = variances_of_numerics(refit, numerics, model.places.size());
-  std::vector<Interval> intervals;
+  RandomEffect result;
+  if (weights <= 0) return result;
+  const double mean = sum / weights;
+  double q = 0;
+  for (const auto& [offset, information] : own) q += information * (offset - mean) * (offset - mean);
+  // groups that say next to nothing are no degrees of freedom: their effective number
+  const double freedom = weights * weights / squares - 1;
+  result.p_agree = p_of_squares(q, freedom);
+  const double excess = weights - squares / weights;
+  const double variance = excess > 0 ? std::max(0.0, (q - freedom) / excess) : 0;
+  if (result.p_agree < kAgree) result.spread = std::sqrt(variance);
+  double with_spread = 0;
+  for (const auto& [offset, information] : own)
+    if (information > 0) with_spread += 1 / (1 / information + result.spread * result.spread);
+  result.variance_of_mean = 1 / with_spread;
+  return result;
+}
+
+std::vector<bool> used_without(std::size_t runs, const std::vector<std::size_t>& fold) {
+  std::vector<bool> used(runs, true);
+  for (const std::size_t r : fold) used[r] = false;
+  return used;
+}
+
+Model refit(const StageData& data, const StandingModel& standing, const GroupVectors& beyond) {
+  return fit_model(data, standing.curves, effects_of(standing.model), beyond,
+                   standing.model.likelihood.discrepancies);
+}
+
+// Squares of what a model leaves of the used runs' means, by kind.
+KindSquares squares_of_groups(const StageData& data, const GroupVectors& rest) {
+  KindSquares squares{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
+  for (std::size_t g = 0; g < data.groups.size(); ++g) {
+    const StageGroup& group = data.groups[g];
+    for (std::size_t b = 0; b < group.bins.size(); ++b) {
+      const auto i = static_cast<Index>(b);
+      if (group.count[i] == 0) continue;
+      const std::size_t kind = kind_of(group.bins[b].channel);
+      squares.sum[kind] += rest[g][i] * rest[g][i] / group.variance[i];
+      ++squares.bins[kind];
+    }
+  }
+  return squares;
+}
+
+KindSquares& operator+=(KindSquares& sum, const KindSquares& more) {
+  for (std::size_t k = 0; k < sum.sum.size(); ++k) sum.sum[k] += more.sum[k], sum.bins[k] += more.bins[k];
+  return sum;
+}
+
+}  // namespace
+
+std::vector<EffectValue> effect_values(const StageData& data, const StandingModel& standing) {
+  const Model& model = standing.model;
+  const auto effects = std::ssize(model.places);
+  const std::vector<GroupWhitener> whiteners = whiteners_of(data, model.likelihood.discrepancies);
+
+  // generalised least squares: the covariance of all values together
+  std::vector<MatrixXd> columns;
+  for (std::size_t g = 0; g < data.groups.size(); ++g) columns.push_back(slopes(standing, g));
+  const MatrixXd information = inner_products(data, whiteners, columns);
+  const MatrixXd covariance = information.completeOrthogonalDecomposition().pseudoInverse();
+
+  // what each manoeuvre says by itself of each value
+  std::vector<std::vector<OwnValue>> own(model.places.size());
+  const GroupVectors rest = rest_of(data, model);
+  for (std::size_t g = 0; g < data.groups.size(); ++g) {
+    MatrixXd all(rest[g].size(), effects + 1);
+    all << columns[g], rest[g];
+    const MatrixXd white = whiteners[g](std::move(all));
+    for (Index e = 0; e < effects; ++e) {
+      const double squares = white.col(e).squaredNorm();
+      own[static_cast<std::size_t>(e)].push_back(
+          {squares > 0 ? white.col(e).dot(white.col(effects)) / squares : 0, squares});
+    }
+  }
+
+  std::vector<EffectValue> values;
   for (std::size_t e = 0; e < model.places.size(); ++e) {
-    const EffectCurve& curve = curves.curves[model.places[e].curve];
+    const Candidate& candidate = standing.curves.candidates[model.places[e].curve];
+    const RandomEffect random = random_effect(own[e]);
+    const auto i = static_cast<Index>(e);
+    const double sigma = std::sqrt(std::max(covariance(i, i), random.spread > 0 ? random.variance_of_mean : 0.0));
     const double value = model.places[e].value;
-    const auto i = static_cast<Eigen::Index>(e);
-    const double of_runs = (quantile(resampled[e], 0.84) - quantile(resampled[e], 0.16)) / 2;
-    const double of_model = model_share / 2 * (value - present_value(curve));
-    // resampled runs differ by the floor's noise too, and the floor has the numerics: together they would count twice
-    const double sigma =
-        std::sqrt(std::max({covariance(i, i), of_runs * of_runs, of_numerics[e]}) + of_model * of_model);
-    intervals.push_back({value, std::max(curve.parameter->min, value - kTwoSided95 * sigma),
-                         std::min(curve.parameter->max, value + kTwoSided95 * sigma)});
+    values.push_back({{value, std::max(candidate.min, value - kTwoSided95 * sigma),
+                       std::min(candidate.max, value + kTwoSided95 * sigma)},
+                      random.spread,
+                      random.p_agree});
   }
-  return intervals;
+  return values;
+}
+
+Folds folds_by_repeat(const std::vector<std::vector<std::size_t>>& repeats) {
+  std::size_t most = 1;
+  for (const auto& group : repeats) most = std::max(most, group.size());
+  std::vector<std::vector<std::size_t>> single;
+  for (const auto& group : repeats)
+    for (const std::size_t run : group) single.push_back({run});
+  return dealt_out(single, std::min(kMostFolds, most > 1 ? most : repeats.size()));
+}
+
+Folds folds_by_manoeuvre(const Observations& observations) {
+  std::map<std::string, std::size_t> known;
+  std::vector<std::vector<std::size_t>> manoeuvres;
+  for (std::size_t r = 0; r < observations.runs.size(); ++r) {
+    const auto [place, is_new] = known.try_emplace(observations.runs[r].manoeuvre, manoeuvres.size());
+    if (is_new) manoeuvres.emplace_back();
+    manoeuvres[place->second].push_back(r);
+  }
+  return dealt_out(manoeuvres, std::min(kMostFolds, manoeuvres.size()));
+}
+
+GapMeasure measure_gap(const StageView& view, const std::vector<VectorXd>& after,
+                       const std::vector<VectorXd>& deviations, std::uint64_t seed) {
+  const std::vector<StageFeatures>& features = *view.features;
+  const KindSquares before = squares_by_kind(features, *view.floor, *view.residuals);
+  const KindSquares repeats = squares_by_kind(features, *view.floor, deviations);
+  const std::vector<double> weights = kind_weights(before, repeats);
+  GapMeasure gap;
+  gap.before = weighted_rms(before, weights);
+  gap.after = weighted_rms(squares_by_kind(features, *view.floor, after), weights);
+  // without repeats the noise is all that is known of what must stay
+  const double of_repeats = weighted_rms(repeats, weights);
+  gap.floor = std::min(of_repeats > 0 ? of_repeats : 1.0, gap.before);
+  gap.shrink.value = shrink(gap.before, gap.after, gap.floor);
+  gap.explains.value = explained_share(gap.before, gap.after, gap.floor);
+
+  // groups of repeats drawn with replacement
+  std::mt19937_64 random(seed);
+  std::vector<double> shrinks, shares;
+  for (std::size_t i = 0; i < kResamplings; ++i) {
+    std::vector<double> drawn(features.size(), 0);
+    for (std::size_t g = 0; g < view.repeats->size(); ++g)
+      for (const std::size_t r : (*view.repeats)[random() % view.repeats->size()]) ++drawn[r];
+    const double drawn_before = weighted_rms(squares_by_kind(features, *view.floor, *view.residuals, drawn), weights);
+    const double drawn_after = weighted_rms(squares_by_kind(features, *view.floor, after, drawn), weights);
+    if (drawn_before <= gap.floor) continue;
+    shrinks.push_back(shrink(drawn_before, drawn_after, gap.floor));
+    shares.push_back(explained_share(drawn_before, drawn_after, gap.floor));
+  }
+  const auto widen = [](Interval& interval, std::vector<double>& drawn) {
+    if (drawn.empty()) drawn.push_back(interval.value);
+    interval.from = std::min(interval.value, quantile(drawn, 0.025));
+    interval.to = std::max(interval.value, quantile(drawn, 0.975));
+  };
+  widen(gap.shrink, shrinks);
+  widen(gap.explains, shares);
+  return gap;
+}
+
+std::vector<std::vector<OnCurve>> places_held_out(const StageView& view, Passage passage, const StandingModel& standing,
+                                                  const Folds& folds, unsigned threads) {
+  std::vector<std::vector<OnCurve>> places(view.features->size(), standing.model.places);
+  if (folds.size() < 2) return places;
+  const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
+  for_each_job(folds.size(), threads, [&](std::size_t f) {
+    const StageData data = stage_data(passage, *view.features, *view.repeats, *view.residuals, *view.floor,
+                                      used_without(view.features->size(), folds[f]));
+    const Model model = refit(data, standing, beyond);
+    for (const std::size_t r : folds[f]) places[r] = model.places;
+  });
+  return places;
+}
+
+std::vector<double> shares_held_out(const StageView& view, Passage passage, const StandingModel& standing,
+                                    const Folds& folds, unsigned threads) {
+  const std::size_t effects = standing.model.places.size(), runs = view.features->size();
+  const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
+  // of nominal, whole model, and of the model without each effect
+  struct Left {
+    std::vector<KindSquares> of_model;
+  };
+  std::vector<Left> left(folds.size());
+  for_each_job(folds.size(), threads, [&](std::size_t f) {
+    const auto of = [&](const std::vector<bool>& used) {
+      return stage_data(passage, *view.features, *view.repeats, *view.residuals, *view.floor, used);
+    };
+    std::vector<bool> fitted = used_without(runs, folds[f]), tested = fitted;
+    tested.flip();
+    if (folds.size() < 2) fitted = tested;
+    const StageData fitted_data = of(fitted), tested_data = of(tested);
+    left[f].of_model.push_back(squares_of_groups(tested_data, residuals_of(tested_data)));
+    const auto add = [&](const Model& model) {
+      left[f].of_model.push_back(squares_of_groups(tested_data, rest_of(tested_data, model)));
+    };
+    add(refit(fitted_data, standing, beyond));
+    for (std::size_t e = 0; e < effects; ++e) {
+      if (effects == 1) {
+        left[f].of_model.push_back(left[f].of_model.front());
+        continue;
+      }
+      EffectSet others = effects_of(standing.model);
+      others.erase(others.begin() + static_cast<std::ptrdiff_t>(e));
+      add(fit_model(fitted_data, standing.curves, others, {}, standing.model.likelihood.discrepancies));
+    }
+  });
+  std::vector<KindSquares> sums = left.front().of_model;
+  for (std::size_t f = 1; f < left.size(); ++f)
+    for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += left[f].of_model[m];
+  const std::vector<double> weights =
+      kind_weights(sums.front(), {std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)});
+  const double before = weighted_rms(sums[0], weights), whole = weighted_rms(sums[1], weights);
+  std::vector<double> shares;
+  for (std::size_t e = 0; e < effects; ++e)
+    shares.push_back(explained_share(before, whole, 1) - explained_share(before, weighted_rms(sums[2 + e], weights), 1));
+  shares.push_back(explained_share(before, whole, 1));
+  return shares;
 }
 
 }  // namespace kenaf::gap

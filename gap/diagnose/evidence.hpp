@@ -1,70 +1,67 @@
-// How sure a fit is and what it is worth on runs that it has not seen.
+// How sure the values of a model are, and what it is worth on runs that it was not fitted to.
 // Thread safety: values and pure functions; deterministic for a seed.
 #pragma once
 
 #include <cstdint>
 #include <functional>
-#include <string>
+#include <limits>
 #include <vector>
 
-#include "gap/diagnose/model_search.hpp"
-#include "gap/diagnose/noise_floor.hpp"
+#include "gap/diagnose/gap_size.hpp"
+#include "gap/diagnose/side_by_side.hpp"
 
 namespace kenaf::gap {
+
+struct Interval {
+  double value = 0, from = 0, to = 0;  // 95 %
+};
+
+// The value of one effect: a mean, and how far it differs from manoeuvre to manoeuvre.
+struct EffectValue {
+  Interval value;
+  // Standard deviation between manoeuvres beyond what noise and discrepancy explain (a random effect, DerSimonian and
+  // Laird 1986); 0 where they agree.
+  double spread = 0;
+  double p_agree = 1;  // chance that manoeuvres that agree differ as much (Cochran's Q)
+};
+// Of each effect of a model that stands. Intervals hold the parameter's range.
+std::vector<EffectValue> effect_values(const StageData& data, const StandingModel& standing);
 
 // Runs that are held out together: each run once.
 using Folds = std::vector<std::vector<std::size_t>>;
 // Runs dealt out in turn, manoeuvre by manoeuvre, to as many folds as the most repeated one has runs, at most five: repeats
 // of a manoeuvre are in different folds. Where nothing is repeated, to as many folds as there are manoeuvres, at most five.
 Folds folds_by_repeat(const std::vector<std::vector<std::size_t>>& repeats);
-// All repeats of a manoeuvre together.
+// All repeats of a manoeuvre together, dealt out to at most five folds.
 Folds folds_by_manoeuvre(const Observations& observations);
 
-struct Interval {
-  double value = 0, from = 0, to = 0;  // 95 %
+// What a stage is measured with.
+struct StageView {
+  const std::vector<StageFeatures>* features;
+  const std::vector<std::vector<std::size_t>>* repeats;
+  const std::vector<Eigen::VectorXd>* residuals;  // of each run
+  const NoiseFloor* floor;
 };
 
-// 1 - (after - floor) / (before - floor) of rms values in floors; 0 where there is nothing to shrink.
-double shrink(double before, double after, double floor);
-
-// One model on runs held out of its fit.
-struct HeldOut {
-  std::vector<Eigen::VectorXd> left;  // of each run: measured minus what the model fitted to the other folds says
-  double before = 0, after = 0, floor = 0;  // rms, whitened
-  Interval shrink;
-};  // with a single fold nothing can be held out: it is of the runs that the model was fitted to
-
-// Whether half of the gap or more is gone on runs held out (chosen: of right names the least was 59 %, docs/gap-results.md).
-// An effect that takes off less is not what causes the gap. True where there is nothing to shrink.
-bool is_borne_out(const HeldOut& held);
-// Whether what is left on runs held out is what repeats differ by, or kWithinRepeats of it, the share
-// `model_share` of the gap aside, which even the right effect leaves. Sharper than chance in cells where the floor is wider than the noise.
-bool is_within_repeats(const HeldOut& held, double model_share);
-
-// Values of a model's effects fitted to weighted runs.
-class Refit {
- public:
-  Refit(const EffectCurves& curves, const Model& model);
-  std::vector<OnCurve> operator()(std::span<const double> weights) const;
-  // To all runs, had they been measured with a column of `added` more, in units of the channels.
-  std::vector<OnCurve> with(const std::vector<Eigen::MatrixXd>& added, Eigen::Index column) const;
-
- private:
-  const EffectCurves& curves_;
-  EffectSet effects_;
-  std::vector<Products> runs_;
+// The gap on runs held out of the fit, in units of noise. NaN: not measured.
+struct GapMeasure {
+  static constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+  double before = kNotMeasured, after = kNotMeasured, floor = kNotMeasured;
+  Interval shrink{kNotMeasured, kNotMeasured, kNotMeasured};
+  Interval explains{kNotMeasured, kNotMeasured, kNotMeasured};
 };
+// `after`: what a model leaves of each run; intervals from resampling groups of repeats. `repeats_rest`: what repeats differ by,
+// of each run, empty without repeats.
+GapMeasure measure_gap(const StageView& view, const std::vector<Eigen::VectorXd>& after,
+                       const std::vector<Eigen::VectorXd>& deviations, std::uint64_t seed);
 
-// `shift_of` gives the raw shift of every run for the values of its own fold; by curves, or by simulation.
-HeldOut hold_out(const EffectCurves& curves, const NoiseFloor& floor, const Model& model, const Folds& folds,
-                 double floor_rms, std::uint64_t seed,
-                 const std::function<Shift(const std::vector<std::vector<OnCurve>>& places_of_run)>& shift_of);
-Shift by_curves(const EffectCurves& curves, const Model& model, const std::vector<std::vector<OnCurve>>& places_of_run);
+// The places of a model fitted without the runs of each fold, for every run those of its fold. A single fold holds nothing out.
+std::vector<std::vector<OnCurve>> places_held_out(const StageView& view, Passage passage, const StandingModel& standing,
+                                                  const Folds& folds, unsigned threads);
 
-// 95 % intervals of the values: of the floor, of resampled runs or of `numerics` (NoiseFloor::numerics; none where it is
-// empty), whichever is widest, and of the share of a shift that curves may be wrong by.
-std::vector<Interval> value_intervals(const EffectCurves& curves, const Model& model,
-                                      const std::vector<Eigen::MatrixXd>& numerics, double model_share,
-                                      double inflation, std::uint64_t seed);
+// The share of the squared gap that each effect of a model takes off, by curves, on runs held out: of the model with it less of
+// the model without it, fitted again. One entry for each effect, then the whole model.
+std::vector<double> shares_held_out(const StageView& view, Passage passage, const StandingModel& standing,
+                                    const Folds& folds, unsigned threads);
 
 }  // namespace kenaf::gap

@@ -4,188 +4,145 @@
 #include <cmath>
 #include <iterator>
 
+#include "gap/parallel.hpp"
+
 namespace kenaf::gap {
 namespace {
 
-using Eigen::VectorXd;
+// Of the way from the present value: a curve is known on either side of a fit at these factors, so that its bend there is.
+constexpr double kBracket = 1.3, kExactBracket = 1.15;
+constexpr double kNear = 0.3;       // of the way to one of these
+constexpr double kSettled = 0.005;  // of the value: a fit that moves less has nothing to learn from another point
+constexpr int kFitRounds = 2;       // values and discrepancies in turn
+constexpr double kMostBehind = 30;  // deviance by which a finalist may be worse, if that is more than `near`
 
-// In floors: a fit that moves less than this from a simulated point has nothing to learn from another one.
-constexpr double kSamePoint = 0.5;
-// Of the way from neutral: a curve is known on either side of a fit at these factors, one after the other, so that its
-// bend there is.
-constexpr double kBrackets[] = {1.5, 1.1, 1.03};
-constexpr double kNear = 0.3;  // of the way to one of these
-// Sets that are simulated, for each contender: sums of curves rank roughly.
-constexpr std::size_t kSetsForAContender = 2;
-
-// The gap less what a simulation of the model had beyond the sum of its curves.
-Whitened gap_around(const EffectCurves& curves, const Model& model) {
-  Whitened gap = whitened_difference(curves, model.shift, shift_of(curves, model.places));
-  for (std::size_t r = 0; r < gap.size(); ++r) gap[r] = curves.gap[r] - gap[r];
-  return gap;
-}
-
-struct Singles {
-  Products products;
-  std::vector<CurveFit> fits;  // best first
+// The columns of some effects alone, and curves that know them by their new numbers.
+struct Selection {
+  std::vector<EffectCurve> curves;
+  std::vector<Eigen::MatrixXd> shifts;
+  std::vector<int> column;  // in the whole, of each of the selection's
 };
 
-Singles fit_singles(const EffectCurves& curves) {
-  Singles singles{products_of(curves, curves.gap), {}};
-  for (std::size_t c = 0; c < curves.curves.size(); ++c)
-    singles.fits.push_back(fit_one(singles.products, curves.curves, c));
-  std::ranges::stable_sort(singles.fits, {}, &CurveFit::left);
-  return singles;
-}
-
-// Of the shift at a place.
-double length_of(const Products& products, const OnCurve& place) {
-  Products nothing = products;
-  nothing.gap_gap = 0;
-  nothing.shift_gap.setZero();
-  return std::sqrt(std::max(0.0, left_with(nothing, {&place, 1})));
-}
-
-// Whether the place is at a point of its curve that was simulated like this.
-bool at_point(const EffectCurve& curve, const OnCurve& place, const Products& products, Fidelity fidelity) {
-  const auto dot = [&](int i, int j) { return i < 0 || j < 0 ? 0 : products.shift_shift(i, j); };
-  const int a = place.column[0], b = place.column[1];
-  const double segment = std::sqrt(std::max(0.0, dot(a, a) - 2 * dot(a, b) + dot(b, b)));
-  return std::ranges::any_of(curve.points, [&](const CurvePoint& point) {
-    if (fidelity == Fidelity::every_run && !point.exact) return false;
-    return (point.column == a && place.weight[1] * segment <= kSamePoint) ||
-           (point.column == b && place.weight[0] * segment <= kSamePoint);
-  });
-}
-
-// How many of the first ones are near enough to the best one to overtake it.
-std::size_t near_best(const std::vector<CurveFit>& fits, double nothing_explained, const SearchSettings& settings) {
-  const double limit = fits.front().left + settings.near * (nothing_explained - fits.front().left);
-  std::size_t count = 0;
-  while (count < std::min(settings.finalists, fits.size()) && fits[count].left <= limit) ++count;
-  return count;
-}
-
-// Between neighbours that were simulated in every run a rough point would only disturb.
-bool is_between_exact(const EffectCurve& curve, double value) {
-  const auto above = std::ranges::lower_bound(curve.points, value, {}, &CurvePoint::value);
-  return above != curve.points.begin() && above != curve.points.end() && above->exact && std::prev(above)->exact;
-}
-
-// The value of the simulated point that is nearest to a place.
-double nearest_point(const EffectCurve& curve, const OnCurve& place) {
-  const int column = place.column[place.weight[1] > place.weight[0] ? 1 : 0];
-  return std::ranges::find(curve.points, column, &CurvePoint::column)->value;
-}
-
-// Values on either side of one at which an effect fits: a curve may bend, and a straight line to a point far away would
-// hide where it goes, so that fits creep along it. Only where there is no point yet.
-std::vector<double> bracket(const EffectCurve& curve, double value, Fidelity fidelity) {
-  const double neutral = present_value(curve);
-  // a point next to the value says nothing of where the curve goes
-  const auto is_known = [&](double wanted) {
-    const double near = value + kNear * (wanted - value);
-    return std::ranges::any_of(curve.points, [&](const CurvePoint& point) {
-      return (point.exact || fidelity != Fidelity::every_run) && point.value >= std::min(near, wanted) &&
-             point.value <= std::max(near, wanted);
-    });
-  };
-  std::vector<double> values;
-  for (const double bracket : kBrackets) {
-    for (const double factor : {1 / bracket, bracket}) {
-      const double wanted =
-          std::clamp(neutral + factor * (value - neutral), curve.parameter->min, curve.parameter->max);
-      if (wanted != value && !is_known(wanted)) values.push_back(wanted);
+Selection selected(const EffectCurves& curves, std::span<const std::size_t> effects) {
+  Selection selection;
+  for (const std::size_t effect : effects) {
+    selection.curves.push_back(curves.curves[effect]);
+    for (CurvePoint& point : selection.curves.back().points) {
+      if (point.column < 0) continue;
+      selection.column.push_back(point.column);
+      point.column = static_cast<int>(selection.column.size()) - 1;
     }
-    if (!values.empty() || fidelity != Fidelity::every_run) break;
   }
-  return values;
+  for (const Eigen::MatrixXd& group : curves.shifts) selection.shifts.emplace_back(group(Eigen::all, selection.column));
+  return selection;
 }
 
-// Points where the first `count` of them fit, and on either side of it; false: all of these are there.
-bool refine(EffectCurves& curves, const Singles& singles, std::size_t count, Fidelity fidelity,
-            const Simulator& simulator) {
-  std::vector<NewPoint> points;
-  for (std::size_t i = 0; i < std::min(count, singles.fits.size()); ++i) {
-    const OnCurve& place = singles.fits[i].places.front();
-    const EffectCurve& curve = curves.curves[place.curve];
-    if (length_of(singles.products, place) <= kSamePoint) continue;  // as good as neutral
-    if (fidelity != Fidelity::every_run && is_between_exact(curve, place.value)) continue;
-    const bool stands = at_point(curve, place, singles.products, fidelity);
-    const double at = stands ? nearest_point(curve, place) : place.value;
-    if (!stands) points.push_back({place.curve, at});
-    for (const double value : bracket(curve, at, fidelity)) points.push_back({place.curve, value});
-  }
-  if (!points.empty()) simulator.add_points(curves, points, fidelity);
-  return !points.empty();
+OnCurve in_whole(OnCurve place, const Selection& selection, std::span<const std::size_t> effects) {
+  place.curve = effects[place.curve];
+  for (int& column : place.column)
+    if (column >= 0) column = selection.column[static_cast<std::size_t>(column)];
+  return place;
 }
 
 bool is_visible(const EffectCurve& curve) {
-  return curve.visible > 1;
+  return curve.visible > 1 && curve.points.size() > 1;
 }
 
-// Fits of sets, each with what the last simulation of it lacked to the sum of its curves.
-class Sets {
- public:
-  Sets(const EffectCurves& curves, std::vector<EffectSet> sets, std::size_t count, double to_beat) : curves_(curves) {
-    const Products products = products_of(curves, curves.gap);
-    for (EffectSet& set : sets)
-      if (CurveFit fit = fit_together(products, curves.curves, set); fit.left < to_beat)
-        fits_.push_back({std::move(set), std::move(fit), {}});
-    keep_best(count);
-  }
+// Each of `sets`, fitted on the curves, in their order.
+std::vector<Model> fit_all(const StageData& data, const EffectCurves& curves, std::span<const EffectSet> sets,
+                           const std::vector<GroupVectors>& beyond, const Discrepancies& start, unsigned threads) {
+  std::vector<Model> models(sets.size());
+  for_each_job(sets.size(), threads, [&](std::size_t i) {
+    models[i] = fit_model(data, curves, sets[i], beyond.empty() ? GroupVectors{} : beyond[i], start);
+  });
+  return models;
+}
 
-  void keep_best(std::size_t count) {
-    std::ranges::stable_sort(fits_, {}, &Candidate::left);
-    fits_.resize(std::min(fits_.size(), count));
-  }
+// How many of the first ones are near enough to the best one to overtake it.
+std::size_t near_best(std::span<const Model> sorted, double nominal_deviance, const SearchSettings& settings) {
+  if (sorted.empty()) return 0;
+  const double best = sorted.front().deviance();
+  const double limit = best + std::max(kMostBehind, settings.near * (nominal_deviance - best));
+  std::size_t count = 0;
+  while (count < std::min(settings.finalists, sorted.size()) && sorted[count].deviance() <= limit) ++count;
+  return count;
+}
 
-  // Simulates all at the values where they fit, and fits them again.
-  void simulate(Fidelity fidelity, const Simulator& simulator) {
-    std::vector<std::vector<NewPoint>> asked;
-    for (const Candidate& candidate : fits_) asked.push_back(values_of(candidate.fit.places));
-    std::vector<Shift> shifts = simulator.shifts(asked, fidelity);
-    for (std::size_t i = 0; i < fits_.size(); ++i) {
-      Candidate& candidate = fits_[i];
-      Model simulated{candidate.fit.places, shifts[i], true};
-      simulated.left = squared_length(whitened_difference(curves_, curves_.residual, shifts[i]));
-      const Products around = products_around(curves_, simulated);
-      if (fidelity == Fidelity::every_run && (!candidate.best.exact || simulated.left < candidate.best.left))
-        candidate.best = std::move(simulated);
-      candidate.fit = fit_together(around, curves_.curves, candidate.set);
-    }
+// The fitted value and one on either side of it, where the curve has no point near them.
+std::vector<Setting> points_around(const EffectCurves& curves, const OnCurve& place, double bracket, bool exact) {
+  const Candidate& candidate = curves.candidates[place.curve];
+  const std::vector<CurvePoint>& points = curves.curves[place.curve].points;
+  const double reach = place.value - candidate.present;
+  if (reach == 0) return {};
+  std::vector<Setting> result;
+  for (const double factor : {1.0, 1 / bracket, bracket}) {
+    const double value = std::clamp(candidate.present + factor * reach, candidate.min, candidate.max);
+    const double near = factor == 1 ? kSettled * std::abs(reach) : kNear * std::abs(reach) * (bracket - 1);
+    const bool is_known = std::ranges::any_of(points, [&](const CurvePoint& point) {
+      return point.column >= 0 && (point.exact || !exact) && std::abs(point.value - value) <= near;
+    });
+    if (!is_known) result.push_back({place.curve, value});
   }
+  return result;
+}
 
-  std::size_t near_best(double nothing_explained, const SearchSettings& settings) {
-    std::vector<CurveFit> fits;
-    for (const Candidate& candidate : fits_) fits.push_back(candidate.fit);
-    return fits.empty() ? 0 : gap::near_best(fits, nothing_explained, settings);
-  }
+// Simulates a model at its values, and keeps it if that is better than what was simulated before.
+void keep_better(Model& best, const StageData& data, const Model& fitted, GroupVectors shift) {
+  Model simulated{fitted.places, std::move(shift), true, {}};
+  simulated.likelihood = likelihood_of(data, rest_of(data, simulated), fitted.likelihood.discrepancies);
+  if (!best.exact || simulated.deviance() < best.deviance()) best = std::move(simulated);
+}
 
-  std::vector<Model> models() const {
-    std::vector<Model> models;
-    for (const Candidate& candidate : fits_)
-      if (candidate.best.exact) models.push_back(candidate.best);
-    return models;
-  }
-
- private:
-  struct Candidate {
-    EffectSet set;
-    CurveFit fit;
-    Model best;  // of those simulated
-    double left() const { return fit.left; }
-  };
-  const EffectCurves& curves_;
-  std::vector<Candidate> fits_;
+// A set on its way through the search: fitted on curves, and the best of its simulations.
+struct Contender {
+  EffectSet set;
+  Model fitted, best;
 };
+
+// Simulates each contender where it fits, and fits it again with what the sum of curves lacked.
+void simulate_sets(std::vector<Contender>& contenders, const StageData& data, const EffectCurves& curves,
+                   const Simulate& simulate, Fidelity fidelity, unsigned threads) {
+  std::vector<Settings> asked;
+  std::vector<EffectSet> sets;
+  for (const Contender& contender : contenders) {
+    asked.push_back(settings_of(contender.fitted.places));
+    sets.push_back(contender.set);
+  }
+  const std::vector<GroupVectors> shifts = simulate(asked, fidelity);
+  std::vector<GroupVectors> beyond;
+  for (std::size_t i = 0; i < contenders.size(); ++i) {
+    Model& fitted = contenders[i].fitted;
+    fitted.shift = shifts[i];
+    beyond.push_back(beyond_curves(curves, fitted));
+  }
+  for_each_job(contenders.size(), threads, [&](std::size_t i) {
+    Contender& contender = contenders[i];
+    if (fidelity == Fidelity::every_run) keep_better(contender.best, data, contender.fitted, shifts[i]);
+    contender.fitted =
+        fit_model(data, curves, sets[i], beyond[i], contender.fitted.likelihood.discrepancies);
+  });
+}
+
+void sort_by_deviance(std::vector<Model>& models) {
+  std::ranges::stable_sort(models, {}, [](const Model& model) { return model.deviance(); });
+}
 
 }  // namespace
 
-std::vector<NewPoint> values_of(const std::vector<OnCurve>& places) {
-  std::vector<NewPoint> values;
-  for (const OnCurve& place : places) values.push_back({place.curve, place.value});
-  return values;
+GroupVectors residuals_of(const StageData& data) {
+  GroupVectors residuals;
+  for (const StageGroup& group : data.groups) residuals.push_back(group.residual);
+  return residuals;
+}
+
+GroupVectors rest_of(const StageData& data, const Model& model) {
+  GroupVectors rest = residuals_of(data);
+  for (std::size_t g = 0; g < rest.size(); ++g) rest[g] -= model.shift[g];
+  return rest;
+}
+
+bool has_effect(const Model& model, std::size_t candidate) {
+  return std::ranges::any_of(model.places, [&](const OnCurve& place) { return place.curve == candidate; });
 }
 
 EffectSet effects_of(const Model& model) {
@@ -194,61 +151,90 @@ EffectSet effects_of(const Model& model) {
   return effects;
 }
 
-Shift shift_of(const EffectCurves& curves, std::span<const OnCurve> places) {
-  Shift shift;
-  for (const Eigen::MatrixXd& run : curves.raw_shifts) shift.push_back(shift_at(run, places));
-  return shift;
+Model nominal_model(const StageData& data) {
+  Model model{{}, {}, true, {}};
+  for (const StageGroup& group : data.groups) model.shift.push_back(Eigen::VectorXd::Zero(group.residual.size()));
+  model.likelihood = likelihood_of(data, residuals_of(data), no_discrepancy());
+  return model;
 }
 
-Whitened whitened(const EffectCurves& curves, const Shift& shift) {
-  Whitened result(shift.size());
-  for (std::size_t r = 0; r < shift.size(); ++r) result[r] = curves.whiteners[r](shift[r]);
-  return result;
+GroupVectors beyond_curves(const EffectCurves& curves, const Model& model) {
+  GroupVectors beyond = model.shift;
+  const GroupVectors sum = shift_of(curves, model.places);
+  for (std::size_t g = 0; g < beyond.size(); ++g) beyond[g] -= sum[g];
+  return beyond;
 }
 
-Whitened whitened_difference(const EffectCurves& curves, const std::vector<VectorXd>& a, const Shift& b) {
-  Whitened result(a.size());
-  for (std::size_t r = 0; r < a.size(); ++r) result[r] = curves.whiteners[r](a[r] - b[r]);
-  return result;
-}
+Model fit_model(const StageData& data, const EffectCurves& curves, std::span<const std::size_t> effects,
+                const GroupVectors& beyond, const Discrepancies& start) {
+  const Selection selection = selected(curves, effects);
+  GroupVectors target = residuals_of(data);
+  if (!beyond.empty())
+    for (std::size_t g = 0; g < target.size(); ++g) target[g] -= beyond[g];
+  EffectSet numbers;
+  for (std::size_t e = 0; e < effects.size(); ++e) numbers.push_back(e);
 
-void measure(Model& model, const EffectCurves& curves, const Coherence& coherence) {
-  const Whitened left = whitened_difference(curves, curves.residual, model.shift);
-  model.left = squared_length(left);
-  model.coherent = coherence.energy(left);
-}
-
-Products products_of(const EffectCurves& curves, const Whitened& gap) {
-  const auto columns = curves.shifts.front().cols();
-  Products sum{0, VectorXd::Zero(columns), Eigen::MatrixXd::Zero(columns, columns)};
-  for (std::size_t r = 0; r < gap.size(); ++r) {
-    sum.gap_gap += gap[r].squaredNorm();
-    sum.shift_gap.noalias() += curves.shifts[r].transpose() * gap[r];
-    sum.shift_shift.noalias() += curves.shifts[r].transpose() * curves.shifts[r];
+  // values by generalised least squares, then the discrepancies that suit what they leave
+  Model model;
+  model.likelihood.discrepancies = start;
+  for (int round = 0; round < kFitRounds; ++round) {
+    const Products products =
+        products_of(data, whiteners_of(data, model.likelihood.discrepancies), selection.shifts, target);
+    model.places.clear();
+    for (const OnCurve& place : fit_together(products, selection.curves, numbers).places)
+      model.places.push_back(in_whole(place, selection, effects));
+    model.shift = shift_of(curves, model.places);
+    if (!beyond.empty())
+      for (std::size_t g = 0; g < target.size(); ++g) model.shift[g] += beyond[g];
+    model.likelihood = likelihood_of(data, rest_of(data, model), model.likelihood.discrepancies);
   }
-  return sum;
+  return model;
 }
 
-std::vector<Model> search_singles(EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
-                                  const SearchSettings& settings) {
-  Singles singles = fit_singles(curves);
+std::vector<Model> search_singles(const StageData& data, EffectCurves& curves, const Discrepancies& start,
+                                  const Simulate& simulate, const SearchSettings& settings) {
+  const double nominal = likelihood_of(data, residuals_of(data), start).deviance;
+  std::vector<EffectSet> sets;
+  for (std::size_t c = 0; c < curves.curves.size(); ++c)
+    if (is_visible(curves.curves[c])) sets.push_back({c});
+  std::vector<Model> models = fit_all(data, curves, sets, {}, start, settings.threads);
+  sort_by_deviance(models);
+
+  // the first ones with points where they fit
   for (int round = 0; round < settings.rounds; ++round) {
-    if (!refine(curves, singles, settings.contenders, Fidelity::coarse, simulator)) break;
-    singles = fit_singles(curves);
+    std::vector<Setting> points;
+    const std::size_t count = std::min(settings.contenders, models.size());
+    for (std::size_t i = 0; i < count; ++i)
+      std::ranges::copy(points_around(curves, models[i].places.front(), kBracket, false), std::back_inserter(points));
+    if (points.empty()) break;
+    add_points(curves, data, points, Fidelity::coarse, simulate);
+    for_each_job(count, settings.threads, [&](std::size_t i) {
+      models[i] = fit_model(data, curves, effects_of(models[i]), {}, models[i].likelihood.discrepancies);
+    });
+    sort_by_deviance(models);
   }
-  const double nothing_explained = squared_length(curves.gap);
+
+  // the best of them in every run
+  const std::size_t finalists = near_best(models, nominal, settings);
+  std::vector<Contender> contenders;
+  for (std::size_t i = 0; i < finalists; ++i) contenders.push_back({effects_of(models[i]), models[i], {}});
   for (int round = 0; round < settings.exact_rounds; ++round) {
-    const std::size_t finalists = near_best(singles.fits, nothing_explained, settings);
-    if (!refine(curves, singles, finalists, Fidelity::every_run, simulator)) break;
-    singles = fit_singles(curves);
+    std::vector<Setting> points;
+    for (const Contender& contender : contenders)
+      std::ranges::copy(points_around(curves, contender.fitted.places.front(), kExactBracket, true),
+                        std::back_inserter(points));
+    if (points.empty()) break;
+    add_points(curves, data, points, Fidelity::every_run, simulate);
+    for_each_job(contenders.size(), settings.threads, [&](std::size_t i) {
+      Model& fitted = contenders[i].fitted;
+      fitted = fit_model(data, curves, contenders[i].set, {}, fitted.likelihood.discrepancies);
+    });
   }
-  std::vector<Model> models;
-  for (const CurveFit& fit : singles.fits) {
-    const OnCurve& place = fit.places.front();
-    models.push_back({fit.places, shift_of(curves, fit.places),
-                      at_point(curves.curves[place.curve], place, singles.products, Fidelity::every_run)});
-    measure(models.back(), curves, coherence);
+  for (std::size_t i = 0; i < finalists; ++i) {
+    models[i] = contenders[i].fitted;
+    models[i].exact = true;  // between points that were simulated and next to each other
   }
+  sort_by_deviance(models);
   return models;
 }
 
@@ -256,52 +242,58 @@ std::vector<EffectSet> all_pairs(const EffectCurves& curves) {
   std::vector<EffectSet> pairs;
   for (std::size_t a = 0; a < curves.curves.size(); ++a)
     for (std::size_t b = a + 1; b < curves.curves.size(); ++b)
-      // two parameters of one effect are no pair of effects
-      if (is_visible(curves.curves[a]) && is_visible(curves.curves[b]) &&
-          curves.curves[a].effect != curves.curves[b].effect)
-        pairs.push_back({a, b});
+      if (is_visible(curves.curves[a]) && is_visible(curves.curves[b])) pairs.push_back({a, b});
   return pairs;
 }
 
-std::vector<EffectSet> with_one_more(const EffectCurves& curves, const Model& model) {
-  const EffectSet set = effects_of(model);
+std::vector<EffectSet> with_one_more(const EffectCurves& curves, const EffectSet& set) {
   std::vector<EffectSet> sets;
   for (std::size_t c = 0; c < curves.curves.size(); ++c) {
-    const bool is_in = std::ranges::any_of(
-        set, [&](std::size_t member) { return curves.curves[member].effect == curves.curves[c].effect; });
-    if (is_in || !is_visible(curves.curves[c])) continue;
+    if (std::ranges::count(set, c) > 0 || !is_visible(curves.curves[c])) continue;
     sets.push_back(set);
     sets.back().push_back(c);
   }
   return sets;
 }
 
-std::vector<Model> search_sets(const EffectCurves& curves, const Coherence& coherence, const Simulator& simulator,
-                               const SearchSettings& settings, std::vector<EffectSet> all, double to_beat) {
-  Sets sets(curves, std::move(all), kSetsForAContender * settings.contenders, to_beat);
-  for (int round = 0; round < settings.together_rounds; ++round) sets.simulate(Fidelity::coarse, simulator);
-  sets.keep_best(settings.contenders);
-  sets.keep_best(sets.near_best(squared_length(curves.gap), settings));
-  for (int round = 0; round < settings.together_rounds; ++round) sets.simulate(Fidelity::every_run, simulator);
-  std::vector<Model> models = sets.models();
-  for (Model& model : models) measure(model, curves, coherence);
-  std::ranges::stable_sort(models, {}, &Model::left);
+std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves, const Discrepancies& start,
+                               const Simulate& simulate, const SearchSettings& settings, std::vector<EffectSet> sets,
+                               double to_beat) {
+  // all sets by what they leave beneath the same discrepancies
+  const Products products = products_of(data, whiteners_of(data, start), curves.shifts, residuals_of(data));
+  std::vector<double> left(sets.size());
+  for_each_job(sets.size(), settings.threads,
+               [&](std::size_t i) { left[i] = fit_together(products, curves.curves, sets[i]).left; });
+  std::vector<std::size_t> order(sets.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return left[i]; });
+  order.resize(std::min(order.size(), settings.first_sets));
+
+  // the first ones each with their own
+  std::vector<EffectSet> first;
+  for (const std::size_t i : order) first.push_back(std::move(sets[i]));
+  std::vector<Contender> contenders;
+  for (Model& model : fit_all(data, curves, first, {}, start, settings.threads))
+    if (model.deviance() < to_beat) contenders.push_back({effects_of(model), std::move(model), {}});
+  const auto keep_best = [&](std::size_t count) {
+    std::ranges::stable_sort(contenders, {}, [](const Contender& c) { return c.fitted.deviance(); });
+    contenders.resize(std::min(contenders.size(), count));
+  };
+  keep_best(settings.contenders);
+  for (int round = 0; round < settings.rounds && !contenders.empty(); ++round)
+    simulate_sets(contenders, data, curves, simulate, Fidelity::coarse, settings.threads);
+
+  // the best of them in every run
+  keep_best(settings.contenders);
+  std::vector<Model> fitted;
+  for (const Contender& contender : contenders) fitted.push_back(contender.fitted);
+  keep_best(near_best(fitted, to_beat, settings));
+  for (int round = 0; round < settings.rounds && !contenders.empty(); ++round)
+    simulate_sets(contenders, data, curves, simulate, Fidelity::every_run, settings.threads);
+  std::vector<Model> models;
+  for (Contender& contender : contenders) models.push_back(std::move(contender.best));
+  sort_by_deviance(models);
   return models;
-}
-
-std::vector<Products> products_of_runs_around(const EffectCurves& curves, const Model& model) {
-  return products_of_runs(curves, gap_around(curves, model));
-}
-
-Products products_around(const EffectCurves& curves, const Model& model) {
-  return products_of(curves, gap_around(curves, model));
-}
-
-double left_without(const EffectCurves& curves, const Model& model, std::size_t place) {
-  EffectSet others = effects_of(model);
-  others.erase(others.begin() + static_cast<std::ptrdiff_t>(place));
-  const Products products = products_around(curves, model);
-  return others.empty() ? products.gap_gap : fit_together(products, curves.curves, others).left;
 }
 
 }  // namespace kenaf::gap

@@ -24,9 +24,9 @@ double median(std::vector<double>& values) {
 }
 
 // Of bins in a row a second difference leaves what changes slowly out, and with it most of a gap.
-void add_second_differences(const FeatureMap& features, const VectorXd& values, const std::vector<bool>& known,
+void add_second_differences(const StageFeatures& features, const VectorXd& values, const std::vector<bool>& known,
                             std::vector<std::vector<double>>& by_channel) {
-  const auto bins = features.bins();
+  const std::vector<Bin>& bins = features.bins;
   for (std::size_t b = 2; b < bins.size(); ++b) {
     if (!known[b - 2] || !known[b - 1] || !known[b]) continue;
     if (bins[b].channel != bins[b - 2].channel || bins[b].span != bins[b - 2].span + 2) continue;
@@ -36,10 +36,10 @@ void add_second_differences(const FeatureMap& features, const VectorXd& values, 
 }
 
 // The most samples that a bin of each channel has.
-std::vector<std::size_t> full_bins(const std::vector<FeatureMap>& features) {
+std::vector<std::size_t> full_bins(const std::vector<StageFeatures>& features) {
   std::vector<std::size_t> full(diagnosis_channels().size(), 0);
-  for (const FeatureMap& map : features)
-    for (const Bin& bin : map.bins()) full[bin.channel] = std::max(full[bin.channel], bin.samples);
+  for (const StageFeatures& map : features)
+    for (const Bin& bin : map.bins) full[bin.channel] = std::max(full[bin.channel], bin.samples);
   return full;
 }
 
@@ -47,11 +47,17 @@ VectorXd hypot(const VectorXd& a, const VectorXd& b) {
   return (a.array().square() + b.array().square()).sqrt();
 }
 
-VectorXd sigma_of_bins(const FeatureMap& features, const std::vector<double>& sigma,
+Eigen::MatrixXd all_shapes(const OpenShapes& open) {
+  Eigen::MatrixXd shapes(open.roughness.size(), open.local.cols() + open.numerics.cols());
+  shapes << open.local, open.numerics;
+  return shapes;
+}
+
+VectorXd sigma_of_bins(const StageFeatures& features, const std::vector<double>& sigma,
                        const std::vector<std::size_t>& full) {
-  VectorXd result(static_cast<Index>(features.bins().size()));
-  for (std::size_t b = 0; b < features.bins().size(); ++b) {
-    const Bin& bin = features.bins()[b];
+  VectorXd result(static_cast<Index>(features.bins.size()));
+  for (std::size_t b = 0; b < features.bins.size(); ++b) {
+    const Bin& bin = features.bins[b];
     result[static_cast<Index>(b)] =
         sigma[bin.channel] * std::sqrt(static_cast<double>(full[bin.channel]) / static_cast<double>(bin.samples));
   }
@@ -62,7 +68,7 @@ VectorXd sigma_of_bins(const FeatureMap& features, const std::vector<double>& si
 // Variances of each channel, whitened; 0 where nothing is known.
 using Spreads = std::vector<double>;
 
-std::vector<Spreads> spreads_of_groups(const std::vector<FeatureMap>& features, const std::vector<Whitener>& whiteners,
+std::vector<Spreads> spreads_of_groups(const std::vector<StageFeatures>& features, const std::vector<Whitener>& whiteners,
                                        const std::vector<VectorXd>& deviations,
                                        const std::vector<std::vector<bool>>& shared,
                                        const std::vector<std::vector<std::size_t>>& groups) {
@@ -72,9 +78,9 @@ std::vector<Spreads> spreads_of_groups(const std::vector<FeatureMap>& features, 
     for (const std::size_t r : group) {
       if (deviations[r].size() == 0) continue;
       const VectorXd white = whiteners[r](deviations[r]);
-      for (std::size_t b = 0; b < features[r].bins().size(); ++b)
+      for (std::size_t b = 0; b < features[r].bins.size(); ++b)
         if (shared[r][b])
-          squares[features[r].bins()[b].channel].push_back(white[static_cast<Index>(b)] * white[static_cast<Index>(b)]);
+          squares[features[r].bins[b].channel].push_back(white[static_cast<Index>(b)] * white[static_cast<Index>(b)]);
     }
     spreads.emplace_back(squares.size(), 0.0);
     for (std::size_t c = 0; c < squares.size(); ++c) {
@@ -127,7 +133,7 @@ double NoiseFloor::rms(const std::vector<VectorXd>& differences) const {
   return count > 0 ? std::sqrt(sum / count) : 0;
 }
 
-NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vector<VectorXd>& residuals,
+NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::vector<VectorXd>& residuals,
                        const std::vector<std::vector<std::size_t>>& repeats, const std::vector<OpenShapes>& open,
                        std::span<const double> stated) {
   const std::size_t channels = diagnosis_channels().size();
@@ -137,17 +143,14 @@ NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vecto
   NoiseFloor floor{std::vector<double>(channels, 0), std::vector<VectorXd>(features.size()),
                    std::vector<Whitener>(features.size()), false};
   floor.noise_of_bin = floor.sigma_of_bin;
-  for (const OpenShapes& run : open) {
-    floor.numerics.push_back(run.numerics);
-    floor.roughness_of_bin.push_back(run.roughness);
-  }
+  floor.open = open;
   std::vector<std::vector<double>> jumps(channels);
   for (std::size_t r = 0; r < features.size(); ++r) {
     floor.from_repeats |= deviations[r].size() > 0;
     if (deviations[r].size() > 0)
       add_second_differences(features[r], deviations[r], shared[r], jumps);
     else
-      add_second_differences(features[r], residuals[r], std::vector<bool>(features[r].bins().size(), true), jumps);
+      add_second_differences(features[r], residuals[r], std::vector<bool>(features[r].bins.size(), true), jumps);
   }
   const auto noise_of = [&](std::size_t c) {
     const bool is_stated = !floor.from_repeats && !stated.empty() && stated[c] > 0;
@@ -161,8 +164,8 @@ NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vecto
   const auto whiten = [&] {
     for (std::size_t r = 0; r < features.size(); ++r) {
       floor.noise_of_bin[r] = sigma_of_bins(features[r], sigma_of_run[r], full);
-      floor.sigma_of_bin[r] = hypot(floor.noise_of_bin[r], floor.roughness_of_bin[r]);
-      floor.whiteners[r] = Whitener(floor.sigma_of_bin[r], open[r].shapes);
+      floor.sigma_of_bin[r] = hypot(floor.noise_of_bin[r], open[r].roughness);
+      floor.whiteners[r] = Whitener(floor.sigma_of_bin[r], all_shapes(open[r]));
     }
   };
   whiten();
@@ -178,7 +181,7 @@ NoiseFloor noise_floor(const std::vector<FeatureMap>& features, const std::vecto
   return floor;
 }
 
-double rms_of_repeats(const NoiseFloor& floor, const std::vector<FeatureMap>& features,
+double rms_of_repeats(const NoiseFloor& floor, const std::vector<StageFeatures>& features,
                       const std::vector<VectorXd>& deviations, const std::vector<std::vector<std::size_t>>& repeats) {
   const std::vector<std::vector<bool>> shared = shared_bins(features, repeats);
   double sum = 0, count = 0;
@@ -193,17 +196,18 @@ double rms_of_repeats(const NoiseFloor& floor, const std::vector<FeatureMap>& fe
 NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShapes>& open) {
   NoiseFloor result = floor;
   for (std::size_t r = 0; r < open.size(); ++r) {
-    result.roughness_of_bin[r] = floor.roughness_of_bin[r].cwiseMax(open[r].roughness);
-    result.sigma_of_bin[r] = hypot(floor.noise_of_bin[r], result.roughness_of_bin[r]);
-    result.whiteners[r] = Whitener(result.sigma_of_bin[r], open[r].shapes);
-    result.numerics[r] = open[r].numerics;
+    result.open[r] = open[r];
+    result.open[r].roughness = floor.open[r].roughness.cwiseMax(open[r].roughness);
+    result.sigma_of_bin[r] = hypot(floor.noise_of_bin[r], result.open[r].roughness);
+    result.whiteners[r] = Whitener(result.sigma_of_bin[r], all_shapes(open[r]));
   }
   return result;
 }
 
-std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Predictor& predictor,
+std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, Predictor& predictor, Passage passage,
                                     const Variation& model, double start_sigma_m, double start_sigma_rad) {
   constexpr std::size_t kOfStart = 3, kOpen = 7;  // after those of the start, numbers of the simulator
+  // the model itself, and with each open number varied both ways
   std::vector<Variation> variations(2 * kOpen + 1, model);
   for (const bool minus : {false, true}) {
     Variation* v = variations.data() + (minus ? kOpen : 0);
@@ -217,29 +221,31 @@ std::vector<OpenShapes> open_shapes(const std::vector<FeatureMap>& features, Pre
     v[6].physics.solver_iterations =
         minus ? std::max(1, model.physics.solver_iterations / 2) : 2 * model.physics.solver_iterations;
   }
-  const std::vector<Shift> shifts = predictor.shifts(variations, Fidelity::every_run);
+  const std::vector<Shift> shifts = predictor.shifts(variations, passage, Fidelity::every_run);
   std::vector<OpenShapes> open;
   for (std::size_t r = 0; r < features.size(); ++r) {
-    const auto size = static_cast<Index>(features[r].bins().size());
+    const auto size = static_cast<Index>(features[r].bins.size());
     const auto channels = static_cast<Index>(diagnosis_channels().size());
-    open.push_back({Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOpen) + channels), VectorXd::Zero(size),
-                    Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOpen - kOfStart))});
-    for (std::size_t b = 0; b < features[r].bins().size(); ++b) {
-      const std::size_t channel = features[r].bins()[b].channel;
-      open[r].shapes(static_cast<Index>(b), static_cast<Index>(2 * kOpen + channel)) =
+    OpenShapes run{Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOfStart) + channels),
+                   Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOpen - kOfStart)), VectorXd::Zero(size)};
+    // one count more or less of a sensor lasts as long as the robot rolls on
+    for (std::size_t b = 0; b < features[r].bins.size(); ++b) {
+      const std::size_t channel = features[r].bins[b].channel;
+      run.local(static_cast<Index>(b), static_cast<Index>(2 * kOfStart + channel)) =
           diagnosis_channels()[channel].resolution;
     }
+    // odd and even part of what each variation shifts
     for (std::size_t i = 0; i < kOpen; ++i) {
       const VectorXd plus = shifts[i][r] - shifts.back()[r], minus = shifts[i + kOpen][r] - shifts.back()[r];
-      const VectorXd odd = (plus - minus) / 2, even = (plus + minus) / 2;
-      open[r].shapes.col(static_cast<Index>(2 * i)) = odd;
-      open[r].shapes.col(static_cast<Index>(2 * i + 1)) = even;
-      open[r].roughness.array() += even.array().square();
-      if (i < kOfStart) continue;
-      open[r].numerics.col(static_cast<Index>(2 * (i - kOfStart))) = plus;
-      open[r].numerics.col(static_cast<Index>(2 * (i - kOfStart) + 1)) = minus;
+      const VectorXd even = (plus + minus) / 2;
+      Eigen::MatrixXd& shapes = i < kOfStart ? run.local : run.numerics;
+      const auto column = static_cast<Index>(2 * (i < kOfStart ? i : i - kOfStart));
+      shapes.col(column) = (plus - minus) / 2;
+      shapes.col(column + 1) = even;
+      run.roughness.array() += even.array().square();
     }
-    open[r].roughness = open[r].roughness.cwiseSqrt();
+    run.roughness = run.roughness.cwiseSqrt();
+    open.push_back(std::move(run));
   }
   return open;
 }

@@ -24,7 +24,18 @@ void check_goes_on(const std::atomic<bool>* stop) {
   if (stop != nullptr && *stop) throw Stopped();
 }
 
-Predictor::Predictor(const Observations& observations, const std::vector<FeatureMap>& features,
+ComparedFeatures compared_features(const Observations& observations, double span_s) {
+  ComparedFeatures features;
+  for (const Observation& observation : observations.runs) {
+    features.maps.emplace_back(observation.run, span_s, observations.not_simulated);
+    for (const Passage passage : kPassages)
+      features.of_stage[static_cast<std::size_t>(passage)].push_back(
+          stage_features(passage, features.maps.back(), observation.run));
+  }
+  return features;
+}
+
+Predictor::Predictor(const Observations& observations, const ComparedFeatures& features,
                      std::vector<std::vector<std::size_t>> repeats, unsigned threads, const std::atomic<bool>* stop,
                      Ranks ranks, std::function<void(std::size_t)> progress)
     : observations_(observations),
@@ -59,13 +70,17 @@ std::vector<VectorXd> Predictor::all_of(std::size_t count, const std::function<V
 }
 
 void Predictor::simulate_nominal() {
-  nominal_ = all_of(observations_.runs.size(), [&](std::size_t run) { return features_of(run, unvaried()); });
+  for (const Passage passage : kPassages)
+    nominal_[static_cast<std::size_t>(passage)] = all_of(
+        observations_.runs.size(), [&](std::size_t run) { return values_of(run, unvaried(), passage); });
+}
+
+const std::vector<VectorXd>& Predictor::nominal(Passage passage) const {
+  return nominal_[static_cast<std::size_t>(passage)];
 }
 
 runs::Run Predictor::simulate(const rollout::Manoeuvre& as_recorded, std::size_t run,
                               const Variation& variation) const {
-  physics::RobotDescription robot = observations_.robot;
-  robot.effects = variation.effects;
   rollout::Manoeuvre replay = as_recorded;
   replay.start->x_m += variation.start_x_m;
   replay.start->y_m += variation.start_y_m;
@@ -74,28 +89,27 @@ runs::Run Predictor::simulate(const rollout::Manoeuvre& as_recorded, std::size_t
   options.physics = variation.physics;
   options.noise_scale = 0;
   options.mocap_noise_m = options.mocap_noise_rad = 0;
-  return rollout::roll_out(robot, observations_.worlds[observations_.runs[run].world], replay, options).run;
+  return rollout::roll_out(variation.robot, observations_.worlds[observations_.runs[run].world], replay, options).run;
 }
 
 runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const {
   return simulate(observations_.runs[run].replay, run, variation);
 }
 
-std::vector<VectorXd> Predictor::nominal_with_measured_drives() {
-  return all_of(observations_.runs.size(), [&](std::size_t run) {
-    const auto& measured = observations_.runs[run].measured;
-    return measured ? features_[run].of(simulate(*measured, run, unvaried())) : VectorXd();
-  });
-}
-
-VectorXd Predictor::features_of(std::size_t run, const Variation& variation) const {
-  return features_[run].of(simulate(run, variation));
+VectorXd Predictor::values_of(std::size_t run, const Variation& variation, Passage passage) const {
+  const StageFeatures& stage = features_.of(passage)[run];
+  if (stage.bins.empty()) return {};
+  const Observation& observed = observations_.runs[run];
+  const bool by_commands = passage == Passage::command_to_drive || !observed.measured;
+  const runs::Run simulated = simulate(by_commands ? observed.replay : *observed.measured, run, variation);
+  const FeatureMap& map = features_.maps[run];
+  return stage_values(passage, stage, map, map.of(simulated), simulated);
 }
 
 // Bins at times that the other run does not have keep what the last one before them has: a run that lasts longer rests.
-VectorXd Predictor::alike(std::size_t from, const VectorXd& shift, std::size_t to) const {
+VectorXd Predictor::alike(Passage passage, std::size_t from, const VectorXd& shift, std::size_t to) const {
   if (from == to) return shift;
-  const auto from_bins = features_[from].bins(), to_bins = features_[to].bins();
+  const std::vector<Bin>&from_bins = features_.of(passage)[from].bins, &to_bins = features_.of(passage)[to].bins;
   std::map<std::pair<std::size_t, std::size_t>, double> known;
   for (std::size_t b = 0; b < from_bins.size(); ++b)
     known[{from_bins[b].channel, from_bins[b].span}] = shift[static_cast<Index>(b)];
@@ -108,45 +122,49 @@ VectorXd Predictor::alike(std::size_t from, const VectorXd& shift, std::size_t t
   return result;
 }
 
-std::vector<VectorXd> Predictor::simulate_coarse(std::span<const Variation> variations) {
+std::vector<VectorXd> Predictor::simulate_coarse(std::span<const Variation> variations, Passage passage) {
   std::vector<Variation> coarse(variations.begin(), variations.end());
   for (Variation& variation : coarse) variation.physics.time_step_s *= kCoarse;
   const std::size_t groups = representatives_.size();
-  return all_of(coarse.size() * groups,
-                [&](std::size_t job) { return features_of(representatives_[job % groups], coarse[job / groups]); });
+  return all_of(coarse.size() * groups, [&](std::size_t job) {
+    return values_of(representatives_[job % groups], coarse[job / groups], passage);
+  });
 }
 
-std::vector<Shift> Predictor::coarse_shifts(std::span<const Variation> variations) {
-  if (coarse_nominal_.empty()) {
-    const Variation nominal = unvaried();
-    coarse_nominal_ = simulate_coarse({&nominal, 1});
+std::vector<Shift> Predictor::coarse_shifts(std::span<const Variation> variations, Passage passage) {
+  std::vector<VectorXd>& nominal = coarse_nominal_[static_cast<std::size_t>(passage)];
+  if (nominal.empty()) {
+    const Variation unvaried_robot = unvaried();
+    nominal = simulate_coarse({&unvaried_robot, 1}, passage);
   }
-  const std::vector<VectorXd> simulated = simulate_coarse(variations);
+  const std::vector<VectorXd> simulated = simulate_coarse(variations, passage);
   const std::size_t groups = representatives_.size();
-  std::vector<Shift> result(variations.size(), Shift(nominal_.size()));
+  std::vector<Shift> result(variations.size(), Shift(observations_.runs.size()));
   for (std::size_t job = 0; job < simulated.size(); ++job) {
     const std::size_t group = job % groups;
-    const VectorXd shift = simulated[job] - coarse_nominal_[group];
+    const VectorXd shift = simulated[job] - nominal[group];
     for (const std::size_t run : repeats_[group])
-      result[job / groups][run] = alike(representatives_[group], shift, run);
+      result[job / groups][run] = alike(passage, representatives_[group], shift, run);
   }
   return result;
 }
 
-std::vector<Shift> Predictor::shifts(std::span<const Variation> variations, Fidelity fidelity) {
-  if (fidelity == Fidelity::coarse) return coarse_shifts(variations);
-  const std::size_t runs = nominal_.size();
-  const std::vector<VectorXd> simulated = all_of(
-      variations.size() * runs, [&](std::size_t job) { return features_of(job % runs, variations[job / runs]); });
+std::vector<Shift> Predictor::shifts(std::span<const Variation> variations, Passage passage, Fidelity fidelity) {
+  if (fidelity == Fidelity::coarse) return coarse_shifts(variations, passage);
+  const std::size_t runs = observations_.runs.size();
+  const std::vector<VectorXd> simulated =
+      all_of(variations.size() * runs,
+             [&](std::size_t job) { return values_of(job % runs, variations[job / runs], passage); });
   std::vector<Shift> result(variations.size(), Shift(runs));
   for (std::size_t job = 0; job < simulated.size(); ++job)
-    result[job / runs][job % runs] = simulated[job] - nominal_[job % runs];
+    result[job / runs][job % runs] = simulated[job] - nominal(passage)[job % runs];
   return result;
 }
 
-Shift Predictor::shift_of_each(std::span<const Variation> variations) {
-  Shift result = all_of(nominal_.size(), [&](std::size_t run) { return features_of(run, variations[run]); });
-  for (std::size_t run = 0; run < result.size(); ++run) result[run] -= nominal_[run];
+Shift Predictor::shift_of_each(std::span<const Variation> variations, Passage passage) {
+  Shift result = all_of(observations_.runs.size(),
+                        [&](std::size_t run) { return values_of(run, variations[run], passage); });
+  for (std::size_t run = 0; run < result.size(); ++run) result[run] -= nominal(passage)[run];
   return result;
 }
 

@@ -145,7 +145,7 @@ std::size_t representative(const Observations& observations, const std::vector<s
   return sorted[sorted.size() / 2];
 }
 
-std::vector<VectorXd> deviations_from_repeats(const std::vector<FeatureMap>& features,
+std::vector<VectorXd> deviations_from_repeats(const std::vector<StageFeatures>& features,
                                               const std::vector<VectorXd>& residuals,
                                               const std::vector<std::vector<std::size_t>>& repeats) {
   struct Sum {
@@ -158,8 +158,8 @@ std::vector<VectorXd> deviations_from_repeats(const std::vector<FeatureMap>& fea
     std::map<std::pair<std::size_t, std::size_t>, Sum> sums;
     const auto each_bin = [&](auto&& use) {
       for (const std::size_t r : group)
-        for (std::size_t b = 0; b < features[r].bins().size(); ++b)
-          use(r, static_cast<Index>(b), sums[{features[r].bins()[b].channel, features[r].bins()[b].span}]);
+        for (std::size_t b = 0; b < features[r].bins.size(); ++b)
+          use(r, static_cast<Index>(b), sums[{features[r].bins[b].channel, features[r].bins[b].span}]);
     };
     for (const std::size_t r : group) result[r] = VectorXd::Zero(residuals[r].size());
     each_bin([&](std::size_t r, Index b, Sum& sum) { sum.value += residuals[r][b], ++sum.count; });
@@ -171,15 +171,15 @@ std::vector<VectorXd> deviations_from_repeats(const std::vector<FeatureMap>& fea
   return result;
 }
 
-std::vector<std::vector<bool>> shared_bins(const std::vector<FeatureMap>& features,
+std::vector<std::vector<bool>> shared_bins(const std::vector<StageFeatures>& features,
                                            const std::vector<std::vector<std::size_t>>& repeats) {
   std::vector<std::vector<bool>> shared(features.size());
   for (const std::vector<std::size_t>& group : repeats) {
     std::map<std::pair<std::size_t, std::size_t>, int> count;
     for (const std::size_t r : group)
-      for (const Bin& bin : features[r].bins()) ++count[{bin.channel, bin.span}];
+      for (const Bin& bin : features[r].bins) ++count[{bin.channel, bin.span}];
     for (const std::size_t r : group)
-      for (const Bin& bin : features[r].bins()) shared[r].push_back(count[{bin.channel, bin.span}] > 1);
+      for (const Bin& bin : features[r].bins) shared[r].push_back(count[{bin.channel, bin.span}] > 1);
   }
   return shared;
 }

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "gap/diagnose/features.hpp"
 #include "gap/diagnose/observation.hpp"
+#include "gap/diagnose/stage_features.hpp"
 
 namespace kenaf::gap {
 
@@ -25,12 +25,12 @@ std::size_t representative(const Observations& observations, const std::vector<s
 
 // How each run deviates from the mean of its repeats, by bins at the same time; scaled so that its variance is that of
 // one run. Empty for a run without repeats; 0 where one repeat alone goes on.
-std::vector<Eigen::VectorXd> deviations_from_repeats(const std::vector<FeatureMap>& features,
+std::vector<Eigen::VectorXd> deviations_from_repeats(const std::vector<StageFeatures>& features,
                                                      const std::vector<Eigen::VectorXd>& residuals,
                                                      const std::vector<std::vector<std::size_t>>& repeats);
 
 // The bins of a group's runs that more than one of them has.
-std::vector<std::vector<bool>> shared_bins(const std::vector<FeatureMap>& features,
+std::vector<std::vector<bool>> shared_bins(const std::vector<StageFeatures>& features,
                                            const std::vector<std::vector<std::size_t>>& repeats);
 
 }  // namespace kenaf::gap

@@ -16,18 +16,18 @@ constexpr double kRoundABend = 2;
 constexpr int kTries = 4;
 constexpr double kStraightTo = 0.5;  // of the way from neutral: a curve has to come back to what it is there
 constexpr int kRounds = 3;
-constexpr double kGained = 1e-3;  // share of what is left that a round must gain to be followed by another one
+constexpr double kGained = 0.5;  // deviance that a round must gain to be followed by another one
 
 struct Known {
   double value;
-  Shift shift;
+  GroupVectors shift;
 };
 
 // On the straight line through two points.
 Known on_line(const Known& a, const Known& b, double value) {
   const double share = (value - a.value) / (b.value - a.value);
   Known result{value, a.shift};
-  for (std::size_t r = 0; r < a.shift.size(); ++r) result.shift[r] += share * (b.shift[r] - a.shift[r]);
+  for (std::size_t g = 0; g < a.shift.size(); ++g) result.shift[g] += share * (b.shift[g] - a.shift[g]);
   return result;
 }
 
@@ -37,22 +37,29 @@ struct Side {
   bool outward;
   double share;
   double value = 0;
-  Shift shift{};  // of the model here
+  GroupVectors shift{};  // of the model here
 };
 
 double value_at(const EffectCurves& curves, const Model& model, const Side& side) {
-  const EffectCurve& curve = curves.curves[model.places[side.place].curve];
-  const double neutral = present_value(curve), factor = side.outward ? 1 + side.share : 1 / (1 + side.share);
-  return std::clamp(neutral + factor * (model.places[side.place].value - neutral), curve.parameter->min,
-                    curve.parameter->max);
+  const Candidate& candidate = curves.candidates[model.places[side.place].curve];
+  const double factor = side.outward ? 1 + side.share : 1 / (1 + side.share);
+  return std::clamp(candidate.present + factor * (model.places[side.place].value - candidate.present), candidate.min,
+                    candidate.max);
+}
+
+GroupVectors difference(const GroupVectors& a, const GroupVectors& b) {
+  GroupVectors result = a;
+  for (std::size_t g = 0; g < a.size(); ++g) result[g] -= b[g];
+  return result;
 }
 
 // Both sides of each value, but for the outer one of a value at the end of its range.
-std::vector<Side> to_either_side(const EffectCurves& curves, const Simulator& simulator, const Model& model) {
+std::vector<Side> to_either_side(const StageData& data, const EffectCurves& curves, const Simulate& simulate,
+                                 const Model& model) {
   std::vector<Side> sides;
   std::vector<double> lengths;  // of each effect alone
   for (std::size_t i = 0; i < model.places.size(); ++i) {
-    lengths.push_back(std::sqrt(squared_length(whitened(curves, shift_of(curves, {&model.places[i], 1})))));
+    lengths.push_back(length_in_noise(data, shift_of(curves, {&model.places[i], 1})));
     for (const bool outward : {false, true}) {
       const Side side{i, outward, std::clamp(kShifted_floors / lengths[i], kNearest, kFarthest)};
       if (value_at(curves, model, side) != model.places[i].value) sides.push_back(side);
@@ -61,18 +68,18 @@ std::vector<Side> to_either_side(const EffectCurves& curves, const Simulator& si
   std::vector<std::size_t> to_seek(sides.size());
   std::iota(to_seek.begin(), to_seek.end(), std::size_t{0});
   for (int i = 0; i < kTries && !to_seek.empty(); ++i) {
-    std::vector<std::vector<NewPoint>> asked;
+    std::vector<Settings> asked;
     for (const std::size_t s : to_seek) {
       sides[s].value = value_at(curves, model, sides[s]);
-      asked.push_back(values_of(model.places));
+      asked.push_back(settings_of(model.places));
       asked.back()[sides[s].place].value = sides[s].value;
     }
-    std::vector<Shift> simulated = simulator.shifts(asked, Fidelity::every_run);
+    std::vector<GroupVectors> simulated = simulate(asked, Fidelity::every_run);
     std::vector<std::size_t> bent;
     for (std::size_t a = 0; a < asked.size(); ++a) {
       Side& side = sides[to_seek[a]];
       side.shift = std::move(simulated[a]);
-      const double moved = std::sqrt(squared_length(whitened_difference(curves, side.shift, model.shift)));
+      const double moved = length_in_noise(data, difference(side.shift, model.shift));
       const double expected = std::max(kShifted_floors, side.share * lengths[side.place]);
       if (moved <= kRoundABend * expected) continue;
       side.share *= std::sqrt(expected / moved);
@@ -86,16 +93,16 @@ std::vector<Side> to_either_side(const EffectCurves& curves, const Simulator& si
 // What the effect shifts on top of the others, where it stands, to either side, and straight on from there.
 std::vector<Known> beside_others(const EffectCurves& curves, const Model& model, std::size_t place,
                                  const std::vector<Side>& sides) {
-  const EffectCurve& curve = curves.curves[model.places[place].curve];
-  const double neutral = present_value(curve), value = model.places[place].value;
-  const double end = value > neutral ? curve.parameter->max : curve.parameter->min;
+  const Candidate& candidate = curves.candidates[model.places[place].curve];
+  const double present = candidate.present, value = model.places[place].value;
+  const double end = value > present ? candidate.max : candidate.min;
   const Known here{value, shift_of(curves, {&model.places[place], 1})};
   std::vector<Known> points{here};
   for (const Side& side : sides) {
     if (side.place != place) continue;
     Known known{side.value, here.shift};
-    for (std::size_t r = 0; r < known.shift.size(); ++r) known.shift[r] += side.shift[r] - model.shift[r];
-    const double straight_to = side.outward ? end : neutral + kStraightTo * (value - neutral);
+    for (std::size_t g = 0; g < known.shift.size(); ++g) known.shift[g] += side.shift[g] - model.shift[g];
+    const double straight_to = side.outward ? end : present + kStraightTo * (value - present);
     if (straight_to != side.value) points.push_back(on_line(here, known, straight_to));
     points.push_back(std::move(known));
   }
@@ -103,45 +110,45 @@ std::vector<Known> beside_others(const EffectCurves& curves, const Model& model,
 }
 
 // Points of the curves where the model's effects stand, instead of those that they have alone on this side of neutral.
-void stand(EffectCurves& curves, const Simulator& simulator, Model& model) {
-  const std::vector<Side> sides = to_either_side(curves, simulator, model);
-  std::vector<NewPoint> points;
-  std::vector<Shift> shifts;
+void stand(const StageData& data, EffectCurves& curves, const Simulate& simulate, Model& model) {
+  const std::vector<Side> sides = to_either_side(data, curves, simulate, model);
+  std::vector<Setting> points;
+  std::vector<GroupVectors> shifts;
   for (std::size_t i = 0; i < model.places.size(); ++i)
     for (Known& known : beside_others(curves, model, i, sides)) {
       points.push_back({model.places[i].curve, known.value});
       shifts.push_back(std::move(known.shift));
     }
   for (const OnCurve& place : model.places) {
-    EffectCurve& curve = curves.curves[place.curve];
-    const double neutral = present_value(curve);
-    std::erase_if(curve.points,
-                  [&](const CurvePoint& point) { return (point.value - neutral) * (place.value - neutral) > 0; });
+    const double present = curves.candidates[place.curve].present;
+    std::erase_if(curves.curves[place.curve].points, [&](const CurvePoint& point) {
+      return (point.value - present) * (place.value - present) > 0;
+    });
   }
-  insert_points(curves, points, shifts, Fidelity::every_run);
+  insert_points(curves, data, points, shifts, Fidelity::every_run);
   for (OnCurve& place : model.places) place = at_value(curves.curves, place.curve, place.value);
 }
 
 }  // namespace
 
-Model fit_side_by_side(EffectCurves& curves, const Coherence& coherence, const Simulator& simulator, Model model) {
-  const auto is_neutral = [&](const OnCurve& place) {
-    return place.value == present_value(curves.curves[place.curve]);
-  };
+StandingModel fit_side_by_side(const StageData& data, EffectCurves curves, const Simulate& simulate, Model model) {
+  const auto is_present = [&](const OnCurve& place) { return place.value == curves.candidates[place.curve].present; };
   const EffectSet effects = effects_of(model);
   for (int round = 0; round < kRounds; ++round) {
     // one that is not there has no side to stand on
-    if (std::ranges::any_of(model.places, is_neutral)) break;
-    stand(curves, simulator, model);
-    Model better{fit_together(products_around(curves, model), curves.curves, effects).places, {}, true};
-    const std::vector<std::vector<NewPoint>> asked{values_of(better.places)};
-    better.shift = simulator.shifts(asked, Fidelity::every_run).front();
-    measure(better, curves, coherence);
-    const double gained = model.left - better.left;
+    if (std::ranges::any_of(model.places, is_present)) break;
+    stand(data, curves, simulate, model);
+    Model better =
+        fit_model(data, curves, effects, beyond_curves(curves, model), model.likelihood.discrepancies);
+    const std::vector<Settings> asked{settings_of(better.places)};
+    better.shift = simulate(asked, Fidelity::every_run).front();
+    better.exact = true;
+    better.likelihood = likelihood_of(data, rest_of(data, better), better.likelihood.discrepancies);
+    const double gained = model.deviance() - better.deviance();
     if (gained > 0) model = std::move(better);
-    if (gained <= kGained * model.left) break;
+    if (gained <= kGained) break;
   }
-  return model;
+  return {std::move(model), std::move(curves)};
 }
 
 }  // namespace kenaf::gap

@@ -4,17 +4,23 @@
 //
 // The search adds what each effect does alone and corrects the sum by simulation at one place. That finds which effects they
 // are; for their values, for whether manoeuvres agree on them and for their intervals it takes the slopes where they stand.
-// Thread safety: pure functions apart from what the simulator callbacks do.
+// Thread safety: pure functions apart from what the simulator does.
 #pragma once
 
 #include "gap/diagnose/model_search.hpp"
 
 namespace kenaf::gap {
 
-// `model` fitted again by what its effects do where they stand, beside one another; never worse than it was. Curves of its effects
-// are those from here on: every run simulated at its values and a tenth to a half of the way from neutral to either side of each,
-// as far as it takes to see more than roughness (less where it bends there), and straight on from there to half of the way and to
-// the end of the range. Columns of before stay. A model with an effect at its neutral value stays as it is.
-Model fit_side_by_side(EffectCurves& curves, const Coherence& coherence, const Simulator& simulator, Model model);
+struct StandingModel {
+  Model model;
+  // All curves; those of its effects are known where they stand, beside the others: every run simulated at its values and a
+  // tenth to a half of the way from neutral to either side of each, as far as it takes to see more than roughness (less
+  // where it bends there), and straight on from there to half of the way and to the end of the range.
+  EffectCurves curves;
+};
+
+// `model` fitted again by what its effects do where they stand, beside one another; never worse than it was. A model with an
+// effect at its present value stays as it is.
+StandingModel fit_side_by_side(const StageData& data, EffectCurves curves, const Simulate& simulate, Model model);
 
 }  // namespace kenaf::gap

@@ -11,15 +11,15 @@ namespace {
 
 using Eigen::VectorXd;
 
-std::vector<ChannelGap> channels_of(const std::vector<FeatureMap>& features, const NoiseFloor& floor,
+std::vector<ChannelGap> channels_of(const std::vector<StageFeatures>& features, const NoiseFloor& floor,
                                     const std::vector<VectorXd>& residual) {
   std::vector<ChannelGap> channels(diagnosis_channels().size());
   std::vector<double> bins(channels.size(), 0);
   for (std::size_t c = 0; c < channels.size(); ++c) channels[c] = {c, 0, 0, 0};
   for (std::size_t r = 0; r < features.size(); ++r)
-    for (std::size_t b = 0; b < features[r].bins().size(); ++b) {
+    for (std::size_t b = 0; b < features[r].bins.size(); ++b) {
       const auto i = static_cast<Eigen::Index>(b);
-      const std::size_t c = features[r].bins()[b].channel;
+      const std::size_t c = features[r].bins[b].channel;
       channels[c].rms += residual[r][i] * residual[r][i];
       channels[c].floor += floor.sigma_of_bin[r][i] * floor.sigma_of_bin[r][i];
       ++bins[c];
@@ -50,7 +50,7 @@ std::vector<Cell> cells_that_stand_out(const NoiseFloor& floor, const Coherence&
   return cells;
 }
 
-GapPlaces locate(const Observations& observations, const std::vector<FeatureMap>& features, const NoiseFloor& floor,
+GapPlaces locate(const Observations& observations, const std::vector<StageFeatures>& features, const NoiseFloor& floor,
                  const std::vector<std::vector<std::size_t>>& repeats, const Coherence& coherence,
                  const std::vector<VectorXd>& residual) {
   const std::vector<Cell> cells = cells_that_stand_out(floor, coherence, residual);

@@ -40,7 +40,7 @@ std::vector<Cell> cells_that_stand_out(const NoiseFloor& floor, const Coherence&
                                        const std::vector<Eigen::VectorXd>& residual);
 
 // `residual` in the channels' units; both of every run.
-GapPlaces locate(const Observations& observations, const std::vector<FeatureMap>& features, const NoiseFloor& floor,
+GapPlaces locate(const Observations& observations, const std::vector<StageFeatures>& features, const NoiseFloor& floor,
                  const std::vector<std::vector<std::size_t>>& repeats, const Coherence& coherence,
                  const std::vector<Eigen::VectorXd>& residual);
 

@@ -1,0 +1,114 @@
+#include "gap/diagnose/stage_data.hpp"
+
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "gap/diagnose/channels.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+// Variance of a bin that no used run has: beside any noise in any unit.
+constexpr double kNotMeasured = 1e12;
+// Share of the numerics' standard deviation by which they may differ from one group to another (chosen): a shape is linear in
+// them to about that.
+constexpr double kNumericsOfRun = 0.3;
+
+// The bins of all runs of a group, and where in them each run's own are.
+StageGroup bins_of_group(const std::vector<StageFeatures>& features, std::vector<std::size_t> runs,
+                         const std::vector<bool>& used) {
+  StageGroup group{std::move(runs), {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  std::map<std::pair<std::size_t, std::size_t>, Index> place;
+  for (const std::size_t r : group.runs)
+    for (const Bin& bin : features[r].bins) place[{bin.channel, bin.span}] = 0;
+  for (auto& [key, index] : place) {
+    const auto [channel, span] = key;
+    index = std::ssize(group.bins);
+    if (group.series.empty() || group.series.back().channel != channel)
+      group.series.push_back({index, 0, channel, kind_of(channel)});
+    ++group.series.back().count;
+    group.bins.push_back({channel, span, 0});
+    group.t_s.push_back((static_cast<double>(span) + 0.5) * features[group.runs.front()].span_s);
+  }
+  group.count = VectorXd::Zero(std::ssize(group.bins));
+  for (const std::size_t r : group.runs) {
+    group.bin_of.emplace_back();
+    for (const Bin& bin : features[r].bins) {
+      const Index index = place[{bin.channel, bin.span}];
+      group.bin_of.back().push_back(index);
+      group.bins[static_cast<std::size_t>(index)].samples += bin.samples;
+      if (used.empty() || used[r]) ++group.count[index];
+    }
+  }
+  return group;
+}
+
+// Columns of each run's matrix, averaged over the runs that have a bin; 0 where none has. `used` empty: all runs.
+template <class MatrixOfRun>
+MatrixXd mean_over_runs(const StageGroup& group, Index columns, const std::vector<bool>& used,
+                        MatrixOfRun&& matrix_of) {
+  MatrixXd sum = MatrixXd::Zero(std::ssize(group.bins), columns);
+  VectorXd count = VectorXd::Zero(sum.rows());
+  for (std::size_t i = 0; i < group.runs.size(); ++i) {
+    if (!used.empty() && !used[group.runs[i]]) continue;
+    const auto& values = matrix_of(group.runs[i]);
+    for (std::size_t b = 0; b < group.bin_of[i].size(); ++b) {
+      sum.row(group.bin_of[i][b]) += values.row(static_cast<Index>(b));
+      ++count[group.bin_of[i][b]];
+    }
+  }
+  return count.cwiseMax(1).cwiseInverse().asDiagonal() * sum;
+}
+
+}  // namespace
+
+StageData stage_data(Passage passage, const std::vector<StageFeatures>& features,
+                     const std::vector<std::vector<std::size_t>>& repeats, const std::vector<VectorXd>& residuals,
+                     const NoiseFloor& floor, const std::vector<bool>& used) {
+  StageData data{passage, {}};
+  for (const std::vector<std::size_t>& repeated : repeats) {
+    std::vector<std::size_t> runs;
+    for (const std::size_t r : repeated)
+      if (!features[r].bins.empty()) runs.push_back(r);
+    if (runs.empty()) continue;
+    StageGroup group = bins_of_group(features, std::move(runs), used);
+    const VectorXd one_run = group.count.cwiseMax(1).cwiseInverse();
+    group.residual = mean_over_runs(group, 1, used, [&](std::size_t r) -> const VectorXd& { return residuals[r]; });
+
+    // noise is independent from run to run: the variance of a mean of n is that of one over n
+    const MatrixXd variance = mean_over_runs(
+        group, 1, used, [&](std::size_t r) { return VectorXd(floor.sigma_of_bin[r].array().square()); });
+    group.variance = (group.count.array() > 0).select(variance.cwiseProduct(one_run), kNotMeasured);
+
+    // so are start poses and counts; the simulator's numbers are the same in all runs, but for what is not linear in them
+    const std::size_t any = group.runs.front();
+    const MatrixXd local = mean_over_runs(group, floor.open[any].local.cols(), used,
+                                          [&](std::size_t r) -> const MatrixXd& { return floor.open[r].local; });
+    group.shared_shapes = mean_over_runs(group, floor.open[any].numerics.cols(), used,
+                                         [&](std::size_t r) -> const MatrixXd& { return floor.open[r].numerics; });
+    group.local_shapes.resize(local.rows(), local.cols() + group.shared_shapes.cols());
+    group.local_shapes << one_run.cwiseSqrt().asDiagonal() * local, kNumericsOfRun * group.shared_shapes;
+    data.groups.push_back(std::move(group));
+  }
+  return data;
+}
+
+std::vector<VectorXd> mean_of_groups(const StageData& data, const std::vector<VectorXd>& of_runs) {
+  std::vector<VectorXd> means;
+  for (const StageGroup& group : data.groups)
+    means.push_back(mean_over_runs(group, 1, {}, [&](std::size_t r) -> const VectorXd& { return of_runs[r]; }));
+  return means;
+}
+
+std::size_t bin_count(const StageData& data) {
+  std::size_t count = 0;
+  for (const StageGroup& group : data.groups) count += group.bins.size();
+  return count;
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,246 @@
+#include "gap/diagnose/stage_decision.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "gap/diagnose/cells.hpp"
+#include "gap/diagnose/isolability.hpp"
+#include "gap/diagnose/significance.hpp"
+#include "gap/parallel.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+// At the angle below which two effects cannot be told apart, the one that is not there leaves this share of what the
+// other one accounts for.
+const double kAlike = std::pow(std::sin(kToldApart_deg / 180 * std::numbers::pi), 2);
+// Of what a gap has, so much must a model take off before the simulation's open shapes are taken around it (chosen): around
+// one that does not fit, the simulation may leave anything open.
+constexpr double kFits = 0.5;
+// Vuong's test: standard errors by which the best model must be better than a rival over manoeuvres (one-sided 95 %), from
+// as many manoeuvres on.
+constexpr double kBetter_sigma = 1.64;
+constexpr std::size_t kFewestGroups = 4;
+// Rivals that are tried by simulation, for each effect.
+constexpr std::size_t kMostRivals = 4;
+
+// Squared length of what is left, in noise alone.
+double squared(const StageData& data, const GroupVectors& rest) {
+  return std::pow(length_in_noise(data, rest), 2);
+}
+
+// By the best single effect, with noise alone.
+double p_of_best_single(const StageData& data, const std::vector<Model>& singles, const EffectCurves& curves,
+                        double margin, double inflation, double& improvement) {
+  improvement = 0;
+  if (singles.empty()) return 1;
+  const double nominal = likelihood_with(data, residuals_of(data), no_discrepancy()).chi_squared;
+  const double left = likelihood_with(data, rest_of(data, singles.front()), no_discrepancy()).chi_squared;
+  improvement = nominal - left;
+  const auto visible = static_cast<double>(
+      std::ranges::count_if(curves.curves, [](const EffectCurve& curve) { return curve.visible > 1; }));
+  return p_of_largest_square((improvement - margin) / inflation, visible);
+}
+
+// Fitted again, all of them, in other data.
+void fit_again(std::vector<Model>& models, const StageData& data, const EffectCurves& curves, unsigned threads) {
+  for_each_job(models.size(), threads, [&](std::size_t i) {
+    const bool exact = models[i].exact;
+    models[i] = fit_model(data, curves, effects_of(models[i]), {}, models[i].likelihood.discrepancies);
+    models[i].exact = exact;
+  });
+  std::ranges::stable_sort(models, {}, [](const Model& model) { return model.deviance(); });
+}
+
+// The best set of effects, each of which gains what evidence asks for.
+Model take_effects(const StageData& data, const EffectCurves& curves, const std::vector<Model>& singles,
+                   const Simulate& simulate, const DecisionSettings& settings) {
+  Model best = singles.front();
+  while (best.places.size() < settings.most_effects) {
+    std::vector<EffectSet> sets =
+        best.places.size() == 1 ? all_pairs(curves) : with_one_more(curves, effects_of(best));
+    const std::vector<Model> more =
+        search_sets(data, curves, best.likelihood.discrepancies, simulate, settings.search, std::move(sets),
+                    best.deviance() - settings.evidence / 2);
+    if (more.empty() || best.deviance() - more.front().deviance() < settings.evidence) break;
+    best = more.front();
+  }
+  return best;
+}
+
+StandingModel without_effect(const StageData& data, const StandingModel& standing, std::size_t place) {
+  EffectSet others = effects_of(standing.model);
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(place));
+  if (others.empty()) return {nominal_model(data), standing.curves};
+  return {fit_model(data, standing.curves, others, {}, standing.model.likelihood.discrepancies), standing.curves};
+}
+
+// The value at an end of the range, of an effect that would go on there.
+bool is_at_bound(const StageData& data, const StandingModel& standing, std::size_t place, double margin) {
+  constexpr double kAtBound = 1e-3, kInside = 0.9;  // of the range, of the way from the present value
+  const OnCurve& at = standing.model.places[place];
+  const Candidate& candidate = standing.curves.candidates[at.curve];
+  const double same = kAtBound * (candidate.max - candidate.min);
+  const auto is_end = [&](double end) { return end != candidate.neutral && std::abs(at.value - end) < same; };
+  if (!is_end(candidate.min) && !is_end(candidate.max)) return false;
+  // one that does no more by then fits as well inside
+  std::vector<OnCurve> inside = standing.model.places;
+  inside[place] = at_value(standing.curves.curves, at.curve,
+                           candidate.present + kInside * (at.value - candidate.present));
+  Model model = standing.model;
+  const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
+  model.shift = shift_of(standing.curves, inside);
+  for (std::size_t g = 0; g < beyond.size(); ++g) model.shift[g] += beyond[g];
+  return likelihood_with(data, rest_of(data, model), model.likelihood.discrepancies).deviance >
+         standing.model.deviance() + margin;
+}
+
+// Whether manoeuvres bear out that `best` is better than `rival` (Vuong 1989, over groups of repeats).
+bool is_borne_out(const StageData& data, const Model& best, const Model& rival) {
+  const std::vector<double> a = deviance_of_groups(data, rest_of(data, best), best.likelihood.discrepancies),
+                            b = deviance_of_groups(data, rest_of(data, rival), rival.likelihood.discrepancies);
+  if (a.size() < kFewestGroups) return true;
+  double sum = 0, squares = 0;
+  for (std::size_t g = 0; g < a.size(); ++g) sum += b[g] - a[g], squares += (b[g] - a[g]) * (b[g] - a[g]);
+  const auto count = static_cast<double>(a.size());
+  const double variance = std::max(0.0, squares - sum * sum / count) / (count - 1) * count;
+  return sum > kBetter_sigma * std::sqrt(variance);
+}
+
+// Candidates that do as well in the place of one effect, the others staying.
+std::vector<std::size_t> rivals_of(const StageData& data, const EffectCurves& curves, const StandingModel& standing,
+                                   std::size_t place, const Simulate& simulate, const DecisionSettings& settings) {
+  const Model& best = standing.model;
+  const std::size_t chosen = best.places[place].curve;
+  const double accounted = squared(data, rest_of(data, without_effect(data, standing, place).model)) -
+                           squared(data, rest_of(data, best));
+  const auto is_rival = [&](const Model& model) {
+    if (model.deviance() - best.deviance() < settings.rival_evidence) return true;
+    if (squared(data, rest_of(data, model)) - squared(data, rest_of(data, best)) < kAlike * accounted) return true;
+    return !is_borne_out(data, best, model);
+  };
+
+  // by curves: the others where they stand, the rival as it does alone
+  EffectCurves mixed = curves;
+  for (const OnCurve& other : best.places)
+    if (other.curve != chosen) mixed.curves[other.curve] = standing.curves.curves[other.curve];
+  mixed.shifts = standing.curves.shifts;
+  std::vector<Model> models;
+  for (std::size_t c = 0; c < curves.curves.size(); ++c) {
+    if (has_effect(best, c) || curves.curves[c].visible <= 1 || curves.curves[c].points.size() < 2) continue;
+    EffectSet set = effects_of(best);
+    set[place] = c;
+    models.push_back({{}, {}, false, {}});
+    for (const std::size_t effect : set) models.back().places.push_back({effect, 0});
+  }
+  for_each_job(models.size(), settings.search.threads, [&](std::size_t i) {
+    models[i] = fit_model(data, mixed, effects_of(models[i]), {}, best.likelihood.discrepancies);
+  });
+  std::erase_if(models, [&](const Model& model) { return !is_rival(model) && model.deviance() - best.deviance() > 3 * settings.rival_evidence; });
+  std::ranges::stable_sort(models, {}, [](const Model& model) { return model.deviance(); });
+  if (models.size() > kMostRivals) models.resize(kMostRivals);
+
+  // by simulation
+  std::vector<std::size_t> rivals{chosen};
+  std::vector<Settings> asked;
+  for (const Model& model : models) asked.push_back(settings_of(model.places));
+  if (asked.empty()) return rivals;
+  const std::vector<GroupVectors> shifts = simulate(asked, Fidelity::every_run);
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    Model simulated = models[i];
+    simulated.shift = shifts[i];
+    simulated.likelihood = likelihood_of(data, rest_of(data, simulated), models[i].likelihood.discrepancies);
+    if (is_rival(simulated)) rivals.push_back(models[i].places[place].curve);
+  }
+  return rivals;
+}
+
+}  // namespace
+
+std::string_view verdict_name(Verdict verdict) {
+  constexpr std::string_view kNames[] = {"none", "named", "ambiguous", "unknown"};
+  return kNames[static_cast<std::size_t>(verdict)];
+}
+
+StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known, const Simulate& simulate,
+                           const Around& around, const GapTest& test, const DecisionSettings& settings) {
+  EffectCurves curves = known;
+  StageDecision d;
+  d.floor = nominal.floor;
+  d.data = nominal.data;
+  const Model without = nominal_model(d.data);
+  d.nominal_deviance = without.deviance();
+  d.best = {without, curves};
+  d.singles = search_singles(d.data, curves, without.likelihood.discrepancies, simulate, settings.search);
+  d.best.curves = curves;
+
+  // a gap is beyond chance, and either in many places at once or so large that somebody would see it
+  const auto is_gap = [&] {
+    double improvement = 0;
+    const double p_single = p_of_best_single(d.data, d.singles, curves, settings.rival_evidence, test.inflation, improvement);
+    d.p_left = cell_energy(d.data, residuals_of(d.data), test.stretch_s).p_of_noise(test.inflation);
+    d.p_gap = std::min(1.0, 2 * std::min(p_single, d.p_left));
+    const double negligible = settings.negligible * settings.negligible * static_cast<double>(bin_count(d.data));
+    return d.p_gap <= settings.false_alarm && (d.p_left <= settings.false_alarm / 2 || improvement >= negligible);
+  };
+  if (!is_gap()) return d;
+  d.verdict = Verdict::unknown;
+  d.little_explained = true;
+  if (d.singles.empty() || d.nominal_deviance - d.singles.front().deviance() < settings.evidence) return d;
+
+  // what the simulation leaves open is taken around a model that fits, no longer around the nominal one
+  const auto look_around = [&](const Model& model) {
+    if (squared(d.data, rest_of(d.data, model)) > (1 - kFits) * squared(d.data, residuals_of(d.data))) return false;
+    StageAround there = around(settings_of(model.places));
+    d.floor = std::move(there.floor);
+    d.data = std::move(there.data);
+    return true;
+  };
+  if (look_around(d.singles.front())) {
+    fit_again(d.singles, d.data, curves, settings.search.threads);
+    d.nominal_deviance = nominal_model(d.data).deviance();
+    if (!is_gap()) {
+      d.verdict = Verdict::none;
+      return d;
+    }
+  }
+
+  // effects as long as each gains evidence, fitted where they stand; those that no longer do are dropped
+  Model chosen = take_effects(d.data, curves, d.singles, simulate, settings);
+  if (chosen.places.size() > 1 && look_around(chosen))
+    chosen.likelihood = likelihood_of(d.data, rest_of(d.data, chosen), chosen.likelihood.discrepancies);
+  d.nominal_deviance = nominal_model(d.data).deviance();
+  d.best = fit_side_by_side(d.data, curves, simulate, std::move(chosen));
+  for (;;) {
+    std::vector<double> evidence;
+    for (std::size_t i = 0; i < d.best.model.places.size(); ++i)
+      evidence.push_back(without_effect(d.data, d.best, i).model.deviance() - d.best.model.deviance());
+    const auto least = std::ranges::min_element(evidence);
+    if (evidence.size() > 1 && *least < settings.evidence) {
+      const auto place = static_cast<std::size_t>(least - evidence.begin());
+      d.best = fit_side_by_side(d.data, curves, simulate, [&] {
+        Model fewer = without_effect(d.data, d.best, place).model;
+        fewer.shift = simulate(std::vector<Settings>{settings_of(fewer.places)}, Fidelity::every_run).front();
+        fewer.exact = true;
+        fewer.likelihood = likelihood_of(d.data, rest_of(d.data, fewer), fewer.likelihood.discrepancies);
+        return fewer;
+      }());
+      continue;
+    }
+    const std::vector<EffectValue> values = effect_values(d.data, d.best);
+    for (std::size_t i = 0; i < evidence.size(); ++i) {
+      NamedEffect effect{d.best.model.places[i].curve, values[i], evidence[i], 0, 0, false, {}, {}};
+      effect.at_bound = is_at_bound(d.data, d.best, i, settings.rival_evidence);
+      effect.rivals = rivals_of(d.data, curves, d.best, i, simulate, settings);
+      d.effects.push_back(std::move(effect));
+    }
+    break;
+  }
+  d.p_left = cell_energy(d.data, rest_of(d.data, d.best.model), test.stretch_s).p_of_noise(test.inflation);
+  d.complete = d.p_left > settings.surprise;
+  return d;
+}
+
+}  // namespace kenaf::gap

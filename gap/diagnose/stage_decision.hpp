@@ -1,0 +1,81 @@
+// Which effects explain the gap of one stage: none, some by name, some that these runs cannot tell apart, or none of the
+// candidates. What a named model leaves is reported and takes no name away: it makes evidence weaker, by the discrepancy
+// (likelihood.hpp), and intervals wider. docs/gap-method.md has the reasoning.
+// Thread safety: pure functions apart from what the simulator does. Deterministic.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "gap/diagnose/evidence.hpp"
+#include "gap/diagnose/model_search.hpp"
+#include "gap/diagnose/side_by_side.hpp"
+
+namespace kenaf::gap {
+
+enum class Verdict { none, named, ambiguous, unknown };
+std::string_view verdict_name(Verdict verdict);
+
+// Why an effect of the best model, or the model, gets no name.
+enum class Doubt {
+  end_of_range,     // the value ends where the range does: it stands for something that the effect cannot do
+  disagreement,     // manoeuvres want values that differ by more than a share of the effect
+  not_held_out,     // on runs or manoeuvres held out it takes off too little
+  little_explained, // the whole model takes off too little on runs held out
+};
+
+struct DecisionSettings {
+  double false_alarm = 0.005;      // chance of a verdict other than none where there is no gap
+  double negligible = 0.25;        // of the noise's length: what explains less is no gap that anybody would see (chosen)
+  double surprise = 0.005;         // chance to call a complete explanation incomplete
+  double evidence = 16;            // deviance that an effect must gain: 4 sigma, for the best of some 70 candidates (chosen)
+  double rival_evidence = 9;       // deviance by which a rival must be worse: 3 sigma
+  double share = 0.08;             // of the squared gap that an effect must take off on runs held out (chosen)
+  double stage_share = 0.5;        // the same of all named effects together (chosen)
+  double agreement = 2;            // an effect is at least as many times its spread between manoeuvres (chosen)
+  std::size_t most_effects = 4;
+  SearchSettings search;
+};
+
+// The data of a stage around a model: noise as it is, and what the simulation leaves open with these effects.
+struct StageAround {
+  NoiseFloor floor;
+  StageData data;
+};
+using Around = std::function<StageAround(const Settings&)>;
+
+// What noise is held to be where there is no gap.
+struct GapTest {
+  double inflation = 1;  // of variances: inflation_from_repeats()
+  double stretch_s = 1;  // of a cell
+};
+
+struct NamedEffect {
+  std::size_t candidate;
+  EffectValue value;
+  double evidence = 0;              // deviance that the model without it has more
+  double share = 0;                 // of the squared gap, on runs held out
+  double share_by_manoeuvre = 0;    // the same on manoeuvres held out; as `share` where there is one alone
+  bool at_bound = false;
+  std::vector<Doubt> doubts;        // none: it is named, alone or in a set
+  std::vector<std::size_t> rivals;  // candidates that do as well in its place, itself first
+};
+
+struct StageDecision {
+  Verdict verdict = Verdict::none;
+  StandingModel best;               // no places: nominal
+  std::vector<NamedEffect> effects; // of the best model, in the order of its places
+  std::vector<Model> singles;       // best first
+  NoiseFloor floor;                 // around the best model
+  StageData data;
+  double p_gap = 1, p_left = 1;
+  double nominal_deviance = 0;
+  bool complete = false;            // what is left is within noise and spread
+  bool little_explained = false;
+};
+
+StageDecision decide_stage(const StageAround& nominal, const EffectCurves& curves, const Simulate& simulate,
+                           const Around& around, const GapTest& test, const DecisionSettings& settings);
+
+}  // namespace kenaf::gap

@@ -1,0 +1,218 @@
+#include "gap/diagnose/stage_diagnosis.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gap/diagnose/cells.hpp"
+#include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/repeats.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+using Eigen::VectorXd;
+
+// Candidates that get whole curves after the first look, at most (chosen).
+constexpr std::size_t kMostCurves = 28;
+// Of the squared gap, by one linear step: less cannot matter, whatever the value (chosen).
+constexpr double kMatters = 0.01;
+
+std::vector<double> rms_si(const std::vector<StageFeatures>& features, const std::vector<VectorXd>& differences) {
+  std::vector<double> squares(diagnosis_channels().size(), 0), bins(squares.size(), 0);
+  for (std::size_t r = 0; r < differences.size(); ++r)
+    for (std::size_t b = 0; b < features[r].bins.size(); ++b) {
+      const double value = differences[r][static_cast<Eigen::Index>(b)];
+      squares[features[r].bins[b].channel] += value * value;
+      ++bins[features[r].bins[b].channel];
+    }
+  for (std::size_t c = 0; c < squares.size(); ++c)
+    squares[c] = bins[c] > 0 ? std::sqrt(squares[c] / bins[c]) : GapMeasure::kNotMeasured;
+  return squares;
+}
+
+std::vector<VectorXd> difference(std::vector<VectorXd> a, const std::vector<VectorXd>& b) {
+  for (std::size_t r = 0; r < a.size(); ++r)
+    if (a[r].size() > 0) a[r] -= b[r];
+  return a;
+}
+
+// The candidates that one linear step shows to matter most, beneath the discrepancies of the nominal model.
+std::vector<std::size_t> that_matter(const StageData& data, const EffectCurves& curves,
+                                     std::span<const std::size_t> looked_at, const Discrepancies& discrepancies) {
+  const Products products =
+      products_of(data, whiteners_of(data, discrepancies), curves.shifts, residuals_of(data));
+  std::vector<std::pair<double, std::size_t>> explained;
+  for (const std::size_t c : looked_at) {
+    for (const CurvePoint& point : curves.curves[c].points) {
+      if (point.column < 0) continue;
+      const double squares = products.shift_shift(point.column, point.column);
+      const double along = products.shift_gap[point.column];
+      const double share = squares > 0 ? along * along / squares / products.gap_gap : 0;
+      if (share >= kMatters) explained.emplace_back(share, c);
+    }
+  }
+  std::ranges::stable_sort(explained, std::ranges::greater{}, [](const auto& pair) { return pair.first; });
+  std::vector<std::size_t> result;
+  for (const auto& [share, c] : explained)
+    if (result.size() < kMostCurves && std::ranges::count(result, c) == 0) result.push_back(c);
+  std::ranges::sort(result);
+  return result;
+}
+
+// Curves of the candidates that can matter: those of the catalogue over their whole range, as they may bend; numbers of the
+// description first by one step.
+EffectCurves scanned(const StageData& data, std::span<const Candidate> candidates,
+                     std::span<const std::size_t> possible, const Simulate& simulate) {
+  EffectCurves curves = empty_curves(data, candidates);
+  std::vector<std::size_t> effects, numbers;
+  for (const std::size_t c : possible) (candidates[c].is_number_of_description ? numbers : effects).push_back(c);
+  add_spread(curves, data, effects, simulate);
+  add_one_step(curves, data, numbers, simulate);
+  const std::vector<std::size_t> matter =
+      that_matter(data, curves, numbers, nominal_model(data).likelihood.discrepancies);
+  add_spread(curves, data, matter, simulate);
+  follow_bends(curves, data, effects, simulate);
+  return curves;
+}
+
+bool is_large_enough(const NamedEffect& effect, const Candidate& candidate, double agreement) {
+  return std::abs(effect.value.value.value - candidate.present) >= agreement * effect.value.spread;
+}
+
+// Names, sets and doubts, by what the effects are worth on runs held out.
+void judge(StageDecision& d, std::span<const Candidate> candidates, double explains,
+           const std::vector<double>& shares, const std::vector<double>& shares_by_manoeuvre,
+           const DecisionSettings& settings) {
+  d.little_explained = !(explains >= settings.stage_share);
+  bool any_named = false, any_rival = false;
+  for (std::size_t i = 0; i < d.effects.size(); ++i) {
+    NamedEffect& effect = d.effects[i];
+    effect.share = shares[i];
+    effect.share_by_manoeuvre = shares_by_manoeuvre[i];
+    if (effect.at_bound) effect.doubts.push_back(Doubt::end_of_range);
+    if (!is_large_enough(effect, candidates[effect.candidate], settings.agreement))
+      effect.doubts.push_back(Doubt::disagreement);
+    if (!(std::min(effect.share, effect.share_by_manoeuvre) >= settings.share))
+      effect.doubts.push_back(Doubt::not_held_out);
+    if (d.little_explained) effect.doubts.push_back(Doubt::little_explained);
+    if (!effect.doubts.empty()) continue;
+    any_named = true;
+    any_rival |= effect.rivals.size() > 1;
+  }
+  d.verdict = any_rival ? Verdict::ambiguous : any_named ? Verdict::named : Verdict::unknown;
+}
+
+}  // namespace
+
+physics::RobotDescription with_settings(physics::RobotDescription robot, std::span<const Candidate> candidates,
+                                        const Settings& settings) {
+  for (const Setting& setting : settings) candidates[setting.candidate].set(robot, setting.value);
+  return robot;
+}
+
+std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidate> candidates, bool drives_measured) {
+  std::vector<std::size_t> result;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const physics::Stage stage = candidates[c].stage;
+    const bool of_drive = stage == physics::Stage::command || stage == physics::Stage::drive;
+    const bool of_sensor = stage == physics::Stage::sensor;
+    const bool acts = passage == Passage::command_to_drive ? !of_sensor || candidates[c].name.starts_with("encoder")
+                      : passage == Passage::drive_to_body  ? !of_drive || !drives_measured
+                                                           : of_sensor;
+    if (acts) result.push_back(c);
+  }
+  return result;
+}
+
+StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor,
+                              const StageOptions& options) {
+  const std::vector<StageFeatures>& features = *input.features;
+  StageDiagnosis stage{input.passage, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  for (std::size_t r = 0; r < features.size(); ++r)
+    stage.residuals.push_back(features[r].measured - predictor.nominal(input.passage)[r]);
+  if (std::ranges::all_of(features, [](const StageFeatures& run) { return run.bins.empty(); })) return stage;
+
+  // noise, and what the simulation leaves open around the nominal model
+  const auto varied = [&](const Settings& settings) {
+    Variation variation = predictor.unvaried();
+    variation.robot = with_settings(std::move(variation.robot), candidates, settings);
+    return variation;
+  };
+  const auto open_around = [&](const Settings& settings) {
+    return open_shapes(features, predictor, input.passage, varied(settings), kOpenStart_m, kOpenStart_rad);
+  };
+  stage.nominal_floor =
+      noise_floor(features, stage.residuals, *input.same_orders, open_around({}), input.stated_noise);
+  const auto data_in = [&](const NoiseFloor& floor) {
+    return stage_data(input.passage, features, *input.repeats, stage.residuals, floor);
+  };
+  const StageAround nominal{stage.nominal_floor, data_in(stage.nominal_floor)};
+  const Around around = [&](const Settings& settings) {
+    StageAround result{with_open_shapes(stage.nominal_floor, open_around(settings)), {}};
+    result.data = data_in(result.floor);
+    return result;
+  };
+  const Simulate simulate = [&](std::span<const Settings> asked, Fidelity fidelity) {
+    std::vector<Variation> variations;
+    for (const Settings& settings : asked) variations.push_back(varied(settings));
+    std::vector<GroupVectors> shifts;
+    for (const Shift& shift : predictor.shifts(variations, input.passage, fidelity))
+      shifts.push_back(mean_of_groups(nominal.data, shift));
+    return shifts;
+  };
+
+  // curves, then the decision
+  const bool drives_measured = std::ranges::all_of(
+      input.observations->runs, [](const Observation& run) { return run.measured.has_value(); });
+  const std::vector<std::size_t> possible = candidates_of(input.passage, candidates, drives_measured);
+  const EffectCurves curves = scanned(nominal.data, candidates, possible, simulate);
+  const std::vector<VectorXd> deviations =
+      deviations_from_repeats(features, stage.residuals, *input.same_orders);
+  const GapTest test{inflation_from_repeats(features, stage.nominal_floor, deviations, options.stretch_s),
+                     options.stretch_s};
+  stage.decision = decide_stage(nominal, curves, simulate, around, test, options.decision);
+  StageDecision& decision = stage.decision;
+  const Model& best = decision.best.model;
+
+  // what the best model is worth: the runs of each fold simulated with the values of the others
+  const StageView view{&features, input.repeats, &stage.residuals, &decision.floor};
+  const auto left_by = [&](const std::vector<std::vector<OnCurve>>& places) {
+    std::vector<Variation> variations;
+    for (const std::vector<OnCurve>& of_run : places) variations.push_back(varied(settings_of(of_run)));
+    return difference(stage.residuals, predictor.shift_of_each(variations, input.passage));
+  };
+  const unsigned threads = options.decision.search.threads;
+  const Folds by_repeat = folds_by_repeat(*input.repeats), by_manoeuvre = folds_by_manoeuvre(*input.observations);
+  stage.left = stage.residuals;
+  if (!best.places.empty())
+    stage.left = left_by(places_held_out(view, input.passage, decision.best, by_repeat, threads));
+  // around a model: where the nominal robot falls in one repeat and not in the other, the real one need not
+  const std::vector<VectorXd> spread = deviations_from_repeats(features, stage.left, *input.same_orders);
+  stage.gap = measure_gap(view, stage.left, spread, options.seed);
+  stage.gap_by_manoeuvre = stage.gap;
+  if (!best.places.empty() && by_manoeuvre.size() > 1 && by_manoeuvre != by_repeat)
+    stage.gap_by_manoeuvre =
+        measure_gap(view, left_by(places_held_out(view, input.passage, decision.best, by_manoeuvre, threads)), spread,
+                    options.seed);
+  if (!decision.effects.empty())
+    judge(decision, candidates, std::min(stage.gap.explains.value, stage.gap_by_manoeuvre.explains.value),
+          shares_held_out(view, input.passage, decision.best, by_repeat, threads),
+          shares_held_out(view, input.passage, decision.best, by_manoeuvre, threads), options.decision);
+
+  // where it is, and what each effect does alone
+  stage.before_si = rms_si(features, stage.residuals);
+  stage.after_si = rms_si(features, stage.left);
+  const Coherence coherence(features, *input.repeats, options.stretch_s);
+  stage.where = locate(*input.observations, features, stage.nominal_floor, *input.repeats, coherence, stage.residuals);
+  stage.where_left = locate(*input.observations, features, decision.floor, *input.repeats, coherence, stage.left);
+  stage.isolability = isolability(decision.data, decision.best.curves);
+  const double before = std::pow(length_in_noise(decision.data, residuals_of(decision.data)), 2);
+  for (const Model& single : decision.singles) {
+    const double after = std::pow(length_in_noise(decision.data, rest_of(decision.data, single)), 2);
+    stage.ranking.push_back({single.places.front().curve, single.places.front().value,
+                             decision.nominal_deviance - single.deviance(), before > 0 ? 1 - after / before : 0});
+  }
+  return stage;
+}
+
+}  // namespace kenaf::gap

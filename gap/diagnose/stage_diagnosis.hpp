@@ -1,0 +1,65 @@
+// One stage between command and sensor, from its residuals to a verdict with its evidence.
+// Thread safety: pure functions apart from what the predictor does. Deterministic for a seed.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "gap/diagnose/isolability.hpp"
+#include "gap/diagnose/stage_decision.hpp"
+#include "gap/diagnose/where.hpp"
+
+namespace kenaf::gap {
+
+struct StageOptions {
+  DecisionSettings decision;
+  double stretch_s = 1;  // of a cell
+  std::uint64_t seed = 1;
+};
+
+// What the diagnosis of a stage starts from.
+struct StageInput {
+  Passage passage;
+  const Observations* observations;
+  const std::vector<StageFeatures>* features;
+  const std::vector<std::vector<std::size_t>>* repeats;      // same commands
+  const std::vector<std::vector<std::size_t>>* same_orders;  // same_orders_of()
+  std::vector<double> stated_noise;                          // of diagnosis_channels(), 0: nobody stated one
+};
+
+// One effect alone.
+struct SingleEvidence {
+  std::size_t candidate;
+  double value;
+  double evidence;  // deviance that it gains over the nominal model
+  double explains;  // share of the squared gap, on the runs it was fitted to
+};
+
+struct StageDiagnosis {
+  Passage passage;
+  std::vector<Eigen::VectorXd> residuals;  // measured minus nominal, of each run; empty where it does not measure the stage
+  NoiseFloor nominal_floor;
+  StageDecision decision;
+  GapMeasure gap;               // with the best model, on runs held out
+  GapMeasure gap_by_manoeuvre;  // with all repeats of a manoeuvre held out together, where there are several
+  std::vector<double> before_si, after_si;  // rms of each of diagnosis_channels(); NaN: not measured
+  std::vector<Eigen::VectorXd> left;        // what the model fitted to other runs leaves of each run
+  GapPlaces where, where_left;
+  Isolability isolability;
+  std::vector<SingleEvidence> ranking;      // best first
+
+  bool is_measured() const { return !decision.data.groups.empty(); }
+};
+
+// The candidates that can act in a stage; the others cannot, whatever their value. `drives_measured`: every run measured its
+// tracks, so that the body is seen in a replay of these.
+std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidate> candidates, bool drives_measured);
+
+StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor,
+                              const StageOptions& options);
+
+// The nominal robot with candidates at these values.
+physics::RobotDescription with_settings(physics::RobotDescription robot, std::span<const Candidate> candidates,
+                                        const Settings& settings);
+
+}  // namespace kenaf::gap
