@@ -120,5 +120,5 @@ TEST_CASE("E4: an effect is set by name, and what is wrong is said") {
   CHECK(error("comand_delay:delay_s=0.05").find("there are command_delay, command_loss") != std::string::npos);
   CHECK(error("command_delay:delay=0.05").find("no parameter \"delay\", but delay_s") != std::string::npos);
   CHECK(error("command_delay:delay_s=soon").find("\"soon\" is no number") != std::string::npos);
-  CHECK(error("command_delay:delay_s=9").find("from 0 to 0.5 s") != std::string::npos);
+  CHECK(error("command_delay:delay_s=9").find("from 0 to 1 s") != std::string::npos);
 }
