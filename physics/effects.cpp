@@ -16,7 +16,10 @@ using E = Effects;
 constexpr P kCommandDelay[] = {{"delay_s", "s", 0, 0, 1, &E::command_delay_s}};
 constexpr P kCommandLoss[] = {{"probability", "1", 0, 0, 0.9, &E::command_loss}};
 constexpr P kCommandGain[] = {{"gain", "1", 1, 0.5, 1.5, &E::command_gain}};
+constexpr P kCommandDeadBand[] = {{"speed_mps", "m/s", 0, 0, 0.3, &E::command_dead_band_mps}};
 constexpr P kCommandSlew[] = {{"slowness_s2pm", "s^2/m", 0, 0, 10, &E::command_slew_s2pm}};
+constexpr P kCommandSlewForward[] = {{"slowness_s2pm", "s^2/m", 0, 0, 10, &E::command_slew_forward_s2pm}};
+constexpr P kCommandSlewTurn[] = {{"slowness_s2prad", "s^2/rad", 0, 0, 10, &E::command_slew_turn_s2prad}};
 constexpr P kDriveLag[] = {{"lag_s", "s", 0, 0, 3, &E::drive_lag_s}};
 constexpr P kDriveAsymmetry[] = {{"ratio", "1", 0, -0.5, 0.5, &E::drive_asymmetry}};
 constexpr P kDriveTorque[] = {{"scale", "1", 1, 0.02, 1.5, &E::drive_torque_scale}};
@@ -57,7 +60,11 @@ constexpr EffectInfo kCatalogue[] = {
     {"command_delay", Stage::command, "commands reach the drives late", kCommandDelay},
     {"command_loss", Stage::command, "a share of the commands never arrives; the one before holds", kCommandLoss},
     {"command_gain", Stage::command, "track speeds arrive multiplied", kCommandGain},
+    {"command_dead_band", Stage::command, "track commands that are slower than this do not move a track",
+     kCommandDeadBand},
     {"command_slew", Stage::command, "track speeds change by at most 1 / slowness", kCommandSlew},
+    {"command_slew_forward", Stage::command, "the forward speed changes by at most 1 / slowness", kCommandSlewForward},
+    {"command_slew_turn", Stage::command, "the turn rate changes by at most 1 / slowness", kCommandSlewTurn},
     {"drive_lag", Stage::drive, "a second first-order lag in the track's speed loop", kDriveLag},
     {"drive_asymmetry", Stage::drive, "the left track runs faster than the right one by this share", kDriveAsymmetry},
     {"drive_torque_limit", Stage::drive, "the track motors' force at standstill, multiplied", kDriveTorque},

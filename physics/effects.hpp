@@ -22,7 +22,9 @@ struct Effects {
   double command_delay_s = 0;
   double command_loss = 0;       // share of commands that do not arrive
   double command_gain = 1;       // of track speeds
-  double command_slew_s2pm = 0;  // track speeds change by 1 / this at most
+  double command_dead_band_mps = 0;  // slower track commands do not move a track
+  double command_slew_s2pm = 0;      // track speeds change by 1 / this at most
+  double command_slew_forward_s2pm = 0, command_slew_turn_s2prad = 0;  // the same of forward speed and turn rate
   // drive: between the command that arrived and belt or flipper
   double drive_lag_s = 0;      // a second first-order lag of the speed loop
   double drive_asymmetry = 0;  // left track faster by half of it, right one slower

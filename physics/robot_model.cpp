@@ -66,7 +66,7 @@ RobotModel::RobotModel(const RobotDescription& robot, const std::string& name, s
     : description(robot),
       world_(world),
       solver_(solver),
-      channel_(robot.effects, world_seed, name, time_step_s),
+      channel_(robot.effects, world_seed, name, robot.track_gauge_m(), time_step_s),
       drives_{TrackDrive(robot.drive, robot.effects), TrackDrive(robot.drive, robot.effects)},
       battery_(robot.battery, robot.effects.battery_resistance_ohm, stalled_a(robot)) {
   for (Belt& belt : belts_) {
