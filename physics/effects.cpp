@@ -23,7 +23,10 @@ constexpr P kCommandSlewTurn[] = {{"slowness_s2prad", "s^2/rad", 0, 0, 10, &E::c
 constexpr P kDriveLag[] = {{"lag_s", "s", 0, 0, 3, &E::drive_lag_s}};
 constexpr P kDriveAsymmetry[] = {{"ratio", "1", 0, -0.5, 0.5, &E::drive_asymmetry}};
 constexpr P kDriveTorque[] = {{"scale", "1", 1, 0.02, 1.5, &E::drive_torque_scale}};
+constexpr P kDriveDroop[] = {{"droop_mpspn", "m/(s N)", 0, 0, 0.005, &E::drive_droop_mpspn}};
 constexpr P kDriveCoulomb[] = {{"force_n", "N", 0, 0, 1000, &E::drive_coulomb_n}};
+constexpr P kDriveCoulombLeft[] = {{"force_n", "N", 0, 0, 1000, &E::drive_coulomb_left_n}};
+constexpr P kDriveCoulombRight[] = {{"force_n", "N", 0, 0, 1000, &E::drive_coulomb_right_n}};
 constexpr P kDriveViscous[] = {{"damping_nspm", "N s/m", 0, 0, 2000, &E::drive_viscous_nspm}};
 constexpr P kBatterySag[] = {{"resistance_ohm", "ohm", 0, 0, 5, &E::battery_resistance_ohm}};
 constexpr P kFlipperLag[] = {{"lag_s", "s", 0, 0, 3, &E::flipper_lag_s}};
@@ -68,7 +71,12 @@ constexpr EffectInfo kCatalogue[] = {
     {"drive_lag", Stage::drive, "a second first-order lag in the track's speed loop", kDriveLag},
     {"drive_asymmetry", Stage::drive, "the left track runs faster than the right one by this share", kDriveAsymmetry},
     {"drive_torque_limit", Stage::drive, "the track motors' force at standstill, multiplied", kDriveTorque},
+    {"drive_droop", Stage::drive, "a track runs slower by this for each newton of its motor", kDriveDroop},
     {"drive_coulomb", Stage::drive, "dry friction of the running gear, felt at the belt", kDriveCoulomb},
+    {"drive_coulomb_left", Stage::drive, "dry friction of the left running gear, added to that of both",
+     kDriveCoulombLeft},
+    {"drive_coulomb_right", Stage::drive, "dry friction of the right running gear, added to that of both",
+     kDriveCoulombRight},
     {"drive_viscous", Stage::drive, "friction of the running gear that grows with speed", kDriveViscous},
     {"battery_sag", Stage::drive, "more internal resistance: current lowers voltage, voltage lowers force and speed",
      kBatterySag},

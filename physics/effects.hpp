@@ -29,7 +29,9 @@ struct Effects {
   double drive_lag_s = 0;      // a second first-order lag of the speed loop
   double drive_asymmetry = 0;  // left track faster by half of it, right one slower
   double drive_torque_scale = 1;
-  double drive_coulomb_n = 0;  // friction of the running gear, at the belt
+  double drive_droop_mpspn = 0;  // a motor that gives a force runs slower by this times the force
+  double drive_coulomb_n = 0;    // friction of the running gear, at the belt
+  double drive_coulomb_left_n = 0, drive_coulomb_right_n = 0;  // added to it on one side
   double drive_viscous_nspm = 0;
   double battery_resistance_ohm = 0;  // added to the battery's own
   double flipper_lag_s = 0;           // of the angle that the servo follows

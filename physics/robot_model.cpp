@@ -67,7 +67,7 @@ RobotModel::RobotModel(const RobotDescription& robot, const std::string& name, s
       world_(world),
       solver_(solver),
       channel_(robot.effects, world_seed, name, robot.track_gauge_m(), time_step_s),
-      drives_{TrackDrive(robot.drive, robot.effects), TrackDrive(robot.drive, robot.effects)},
+      drives_{TrackDrive(kLeft, robot.drive, robot.effects), TrackDrive(kRight, robot.drive, robot.effects)},
       battery_(robot.battery, robot.effects.battery_resistance_ohm, stalled_a(robot)) {
   for (Belt& belt : belts_) {
     belt.moving_mass_kg = description.drive.moving_mass_kg;
