@@ -42,6 +42,7 @@ constexpr P kComLeft[] = {{"offset_m", "m", 0, -0.2, 0.2, &E::com_left_m}};
 constexpr P kComUp[] = {{"offset_m", "m", 0, -0.2, 0.3, &E::com_up_m}};
 constexpr P kFrictionAlong[] = {{"scale", "1", 1, 0.3, 1.5, &E::friction_along_scale}};
 constexpr P kFrictionAcross[] = {{"scale", "1", 1, 0.2, 2, &E::friction_across_scale}};
+constexpr P kFrictionAsymmetry[] = {{"ratio", "1", 0, -1, 1, &E::friction_asymmetry}};
 constexpr P kSlipWithSpeed[] = {{"slip_spm", "s/m", 0, 0, 1, &E::slip_with_speed_spm}};
 constexpr P kRollingResistance[] = {{"coefficient", "1", 0, 0, 0.2, &E::rolling_resistance}};
 constexpr P kLugHeight[] = {{"scale", "1", 1, 0, 3, &E::lug_height_scale}};
@@ -93,6 +94,8 @@ constexpr EffectInfo kCatalogue[] = {
     {"com_up", Stage::body, "the body's centre of mass lies higher", kComUp},
     {"friction_along", Stage::contact, "friction of the belts in rolling direction, multiplied", kFrictionAlong},
     {"friction_across", Stage::contact, "friction of the belts across, multiplied", kFrictionAcross},
+    {"friction_asymmetry", Stage::contact, "the left belts have more friction than the right ones by this share",
+     kFrictionAsymmetry},
     {"slip_with_speed", Stage::contact, "a belt at speed u carries the robot with u (1 - slip |u|)", kSlipWithSpeed},
     {"rolling_resistance", Stage::contact, "belts are braked by this share of what presses on them",
      kRollingResistance},

@@ -120,6 +120,11 @@ struct CameraDescription {
   int jpeg_quality;                // 1 to 100
 };
 
+// What an asymmetry multiplies on one side: half of it is more on the left, half of it is less on the right.
+inline double side_factor(Track side, double asymmetry) {
+  return 1 + (side == kLeft ? 0.5 : -0.5) * asymmetry;
+}
+
 struct RobotDescription {
   std::string name;                // as its file is called
   std::string usarsim_class;       // "USARBot.Kenaf"

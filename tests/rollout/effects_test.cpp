@@ -126,6 +126,7 @@ const std::map<std::string_view, Shows> kShows{
     {"com_up", {stepping, "pitch_rad"}},
     {"friction_along", {turning, "yaw_rad"}},
     {"friction_across", {turning, "yaw_rad"}},
+    {"friction_asymmetry", {turning, "yaw_rad"}},
     {"slip_with_speed", {turning, "x_m"}},
     {"rolling_resistance", {turning, "track_left_a"}},
     {"lug_height", {stepping, "pitch_rad"}},
