@@ -53,6 +53,10 @@ constexpr P kObstaclePosition[] = {{"offset_m", "m", 0, -0.1, 0.1, &E::obstacle_
 constexpr P kGroundSlope[] = {{"pitch_rad", "rad", 0, -0.2, 0.2, &E::ground_slope_rad}};
 constexpr P kGroundBank[] = {{"roll_rad", "rad", 0, -0.2, 0.2, &E::ground_bank_rad}};
 constexpr P kEncoderScale[] = {{"scale", "1", 1, 0.8, 1.2, &E::encoder_scale}};
+constexpr P kEncoderAsymmetry[] = {{"ratio", "1", 0, -0.2, 0.2, &E::encoder_asymmetry}};
+constexpr P kGyroBias[] = {{"z_radps", "rad/s", 0, -0.1, 0.1, &E::gyro_bias_z_radps}};
+constexpr P kGyroScale[] = {{"scale", "1", 1, 0.7, 1.3, &E::gyro_scale}};
+constexpr P kGyroDelay[] = {{"delay_s", "s", 0, 0, 1, &E::gyro_delay_s}};
 constexpr P kPostureBias[] = {{"pitch_rad", "rad", 0, -0.1, 0.1, &E::posture_bias_rad}};
 constexpr P kPostureScale[] = {{"scale", "1", 1, 0.7, 1.3, &E::posture_scale}};
 constexpr P kPostureDelay[] = {{"delay_s", "s", 0, 0, 1, &E::posture_delay_s}};
@@ -107,6 +111,11 @@ constexpr EffectInfo kCatalogue[] = {
     {"ground_slope", Stage::terrain, "the world is tilted, down ahead", kGroundSlope},
     {"ground_bank", Stage::terrain, "the world is tilted, down to the right", kGroundBank},
     {"encoder_scale", Stage::sensor, "encoders report track travel and speed multiplied", kEncoderScale},
+    {"encoder_asymmetry", Stage::sensor, "the left encoder reports more than the right one by this share",
+     kEncoderAsymmetry},
+    {"gyro_bias", Stage::sensor, "the gyro's rate about z has an offset", kGyroBias},
+    {"gyro_scale", Stage::sensor, "the gyro's rates are multiplied", kGyroScale},
+    {"gyro_delay", Stage::sensor, "the gyro reports late", kGyroDelay},
     {"posture_bias", Stage::sensor, "the posture sensor's pitch has an offset", kPostureBias},
     {"posture_scale", Stage::sensor, "the posture sensor's roll and pitch are multiplied", kPostureScale},
     {"posture_delay", Stage::sensor, "the posture sensor reports late", kPostureDelay},

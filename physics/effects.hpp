@@ -56,6 +56,10 @@ struct Effects {
   double ground_bank_rad = 0;      // the whole world falls away to the right (+)
   // sensor
   double encoder_scale = 1;     // reported track travel and speed
+  double encoder_asymmetry = 0;  // left encoder reports more by half of it, right one less
+  double gyro_bias_z_radps = 0;  // added to the reported yaw rate
+  double gyro_scale = 1;         // of all three reported rates
+  double gyro_delay_s = 0;
   double posture_bias_rad = 0;  // added to the reported pitch
   double posture_scale = 1;     // of reported roll and pitch
   double posture_delay_s = 0;

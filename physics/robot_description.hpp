@@ -142,6 +142,7 @@ struct RobotDescription {
   bool has_flippers() const { return !flipper.empty(); }
   double total_mass_kg() const;
   double track_gauge_m() const;    // between the tracks' centre planes
+  double encoder_factor(Track side) const;  // what its encoder reports of a metre
 };
 
 // A shipped name ("kenaf") or a path of a TOML file. Throws DescriptionError.

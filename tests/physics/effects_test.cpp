@@ -41,7 +41,10 @@ Drive drive_with(const Effects& effects) {
       if (const auto* ins = std::get_if<InsReading>(&sample.reading))
         for (Eigen::Index k = 0; k < 3; ++k) result.add(ins->roll_pitch_yaw_rad[k]);
       if (const auto* imu = std::get_if<ImuReading>(&sample.reading))
-        for (Eigen::Index k = 0; k < 3; ++k) result.add(imu->acceleration_mps2[k]);
+        for (Eigen::Index k = 0; k < 3; ++k) {
+          result.add(imu->acceleration_mps2[k]);
+          result.add(imu->angular_velocity_radps[k]);
+        }
       if (const auto* encoder = std::get_if<EncoderReading>(&sample.reading))
         for (const auto count : encoder->counts) result.add(static_cast<double>(count));
       if (const auto* drives = std::get_if<DrivesReading>(&sample.reading))
