@@ -63,6 +63,10 @@ constexpr P kPostureDelay[] = {{"delay_s", "s", 0, 0, 1, &E::posture_delay_s}};
 constexpr P kPostureMount[] = {{"yaw_rad", "rad", 0, -0.3, 0.3, &E::posture_mount_rad}};
 constexpr P kTrackingDelay[] = {{"delay_s", "s", 0, 0, 1, &E::tracking_delay_s}};
 constexpr P kTrackingScale[] = {{"scale", "1", 1, 0.8, 1.2, &E::tracking_scale}};
+constexpr P kTrackedPointForward[] = {{"offset_m", "m", 0, -0.5, 0.5, &E::tracked_point_forward_m}};
+constexpr P kTrackedPointLeft[] = {{"offset_m", "m", 0, -0.5, 0.5, &E::tracked_point_left_m}};
+constexpr P kTrackingTurn[] = {{"yaw_rad", "rad", 0, -0.3, 0.3, &E::tracking_turn_rad}};
+constexpr P kClockOffset[] = {{"offset_s", "s", 0, -0.5, 0.5, &E::clock_offset_s}};
 
 constexpr EffectInfo kCatalogue[] = {
     {"command_delay", Stage::command, "commands reach the drives late", kCommandDelay},
@@ -122,6 +126,13 @@ constexpr EffectInfo kCatalogue[] = {
     {"posture_mount", Stage::sensor, "the posture sensor is mounted turned about the vertical", kPostureMount},
     {"tracking_delay", Stage::sensor, "motion capture or lidar reports the pose late", kTrackingDelay},
     {"tracking_scale", Stage::sensor, "motion capture or lidar reports distances multiplied", kTrackingScale},
+    {"tracked_point_forward", Stage::sensor, "the point that is tracked lies ahead of the body's centre",
+     kTrackedPointForward},
+    {"tracked_point_left", Stage::sensor, "the point that is tracked lies left of the body's centre",
+     kTrackedPointLeft},
+    {"tracking_turn", Stage::sensor, "the tracked heading is turned to the left of the body's", kTrackingTurn},
+    {"clock_offset", Stage::sensor, "the clock of motion capture or lidar is off; below 0 the pose comes early",
+     kClockOffset},
 };
 
 template <typename Range>

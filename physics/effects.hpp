@@ -66,6 +66,9 @@ struct Effects {
   double posture_mount_rad = 0;  // the posture sensor is mounted turned about z
   double tracking_delay_s = 0;   // of the pose that motion capture or lidar reports; no sensor of the robot
   double tracking_scale = 1;     // of its x, y from the first pose on
+  double tracked_point_forward_m = 0, tracked_point_left_m = 0;  // in B, of the point whose pose that is
+  double tracking_turn_rad = 0;  // of the heading that it reports against the body's
+  double clock_offset_s = 0;     // its clock is behind (+) that of the robot
 
   bool operator==(const Effects&) const = default;
 };

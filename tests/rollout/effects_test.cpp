@@ -147,6 +147,10 @@ const std::map<std::string_view, Shows> kShows{
     {"posture_mount", {lifting, "roll_rad"}},
     {"tracking_delay", {turning, "x_m"}},
     {"tracking_scale", {turning, "x_m"}},
+    {"tracked_point_forward", {turning, "y_m"}},
+    {"tracked_point_left", {turning, "x_m"}},
+    {"tracking_turn", {turning, "y_m"}},
+    {"clock_offset", {turning, "x_m"}},
 };
 
 }  // namespace
