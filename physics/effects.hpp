@@ -20,8 +20,8 @@ std::string_view stage_name(Stage stage);
 struct Effects {
   // command: what becomes of a command before the drives get it
   double command_delay_s = 0;
-  double command_loss = 0;       // share of commands that do not arrive
-  double command_gain = 1;       // of track speeds
+  double command_loss = 0;           // share of commands that do not arrive
+  double command_gain = 1;           // of track speeds
   double command_dead_band_mps = 0;  // slower track commands do not move a track
   double command_slew_s2pm = 0;      // track speeds change by 1 / this at most
   double command_slew_forward_s2pm = 0, command_slew_turn_s2prad = 0;  // the same of forward speed and turn rate
@@ -55,7 +55,7 @@ struct Effects {
   double ground_slope_rad = 0;     // the whole world falls away forward (+) under level axes
   double ground_bank_rad = 0;      // the whole world falls away to the right (+)
   // sensor
-  double encoder_scale = 1;     // reported track travel and speed
+  double encoder_scale = 1;      // reported track travel and speed
   double encoder_asymmetry = 0;  // left encoder reports more by half of it, right one less
   double gyro_bias_z_radps = 0;  // added to the reported yaw rate
   double gyro_scale = 1;         // of all three reported rates
