@@ -33,7 +33,7 @@ RobotPlant::RobotPlant(const std::string& robot, const std::string& world, doubl
     : world_(world_description(world), physics::PhysicsSettings{.time_step_s = time_step_s}, 0) {
   physics::RobotDescription description = with_drive_sensor(physics::load_robot(robot));
   description.drive.time_constant_s = speed_loop_s;
-  encoder_scale_ = description.effects.encoder_scale;
+  encoder_factor_ = {description.encoder_factor(physics::kLeft), description.encoder_factor(physics::kRight)};
   if (description.has_flippers()) {
     min_flipper_rad_ = description.flipper.front().min_angle_rad;
     max_flipper_rad_ = description.flipper.front().max_angle_rad;
@@ -65,8 +65,8 @@ void RobotPlant::observe() {
   const Eigen::Vector3d angles_rad = physics::roll_pitch_yaw(truth.X_WB.q);
   const Eigen::Vector3d w_WB_B = truth.X_WB.q.conjugate() * truth.w_WB_radps;
   for (std::size_t i = 0; i < relay::kTrackCount; ++i) {
-    state_.track_m[i] = truth.track_m[i] * encoder_scale_;
-    state_.track_mps[i] = truth.track_mps[i] * encoder_scale_;
+    state_.track_m[i] = truth.track_m[i] * encoder_factor_[i];
+    state_.track_mps[i] = truth.track_mps[i] * encoder_factor_[i];
   }
   state_.flipper_rad = truth.servo_rad;
   state_.flipper_radps = truth.flipper_radps;

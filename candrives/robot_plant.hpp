@@ -1,6 +1,7 @@
 // The motors turn the tracks and flippers of the simulated robot (physics/world.hpp), which stands at the start of its world.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 
@@ -31,7 +32,8 @@ class RobotPlant final : public Plant {
 
   physics::World world_;
   physics::RobotId robot_{};
-  double encoder_scale_, min_flipper_rad_ = 0, max_flipper_rad_ = 0;
+  std::array<double, relay::kTrackCount> encoder_factor_{};  // what the motors' encoders report of a metre
+  double min_flipper_rad_ = 0, max_flipper_rad_ = 0;
   canopen::Time step_, due_{};
   PlantState state_;
   std::vector<physics::SensorSample> samples_;

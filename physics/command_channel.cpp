@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "protocol/frames.hpp"
 
@@ -12,6 +13,10 @@ constexpr double kWholeStep = 1e-6;  // of a step: a delay this near to whole st
 
 // No sensor has a name with a blank, so no sensor draws from the same generator.
 constexpr std::string_view kGeneratorName = "command channel";
+
+double step_of(double slowness, double time_step_s) {
+  return slowness > 0 ? time_step_s / slowness : std::numeric_limits<double>::infinity();
+}
 
 RobotCommand between(const RobotCommand& newer, const RobotCommand& older, double older_share) {
   RobotCommand out = newer;
@@ -33,11 +38,15 @@ RobotCommand between(const RobotCommand& newer, const RobotCommand& older, doubl
 }  // namespace
 
 CommandChannel::CommandChannel(const Effects& effects, std::uint64_t world_seed, std::string_view robot,
-                               double time_step_s)
+                               double track_gauge_m, double time_step_s)
     : noise_(world_seed, robot, kGeneratorName),
       loss_(effects.command_loss),
       gain_(effects.command_gain),
-      step_mps_(effects.command_slew_s2pm > 0 ? time_step_s / effects.command_slew_s2pm : 0) {
+      dead_band_mps_(effects.command_dead_band_mps),
+      side_step_mps_(step_of(effects.command_slew_s2pm, time_step_s)),
+      forward_step_mps_(step_of(effects.command_slew_forward_s2pm, time_step_s)),
+      turn_step_mps_(track_gauge_m / 2 * step_of(effects.command_slew_turn_s2prad, time_step_s)),
+      ramps_(std::isfinite(side_step_mps_) || std::isfinite(forward_step_mps_) || std::isfinite(turn_step_mps_)) {
   const double steps = effects.command_delay_s / time_step_s;
   delay_steps_ = static_cast<std::size_t>(std::floor(steps + kWholeStep));
   delay_rest_ = steps - static_cast<double>(delay_steps_);
@@ -52,8 +61,8 @@ void CommandChannel::restart(const RobotCommand& command) {
 }
 
 void CommandChannel::begin(const RobotCommand& command, const std::array<double, kTrackCount>& track_mps) {
-  sent_ = received_ = command;
-  for (double& speed : received_.track_speed_mps) speed *= gain_;
+  sent_ = command;
+  receive();
   std::fill(line_.begin(), line_.end(), received_);
   ramp_mps_ = track_mps;
 }
@@ -64,8 +73,26 @@ void CommandChannel::send(const RobotCommand& command) {
   for (std::size_t i = 0; i < kFlipperCount; ++i)
     if (std::isfinite(command.flipper[i].value)) sent_.flipper[i] = command.flipper[i];
   if (loss_ > 0 && noise_.uniform() <= loss_) return;
+  receive();
+}
+
+void CommandChannel::receive() {
   received_ = sent_;
-  for (double& speed : received_.track_speed_mps) speed *= gain_;
+  for (double& speed : received_.track_speed_mps) {
+    speed *= gain_;
+    if (std::abs(speed) < dead_band_mps_) speed = 0;
+  }
+}
+
+void CommandChannel::move_ramp(const std::array<double, kTrackCount>& target_mps) {
+  std::array<double, kTrackCount> change{target_mps[kLeft] - ramp_mps_[kLeft], target_mps[kRight] - ramp_mps_[kRight]};
+  if (std::isfinite(forward_step_mps_) || std::isfinite(turn_step_mps_)) {
+    const double forward = std::clamp((change[kLeft] + change[kRight]) / 2, -forward_step_mps_, forward_step_mps_);
+    const double turn = std::clamp((change[kRight] - change[kLeft]) / 2, -turn_step_mps_, turn_step_mps_);
+    change[kLeft] = forward - turn;
+    change[kRight] = forward + turn;
+  }
+  for (std::size_t i = 0; i < kTrackCount; ++i) ramp_mps_[i] += std::clamp(change[i], -side_step_mps_, side_step_mps_);
 }
 
 const RobotCommand& CommandChannel::step() {
@@ -75,11 +102,9 @@ const RobotCommand& CommandChannel::step() {
     return line_[(newest_ + line_.size() - steps) % line_.size()];
   };
   told_ = delay_rest_ > 0 ? between(late(delay_steps_), late(delay_steps_ + 1), delay_rest_) : late(delay_steps_);
-  if (step_mps_ > 0) {
-    for (std::size_t i = 0; i < kTrackCount; ++i) {
-      ramp_mps_[i] += std::clamp(told_.track_speed_mps[i] - ramp_mps_[i], -step_mps_, step_mps_);
-      told_.track_speed_mps[i] = ramp_mps_[i];
-    }
+  if (ramps_) {
+    move_ramp(told_.track_speed_mps);
+    told_.track_speed_mps = ramp_mps_;
   }
   return told_;
 }

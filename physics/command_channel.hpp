@@ -17,14 +17,19 @@ namespace kenaf::physics {
 // 1. loss: a message is lost as a whole, on the link; the one before goes on to hold.
 // 2. gain: what one side's metre per second is to the other. As long as it stands behind the loss and before the slew
 //    limit its place changes nothing, since a delay of a multiple is a multiple of the delay.
-// 3. delay: of what arrives, joints' modes and values included. One that is no whole number of steps lies on the
+// 3. dead band: of what arrives, after the gain, a track's speed that is too small counts as none. Before the delay, so
+//    that no speed between two commands, which nobody sent, falls into it.
+// 4. delay: of what arrives, joints' modes and values included. One that is no whole number of steps lies on the
 //    straight line between the two steps beside it, so that what a robot does changes smoothly with the delay.
-// 4. slew limit: the drive's own ramp, so it acts on what has arrived, and limits the speed that the belt is to have.
+// 5. slew limits: the drives' own ramp, so it acts on what has arrived, and limits the speeds that the belts are to have:
+//    first how fast their mean and their difference change, which are forward speed and turn rate, then each of them.
 // No allocation after construction.
 class CommandChannel {
  public:
-  // Draws its losses from a generator of its own, seeded by world seed and robot name.
-  CommandChannel(const Effects& effects, std::uint64_t world_seed, std::string_view robot, double time_step_s);
+  // Draws its losses from a generator of its own, seeded by world seed and robot name. `track_gauge_m`: between the
+  // tracks, for what a turn rate is.
+  CommandChannel(const Effects& effects, std::uint64_t world_seed, std::string_view robot, double track_gauge_m,
+                 double time_step_s);
 
   // As if `command` had been sent for ever; the ramp stands at rest.
   void restart(const RobotCommand& command);
@@ -39,8 +44,15 @@ class CommandChannel {
   const RobotCommand& step();
 
  private:
+  void receive();
+  void move_ramp(const std::array<double, kTrackCount>& target_mps);
+
   NoiseSource noise_;
-  double loss_, gain_, step_mps_;  // step_mps_: what the ramp moves in a step; 0: no limit
+  double loss_, gain_, dead_band_mps_;
+  // What the ramp moves in a step at most: each track's speed, the mean of both, and half their difference. Infinite: no
+  // limit.
+  double side_step_mps_, forward_step_mps_, turn_step_mps_;
+  bool ramps_;
   std::size_t delay_steps_;
   double delay_rest_ = 0;          // of a step, below 1
   RobotCommand sent_, received_, told_;

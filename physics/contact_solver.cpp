@@ -200,7 +200,9 @@ btScalar ContactSolver::solve_running_gear(Belt& belt, btScalar time_step) {
     changed = std::max(changed, change_mps * change_mps);
   };
   const double m = belt.moving_mass_kg;
-  push(belt.motor_impulse_ns, belt.motor_impulse_ns + (belt.target_mps - belt.speed_mps) * m, belt.min_impulse_ns,
+  // speed = target - droop impulse, with both of them after it; without droop the speed is the target
+  const double short_mps = belt.target_mps - belt.speed_mps - belt.droop_mpspns * belt.motor_impulse_ns;
+  push(belt.motor_impulse_ns, belt.motor_impulse_ns + short_mps * m / (1 + belt.droop_mpspns * m), belt.min_impulse_ns,
        belt.max_impulse_ns);
   if (const double damping_ns = belt.viscous_nspm * time_step; damping_ns > 0) {
     // impulse = -damping * speed, with the speed after it

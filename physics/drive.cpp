@@ -13,10 +13,12 @@ constexpr double kTurning_mps = 0.01;  // from here on the motor's own friction 
 
 }  // namespace
 
-TrackDrive::TrackDrive(const TrackDriveDescription& drive, const Effects& effects)
+TrackDrive::TrackDrive(Track side, const TrackDriveDescription& drive, const Effects& effects)
     : drive_(drive),
       lag_s_(effects.drive_lag_s),
-      dry_friction_n_(effects.drive_coulomb_n),
+      droop_mpspn_(effects.drive_droop_mpspn),
+      dry_friction_n_(effects.drive_coulomb_n +
+                      (side == kLeft ? effects.drive_coulomb_left_n : effects.drive_coulomb_right_n)),
       viscous_nspm_(effects.drive_viscous_nspm) {
   drive_.max_force_n *= effects.drive_torque_scale;
 }
@@ -43,6 +45,7 @@ void TrackDrive::before_step(Belt& belt, double commanded_mps, double voltage_sh
   const double driving_n = drive_.max_force_n * std::max(0.0, voltage_share - std::abs(u) / drive_.max_speed_mps);
   belt.moving_mass_kg = drive_.moving_mass_kg;
   belt.target_mps = reference_mps_;
+  belt.droop_mpspns = droop_mpspn_ / time_step_s;
   belt.max_impulse_ns = (u > 0 ? driving_n : braking_n) * time_step_s;
   belt.min_impulse_ns = -(u < 0 ? driving_n : braking_n) * time_step_s;
   belt.dry_friction_ns = dry_friction_n_ * time_step_s;

@@ -13,17 +13,23 @@ namespace {
 using P = EffectParameter;
 using E = Effects;
 
-constexpr P kCommandDelay[] = {{"delay_s", "s", 0, 0, 0.5, &E::command_delay_s}};
+constexpr P kCommandDelay[] = {{"delay_s", "s", 0, 0, 1, &E::command_delay_s}};
 constexpr P kCommandLoss[] = {{"probability", "1", 0, 0, 0.9, &E::command_loss}};
 constexpr P kCommandGain[] = {{"gain", "1", 1, 0.5, 1.5, &E::command_gain}};
+constexpr P kCommandDeadBand[] = {{"speed_mps", "m/s", 0, 0, 0.3, &E::command_dead_band_mps}};
 constexpr P kCommandSlew[] = {{"slowness_s2pm", "s^2/m", 0, 0, 10, &E::command_slew_s2pm}};
-constexpr P kDriveLag[] = {{"lag_s", "s", 0, 0, 1, &E::drive_lag_s}};
+constexpr P kCommandSlewForward[] = {{"slowness_s2pm", "s^2/m", 0, 0, 10, &E::command_slew_forward_s2pm}};
+constexpr P kCommandSlewTurn[] = {{"slowness_s2prad", "s^2/rad", 0, 0, 10, &E::command_slew_turn_s2prad}};
+constexpr P kDriveLag[] = {{"lag_s", "s", 0, 0, 3, &E::drive_lag_s}};
 constexpr P kDriveAsymmetry[] = {{"ratio", "1", 0, -0.5, 0.5, &E::drive_asymmetry}};
 constexpr P kDriveTorque[] = {{"scale", "1", 1, 0.02, 1.5, &E::drive_torque_scale}};
-constexpr P kDriveCoulomb[] = {{"force_n", "N", 0, 0, 100, &E::drive_coulomb_n}};
-constexpr P kDriveViscous[] = {{"damping_nspm", "N s/m", 0, 0, 200, &E::drive_viscous_nspm}};
+constexpr P kDriveDroop[] = {{"droop_mpspn", "m/(s N)", 0, 0, 0.005, &E::drive_droop_mpspn}};
+constexpr P kDriveCoulomb[] = {{"force_n", "N", 0, 0, 1000, &E::drive_coulomb_n}};
+constexpr P kDriveCoulombLeft[] = {{"force_n", "N", 0, 0, 1000, &E::drive_coulomb_left_n}};
+constexpr P kDriveCoulombRight[] = {{"force_n", "N", 0, 0, 1000, &E::drive_coulomb_right_n}};
+constexpr P kDriveViscous[] = {{"damping_nspm", "N s/m", 0, 0, 2000, &E::drive_viscous_nspm}};
 constexpr P kBatterySag[] = {{"resistance_ohm", "ohm", 0, 0, 5, &E::battery_resistance_ohm}};
-constexpr P kFlipperLag[] = {{"lag_s", "s", 0, 0, 1, &E::flipper_lag_s}};
+constexpr P kFlipperLag[] = {{"lag_s", "s", 0, 0, 3, &E::flipper_lag_s}};
 constexpr P kFlipperBacklash[] = {{"angle_rad", "rad", 0, 0, 0.3, &E::flipper_backlash_rad}};
 constexpr P kFlipperCompliance[] = {{"compliance_radpnm", "rad/(N m)", 0, 0, 0.05, &E::flipper_compliance_radpnm}};
 constexpr P kFlipperTorque[] = {{"scale", "1", 1, 0.05, 1.5, &E::flipper_torque_scale}};
@@ -31,11 +37,12 @@ constexpr P kMass[] = {{"scale", "1", 1, 0.5, 2, &E::mass_scale}};
 constexpr P kRollInertia[] = {{"scale", "1", 1, 0.3, 4, &E::roll_inertia_scale}};
 constexpr P kPitchInertia[] = {{"scale", "1", 1, 0.3, 4, &E::pitch_inertia_scale}};
 constexpr P kYawInertia[] = {{"scale", "1", 1, 0.3, 4, &E::yaw_inertia_scale}};
-constexpr P kComForward[] = {{"offset_m", "m", 0, -0.1, 0.1, &E::com_forward_m}};
-constexpr P kComLeft[] = {{"offset_m", "m", 0, -0.05, 0.05, &E::com_left_m}};
-constexpr P kComUp[] = {{"offset_m", "m", 0, -0.05, 0.1, &E::com_up_m}};
+constexpr P kComForward[] = {{"offset_m", "m", 0, -0.3, 0.3, &E::com_forward_m}};
+constexpr P kComLeft[] = {{"offset_m", "m", 0, -0.2, 0.2, &E::com_left_m}};
+constexpr P kComUp[] = {{"offset_m", "m", 0, -0.2, 0.3, &E::com_up_m}};
 constexpr P kFrictionAlong[] = {{"scale", "1", 1, 0.3, 1.5, &E::friction_along_scale}};
 constexpr P kFrictionAcross[] = {{"scale", "1", 1, 0.2, 2, &E::friction_across_scale}};
+constexpr P kFrictionAsymmetry[] = {{"ratio", "1", 0, -1, 1, &E::friction_asymmetry}};
 constexpr P kSlipWithSpeed[] = {{"slip_spm", "s/m", 0, 0, 1, &E::slip_with_speed_spm}};
 constexpr P kRollingResistance[] = {{"coefficient", "1", 0, 0, 0.2, &E::rolling_resistance}};
 constexpr P kLugHeight[] = {{"scale", "1", 1, 0, 3, &E::lug_height_scale}};
@@ -46,22 +53,39 @@ constexpr P kObstaclePosition[] = {{"offset_m", "m", 0, -0.1, 0.1, &E::obstacle_
 constexpr P kGroundSlope[] = {{"pitch_rad", "rad", 0, -0.2, 0.2, &E::ground_slope_rad}};
 constexpr P kGroundBank[] = {{"roll_rad", "rad", 0, -0.2, 0.2, &E::ground_bank_rad}};
 constexpr P kEncoderScale[] = {{"scale", "1", 1, 0.8, 1.2, &E::encoder_scale}};
+constexpr P kEncoderAsymmetry[] = {{"ratio", "1", 0, -0.2, 0.2, &E::encoder_asymmetry}};
+constexpr P kGyroBias[] = {{"z_radps", "rad/s", 0, -0.1, 0.1, &E::gyro_bias_z_radps}};
+constexpr P kGyroScale[] = {{"scale", "1", 1, 0.7, 1.3, &E::gyro_scale}};
+constexpr P kGyroDelay[] = {{"delay_s", "s", 0, 0, 1, &E::gyro_delay_s}};
 constexpr P kPostureBias[] = {{"pitch_rad", "rad", 0, -0.1, 0.1, &E::posture_bias_rad}};
 constexpr P kPostureScale[] = {{"scale", "1", 1, 0.7, 1.3, &E::posture_scale}};
-constexpr P kPostureDelay[] = {{"delay_s", "s", 0, 0, 0.5, &E::posture_delay_s}};
+constexpr P kPostureDelay[] = {{"delay_s", "s", 0, 0, 1, &E::posture_delay_s}};
 constexpr P kPostureMount[] = {{"yaw_rad", "rad", 0, -0.3, 0.3, &E::posture_mount_rad}};
-constexpr P kTrackingDelay[] = {{"delay_s", "s", 0, 0, 0.5, &E::tracking_delay_s}};
+constexpr P kTrackingDelay[] = {{"delay_s", "s", 0, 0, 1, &E::tracking_delay_s}};
 constexpr P kTrackingScale[] = {{"scale", "1", 1, 0.8, 1.2, &E::tracking_scale}};
+constexpr P kTrackedPointForward[] = {{"offset_m", "m", 0, -0.5, 0.5, &E::tracked_point_forward_m}};
+constexpr P kTrackedPointLeft[] = {{"offset_m", "m", 0, -0.5, 0.5, &E::tracked_point_left_m}};
+constexpr P kTrackingTurn[] = {{"yaw_rad", "rad", 0, -0.3, 0.3, &E::tracking_turn_rad}};
+constexpr P kClockOffset[] = {{"offset_s", "s", 0, -0.5, 0.5, &E::clock_offset_s}};
 
 constexpr EffectInfo kCatalogue[] = {
     {"command_delay", Stage::command, "commands reach the drives late", kCommandDelay},
     {"command_loss", Stage::command, "a share of the commands never arrives; the one before holds", kCommandLoss},
     {"command_gain", Stage::command, "track speeds arrive multiplied", kCommandGain},
+    {"command_dead_band", Stage::command, "track commands that are slower than this do not move a track",
+     kCommandDeadBand},
     {"command_slew", Stage::command, "track speeds change by at most 1 / slowness", kCommandSlew},
+    {"command_slew_forward", Stage::command, "the forward speed changes by at most 1 / slowness", kCommandSlewForward},
+    {"command_slew_turn", Stage::command, "the turn rate changes by at most 1 / slowness", kCommandSlewTurn},
     {"drive_lag", Stage::drive, "a second first-order lag in the track's speed loop", kDriveLag},
     {"drive_asymmetry", Stage::drive, "the left track runs faster than the right one by this share", kDriveAsymmetry},
     {"drive_torque_limit", Stage::drive, "the track motors' force at standstill, multiplied", kDriveTorque},
+    {"drive_droop", Stage::drive, "a track runs slower by this for each newton of its motor", kDriveDroop},
     {"drive_coulomb", Stage::drive, "dry friction of the running gear, felt at the belt", kDriveCoulomb},
+    {"drive_coulomb_left", Stage::drive, "dry friction of the left running gear, added to that of both",
+     kDriveCoulombLeft},
+    {"drive_coulomb_right", Stage::drive, "dry friction of the right running gear, added to that of both",
+     kDriveCoulombRight},
     {"drive_viscous", Stage::drive, "friction of the running gear that grows with speed", kDriveViscous},
     {"battery_sag", Stage::drive, "more internal resistance: current lowers voltage, voltage lowers force and speed",
      kBatterySag},
@@ -78,6 +102,8 @@ constexpr EffectInfo kCatalogue[] = {
     {"com_up", Stage::body, "the body's centre of mass lies higher", kComUp},
     {"friction_along", Stage::contact, "friction of the belts in rolling direction, multiplied", kFrictionAlong},
     {"friction_across", Stage::contact, "friction of the belts across, multiplied", kFrictionAcross},
+    {"friction_asymmetry", Stage::contact, "the left belts have more friction than the right ones by this share",
+     kFrictionAsymmetry},
     {"slip_with_speed", Stage::contact, "a belt at speed u carries the robot with u (1 - slip |u|)", kSlipWithSpeed},
     {"rolling_resistance", Stage::contact, "belts are braked by this share of what presses on them",
      kRollingResistance},
@@ -89,12 +115,24 @@ constexpr EffectInfo kCatalogue[] = {
     {"ground_slope", Stage::terrain, "the world is tilted, down ahead", kGroundSlope},
     {"ground_bank", Stage::terrain, "the world is tilted, down to the right", kGroundBank},
     {"encoder_scale", Stage::sensor, "encoders report track travel and speed multiplied", kEncoderScale},
+    {"encoder_asymmetry", Stage::sensor, "the left encoder reports more than the right one by this share",
+     kEncoderAsymmetry},
+    {"gyro_bias", Stage::sensor, "the gyro's rate about z has an offset", kGyroBias},
+    {"gyro_scale", Stage::sensor, "the gyro's rates are multiplied", kGyroScale},
+    {"gyro_delay", Stage::sensor, "the gyro reports late", kGyroDelay},
     {"posture_bias", Stage::sensor, "the posture sensor's pitch has an offset", kPostureBias},
     {"posture_scale", Stage::sensor, "the posture sensor's roll and pitch are multiplied", kPostureScale},
     {"posture_delay", Stage::sensor, "the posture sensor reports late", kPostureDelay},
     {"posture_mount", Stage::sensor, "the posture sensor is mounted turned about the vertical", kPostureMount},
     {"tracking_delay", Stage::sensor, "motion capture or lidar reports the pose late", kTrackingDelay},
     {"tracking_scale", Stage::sensor, "motion capture or lidar reports distances multiplied", kTrackingScale},
+    {"tracked_point_forward", Stage::sensor, "the point that is tracked lies ahead of the body's centre",
+     kTrackedPointForward},
+    {"tracked_point_left", Stage::sensor, "the point that is tracked lies left of the body's centre",
+     kTrackedPointLeft},
+    {"tracking_turn", Stage::sensor, "the tracked heading is turned to the left of the body's", kTrackingTurn},
+    {"clock_offset", Stage::sensor, "the clock of motion capture or lidar is off; below 0 the pose comes early",
+     kClockOffset},
 };
 
 template <typename Range>

@@ -20,14 +20,18 @@ std::string_view stage_name(Stage stage);
 struct Effects {
   // command: what becomes of a command before the drives get it
   double command_delay_s = 0;
-  double command_loss = 0;       // share of commands that do not arrive
-  double command_gain = 1;       // of track speeds
-  double command_slew_s2pm = 0;  // track speeds change by 1 / this at most
+  double command_loss = 0;           // share of commands that do not arrive
+  double command_gain = 1;           // of track speeds
+  double command_dead_band_mps = 0;  // slower track commands do not move a track
+  double command_slew_s2pm = 0;      // track speeds change by 1 / this at most
+  double command_slew_forward_s2pm = 0, command_slew_turn_s2prad = 0;  // the same of forward speed and turn rate
   // drive: between the command that arrived and belt or flipper
   double drive_lag_s = 0;      // a second first-order lag of the speed loop
   double drive_asymmetry = 0;  // left track faster by half of it, right one slower
   double drive_torque_scale = 1;
-  double drive_coulomb_n = 0;  // friction of the running gear, at the belt
+  double drive_droop_mpspn = 0;  // a motor that gives a force runs slower by this times the force
+  double drive_coulomb_n = 0;    // friction of the running gear, at the belt
+  double drive_coulomb_left_n = 0, drive_coulomb_right_n = 0;  // added to it on one side
   double drive_viscous_nspm = 0;
   double battery_resistance_ohm = 0;  // added to the battery's own
   double flipper_lag_s = 0;           // of the angle that the servo follows
@@ -40,6 +44,7 @@ struct Effects {
   double com_forward_m = 0, com_left_m = 0, com_up_m = 0;  // of the body's centre of mass
   // contact: between belt and ground
   double friction_along_scale = 1, friction_across_scale = 1;
+  double friction_asymmetry = 0;   // left belts have more friction by half of it, right ones less
   double slip_with_speed_spm = 0;  // belt's surface speed u drives as u (1 - this |u|)
   double rolling_resistance = 0;   // force against the belt's motion for a unit of normal force
   double lug_height_scale = 1;
@@ -50,13 +55,20 @@ struct Effects {
   double ground_slope_rad = 0;     // the whole world falls away forward (+) under level axes
   double ground_bank_rad = 0;      // the whole world falls away to the right (+)
   // sensor
-  double encoder_scale = 1;     // reported track travel and speed
+  double encoder_scale = 1;      // reported track travel and speed
+  double encoder_asymmetry = 0;  // left encoder reports more by half of it, right one less
+  double gyro_bias_z_radps = 0;  // added to the reported yaw rate
+  double gyro_scale = 1;         // of all three reported rates
+  double gyro_delay_s = 0;
   double posture_bias_rad = 0;  // added to the reported pitch
   double posture_scale = 1;     // of reported roll and pitch
   double posture_delay_s = 0;
   double posture_mount_rad = 0;  // the posture sensor is mounted turned about z
   double tracking_delay_s = 0;   // of the pose that motion capture or lidar reports; no sensor of the robot
   double tracking_scale = 1;     // of its x, y from the first pose on
+  double tracked_point_forward_m = 0, tracked_point_left_m = 0;  // in B, of the point whose pose that is
+  double tracking_turn_rad = 0;  // of the heading that it reports against the body's
+  double clock_offset_s = 0;     // its clock is behind (+) that of the robot
 
   bool operator==(const Effects&) const = default;
 };

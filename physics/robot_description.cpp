@@ -241,6 +241,10 @@ double RobotDescription::track_gauge_m() const {
   return 2 * track.p_BT_m.y();
 }
 
+double RobotDescription::encoder_factor(Track side) const {
+  return effects.encoder_scale * side_factor(side, effects.encoder_asymmetry);
+}
+
 RobotDescription parse_robot(std::string_view toml_text, const std::string& name_for_errors) {
   const toml::table root = parse_toml(toml_text, name_for_errors);
   TomlReader file(root, "", name_for_errors);

@@ -120,6 +120,11 @@ struct CameraDescription {
   int jpeg_quality;                // 1 to 100
 };
 
+// What an asymmetry multiplies on one side: half of it is more on the left, half of it is less on the right.
+inline double side_factor(Track side, double asymmetry) {
+  return 1 + (side == kLeft ? 0.5 : -0.5) * asymmetry;
+}
+
 struct RobotDescription {
   std::string name;                // as its file is called
   std::string usarsim_class;       // "USARBot.Kenaf"
@@ -137,6 +142,7 @@ struct RobotDescription {
   bool has_flippers() const { return !flipper.empty(); }
   double total_mass_kg() const;
   double track_gauge_m() const;    // between the tracks' centre planes
+  double encoder_factor(Track side) const;  // what its encoder reports of a metre
 };
 
 // A shipped name ("kenaf") or a path of a TOML file. Throws DescriptionError.

@@ -17,11 +17,12 @@ Track side_of(Flipper flipper) {
   return flipper == kFrontLeft || flipper == kRearLeft ? kLeft : kRight;
 }
 
-Surface belt_surface(const RobotDescription& robot, double friction_along, double friction_across, Belt* belt,
-                     double axis_y) {
+Surface belt_surface(const RobotDescription& robot, Track side, double friction_along, double friction_across,
+                     Belt* belt, double axis_y) {
   const Effects& effects = robot.effects;
-  return {.friction_along = friction_along * effects.friction_along_scale,
-          .friction_across = friction_across * effects.friction_across_scale,
+  const double grip = side_factor(side, effects.friction_asymmetry);
+  return {.friction_along = friction_along * effects.friction_along_scale * grip,
+          .friction_across = friction_across * effects.friction_across_scale * grip,
           .belt = belt,
           .axis_y = axis_y,
           .lug_height_m = robot.track.lug_height_m * effects.lug_height_scale,
@@ -66,8 +67,8 @@ RobotModel::RobotModel(const RobotDescription& robot, const std::string& name, s
     : description(robot),
       world_(world),
       solver_(solver),
-      channel_(robot.effects, world_seed, name, time_step_s),
-      drives_{TrackDrive(robot.drive, robot.effects), TrackDrive(robot.drive, robot.effects)},
+      channel_(robot.effects, world_seed, name, robot.track_gauge_m(), time_step_s),
+      drives_{TrackDrive(kLeft, robot.drive, robot.effects), TrackDrive(kRight, robot.drive, robot.effects)},
       battery_(robot.battery, robot.effects.battery_resistance_ohm, stalled_a(robot)) {
   for (Belt& belt : belts_) {
     belt.moving_mass_kg = description.drive.moving_mass_kg;
@@ -121,7 +122,8 @@ void RobotModel::make_hull(RobotId id) {
   for (const Track side : {kLeft, kRight}) {
     Eigen::Vector3d center = track.p_BT_m;
     if (side == kRight) center.y() = -center.y();
-    const Surface surface = belt_surface(description, track.friction_along, track.friction_across, &belts_[side], 1);
+    const Surface surface =
+        belt_surface(description, side, track.friction_along, track.friction_across, &belts_[side], 1);
     const double straight_m = track.length_m - 2 * track.end_radius_m;
     track_belts_[side] = {.radius = {track.end_radius_m, track.end_radius_m},
                           .length = straight_m,
@@ -151,18 +153,19 @@ void RobotModel::make_flipper(Flipper which, RobotId id) {
   const Outline outline = flipper_outline(f);
   const OutlineMoments m = moments(outline);
   const Eigen::Vector3d com(m.centroid.x(), 0, m.centroid.y());
+  const Track side = side_of(which);
   // a rear flipper is a front one that is turned half round: x out along the arm, tip up about -y for all four
   const bool front = is_front(which);
   const Eigen::Vector3d pivot(front ? f.p_BPivot_m.x() : -f.p_BPivot_m.x(),
-                              side_of(which) == kLeft ? f.p_BPivot_m.y() : -f.p_BPivot_m.y(), f.p_BPivot_m.z());
+                              side == kLeft ? f.p_BPivot_m.y() : -f.p_BPivot_m.y(), f.p_BPivot_m.z());
   const btQuaternion turn = front ? btQuaternion::getIdentity() : btQuaternion(0, 0, 1, 0);
   flipper.X_BodyPivot = btTransform(turn, to_bullet(pivot));
   flipper.X_FlipperCom = btTransform(btQuaternion::getIdentity(), to_bullet(com));
 
   flipper.shape = make_prism(outline, f.width_m, -com);
   flipper.collider.robot = static_cast<std::uint32_t>(id);
-  const Surface surface = belt_surface(description, f.friction_along, f.friction_across,
-                                       f.belt_driven ? &belts_[side_of(which)] : nullptr, front ? 1 : -1);
+  const Surface surface = belt_surface(description, side, f.friction_along, f.friction_across,
+                                       f.belt_driven ? &belts_[side] : nullptr, front ? 1 : -1);
   flipper.collider.surfaces = {surface};
   flipper.belt = {.radius = {f.pivot_radius_m, f.tip_radius_m},
                   .length = f.length_m,

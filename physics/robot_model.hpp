@@ -64,7 +64,7 @@ class RobotModel {
   void make_flipper(Flipper which, RobotId id);
   FlipperServoDescription servo_now() const;
   // What a track is told is multiplied by this.
-  double favour(Track side) const { return 1 + (side == kLeft ? 0.5 : -0.5) * description.effects.drive_asymmetry; }
+  double favour(Track side) const { return side_factor(side, description.effects.drive_asymmetry); }
   double battery_current_a(double time_step_s) const;
 
   btDiscreteDynamicsWorld& world_;

@@ -12,6 +12,7 @@ struct Belt {
   // set before a step
   double moving_mass_kg = 1;  // infinite: its speed is what it was set to, whatever pushes on it
   double target_mps = 0;      // the motor turns towards it
+  double droop_mpspns = 0;    // but stays short of it by this for each newton second that the motor gives within a step
   double min_impulse_ns = 0;  // what the motor can give within a step, <= 0
   double max_impulse_ns = 0;  // >= 0
   double dry_friction_ns = 0;     // of the running gear, within a step

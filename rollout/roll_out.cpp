@@ -121,8 +121,8 @@ Pose put_down(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, 
 void put_at_start(Scene& scene, const RobotDescription& robot, const Manoeuvre& manoeuvre,
                   const FlipperAngles& flippers, const Pose& X_WB) {
   Pose X_WB_settled = put_down(scene, robot, manoeuvre, flippers, X_WB);
-  // A recorded start is where the robot stood. One that comes down on its flippers moves by millimetres; and how it is put
-  // down decides which forces friction holds, so it is put down anew, and not moved.
+  // A recorded start is where the robot stood. One that comes down on its flippers moves by millimetres; and how it is
+  // put down decides which forces friction holds, so it is put down anew, and not moved.
   const Pose X_WB_aim = manoeuvre.start ? aimed_off(X_WB, X_WB_settled) : X_WB;
   if (apart(X_WB, X_WB_aim)) {
     scene.world.remove_robot(scene.robot);
@@ -139,8 +139,8 @@ void put_at_start(Scene& scene, const RobotDescription& robot, const Manoeuvre& 
 
 // What tracks did if encoders reported this of them.
 physics::PrescribedMotion without_encoder_scale(physics::PrescribedMotion motion, const RobotDescription& robot) {
-  for (std::optional<double>& speed : motion.track_mps)
-    if (speed) *speed /= robot.effects.encoder_scale;
+  for (const physics::Track side : {physics::kLeft, physics::kRight})
+    if (std::optional<double>& speed = motion.track_mps[side]) *speed /= robot.encoder_factor(side);
   return motion;
 }
 
@@ -151,8 +151,8 @@ void set_in_motion(Scene& scene, const RobotDescription& robot, const StartMotio
   physics::RobotMotion start;
   double forward_mps = motion.forward_mps.value_or(0), yaw_radps = motion.yaw_radps.value_or(0);
   if (motion.track_mps) {
-    for (std::size_t i = 0; i < start.track_mps.size(); ++i)
-      start.track_mps[i] = (*motion.track_mps)[i] / robot.effects.encoder_scale;
+    for (const physics::Track side : {physics::kLeft, physics::kRight})
+      start.track_mps[side] = (*motion.track_mps)[side] / robot.encoder_factor(side);
     const auto [left, right] = start.track_mps;
     if (!motion.forward_mps) forward_mps = (left + right) / 2;
     const double without_slip_radps = (right - left) / gauge_m;

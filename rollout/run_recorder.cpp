@@ -98,7 +98,8 @@ RunRecorder::RunRecorder(const RobotDescription& robot, const RollOutOptions& op
       mocap_noise_m_(options.mocap_noise_m * options.noise_scale),
       mocap_noise_rad_(options.mocap_noise_rad * options.noise_scale),
       mocap_noise_(options.seed, "world", "motion capture"),
-      tracking_(robot.effects) {
+      tracking_(robot.effects),
+      clock_offset_s_(robot.effects.clock_offset_s) {
   const bool flippers = robot.has_flippers(), drives = has(robot, SensorType::drives);
   time_ = add_group(true, {"t_s"});
   cmd_track_ = add_group(true, {"cmd_track_left_mps", "cmd_track_right_mps"});
@@ -166,11 +167,38 @@ void RunRecorder::add(double t_s, const physics::RobotCommand& command, const ph
   put(cmd_flipper_,
       {flipper[kFrontLeft].value, flipper[kFrontRight].value, flipper[kRearLeft].value, flipper[kRearRight].value});
   const TrackedPose tracked = tracking_.report(t_s, {truth.X_WB.p, physics::roll_pitch_yaw(truth.X_WB.q).z()});
-  const Eigen::Vector3d p_WB = tracked.p_WB_m + mocap_noise_.normal3(mocap_noise_m_);
-  put(position_, {p_WB.x(), p_WB.y(), p_WB.z()});
-  put(yaw_, {frames::wrap_angle(tracked.yaw_rad + mocap_noise_.normal(mocap_noise_rad_))});
+  put(position_, {tracked.p_WB_m.x(), tracked.p_WB_m.y(), tracked.p_WB_m.z()});
+  put(yaw_, {tracked.yaw_rad});
+  const Eigen::Vector3d p_noise_m = mocap_noise_.normal3(mocap_noise_m_);
+  pose_noise_.push_back({p_noise_m, mocap_noise_.normal(mocap_noise_rad_)});
   for (const physics::SensorSample& sample : samples)
     std::visit([this](const auto& reading) { put_reading(reading); }, sample.reading);
+}
+
+void RunRecorder::shift_clock() {
+  const std::vector<double>& t_s = run_.values[time_.first];
+  for (std::size_t i = 0; i < position_.count; ++i) {
+    std::vector<double>& column = run_.values[position_.first + i];
+    column = delayed(t_s, column, clock_offset_s_, false);
+  }
+  std::vector<double>& yaw = run_.values[yaw_.first];
+  yaw = delayed(t_s, yaw, clock_offset_s_, true);
+}
+
+void RunRecorder::add_mocap_noise() {
+  std::vector<double>& yaw = run_.values[yaw_.first];
+  for (std::size_t row = 0; row < pose_noise_.size(); ++row) {
+    for (std::size_t i = 0; i < position_.count; ++i)
+      run_.values[position_.first + i][row] += pose_noise_[row].p_m[static_cast<Eigen::Index>(i)];
+    yaw[row] = frames::wrap_angle(yaw[row] + pose_noise_[row].yaw_rad);
+  }
+}
+
+runs::Run RunRecorder::take() {
+  if (clock_offset_s_ != 0) shift_clock();
+  add_mocap_noise();
+  pose_noise_.clear();
+  return std::move(run_);
 }
 
 }  // namespace kenaf::rollout

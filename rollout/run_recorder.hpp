@@ -21,7 +21,8 @@ class RunRecorder {
 
   void add(double t_s, const physics::RobotCommand& command, const physics::RobotTruth& truth,
            std::span<const physics::SensorSample> samples);
-  runs::Run take() { return std::move(run_); }
+  // What was added; the recorder is empty then.
+  runs::Run take();
 
  private:
   using Names = std::vector<std::string>;
@@ -31,6 +32,8 @@ class RunRecorder {
   };
   Group add_group(bool measured, const Names& names);
   void put(Group group, std::initializer_list<double> values);
+  void shift_clock();
+  void add_mocap_noise();
 
   void put_reading(const physics::InsReading& reading);
   void put_reading(const physics::ImuReading& reading);
@@ -44,6 +47,12 @@ class RunRecorder {
   double mocap_noise_m_, mocap_noise_rad_;
   physics::NoiseSource mocap_noise_;
   Tracking tracking_;
+  double clock_offset_s_;
+  struct PoseNoise {
+    Eigen::Vector3d p_m;
+    double yaw_rad;
+  };
+  std::vector<PoseNoise> pose_noise_;  // of each row: it has nothing to do with when the pose was
   runs::Run run_;
   Group time_, cmd_track_, cmd_flipper_, track_speed_, track_travel_, flipper_, track_current_, flipper_current_,
       battery_, position_, tilt_, yaw_, gyro_, acceleration_;

@@ -47,7 +47,7 @@ physics::RobotDescription with_foreign(physics::RobotDescription robot, std::str
 
 bool is_of_commands(std::string_view foreign) {
   return foreign == "left_drive_lag" || foreign == "right_flipper_lag" || foreign == "right_drive_cuts_out" ||
-         foreign == "command_dead_band";
+         foreign == "command_shortfall";
 }
 
 void obey_foreign(rollout::Manoeuvre& replay, std::string_view foreign, double amount) {
@@ -64,15 +64,15 @@ void obey_foreign(rollout::Manoeuvre& replay, std::string_view foreign, double a
                 angle_of);
   }
   if (foreign == "right_drive_cuts_out") cut_out(replay, amount);
-  if (foreign == "command_dead_band")
+  if (foreign == "command_shortfall")
     for (rollout::TimedCommand& timed : replay.timed)
       for (double& speed_mps : timed.command.track_speed_mps)
         speed_mps = std::copysign(std::max(0.0, std::abs(speed_mps) - 0.08 * amount), speed_mps);
 }
 
 void record_foreign(runs::Run& run, std::string_view foreign, double amount) {
-  if (foreign == "gyro_scale")
-    for (const char* name : {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"})
+  if (foreign == "accelerometer_scale")
+    for (const char* name : {"acc_x_mps2", "acc_y_mps2", "acc_z_mps2"})
       if (std::vector<double>* column = column_of(run, name))
         for (double& value : *column) value *= 1 + 0.2 * amount;
 }

@@ -28,7 +28,7 @@ void shuffle(std::vector<T>& values, Random& random) {
 }
 
 constexpr std::string_view kStratumNames[] = {"none", "single", "pair", "withheld", "foreign"};  // as Stratum
-// Shares of the strata, in the order of Stratum: of 150 cases there is a single and a withheld one for each effect.
+// Shares of the strata, in the order of Stratum: of 204 cases there is a single and a withheld one for each effect.
 constexpr double kShare[] = {0.3, 0.26, 0.11, 0.26, 0.07};
 constexpr double kRounding = 1e-6;
 constexpr double kFurthest = 0.95;  // of the way to the end of a parameter's range
@@ -126,8 +126,8 @@ std::vector<ForeignEffect> foreign_effects() {
           {"right_drive_cuts_out", "a loose contact stops one track's drive now and then"},
           {"right_flipper_lag", "one of the front flippers follows later than the other"},
           {"left_drive_lag", "one track's drive follows later than the other's"},
-          {"command_dead_band", "slow track commands are not obeyed"},
-          {"gyro_scale", "the gyro's scale is wrong"}};
+          {"command_shortfall", "track commands are short by a constant speed, slow ones not obeyed"},
+          {"accelerometer_scale", "the accelerometer's scale is wrong"}};
 }
 
 std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed) {

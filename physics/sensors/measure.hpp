@@ -38,14 +38,34 @@ class PostureSense {
   double mount_rad_, scale_, bias_rad_;
 };
 
+// What a gyro makes of a robot's angular velocity.
+class GyroSense {
+ public:
+  explicit GyroSense(const Effects& effects)
+      : scale_(effects.gyro_scale), bias_B_radps_(0, 0, effects.gyro_bias_z_radps) {}
+
+  // Of an angular velocity in B.
+  Eigen::Vector3d sensed(const Eigen::Vector3d& w_WB_B_radps) const { return scale_ * w_WB_B_radps + bias_B_radps_; }
+
+ private:
+  double scale_;
+  Eigen::Vector3d bias_B_radps_;
+};
+
+// What an IMU reports of. Accelerations are the mean between `now` and `before`, which is one averaging time earlier. Pose
+// and rates may be older than the nominal delay says.
+struct ImuMotion {
+  const MotionSample &now, &before;
+  Pose X_WB;
+  Eigen::Vector3d gyro_B_radps;
+};
+
 GroundTruthReading measure_ground_truth(const MotionSample& now);
 // `X_WB` is the pose that the sensor reports, which may be an older one than the nominal delay says.
 InsReading measure_ins(const SensorDescription& sensor, SensorState& state, const Pose& X_WB,
                        const PostureSense& posture);
-// `before` is one averaging time earlier: accelerations are the mean between the two.
-ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
-                       const MotionSample& before, const Eigen::Vector3d& gravity_W_mps2, const Pose& X_WB,
-                       const PostureSense& posture);
+ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, const ImuMotion& motion,
+                       const Eigen::Vector3d& gravity_W_mps2, const PostureSense& posture);
 
 EncoderReading measure_encoder(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
                                const TrackDriveDescription& drive);

@@ -45,7 +45,20 @@ class MotionHistory {
     return {newer.p + rest * (older.p - newer.p), newer.q.slerp(rest, older.q)};
   }
 
+  // The angular velocity in B, also between two samples.
+  Eigen::Vector3d rate_back(double steps) const {
+    const auto whole = static_cast<std::size_t>(steps);
+    const double rest = steps - static_cast<double>(whole);
+    const Eigen::Vector3d newer = rate_in_body(back(whole));
+    if (rest == 0) return newer;
+    return newer + rest * (rate_in_body(back(whole + 1)) - newer);
+  }
+
  private:
+  static Eigen::Vector3d rate_in_body(const MotionSample& sample) {
+    return sample.X_WB.q.conjugate() * sample.w_WB_radps;
+  }
+
   std::vector<MotionSample> samples_;
   std::size_t count_ = 0;
 };

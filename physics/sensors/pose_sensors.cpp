@@ -46,9 +46,9 @@ InsReading measure_ins(const SensorDescription& sensor, SensorState& state, cons
   return {position, wrapped(posture.sensed(X.q) + state.bias_rad + state.noise.normal3(sensor.noise_rad))};
 }
 
-ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
-                       const MotionSample& before, const Eigen::Vector3d& gravity_W_mps2, const Pose& X_WB,
-                       const PostureSense& posture) {
+ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, const ImuMotion& motion,
+                       const Eigen::Vector3d& gravity_W_mps2, const PostureSense& posture) {
+  const auto& [now, before, X_WB, gyro_B_radps] = motion;
   const double dt = now.t_s - before.t_s;
   // velocity where the sensor is mounted
   const auto velocity = [&sensor](const MotionSample& s) -> Eigen::Vector3d {
@@ -62,7 +62,7 @@ ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, cons
   const Eigen::Quaterniond q_BW = now.X_WB.q.conjugate();
   ImuReading reading;
   reading.acceleration_mps2 = q_BW * acceleration_W + state.noise.normal3(sensor.noise_mps2);
-  reading.angular_velocity_radps = q_BW * now.w_WB_radps + state.bias_radps + state.noise.normal3(sensor.noise_radps);
+  reading.angular_velocity_radps = gyro_B_radps + state.bias_radps + state.noise.normal3(sensor.noise_radps);
   reading.angular_acceleration_radps2 = q_BW * turn_W;
   reading.roll_pitch_yaw_rad =
       wrapped(posture.sensed(posture.leveled(X_WB).q) + state.bias_rad + state.noise.normal3(sensor.noise_rad));

@@ -20,11 +20,15 @@ std::size_t averaging_steps(const SensorDescription& sensor, double time_step_s)
 
 std::size_t history_length(const RobotDescription& robot, double time_step_s) {
   std::size_t longest = 0;
-  const auto posture_delay = static_cast<std::size_t>(std::ceil(robot.effects.posture_delay_s / time_step_s));
+  const auto late = [time_step_s](double delay_s) {
+    return static_cast<std::size_t>(std::ceil(delay_s / time_step_s));
+  };
+  const std::size_t posture_delay = late(robot.effects.posture_delay_s), gyro_delay = late(robot.effects.gyro_delay_s);
   for (const SensorDescription& sensor : robot.sensors) {
     std::size_t steps = steps_in(sensor.delay_s, time_step_s);
     if (sensor.type == SensorType::ins) steps += posture_delay;
-    if (sensor.type == SensorType::imu) steps += std::max(posture_delay, averaging_steps(sensor, time_step_s));
+    if (sensor.type == SensorType::imu)
+      steps += std::max({posture_delay, gyro_delay, averaging_steps(sensor, time_step_s)});
     longest = std::max(longest, steps);
   }
   return longest + 1;
@@ -38,7 +42,9 @@ SensorSet::SensorSet(const RobotDescription& robot, const std::string& robot_nam
       time_step_s_(time_step_s),
       gravity_W_mps2_(gravity_W_mps2),
       posture_(robot.effects, gravity_W_mps2),
+      gyro_(robot.effects),
       posture_delay_steps_(robot.effects.posture_delay_s / time_step_s),
+      gyro_delay_steps_(robot.effects.gyro_delay_s / time_step_s),
       history_(history_length(robot, time_step_s)) {
   for (const SensorDescription& sensor : robot.sensors) {
     Entry& entry = entries_.emplace_back(SensorState(NoiseSource(world_seed, robot_name, sensor.name)),
@@ -53,8 +59,10 @@ SensorSet::SensorSet(const RobotDescription& robot, const std::string& robot_nam
 void SensorSet::record(const RobotTruth& truth, double t_s, const std::array<double, kTrackCount>& track_a,
                        const std::array<double, kFlipperCount>& flipper_a, std::span<const Eigen::Vector3d> touches_B) {
   std::array<double, kTrackCount> track_m = truth.track_m, track_mps = truth.track_mps;
-  for (double& travel : track_m) travel *= robot_.effects.encoder_scale;
-  for (double& speed : track_mps) speed *= robot_.effects.encoder_scale;
+  for (const Track side : {kLeft, kRight}) {
+    track_m[side] *= robot_.encoder_factor(side);
+    track_mps[side] *= robot_.encoder_factor(side);
+  }
   if (has_odometry_) odometry_ = advance_odometry(odometry_, track_m_, track_m, robot_);
   track_m_ = track_m;
   MotionSample sample{.t_s = t_s,
@@ -91,7 +99,9 @@ Reading SensorSet::measure(std::size_t i, const RayCaster& cast) {
       return measure_ins(sensor, entry.state, late_pose(), posture_);
     case SensorType::imu: {
       const MotionSample& before = history_.back(entry.delay_steps + averaging_steps(sensor, time_step_s_));
-      return measure_imu(sensor, entry.state, now, before, gravity_W_mps2_, late_pose(), posture_);
+      const Eigen::Vector3d w_WB_B = history_.rate_back(static_cast<double>(entry.delay_steps) + gyro_delay_steps_);
+      return measure_imu(sensor, entry.state, {now, before, late_pose(), gyro_.sensed(w_WB_B)}, gravity_W_mps2_,
+                         posture_);
     }
     case SensorType::encoder:
       return measure_encoder(sensor, entry.state, now, robot_.drive);

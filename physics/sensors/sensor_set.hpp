@@ -40,7 +40,8 @@ class SensorSet {
   double time_step_s_;
   Eigen::Vector3d gravity_W_mps2_;
   PostureSense posture_;
-  double posture_delay_steps_;  // beyond the sensor's own
+  GyroSense gyro_;
+  double posture_delay_steps_, gyro_delay_steps_;  // beyond the sensor's own
   std::vector<Entry> entries_;
   MotionHistory history_;
   bool has_touch_ = false, has_odometry_ = false;

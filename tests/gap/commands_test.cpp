@@ -42,7 +42,7 @@ TEST_CASE("Effects as text: each with its stage, parameters and ranges") {
     CHECK_THAT(outcome.out, Catch::Contains(std::string(effect.name)));
     CHECK_THAT(outcome.out, Catch::Contains(std::string(effect.summary)));
   }
-  CHECK_THAT(outcome.out, Catch::Contains("delay_s from 0 to 0.5 s; 0 changes nothing"));
+  CHECK_THAT(outcome.out, Catch::Contains("delay_s from 0 to 1 s; 0 changes nothing"));
 }
 
 TEST_CASE("Without a command, or with one that is not there, it says so and ends with 2") {

@@ -213,7 +213,7 @@ TEST_CASE("A fit that ended at the end of its range is a warning under the headl
   Diagnosis d = two_manoeuvres();
   CHECK_THAT(page_of(d), !Contains("ended at the end of its range"));
   d.best.front().at_bound = true;
-  CHECK_THAT(page_of(d), Contains("The fit of drive_lag lag_s ended at the end of its range (0 to 1 s)"));
+  CHECK_THAT(page_of(d), Contains("The fit of drive_lag lag_s ended at the end of its range (0 to 3 s)"));
 }
 
 TEST_CASE("Two effects: both are named, with what each explains beyond the other") {

@@ -8,10 +8,10 @@ using namespace kenaf::physics;
 
 namespace {
 
-constexpr double kStep_s = 0.001;
+constexpr double kStep_s = 0.001, kGauge_m = 0.4;
 
 CommandChannel channel_with(const Effects& effects, std::uint64_t seed = 1, const char* robot = "a") {
-  CommandChannel channel(effects, seed, robot, kStep_s);
+  CommandChannel channel(effects, seed, robot, kGauge_m, kStep_s);
   channel.restart({});
   return channel;
 }
@@ -114,6 +114,87 @@ TEST_CASE("Command slew: speed = time / slowness, up and down") {
   world.set_command(id, drive(0, 0));
   run(world, 1);
   CHECK(world.truth(id).track_mps[kLeft] == Approx(0.21).epsilon(0.01));
+}
+
+TEST_CASE("Command slew, forward and turn: each has its own limit, and the other one is there at once") {
+  // v = 0.2 m/s and w = (0.5 - -0.1) / 0.4 = 1.5 rad/s
+  const auto reached = [](const Effects& effects, int steps) {
+    CommandChannel channel = channel_with(effects);
+    channel.send(drive(-0.1, 0.5));
+    for (int i = 1; i < steps; ++i) channel.step();
+    const auto [left, right] = channel.step().track_speed_mps;
+    return std::array{(left + right) / 2, (right - left) / kGauge_m};
+  };
+  // 1 / (10 s²/m) for 0.5 s; 1 / (0.8 s²/rad) = 1.25 rad/s² for 0.4 s
+  const auto [v, w] = reached({.command_slew_forward_s2pm = 10}, 500);
+  CHECK(v == Approx(0.05));
+  CHECK(w == Approx(1.5));
+  const auto [v_turning, w_turning] = reached({.command_slew_turn_s2prad = 0.8}, 400);
+  CHECK(v_turning == Approx(0.2));
+  CHECK(w_turning == Approx(0.5));
+  const auto [v_both, w_both] = reached({.command_slew_forward_s2pm = 10, .command_slew_turn_s2prad = 0.8}, 400);
+  CHECK(v_both == Approx(0.04));
+  CHECK(w_both == Approx(0.5));
+  const auto [v_end, w_end] = reached({.command_slew_forward_s2pm = 10, .command_slew_turn_s2prad = 0.8}, 2100);
+  CHECK(v_end == Approx(0.2));
+  CHECK(w_end == Approx(1.5));
+}
+
+TEST_CASE("Command slew, all three: no limit is exceeded") {
+  // straight ahead the side's 0.2 m/s² is the tighter one; in place 0.5 rad/s² is, which is 0.1 m/s² on each side
+  const Effects effects{.command_slew_s2pm = 5, .command_slew_forward_s2pm = 2, .command_slew_turn_s2prad = 2};
+  CommandChannel ahead = channel_with(effects), in_place = channel_with(effects);
+  ahead.send(drive(0.4, 0.4));
+  in_place.send(drive(-0.4, 0.4));
+  for (int i = 1; i <= 1000; ++i) {
+    CHECK(left(ahead) == Approx(0.2 * i * kStep_s));
+    CHECK(left(in_place) == Approx(-0.1 * i * kStep_s));
+  }
+}
+
+TEST_CASE("Command slew of the turn: yaw = rate² slowness / 2 later than without") {
+  // A ramp to w takes w slowness and turns by half of w times that; the rest is as without a ramp.
+  RobotDescription robot = load_robot("kenaf");
+  robot.flipper.clear();
+  const double w = 0.5, slowness = 2;
+  const auto yaw = [&](const Effects& effects) {
+    RobotDescription with = robot;
+    with.effects = effects;
+    World world(ground(), {}, 1);
+    const RobotId id = world.add_robot(with, "a", {});
+    world.set_command(id, drive(-w * robot.track_gauge_m() / 2, w * robot.track_gauge_m() / 2));
+    run(world, 3);
+    return std::array{yaw_of(world.truth(id).X_WB), world.truth(id).w_WB_radps.z()};
+  };
+  const auto [at_once, rate] = yaw({});
+  const auto [ramped, ramped_rate] = yaw({.command_slew_turn_s2prad = slowness});
+  CHECK(ramped_rate == Approx(rate).epsilon(0.01));
+  // tracks that turn in place slip: of what they ran, rate / w shows
+  CHECK(at_once - ramped == Approx(rate / w * w * w * slowness / 2).epsilon(0.03));
+}
+
+TEST_CASE("Command dead band: below it nothing, from it on what was told, after the gain") {
+  for (const double told_mps : {0.0, 0.07, -0.07, 0.079, 0.08, -0.08, 0.3}) {
+    CommandChannel channel = channel_with({.command_gain = 1.25, .command_dead_band_mps = 0.1});
+    channel.send(drive(told_mps, 0.4));
+    const auto [left_mps, right_mps] = channel.step().track_speed_mps;
+    CHECK(left_mps == (std::abs(told_mps) < 0.08 ? 0 : 1.25 * told_mps));
+    CHECK(right_mps == 0.5);
+  }
+}
+
+TEST_CASE("Command dead band: from 0.3 m/s into it a track ramps down to rest, and a delay between steps is no jump") {
+  CommandChannel channel =
+      channel_with({.command_delay_s = 1.5 * kStep_s, .command_dead_band_mps = 0.2, .command_slew_s2pm = 1});
+  channel.send(drive(0.3, 0.3));
+  for (int i = 0; i < 400; ++i) left(channel);
+  CHECK(left(channel) == Approx(0.3));
+  channel.send(drive(0.1, 0.1));
+  for (int i = 0; i < 102; ++i) left(channel);
+  // the first of 103 steps is too early for it, the others are of 1 mm/s
+  CHECK(left(channel) == Approx(0.3 - 0.102).margin(1e-9));
+  for (int i = 0; i < 300; ++i) left(channel);
+  CHECK(left(channel) == 0);
 }
 
 TEST_CASE("Command stage: the ramp is of the speed after the gain, and begins when the command has arrived") {

@@ -61,6 +61,37 @@ TEST_CASE("Friction along and across: each scales its own direction, and the oth
   CHECK(slid_m(tracks_with({.friction_along_scale = 1.5}), ground(), 0.75, 0, t).norm() < 1e-3);
 }
 
+TEST_CASE("Friction asymmetry, along: belts that spin push with what their own side holds") {
+  // From rest the belts are at 0.4 m/s after some milliseconds, the robot at 0.1 m/s² times the time: they spin. Each
+  // bears half of the robot.
+  RobotDescription robot = tracks_with({.friction_asymmetry = 0.6});
+  robot.track.friction_along = robot.track.friction_across = 0.1;
+  robot.drive.time_constant_s = 0;
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(robot, "a", {});
+  run(world, 0.5);
+  world.set_command(id, drive(0.4, 0.4));
+  run(world, 0.1);
+  const double each_n = 0.1 * 15 * kGravity / 2;
+  CHECK(world.truth(id).track_force_n[kLeft] == Approx(1.3 * each_n).epsilon(0.02));
+  CHECK(world.truth(id).track_force_n[kRight] == Approx(0.7 * each_n).epsilon(0.02));
+  CHECK(world.truth(id).w_WB_radps.z() < 0);  // the left side pushes more
+}
+
+TEST_CASE("Friction asymmetry, across: a robot that lies on one side more slides as that side's belt lets it") {
+  // The centre of mass at the ground and off to the left by c: loads do not change as it slides. On four lines of
+  // springs at y = (+-b +-w) / 2 the load is linear in y, so that the left two bear 1/2 + b c / (b² + w²) of it.
+  RobotDescription robot = tracks_with({});
+  robot.body.p_BBcm_m = Eigen::Vector3d(0, 0.05, -belly_below_m());
+  const double b = robot.track_gauge_m(), w = robot.track.width_m, left = 0.5 + b * 0.05 / (b * b + w * w);
+  const double slope = 0.9, t = 0.4;
+  for (const double ratio : {0.0, 0.8, -0.8}) {
+    robot.effects.friction_asymmetry = ratio;
+    const double friction = kFriction * ((1 + ratio / 2) * left + (1 - ratio / 2) * (1 - left));
+    CHECK(slid_m(robot, ground(), 0, slope, t).y() == Approx(-block_m(slope, friction, t)).epsilon(0.03));
+  }
+}
+
 TEST_CASE("Slip with speed: a belt at u carries the robot with u (1 - slip |u|), either way, and reports u") {
   for (const double u : {0.1, 0.2, 0.4, -0.4}) {
     const RobotTruth truth = driven(tracks_with({.slip_with_speed_spm = 0.5}), u);

@@ -67,6 +67,38 @@ TEST_CASE("Drive torque limit: up a slope as fast as what is left of the motors'
   CHECK(world.truth(id).track_mps[kLeft] == Approx(0.5 * (1 - needed_n / 30)).epsilon(0.01));
 }
 
+TEST_CASE("Droop: a track is slower by droop times the force that it needs, and a brake lets it run as much faster") {
+  for (const double step_s : {0.001, 0.005}) {
+    // dry friction of 25 N and damping of 100 N s/m: u = 0.2 - d (25 + 100 u)
+    const double d = 0.002;
+    World level(ground(), {.time_step_s = step_s}, 1);
+    const RobotId id = level.add_robot(
+        kenaf_with({.drive_droop_mpspn = d, .drive_coulomb_n = 25, .drive_viscous_nspm = 100}), "a", {});
+    level.set_command(id, drive(0.2, 0.2));
+    run(level, 1);
+    const double u = (0.2 - d * 25) / (1 + d * 100);
+    CHECK(level.truth(id).track_mps[kLeft] == Approx(u).epsilon(1e-3));
+    CHECK(level.truth(id).track_force_n[kLeft] == Approx(25 + 100 * u).epsilon(0.01));
+  }
+  // 15 kg down 10 degrees: 12.8 N for each track, held back
+  World down = slope(10 * std::numbers::pi / 180);
+  RobotDescription robot = plain_tracks(1.3);
+  robot.effects.drive_droop_mpspn = 0.005;
+  const RobotId id = down.add_robot(robot, "a", {});
+  down.set_command(id, drive(0.2, 0.2));
+  run(down, 2);
+  const double brake_n = 15 * kGravity * std::sin(10 * std::numbers::pi / 180) / 2;
+  CHECK(down.truth(id).track_mps[kLeft] == Approx(0.2 + 0.005 * brake_n).epsilon(2e-3));
+}
+
+TEST_CASE("Droop: a motor at the end of its force gives no more than that") {
+  RobotDescription robot = kenaf_with({.drive_droop_mpspn = 0.001, .drive_coulomb_n = 25});
+  robot.drive.max_force_n = 20;
+  const RobotTruth truth = driven(robot, 0.2, 1);  // 0.2 / 0.001 would be 200 N
+  CHECK(std::abs(truth.track_m[kLeft]) < 1e-6);
+  CHECK(truth.track_force_n[kLeft] == Approx(20).epsilon(0.01));
+}
+
 TEST_CASE("Coulomb friction: below it the belt stands still, above it the motor has that much less") {
   RobotDescription robot = kenaf_with({.drive_coulomb_n = 25});
   robot.battery.internal_resistance_ohm = 0;
@@ -78,6 +110,23 @@ TEST_CASE("Coulomb friction: below it the belt stands still, above it the motor 
   const RobotTruth running = driven(robot, 0.2, 1);
   CHECK(running.track_mps[kLeft] == Approx(0.2).epsilon(1e-3));
   CHECK(running.track_force_n[kLeft] == Approx(25).epsilon(0.01));
+}
+
+TEST_CASE("Coulomb friction of one side: its motor has to give it beside that of both, the other one has not") {
+  for (const bool of_left : {true, false}) {
+    Effects effects{.drive_coulomb_n = 10};
+    (of_left ? effects.drive_coulomb_left_n : effects.drive_coulomb_right_n) = 15;
+    WorldDescription empty;
+    empty.gravity_W_mps2.setZero();
+    World world(empty, {}, 1);
+    RobotDescription robot = plain_tracks(1);
+    robot.effects = effects;
+    const RobotId id = world.add_robot(robot, "a", {});
+    world.set_command(id, drive(0.2, 0.2));
+    run(world, 1);
+    CHECK(world.truth(id).track_force_n[of_left ? kLeft : kRight] == Approx(25).epsilon(0.01));
+    CHECK(world.truth(id).track_force_n[of_left ? kRight : kLeft] == Approx(10).epsilon(0.01));
+  }
 }
 
 TEST_CASE("Coulomb friction: holds a robot on a slope whose motors are too weak to") {

@@ -60,6 +60,73 @@ TEST_CASE("Encoder scale: travel, speed and odometry, but not the robot") {
   CHECK(tachometer.angle_rad[kLeft] == Approx(turned_rad));
 }
 
+TEST_CASE("Encoder asymmetry: of a way straight ahead, half of it more on the left and less on the right") {
+  World world(ground(), {}, 1);
+  const RobotId id = world.add_robot(robot_with({.encoder_scale = 1.1, .encoder_asymmetry = 0.1},
+                                                {SensorType::encoder, SensorType::odometry, SensorType::tachometer}),
+                                     "a", {});
+  world.set_command(id, drive(0.2, 0.2));
+  run(world, 2);
+  const RobotTruth truth = world.truth(id);
+  const auto samples = read(world, id);
+  const auto& counts = std::get<EncoderReading>(samples[0].reading).counts;
+  const auto& tachometer = std::get<TachometerReading>(samples[2].reading);
+  for (const auto& [side, factor] : {std::pair{kLeft, 1.1 * 1.05}, std::pair{kRight, 1.1 * 0.95}}) {
+    const double turned_rad = factor * truth.track_m[side] / 0.065;
+    CHECK(static_cast<double>(counts[side]) == Approx(turned_rad * 2000 / (2 * std::numbers::pi)).margin(1));
+    CHECK(tachometer.spin_radps[side] == Approx(factor * truth.track_mps[side] / 0.065));
+    CHECK(tachometer.angle_rad[side] == Approx(turned_rad));
+  }
+  // the odometry thinks that the robot has turned to the right
+  CHECK(std::get<OdometryReading>(samples[1].reading).yaw_rad ==
+        Approx(-1.1 * 0.1 * truth.track_m[kLeft] / 0.2).margin(5e-3));
+  CHECK(std::abs(yaw_of(truth.X_WB)) < 1e-3);
+}
+
+TEST_CASE("Gyro: rates in the body times scale, and a bias about z alone") {
+  WorldDescription empty;
+  empty.gravity_W_mps2.setZero();
+  World world(empty, {}, 1);
+  RobotDescription robot = robot_with({.gyro_bias_z_radps = 0.05, .gyro_scale = 1.2}, {SensorType::imu});
+  const Eigen::Quaterniond q_WB = rotation_from({0.1, 0.2, 0.7});
+  const RobotId id = world.add_robot(robot, "a", {Eigen::Vector3d::Zero(), q_WB});
+  RobotMotion motion;
+  motion.w_WB_radps = {0.3, -0.2, 0.5};
+  world.set_in_motion(id, motion, {});
+  const auto imu = std::get<ImuReading>(read(world, id)[0].reading);
+  const Eigen::Vector3d expected = 1.2 * (q_WB.conjugate() * motion.w_WB_radps) + Eigen::Vector3d(0, 0, 0.05);
+  CHECK((imu.angular_velocity_radps - expected).norm() < 1e-12);
+}
+
+TEST_CASE("Gyro delay: rates of then, in proportion between two steps; posture and acceleration are in time") {
+  const auto driven = [](double delay_s) {
+    World world(ground(), {}, 1);
+    RobotDescription robot = robot_with({.gyro_delay_s = delay_s}, {SensorType::imu});
+    robot.sensors[0].delay_s = 0.01;
+    const RobotId id = world.add_robot(robot, "a", {});
+    std::vector<ImuReading> readings;
+    for (int i = 0; i < 1200; ++i) {
+      world.set_command(id, i < 600 ? drive(-0.2, 0.2) : drive(0.2, 0.1));
+      world.step();
+      readings.push_back(std::get<ImuReading>(read(world, id)[0].reading));
+    }
+    return readings;
+  };
+  const auto prompt = driven(0);
+  for (const double steps : {20.0, 20.5, 500.0, 1000.0}) {
+    const auto late = driven(steps * 0.001);
+    const auto whole = static_cast<std::size_t>(steps);
+    const double rest = steps - static_cast<double>(whole);
+    for (std::size_t i = whole + 1; i < late.size(); i += 7) {
+      const Eigen::Vector3d newer = prompt[i - whole].angular_velocity_radps,
+                            older = prompt[i - whole - 1].angular_velocity_radps;
+      REQUIRE((late[i].angular_velocity_radps - newer - rest * (older - newer)).norm() < 1e-9);
+      REQUIRE(late[i].acceleration_mps2 == prompt[i].acceleration_mps2);
+      REQUIRE(late[i].roll_pitch_yaw_rad == prompt[i].roll_pitch_yaw_rad);
+    }
+  }
+}
+
 TEST_CASE("Posture bias and scale: INS and IMU alike, yaw is no posture") {
   for (const Eigen::Vector3d& angles : postures({0.1, 0.2, 0.7}, {.posture_bias_rad = 0.05, .posture_scale = 1.2}))
     CHECK((angles - Eigen::Vector3d(0.12, 0.29, 0.7)).norm() < 1e-12);

@@ -274,6 +274,21 @@ TEST_CASE("Encoders that report too much are no reason to drive too far") {
   CHECK(again.run.column("x_m").back() == Approx(real.run.column("x_m").back()).margin(2e-3));
 }
 
+TEST_CASE("Encoders that report more on the left are no reason to turn, from rest or on the way") {
+  auto robot = physics::load_robot("kenaf");
+  robot.effects.encoder_scale = 1.1;
+  robot.effects.encoder_asymmetry = 0.1;
+  const auto run = table("t_s,track_left_mps,track_right_mps,x_m,y_m,yaw_rad", 21, [](std::size_t i) {
+    const double t_s = 0.1 * static_cast<double>(i);
+    return fmt::format("{},{},{},{},0,0", t_s, 0.2 * 1.1 * 1.05, 0.2 * 1.1 * 0.95, 0.2 * t_s);
+  });
+  const RollOut out = roll_out(robot, flat(), replay_measured_of(run, "run"), exact());
+  CHECK(out.run.column("track_left_mps").front() == Approx(0.2 * 1.1 * 1.05));
+  CHECK(out.run.column("track_right_mps").back() == Approx(0.2 * 1.1 * 0.95));
+  CHECK(out.run.column("x_m").back() == Approx(0.4).margin(1e-3));
+  CHECK(std::abs(out.run.column("yaw_rad").back()) < 1e-3);
+}
+
 TEST_CASE("A run that measured nothing of its drives is not replayed so, and it says why") {
   const auto replay = [](const char* csv) { return replay_measured_of(runs::parse_run(csv, "run.csv"), "run.csv"); };
   CHECK_THROWS_WITH(replay("t_s,cmd_track_left_mps,cmd_track_right_mps,x_m,y_m,yaw_rad\n0,0,0,0,0,0\n"),

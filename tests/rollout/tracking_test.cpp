@@ -1,4 +1,4 @@
-// What motion capture or lidar says of where the robot is: late, and with a scale of its own.
+// What motion capture or lidar says of where the robot is: late or early, with a scale, of another point, and turned.
 #include "rollout/tracking.hpp"
 
 #include <algorithm>
@@ -106,4 +106,105 @@ TEST_CASE("Late and scaled: 0.9 of where it was") {
   const TrackedPose reported = tracking.report(0.2, at(4));
   CHECK(reported.p_WB_m.x() == Approx(2 + 0.9 * (3 - 2)));
   CHECK(reported.p_WB_m.z() == Approx(3));
+}
+
+TEST_CASE("A point ahead of the body's centre goes round it as the robot turns, and starts where the run began") {
+  // turned in place from 0.7 rad by a: the point is displaced by R(0.7 + a) L - R(0.7) L
+  for (const Eigen::Vector2d& L : {Eigen::Vector2d(0.3, 0), Eigen::Vector2d(0, -0.2), Eigen::Vector2d(0.3, -0.2)}) {
+    Tracking tracking({.tracked_point_forward_m = L.x(), .tracked_point_left_m = L.y()});
+    const Eigen::Vector3d p(1, 2, 3);
+    CHECK(tracking.report(0, {p, 0.7}).p_WB_m == p);
+    for (const double a : {0.5, -2.0, std::numbers::pi}) {
+      const TrackedPose reported = tracking.report(1, {p, 0.7 + a});
+      const double b = 0.7 + a;
+      CHECK(reported.p_WB_m.x() ==
+            Approx(1 + L.x() * (std::cos(b) - std::cos(0.7)) - L.y() * (std::sin(b) - std::sin(0.7))));
+      CHECK(reported.p_WB_m.y() ==
+            Approx(2 + L.x() * (std::sin(b) - std::sin(0.7)) + L.y() * (std::cos(b) - std::cos(0.7))));
+      CHECK(reported.p_WB_m.z() == 3);
+      CHECK(reported.yaw_rad == b);
+    }
+  }
+}
+
+TEST_CASE("A heading that is reported too far left: the same yaw, and a path that is turned to the right") {
+  Tracking tracking({.tracking_turn_rad = 0.2});
+  tracking.report(0, {{1, 2, 3}, 0.7});
+  // 2 m along the heading of 0.7 rad, then a turn: along 0.5 rad
+  const TrackedPose ahead = tracking.report(1, {{1 + 2 * std::cos(0.7), 2 + 2 * std::sin(0.7), 3.5}, 1.5});
+  CHECK(ahead.p_WB_m.x() == Approx(1 + 2 * std::cos(0.5)));
+  CHECK(ahead.p_WB_m.y() == Approx(2 + 2 * std::sin(0.5)));
+  CHECK(ahead.p_WB_m.z() == 3.5);
+  CHECK(ahead.yaw_rad == 1.5);
+}
+
+TEST_CASE("Of a tracker that is turned and off the centre the real run is told: one that drove where it headed") {
+  // The body drives along its true heading of 0.3 rad for 2 m while it turns by 1 rad. The tracker, 0.4 m ahead of the
+  // centre, says 0.2 rad more, and the simulation starts at what it says.
+  const double true_rad = 0.3, turn_rad = 0.2, turned_rad = 1, forward_m = 0.4;
+  const auto point = [&](double way_m, double heading_rad) {
+    return Eigen::Vector2d(way_m * std::cos(true_rad) + forward_m * std::cos(heading_rad),
+                           way_m * std::sin(true_rad) + forward_m * std::sin(heading_rad));
+  };
+  const Eigen::Vector2d start = point(0, true_rad), end = point(2, true_rad + turned_rad);
+  const double reported_rad = true_rad + turn_rad;
+  Tracking tracking({.tracked_point_forward_m = forward_m, .tracking_turn_rad = turn_rad});
+  tracking.report(0, {{start.x(), start.y(), 0}, reported_rad});
+  const TrackedPose simulated{{start.x() + 2 * std::cos(reported_rad), start.y() + 2 * std::sin(reported_rad), 0},
+                              reported_rad + turned_rad};
+  const TrackedPose reported = tracking.report(1, simulated);
+  CHECK(reported.p_WB_m.x() == Approx(end.x()));
+  CHECK(reported.p_WB_m.y() == Approx(end.y()));
+  CHECK(reported.yaw_rad == Approx(reported_rad + turned_rad));
+}
+
+TEST_CASE("Values of another time: on the line between two of them, and beyond the ends the last one") {
+  const std::vector<double> t_s{0, 1, 2, 4}, values{10, 20, 40, 0};
+  CHECK(delayed(t_s, values, 0.5, false) == std::vector<double>{10, 15, 30, 10});
+  CHECK(delayed(t_s, values, -0.5, false) == std::vector<double>{15, 30, 30, 0});
+  CHECK(delayed(t_s, values, -1, false) == std::vector<double>{20, 40, 20, 0});
+  CHECK(delayed(t_s, values, 9, false) == std::vector<double>(4, 10));
+  CHECK(delayed(t_s, values, -9, false) == std::vector<double>(4, 0));
+  const double just = 0.02, pi = std::numbers::pi;
+  const std::vector<double> two{0, 1}, across{pi - just, 3 * just - pi};
+  CHECK(delayed(two, across, 0.5, true)[1] == Approx(pi + just));  // the short way of 4 just
+}
+
+TEST_CASE("A clock that is behind is a delay; one that is ahead shows what comes, until the run ends") {
+  const runs::Run prompt = driven({}, 0.1, 0.3, kSomewhere),
+                  late_run = driven({.tracking_delay_s = 0.105}, 0.1, 0.3, kSomewhere),
+                  behind = driven({.clock_offset_s = 0.105}, 0.1, 0.3, kSomewhere),
+                  ahead = driven({.clock_offset_s = -0.2}, 0.1, 0.3, kSomewhere);
+  const std::size_t rows = prompt.row_count();
+  for (const std::string& column : prompt.columns) {
+    INFO(column);
+    const auto p = prompt.column(column), d = late_run.column(column), b = behind.column(column),
+               a = ahead.column(column);
+    if (column != "x_m" && column != "y_m" && column != "z_m" && column != "yaw_rad") {
+      CHECK(same_bits(prompt, behind, column));
+      CHECK(same_bits(prompt, ahead, column));
+      continue;
+    }
+    for (std::size_t row = 0; row < rows; ++row) {
+      REQUIRE(b[row] == Approx(d[row]).epsilon(0).margin(1e-9));
+      REQUIRE(a[row] == Approx(p[std::min(row + 20, rows - 1)]).epsilon(0).margin(1e-9));
+    }
+  }
+}
+
+TEST_CASE("A clock that is off leaves the noise of each row as it was") {
+  const auto standing = [](double offset_s) {
+    physics::RobotDescription robot = physics::load_robot("kenaf");
+    robot.effects.clock_offset_s = offset_s;
+    physics::WorldDescription world;
+    world.planes.push_back({});
+    world.start_poses.push_back({"start", {}});
+    Manoeuvre manoeuvre;
+    manoeuvre.timed = {{0, {}}, {1, {}}};
+    return roll_out(robot, world, manoeuvre, {}).run;
+  };
+  const runs::Run right = standing(0), off = standing(-0.1);
+  // it does not move, so that noise is all that there is: a millimetre, of which an average of rows would have less
+  for (std::size_t row = 0; row < right.row_count(); ++row)
+    REQUIRE(off.column("y_m")[row] == Approx(right.column("y_m")[row]).epsilon(0).margin(1e-5));
 }
