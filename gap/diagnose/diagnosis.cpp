@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 #include <utility>
 
+#include "gap/candidates/own_effects.hpp"
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/repeats.hpp"
 
@@ -29,17 +31,31 @@ bool has_obstacles(const Observations& observations) {
   });
 }
 
-// Throws std::invalid_argument for a name that no candidate has.
-std::vector<Candidate> candidates_but(std::vector<Candidate> candidates, const std::vector<std::string>& without) {
-  for (const std::string& name : without) {
+// Catalogue, numbers of the description and effects of one's own, without those left out; of candidates that do the same, the
+// first.
+std::vector<Candidate> candidates_for(const Observations& observations, const DiagnosisOptions& options) {
+  const physics::RobotDescription& robot = observations.robot;
+  std::vector<Candidate> all = catalogue_candidates(robot, has_obstacles(observations));
+  std::ranges::move(description_candidates(robot), std::back_inserter(all));
+  if (!options.effects.empty()) std::ranges::move(read_own_effects(options.effects, robot), std::back_inserter(all));
+  std::vector<std::string> left_out = options.without;
+  for (const std::string& name : options.without) {
     const bool is_known = physics::find_effect(name) != nullptr ||
-                          std::ranges::any_of(candidates, [&](const Candidate& c) { return c.effect == name; });
+                          std::ranges::any_of(all, [&](const Candidate& c) { return c.effect == name; });
     if (!is_known)
       throw std::invalid_argument(fmt::format("--without {}: no such effect; `kenaf-gap effects` lists them", name));
-    std::erase_if(candidates, [&](const Candidate& c) { return c.effect == name || c.same_as == name; });
+    for (const Candidate& c : all)
+      if (c.effect == name && !c.same_as.empty()) left_out.push_back(c.same_as);
   }
-  if (candidates.empty()) throw std::invalid_argument("--without leaves no effect to look for");
-  return candidates;
+  const auto is_left_out = [&](const std::string& name) { return std::ranges::count(left_out, name) > 0; };
+  std::vector<Candidate> result;
+  for (Candidate& candidate : all) {
+    const bool is_there = std::ranges::any_of(result, [&](const Candidate& c) { return c.effect == candidate.same_as; });
+    if (is_left_out(candidate.effect) || is_left_out(candidate.same_as) || is_there) continue;
+    result.push_back(std::move(candidate));
+  }
+  if (result.empty()) throw std::invalid_argument("--without leaves no effect to look for");
+  return result;
 }
 
 // Tells how far a diagnosis is: a stage's share of the time is known before, how many roll-outs it takes is not.
@@ -96,7 +112,7 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
   d.options.progress = {};
   d.options.stop = nullptr;
   d.observations = observe(folder, options.robot, options.world, options.most_runs);
-  d.candidates = candidates_but(catalogue_candidates(d.observations.robot, has_obstacles(d.observations)), options.without);
+  d.candidates = candidates_for(d.observations, options);
   d.features = compared_features(d.observations, options.span_s);
   if (std::ranges::all_of(d.features.maps, [](const FeatureMap& map) { return map.bins().empty(); }))
     throw runs::RunFileError(

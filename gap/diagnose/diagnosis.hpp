@@ -24,7 +24,9 @@ struct Progress {
 
 struct DiagnosisOptions {
   std::string robot, world;           // instead of the dataset's; empty: its own
-  std::vector<std::string> without;   // effects taken out of the catalogue; throws std::invalid_argument for others
+  std::filesystem::path effects;      // a file with effects of one's own (candidates/own_effects.hpp); empty: none
+  std::vector<std::string> without;   // candidates that are left out, by their effect's name or their key; of those that do
+                                      // the same, all. Throws std::invalid_argument for others
   std::size_t most_runs = 36;         // that are used of a larger dataset
   bool propose_next = true;           // manoeuvres that would tell more, where the verdict leaves a choice
   unsigned jobs = 0;                  // threads; 0: one a core
