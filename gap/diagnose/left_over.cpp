@@ -24,7 +24,8 @@ constexpr double kAlikeSides =
 struct Said {
   Dependence dependence;
   Quantity quantity;
-  Regressor on;
+  Candidate on;
+  bool of_runs;
 };
 
 std::string name_on(const Candidate& on, std::string_view channel) {
@@ -72,38 +73,56 @@ Dependence dependence_of(const LeftOverRows& rows, const LeftOverFit& fit, const
   return d;
 }
 
-bool is_same_kind(Regressor a, Regressor b) {
-  return a == b || (is_late(a) && is_late(b));
+bool is_same_kind(const Said& a, const Said& b) {
+  return a.of_runs == b.of_runs && (a.on.kind == b.on.kind || (is_late(a.on.kind) && is_late(b.on.kind)));
 }
 
-// Limits of two tracks have no slopes to compare; other terms do.
 bool is_alike(const Said& a, const Said& b) {
-  if (a.on != b.on || a.on == Regressor::ramp) return true;
-  const double of_a = a.dependence.slope + a.dependence.intercept, of_b = b.dependence.slope + b.dependence.intercept;
-  return std::abs(of_a - of_b) <= kAlikeSides * std::max(std::abs(of_a), std::abs(of_b));
+  if (a.on.kind != b.on.kind) return false;
+  const auto number = [](const Said& said) {
+    return said.on.kind == Regressor::ramp ? said.on.parameter : said.dependence.slope + said.dependence.intercept;
+  };
+  return std::abs(number(a) - number(b)) <= kAlikeSides * std::max(std::abs(number(a)), std::abs(number(b)));
 }
 
-// Where both tracks say the same, their mean or difference says it for them; where one has what the other has not, it
-// is that track's, and mean and difference say half of it each.
+double share_of(const Said* said) {
+  return said == nullptr ? 0 : said->dependence.share;
+}
+
+// Of both tracks, in one sentence.
+Said of_each_track(const Said& left, const Said& right) {
+  Said both = left.dependence.share < right.dependence.share ? left : right;
+  constexpr std::string_view kEach = "speed of each track";
+  both.dependence.words.replace(0, both.dependence.channel.size(), kEach);
+  both.dependence.channel = kEach;
+  return both;
+}
+
+// The same is seen in each track and in their mean and difference. It is told of the pair in which it takes more; of
+// tracks that are not alike, or of which one has it alone, of each by itself.
 std::vector<Said> without_doubles(const std::vector<Said>& all) {
   const auto find = [&](Quantity quantity, const Said& like) {
-    const bool of_runs = like.dependence.on == "run";
-    const auto found = std::ranges::find_if(all, [&](const Said& said) {
-      return said.quantity == quantity && is_same_kind(said.on, like.on) && (said.dependence.on == "run") == of_runs;
-    });
+    const auto found = std::ranges::find_if(
+        all, [&](const Said& said) { return said.quantity == quantity && is_same_kind(said, like); });
     return found == all.end() ? nullptr : &*found;
   };
   std::vector<Said> kept;
   for (const Said& said : all) {
     const bool of_side = said.quantity == Quantity::left_track || said.quantity == Quantity::right_track;
     const bool of_both = said.quantity == Quantity::track_mean || said.quantity == Quantity::track_difference;
+    if (!of_side && !of_both) {
+      kept.push_back(said);
+      continue;
+    }
     const Said *left = find(Quantity::left_track, said), *right = find(Quantity::right_track, said);
-    const bool told_by_both = find(Quantity::track_mean, said) || find(Quantity::track_difference, said);
-    const bool same = left != nullptr && right != nullptr && is_alike(*left, *right);
-    if (of_side && told_by_both && (same || said.dependence.on == "run")) continue;
-    const Said* alone = left == nullptr ? right : right == nullptr ? left : nullptr;
-    if (of_both && alone != nullptr && alone->dependence.share > said.dependence.share) continue;
-    kept.push_back(said);
+    const Said *mean = find(Quantity::track_mean, said), *difference = find(Quantity::track_difference, said);
+    const double by_side = share_of(left) + share_of(right), by_both = share_of(mean) + share_of(difference);
+    const bool alike = left != nullptr && right != nullptr && is_alike(*left, *right);
+    if (of_side != (by_side >= by_both - 2 * kClearlyMore)) continue;
+    if (of_both || !alike)
+      kept.push_back(said);
+    else if (&said == left)
+      kept.push_back(of_each_track(*left, *right));
   }
   return kept;
 }
@@ -130,8 +149,8 @@ std::vector<Dependence> describe_left_over(std::span<const LeftOverRun> runs, bo
     const LeftOverFit fit = fit_left_over(rows, held_out_together(rows, groups));
     for (const LeftOverTerm& term : fit.terms)
       if (term.share >= kLeastTold)
-        all.push_back({dependence_of(rows, fit, term), quantity.quantity, rows.candidates[term.candidate].kind});
-    if (fit.by_run) all.push_back({dependence_of(rows, fit, *fit.by_run), quantity.quantity, Regressor::simulated});
+        all.push_back({dependence_of(rows, fit, term), quantity.quantity, rows.candidates[term.candidate], false});
+    if (fit.by_run) all.push_back({dependence_of(rows, fit, *fit.by_run), quantity.quantity, {}, true});
   }
   std::vector<Dependence> told;
   for (Said& said : without_doubles(all)) told.push_back(std::move(said.dependence));

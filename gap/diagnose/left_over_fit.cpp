@@ -17,6 +17,7 @@ constexpr std::size_t kMostTerms = 3, kMostFolds = 10;  // chosen: ten as Hastie
 constexpr std::size_t kLeastRows = 12;                  // chosen: fewer tell nothing about four numbers
 constexpr double kBeyondNoise = 0.1;                    // of the noise's energy, that has to be left (chosen)
 constexpr double kAlike = 0.5;  // correlation with a candidate that does not hold (chosen: a quarter of its variance)
+constexpr double kSame = 0.8;   // with one that is chosen (chosen: the rest is less than half of it)
 constexpr double kSameSign = 0.95;   // of the draws of the bootstrap (chosen)
 constexpr std::size_t kDraws = 200;  // chosen: enough to tell 95 from 90 %
 // Of the seconds behind a late term those of its own parameter: with another share it is no delay, lag or limit
@@ -80,12 +81,13 @@ class Selection {
       barred[*best] = true;
       if (share < kLeastTold) break;
       if (!is_no_chance(losses - left) || !has_one_sign(with)) {
-        bar_alike(barred, *best);
+        bar_alike(barred, *best, kAlike);
         continue;
       }
       chosen_ = with;
       losses = left;
       terms.push_back({*best, share, 0});
+      bar_alike(barred, *best, kSame);
       // a second lateness would tell the first one's shape, not another cause
       if (is_late(rows_.candidates[*best].kind))
         for (std::size_t c = 0; c < barred.size(); ++c) barred[c] = barred[c] || is_late(rows_.candidates[c].kind);
@@ -93,11 +95,11 @@ class Selection {
     return terms;
   }
 
-  // What does not hold is not to come back under another name.
-  void bar_alike(std::vector<bool>& barred, std::size_t candidate) const {
+  // What does not hold is not to come back under another name, nor the difference of two that are nearly the same.
+  void bar_alike(std::vector<bool>& barred, std::size_t candidate, double correlation) const {
     const VectorXd x = rows_.x.col(static_cast<Index>(candidate)).normalized();
     for (std::size_t c = 0; c < barred.size(); ++c)
-      if (std::abs(x.dot(rows_.x.col(static_cast<Index>(c)).normalized())) > kAlike) barred[c] = true;
+      if (std::abs(x.dot(rows_.x.col(static_cast<Index>(c)).normalized())) > correlation) barred[c] = true;
   }
 
   // The one that leaves least; of kinds that leave about as much the first.

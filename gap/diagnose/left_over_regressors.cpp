@@ -67,33 +67,51 @@ std::vector<Candidate> candidates_for(const QuantityInfo& info) {
   return all;
 }
 
-VectorXd delayed(const VectorXd& values, double delay_s, double span_s) {
-  VectorXd result(values.size());
-  for (Index i = 0; i < values.size(); ++i) {
-    const double at = std::max(0.0, static_cast<double>(i) - delay_s / span_s);
-    const auto before = static_cast<Index>(at);
-    const Index after = std::min(before + 1, values.size() - 1);
-    result[i] = values[before] + (at - static_cast<double>(before)) * (values[after] - values[before]);
+// A simulated quantity by span, with what it was when the run began: half a span before the middle of the first one, in
+// which a step at the start is all but over.
+struct Course {
+  VectorXd values;
+  double start, span_s;
+
+  double before(Index i) const { return i == 0 ? start : values[i - 1]; }
+  double apart_s(Index i) const { return i == 0 ? span_s / 2 : span_s; }
+};
+
+// In a steady state before the run, as the other ones below.
+VectorXd delayed(const Course& course, double delay_s) {
+  VectorXd result(course.values.size());
+  for (Index i = 0; i < result.size(); ++i) {
+    const double at = static_cast<double>(i) - delay_s / course.span_s;
+    const auto after = static_cast<Index>(std::ceil(std::max(at, 0.0)));
+    const double to_go = (static_cast<double>(after) - at) * course.span_s / course.apart_s(after);
+    const double last = course.before(after), next = course.values[after];
+    result[i] = to_go >= 1 ? last : next + to_go * (last - next);
   }
   return result;
 }
 
-// A first-order lag of what is straight between spans, in the steady state of its first value.
-VectorXd lagged(const VectorXd& values, double lag_s, double span_s) {
-  VectorXd result = values;
-  const double decay = std::exp(-span_s / lag_s);
-  for (Index i = 1; i < values.size(); ++i) {
-    const double slope = (values[i] - values[i - 1]) / span_s;
+// A first-order lag of what is straight between spans.
+VectorXd lagged(const Course& course, double lag_s) {
+  VectorXd result(course.values.size());
+  double behind = 0;  // the input less the lagged one
+  for (Index i = 0; i < result.size(); ++i) {
+    const double apart_s = course.apart_s(i), decay = std::exp(-apart_s / lag_s);
+    const double slope = (course.values[i] - course.before(i)) / apart_s;
     // of a straight input the lag follows at a distance of slope * lag
-    result[i] = values[i] - slope * lag_s + decay * (result[i - 1] - values[i - 1] + slope * lag_s);
+    behind = slope * lag_s + decay * (behind - slope * lag_s);
+    result[i] = course.values[i] - behind;
   }
   return result;
 }
 
-VectorXd limited(const VectorXd& values, double limit, double span_s) {
-  VectorXd result = values;
-  for (Index i = 1; i < values.size(); ++i)
-    result[i] = result[i - 1] + std::clamp(values[i] - result[i - 1], -limit * span_s, limit * span_s);
+VectorXd limited(const Course& course, double limit) {
+  VectorXd result(course.values.size());
+  double now = course.start;
+  for (Index i = 0; i < result.size(); ++i) {
+    const double most = limit * course.apart_s(i);
+    now += std::clamp(course.values[i] - now, -most, most);
+    result[i] = now;
+  }
   return result;
 }
 
@@ -130,20 +148,46 @@ VectorXd command_of(const Measured& m, Quantity quantity) {
                                                                  : VectorXd();
 }
 
-// A column of one run; empty where it was not measured there. `simulated` without gaps.
+// What the quantity was when the run began, where the simulation began too; NaN where that was not measured.
+double at_start(const LeftOverRun& run, Quantity quantity) {
+  const auto first = [&](std::string_view column) {
+    const auto values = run.observation->run.column(column);
+    return values.empty() ? std::numeric_limits<double>::quiet_NaN() : values.front();
+  };
+  const double left = first("track_left_mps"), right = first("track_right_mps");
+  switch (quantity) {
+    case Quantity::left_track:
+      return left;
+    case Quantity::right_track:
+      return right;
+    case Quantity::track_difference:
+      return right - left;
+    case Quantity::track_mean:
+    case Quantity::forward:
+      return (left + right) / 2;
+    case Quantity::gyro:
+    case Quantity::yaw_rate:
+      return first("gyro_z_radps");
+    default:
+      return std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+// A column of one run; empty where it was not measured there.
 VectorXd regressor_of(const Candidate& candidate, const LeftOverRun& run, const Measured& m, const QuantityInfo& info,
-                      const VectorXd& simulated) {
+                      const Course& course) {
+  const VectorXd& simulated = course.values;
   const double span_s = run.features->span_s();
   switch (candidate.kind) {
     case Regressor::simulated:
     case Regressor::direction:  // rows_of() makes it one once it knows all runs
       return simulated;
     case Regressor::delay:
-      return (simulated - delayed(simulated, candidate.parameter, span_s)) / candidate.parameter;
+      return (simulated - delayed(course, candidate.parameter)) / candidate.parameter;
     case Regressor::lag:
-      return (simulated - lagged(simulated, candidate.parameter, span_s)) / candidate.parameter;
+      return (simulated - lagged(course, candidate.parameter)) / candidate.parameter;
     case Regressor::ramp:
-      return simulated - limited(simulated, candidate.parameter, span_s);
+      return simulated - limited(course, candidate.parameter);
     case Regressor::constant:
       return VectorXd::Ones(simulated.size());
     case Regressor::command:
@@ -222,10 +266,11 @@ LeftOverRows rows_of(std::span<const LeftOverRun> runs, const QuantityInfo& quan
     const QuantitySeries series = series_of(runs[r], quantity.quantity);
     if (series.measured.size() == 0) continue;
     const Measured measured = measured_in(runs[r]);
-    const VectorXd gapless = filled(series.simulated);
+    Course course{filled(series.simulated), at_start(runs[r], quantity.quantity), runs[r].features->span_s()};
+    if (std::isnan(course.start)) course.start = course.values[0];
     std::vector<VectorXd> columns;
     for (const Candidate& candidate : rows.candidates)
-      columns.push_back(regressor_of(candidate, runs[r], measured, quantity, gapless));
+      columns.push_back(regressor_of(candidate, runs[r], measured, quantity, course));
     const bool has_speed = measured.speed_mps.size() > 0;
     for (Index i = 0; i < series.measured.size(); ++i) {
       const double left = series.measured[i] - series.simulated[i];
