@@ -1,0 +1,237 @@
+#include "gap/diagnose/left_over_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+
+namespace kenaf::gap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t kMostTerms = 3, kMostFolds = 10;  // chosen: ten as Hastie et al. recommend
+constexpr std::size_t kLeastRows = 12;                  // chosen: fewer tell nothing about four numbers
+constexpr double kBeyondNoise = 0.1;                    // of the noise's energy, that has to be left (chosen)
+constexpr double kAlike = 0.5;  // correlation with a candidate that does not hold (chosen: a quarter of its variance)
+constexpr double kSame = 0.8;   // with one that is chosen (chosen: the rest is less than half of it)
+constexpr double kSameSign = 0.95;   // of the draws of the bootstrap (chosen)
+constexpr std::size_t kDraws = 200;  // chosen: enough to tell 95 from 90 %
+// Of the seconds behind a late term those of its own parameter: with another share it is no delay, lag or limit
+// (chosen).
+constexpr double kLeastOfLate = 0.5, kMostOfLate = 1.6;
+
+MatrixXd columns_of(const LeftOverRows& rows, const std::vector<std::size_t>& terms) {
+  MatrixXd x(rows.x.rows(), static_cast<Index>(terms.size()));
+  for (std::size_t t = 0; t < terms.size(); ++t)
+    x.col(static_cast<Index>(t)) = rows.x.col(static_cast<Index>(terms[t]));
+  return x;
+}
+
+class Selection {
+ public:
+  Selection(const LeftOverRows& rows, const std::vector<std::size_t>& unit_of_row)
+      : rows_(rows), unit_(unit_of_row), robust_(robust_for(rows)) {
+    units_ = 1 + *std::ranges::max_element(unit_);
+    folds_ = std::min(units_, kMostFolds);
+    left_ = robust_.losses(rows.error).sum();
+    beyond_ = left_ - robust_.of_run.dot(rows.sigma.cwiseAbs2());
+    noise_ = left_ - beyond_;
+  }
+
+  LeftOverFit fit() {
+    LeftOverFit result;
+    const bool is_left = beyond_ > kBeyondNoise * noise_;
+    if (units_ >= 2 && is_left) result.terms = terms();
+    const MatrixXd x = columns_of(rows_, chosen_);
+    const VectorXd slopes = robust_slopes(x, rows_.error, robust_, VectorXd::Ones(x.rows()));
+    for (std::size_t t = 0; t < chosen_.size(); ++t) result.terms[t].slope = slopes[static_cast<Index>(t)];
+    result.rest = rows_.error - x * slopes;
+    result.weights = robust_.row_weights(result.rest);
+    if (is_left) result.by_run = run_factor(rows_, result, robust_, beyond_);
+    limit_shares(result);
+    return result;
+  }
+
+ private:
+  // Terms that take more than there is beyond noise say that there is less noise: then they take all of it together.
+  static void limit_shares(LeftOverFit& fit) {
+    double sum = fit.by_run ? fit.by_run->share : 0;
+    for (const LeftOverTerm& term : fit.terms) sum += term.share;
+    if (sum <= 1) return;
+    for (LeftOverTerm& term : fit.terms) term.share /= sum;
+    if (fit.by_run) fit.by_run->share /= sum;
+    if (fit.by_run && fit.by_run->share < kLeastTold) fit.by_run.reset();
+  }
+
+  std::vector<LeftOverTerm> terms() {
+    std::vector<LeftOverTerm> terms;
+    std::vector<bool> barred(rows_.candidates.size(), false);
+    VectorXd losses = held_out_losses({});
+    while (terms.size() < kMostTerms) {
+      const auto best = best_candidate(barred, losses);
+      if (!best) break;
+      std::vector<std::size_t> with = chosen_;
+      with.push_back(*best);
+      const VectorXd left = held_out_losses(with);
+      const double share = (losses - left).sum() / beyond_;
+      barred[*best] = true;
+      if (share < kLeastTold) break;
+      if (!is_no_chance(losses - left) || !has_one_sign(with)) {
+        bar_alike(barred, *best, kAlike);
+        continue;
+      }
+      chosen_ = with;
+      losses = left;
+      terms.push_back({*best, share, 0});
+      bar_alike(barred, *best, kSame);
+      // a second lateness would tell the first one's shape, not another cause
+      if (is_late(rows_.candidates[*best].kind))
+        for (std::size_t c = 0; c < barred.size(); ++c) barred[c] = barred[c] || is_late(rows_.candidates[c].kind);
+    }
+    return terms;
+  }
+
+  // What does not hold is not to come back under another name, nor the difference of two that are nearly the same.
+  void bar_alike(std::vector<bool>& barred, std::size_t candidate, double correlation) const {
+    const VectorXd x = rows_.x.col(static_cast<Index>(candidate)).normalized();
+    for (std::size_t c = 0; c < barred.size(); ++c)
+      if (std::abs(x.dot(rows_.x.col(static_cast<Index>(c)).normalized())) > correlation) barred[c] = true;
+  }
+
+  // The one that leaves least; of kinds that leave about as much the first.
+  std::optional<std::size_t> best_candidate(const std::vector<bool>& barred, const VectorXd& before) const {
+    std::map<Regressor, std::pair<double, std::size_t>> best_of_kind;
+    for (std::size_t c = 0; c < rows_.candidates.size(); ++c) {
+      if (barred[c]) continue;
+      std::vector<std::size_t> with = chosen_;
+      with.push_back(c);
+      if (!is_plausible(with)) continue;
+      const double gain = (before - held_out_losses(with)).sum();
+      // delay, lag and limit are one kind with three shapes
+      const Regressor of = is_late(rows_.candidates[c].kind) ? Regressor::delay : rows_.candidates[c].kind;
+      const auto [kind, is_new] = best_of_kind.try_emplace(of, gain, c);
+      if (!is_new && gain > kind->second.first) kind->second = {gain, c};
+    }
+    if (best_of_kind.empty()) return std::nullopt;
+    double best = 0;
+    for (const auto& [kind, found] : best_of_kind) best = std::max(best, found.first);
+    for (const auto& [kind, found] : best_of_kind)
+      if (found.first >= best - kClearlyMore * beyond_) return found.second;
+    return std::nullopt;
+  }
+
+  VectorXd held_out_losses(const std::vector<std::size_t>& terms) const {
+    const MatrixXd x = columns_of(rows_, terms);
+    VectorXd residual = rows_.error;
+    if (!terms.empty())
+      for (std::size_t fold = 0; fold < folds_; ++fold) {
+        VectorXd mask = VectorXd::Ones(x.rows());
+        for (std::size_t i = 0; i < unit_.size(); ++i)
+          if (unit_[i] % folds_ == fold) mask[static_cast<Index>(i)] = 0;
+        const VectorXd slopes = robust_slopes(x, rows_.error, robust_, mask);
+        residual -= (1 - mask.array()).matrix().cwiseProduct(x * slopes);
+      }
+    return robust_.losses(residual);
+  }
+
+  // A delay, lag or limit of about what its parameter says, beside the share that is measured at all.
+  bool is_plausible(const std::vector<std::size_t>& with) const {
+    if (std::ranges::none_of(with, [&](std::size_t c) { return is_late(rows_.candidates[c].kind); })) return true;
+    const MatrixXd x = columns_of(rows_, with);
+    const VectorXd slopes = robust_slopes(x, rows_.error, robust_, VectorXd::Ones(x.rows()));
+    std::vector<LeftOverTerm> terms;
+    for (std::size_t t = 0; t < with.size(); ++t) terms.push_back({with[t], 0, slopes[static_cast<Index>(t)]});
+    for (const LeftOverTerm& term : terms) {
+      const Candidate& candidate = rows_.candidates[term.candidate];
+      if (!is_late(candidate.kind)) continue;
+      const double late = lateness(rows_, terms, term);
+      const double of_parameter = candidate.kind == Regressor::ramp ? late : std::abs(late) / candidate.parameter;
+      if (!(of_parameter > kLeastOfLate && of_parameter < kMostOfLate)) return false;
+    }
+    return true;
+  }
+
+  bool is_no_chance(const VectorXd& gains) const {
+    std::vector<double> by_unit(units_, 0);
+    for (std::size_t i = 0; i < unit_.size(); ++i) by_unit[unit_[i]] += gains[static_cast<Index>(i)];
+    return is_above_chance(by_unit);
+  }
+
+  // Of the last term's slope, in draws of as many units with replacement.
+  bool has_one_sign(const std::vector<std::size_t>& with) const {
+    const MatrixXd x = columns_of(rows_, with);
+    const VectorXd slopes = robust_slopes(x, rows_.error, robust_, VectorXd::Ones(x.rows()));
+    const VectorXd weights = robust_.row_weights(rows_.error - x * slopes);
+    std::vector<MatrixXd> square(units_, MatrixXd::Zero(x.cols(), x.cols()));
+    std::vector<VectorXd> right(units_, VectorXd::Zero(x.cols()));
+    for (std::size_t i = 0; i < unit_.size(); ++i) {
+      const auto row = static_cast<Index>(i);
+      square[unit_[i]] += weights[row] * x.row(row).transpose() * x.row(row);
+      right[unit_[i]] += weights[row] * rows_.error[row] * x.row(row).transpose();
+    }
+    std::mt19937_64 random(1);
+    std::size_t same = 0;
+    for (std::size_t draw = 0; draw < kDraws; ++draw) {
+      MatrixXd sum = MatrixXd::Zero(x.cols(), x.cols());
+      VectorXd sum_right = VectorXd::Zero(x.cols());
+      for (std::size_t i = 0; i < units_; ++i) {
+        const std::size_t unit = random() % units_;
+        sum += square[unit];
+        sum_right += right[unit];
+      }
+      const VectorXd drawn = ridge_solution(sum, sum_right);
+      if (drawn[drawn.size() - 1] * slopes[slopes.size() - 1] > 0) ++same;
+    }
+    return static_cast<double>(same) >= kSameSign * static_cast<double>(kDraws);
+  }
+
+  const LeftOverRows& rows_;
+  const std::vector<std::size_t>& unit_;
+  RobustRows robust_;
+  std::size_t units_ = 0, folds_ = 0;
+  double left_ = 0, beyond_ = 0, noise_ = 0;
+  std::vector<std::size_t> chosen_;
+};
+
+}  // namespace
+
+std::vector<std::size_t> held_out_together(const LeftOverRows& rows, std::span<const std::size_t> group_of_run) {
+  constexpr std::size_t kLeastGroups = 4;
+  constexpr double kStretches = 12, kShortest_s = 1;  // chosen: ten folds of them, longer than what is lagged about
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> number;
+  std::map<std::size_t, double> duration;  // of each run
+  std::map<std::size_t, std::size_t> groups;
+  for (std::size_t i = 0; i < rows.run.size(); ++i) {
+    groups.try_emplace(group_of_run[rows.run[i]], groups.size());
+    duration[rows.run[i]] = rows.time_s[static_cast<Index>(i)];
+  }
+  double total_s = 0;
+  for (const auto& [run, seconds] : duration) total_s += seconds;
+  const bool by_time = groups.size() < kLeastGroups;
+  const double stretch_s = std::max(kShortest_s, total_s / kStretches);
+  std::vector<std::size_t> units;
+  for (std::size_t i = 0; i < rows.run.size(); ++i) {
+    const auto stretch = static_cast<std::size_t>(rows.time_s[static_cast<Index>(i)] / stretch_s);
+    const auto key = by_time ? std::pair(rows.run[i], stretch) : std::pair(group_of_run[rows.run[i]], std::size_t{0});
+    units.push_back(number.try_emplace(key, number.size()).first->second);
+  }
+  return units;
+}
+
+LeftOverFit fit_left_over(const LeftOverRows& rows, const std::vector<std::size_t>& unit_of_row) {
+  if (rows.run.size() < kLeastRows) return {{}, std::nullopt, rows.error, VectorXd::Ones(rows.error.size())};
+  return Selection(rows, unit_of_row).fit();
+}
+
+double lateness(const LeftOverRows& rows, const std::vector<LeftOverTerm>& terms, const LeftOverTerm& term) {
+  double measured_share = 1;
+  for (const LeftOverTerm& other : terms)
+    if (rows.candidates[other.candidate].kind == Regressor::simulated) measured_share += other.slope;
+  return -term.slope / measured_share;
+}
+
+}  // namespace kenaf::gap

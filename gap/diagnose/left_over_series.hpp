@@ -1,0 +1,55 @@
+// The quantities in which a left-over is told: rates of the body in place of its pose, both tracks as mean and difference.
+// Thread safety: values and pure functions.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string_view>
+
+#include "gap/diagnose/left_over.hpp"
+
+namespace kenaf::gap {
+
+enum class Quantity {
+  track_mean,
+  track_difference,  // right minus left
+  left_track,
+  right_track,
+  current,           // mean of the tracks' motors
+  battery,
+  forward,           // in the body's frame, from the pose
+  sideways,
+  yaw_rate,          // from the pose
+  gyro,
+  pitch,
+  roll,
+  height
+};
+
+struct QuantityInfo {
+  Quantity quantity;
+  std::string_view name, unit;
+  bool drive;  // seen between command and drive
+};
+std::span<const QuantityInfo> left_over_quantities();
+
+// One quantity of one run: a value for each span from the run's start on, NaN where it was not measured.
+struct QuantitySeries {
+  Eigen::VectorXd measured, simulated, sigma;
+};
+// Empty where it was measured nowhere in the run.
+QuantitySeries series_of(const LeftOverRun& run, Quantity quantity);
+
+// The mean of a measured column over each span; empty where there is no such column.
+Eigen::VectorXd column_by_span(const LeftOverRun& run, std::string_view column);
+
+// As many spans as the run has.
+Eigen::Index span_count(const LeftOverRun& run);
+
+// Without NaN: linear between known values, the nearest one beyond them; 0 where none is known.
+Eigen::VectorXd filled(const Eigen::VectorXd& values);
+
+// Change for each second, over half a second or a little more; NaN at the ends and beside gaps.
+Eigen::VectorXd rate_of(const Eigen::VectorXd& values, double span_s);
+
+}  // namespace kenaf::gap

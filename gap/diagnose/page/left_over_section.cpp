@@ -1,0 +1,65 @@
+#include "gap/diagnose/page/left_over_section.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gap/diagnose/page/figures.hpp"
+#include "gap/diagnose/page/words.hpp"
+#include "gap/plot/chart.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+constexpr std::size_t kMostPlots = 6;  // chosen: three rows of two
+constexpr double kDot_px = 2;
+
+std::string with_unit(std::string_view text, std::string_view unit) {
+  return unit.empty() ? std::string(text) : fmt::format("{} ({})", text, unit);
+}
+
+}  // namespace
+
+std::string left_over_plot(const Dependence& d) {
+  const bool by_run = d.on == "run", constant = d.on == "constant";
+  plot::Chart chart;
+  chart.title = fmt::format("{} over {}: {} of what is left", d.channel, by_run ? "runs" : d.on, percent(d.share));
+  chart.x_label = with_unit(by_run ? "number of the run" : constant ? "simulated " + d.channel : d.on, d.on_unit);
+  chart.y_label = by_run ? with_unit(d.channel, d.unit) : with_unit("measured minus simulated", d.unit);
+  chart.width_px = kHalf_px;
+  if (d.points.empty()) return to_svg(chart);
+  double low = d.points.front()[0], high = low;
+  for (const auto& [x, y] : d.points) {
+    low = std::min(low, x);
+    high = std::max(high, x);
+    chart.discs.push_back({{x, y}, kDot_px, plot::Ink::real});
+    chart.include.emplace_back(x, y);
+  }
+  const auto on_line = [&](double x) { return plot::Point(x, d.intercept + d.slope * x); };
+  chart.lines.push_back(
+      {{on_line(low), on_line(high)}, plot::Ink::sim, plot::Stroke::solid, by_run ? "middle of the runs" : "fit"});
+  if (!by_run) chart.lines.push_back({{{low, 0}, {high, 0}}, plot::Ink::faint, plot::Stroke::hair});
+  return to_svg(chart);
+}
+
+std::string left_over_section(std::span<const Dependence> left_over) {
+  std::string html = section_head("left-over", "What is left, in words");
+  if (left_over.empty())
+    return html + paragraph("What is left beyond noise, if anything, goes with nothing that was measured.");
+  html += paragraph(
+      "What the best model leaves, over what was measured: only what holds on runs that were held out of the fit. "
+      "Shares "
+      "are of what is left in that channel beyond noise.",
+      "soft");
+  html += "<ul>\n";
+  for (const Dependence& d : left_over)
+    html += fmt::format("<li>{}{}</li>\n", plot::escaped(d.words + "."),
+                        d.look_at.empty() ? ""
+                                          : fmt::format(" <span class=\"soft\">Look at {}.</span>",
+                                                        plot::escaped(enumeration(d.look_at, "or"))));
+  html += "</ul>\n<div class=\"figures\">\n";
+  for (const Dependence& d : left_over.first(std::min(kMostPlots, left_over.size()))) html += left_over_plot(d);
+  return html + "</div>\n";
+}
+
+}  // namespace kenaf::gap
