@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "gap/diagnose/next_manoeuvre.hpp"
 #include "gap/diagnose/observation.hpp"
 #include "gap/diagnose/prediction.hpp"
 #include "gap/diagnose/stage_diagnosis.hpp"
@@ -49,6 +50,7 @@ struct Diagnosis {
   Verdict verdict = Verdict::unknown;     // of all stages together
   bool complete = false;                  // of all stages
   std::optional<std::size_t> largest_stage;  // of `stages`: the one that holds most of the gap, where there is one
+  std::vector<ProposedManoeuvre> next;    // where a stage leaves a choice between models; gentlest that suffices first
   std::size_t roll_outs = 0;
   std::string interrupted;                // what was under way when it was stopped; empty: it is complete
 };

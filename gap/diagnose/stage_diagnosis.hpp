@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gap/diagnose/isolability.hpp"
+#include "gap/diagnose/left_over.hpp"
 #include "gap/diagnose/stage_decision.hpp"
 #include "gap/diagnose/where.hpp"
 
@@ -47,6 +48,7 @@ struct StageDiagnosis {
   GapPlaces where, where_left;
   Isolability isolability;
   std::vector<SingleEvidence> ranking;      // best first
+  std::vector<Dependence> left_over;        // what is left goes with these, largest share first; none where it is complete
 
   bool is_measured() const { return !decision.data.groups.empty(); }
 };
