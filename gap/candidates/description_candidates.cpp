@@ -1,0 +1,246 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+#include <string_view>
+
+#include "gap/candidates/candidate.hpp"
+#include "gap/candidates/robot_numbers.hpp"
+#include "gap/candidates/search_range.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+using physics::RobotDescription;
+using physics::Stage;
+
+constexpr double kLongestConstant_s = 2, kLongestReport_s = 0.6;
+constexpr double kJustInside = 0.99;  // where a limit itself is out
+
+struct DescribedNumber {
+  std::string_view key, unit;
+  Stage stage;
+  std::string_view summary;
+  SearchRange (*range)(const RobotDescription&, double value);
+  std::string_view same_as = {};
+};
+
+SearchRange doubled(const RobotDescription&, double value) {
+  return half_to_twice(value);
+}
+
+// Moments: those that a rigid body can have with the two others as they are.
+template <int axis>
+SearchRange moment(const RobotDescription& robot, double value) {
+  const double a = robot.body.inertia_kgm2[(axis + 1) % 3], b = robot.body.inertia_kgm2[(axis + 2) % 3];
+  return within(half_to_twice(value), {std::abs(a - b), a + b});
+}
+
+// A fixed part of the track's length to both sides.
+SearchRange along(const RobotDescription& robot, double value) {
+  return {value - 0.15 * robot.track.length_m, value + 0.15 * robot.track.length_m};
+}
+SearchRange upward(const RobotDescription& robot, double value) {
+  return {value - 0.09 * robot.track.length_m, value + 0.15 * robot.track.length_m};
+}
+SearchRange across(const RobotDescription& robot, double value) {
+  const double reach = std::min(0.15 * robot.track.length_m, 0.25 * robot.track_gauge_m());
+  return {value - reach, value + reach};
+}
+// Half of an end's radius: beyond, the hull would be on the ground or high above it.
+SearchRange height(const RobotDescription& robot, double value) {
+  return {value - robot.track.end_radius_m / 2, value + robot.track.end_radius_m / 2};
+}
+
+// Of two numbers of which one is the larger, each may go up to half way to the other, so that both may at once.
+double between_length_and_ends_m(const RobotDescription& robot) {
+  return robot.track.length_m / 2 + robot.track.end_radius_m;
+}
+double between_separation_and_width_m(const RobotDescription& robot) {
+  return (robot.track_gauge_m() + robot.track.width_m) / 2;
+}
+SearchRange track_length(const RobotDescription& robot, double value) {
+  return {std::max(value / 2, between_length_and_ends_m(robot)), 2 * value};
+}
+SearchRange contact_length(const RobotDescription& robot, double value) {
+  const double ends_m = 2 * robot.track.end_radius_m;
+  const SearchRange length = track_length(robot, value + ends_m);
+  return {length.min - ends_m, length.max - ends_m};
+}
+SearchRange end_radius(const RobotDescription& robot, double value) {
+  return within(half_to_twice(value), {0, kJustInside * between_length_and_ends_m(robot) / 2});
+}
+SearchRange separation(const RobotDescription& robot, double value) {
+  return {std::max(value / 2, between_separation_and_width_m(robot)), 2 * value};
+}
+SearchRange track_width(const RobotDescription& robot, double value) {
+  return within(half_to_twice(value), {0, kJustInside * between_separation_and_width_m(robot)});
+}
+
+// The hull fits between the tracks and stays off level ground.
+SearchRange hull_length(const RobotDescription&, double value) {
+  return {0.5 * value, 1.5 * value};
+}
+SearchRange hull_width(const RobotDescription& robot, double value) {
+  return within(half_to_twice(value), {0, robot.track_gauge_m() - robot.track.width_m});
+}
+SearchRange hull_height(const RobotDescription& robot, double value) {
+  return within(half_to_twice(value), {0, 2 * (robot.track.end_radius_m - robot.track.p_BT_m.z())});
+}
+
+// The drums differ in radius by less than the arm is long, at the far ends of all three ranges too.
+double slack_m(const physics::FlipperDescription& flipper) {
+  return flipper.length_m - std::abs(flipper.pivot_radius_m - flipper.tip_radius_m);
+}
+SearchRange flipper_length(const RobotDescription& robot, double value) {
+  return {std::max(value / 2, value - slack_m(robot.flipper.front()) / 2), 2 * value};
+}
+SearchRange drum_radius(const RobotDescription& robot, double value) {
+  const double reach = kJustInside * slack_m(robot.flipper.front()) / 4;
+  return within(half_to_twice(value), {value - reach, value + reach});
+}
+SearchRange pivot_ahead(const RobotDescription& robot, double value) {
+  return within(half_to_twice(value), along(robot, value));
+}
+
+// Up to 3 % of an end's radius, and a robot without lugs may have some.
+SearchRange lugs(const RobotDescription& robot, double value) {
+  return {0, std::max(3 * value, 0.03 * robot.track.end_radius_m)};
+}
+SearchRange time_constant(const RobotDescription&, double value) {
+  return {0, std::max(kLongestConstant_s, value)};
+}
+SearchRange report_delay(const RobotDescription&, double value) {
+  return {0, std::max(kLongestReport_s, value)};
+}
+// A voltage that falls to a sixth while both tracks are stalled; where the description has no currents, 5 ohm.
+SearchRange resistance(const RobotDescription& robot, double value) {
+  const double stalled_a = 2 * robot.drive.amperes_per_newton * robot.drive.max_force_n;
+  const double more_ohm = stalled_a > 0 ? std::min(5.0, 5 * robot.battery.open_circuit_v / stalled_a) : 5;
+  return {0, value + more_ohm};
+}
+
+constexpr DescribedNumber kDescribed[] = {
+    {"body.mass_kg", "kg", Stage::body, "mass of the body, whose moments of inertia stay", doubled, "mass"},
+    {"body.center_of_mass_m[0]", "m", Stage::body, "how far ahead the body's centre of mass is", along, "com_forward"},
+    {"body.center_of_mass_m[1]", "m", Stage::body, "how far left the body's centre of mass is", across, "com_left"},
+    {"body.center_of_mass_m[2]", "m", Stage::body, "how high the body's centre of mass is", upward, "com_up"},
+    {"body.inertia_kgm2[0]", "kg m^2", Stage::body, "moment of inertia of the body about x", moment<0>, "roll_inertia"},
+    {"body.inertia_kgm2[1]", "kg m^2", Stage::body, "moment of inertia of the body about y", moment<1>,
+     "pitch_inertia"},
+    {"body.inertia_kgm2[2]", "kg m^2", Stage::body, "moment of inertia of the body about z", moment<2>, "yaw_inertia"},
+    {"body.size_m[0]", "m", Stage::body, "length of the hull between the tracks", hull_length},
+    {"body.size_m[1]", "m", Stage::body, "width of the hull between the tracks", hull_width},
+    {"body.size_m[2]", "m", Stage::body, "height of the hull between the tracks", hull_height},
+    {"body.friction", "1", Stage::contact, "friction of the hull", doubled},
+    {"track.length_m", "m", Stage::body, "length of the tracks over both ends", track_length},
+    {"track.contact_length_m", "m", Stage::body, "length of the tracks' flat belly", contact_length, "track.length_m"},
+    {"track.end_radius_m", "m", Stage::body, "radius of the tracks' ends, on which the robot stands higher",
+     end_radius},
+    {"track.width_m", "m", Stage::body, "width of the belts", track_width},
+    {"track.separation_m", "m", Stage::body, "distance between the tracks' centre planes", separation},
+    {"track.left_center_m[0]", "m", Stage::body, "how far ahead of the body's centre the tracks are", along},
+    {"track.left_center_m[2]", "m", Stage::body, "height of the tracks on the body", height},
+    {"track.friction_along", "1", Stage::contact, "friction of the main belts in rolling direction", doubled,
+     "friction_along"},
+    {"track.friction_across", "1", Stage::contact, "friction of the main belts across", doubled, "friction_across"},
+    {"track.lug_height_m", "m", Stage::contact, "height of the lugs that catch at an edge", lugs, "lug_height"},
+    {"drive.max_speed_mps", "m/s", Stage::drive, "the track motors' speed without load", doubled},
+    {"drive.max_force_n", "N", Stage::drive, "the track motors' force at standstill", doubled, "drive_torque_limit"},
+    {"drive.time_constant_s", "s", Stage::drive, "first-order lag of the track's speed loop", time_constant},
+    {"drive.moving_mass_kg", "kg", Stage::drive, "belt, gear and rotor, as felt at the belt", doubled},
+    {"drive.amperes_per_newton", "A/N", Stage::drive, "motor current for a belt force", doubled},
+    {"drive.idle_amperes", "A", Stage::drive, "motor current of a track that turns without load", doubled},
+    {"battery.open_circuit_v", "V", Stage::drive, "voltage of the battery without load", doubled},
+    {"battery.internal_resistance_ohm", "ohm", Stage::drive, "what lowers the battery's voltage under load", resistance,
+     "battery_sag"},
+    {"flipper.mass_kg", "kg", Stage::body, "mass of each flipper", doubled},
+    {"flipper.length_m", "m", Stage::body, "length of the flippers, from pivot to tip drum", flipper_length},
+    {"flipper.pivot_radius_m", "m", Stage::body, "radius of the flippers' drums at the pivot", drum_radius},
+    {"flipper.tip_radius_m", "m", Stage::body, "radius of the flippers' drums at the tip", drum_radius},
+    {"flipper.width_m", "m", Stage::body, "width of the flippers' belts", doubled},
+    {"flipper.front_left_pivot_m[0]", "m", Stage::body, "how far from the middle, along x, the flippers' pivots are",
+     pivot_ahead},
+    {"flipper.front_left_pivot_m[1]", "m", Stage::body, "how far from the middle, along y, the flippers' pivots are",
+     across},
+    {"flipper.front_left_pivot_m[2]", "m", Stage::body, "height of the flippers' pivots on the body", height},
+    {"flipper.friction_along", "1", Stage::contact, "friction of the flippers' belts in rolling direction", doubled},
+    {"flipper.friction_across", "1", Stage::contact, "friction of the flippers' belts across", doubled},
+    {"servo.max_speed_radps", "rad/s", Stage::drive, "the flipper servos' speed", doubled},
+    {"servo.max_torque_nm", "N m", Stage::drive, "the flipper servos' torque", doubled, "flipper_torque_limit"},
+    {"servo.amperes_per_nm", "A/(N m)", Stage::drive, "the flipper servos' current for a torque", doubled},
+};
+
+// Of the sensors that are recorded; what one of another name, or a second one, reports is in no run.
+std::string_view delayed(physics::SensorType type) {
+  switch (type) {
+    case physics::SensorType::ins:
+      return "the posture sensor reports late";
+    case physics::SensorType::imu:
+      return "gyro and acceleration are reported late";
+    case physics::SensorType::encoder:
+      return "the tracks' travel is reported late";
+    case physics::SensorType::tachometer:
+      return "the tracks' speeds are reported late";
+    case physics::SensorType::drives:
+      return "currents, voltage and flipper angles are reported late";
+    default:
+      return {};
+  }
+}
+std::string_view same_delay(physics::SensorType type) {
+  return type == physics::SensorType::ins ? "posture_delay" : type == physics::SensorType::imu ? "gyro_delay" : "";
+}
+
+std::string last_word(const std::string& key) {
+  return key.substr(key.rfind('.') + 1);
+}
+
+// An effect does the same only if there is one, and it moves nothing else: those of friction move the flippers' too.
+bool does_the_same(std::string_view effect, const RobotDescription& robot) {
+  if (effect.starts_with("friction_") && robot.has_flippers()) return false;
+  if (effect == "lug_height" && robot.track.lug_height_m == 0) return false;
+  return effect.starts_with("track.") || physics::find_effect(effect) != nullptr;
+}
+
+// Nothing where there is no range: of a number that is 0 half and twice are 0.
+void add_candidate(std::vector<Candidate>& candidates, const DescribedNumber& described, const std::string& key,
+                   const RobotDescription& robot) {
+  const std::optional<RobotNumber> number = find_robot_number(robot, key);
+  if (!number) return;
+  const double value = number->get(robot);
+  const SearchRange range = with(within(described.range(robot, value), {number->range.min, number->range.max}), value);
+  if (!(range.min < range.max)) return;
+  Candidate candidate;
+  candidate.name = candidate.effect = key;
+  candidate.parameter = last_word(key);
+  candidate.unit = described.unit;
+  candidate.summary = described.summary;
+  candidate.stage = described.stage;
+  candidate.neutral = candidate.present = value;
+  candidate.min = range.min;
+  candidate.max = range.max;
+  candidate.is_number_of_description = true;
+  if (does_the_same(described.same_as, robot)) candidate.same_as = described.same_as;
+  candidate.keys = {number->written_as};
+  candidate.set = number->set;
+  candidates.push_back(std::move(candidate));
+}
+
+}  // namespace
+
+std::vector<Candidate> description_candidates(const RobotDescription& robot) {
+  std::vector<Candidate> candidates;
+  for (const DescribedNumber& described : kDescribed)
+    add_candidate(candidates, described, std::string(described.key), robot);
+  std::set<physics::SensorType> recorded;
+  for (const physics::SensorDescription& sensor : robot.sensors) {
+    const std::string_view summary = delayed(sensor.type);
+    if (summary.empty() || !recorded.insert(sensor.type).second) continue;
+    const std::string key = fmt::format("sensor[{}].delay_s", sensor.name);
+    add_candidate(candidates, {key, "s", Stage::sensor, summary, report_delay, same_delay(sensor.type)}, key, robot);
+  }
+  return candidates;
+}
+
+}  // namespace kenaf::gap
