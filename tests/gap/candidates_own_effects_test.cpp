@@ -136,6 +136,10 @@ TEST_CASE("What is wrong in a file of own effects is said with file, line and co
   CHECK_THAT(error_with("add = 1.0", "add = 0"), StartsWith("own.toml:13:7: effect[0].moves[0].add is 0"));
   CHECK_THAT(error_with("inertia_kgm2[2]", "inertia_kgm2[1]"),
              StartsWith("own.toml:24:7: effect[0].moves[3].key is moved by this effect already"));
+  // one number by two of its names
+  CHECK_THAT(error_with("body.mass_kg\"\nadd = 1.0\n\n[[effect.moves]]\nkey = \"body.center_of_mass_m[0]\"",
+                        "track.separation_m\"\nadd = 1.0\n\n[[effect.moves]]\nkey = \"track.left_center_m[1]\""),
+             StartsWith("own.toml:16:7: effect[0].moves[1].key is moved by this effect already"));
   CHECK_THAT(error_with("[[effect]]", "[[effects]]"), Catch::Contains("own.toml"));
   CHECK_THAT(error_with("max = 2.0", "max = "), StartsWith("own.toml:9:"));
 }

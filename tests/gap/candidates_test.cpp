@@ -154,6 +154,16 @@ TEST_CASE("The belly gets shorter with the track, whose ends keep their radius")
   CHECK(shorter.track.end_radius_m == robot.track.end_radius_m);
 }
 
+TEST_CASE("The belly as it is described leaves the track as it is, though its length is not the sum of its parts") {
+  RobotDescription robot = robot_of("kenaf");
+  robot.track.length_m = 0.9;
+  robot.track.end_radius_m = 0.1;
+  const double flat_m = robot.track.length_m - 2 * robot.track.end_radius_m;
+  REQUIRE(flat_m + 2 * robot.track.end_radius_m != robot.track.length_m);  // in floating point
+  const std::vector<Candidate> candidates = description_candidates(robot);
+  CHECK(test::same_bits(with(robot, *find_candidate(candidates, "track.contact_length_m"), flat_m), robot));
+}
+
 TEST_CASE("A moment of inertia is searched as far as a rigid body can have it") {
   // Kenaf: 0.13, 0.44, 0.52. About z at most 0.13 + 0.44, at least 0.44 - 0.13; about x half of 0.13 would be less than
   // 0.52 - 0.44
