@@ -38,10 +38,11 @@ enum class Gentleness {
   fails,              // Risk::fails
 };
 
-// Beyond one of these a manoeuvre is no gentle one (all chosen).
-inline constexpr double kLargeTilt_rad = 0.35;   // 20 degrees, as on the ramp that ships; stairs have 23
-inline constexpr double kFall_m = 0.03;          // half the radius of a small track's wheel: rubber takes that much
-inline constexpr double kImpact_mps2 = 9.80665;  // as much again as standing presses
+// Beyond one of these a manoeuvre is no gentle one (all chosen, so that the ramp of 20 degrees and a step of 50 mm are gentle, a
+// trench of 300 mm is not).
+inline constexpr double kLargeTilt_rad = 0.44;        // 25 degrees: stairs have 23
+inline constexpr double kFall_m = 0.03;               // half the radius of a track's end wheel
+inline constexpr double kImpact_mps2 = 2 * 9.80665;   // presses three times as hard as standing
 
 // The robot as its motion is judged: with exact posture and current sensors, whatever it carries, and none of the effects on
 // sensors, which move nothing. It moves as `robot` does.
