@@ -21,6 +21,7 @@ struct Risk {
   // depends on the stiffness of contacts, which nobody knows.
   double impact_mps2 = 0;
   double current_share = 0;  // largest current of any motor over that of the same motor stalled; 0 without currents
+  bool stuck = false;        // it did not end where the manoeuvre's own measure wants it, or its operator gave up
   bool fails = false;        // it turned over (beyond 90 degrees), or the simulation had a fault
 
   bool operator==(const Risk&) const = default;
@@ -34,7 +35,7 @@ enum class Gentleness {
   flat_driving,       // on level ground, flippers stay where they are: at worst it drives against a wall
   flat_flippers,      // on level ground, flippers move
   low_obstacle,       // over obstacles, none of what makes the next class
-  falls_or_tilts,     // beyond one of the limits below, or let fall on purpose
+  falls_or_tilts,     // beyond one of the limits below, let fall on purpose, or stuck on an obstacle
   fails,              // Risk::fails
 };
 
@@ -48,8 +49,9 @@ inline constexpr double kImpact_mps2 = 2 * 9.80665;   // presses three times as 
 // sensors, which move nothing. It moves as `robot` does.
 physics::RobotDescription with_exact_sensors(physics::RobotDescription robot);
 
-// Of a run of with_exact_sensors(), without noise, rows of 10 ms. `nominal`: whose motors' stall currents count.
-Risk risk_of(const rollout::RollOut& roll_out, const physics::RobotDescription& nominal);
+// Of `manoeuvre` driven by with_exact_sensors(), without noise, rows of 10 ms. `nominal`: whose motors' stall currents count.
+Risk risk_of(const rollout::RollOut& roll_out, const rollout::Manoeuvre& manoeuvre,
+             const physics::RobotDescription& nominal);
 
 // Level planes and nothing else.
 bool is_level(const physics::WorldDescription& world);

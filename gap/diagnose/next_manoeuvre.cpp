@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -78,14 +79,16 @@ class Proposer {
     for (const RivalModel& rival : rivals) models_.push_back({&rival.fitted, true});
   }
 
-  // Whether any of `candidates` suffices.
-  bool try_all(std::vector<Candidate> candidates) {
+  // Tries `candidates` class by class up to `roughest`, as the nominal robot drives them, and leaves those that are
+  // rougher. Whether one suffices that is as gentle as its class.
+  bool try_up_to(Gentleness roughest, std::vector<Candidate>& candidates) {
     drive_nominal(candidates);
     std::erase_if(candidates, [](const Candidate& candidate) { return candidate.gentleness == Gentleness::fails; });
     std::ranges::stable_sort(candidates, {}, [](const Candidate& candidate) {
       return std::tuple(candidate.gentleness, candidate.duration_s);
     });
-    for (auto begin = candidates.begin(); begin != candidates.end();) {
+    auto begin = candidates.begin();
+    while (begin != candidates.end() && begin->gentleness <= roughest) {
       const Gentleness asked = begin->gentleness;
       const auto end = std::ranges::find_if(
           begin, candidates.end(), [asked](const Candidate& candidate) { return candidate.gentleness != asked; });
@@ -97,7 +100,8 @@ class Proposer {
       if (sufficient(asked) > 0) return true;
       begin = end;
     }
-    return std::ranges::any_of(proposed_, &ProposedManoeuvre::suffices);
+    candidates.erase(candidates.begin(), begin);
+    return false;
   }
 
   std::vector<ProposedManoeuvre> take() {
@@ -125,8 +129,9 @@ class Proposer {
     for_each_job(candidates.size(), options_.threads, [&](std::size_t i) {
       check_goes_on(options_.stop);
       Candidate& candidate = candidates[i];
+      if (candidate.plain.row_count() > 0) return;  // it was before
       rollout::RollOut out = driven(nominal_, candidate);
-      candidate.risk = risk_of(out, nominal_);
+      candidate.risk = risk_of(out, candidate.manoeuvre, nominal_);
       candidate.plain = std::move(out.run);
       candidate.duration_s = candidate.plain.column("t_s").back();
       candidate.gentleness = gentleness(candidate.manoeuvre, candidate.is_flat, candidate.risk);
@@ -189,7 +194,7 @@ class Proposer {
     check_goes_on(options_.stop);
     const rollout::RollOut out = driven(rivals_[rival].fitted, trial.candidate);
     trial.duration_s[rival] = out.run.column("t_s").back();
-    trial.risk[rival] = risk_of(out, nominal_);
+    trial.risk[rival] = risk_of(out, trial.candidate.manoeuvre, nominal_);
   }
 
   void add(const Trial& trial) {
@@ -272,6 +277,7 @@ std::string risk_in_words(const Risk& risk) {
   std::string words = fmt::format("tilts by {:.0f} degrees", risk.largest_tilt_rad * 180 / std::numbers::pi);
   words += risk.fall_m < 0.005 ? ", no fall" : fmt::format(", falls by {:.0f} mm", risk.fall_m * 1000);
   if (risk.impact_mps2 > kImpact_mps2) words += fmt::format(", lands with {:.0f} m/s^2", risk.impact_mps2);
+  if (risk.stuck) words += ", may get stuck or not arrive";
   if (risk.current_share > 0) words += fmt::format(", {:.0f} % of the stall current", risk.current_share * 100);
   return words;
 }
@@ -285,12 +291,15 @@ std::vector<ProposedManoeuvre> propose_manoeuvres(const physics::RobotDescriptio
                                             options.sigma_of_channel.size(), diagnosis_channels().size()));
   if (!(options.span_s > 0)) throw std::invalid_argument(fmt::format("span_s = {} must be above 0", options.span_s));
   if (rivals.size() < 2) return {};
-  std::vector<Candidate> candidates = candidates_for(nominal);
-  const auto rough = std::ranges::stable_partition(candidates, &Candidate::is_flat);
-  std::vector<Candidate> others(std::make_move_iterator(rough.begin()), std::make_move_iterator(rough.end()));
-  candidates.erase(rough.begin(), rough.end());
+  std::vector<Candidate> flat = candidates_for(nominal), others;
+  const auto rough = std::ranges::stable_partition(flat, &Candidate::is_flat);
+  std::ranges::move(rough, std::back_inserter(others));
+  flat.erase(rough.begin(), rough.end());
   Proposer proposer(nominal, rivals, options);
-  if (!proposer.try_all(std::move(candidates))) proposer.try_all(std::move(others));
+  if (!proposer.try_up_to(Gentleness::flat_flippers, flat)) {
+    std::ranges::move(flat, std::back_inserter(others));  // at which this robot falls or tilts, flat as the ground is
+    proposer.try_up_to(Gentleness::falls_or_tilts, others);
+  }
   return proposer.take();
 }
 

@@ -44,10 +44,11 @@ struct ProposedManoeuvre {
   Risk risk;
 };
 
-// Chosen: of two models d standard deviations apart the likelier one is the wrong one with a chance of Phi(-d / 2): 0.13 % at
-// 6, and still only 7 % where the true standard deviations are twice what was stated.
+// Chosen: of two models d standard deviations apart the likelier one is the wrong one with a chance of Phi(-d / 2): 0.13 %
+// at 6, and still only 7 % where the true standard deviations are twice what was stated.
 inline constexpr double kSuffices = 6;
-inline constexpr double kAnotherOutcome_rad = 0.35;  // chosen: 20 degrees, more than a value does to a robot that rests the same way
+// Chosen: 20 degrees, more than a changed value makes of the same posture.
+inline constexpr double kAnotherOutcome_rad = 0.35;
 
 struct ProposalOptions {
   // Of each of diagnosis_channels(): the standard deviation of a bin, noise and what is left unexplained together, in the
@@ -64,8 +65,8 @@ struct ProposalOptions {
 //
 // Not all are tried. Level ground comes first, in the order of what the nominal robot risks, then of its duration, until
 // three of a class suffice or the class is through; once one of a class suffices, no rougher class is tried. Obstacles are
-// tried only where nothing on level ground suffices. So of what suffices the first three are in the list, or as many as there are in
-// that class. What the nominal robot already fails at is left out, nobody should drive it.
+// tried only where nothing on level ground suffices. So of what suffices the first three are in the list, or as many as there
+// are in that class. What the nominal robot already fails at is left out, nobody should drive it.
 //
 // Throws std::invalid_argument where `sigma_of_channel` has not one number for each channel or `span_s` is not above 0, Stopped
 // (gap/diagnose/prediction.hpp) once `stop` is true.
