@@ -31,8 +31,8 @@ bool has_obstacles(const Observations& observations) {
   });
 }
 
-// Catalogue, numbers of the description and effects of one's own, without those left out; of candidates that do the same, the
-// first.
+// Catalogue, numbers of the description and effects of one's own, without those left out; of candidates that do the
+// same, the first.
 std::vector<Candidate> candidates_for(const Observations& observations, const DiagnosisOptions& options) {
   const physics::RobotDescription& robot = observations.robot;
   std::vector<Candidate> all = catalogue_candidates(robot, has_obstacles(observations));
@@ -50,7 +50,8 @@ std::vector<Candidate> candidates_for(const Observations& observations, const Di
   const auto is_left_out = [&](const std::string& name) { return std::ranges::count(left_out, name) > 0; };
   std::vector<Candidate> result;
   for (Candidate& candidate : all) {
-    const bool is_there = std::ranges::any_of(result, [&](const Candidate& c) { return c.effect == candidate.same_as; });
+    const bool is_there =
+        std::ranges::any_of(result, [&](const Candidate& c) { return c.effect == candidate.same_as; });
     if (is_left_out(candidate.effect) || is_left_out(candidate.same_as) || is_there) continue;
     result.push_back(std::move(candidate));
   }
@@ -134,10 +135,9 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
       const auto number = static_cast<double>(passage);
       progress.begin(passage_name(passage), 0.02 + 0.32 * number, 0.34 + 0.32 * number, 100 * runs,
                      predictor.roll_outs());
-      StageDiagnosis stage =
-          diagnose_stage({passage, &d.observations, &d.features.of(passage), &d.repeats, &d.same_orders,
-                          stated_noise(d.observations.dataset)},
-                         d.candidates, predictor, stage_options);
+      StageDiagnosis stage = diagnose_stage({passage, &d.observations, &d.features.of(passage), &d.repeats,
+                                             &d.same_orders, stated_noise(d.observations.dataset)},
+                                            d.candidates, predictor, stage_options);
       if (stage.is_measured()) d.stages.push_back(std::move(stage));
     }
     conclude(d);
@@ -158,8 +158,8 @@ Settings corrections(const Diagnosis& d) {
     for (const NamedEffect& effect : stage.decision.effects) {
       if (is_named && !effect.doubts.empty()) continue;
       const Interval& value = effect.value.value;
-      const double width = (value.to - value.from) /
-                           std::max(1e-12, std::abs(value.value - d.candidates[effect.candidate].present));
+      const double width =
+          (value.to - value.from) / std::max(1e-12, std::abs(value.value - d.candidates[effect.candidate].present));
       const auto [place, is_new] = best.try_emplace(effect.candidate, width, value.value);
       if (!is_new && width < place->second.first) place->second = {width, value.value};
     }

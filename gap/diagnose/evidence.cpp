@@ -92,8 +92,7 @@ std::vector<bool> used_without(std::size_t runs, const std::vector<std::size_t>&
 }
 
 Model refit(const StageData& data, const StandingModel& standing, const GroupVectors& beyond) {
-  return fit_model(data, standing.curves, effects_of(standing.model), beyond,
-                   standing.model.likelihood.discrepancies);
+  return fit_model(data, standing.curves, effects_of(standing.model), beyond, standing.model.likelihood.discrepancies);
 }
 
 // Squares of what a model leaves of the used runs' means, by kind.
@@ -271,7 +270,8 @@ std::vector<double> shares_held_out(const StageView& view, Passage passage, cons
   const double before = weighted_rms(sums[0], weights), whole = weighted_rms(sums[1], weights);
   std::vector<double> shares;
   for (std::size_t e = 0; e < effects; ++e)
-    shares.push_back(explained_share(before, whole, 1) - explained_share(before, weighted_rms(sums[2 + e], weights), 1));
+    shares.push_back(explained_share(before, whole, 1) -
+                     explained_share(before, weighted_rms(sums[2 + e], weights), 1));
   shares.push_back(explained_share(before, whole, 1));
   return shares;
 }

@@ -13,7 +13,7 @@ namespace {
 using Eigen::VectorXd;
 
 // Candidates that get whole curves after the first look, at most (chosen).
-constexpr std::size_t kMostCurves = 28;
+constexpr std::size_t kMostCurves = 24;
 // Of the squared gap, by one linear step: less cannot matter, whatever the value (chosen).
 constexpr double kMatters = 0.01;
 
@@ -39,8 +39,7 @@ std::vector<VectorXd> difference(std::vector<VectorXd> a, const std::vector<Vect
 // The candidates that one linear step shows to matter most, beneath the discrepancies of the nominal model.
 std::vector<std::size_t> that_matter(const StageData& data, const EffectCurves& curves,
                                      std::span<const std::size_t> looked_at, const Discrepancies& discrepancies) {
-  const Products products =
-      products_of(data, whiteners_of(data, discrepancies), curves.shifts, residuals_of(data));
+  const Products products = products_of(data, whiteners_of(data, discrepancies), curves.shifts, residuals_of(data));
   std::vector<std::pair<double, std::size_t>> explained;
   for (const std::size_t c : looked_at) {
     for (const CurvePoint& point : curves.curves[c].points) {
@@ -59,19 +58,15 @@ std::vector<std::size_t> that_matter(const StageData& data, const EffectCurves& 
   return result;
 }
 
-// Curves of the candidates that can matter: those of the catalogue over their whole range, as they may bend; numbers of the
-// description first by one step.
+// Curves of the candidates that can matter, after a first look at all.
 EffectCurves scanned(const StageData& data, std::span<const Candidate> candidates,
                      std::span<const std::size_t> possible, const Simulate& simulate) {
   EffectCurves curves = empty_curves(data, candidates);
-  std::vector<std::size_t> effects, numbers;
-  for (const std::size_t c : possible) (candidates[c].is_number_of_description ? numbers : effects).push_back(c);
-  add_spread(curves, data, effects, simulate);
-  add_one_step(curves, data, numbers, simulate);
+  add_first_look(curves, data, possible, simulate);
   const std::vector<std::size_t> matter =
-      that_matter(data, curves, numbers, nominal_model(data).likelihood.discrepancies);
+      that_matter(data, curves, possible, nominal_model(data).likelihood.discrepancies);
   add_spread(curves, data, matter, simulate);
-  follow_bends(curves, data, effects, simulate);
+  follow_bends(curves, data, matter, simulate);
   return curves;
 }
 
@@ -80,9 +75,8 @@ bool is_large_enough(const NamedEffect& effect, const Candidate& candidate, doub
 }
 
 // Names, sets and doubts, by what the effects are worth on runs held out.
-void judge(StageDecision& d, std::span<const Candidate> candidates, double explains,
-           const std::vector<double>& shares, const std::vector<double>& shares_by_manoeuvre,
-           const DecisionSettings& settings) {
+void judge(StageDecision& d, std::span<const Candidate> candidates, double explains, const std::vector<double>& shares,
+           const std::vector<double>& shares_by_manoeuvre, const DecisionSettings& settings) {
   d.little_explained = !(explains >= settings.stage_share);
   bool any_named = false, any_rival = false;
   for (std::size_t i = 0; i < d.effects.size(); ++i) {
@@ -141,8 +135,7 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
   const auto open_around = [&](const Settings& settings) {
     return open_shapes(features, predictor, input.passage, varied(settings), kOpenStart_m, kOpenStart_rad);
   };
-  stage.nominal_floor =
-      noise_floor(features, stage.residuals, *input.same_orders, open_around({}), input.stated_noise);
+  stage.nominal_floor = noise_floor(features, stage.residuals, *input.same_orders, open_around({}), input.stated_noise);
   const auto data_in = [&](const NoiseFloor& floor) {
     return stage_data(input.passage, features, *input.repeats, stage.residuals, floor);
   };
@@ -162,12 +155,11 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
   };
 
   // curves, then the decision
-  const bool drives_measured = std::ranges::all_of(
-      input.observations->runs, [](const Observation& run) { return run.measured.has_value(); });
+  const bool drives_measured =
+      std::ranges::all_of(input.observations->runs, [](const Observation& run) { return run.measured.has_value(); });
   const std::vector<std::size_t> possible = candidates_of(input.passage, candidates, drives_measured);
   const EffectCurves curves = scanned(nominal.data, candidates, possible, simulate);
-  const std::vector<VectorXd> deviations =
-      deviations_from_repeats(features, stage.residuals, *input.same_orders);
+  const std::vector<VectorXd> deviations = deviations_from_repeats(features, stage.residuals, *input.same_orders);
   const GapTest test{inflation_from_repeats(features, stage.nominal_floor, deviations, options.stretch_s),
                      options.stretch_s};
   stage.decision = decide_stage(nominal, curves, simulate, around, test, options.decision);
