@@ -80,11 +80,6 @@ class ProgressReport {
   std::size_t begun_at_ = 0;
 };
 
-double squared_gap(const StageDiagnosis& stage) {
-  const double gap = std::max(0.0, stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor);
-  return gap * static_cast<double>(bin_count(stage.decision.data));
-}
-
 void conclude(Diagnosis& d) {
   d.verdict = whole_verdict(d.stages);
   d.complete = !d.stages.empty() && std::ranges::all_of(d.stages, [](const StageDiagnosis& stage) {
@@ -151,6 +146,11 @@ std::vector<ProposedManoeuvre> next_manoeuvres(const Diagnosis& d) {
 }
 
 }  // namespace
+
+double squared_gap(const StageDiagnosis& stage) {
+  const double gap = std::max(0.0, stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor);
+  return gap * static_cast<double>(bin_count(stage.decision.data));
+}
 
 Verdict whole_verdict(const std::vector<StageDiagnosis>& stages) {
   const auto any = [&](Verdict verdict) {
