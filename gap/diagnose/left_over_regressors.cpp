@@ -174,8 +174,8 @@ double at_start(const LeftOverRun& run, Quantity quantity) {
 }
 
 // A column of one run; empty where it was not measured there.
-VectorXd regressor_of(const LeftOverCandidate& candidate, const LeftOverRun& run, const Measured& m, const QuantityInfo& info,
-                      const Course& course) {
+VectorXd regressor_of(const LeftOverCandidate& candidate, const LeftOverRun& run, const Measured& m,
+                      const QuantityInfo& info, const Course& course) {
   const VectorXd& simulated = course.values;
   const double span_s = run.features->span_s();
   switch (candidate.kind) {

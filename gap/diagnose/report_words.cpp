@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gap/diagnose/channels.hpp"
+
 namespace kenaf::gap {
 namespace {
 
@@ -25,7 +27,7 @@ double explained_by_names(const StageDiagnosis& stage) {
   if (all_are_named(stage)) return explained(stage);
   double sum = 0;
   for (const NamedEffect& effect : stage.decision.effects)
-    if (effect.doubts.empty()) sum += std::max(0.0, effect.share);
+    if (effect.doubts.empty()) sum += std::max(0.0, effect.share.of_stage);
   return std::min(sum, explained(stage));
 }
 
@@ -171,7 +173,8 @@ Interval explained_interval(const StageDiagnosis& stage) {
 
 double explained_by(const StageDiagnosis& stage, const NamedEffect& effect) {
   if (stage.decision.effects.size() == 1) return explained(stage);
-  return std::isnan(effect.share) ? effect.share : std::clamp(effect.share, 0.0, 1.0);
+  const double share = effect.share.of_stage;
+  return std::isnan(share) ? share : std::clamp(share, 0.0, 1.0);
 }
 
 std::string from_to(Passage passage) {
@@ -243,17 +246,19 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const StageDiagnosi
         break;
       }
       case Doubt::not_held_out: {
-        const bool by_manoeuvre = effect.share_by_manoeuvre < effect.share;
-        words.push_back(fmt::format("it takes off only {} on {}",
-                                    percent(std::max(0.0, std::min(effect.share, effect.share_by_manoeuvre))),
+        const bool by_manoeuvre = effect.share_by_manoeuvre.of_kind < effect.share.of_kind;
+        const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;
+        words.push_back(fmt::format("it takes off only {} of the gap in {} on {}",
+                                    percent(std::max(0.0, least.of_kind)), kind_name(least.kind),
                                     by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
         break;
       }
       case Doubt::little_explained: {
-        const double by_repeat = stage.gap.explains.value, by_manoeuvre = stage.gap_by_manoeuvre.explains.value;
-        words.push_back(fmt::format("all effects together take off only {} of the gap on {}",
-                                    percent(std::max(0.0, std::fmin(by_repeat, by_manoeuvre))),
-                                    by_manoeuvre < by_repeat ? "manoeuvres held out" : measured_on(d)));
+        const bool by_manoeuvre = effect.share_by_manoeuvre.model_of_kind < effect.share.model_of_kind;
+        const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;
+        words.push_back(fmt::format("all effects together take off only {} of the gap in {} on {}",
+                                    percent(std::max(0.0, least.model_of_kind)), kind_name(least.kind),
+                                    by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
         break;
       }
     }

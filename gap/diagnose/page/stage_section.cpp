@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/page/figures.hpp"
 #include "gap/diagnose/page/left_over_section.hpp"
 #include "gap/diagnose/page/sections.hpp"
@@ -101,9 +102,9 @@ std::string value_figure(const Diagnosis& d, const NamedEffect& effect) {
 
 std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
   Table table{{"effect", "value (95 %)", "nominal", "differs between manoeuvres by (sd)", "takes off, runs held out",
-               "manoeuvres held out", "evidence", "name"},
+               "manoeuvres held out", "where it acts most", "evidence", "name"},
               {},
-              {0, 7}};
+              {0, 8}};
   for (const NamedEffect& effect : stage.decision.effects) {
     const Candidate& candidate = d.candidates[effect.candidate];
     std::string name = "yes";
@@ -114,8 +115,9 @@ std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
     table.rows.push_back({value_name(candidate), interval_text(effect.value.value, candidate.unit),
                           figure(candidate.present) + unit_suffix(candidate.unit),
                           effect.value.spread > 0 ? figure(effect.value.spread) + unit_suffix(candidate.unit) : "0",
-                          percent(effect.share), percent(effect.share_by_manoeuvre), figure(effect.evidence),
-                          std::move(name)});
+                          percent(effect.share.of_stage), percent(effect.share_by_manoeuvre.of_stage),
+                          fmt::format("{} of {}", percent(effect.share.of_kind), kind_name(effect.share.kind)),
+                          figure(effect.evidence), std::move(name)});
   }
   return to_html(table) +
          paragraph(
