@@ -18,11 +18,14 @@ using physics::TrackDescription;
 using physics::TrackDriveDescription;
 
 // As in physics/robot_description.cpp.
-constexpr Range kFrictionRange{.min = 0, .max = 10};
-constexpr Range kLugRange{.min = 0, .max = 0.05};
-constexpr Range kDelayRange{.min = 0, .max = 10};
-constexpr Range kMinAngleRange{.min = -2 * std::numbers::pi, .max = 0};
-constexpr Range kMaxAngleRange{.min = 0, .max = 2 * std::numbers::pi};
+constexpr NumberRange kAnyNumber{};
+constexpr NumberRange kAboveZero{.min = 0, .open_min = true};
+constexpr NumberRange kZeroOrMore{.min = 0};
+constexpr NumberRange kFrictionRange{.min = 0, .max = 10};
+constexpr NumberRange kLugRange{.min = 0, .max = 0.05};
+constexpr NumberRange kDelayRange{.min = 0, .max = 10};
+constexpr NumberRange kMinAngleRange{.min = -2 * std::numbers::pi, .max = 0};
+constexpr NumberRange kMaxAngleRange{.min = 0, .max = 2 * std::numbers::pi};
 
 constexpr int kNoVector = -1;
 
@@ -66,64 +69,64 @@ void write_at(RobotDescription& robot, double value) {
 
 struct PlainNumber {
   std::string_view key;
-  Range range;
+  NumberRange range;
   double (*read)(const RobotDescription&);
   void (*write)(RobotDescription&, double);
 
   template <class Place>
-  constexpr PlainNumber(std::string_view name, Range accepted, Place)
+  constexpr PlainNumber(std::string_view name, NumberRange accepted, Place)
       : key(name), range(accepted), read(read_at<Place>), write(write_at<Place>) {}
 };
 
 constexpr PlainNumber kOfEveryRobot[] = {
-    {"body.mass_kg", kPositive, Body<&BodyDescription::mass_kg>{}},
-    {"body.size_m[0]", kPositive, Body<&BodyDescription::size_m, 0>{}},
-    {"body.size_m[1]", kPositive, Body<&BodyDescription::size_m, 1>{}},
-    {"body.size_m[2]", kPositive, Body<&BodyDescription::size_m, 2>{}},
-    {"body.center_of_mass_m[0]", kAny, Body<&BodyDescription::p_BBcm_m, 0>{}},
-    {"body.center_of_mass_m[1]", kAny, Body<&BodyDescription::p_BBcm_m, 1>{}},
-    {"body.center_of_mass_m[2]", kAny, Body<&BodyDescription::p_BBcm_m, 2>{}},
-    {"body.inertia_kgm2[0]", kPositive, Body<&BodyDescription::inertia_kgm2, 0>{}},
-    {"body.inertia_kgm2[1]", kPositive, Body<&BodyDescription::inertia_kgm2, 1>{}},
-    {"body.inertia_kgm2[2]", kPositive, Body<&BodyDescription::inertia_kgm2, 2>{}},
+    {"body.mass_kg", kAboveZero, Body<&BodyDescription::mass_kg>{}},
+    {"body.size_m[0]", kAboveZero, Body<&BodyDescription::size_m, 0>{}},
+    {"body.size_m[1]", kAboveZero, Body<&BodyDescription::size_m, 1>{}},
+    {"body.size_m[2]", kAboveZero, Body<&BodyDescription::size_m, 2>{}},
+    {"body.center_of_mass_m[0]", kAnyNumber, Body<&BodyDescription::p_BBcm_m, 0>{}},
+    {"body.center_of_mass_m[1]", kAnyNumber, Body<&BodyDescription::p_BBcm_m, 1>{}},
+    {"body.center_of_mass_m[2]", kAnyNumber, Body<&BodyDescription::p_BBcm_m, 2>{}},
+    {"body.inertia_kgm2[0]", kAboveZero, Body<&BodyDescription::inertia_kgm2, 0>{}},
+    {"body.inertia_kgm2[1]", kAboveZero, Body<&BodyDescription::inertia_kgm2, 1>{}},
+    {"body.inertia_kgm2[2]", kAboveZero, Body<&BodyDescription::inertia_kgm2, 2>{}},
     {"body.friction", kFrictionRange, Body<&BodyDescription::friction>{}},
-    {"track.length_m", kPositive, Track<&TrackDescription::length_m>{}},
-    {"track.end_radius_m", kPositive, Track<&TrackDescription::end_radius_m>{}},
-    {"track.width_m", kPositive, Track<&TrackDescription::width_m>{}},
-    {"track.left_center_m[0]", kAny, Track<&TrackDescription::p_BT_m, 0>{}},
-    {"track.left_center_m[1]", kPositive, Track<&TrackDescription::p_BT_m, 1>{}},
-    {"track.left_center_m[2]", kAny, Track<&TrackDescription::p_BT_m, 2>{}},
+    {"track.length_m", kAboveZero, Track<&TrackDescription::length_m>{}},
+    {"track.end_radius_m", kAboveZero, Track<&TrackDescription::end_radius_m>{}},
+    {"track.width_m", kAboveZero, Track<&TrackDescription::width_m>{}},
+    {"track.left_center_m[0]", kAnyNumber, Track<&TrackDescription::p_BT_m, 0>{}},
+    {"track.left_center_m[1]", kAboveZero, Track<&TrackDescription::p_BT_m, 1>{}},
+    {"track.left_center_m[2]", kAnyNumber, Track<&TrackDescription::p_BT_m, 2>{}},
     {"track.friction_along", kFrictionRange, Track<&TrackDescription::friction_along>{}},
     {"track.friction_across", kFrictionRange, Track<&TrackDescription::friction_across>{}},
     {"track.lug_height_m", kLugRange, Track<&TrackDescription::lug_height_m>{}},
-    {"drive.sprocket_radius_m", kPositive, Drive<&TrackDriveDescription::sprocket_radius_m>{}},
-    {"drive.max_speed_mps", kPositive, Drive<&TrackDriveDescription::max_speed_mps>{}},
-    {"drive.max_force_n", kPositive, Drive<&TrackDriveDescription::max_force_n>{}},
-    {"drive.time_constant_s", kNotNegative, Drive<&TrackDriveDescription::time_constant_s>{}},
-    {"drive.moving_mass_kg", kPositive, Drive<&TrackDriveDescription::moving_mass_kg>{}},
-    {"drive.encoder_counts_per_radian", kPositive, Drive<&TrackDriveDescription::encoder_counts_per_radian>{}},
-    {"drive.amperes_per_newton", kNotNegative, Drive<&TrackDriveDescription::amperes_per_newton>{}},
-    {"drive.idle_amperes", kNotNegative, Drive<&TrackDriveDescription::idle_amperes>{}},
-    {"battery.open_circuit_v", kPositive, Battery<&BatteryDescription::open_circuit_v>{}},
-    {"battery.internal_resistance_ohm", kNotNegative, Battery<&BatteryDescription::internal_resistance_ohm>{}},
+    {"drive.sprocket_radius_m", kAboveZero, Drive<&TrackDriveDescription::sprocket_radius_m>{}},
+    {"drive.max_speed_mps", kAboveZero, Drive<&TrackDriveDescription::max_speed_mps>{}},
+    {"drive.max_force_n", kAboveZero, Drive<&TrackDriveDescription::max_force_n>{}},
+    {"drive.time_constant_s", kZeroOrMore, Drive<&TrackDriveDescription::time_constant_s>{}},
+    {"drive.moving_mass_kg", kAboveZero, Drive<&TrackDriveDescription::moving_mass_kg>{}},
+    {"drive.encoder_counts_per_radian", kAboveZero, Drive<&TrackDriveDescription::encoder_counts_per_radian>{}},
+    {"drive.amperes_per_newton", kZeroOrMore, Drive<&TrackDriveDescription::amperes_per_newton>{}},
+    {"drive.idle_amperes", kZeroOrMore, Drive<&TrackDriveDescription::idle_amperes>{}},
+    {"battery.open_circuit_v", kAboveZero, Battery<&BatteryDescription::open_circuit_v>{}},
+    {"battery.internal_resistance_ohm", kZeroOrMore, Battery<&BatteryDescription::internal_resistance_ohm>{}},
 };
 
 constexpr PlainNumber kOfFlippers[] = {
-    {"flipper.mass_kg", kPositive, Flipper<&FlipperDescription::mass_kg>{}},
-    {"flipper.length_m", kPositive, Flipper<&FlipperDescription::length_m>{}},
-    {"flipper.pivot_radius_m", kPositive, Flipper<&FlipperDescription::pivot_radius_m>{}},
-    {"flipper.tip_radius_m", kPositive, Flipper<&FlipperDescription::tip_radius_m>{}},
-    {"flipper.width_m", kPositive, Flipper<&FlipperDescription::width_m>{}},
-    {"flipper.front_left_pivot_m[0]", kPositive, Flipper<&FlipperDescription::p_BPivot_m, 0>{}},
-    {"flipper.front_left_pivot_m[1]", kPositive, Flipper<&FlipperDescription::p_BPivot_m, 1>{}},
-    {"flipper.front_left_pivot_m[2]", kAny, Flipper<&FlipperDescription::p_BPivot_m, 2>{}},
+    {"flipper.mass_kg", kAboveZero, Flipper<&FlipperDescription::mass_kg>{}},
+    {"flipper.length_m", kAboveZero, Flipper<&FlipperDescription::length_m>{}},
+    {"flipper.pivot_radius_m", kAboveZero, Flipper<&FlipperDescription::pivot_radius_m>{}},
+    {"flipper.tip_radius_m", kAboveZero, Flipper<&FlipperDescription::tip_radius_m>{}},
+    {"flipper.width_m", kAboveZero, Flipper<&FlipperDescription::width_m>{}},
+    {"flipper.front_left_pivot_m[0]", kAboveZero, Flipper<&FlipperDescription::p_BPivot_m, 0>{}},
+    {"flipper.front_left_pivot_m[1]", kAboveZero, Flipper<&FlipperDescription::p_BPivot_m, 1>{}},
+    {"flipper.front_left_pivot_m[2]", kAnyNumber, Flipper<&FlipperDescription::p_BPivot_m, 2>{}},
     {"flipper.friction_along", kFrictionRange, Flipper<&FlipperDescription::friction_along>{}},
     {"flipper.friction_across", kFrictionRange, Flipper<&FlipperDescription::friction_across>{}},
     {"flipper.min_angle_rad", kMinAngleRange, Flipper<&FlipperDescription::min_angle_rad>{}},
     {"flipper.max_angle_rad", kMaxAngleRange, Flipper<&FlipperDescription::max_angle_rad>{}},
-    {"servo.max_speed_radps", kPositive, Servo<&FlipperServoDescription::max_speed_radps>{}},
-    {"servo.max_torque_nm", kPositive, Servo<&FlipperServoDescription::max_torque_nm>{}},
-    {"servo.amperes_per_nm", kNotNegative, Servo<&FlipperServoDescription::amperes_per_nm>{}},
+    {"servo.max_speed_radps", kAboveZero, Servo<&FlipperServoDescription::max_speed_radps>{}},
+    {"servo.max_torque_nm", kAboveZero, Servo<&FlipperServoDescription::max_torque_nm>{}},
+    {"servo.amperes_per_nm", kZeroOrMore, Servo<&FlipperServoDescription::amperes_per_nm>{}},
 };
 
 RobotNumber number_of(const PlainNumber& plain) {
@@ -135,10 +138,10 @@ double contact_length_m(const RobotDescription& robot) {
 }
 
 void add_derived(std::vector<RobotNumber>& numbers) {
-  numbers.push_back({"track.separation_m", "track.left_center_m[1]", kPositive,
+  numbers.push_back({"track.separation_m", "track.left_center_m[1]", kAboveZero,
                      [](const RobotDescription& robot) { return robot.track_gauge_m(); },
                      [](RobotDescription& robot, double value) { robot.track.p_BT_m.y() = value / 2; }});
-  numbers.push_back({"track.contact_length_m", "track.length_m", kPositive, contact_length_m,
+  numbers.push_back({"track.contact_length_m", "track.length_m", kAboveZero, contact_length_m,
                      [](RobotDescription& robot, double value) {
                        // what was taken off, added again, is not always the same bits
                        if (value != contact_length_m(robot))

@@ -3,15 +3,21 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "description/toml_reader.hpp"
 #include "physics/robot_description.hpp"
 
 namespace kenaf::gap {
+
+struct NumberRange {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool open_min = false;  // min itself is out
+};
 
 // Keys are written as in the file: "drive.max_force_n", "body.center_of_mass_m[2]", "effects.command_gain.gain"; of a
 // sensor with its name, "sensor[INS].delay_s". Two are derived, for what a robot is measured by:
@@ -20,7 +26,7 @@ namespace kenaf::gap {
 struct RobotNumber {
   std::string key;
   std::string written_as;  // the key in the file that has it; `key` itself, but of a derived one
-  Range range;             // what parse_robot() accepts of this number by itself
+  NumberRange range;       // what parse_robot() accepts of this number by itself
   std::function<double(const physics::RobotDescription&)> get;
   std::function<void(physics::RobotDescription&, double)> set;  // to what get() returns: changes no bit
 };

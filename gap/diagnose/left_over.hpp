@@ -21,7 +21,7 @@ namespace kenaf::gap {
 // What is left of one stage's gap in one run. The pointers must outlive the call.
 struct LeftOverRun {
   const Observation* observation;
-  const FeatureMap* features;
+  const FeatureMap* features;           // of channels that were measured and are simulated
   Eigen::VectorXd measured, simulated;  // of each of features->bins(), in the channels' units; simulated: of the best model
   Eigen::VectorXd sigma;                // of each bin: noise, 1 sigma, in the channels' units
   std::size_t group;                    // of repeats; runs of a group are held out together

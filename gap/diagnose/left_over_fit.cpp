@@ -13,13 +13,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kMostTerms = 3, kMostFolds = 10;  // chosen: ten as Hastie et al. recommend
-constexpr std::size_t kLeastRows = 12;                  // chosen: fewer tell nothing about four numbers
-constexpr double kBeyondNoise = 0.1;                    // of the noise's energy, that has to be left (chosen)
-constexpr double kAlike = 0.5;  // correlation with a candidate that does not hold (chosen: a quarter of its variance)
-constexpr double kSame = 0.8;   // with one that is chosen (chosen: the rest is less than half of it)
-constexpr double kSameSign = 0.95;   // of the draws of the bootstrap (chosen)
-constexpr std::size_t kDraws = 200;  // chosen: enough to tell 95 from 90 %
+constexpr std::size_t kMostTerms = 3, kMostHeldOutFolds = 10;  // chosen: ten as Hastie et al. recommend
+constexpr std::size_t kLeastRows = 12;                         // chosen: fewer tell nothing about four numbers
+constexpr double kBeyondNoise = 0.1;                           // of the noise's energy, that has to be left (chosen)
+constexpr double kSameCause =
+    0.5;  // correlation with a candidate that does not hold (chosen: a quarter of its variance)
+constexpr double kSameNumbers = 0.8;  // with one that is chosen (chosen: the rest is less than half of it)
+constexpr double kSameSign = 0.95;    // of the draws of the bootstrap (chosen)
+constexpr std::size_t kDraws = 200;   // chosen: enough to tell 95 from 90 %
 // Of the seconds behind a late term those of its own parameter: with another share it is no delay, lag or limit
 // (chosen).
 constexpr double kLeastOfLate = 0.5, kMostOfLate = 1.6;
@@ -31,12 +32,12 @@ MatrixXd columns_of(const LeftOverRows& rows, const std::vector<std::size_t>& te
   return x;
 }
 
-class Selection {
+class LeftOverSelection {
  public:
-  Selection(const LeftOverRows& rows, const std::vector<std::size_t>& unit_of_row)
+  LeftOverSelection(const LeftOverRows& rows, const std::vector<std::size_t>& unit_of_row)
       : rows_(rows), unit_(unit_of_row), robust_(robust_for(rows)) {
     units_ = 1 + *std::ranges::max_element(unit_);
-    folds_ = std::min(units_, kMostFolds);
+    folds_ = std::min(units_, kMostHeldOutFolds);
     left_ = robust_.losses(rows.error).sum();
     beyond_ = left_ - robust_.of_run.dot(rows.sigma.cwiseAbs2());
     noise_ = left_ - beyond_;
@@ -81,13 +82,13 @@ class Selection {
       barred[*best] = true;
       if (share < kLeastTold) break;
       if (!is_no_chance(losses - left) || !has_one_sign(with)) {
-        bar_alike(barred, *best, kAlike);
+        bar_alike(barred, *best, kSameCause);
         continue;
       }
       chosen_ = with;
       losses = left;
       terms.push_back({*best, share, 0});
-      bar_alike(barred, *best, kSame);
+      bar_alike(barred, *best, kSameNumbers);
       // a second lateness would tell the first one's shape, not another cause
       if (is_late(rows_.candidates[*best].kind))
         for (std::size_t c = 0; c < barred.size(); ++c) barred[c] = barred[c] || is_late(rows_.candidates[c].kind);
@@ -224,7 +225,7 @@ std::vector<std::size_t> held_out_together(const LeftOverRows& rows, std::span<c
 
 LeftOverFit fit_left_over(const LeftOverRows& rows, const std::vector<std::size_t>& unit_of_row) {
   if (rows.run.size() < kLeastRows) return {{}, std::nullopt, rows.error, VectorXd::Ones(rows.error.size())};
-  return Selection(rows, unit_of_row).fit();
+  return LeftOverSelection(rows, unit_of_row).fit();
 }
 
 double lateness(const LeftOverRows& rows, const std::vector<LeftOverTerm>& terms, const LeftOverTerm& term) {

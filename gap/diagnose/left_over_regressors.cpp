@@ -36,7 +36,7 @@ bool is_angle(Quantity quantity) {
   return quantity == Quantity::pitch || quantity == Quantity::roll;
 }
 
-std::vector<Candidate> candidates_for(const QuantityInfo& info) {
+std::vector<Candidate> regressors_for(const QuantityInfo& info) {
   const Quantity q = info.quantity;
   std::vector<Candidate> all;
   const auto add = [&](Regressor kind, std::string_view name, std::string_view unit, double parameter = 0) {
@@ -251,7 +251,7 @@ bool is_late(Regressor kind) {
 
 LeftOverRows rows_of(std::span<const LeftOverRun> runs, const QuantityInfo& quantity) {
   LeftOverRows rows{.quantity = quantity,
-                    .candidates = candidates_for(quantity),
+                    .candidates = regressors_for(quantity),
                     .x = {},
                     .error = {},
                     .sigma = {},

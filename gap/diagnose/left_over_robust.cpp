@@ -16,11 +16,10 @@ constexpr int kReweightings = 5;  // chosen: weights hardly change after it
 // Rows count linearly beyond so many times the rms of all, which is taken without the largest twentieth but never as
 // less than half of that with it (chosen: a step's transient must not pass for an outlier, a jump of the pose must).
 constexpr double kRowClip = 4, kTrimmedRows = 0.05, kLeastOfRms = 0.5;
-// A run whose rms is beyond twice the median's counts as one with twice (chosen); with fewer runs there is no usual
-// one.
+// A run whose rms is beyond twice the median's counts as one with twice (chosen). Of fewer runs none is usual.
 constexpr double kRunClip = 2;
 constexpr std::size_t kLeastUsualRuns = 5;
-constexpr double kStandardErrors = 2;
+constexpr double kStandardErrors = 2;  // chosen: is_above_chance()
 
 }  // namespace
 

@@ -17,7 +17,7 @@ struct RunSums {
 };
 
 constexpr double kBlock_s = 1.5, kApart_s = 0.5;  // chosen: a rate reaches half a second
-constexpr std::size_t kBlockFolds = 3;            // chosen
+constexpr std::size_t kBlockFolds = 4;            // chosen
 
 std::size_t block_fold(double time_s) {
   return static_cast<std::size_t>(std::max(0.0, time_s) / kBlock_s) % kBlockFolds;

@@ -91,7 +91,7 @@ std::string in_runs(const TermRows& term) {
                         : fmt::format(", in {:.0f} % of the {}s", 100 * share, what);
 }
 
-bool alike(double a, double b, double told) {
+bool told_alike(double a, double b, double told) {
   return std::abs(a - b) <= std::max(kSameRatio, kSameShare * std::abs(told));
 }
 
@@ -101,7 +101,7 @@ std::string by_side(const TermRows& term) {
   const auto right = [&](Index i) { return term.x[i] < 0; };
   if (std::min(term.part_where(left), term.part_where(right)) < 0.05) return "";  // chosen: hardly any to one side
   const double of_left = term.slope_where(left), of_right = term.slope_where(right);
-  if (alike(of_left, of_right, term.slope)) return "";
+  if (told_alike(of_left, of_right, term.slope)) return "";
   return turns(term.rows.quantity.quantity)
              ? fmt::format(", {:.2f} to the left and {:.2f} to the right", 1 + of_left, 1 + of_right)
              : fmt::format(", {:.2f} forward and {:.2f} backward", 1 + of_left, 1 + of_right);
@@ -118,7 +118,7 @@ std::string at_speeds(const TermRows& term) {
   const double middle = quantile_of(speeds, 0.5);
   const double slow = term.slope_where([&](Index i) { return matters(i) && term.rows.speed_mps[i] <= middle; });
   const double fast = term.slope_where([&](Index i) { return matters(i) && term.rows.speed_mps[i] > middle; });
-  if (alike(slow, fast, term.slope)) return ", at all speeds";
+  if (told_alike(slow, fast, term.slope)) return ", at all speeds";
   return fmt::format(", {:.2f} where the tracks run slower than {:.2g} m/s and {:.2f} where faster", 1 + slow, middle,
                      1 + fast);
 }
@@ -197,142 +197,6 @@ std::string words_of(const LeftOverRows& rows, const LeftOverFit& fit, const Run
           : fmt::format("measured minus simulated is {:.2g} to {:.2g} {}", by_run.low, by_run.high, rows.quantity.unit);
   return fmt::format("{}: {} from run to run: {} in the middle 80 % ({:.0f} % of what is left)", rows.quantity.name,
                      most, what, 100 * by_run.share);
-}
-
-std::vector<std::string> look_at(Quantity quantity, Regressor on) {
-  struct Entry {
-    Regressor on;
-    std::vector<std::string> look_at;
-  };
-  using R = Regressor;
-  static const std::vector<Entry> kOfTracks{
-      {R::simulated,
-       {"command_gain", "encoder_scale", "drive.sprocket_radius_m", "drive.max_speed_mps", "drive_asymmetry"}},
-      {R::delay, {"command_delay", "drive_lag", "command_slew"}},
-      {R::lag, {"drive_lag", "drive.time_constant_s", "command_slew", "command_delay"}},
-      {R::ramp, {"command_slew", "drive.max_force_n", "drive_torque_limit", "drive_lag"}},
-      {R::constant, {"drive_asymmetry", "encoder_scale"}},
-      {R::direction, {"drive_coulomb"}},
-      {R::command, {"command_gain", "drive.max_speed_mps", "drive_viscous"}},
-      {R::turn, {"drive_asymmetry", "friction_across"}},
-      {R::turn_size, {"friction_across", "drive.max_force_n", "drive_torque_limit"}},
-      {R::load, {"battery_sag", "battery.internal_resistance_ohm", "drive.max_force_n"}},
-      {R::pitch, {"body.mass_kg", "mass", "drive.max_force_n"}},
-      {R::time, {"battery_sag", "battery.capacity_s"}}};
-  static const std::vector<Entry> kOfCurrent{
-      {R::simulated, {"drive.amperes_per_newton", "friction_across", "mass", "body.mass_kg"}},
-      {R::delay, {"drive_lag", "command_delay"}},
-      {R::lag, {"drive_lag", "drive.time_constant_s"}},
-      {R::constant, {"drive.idle_amperes"}},
-      {R::direction, {"drive.idle_amperes", "drive_coulomb", "rolling_resistance"}},
-      {R::speed, {"drive_viscous", "rolling_resistance"}},
-      {R::turn, {"friction_across", "com_left", "ground_bank"}},
-      {R::turn_size, {"friction_across", "track.friction_across", "track.contact_length_m"}},
-      {R::acceleration, {"mass", "body.mass_kg", "drive.moving_mass_kg"}},
-      {R::pitch, {"mass", "body.mass_kg"}},
-      {R::time, {"drive_coulomb", "battery.capacity_s"}}};
-  static const std::vector<Entry> kOfBattery{{R::constant, {"battery.open_circuit_v"}},
-                                             {R::load, {"battery.internal_resistance_ohm", "battery_sag"}},
-                                             {R::speed, {"battery_sag", "drive_viscous"}},
-                                             {R::turn_size, {"battery_sag", "friction_across"}},
-                                             {R::acceleration, {"battery_sag", "drive.amperes_per_newton"}},
-                                             {R::time, {"battery.capacity_s", "battery.open_circuit_v"}}};
-  static const std::vector<Entry> kOfForward{
-      {R::simulated, {"drive.sprocket_radius_m", "encoder_scale", "slip_with_speed", "tracking_scale"}},
-      {R::delay, {"tracking_delay", "command_delay", "drive_lag"}},
-      {R::lag, {"drive_lag", "tracking_delay", "friction_along"}},
-      {R::constant, {"ground_slope"}},
-      {R::direction, {"rolling_resistance", "friction_along"}},
-      {R::turn, {"com_left", "ground_bank"}},
-      {R::turn_size, {"friction_along", "friction_across", "com_forward"}},
-      {R::acceleration, {"tracking_delay", "friction_along"}},
-      {R::load, {"friction_along", "rolling_resistance"}},
-      {R::pitch, {"friction_along", "ground_slope"}}};
-  static const std::vector<Entry> kOfSideways{
-      {R::simulated, {"friction_across", "com_forward"}}, {R::constant, {"ground_bank"}},
-      {R::direction, {"friction_across", "ground_bank"}}, {R::speed, {"posture_mount", "drive_asymmetry"}},
-      {R::turn, {"com_forward", "friction_across"}},      {R::delay, {"tracking_delay"}},
-      {R::lag, {"tracking_delay", "friction_across"}}};
-  static const std::vector<Entry> kOfYawRate{
-      {R::simulated, {"track.separation_m", "track.contact_length_m", "friction_across", "gyro_scale"}},
-      {R::delay, {"tracking_delay", "command_delay", "drive_lag"}},
-      {R::lag, {"drive_lag", "yaw_inertia", "friction_across", "tracking_delay"}},
-      {R::constant, {"drive_asymmetry", "ground_bank"}},
-      {R::direction, {"friction_across"}},
-      {R::speed, {"drive_asymmetry", "com_left"}},
-      {R::turn_size, {"drive_asymmetry", "com_left"}},
-      {R::acceleration, {"com_left", "drive_asymmetry", "yaw_inertia"}},
-      {R::load, {"drive_asymmetry", "com_left"}}};
-  static const std::vector<Entry> kOfPitch{{R::simulated, {"posture_scale"}},
-                                           {R::delay, {"posture_delay"}},
-                                           {R::lag, {"posture_delay", "pitch_inertia"}},
-                                           {R::constant, {"posture_bias", "com_forward", "ground_slope"}},
-                                           {R::speed, {"com_forward", "ground_compliance"}},
-                                           {R::acceleration, {"com_up", "com_forward", "ground_compliance"}},
-                                           {R::place_x, {"ground_slope", "obstacle_position"}}};
-  static const std::vector<Entry> kOfRoll{{R::simulated, {"posture_scale"}},
-                                          {R::delay, {"posture_delay"}},
-                                          {R::lag, {"posture_delay", "roll_inertia"}},
-                                          {R::constant, {"ground_bank", "com_left"}},
-                                          {R::pitch, {"posture_mount"}},
-                                          {R::turn, {"com_up", "ground_compliance"}},
-                                          {R::place_y, {"ground_bank"}}};
-  static const std::vector<Entry> kOfHeight{
-      {R::constant, {"obstacle_height", "ground_compliance", "track.end_radius_m"}},
-      {R::pitch, {"obstacle_height", "obstacle_position"}},
-      {R::place_x, {"ground_slope", "obstacle_position"}},
-      {R::place_y, {"ground_bank"}},
-      {R::speed, {"ground_compliance"}}};
-  const auto found_in = [&](const std::vector<Entry>& table) -> std::vector<std::string> {
-    const auto entry = std::ranges::find(table, on, &Entry::on);
-    return entry == table.end() ? std::vector<std::string>{} : entry->look_at;
-  };
-  switch (quantity) {
-    case Quantity::track_mean:
-    case Quantity::track_difference:
-    case Quantity::left_track:
-    case Quantity::right_track:
-      return found_in(kOfTracks);
-    case Quantity::current:
-      return found_in(kOfCurrent);
-    case Quantity::battery:
-      return found_in(kOfBattery);
-    case Quantity::forward:
-      return found_in(kOfForward);
-    case Quantity::sideways:
-      return found_in(kOfSideways);
-    case Quantity::yaw_rate:
-    case Quantity::gyro:
-      return found_in(kOfYawRate);
-    case Quantity::pitch:
-      return found_in(kOfPitch);
-    case Quantity::roll:
-      return found_in(kOfRoll);
-    case Quantity::height:
-      return found_in(kOfHeight);
-  }
-  return {};
-}
-
-std::vector<std::string> look_at_for_runs(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::battery:
-      return {"battery.open_circuit_v"};
-    case Quantity::current:
-      return {"friction_across", "drive_coulomb"};
-    case Quantity::yaw_rate:
-    case Quantity::gyro:
-      return {"friction_across", "ground_bank"};
-    case Quantity::forward:
-    case Quantity::sideways:
-      return {"friction_along", "ground_slope", "ground_bank"};
-    case Quantity::pitch:
-    case Quantity::roll:
-    case Quantity::height:
-      return {"ground_slope", "ground_bank"};
-    default:
-      return {"drive_torque_limit", "battery.open_circuit_v"};
-  }
 }
 
 }  // namespace kenaf::gap

@@ -17,7 +17,7 @@ std::string words_of(const LeftOverRows& rows, const LeftOverFit& fit, const Run
 // What is left without all terms but this one, of each row.
 Eigen::VectorXd left_to(const LeftOverRows& rows, const LeftOverFit& fit, const LeftOverTerm& term);
 
-// Keys of the robot's description and names of effects, the likeliest first.
+// Keys of the robot's description and names of effects, the likeliest first; empty where nothing is known to do it.
 std::vector<std::string> look_at(Quantity quantity, Regressor on);
 std::vector<std::string> look_at_for_runs(Quantity quantity);
 

@@ -18,33 +18,33 @@ using test::made_run;
 
 namespace {
 
-constexpr double kSpan_s = 0.25, kPeriod_s = 0.05, kDuration_s = 12, kSigma = 0.01, kHalfWidth_m = 0.25;
+constexpr double kMadeBin_s = 0.25, kMadeRow_s = 0.05, kMadeDuration_s = 12, kMadeNoise = 0.01, kMadeHalfWidth_m = 0.25;
 
 // Tracks that speed up, turn and come back, at their own times and speeds in each run.
-struct Drive {
+struct Driven {
   double speed_mps, turn_radps, period_s;
   double forward(double t_s) const { return speed_mps * std::sin(2 * M_PI * t_s / period_s); }
   double turn(double t_s) const { return turn_radps * std::sin(2 * M_PI * t_s / (0.7 * period_s) + speed_mps); }
-  double left(double t_s) const { return forward(t_s) - kHalfWidth_m * turn(t_s); }
-  double right(double t_s) const { return forward(t_s) + kHalfWidth_m * turn(t_s); }
+  double left(double t_s) const { return forward(t_s) - kMadeHalfWidth_m * turn(t_s); }
+  double right(double t_s) const { return forward(t_s) + kMadeHalfWidth_m * turn(t_s); }
 };
 
-Drive drive_of(std::size_t run) {
+Driven driven_in(std::size_t run) {
   const auto r = static_cast<double>(run);
   return {0.5 + 0.1 * std::fmod(r, 4), 0.4 + 0.15 * std::fmod(r, 3), 5 + 0.4 * std::fmod(r, 5)};
 }
 
 // What the robot does of its drive; what the simulation says is the drive itself.
-using Change = std::function<double(std::size_t run, const Drive& drive, double t_s)>;
+using Behaviour = std::function<double(std::size_t run, const Driven& drive, double t_s)>;
 
-struct MadeRuns {
+struct RunsLeft {
   std::vector<std::unique_ptr<Observation>> observations;
   std::vector<std::unique_ptr<FeatureMap>> features;
   std::vector<LeftOverRun> runs;
 };
 
 // The pose by the sum of its rates, at the rows' times.
-std::function<double(double)> integral(std::function<double(double)> rate) {
+std::function<double(double)> integral_of(std::function<double(double)> rate) {
   return [rate = std::move(rate)](double until_s) {
     double sum = 0;
     for (double t_s = 0; t_s < until_s - 1e-9; t_s += 0.01) sum += 0.01 * rate(t_s + 0.005);
@@ -53,33 +53,33 @@ std::function<double(double)> integral(std::function<double(double)> rate) {
 }
 
 // Columns of both, then noise on the bins.
-MadeRuns made(std::size_t count, std::string_view column, bool pose, const Change& simulated, const Change& measured,
-              std::size_t runs_of_group = 1) {
-  MadeRuns all;
+RunsLeft runs_left(std::size_t count, std::string_view column, bool pose, const Behaviour& simulated,
+                   const Behaviour& measured, std::size_t runs_of_group = 1) {
+  RunsLeft all;
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   for (std::size_t r = 0; r < count; ++r) {
-    const Drive drive = drive_of(r);
-    const auto columns = [&](const Change& of) {
+    const Driven drive = driven_in(r);
+    const auto columns = [&](const Behaviour& of) {
       const std::function<double(double)> value = [&, r](double t_s) { return of(r, drive, t_s); };
       return std::vector<ColumnOfTime>{{"cmd_track_left_mps", [&](double t_s) { return drive.left(t_s); }},
                                        {"cmd_track_right_mps", [&](double t_s) { return drive.right(t_s); }},
                                        {"track_left_mps", [&](double t_s) { return drive.left(t_s); }},
                                        {"track_right_mps", [&](double t_s) { return drive.right(t_s); }},
-                                       {std::string(column), pose ? integral(value) : value}};
+                                       {std::string(column), pose ? integral_of(value) : value}};
     };
     // a column that is made again is the later one
-    const auto made_of = [&](const Change& of) {
+    const auto made_of = [&](const Behaviour& of) {
       std::vector<ColumnOfTime> wanted = columns(of);
       std::erase_if(wanted, [&](const ColumnOfTime& c) { return c.first == column && &c != &wanted.back(); });
-      return made_run(kDuration_s, kPeriod_s, wanted);
+      return made_run(kMadeDuration_s, kMadeRow_s, wanted);
     };
     all.observations.push_back(std::make_unique<Observation>());
     all.observations.back()->file = "run";
     all.observations.back()->run = made_of(measured);
-    all.features.push_back(std::make_unique<FeatureMap>(all.observations.back()->run, kSpan_s));
+    all.features.push_back(std::make_unique<FeatureMap>(all.observations.back()->run, kMadeBin_s));
     const FeatureMap& features = *all.features.back();
-    const double sigma = pose ? kSigma / 4 : kSigma;  // of an angle a rate over half a second makes more
+    const double sigma = pose ? kMadeNoise / 4 : kMadeNoise;  // of an angle a rate over half a second makes more
     const Eigen::VectorXd noise =
         Eigen::VectorXd::NullaryExpr(features.measured().size(), [&] { return sigma * normal(random); });
     all.runs.push_back({all.observations.back().get(), all.features.back().get(), features.measured() + noise,
@@ -89,11 +89,11 @@ MadeRuns made(std::size_t count, std::string_view column, bool pose, const Chang
   return all;
 }
 
-double turn(std::size_t, const Drive& drive, double t_s) {
+double turn_of(std::size_t, const Driven& drive, double t_s) {
   return drive.turn(t_s);
 }
 
-std::vector<Dependence> of_channel(const MadeRuns& made, const std::string& channel, bool only_drives = false) {
+std::vector<Dependence> told_of(const RunsLeft& made, const std::string& channel, bool only_drives = false) {
   std::vector<Dependence> found;
   for (const Dependence& d : describe_left_over(made.runs, only_drives)) {
     INFO(d.words);
@@ -109,8 +109,8 @@ std::vector<Dependence> of_channel(const MadeRuns& made, const std::string& chan
 }  // namespace
 
 TEST_CASE("A yaw rate of about half of the simulated is said with its share and where it holds") {
-  const MadeRuns runs = made(8, "yaw_rad", true, turn,
-                             [](std::size_t, const Drive& drive, double t_s) { return 0.52 * drive.turn(t_s); });
+  const RunsLeft runs = runs_left(8, "yaw_rad", true, turn_of,
+                                  [](std::size_t, const Driven& drive, double t_s) { return 0.52 * drive.turn(t_s); });
   const std::vector<Dependence> told = describe_left_over(runs.runs, false);
   REQUIRE(told.size() == 1);
   CHECK(told[0].channel == "yaw rate");
@@ -127,22 +127,23 @@ TEST_CASE("A yaw rate of about half of the simulated is said with its share and 
 TEST_CASE("Noise goes with nothing") {
   for (const char* column : {"yaw_rad", "gyro_z_radps", "track_left_a", "battery_v", "pitch_rad"}) {
     INFO(column);
-    CHECK(describe_left_over(made(8, column, false, turn, turn).runs, false).empty());
+    CHECK(describe_left_over(runs_left(8, column, false, turn_of, turn_of).runs, false).empty());
   }
   CHECK(describe_left_over({}, false).empty());
 }
 
 TEST_CASE("Noise that is stated too small goes with nothing either") {
-  MadeRuns runs = made(8, "gyro_z_radps", false, turn, turn);
+  RunsLeft runs = runs_left(8, "gyro_z_radps", false, turn_of, turn_of);
   for (LeftOverRun& run : runs.runs) run.sigma /= 3;
   CHECK(describe_left_over(runs.runs, false).empty());
 }
 
 TEST_CASE("A delay is said in seconds") {
-  const auto late = [](std::size_t, const Drive& drive, double t_s) { return drive.turn(std::max(0.0, t_s - 0.2)); };
+  const auto late = [](std::size_t, const Driven& drive, double t_s) { return drive.turn(std::max(0.0, t_s - 0.2)); };
   // two runs are too few to hold runs out: stretches of time are
   for (const std::size_t count : {std::size_t{8}, std::size_t{2}}) {
-    const std::vector<Dependence> told = of_channel(made(count, "gyro_z_radps", false, turn, late), "yaw rate by gyro");
+    const std::vector<Dependence> told =
+        told_of(runs_left(count, "gyro_z_radps", false, turn_of, late), "yaw rate by gyro");
     REQUIRE_FALSE(told.empty());
     CHECK(told[0].on == "change of the simulated yaw rate by gyro");
     CHECK_THAT(told[0].words, Contains("measured 0.2 s late behind the simulated, whenever it changes"));
@@ -152,7 +153,7 @@ TEST_CASE("A delay is said in seconds") {
 }
 
 TEST_CASE("A lag of both tracks is said once") {
-  MadeRuns runs = made(8, "gyro_z_radps", false, turn, turn);
+  RunsLeft runs = runs_left(8, "gyro_z_radps", false, turn_of, turn_of);
   // what a first-order lag makes of the tracks' speeds: the simulated ones are quick
   for (LeftOverRun& run : runs.runs) {
     double lagged = 0;
@@ -160,7 +161,8 @@ TEST_CASE("A lag of both tracks is said once") {
       const Bin& bin = run.features->bins()[b];
       const auto i = static_cast<Eigen::Index>(b);
       if (!diagnosis_channels()[bin.channel].column.starts_with("track_")) continue;
-      lagged = bin.span == 0 ? run.simulated[i] : lagged + (run.simulated[i] - lagged) * (1 - std::exp(-kSpan_s / 1.1));
+      lagged =
+          bin.span == 0 ? run.simulated[i] : lagged + (run.simulated[i] - lagged) * (1 - std::exp(-kMadeBin_s / 1.1));
       run.measured[i] = lagged;
     }
   }
@@ -173,10 +175,11 @@ TEST_CASE("A lag of both tracks is said once") {
 }
 
 TEST_CASE("A factor that differs from run to run is said so, with its middle") {
-  const auto differs = [](std::size_t run, const Drive& drive, double t_s) {
+  const auto differs = [](std::size_t run, const Driven& drive, double t_s) {
     return (1 + 0.3 * (run % 2 == 0 ? 1 : -1) * (0.5 + 0.05 * static_cast<double>(run))) * drive.turn(t_s);
   };
-  const std::vector<Dependence> told = of_channel(made(10, "gyro_z_radps", false, turn, differs), "yaw rate by gyro");
+  const std::vector<Dependence> told =
+      told_of(runs_left(10, "gyro_z_radps", false, turn_of, differs), "yaw rate by gyro");
   REQUIRE_FALSE(told.empty());
   CHECK(told[0].on == "run");
   CHECK_THAT(told[0].words, Contains("most of it differs from run to run: 0.") && Contains("in the middle 80 %"));
@@ -185,10 +188,11 @@ TEST_CASE("A factor that differs from run to run is said so, with its middle") {
 }
 
 TEST_CASE("A common factor about which runs differ is told beside it") {
-  const auto differs = [](std::size_t run, const Drive& drive, double t_s) {
+  const auto differs = [](std::size_t run, const Driven& drive, double t_s) {
     return (0.7 + 0.1 * (run % 2 == 0 ? 1 : -1)) * drive.turn(t_s);
   };
-  const std::vector<Dependence> told = of_channel(made(10, "gyro_z_radps", false, turn, differs), "yaw rate by gyro");
+  const std::vector<Dependence> told =
+      told_of(runs_left(10, "gyro_z_radps", false, turn_of, differs), "yaw rate by gyro");
   REQUIRE(told.size() == 2);
   CHECK(told[0].on == "simulated yaw rate by gyro");
   CHECK_THAT(told[1].words, Contains("differs from run to run: 0.60 to 0.80 of the simulated was measured"));
@@ -196,23 +200,23 @@ TEST_CASE("A common factor about which runs differ is told beside it") {
 }
 
 TEST_CASE("One run with other trouble makes no dependence") {
-  const auto with_outlier = [](std::size_t run, const Drive& drive, double t_s) {
+  const auto with_outlier = [](std::size_t run, const Driven& drive, double t_s) {
     return (run == 3 ? -2 : 1) * drive.turn(t_s);
   };
-  CHECK(of_channel(made(10, "gyro_z_radps", false, turn, with_outlier), "yaw rate by gyro").empty());
+  CHECK(told_of(runs_left(10, "gyro_z_radps", false, turn_of, with_outlier), "yaw rate by gyro").empty());
   // nor does it spoil what the others have
-  const auto also = [](std::size_t run, const Drive& drive, double t_s) {
+  const auto also = [](std::size_t run, const Driven& drive, double t_s) {
     return (run == 3 ? -2 : 0.8) * drive.turn(t_s);
   };
-  const std::vector<Dependence> told = of_channel(made(10, "gyro_z_radps", false, turn, also), "yaw rate by gyro");
+  const std::vector<Dependence> told = told_of(runs_left(10, "gyro_z_radps", false, turn_of, also), "yaw rate by gyro");
   REQUIRE_FALSE(told.empty());
   CHECK(told[0].slope == Approx(-0.2).margin(0.06));
 }
 
 TEST_CASE("Offsets are said with their unit") {
-  const auto amperes = [](std::size_t, const Drive& drive, double t_s) { return 3 + std::abs(drive.left(t_s)); };
-  const auto more = [&](std::size_t run, const Drive& drive, double t_s) { return amperes(run, drive, t_s) + 1.25; };
-  const std::vector<Dependence> told = of_channel(made(6, "battery_v", false, amperes, more), "voltage", true);
+  const auto amperes = [](std::size_t, const Driven& drive, double t_s) { return 3 + std::abs(drive.left(t_s)); };
+  const auto more = [&](std::size_t run, const Driven& drive, double t_s) { return amperes(run, drive, t_s) + 1.25; };
+  const std::vector<Dependence> told = told_of(runs_left(6, "battery_v", false, amperes, more), "voltage", true);
   REQUIRE(told.size() == 1);
   CHECK(told[0].words == "voltage: measured 1.2 V more than the simulated, in every run (100 % of what is left)");
   CHECK(told[0].look_at == std::vector<std::string>{"battery.open_circuit_v"});
@@ -221,34 +225,35 @@ TEST_CASE("Offsets are said with their unit") {
 }
 
 TEST_CASE("What holds only while it speeds up, or to one side, is said so") {
-  const auto slow_to_start = [](std::size_t, const Drive& drive, double t_s) {
+  const auto slow_to_start = [](std::size_t, const Driven& drive, double t_s) {
     const double now = drive.turn(t_s), before = drive.turn(t_s - 0.2);
     return std::abs(now) > std::abs(before) ? before : now;
   };
-  const auto delayed = of_channel(made(8, "gyro_z_radps", false, turn, slow_to_start), "yaw rate by gyro");
+  const auto delayed = told_of(runs_left(8, "gyro_z_radps", false, turn_of, slow_to_start), "yaw rate by gyro");
   REQUIRE_FALSE(delayed.empty());
   CHECK_THAT(delayed[0].words, Contains("only while it grows"));
 
-  const auto to_the_left = [](std::size_t, const Drive& drive, double t_s) {
+  const auto to_the_left = [](std::size_t, const Driven& drive, double t_s) {
     return (drive.turn(t_s) > 0 ? 0.5 : 0.8) * drive.turn(t_s);
   };
-  const auto sided = of_channel(made(8, "gyro_z_radps", false, turn, to_the_left), "yaw rate by gyro");
+  const auto sided = told_of(runs_left(8, "gyro_z_radps", false, turn_of, to_the_left), "yaw rate by gyro");
   REQUIRE_FALSE(sided.empty());
   CHECK_THAT(sided[0].words, Contains("0.50 to the left and 0.80 to the right"));
 }
 
 TEST_CASE("One track that is slower is told as that track's") {
-  const auto left = [](std::size_t, const Drive& drive, double t_s) { return drive.left(t_s); };
-  const auto slower = [](std::size_t, const Drive& drive, double t_s) { return 0.8 * drive.left(t_s); };
-  const std::vector<Dependence> told = describe_left_over(made(8, "track_left_mps", false, left, slower).runs, true);
+  const auto left = [](std::size_t, const Driven& drive, double t_s) { return drive.left(t_s); };
+  const auto slower = [](std::size_t, const Driven& drive, double t_s) { return 0.8 * drive.left(t_s); };
+  const std::vector<Dependence> told =
+      describe_left_over(runs_left(8, "track_left_mps", false, left, slower).runs, true);
   REQUIRE_FALSE(told.empty());
   CHECK_THAT(told[0].words, Contains("left track speed: measured 0.80 of the simulated, in every run"));
   for (const Dependence& d : told) CHECK(d.channel != "right track speed");
 }
 
 TEST_CASE("The same runs are described the same twice, and sizes are checked") {
-  MadeRuns runs = made(4, "gyro_z_radps", false, turn,
-                       [](std::size_t, const Drive& drive, double t_s) { return 0.9 * drive.turn(t_s) + 0.02; });
+  RunsLeft runs = runs_left(4, "gyro_z_radps", false, turn_of,
+                            [](std::size_t, const Driven& drive, double t_s) { return 0.9 * drive.turn(t_s) + 0.02; });
   const auto first = describe_left_over(runs.runs, false), second = describe_left_over(runs.runs, false);
   REQUIRE(first.size() == second.size());
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -260,8 +265,8 @@ TEST_CASE("The same runs are described the same twice, and sizes are checked") {
 }
 
 TEST_CASE("The page's section has every sentence and a well-formed plot") {
-  const MadeRuns runs = made(8, "yaw_rad", true, turn,
-                             [](std::size_t, const Drive& drive, double t_s) { return 0.52 * drive.turn(t_s); });
+  const RunsLeft runs = runs_left(8, "yaw_rad", true, turn_of,
+                                  [](std::size_t, const Driven& drive, double t_s) { return 0.52 * drive.turn(t_s); });
   const std::vector<Dependence> told = describe_left_over(runs.runs, false);
   REQUIRE(told.size() == 1);
   CHECK(test::fault_of_xml(left_over_plot(told[0])) == "");

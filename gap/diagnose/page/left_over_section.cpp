@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kMostPlots = 6;  // chosen: three rows of two
 constexpr double kDot_px = 2;
+constexpr double kMargin = 0.02;  // of the points' extent
 
 std::string with_unit(std::string_view text, std::string_view unit) {
   return unit.empty() ? std::string(text) : fmt::format("{} ({})", text, unit);
@@ -35,6 +36,10 @@ std::string left_over_plot(const Dependence& d) {
     chart.discs.push_back({{x, y}, kDot_px, plot::Ink::real});
     chart.include.emplace_back(x, y);
   }
+  // no dot on the frame
+  const double margin = kMargin * (high - low);
+  low -= margin;
+  high += margin;
   const auto on_line = [&](double x) { return plot::Point(x, d.intercept + d.slope * x); };
   chart.lines.push_back(
       {{on_line(low), on_line(high)}, plot::Ink::sim, plot::Stroke::solid, by_run ? "middle of the runs" : "fit"});
