@@ -28,7 +28,7 @@ struct DiagnosisOptions {
   std::filesystem::path effects;      // a file with effects of one's own (candidates/own_effects.hpp); empty: none
   std::vector<std::string> without;   // candidates that are left out, by their effect's name or their key; of those that do
                                       // the same, all. Throws std::invalid_argument for others
-  std::size_t most_runs = 36;         // that are used of a larger dataset
+  std::size_t most_runs = 24;         // that are used of a larger dataset
   bool propose_next = true;           // manoeuvres that would tell more, where the verdict leaves a choice
   unsigned jobs = 0;                  // threads; 0: one a core
   std::uint64_t seed = 1;
@@ -59,6 +59,9 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
 
 // `none` where all stages are; `ambiguous` where one is; else `named` where one is; else `unknown`.
 Verdict whole_verdict(const std::vector<StageDiagnosis>& stages);
+
+// What of a stage is beyond noise and spread, summed over all of its bins in squared units of noise: by this stages compare.
+double squared_gap(const StageDiagnosis& stage);
 
 // Every named effect, or where nothing is named every effect of the best models, once each, at its value in the stage that
 // shows it best.

@@ -70,9 +70,7 @@ Discrepancy most_likely_discrepancy(std::span<const SeriesOfKind> series) {
   const double from = std::log(0.03 * std::sqrt(noise)), to = std::log(10 * std::sqrt(squares / bins));
   if (!(from < to)) return best;
   for (const double memory_s : kMemories_s) {
-    const auto at = [&](double log_sigma) {
-      return minus_two_log_likelihood(series, {std::exp(log_sigma), memory_s});
-    };
+    const auto at = [&](double log_sigma) { return minus_two_log_likelihood(series, {std::exp(log_sigma), memory_s}); };
     double low = from, high = to, a = high - kGolden * (high - low), b = low + kGolden * (high - low);
     double at_a = at(a), at_b = at(b);
     for (int i = 0; i < kSections; ++i) {

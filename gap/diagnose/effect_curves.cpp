@@ -8,7 +8,6 @@ namespace {
 
 // Parts of the way from neutral to an end of the range.
 constexpr double kSpread[] = {0.25, 1};
-constexpr double kOneStep = 0.25;
 
 constexpr double kRoughReach = 2;
 
@@ -54,8 +53,8 @@ void add_halves(const EffectCurves& curves, const StageData& data, std::size_t c
   }
 }
 
-// Nearer to the present value than the innermost one of the points on a side, where that is longer than `length` and the next
-// one not as much longer as it is farther out: what the effect does all at once comes before.
+// Nearer to the present value than the innermost one of the points on a side, where that is longer than `length` and
+// the next one not as much longer as it is farther out: what the effect does all at once comes before.
 void add_inner(const EffectCurves& curves, const StageData& data, std::size_t c, double length,
                std::vector<Setting>& inner) {
   const std::vector<CurvePoint>& points = curves.curves[c].points;
@@ -82,7 +81,9 @@ std::vector<Setting> parts_of_ranges(const EffectCurves& curves, std::span<const
     const Candidate& candidate = curves.candidates[c];
     for (const double end : {candidate.min, candidate.max})
       for (const double part : parts)
-        if (end != candidate.present) points.push_back({c, candidate.present + part * (end - candidate.present)});
+        if (const double value = candidate.present + part * (end - candidate.present);
+            end != candidate.present && std::ranges::count(curves.curves[c].points, value, &CurvePoint::value) == 0)
+          points.push_back({c, value});
   }
   return points;
 }
@@ -109,13 +110,16 @@ void add_spread(EffectCurves& curves, const StageData& data, std::span<const std
   add_points(curves, data, parts_of_ranges(curves, chosen, kSpread), Fidelity::coarse, simulate);
 }
 
-void add_one_step(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
-                  const Simulate& simulate) {
+void add_first_look(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
+                    const Simulate& simulate) {
   std::vector<Setting> points;
   for (const std::size_t c : chosen) {
     const Candidate& candidate = curves.candidates[c];
-    const double end = candidate.max != candidate.present ? candidate.max : candidate.min;
-    points.push_back({c, candidate.present + kOneStep * (end - candidate.present)});
+    const bool both_ways = candidate.min < candidate.present && candidate.present < candidate.max;
+    const double end = candidate.max > candidate.present ? candidate.max : candidate.min;
+    points.push_back({c, candidate.present + kSpread[0] * (end - candidate.present)});
+    // what begins from some value on (drives that stall) shows only farther out
+    if (!both_ways) points.push_back({c, end});
   }
   add_points(curves, data, points, Fidelity::coarse, simulate);
 }
@@ -154,7 +158,7 @@ void insert_points(EffectCurves& curves, const StageData& data, std::span<const 
   }
   for (std::size_t p = 0; p < points.size(); ++p) {
     EffectCurve& curve = curves.curves[points[p].candidate];
-    const CurvePoint added{points[p].value, first + static_cast<int>(p), fidelity == Fidelity::every_run};
+    const CurvePoint added{points[p].value, first + static_cast<int>(p), fidelity != Fidelity::coarse};
     if (added.exact) forget_rough_points(curve, curves.candidates[curve.candidate].present, added.value);
     const auto place = std::ranges::lower_bound(curve.points, added.value, {}, &CurvePoint::value);
     if (place != curve.points.end() && place->value == added.value)

@@ -18,7 +18,7 @@ namespace kenaf::gap {
 struct CurvePoint {
   double value;     // of the candidate
   int column;       // of EffectCurves::shifts; -1: the present value, which shifts nothing
-  bool exact;       // every run was simulated, not only one of each group of repeats
+  bool exact;       // was simulated at the full rate, not with twice the time step
 };
 
 struct EffectCurve {
@@ -47,12 +47,13 @@ using Simulate = std::function<std::vector<GroupVectors>(std::span<const Setting
 // No points but the present ones.
 EffectCurves empty_curves(const StageData& data, std::span<const Candidate> candidates);
 
-// Simulates points spread over the range of each of `chosen`, denser near neutral.
+// For a first look: one point near the present value of each of `chosen`; of an effect that goes one way alone also the end of
+// its range.
+void add_first_look(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
+                    const Simulate& simulate);
+// Simulates points spread over the range of each of `chosen`, denser near the present value, where there are none.
 void add_spread(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                 const Simulate& simulate);
-// One point each, near neutral: for a first look.
-void add_one_step(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
-                  const Simulate& simulate);
 // A curve that moves little up to a value and much beyond it (drives that stall) is halved, up to four times, where it
 // becomes as long as the gap: between points that are far apart a straight line hides where it goes. One that has done nearly all
 // by its innermost point (drives that stall before it) gets points nearer to neutral, up to four, each a quarter of the way to

@@ -46,7 +46,8 @@ Shared shared_of(const StageData& data, const std::vector<GroupWhitener>& whiten
   return shared;
 }
 
-// The amounts of local shapes that a residual makes most likely, taken off it: what noise and discrepancy are left with.
+// The amounts of local shapes that a residual makes most likely, taken off it: what noise and discrepancy are left
+// with.
 VectorXd without_local_shapes(const StageGroup& group, const Discrepancies& discrepancies, VectorXd residual) {
   MatrixXd columns(residual.size(), group.local_shapes.cols() + 1);
   columns << group.local_shapes, residual;
@@ -103,8 +104,8 @@ GroupWhitener::GroupWhitener(const StageGroup& group, const Discrepancies& discr
   Index first = 0;
   while (first < squares.size() && squares[first] < kNoShape * kNoShape) ++first;
   const Index count = squares.size() - first;
-  directions_ = shapes * eigen.eigenvectors().rightCols(count) *
-                squares.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
+  directions_ =
+      shapes * eigen.eigenvectors().rightCols(count) * squares.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
   shrink_ = 1 - (1 + squares.tail(count).array()).rsqrt();
   log_determinant_ += (1 + squares.tail(count).array()).log().sum();
 }

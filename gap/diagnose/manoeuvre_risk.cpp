@@ -75,8 +75,12 @@ double current_share_of(const runs::Run& run, const physics::RobotDescription& n
 }  // namespace
 
 Risk worst_of(const Risk& a, const Risk& b) {
-  return {std::max(a.largest_tilt_rad, b.largest_tilt_rad), std::max(a.fall_m, b.fall_m),
-          std::max(a.impact_mps2, b.impact_mps2), std::max(a.current_share, b.current_share), a.fails || b.fails};
+  return {std::max(a.largest_tilt_rad, b.largest_tilt_rad),
+          std::max(a.fall_m, b.fall_m),
+          std::max(a.impact_mps2, b.impact_mps2),
+          std::max(a.current_share, b.current_share),
+          a.stuck || b.stuck,
+          a.fails || b.fails};
 }
 
 physics::RobotDescription with_exact_sensors(physics::RobotDescription robot) {
@@ -97,12 +101,14 @@ physics::RobotDescription with_exact_sensors(physics::RobotDescription robot) {
   return robot;
 }
 
-Risk risk_of(const rollout::RollOut& roll_out, const physics::RobotDescription& nominal) {
+Risk risk_of(const rollout::RollOut& roll_out, const rollout::Manoeuvre& manoeuvre,
+             const physics::RobotDescription& nominal) {
   const runs::Run& run = roll_out.run;
   Risk risk{.largest_tilt_rad = largest_tilt_of(run.column("roll_rad"), run.column("pitch_rad")),
             .fall_m = fall_of(run),
             .impact_mps2 = impact_of(run.column("t_s"), run.column("z_m")),
-            .current_share = current_share_of(run, nominal)};
+            .current_share = current_share_of(run, nominal),
+            .stuck = roll_out.gave_up || (manoeuvre.success && !roll_out.succeeded)};
   risk.fails = !roll_out.fault.empty() || risk.largest_tilt_rad > std::numbers::pi / 2;
   return risk;
 }
@@ -127,7 +133,7 @@ Gentleness gentleness(const rollout::Manoeuvre& manoeuvre, bool level_ground, co
   if (manoeuvre.start_lift_m > 0 || risk.largest_tilt_rad > kLargeTilt_rad || risk.fall_m > kFall_m ||
       risk.impact_mps2 > kImpact_mps2)
     return Gentleness::falls_or_tilts;
-  if (!level_ground) return Gentleness::low_obstacle;
+  if (!level_ground) return risk.stuck ? Gentleness::falls_or_tilts : Gentleness::low_obstacle;
   return moves_flippers(manoeuvre) ? Gentleness::flat_flippers : Gentleness::flat_driving;
 }
 

@@ -21,6 +21,7 @@ struct Risk {
   // depends on the stiffness of contacts, which nobody knows.
   double impact_mps2 = 0;
   double current_share = 0;  // largest current of any motor over that of the same motor stalled; 0 without currents
+  bool stuck = false;        // it did not end where the manoeuvre's own measure wants it, or its operator gave up
   bool fails = false;        // it turned over (beyond 90 degrees), or the simulation had a fault
 
   bool operator==(const Risk&) const = default;
@@ -34,21 +35,23 @@ enum class Gentleness {
   flat_driving,       // on level ground, flippers stay where they are: at worst it drives against a wall
   flat_flippers,      // on level ground, flippers move
   low_obstacle,       // over obstacles, none of what makes the next class
-  falls_or_tilts,     // beyond one of the limits below, or let fall on purpose
+  falls_or_tilts,     // beyond one of the limits below, let fall on purpose, or stuck on an obstacle
   fails,              // Risk::fails
 };
 
-// Beyond one of these a manoeuvre is no gentle one (all chosen).
-inline constexpr double kLargeTilt_rad = 0.35;   // 20 degrees, as on the ramp that ships; stairs have 23
-inline constexpr double kFall_m = 0.03;          // half the radius of a small track's wheel: rubber takes that much
-inline constexpr double kImpact_mps2 = 9.80665;  // as much again as standing presses
+// Beyond one of these a manoeuvre is no gentle one (all chosen, so that the ramp of 20 degrees and a step of 50 mm are gentle, a
+// trench of 300 mm is not).
+inline constexpr double kLargeTilt_rad = 0.44;        // 25 degrees: stairs have 23
+inline constexpr double kFall_m = 0.03;               // half the radius of a track's end wheel
+inline constexpr double kImpact_mps2 = 2 * 9.80665;   // presses three times as hard as standing
 
 // The robot as its motion is judged: with exact posture and current sensors, whatever it carries, and none of the effects on
 // sensors, which move nothing. It moves as `robot` does.
 physics::RobotDescription with_exact_sensors(physics::RobotDescription robot);
 
-// Of a run of with_exact_sensors(), without noise, rows of 10 ms. `nominal`: whose motors' stall currents count.
-Risk risk_of(const rollout::RollOut& roll_out, const physics::RobotDescription& nominal);
+// Of `manoeuvre` driven by with_exact_sensors(), without noise, rows of 10 ms. `nominal`: whose motors' stall currents count.
+Risk risk_of(const rollout::RollOut& roll_out, const rollout::Manoeuvre& manoeuvre,
+             const physics::RobotDescription& nominal);
 
 // Level planes and nothing else.
 bool is_level(const physics::WorldDescription& world);

@@ -9,7 +9,8 @@
 namespace kenaf::gap {
 namespace {
 
-// Of the way from the present value: a curve is known on either side of a fit at these factors, so that its bend there is.
+// Of the way from the present value: a curve is known on either side of a fit at these factors, so that its bend there
+// is.
 constexpr double kBracket = 1.3, kExactBracket = 1.15;
 constexpr double kNear = 0.3;       // of the way to one of these
 constexpr double kSettled = 0.005;  // of the value: a fit that moves less has nothing to learn from another point
@@ -117,9 +118,8 @@ void simulate_sets(std::vector<Contender>& contenders, const StageData& data, co
   }
   for_each_job(contenders.size(), threads, [&](std::size_t i) {
     Contender& contender = contenders[i];
-    if (fidelity == Fidelity::every_run) keep_better(contender.best, data, contender.fitted, shifts[i]);
-    contender.fitted =
-        fit_model(data, curves, sets[i], beyond[i], contender.fitted.likelihood.discrepancies);
+    if (fidelity == Fidelity::fine) keep_better(contender.best, data, contender.fitted, shifts[i]);
+    contender.fitted = fit_model(data, curves, sets[i], beyond[i], contender.fitted.likelihood.discrepancies);
   });
 }
 
@@ -214,7 +214,7 @@ std::vector<Model> search_singles(const StageData& data, EffectCurves& curves, c
     sort_by_deviance(models);
   }
 
-  // the best of them in every run
+  // the best of them at the full rate
   const std::size_t finalists = near_best(models, nominal, settings);
   std::vector<Contender> contenders;
   for (std::size_t i = 0; i < finalists; ++i) contenders.push_back({effects_of(models[i]), models[i], {}});
@@ -224,7 +224,7 @@ std::vector<Model> search_singles(const StageData& data, EffectCurves& curves, c
       std::ranges::copy(points_around(curves, contender.fitted.places.front(), kExactBracket, true),
                         std::back_inserter(points));
     if (points.empty()) break;
-    add_points(curves, data, points, Fidelity::every_run, simulate);
+    add_points(curves, data, points, Fidelity::fine, simulate);
     for_each_job(contenders.size(), settings.threads, [&](std::size_t i) {
       Model& fitted = contenders[i].fitted;
       fitted = fit_model(data, curves, contenders[i].set, {}, fitted.likelihood.discrepancies);
@@ -283,13 +283,13 @@ std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves
   for (int round = 0; round < settings.rounds && !contenders.empty(); ++round)
     simulate_sets(contenders, data, curves, simulate, Fidelity::coarse, settings.threads);
 
-  // the best of them in every run
+  // the best of them at the full rate
   keep_best(settings.contenders);
   std::vector<Model> fitted;
   for (const Contender& contender : contenders) fitted.push_back(contender.fitted);
   keep_best(near_best(fitted, to_beat, settings));
   for (int round = 0; round < settings.rounds && !contenders.empty(); ++round)
-    simulate_sets(contenders, data, curves, simulate, Fidelity::every_run, settings.threads);
+    simulate_sets(contenders, data, curves, simulate, Fidelity::fine, settings.threads);
   std::vector<Model> models;
   for (Contender& contender : contenders) models.push_back(std::move(contender.best));
   sort_by_deviance(models);

@@ -1,7 +1,7 @@
 // Models of a stage's gap, that is effects at fitted values, from curves to exact simulations.
 //
 // Cheap before dear: coarse curves rank all effects and sets of them; the best ones get points where they fit best, then
-// every run simulated. Models are compared by their deviance, each with the discrepancies that suit it best.
+// one run of each group at the full rate. Models are compared by their deviance, each with the discrepancies that suit it best.
 // Thread safety: pure functions apart from what the simulator does.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace kenaf::gap {
 struct Model {
   std::vector<OnCurve> places;  // none: nominal
   GroupVectors shift;           // by all its effects together
-  bool exact = false;           // every run was simulated with all effects at these values
+  bool exact = false;           // was simulated at the full rate with all effects at these values
   Likelihood likelihood;
   double deviance() const { return likelihood.deviance; }
 };
@@ -25,9 +25,9 @@ struct Model {
 struct SearchSettings {
   std::size_t first_sets = 24;  // that are fitted with discrepancies of their own
   std::size_t contenders = 8;   // single effects, and sets, that are refined, coarse
-  std::size_t finalists = 4;    // of these, how many are refined by all runs
+  std::size_t finalists = 4;    // of these, how many are refined at the full rate
   int rounds = 2;               // of refining, coarse
-  int exact_rounds = 4;         // at most, of refining by all runs
+  int exact_rounds = 4;         // at most, of refining at the full rate
   double near = 0.1;            // share of what the best one's deviance gains by which a finalist may be worse
   unsigned threads = 0;
 };
@@ -55,7 +55,7 @@ std::vector<Model> search_singles(const StageData& data, EffectCurves& curves, c
 // Sets of effects that these runs show.
 std::vector<EffectSet> all_pairs(const EffectCurves& curves);
 std::vector<EffectSet> with_one_more(const EffectCurves& curves, const EffectSet& set);
-// Best first; only sets that were simulated in every run. `start`: discrepancies of the model that they are to beat.
+// Best first; only sets that were simulated at the full rate. `start`: discrepancies of the model that they are to beat.
 std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves, const Discrepancies& start,
                                const Simulate& simulate, const SearchSettings& settings, std::vector<EffectSet> sets,
                                double to_beat);

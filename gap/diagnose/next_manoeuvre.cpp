@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -21,10 +22,18 @@ namespace {
 constexpr double kLongestProposed_s = 40;  // chosen: what takes longer is driven in parts
 constexpr std::size_t kWanted = 3;         // that suffice, for a report to name
 constexpr std::size_t kBatch = 3;          // manoeuvres at a time, whatever the threads
+constexpr double kNothing = 1;             // standard deviations: less is no separation to speak of
 
 rollout::RollOutOptions without_noise() {
   rollout::RollOutOptions options;
   options.noise_scale = options.mocap_noise_m = options.mocap_noise_rad = 0;
+  return options;
+}
+
+// The simulator with another time step: what that changes it does not know.
+rollout::RollOutOptions coarse() {
+  rollout::RollOutOptions options = without_noise();
+  options.physics.time_step_s *= 2;
   return options;
 }
 
@@ -61,22 +70,25 @@ class Proposer {
  public:
   Proposer(const physics::RobotDescription& nominal, std::span<const RivalModel> rivals, const ProposalOptions& options)
       : nominal_(nominal), rivals_(rivals), options_(options) {
+    for (const RivalModel& rival : rivals) models_.push_back({&rival.fitted, false});
     for (const RivalModel& rival : rivals) {
-      first_model_.push_back(models_.size());
-      models_.push_back(&rival.fitted);
-      for (const physics::RobotDescription& moved : rival.moved) models_.push_back(&moved);
+      first_moved_.push_back(models_.size());
+      for (const physics::RobotDescription& moved : rival.moved) models_.push_back({&moved, false});
     }
-    first_model_.push_back(models_.size());
+    first_moved_.push_back(models_.size());
+    for (const RivalModel& rival : rivals) models_.push_back({&rival.fitted, true});
   }
 
-  // Whether any of `candidates` suffices.
-  bool try_all(std::vector<Candidate> candidates) {
+  // Tries `candidates` class by class up to `roughest`, as the nominal robot drives them, and leaves those that are
+  // rougher. Whether one suffices that is as gentle as its class.
+  bool try_up_to(Gentleness roughest, std::vector<Candidate>& candidates) {
     drive_nominal(candidates);
     std::erase_if(candidates, [](const Candidate& candidate) { return candidate.gentleness == Gentleness::fails; });
     std::ranges::stable_sort(candidates, {}, [](const Candidate& candidate) {
       return std::tuple(candidate.gentleness, candidate.duration_s);
     });
-    for (auto begin = candidates.begin(); begin != candidates.end();) {
+    auto begin = candidates.begin();
+    while (begin != candidates.end() && begin->gentleness <= roughest) {
       const Gentleness asked = begin->gentleness;
       const auto end = std::ranges::find_if(
           begin, candidates.end(), [asked](const Candidate& candidate) { return candidate.gentleness != asked; });
@@ -88,7 +100,8 @@ class Proposer {
       if (sufficient(asked) > 0) return true;
       begin = end;
     }
-    return std::ranges::any_of(proposed_, &ProposedManoeuvre::suffices);
+    candidates.erase(candidates.begin(), begin);
+    return false;
   }
 
   std::vector<ProposedManoeuvre> take() {
@@ -116,91 +129,122 @@ class Proposer {
     for_each_job(candidates.size(), options_.threads, [&](std::size_t i) {
       check_goes_on(options_.stop);
       Candidate& candidate = candidates[i];
+      if (candidate.plain.row_count() > 0) return;  // it was before
       rollout::RollOut out = driven(nominal_, candidate);
-      candidate.risk = risk_of(out, nominal_);
+      candidate.risk = risk_of(out, candidate.manoeuvre, nominal_);
       candidate.plain = std::move(out.run);
       candidate.duration_s = candidate.plain.column("t_s").back();
       candidate.gentleness = gentleness(candidate.manoeuvre, candidate.is_flat, candidate.risk);
     });
   }
 
-  struct Driven {
-    double duration_s;
-    Risk risk;
-  };
-  struct Replayed {
-    Eigen::VectorXd features;
-    bool fault;
+  // One candidate with all rivals.
+  struct Trial {
+    const Candidate& candidate;
+    FeatureMap map;
+    rollout::Manoeuvre replay;              // of the nominal robot's commands
+    std::vector<Eigen::VectorXd> features;  // of each model under them
+    std::vector<char> fault;                // of each model
+    std::vector<double> duration_s;         // of each rival, driven by its operator
+    std::vector<Risk> risk;                 // likewise
+    double score = 0;
   };
 
-  // All simulations of a few manoeuvres side by side: each rival driven, then each model under the nominal commands.
+  // A few candidates side by side.
   void try_batch(std::span<const Candidate> batch) {
-    std::vector<FeatureMap> maps;
-    std::vector<rollout::Manoeuvre> replays;
-    for (const Candidate& candidate : batch) {
-      maps.emplace_back(candidate.plain, options_.span_s);
-      replays.push_back(rollout::replay_of(candidate.plain, candidate.manoeuvre.name));
+    std::vector<Trial> trials;
+    for (const Candidate& candidate : batch)
+      trials.push_back({candidate, FeatureMap(candidate.plain, options_.span_s),
+                        rollout::replay_of(candidate.plain, candidate.manoeuvre.name),
+                        std::vector<Eigen::VectorXd>(models_.size()), std::vector<char>(models_.size(), 0),
+                        std::vector<double>(rivals_.size(), 0), std::vector<Risk>(rivals_.size())});
+    const std::size_t rivals = rivals_.size();
+    for_each_job(trials.size() * rivals, options_.threads,
+                 [&](std::size_t job) { replay(trials[job / rivals], job % rivals); });
+    // Rivals that are too close before either changes its values only come closer: that is known at a third of the
+    // cost.
+    std::vector<Trial*> promising;
+    for (Trial& trial : trials) {
+      trial.score = least_separation(trial, false);
+      if (trial.score >= options_.suffices_at) promising.push_back(&trial);
     }
-    const std::size_t of_each = rivals_.size() + models_.size();
-    std::vector<Driven> driven_by(batch.size() * rivals_.size());
-    std::vector<Replayed> replayed(batch.size() * models_.size());
-    for_each_job(batch.size() * of_each, options_.threads, [&](std::size_t job) {
-      check_goes_on(options_.stop);
-      const std::size_t c = job / of_each, which = job % of_each;
-      if (which < rivals_.size()) {
-        const rollout::RollOut out = driven(rivals_[which].fitted, batch[c]);
-        driven_by[c * rivals_.size() + which] = {out.run.column("t_s").back(), risk_of(out, nominal_)};
-      } else {
-        const std::size_t model = which - rivals_.size();
-        const rollout::RollOut out = rollout::roll_out(*models_[model], batch[c].world, replays[c], without_noise());
-        replayed[c * models_.size() + model] = {maps[c].of(out.run), !out.fault.empty()};
-      }
+    const std::size_t of_each = models_.size();
+    for_each_job(promising.size() * of_each, options_.threads, [&](std::size_t job) {
+      Trial& trial = *promising[job / of_each];
+      const std::size_t which = job % of_each;
+      if (which < rivals)
+        drive_rival(trial, which);
+      else
+        replay(trial, which);
     });
-    for (std::size_t c = 0; c < batch.size(); ++c)
-      add(batch[c], maps[c], std::span(driven_by).subspan(c * rivals_.size(), rivals_.size()),
-          std::span(replayed).subspan(c * models_.size(), models_.size()));
+    for (Trial* trial : promising) trial->score = least_separation(*trial, true);
+    for (const Trial& trial : trials) add(trial);
   }
 
-  void add(const Candidate& candidate, const FeatureMap& map, std::span<const Driven> driven_by,
-           std::span<const Replayed> replayed) {
+  void replay(Trial& trial, std::size_t model) const {
+    check_goes_on(options_.stop);
+    const auto& [robot, is_coarse] = models_[model];
+    const rollout::RollOut out =
+        rollout::roll_out(*robot, trial.candidate.world, trial.replay, is_coarse ? coarse() : without_noise());
+    trial.features[model] = trial.map.of(out.run);
+    trial.fault[model] = !out.fault.empty();
+  }
+
+  void drive_rival(Trial& trial, std::size_t rival) const {
+    check_goes_on(options_.stop);
+    const rollout::RollOut out = driven(rivals_[rival].fitted, trial.candidate);
+    trial.duration_s[rival] = out.run.column("t_s").back();
+    trial.risk[rival] = risk_of(out, trial.candidate.manoeuvre, nominal_);
+  }
+
+  void add(const Trial& trial) {
+    const Candidate& candidate = trial.candidate;
     ProposedManoeuvre proposed{.manoeuvre = candidate.manoeuvre.name,
                                .world = candidate.manoeuvre.world,
-                               .duration_s = candidate.duration_s,
-                               .expected_score = std::numeric_limits<double>::infinity(),
+                               .duration_s = std::max(candidate.duration_s, std::ranges::max(trial.duration_s)),
+                               .expected_score = trial.score,
                                .suffices = false,
                                .is_flat = candidate.is_flat,
                                .gentleness = Gentleness::fails,
                                .risk = candidate.risk};
-    for (const Driven& driven : driven_by) {
-      proposed.duration_s = std::max(proposed.duration_s, driven.duration_s);
-      proposed.risk = worst_of(proposed.risk, driven.risk);
-    }
-    for (const Replayed& replay : replayed) proposed.risk.fails = proposed.risk.fails || replay.fault;
+    for (const Risk& risk : trial.risk) proposed.risk = worst_of(proposed.risk, risk);
+    if (std::ranges::count(trial.fault, 1) > 0) proposed.risk.fails = true;
     proposed.gentleness = gentleness(candidate.manoeuvre, candidate.is_flat, proposed.risk);
-    for (std::size_t a = 0; a < rivals_.size(); ++a)
-      for (std::size_t b = a + 1; b < rivals_.size(); ++b)
-        proposed.expected_score = std::min(proposed.expected_score, separation_of(a, b, map, replayed));
     proposed.suffices = proposed.expected_score >= options_.suffices_at && !proposed.risk.fails;
     proposed_.push_back(std::move(proposed));
   }
 
-  double separation_of(std::size_t a, std::size_t b, const FeatureMap& map, std::span<const Replayed> replayed) const {
-    const Eigen::VectorXd& of_a = replayed[first_model_[a]].features;
-    const Eigen::VectorXd& of_b = replayed[first_model_[b]].features;
-    const std::size_t until = first_other_outcome(of_a - of_b, map);
-    const auto count = static_cast<Eigen::Index>(map.bins().size());
+  // `changing`: values may change, and what the time step leaves open is no difference.
+  double least_separation(const Trial& trial, bool changing) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t a = 0; a < rivals_.size(); ++a)
+      for (std::size_t b = a + 1; b < rivals_.size(); ++b)
+        least = std::min(least, separation_of(a, b, trial, changing));
+    return least;
+  }
+
+  double separation_of(std::size_t a, std::size_t b, const Trial& trial, bool changing) const {
+    const auto count = static_cast<Eigen::Index>(trial.map.bins().size());
+    const Eigen::VectorXd difference = trial.features[a] - trial.features[b];
+    Eigen::MatrixXd open = Eigen::MatrixXd::Zero(count, 2), free(count, 0);
+    if (changing) {
+      const std::size_t first_coarse = first_moved_.back();
+      open.col(0) = trial.features[first_coarse + a] - trial.features[a];
+      open.col(1) = trial.features[first_coarse + b] - trial.features[b];
+      free.resize(count, static_cast<Eigen::Index>(rivals_[a].moved.size() + rivals_[b].moved.size()));
+      Eigen::Index column = 0;
+      for (const std::size_t rival : {a, b})
+        for (std::size_t moved = first_moved_[rival]; moved < first_moved_[rival + 1]; ++moved)
+          free.col(column++) = trial.features[moved] - trial.features[rival];
+    }
+    const std::size_t until = first_other_outcome(difference, trial.map);
     Eigen::VectorXd per_sigma = Eigen::VectorXd::Zero(count);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const Bin& bin = map.bins()[static_cast<std::size_t>(i)];
+      const Bin& bin = trial.map.bins()[static_cast<std::size_t>(i)];
       const double sigma = options_.sigma_of_channel[bin.channel];
-      if (sigma > 0 && bin.span < until) per_sigma[i] = 1 / sigma;
+      if (sigma > 0 && bin.span < until) per_sigma[i] = 1 / std::hypot(sigma, open(i, 0), open(i, 1));
     }
-    Eigen::MatrixXd free(count, static_cast<Eigen::Index>(rivals_[a].moved.size() + rivals_[b].moved.size()));
-    Eigen::Index column = 0;
-    for (const std::size_t rival : {a, b})
-      for (std::size_t model = first_model_[rival] + 1; model < first_model_[rival + 1]; ++model)
-        free.col(column++) = per_sigma.cwiseProduct(replayed[model].features - replayed[first_model_[rival]].features);
-    return separation(per_sigma.cwiseProduct(of_a - of_b), free);
+    return separation(per_sigma.cwiseProduct(difference), per_sigma.asDiagonal() * free);
   }
 
   // The first span in which two models tilt so differently that what follows is another story; without one: none.
@@ -219,16 +263,21 @@ class Proposer {
   const physics::RobotDescription& nominal_;
   std::span<const RivalModel> rivals_;
   const ProposalOptions& options_;
-  std::vector<const physics::RobotDescription*> models_;  // of each rival as fitted, then its moved ones
-  std::vector<std::size_t> first_model_;                  // of each rival, and one past the last
+  struct Model {
+    const physics::RobotDescription* robot;
+    bool is_coarse;
+  };
+  std::vector<Model> models_;             // each rival as fitted; all moved ones; each rival with a coarse time step
+  std::vector<std::size_t> first_moved_;  // of each rival, and one past the last
   std::vector<ProposedManoeuvre> proposed_;
 };
 
 std::string risk_in_words(const Risk& risk) {
-  if (risk.fails) return "the robot may turn over or the simulation breaks off: not to be driven";
+  if (risk.fails) return "the robot may turn over: not to be driven";
   std::string words = fmt::format("tilts by {:.0f} degrees", risk.largest_tilt_rad * 180 / std::numbers::pi);
   words += risk.fall_m < 0.005 ? ", no fall" : fmt::format(", falls by {:.0f} mm", risk.fall_m * 1000);
   if (risk.impact_mps2 > kImpact_mps2) words += fmt::format(", lands with {:.0f} m/s^2", risk.impact_mps2);
+  if (risk.stuck) words += ", may get stuck or not arrive";
   if (risk.current_share > 0) words += fmt::format(", {:.0f} % of the stall current", risk.current_share * 100);
   return words;
 }
@@ -242,31 +291,35 @@ std::vector<ProposedManoeuvre> propose_manoeuvres(const physics::RobotDescriptio
                                             options.sigma_of_channel.size(), diagnosis_channels().size()));
   if (!(options.span_s > 0)) throw std::invalid_argument(fmt::format("span_s = {} must be above 0", options.span_s));
   if (rivals.size() < 2) return {};
-  std::vector<Candidate> candidates = candidates_for(nominal);
-  const auto rough = std::ranges::stable_partition(candidates, &Candidate::is_flat);
-  std::vector<Candidate> others(std::make_move_iterator(rough.begin()), std::make_move_iterator(rough.end()));
-  candidates.erase(rough.begin(), rough.end());
+  std::vector<Candidate> flat = candidates_for(nominal), others;
+  const auto rough = std::ranges::stable_partition(flat, &Candidate::is_flat);
+  std::ranges::move(rough, std::back_inserter(others));
+  flat.erase(rough.begin(), rough.end());
   Proposer proposer(nominal, rivals, options);
-  if (!proposer.try_all(std::move(candidates))) proposer.try_all(std::move(others));
+  if (!proposer.try_up_to(Gentleness::flat_flippers, flat)) {
+    std::ranges::move(flat, std::back_inserter(others));  // at which this robot falls or tilts, flat as the ground is
+    proposer.try_up_to(Gentleness::falls_or_tilts, others);
+  }
   return proposer.take();
 }
 
 std::string in_words(const ProposedManoeuvre& proposed) {
   const std::string ground = proposed.is_flat ? "flat ground" : "world " + proposed.world;
-  const std::string separates =
-      proposed.suffices ? fmt::format("separates them by {:.0f} standard deviations", proposed.expected_score)
-      : proposed.risk.fails
-          ? fmt::format("would separate them by {:.1f} standard deviations", proposed.expected_score)
-          : fmt::format("does not suffice, separates them by {:.1f} standard deviations only", proposed.expected_score);
+  std::string separates = fmt::format("separates them by {:.{}f} standard deviations", proposed.expected_score,
+                                      proposed.suffices || proposed.risk.fails ? 0 : 1);
+  if (!proposed.suffices && !proposed.risk.fails) separates += ", too little";
   return fmt::format("{} ({:.0f} s, {}): {}; {}", proposed.manoeuvre, proposed.duration_s, ground, separates,
                      risk_in_words(proposed.risk));
 }
 
 std::string advice_in_words(std::span<const ProposedManoeuvre> proposed) {
   if (proposed.empty()) return "there is nothing to tell apart, or no manoeuvre that this robot can drive";
-  if (proposed.front().suffices) return "drive next: " + in_words(proposed.front());
-  return fmt::format("none of the {} shipped manoeuvres that this robot can drive suffices; nearest comes {}",
-                     proposed.size(), in_words(proposed.front()));
+  const ProposedManoeuvre& first = proposed.front();
+  if (first.suffices) return "drive next: " + in_words(first);
+  const std::string none =
+      fmt::format("none of the {} shipped manoeuvres that this robot can drive suffices", proposed.size());
+  if (first.expected_score < kNothing) return none + ": they tell nothing of these apart";
+  return none + "; nearest comes " + in_words(first);
 }
 
 }  // namespace kenaf::gap

@@ -6,9 +6,11 @@
 // nominal robot's commands with each rival as it was fitted and with each of its values moved, which says by how much a
 // diagnosis would tell the rivals apart: it too compares models under the same commands.
 //
-// The score counts nothing from the moment on at which two rivals tilt differently by more than kAnotherOutcome_rad: that
-// one tips over an edge and the other does not is settled by less than anybody knows, and all that follows with it. Before it
-// no bin counts for much (gap/diagnose/separation.hpp).
+// What happens by chance does not count as separation, however far it goes:
+// - nothing from the moment on at which two rivals tilt differently by more than kAnotherOutcome_rad: that one tips over an edge
+//   and the other does not is settled by less than anybody knows, and all that follows with it;
+// - a bin counts for less, the more twice the time step moves it: by that much the simulator does not know it;
+// - and never for much (gap/diagnose/separation.hpp).
 //
 // Deterministic on any number of threads. Thread safety: pure functions.
 #pragma once
@@ -33,8 +35,8 @@ struct RivalModel {
 struct ProposedManoeuvre {
   std::string manoeuvre, world;  // shipped names
   double duration_s;             // the longest of nominal robot and rivals
-  // Least separation of any two rivals, in standard deviations, after either may change its values. A lower bound in that
-  // the values may go anywhere, an upper one in that the simulator is taken for exact.
+  // Least separation of any two rivals, in standard deviations, after either may change its values. Where they are too close
+  // before that already, this is how far apart they are then, and `risk` and `duration_s` are the nominal robot's.
   double expected_score;
   bool suffices;                 // expected_score reaches ProposalOptions::suffices_at and no robot fails
   bool is_flat;                  // on level ground, not let fall
@@ -42,10 +44,11 @@ struct ProposedManoeuvre {
   Risk risk;
 };
 
-// Chosen: of two models d standard deviations apart the likelier one is the wrong one with a chance of Phi(-d / 2): 0.13 % at
-// 6, and still only 7 % where the true standard deviations are twice what was stated.
+// Chosen: of two models d standard deviations apart the likelier one is the wrong one with a chance of Phi(-d / 2): 0.13 %
+// at 6, and still only 7 % where the true standard deviations are twice what was stated.
 inline constexpr double kSuffices = 6;
-inline constexpr double kAnotherOutcome_rad = 0.35;  // chosen: as kLargeTilt_rad
+// Chosen: 20 degrees, more than a changed value makes of the same posture.
+inline constexpr double kAnotherOutcome_rad = 0.35;
 
 struct ProposalOptions {
   // Of each of diagnosis_channels(): the standard deviation of a bin, noise and what is left unexplained together, in the
@@ -62,8 +65,8 @@ struct ProposalOptions {
 //
 // Not all are tried. Level ground comes first, in the order of what the nominal robot risks, then of its duration, until
 // three of a class suffice or the class is through; once one of a class suffices, no rougher class is tried. Obstacles are
-// tried only where nothing on level ground suffices. So of what suffices the first three are in the list, or as many as there are in
-// that class. What the nominal robot already fails at is left out, nobody should drive it.
+// tried only where nothing on level ground suffices. So of what suffices the first three are in the list, or as many as there
+// are in that class. What the nominal robot already fails at is left out, nobody should drive it.
 //
 // Throws std::invalid_argument where `sigma_of_channel` has not one number for each channel or `span_s` is not above 0, Stopped
 // (gap/diagnose/prediction.hpp) once `stop` is true.

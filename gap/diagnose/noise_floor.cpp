@@ -68,8 +68,8 @@ VectorXd sigma_of_bins(const StageFeatures& features, const std::vector<double>&
 // Variances of each channel, whitened; 0 where nothing is known.
 using Spreads = std::vector<double>;
 
-std::vector<Spreads> spreads_of_groups(const std::vector<StageFeatures>& features, const std::vector<Whitener>& whiteners,
-                                       const std::vector<VectorXd>& deviations,
+std::vector<Spreads> spreads_of_groups(const std::vector<StageFeatures>& features,
+                                       const std::vector<Whitener>& whiteners, const std::vector<VectorXd>& deviations,
                                        const std::vector<std::vector<bool>>& shared,
                                        const std::vector<std::vector<std::size_t>>& groups) {
   std::vector<Spreads> spreads;
@@ -221,7 +221,7 @@ std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, 
     v[6].physics.solver_iterations =
         minus ? std::max(1, model.physics.solver_iterations / 2) : 2 * model.physics.solver_iterations;
   }
-  const std::vector<Shift> shifts = predictor.shifts(variations, passage, Fidelity::every_run);
+  const std::vector<Shift> shifts = predictor.shifts(variations, passage, Fidelity::fine);
   std::vector<OpenShapes> open;
   for (std::size_t r = 0; r < features.size(); ++r) {
     const auto size = static_cast<Index>(features[r].bins.size());

@@ -59,8 +59,7 @@ inline constexpr double kOpenStart_m = 0.001, kOpenStart_rad = 0.002;
 // Start pose by its uncertainty (`start_sigma_m`, `start_sigma_rad`); time step, solver iterations, contact stiffness and
 // damping by a factor of 2 either way; and for each channel an offset of its resolution: a count more or less lasts as long as the robot
 // rolls on.
-// Around `model`: where an event falls is open around where that model has it. Every run by itself: of two repeats one may
-// be about to slip.
+// Around `model`: where an event falls is open around where that model has it. Repeats have the shapes of one of them.
 std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, Predictor& predictor, Passage passage,
                                     const Variation& model, double start_sigma_m, double start_sigma_rad);
 

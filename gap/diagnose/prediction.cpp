@@ -71,8 +71,8 @@ std::vector<VectorXd> Predictor::all_of(std::size_t count, const std::function<V
 
 void Predictor::simulate_nominal() {
   for (const Passage passage : kPassages)
-    nominal_[static_cast<std::size_t>(passage)] = all_of(
-        observations_.runs.size(), [&](std::size_t run) { return values_of(run, unvaried(), passage); });
+    nominal_[static_cast<std::size_t>(passage)] =
+        all_of(observations_.runs.size(), [&](std::size_t run) { return values_of(run, unvaried(), passage); });
 }
 
 const std::vector<VectorXd>& Predictor::nominal(Passage passage) const {
@@ -96,12 +96,21 @@ runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const
   return simulate(observations_.runs[run].replay, run, variation);
 }
 
+runs::Run Predictor::simulate_in(Passage passage, std::size_t run, const Variation& variation) const {
+  const Observation& observed = observations_.runs[run];
+  const bool by_commands = passage == Passage::command_to_drive || !observed.measured;
+  return simulate(by_commands ? observed.replay : *observed.measured, run, variation);
+}
+
+std::vector<VectorXd> Predictor::features_of_each(std::span<const Variation> variations, Passage passage) {
+  return all_of(observations_.runs.size(),
+                [&](std::size_t run) { return features_.maps[run].of(simulate_in(passage, run, variations[run])); });
+}
+
 VectorXd Predictor::values_of(std::size_t run, const Variation& variation, Passage passage) const {
   const StageFeatures& stage = features_.of(passage)[run];
   if (stage.bins.empty()) return {};
-  const Observation& observed = observations_.runs[run];
-  const bool by_commands = passage == Passage::command_to_drive || !observed.measured;
-  const runs::Run simulated = simulate(by_commands ? observed.replay : *observed.measured, run, variation);
+  const runs::Run simulated = simulate_in(passage, run, variation);
   const FeatureMap& map = features_.maps[run];
   return stage_values(passage, stage, map, map.of(simulated), simulated);
 }
@@ -122,23 +131,31 @@ VectorXd Predictor::alike(Passage passage, std::size_t from, const VectorXd& shi
   return result;
 }
 
-std::vector<VectorXd> Predictor::simulate_coarse(std::span<const Variation> variations, Passage passage) {
-  std::vector<Variation> coarse(variations.begin(), variations.end());
-  for (Variation& variation : coarse) variation.physics.time_step_s *= kCoarse;
+std::vector<VectorXd> Predictor::simulate_groups(std::span<const Variation> variations, Passage passage,
+                                                 double time_steps) {
+  std::vector<Variation> varied(variations.begin(), variations.end());
+  for (Variation& variation : varied) variation.physics.time_step_s *= time_steps;
   const std::size_t groups = representatives_.size();
-  return all_of(coarse.size() * groups, [&](std::size_t job) {
-    return values_of(representatives_[job % groups], coarse[job / groups], passage);
+  return all_of(varied.size() * groups, [&](std::size_t job) {
+    return values_of(representatives_[job % groups], varied[job / groups], passage);
   });
 }
 
-std::vector<Shift> Predictor::coarse_shifts(std::span<const Variation> variations, Passage passage) {
-  std::vector<VectorXd>& nominal = coarse_nominal_[static_cast<std::size_t>(passage)];
-  if (nominal.empty()) {
-    const Variation unvaried_robot = unvaried();
-    nominal = simulate_coarse({&unvaried_robot, 1}, passage);
-  }
-  const std::vector<VectorXd> simulated = simulate_coarse(variations, passage);
+std::vector<Shift> Predictor::shifts_of_groups(std::span<const Variation> variations, Passage passage,
+                                               Fidelity fidelity) {
+  // a shift is the difference of two simulations with the same time step
+  const auto stage = static_cast<std::size_t>(passage);
   const std::size_t groups = representatives_.size();
+  std::vector<VectorXd> nominal;
+  if (fidelity == Fidelity::coarse && coarse_nominal_[stage].empty()) {
+    const Variation unvaried_robot = unvaried();
+    coarse_nominal_[stage] = simulate_groups({&unvaried_robot, 1}, passage, kCoarse);
+  }
+  for (std::size_t group = 0; group < groups; ++group)
+    nominal.push_back(fidelity == Fidelity::coarse ? coarse_nominal_[stage][group]
+                                                   : nominal_[stage][representatives_[group]]);
+  const std::vector<VectorXd> simulated =
+      simulate_groups(variations, passage, fidelity == Fidelity::coarse ? kCoarse : 1);
   std::vector<Shift> result(variations.size(), Shift(observations_.runs.size()));
   for (std::size_t job = 0; job < simulated.size(); ++job) {
     const std::size_t group = job % groups;
@@ -150,11 +167,11 @@ std::vector<Shift> Predictor::coarse_shifts(std::span<const Variation> variation
 }
 
 std::vector<Shift> Predictor::shifts(std::span<const Variation> variations, Passage passage, Fidelity fidelity) {
-  if (fidelity == Fidelity::coarse) return coarse_shifts(variations, passage);
+  if (fidelity != Fidelity::every_run) return shifts_of_groups(variations, passage, fidelity);
   const std::size_t runs = observations_.runs.size();
-  const std::vector<VectorXd> simulated =
-      all_of(variations.size() * runs,
-             [&](std::size_t job) { return values_of(job % runs, variations[job / runs], passage); });
+  const std::vector<VectorXd> simulated = all_of(variations.size() * runs, [&](std::size_t job) {
+    return values_of(job % runs, variations[job / runs], passage);
+  });
   std::vector<Shift> result(variations.size(), Shift(runs));
   for (std::size_t job = 0; job < simulated.size(); ++job)
     result[job / runs][job % runs] = simulated[job] - nominal(passage)[job % runs];
@@ -162,8 +179,8 @@ std::vector<Shift> Predictor::shifts(std::span<const Variation> variations, Pass
 }
 
 Shift Predictor::shift_of_each(std::span<const Variation> variations, Passage passage) {
-  Shift result = all_of(observations_.runs.size(),
-                        [&](std::size_t run) { return values_of(run, variations[run], passage); });
+  Shift result =
+      all_of(observations_.runs.size(), [&](std::size_t run) { return values_of(run, variations[run], passage); });
   for (std::size_t run = 0; run < result.size(); ++run) result[run] -= nominal(passage)[run];
   return result;
 }

@@ -30,7 +30,8 @@ using Shift = std::vector<Eigen::VectorXd>;
 
 enum class Fidelity {
   every_run,  // each run is simulated
-  coarse,     // one run of each group of repeats is, with twice the time step; the others shift alike, at the same times
+  fine,       // one run of each group of repeats is; the others shift alike, at the same times
+  coarse,     // the same with twice the time step
 };
 
 // Thrown by a simulation that was asked to stop.
@@ -67,17 +68,21 @@ class Predictor {
   Shift shift_of_each(std::span<const Variation> variations, Passage passage);
   // One run alone, without noise, as a run: its commands replayed.
   runs::Run simulate(std::size_t run, const Variation& variation) const;
+  // The features of every run's map, in the replay of a stage, run r with variation r of `variations`.
+  std::vector<Eigen::VectorXd> features_of_each(std::span<const Variation> variations, Passage passage);
 
   std::size_t roll_outs() const { return roll_outs_; }
 
  private:
   runs::Run simulate(const rollout::Manoeuvre& replay, std::size_t run, const Variation& variation) const;
+  runs::Run simulate_in(Passage passage, std::size_t run, const Variation& variation) const;
   Eigen::VectorXd values_of(std::size_t run, const Variation& variation, Passage passage) const;
   // job(0) ... job(count - 1), by all ranks and threads together.
   std::vector<Eigen::VectorXd> all_of(std::size_t count, const std::function<Eigen::VectorXd(std::size_t)>& job);
-  std::vector<Shift> coarse_shifts(std::span<const Variation> variations, Passage passage);
-  // Of each group's representative.
-  std::vector<Eigen::VectorXd> simulate_coarse(std::span<const Variation> variations, Passage passage);
+  std::vector<Shift> shifts_of_groups(std::span<const Variation> variations, Passage passage, Fidelity fidelity);
+  // Of each group's representative, with a multiple of the time step.
+  std::vector<Eigen::VectorXd> simulate_groups(std::span<const Variation> variations, Passage passage,
+                                               double time_steps);
   Eigen::VectorXd alike(Passage passage, std::size_t from, const Eigen::VectorXd& shift, std::size_t to) const;
 
   const Observations& observations_;

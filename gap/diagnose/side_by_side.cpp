@@ -121,9 +121,8 @@ void stand(const StageData& data, EffectCurves& curves, const Simulate& simulate
     }
   for (const OnCurve& place : model.places) {
     const double present = curves.candidates[place.curve].present;
-    std::erase_if(curves.curves[place.curve].points, [&](const CurvePoint& point) {
-      return (point.value - present) * (place.value - present) > 0;
-    });
+    std::erase_if(curves.curves[place.curve].points,
+                  [&](const CurvePoint& point) { return (point.value - present) * (place.value - present) > 0; });
   }
   insert_points(curves, data, points, shifts, Fidelity::every_run);
   for (OnCurve& place : model.places) place = at_value(curves.curves, place.curve, place.value);
@@ -138,8 +137,7 @@ StandingModel fit_side_by_side(const StageData& data, EffectCurves curves, const
     // one that is not there has no side to stand on
     if (std::ranges::any_of(model.places, is_present)) break;
     stand(data, curves, simulate, model);
-    Model better =
-        fit_model(data, curves, effects, beyond_curves(curves, model), model.likelihood.discrepancies);
+    Model better = fit_model(data, curves, effects, beyond_curves(curves, model), model.likelihood.discrepancies);
     const std::vector<Settings> asked{settings_of(better.places)};
     better.shift = simulate(asked, Fidelity::every_run).front();
     better.exact = true;

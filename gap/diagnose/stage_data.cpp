@@ -15,8 +15,8 @@ using Eigen::VectorXd;
 
 // Variance of a bin that no used run has: beside any noise in any unit.
 constexpr double kNotMeasured = 1e12;
-// Share of the numerics' standard deviation by which they may differ from one group to another (chosen): a shape is linear in
-// them to about that.
+// Share of the numerics' standard deviation by which they may differ from one group to another (chosen): a shape is
+// linear in them to about that.
 constexpr double kNumericsOfRun = 0.3;
 
 // The bins of all runs of a group, and where in them each run's own are.
@@ -81,11 +81,12 @@ StageData stage_data(Passage passage, const std::vector<StageFeatures>& features
     group.residual = mean_over_runs(group, 1, used, [&](std::size_t r) -> const VectorXd& { return residuals[r]; });
 
     // noise is independent from run to run: the variance of a mean of n is that of one over n
-    const MatrixXd variance = mean_over_runs(
-        group, 1, used, [&](std::size_t r) { return VectorXd(floor.sigma_of_bin[r].array().square()); });
+    const MatrixXd variance =
+        mean_over_runs(group, 1, used, [&](std::size_t r) { return VectorXd(floor.sigma_of_bin[r].array().square()); });
     group.variance = (group.count.array() > 0).select(variance.cwiseProduct(one_run), kNotMeasured);
 
-    // so are start poses and counts; the simulator's numbers are the same in all runs, but for what is not linear in them
+    // so are start poses and counts; the simulator's numbers are the same in all runs, but for what is not linear in
+    // them
     const std::size_t any = group.runs.front();
     const MatrixXd local = mean_over_runs(group, floor.open[any].local.cols(), used,
                                           [&](std::size_t r) -> const MatrixXd& { return floor.open[r].local; });

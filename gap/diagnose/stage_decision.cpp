@@ -16,11 +16,11 @@ namespace {
 // At the angle below which two effects cannot be told apart, the one that is not there leaves this share of what the
 // other one accounts for.
 const double kAlike = std::pow(std::sin(kToldApart_deg / 180 * std::numbers::pi), 2);
-// Of what a gap has, so much must a model take off before the simulation's open shapes are taken around it (chosen): around
-// one that does not fit, the simulation may leave anything open.
+// Of what a gap has, so much must a model take off before the simulation's open shapes are taken around it (chosen):
+// around one that does not fit, the simulation may leave anything open.
 constexpr double kFits = 0.5;
-// Vuong's test: standard errors by which the best model must be better than a rival over manoeuvres (one-sided 95 %), from
-// as many manoeuvres on.
+// Vuong's test: standard errors by which the best model must be better than a rival over manoeuvres (one-sided 95 %),
+// from as many manoeuvres on.
 constexpr double kBetter_sigma = 1.64;
 constexpr std::size_t kFewestGroups = 4;
 // Rivals that are tried by simulation, for each effect.
@@ -59,11 +59,9 @@ Model take_effects(const StageData& data, const EffectCurves& curves, const std:
                    const Simulate& simulate, const DecisionSettings& settings) {
   Model best = singles.front();
   while (best.places.size() < settings.most_effects) {
-    std::vector<EffectSet> sets =
-        best.places.size() == 1 ? all_pairs(curves) : with_one_more(curves, effects_of(best));
-    const std::vector<Model> more =
-        search_sets(data, curves, best.likelihood.discrepancies, simulate, settings.search, std::move(sets),
-                    best.deviance() - settings.evidence / 2);
+    std::vector<EffectSet> sets = best.places.size() == 1 ? all_pairs(curves) : with_one_more(curves, effects_of(best));
+    const std::vector<Model> more = search_sets(data, curves, best.likelihood.discrepancies, simulate, settings.search,
+                                                std::move(sets), best.deviance() - settings.evidence / 2);
     if (more.empty() || best.deviance() - more.front().deviance() < settings.evidence) break;
     best = more.front();
   }
@@ -87,8 +85,8 @@ bool is_at_bound(const StageData& data, const StandingModel& standing, std::size
   if (!is_end(candidate.min) && !is_end(candidate.max)) return false;
   // one that does no more by then fits as well inside
   std::vector<OnCurve> inside = standing.model.places;
-  inside[place] = at_value(standing.curves.curves, at.curve,
-                           candidate.present + kInside * (at.value - candidate.present));
+  inside[place] =
+      at_value(standing.curves.curves, at.curve, candidate.present + kInside * (at.value - candidate.present));
   Model model = standing.model;
   const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
   model.shift = shift_of(standing.curves, inside);
@@ -109,13 +107,13 @@ bool is_borne_out(const StageData& data, const Model& best, const Model& rival) 
   return sum > kBetter_sigma * std::sqrt(variance);
 }
 
-// Candidates that do as well in the place of one effect, the others staying.
-std::vector<std::size_t> rivals_of(const StageData& data, const EffectCurves& curves, const StandingModel& standing,
-                                   std::size_t place, const Simulate& simulate, const DecisionSettings& settings) {
+// Models with a rival in the place of one effect, the best model itself first.
+std::vector<Settings> rivals_of(const StageData& data, const EffectCurves& curves, const StandingModel& standing,
+                                std::size_t place, const Simulate& simulate, const DecisionSettings& settings) {
   const Model& best = standing.model;
   const std::size_t chosen = best.places[place].curve;
-  const double accounted = squared(data, rest_of(data, without_effect(data, standing, place).model)) -
-                           squared(data, rest_of(data, best));
+  const double accounted =
+      squared(data, rest_of(data, without_effect(data, standing, place).model)) - squared(data, rest_of(data, best));
   const auto is_rival = [&](const Model& model) {
     if (model.deviance() - best.deviance() < settings.rival_evidence) return true;
     if (squared(data, rest_of(data, model)) - squared(data, rest_of(data, best)) < kAlike * accounted) return true;
@@ -138,13 +136,29 @@ std::vector<std::size_t> rivals_of(const StageData& data, const EffectCurves& cu
   for_each_job(models.size(), settings.search.threads, [&](std::size_t i) {
     models[i] = fit_model(data, mixed, effects_of(models[i]), {}, best.likelihood.discrepancies);
   });
-  std::erase_if(models, [&](const Model& model) { return !is_rival(model) && model.deviance() - best.deviance() > 3 * settings.rival_evidence; });
+  std::erase_if(models, [&](const Model& model) {
+    return !is_rival(model) && model.deviance() - best.deviance() > 3 * settings.rival_evidence;
+  });
   std::ranges::stable_sort(models, {}, [](const Model& model) { return model.deviance(); });
   if (models.size() > kMostRivals) models.resize(kMostRivals);
 
+  // a rival takes the effect's place, so that beside it the effect gains nothing; one that does otherwise explains
+  // something else
+  std::vector<char> replaces(models.size());
+  for_each_job(models.size(), settings.search.threads, [&](std::size_t m) {
+    EffectSet both = effects_of(models[m]);
+    both.push_back(chosen);
+    replaces[m] = models[m].deviance() - fit_model(data, mixed, both, {}, best.likelihood.discrepancies).deviance() <
+                  settings.evidence;
+  });
+
   // by simulation
-  std::vector<std::size_t> rivals{chosen};
+  std::vector<Settings> rivals{settings_of(best.places)};
   std::vector<Settings> asked;
+  std::vector<Model> in_place;
+  for (std::size_t m = 0; m < models.size(); ++m)
+    if (replaces[m]) in_place.push_back(models[m]);
+  models = std::move(in_place);
   for (const Model& model : models) asked.push_back(settings_of(model.places));
   if (asked.empty()) return rivals;
   const std::vector<GroupVectors> shifts = simulate(asked, Fidelity::every_run);
@@ -152,7 +166,7 @@ std::vector<std::size_t> rivals_of(const StageData& data, const EffectCurves& cu
     Model simulated = models[i];
     simulated.shift = shifts[i];
     simulated.likelihood = likelihood_of(data, rest_of(data, simulated), models[i].likelihood.discrepancies);
-    if (is_rival(simulated)) rivals.push_back(models[i].places[place].curve);
+    if (is_rival(simulated)) rivals.push_back(asked[i]);
   }
   return rivals;
 }
@@ -179,7 +193,8 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
   // a gap is beyond chance, and either in many places at once or so large that somebody would see it
   const auto is_gap = [&] {
     double improvement = 0;
-    const double p_single = p_of_best_single(d.data, d.singles, curves, settings.rival_evidence, test.inflation, improvement);
+    const double p_single =
+        p_of_best_single(d.data, d.singles, curves, settings.rival_evidence, test.inflation, improvement);
     d.p_left = cell_energy(d.data, residuals_of(d.data), test.stretch_s).p_of_noise(test.inflation);
     d.p_gap = std::min(1.0, 2 * std::min(p_single, d.p_left));
     const double negligible = settings.negligible * settings.negligible * static_cast<double>(bin_count(d.data));
@@ -187,7 +202,6 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
   };
   if (!is_gap()) return d;
   d.verdict = Verdict::unknown;
-  d.little_explained = true;
   if (d.singles.empty() || d.nominal_deviance - d.singles.front().deviance() < settings.evidence) return d;
 
   // what the simulation leaves open is taken around a model that fits, no longer around the nominal one
@@ -231,9 +245,10 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
     }
     const std::vector<EffectValue> values = effect_values(d.data, d.best);
     for (std::size_t i = 0; i < evidence.size(); ++i) {
-      NamedEffect effect{d.best.model.places[i].curve, values[i], evidence[i], 0, 0, false, {}, {}};
+      NamedEffect effect{d.best.model.places[i].curve, values[i], evidence[i], {}, {}, false, {}, {}};
       effect.at_bound = is_at_bound(d.data, d.best, i, settings.rival_evidence);
-      effect.rivals = rivals_of(d.data, curves, d.best, i, simulate, settings);
+      d.models_of_rivals.push_back(rivals_of(d.data, curves, d.best, i, simulate, settings));
+      for (const Settings& model : d.models_of_rivals.back()) effect.rivals.push_back(model[i].candidate);
       d.effects.push_back(std::move(effect));
     }
     break;

@@ -13,7 +13,7 @@ namespace {
 using Eigen::VectorXd;
 
 // Candidates that get whole curves after the first look, at most (chosen).
-constexpr std::size_t kMostCurves = 28;
+constexpr std::size_t kMostCurves = 24;
 // Of the squared gap, by one linear step: less cannot matter, whatever the value (chosen).
 constexpr double kMatters = 0.01;
 
@@ -39,8 +39,7 @@ std::vector<VectorXd> difference(std::vector<VectorXd> a, const std::vector<Vect
 // The candidates that one linear step shows to matter most, beneath the discrepancies of the nominal model.
 std::vector<std::size_t> that_matter(const StageData& data, const EffectCurves& curves,
                                      std::span<const std::size_t> looked_at, const Discrepancies& discrepancies) {
-  const Products products =
-      products_of(data, whiteners_of(data, discrepancies), curves.shifts, residuals_of(data));
+  const Products products = products_of(data, whiteners_of(data, discrepancies), curves.shifts, residuals_of(data));
   std::vector<std::pair<double, std::size_t>> explained;
   for (const std::size_t c : looked_at) {
     for (const CurvePoint& point : curves.curves[c].points) {
@@ -59,19 +58,15 @@ std::vector<std::size_t> that_matter(const StageData& data, const EffectCurves& 
   return result;
 }
 
-// Curves of the candidates that can matter: those of the catalogue over their whole range, as they may bend; numbers of the
-// description first by one step.
+// Curves of the candidates that can matter, after a first look at all.
 EffectCurves scanned(const StageData& data, std::span<const Candidate> candidates,
                      std::span<const std::size_t> possible, const Simulate& simulate) {
   EffectCurves curves = empty_curves(data, candidates);
-  std::vector<std::size_t> effects, numbers;
-  for (const std::size_t c : possible) (candidates[c].is_number_of_description ? numbers : effects).push_back(c);
-  add_spread(curves, data, effects, simulate);
-  add_one_step(curves, data, numbers, simulate);
+  add_first_look(curves, data, possible, simulate);
   const std::vector<std::size_t> matter =
-      that_matter(data, curves, numbers, nominal_model(data).likelihood.discrepancies);
+      that_matter(data, curves, possible, nominal_model(data).likelihood.discrepancies);
   add_spread(curves, data, matter, simulate);
-  follow_bends(curves, data, effects, simulate);
+  follow_bends(curves, data, matter, simulate);
   return curves;
 }
 
@@ -80,26 +75,46 @@ bool is_large_enough(const NamedEffect& effect, const Candidate& candidate, doub
 }
 
 // Names, sets and doubts, by what the effects are worth on runs held out.
-void judge(StageDecision& d, std::span<const Candidate> candidates, double explains,
-           const std::vector<double>& shares, const std::vector<double>& shares_by_manoeuvre,
-           const DecisionSettings& settings) {
-  d.little_explained = !(explains >= settings.stage_share);
+void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOutShares& shares,
+           const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings) {
   bool any_named = false, any_rival = false;
   for (std::size_t i = 0; i < d.effects.size(); ++i) {
     NamedEffect& effect = d.effects[i];
-    effect.share = shares[i];
-    effect.share_by_manoeuvre = shares_by_manoeuvre[i];
+    effect.share = shares.effects[i];
+    effect.share_by_manoeuvre = shares_by_manoeuvre.effects[i];
+    const auto least = [&](auto member) { return std::min(effect.share.*member, effect.share_by_manoeuvre.*member); };
+    using Share = HeldOutShares::OfEffect;
     if (effect.at_bound) effect.doubts.push_back(Doubt::end_of_range);
     if (!is_large_enough(effect, candidates[effect.candidate], settings.agreement))
       effect.doubts.push_back(Doubt::disagreement);
-    if (!(std::min(effect.share, effect.share_by_manoeuvre) >= settings.share))
-      effect.doubts.push_back(Doubt::not_held_out);
-    if (d.little_explained) effect.doubts.push_back(Doubt::little_explained);
+    if (!(least(&Share::of_kind) >= settings.effect_share)) effect.doubts.push_back(Doubt::not_held_out);
+    if (!(least(&Share::model_of_kind) >= settings.model_share)) effect.doubts.push_back(Doubt::little_explained);
     if (!effect.doubts.empty()) continue;
     any_named = true;
     any_rival |= effect.rivals.size() > 1;
   }
   d.verdict = any_rival ? Verdict::ambiguous : any_named ? Verdict::named : Verdict::unknown;
+}
+
+// What is left with the best model, regressed on what was measured.
+std::vector<Dependence> left_over_of(const StageInput& input, Predictor& predictor, const Variation& best,
+                                     const NoiseFloor& floor) {
+  const std::vector<Variation> of_runs(input.observations->runs.size(), best);
+  const std::vector<VectorXd> simulated = predictor.features_of_each(of_runs, input.passage);
+  std::vector<LeftOverRun> runs;
+  for (std::size_t g = 0; g < input.repeats->size(); ++g)
+    for (const std::size_t r : (*input.repeats)[g]) {
+      const FeatureMap& map = (*input.maps)[r];
+      LeftOverRun run{&input.observations->runs[r], &map, map.measured(), simulated[r], {}, g};
+      run.sigma.resize(map.measured().size());
+      for (std::size_t b = 0; b < map.bins().size(); ++b) {
+        const std::size_t channel = map.bins()[b].channel;
+        run.sigma[static_cast<Eigen::Index>(b)] =
+            floor.sigma[channel] > 0 ? floor.sigma[channel] : diagnosis_channels()[channel].resolution;
+      }
+      runs.push_back(std::move(run));
+    }
+  return describe_left_over(runs, input.passage == Passage::command_to_drive);
 }
 
 }  // namespace
@@ -141,8 +156,7 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
   const auto open_around = [&](const Settings& settings) {
     return open_shapes(features, predictor, input.passage, varied(settings), kOpenStart_m, kOpenStart_rad);
   };
-  stage.nominal_floor =
-      noise_floor(features, stage.residuals, *input.same_orders, open_around({}), input.stated_noise);
+  stage.nominal_floor = noise_floor(features, stage.residuals, *input.same_orders, open_around({}), input.stated_noise);
   const auto data_in = [&](const NoiseFloor& floor) {
     return stage_data(input.passage, features, *input.repeats, stage.residuals, floor);
   };
@@ -162,12 +176,11 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
   };
 
   // curves, then the decision
-  const bool drives_measured = std::ranges::all_of(
-      input.observations->runs, [](const Observation& run) { return run.measured.has_value(); });
+  const bool drives_measured =
+      std::ranges::all_of(input.observations->runs, [](const Observation& run) { return run.measured.has_value(); });
   const std::vector<std::size_t> possible = candidates_of(input.passage, candidates, drives_measured);
   const EffectCurves curves = scanned(nominal.data, candidates, possible, simulate);
-  const std::vector<VectorXd> deviations =
-      deviations_from_repeats(features, stage.residuals, *input.same_orders);
+  const std::vector<VectorXd> deviations = deviations_from_repeats(features, stage.residuals, *input.same_orders);
   const GapTest test{inflation_from_repeats(features, stage.nominal_floor, deviations, options.stretch_s),
                      options.stretch_s};
   stage.decision = decide_stage(nominal, curves, simulate, around, test, options.decision);
@@ -195,9 +208,12 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
         measure_gap(view, left_by(places_held_out(view, input.passage, decision.best, by_manoeuvre, threads)), spread,
                     options.seed);
   if (!decision.effects.empty())
-    judge(decision, candidates, std::min(stage.gap.explains.value, stage.gap_by_manoeuvre.explains.value),
-          shares_held_out(view, input.passage, decision.best, by_repeat, threads),
+    judge(decision, candidates, shares_held_out(view, input.passage, decision.best, by_repeat, threads),
           shares_held_out(view, input.passage, decision.best, by_manoeuvre, threads), options.decision);
+
+  // what is left, in words
+  if (decision.verdict != Verdict::none && !decision.complete && input.passage != Passage::body_to_sensor)
+    stage.left_over = left_over_of(input, predictor, varied(settings_of(best.places)), decision.floor);
 
   // where it is, and what each effect does alone
   stage.before_si = rms_si(features, stage.residuals);

@@ -136,7 +136,8 @@ TEST_CASE("The shipped manoeuvres: each name once, sorted, found by its name") {
   for (const std::string name : {"straight",      "straight-fast",     "turn-in-place", "arc",        "square",
                                  "flipper-sweep", "random-speeds",     "speed-steps",   "drop",       "ramp",
                                  "stairs",        "step-field",        "hills",         "tilted-box", "step-50",
-                                 "step-350",      "step-200-flippers", "trench-100",    "trench-150", "trench-400"})
+                                 "step-350",      "step-200-flippers", "trench-100",    "trench-150", "trench-400",
+                                 "start-stop"})
     CHECK(names.contains(name));
   CHECK(load_manoeuvre("step-200-flippers").world == "step-200");
   CHECK(load_manoeuvre("random-speeds").at_most_s() == Approx(30));
