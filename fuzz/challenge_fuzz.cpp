@@ -15,9 +15,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (between == text.npos) return 0;
   std::vector<gap::ScoredCase> cases;
   try {
-    const gap::Told told = gap::told_by(std::string(text.substr(between + 1)));
+    const gap::ReadReport report = gap::report_of(std::string(text.substr(between + 1)));
     for (const gap::SealedCase& sealed : gap::read_key(std::string(text.substr(0, between))).cases)
-      cases.push_back({sealed, told, {}});
+      cases.push_back({sealed, report, {}});
   } catch (const std::runtime_error&) {
     return 0;
   }

@@ -1,5 +1,6 @@
 // kenaf-gap challenge: cases with something hidden in them, sealed, and diagnosed by processes that cannot know it.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/prctl.h>
 #include <sys/random.h>
 
@@ -20,9 +21,10 @@
 #include "gap/challenge/diagnose_cases.hpp"
 #include "gap/challenge/key.hpp"
 #include "gap/challenge/make_case.hpp"
+#include "gap/challenge/read_report.hpp"
 #include "gap/challenge/sealed_data.hpp"
 #include "gap/challenge/sha256.hpp"
-#include "gap/challenge/told.hpp"
+#include "gap/challenge/stand_ins.hpp"
 #include "gap/commands.hpp"
 #include "gap/diagnose/prediction.hpp"
 #include "gap/interrupt.hpp"
@@ -44,6 +46,9 @@ struct Options {
   std::size_t cases = 150;
   std::optional<std::uint64_t> seed;
   unsigned jobs = 0;
+  bool imperfect = false;
+
+  ChallengeKind kind() const { return imperfect ? ChallengeKind::imperfect : ChallengeKind::exact; }
 };
 
 std::uint64_t seed_from_system() {
@@ -106,12 +111,12 @@ class Teller {
 // The data of all cases, but those that were made before; returns their key.
 ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller,
                         const std::atomic<bool>& stop) {
-  ChallengeKey key{seed, {}};
-  for (CasePlan& plan : plan_challenge(options.cases, seed)) key.cases.push_back({std::move(plan), {}});
+  ChallengeKey key{seed, {}, options.kind()};
+  for (CasePlan& plan : plan_challenge(options.cases, seed, key.kind)) key.cases.push_back({std::move(plan), {}});
   for_each_job(key.cases.size(), options.jobs, [&](std::size_t i) {
     if (stop) throw Stopped();
     SealedCase& sealed = key.cases[i];
-    std::optional<SealedCase> made = made_case(folder, sealed.plan.name, seed, options.cases);
+    std::optional<SealedCase> made = made_case(folder, sealed.plan.name, seed, options.cases, key.kind);
     if (made) {
       sealed = *std::move(made);
     } else {
@@ -119,7 +124,7 @@ ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::pa
       fs::remove_all(data);
       make_case(sealed.plan, data, 1, &stop);
       sealed.data_sha256 = sha256_of_dataset(data);
-      keep_made_case(folder, sealed, seed, options.cases);
+      keep_made_case(folder, sealed, seed, options.cases, key.kind);
     }
     teller.made(made.has_value());
   });
@@ -139,13 +144,14 @@ void remove_all_but_cases(const fs::path& folder, const ChallengeKey& key) {
 // Cases that somebody was making with another seed or number are not thrown away for a slip of the finger.
 void check_same_cases(const fs::path& folder, const Options& options, std::uint64_t seed) {
   bool any = false;
-  for (const CasePlan& plan : plan_challenge(options.cases, seed)) {
-    if (made_case(folder, plan.name, seed, options.cases)) return;
+  for (const CasePlan& plan : plan_challenge(options.cases, seed, options.kind())) {
+    if (made_case(folder, plan.name, seed, options.cases, options.kind())) return;
     any |= fs::exists(folder / (plan.name + ".enciphered"));
   }
   if (any)
-    throw std::runtime_error(
-        fmt::format("{}: holds cases of another --seed or --cases; give those, or another folder", folder.string()));
+    throw std::runtime_error(fmt::format(
+        "{}: holds cases of another --seed or --cases, or of the {} challenge; give those, or another folder",
+        folder.string(), kind_name(options.imperfect ? ChallengeKind::exact : ChallengeKind::imperfect)));
 }
 
 // Cases and commitment; those that are there already are kept, and of a sealed challenge the others are made from its
@@ -156,6 +162,9 @@ ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::pa
     if (key->cases.size() != options.cases)
       throw std::runtime_error(
           fmt::format("{0}: is a challenge of {1} cases; give --cases {1}", folder.string(), key->cases.size()));
+    if (key->kind != options.kind())
+      throw std::runtime_error(fmt::format("{}: is the {} challenge; it goes on {} --imperfect", folder.string(),
+                                           kind_name(key->kind), options.imperfect ? "without" : "with"));
     make_missing_data(folder, *key, options.jobs, &stop,
                       [&](std::size_t made, std::size_t missing) { teller.made_again(made, missing); });
     teller.all_were_made();
@@ -186,7 +195,7 @@ ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::pa
 }
 
 bool is_diagnosed(const CaseToDiagnose& one) try {
-  return read_told(one.report / "report.json").has_value();
+  return read_report(one.report / "report.json").has_value();
 } catch (const std::exception&) {
   return false;  // what is there is damaged
 }
@@ -202,11 +211,9 @@ std::size_t run(const Options& options, std::uint64_t seed) {
   std::vector<std::string> names;
   for (const SealedCase& sealed : key.cases) {
     const CasePlan& plan = sealed.plan;
-    CaseToDiagnose one{case_folder(folder, plan.name), report_folder(folder, plan.name), {}};
-    if (plan.stratum == Stratum::withheld) {
-      for (const HiddenEffect& hidden : plan.effects) one.without.push_back(hidden.effect);
-      runs::write_whole_file(one.data / "without.txt", one.without.front() + "\n");
-    }
+    CaseToDiagnose one{case_folder(folder, plan.name), report_folder(folder, plan.name), withheld_names(plan)};
+    if (!one.without.empty())
+      runs::write_whole_file(one.data / "without.txt", fmt::format("{}\n", fmt::join(one.without, "\n")));
     if (is_diagnosed(one)) {
       teller.diagnosed(plan.name, true, true);
     } else {
@@ -242,6 +249,8 @@ void add_challenge_command(CLI::App& program) {
   command->add_option("--cases", options->cases, "how many")->check(whole_number(kMostCases))->capture_default_str();
   command->add_option("--seed", options->seed, "of everything, to repeat a challenge or to go on with one [chance]")
       ->check(whole_number(std::numeric_limits<std::uint64_t>::max()));
+  command->add_flag("--imperfect", options->imperfect,
+                    "cases like reality: every number of the robot is a little off, runs are short and few");
   command->add_option("--jobs", options->jobs, "cases at once; 0: one a core")
       ->check(whole_number(kMostJobs))
       ->capture_default_str();
@@ -253,8 +262,9 @@ void add_challenge_command(CLI::App& program) {
     const std::uint64_t seed = options->seed ? *options->seed : seed_from_system();
     // Told only where it ends early: without the seed nobody could go on.
     const auto goes_on = [&](const std::string& why) {
-      return std::runtime_error(fmt::format("{}; `kenaf-gap challenge --out {} --cases {} --seed {}` goes on with it",
-                                            why, options->out, options->cases, seed));
+      return std::runtime_error(fmt::format("{}; `kenaf-gap challenge --out {} --cases {} --seed {}{}` goes on with it",
+                                            why, options->out, options->cases, seed,
+                                            options->imperfect ? " --imperfect" : ""));
     };
     std::size_t diagnosed = 0;
     try {

@@ -22,13 +22,15 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
   const auto options = std::make_shared<Options>();
   DiagnosisOptions& diagnosis = options->diagnosis;
   diagnosis.ranks = ranks;
-  CLI::App* command = program.add_subcommand("diagnose", "names the effect by which simulation and runs part, if any");
+  CLI::App* command = program.add_subcommand("diagnose", "names the effects by which simulation and runs part, if any");
   command->add_option("DATASET", options->dataset, "the runs, a folder; required")->type_name("");
-  command->add_option("--out", options->out, "folder for report.json, report.html and robot.toml; required")
+  command->add_option("--out", options->out, "folder for report.json, report.html and the robot with what was found; required")
       ->type_name("DIR");
   command->add_option("--robot", diagnosis.robot, "a shipped name or a TOML file [the dataset's]");
   command->add_option("--world", diagnosis.world, "a shipped name or an SDF file, for all runs [each run's own]");
-  command->add_option("--without", diagnosis.without, "takes effects out of the catalogue, by name, parted by commas")
+  command->add_option("--effects", diagnosis.effects, "a TOML file with effects of your own, looked for beside all others")
+      ->type_name("FILE");
+  command->add_option("--without", diagnosis.without, "leaves effects out of the search, by name, parted by commas")
       ->delimiter(',')
       ->type_name("EFFECT");
   command->add_flag_callback(

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 
+#include "gap/challenge/case_runs.hpp"
 #include "gap/challenge/make_case.hpp"
 #include "gap/challenge/score.hpp"
 #include "gap/challenge/sealed_data.hpp"
@@ -29,15 +30,24 @@ constexpr double kDataShare = 0.2;  // of the time, for the time left, where no 
 // Where a report has a corrected robot, and the truth is in the catalogue, so that both can be simulated.
 CaseShrinks measure_shrinks(const fs::path& folder, const ScoredCase& scored) {
   const CasePlan& plan = scored.sealed.plan;
-  const fs::path robot = report_folder(folder, plan.name) / "robot.toml";
-  if (judge(plan, scored.told).hidden.empty() || !scored.told || !fs::exists(robot)) return {};
-  const physics::Effects told = physics::load_robot(robot.string()).effects;
+  const fs::path file = report_folder(folder, plan.name) / "robot.toml";
+  // beside a background the true effects are not all of the truth: the score has their shares of the gap instead
+  if (judge(plan, scored.report).hidden.empty() || plan.is_imperfect() || !scored.report || !fs::exists(file))
+    return {};
+  const physics::RobotDescription report = physics::load_robot(file.string()), hidden = hidden_robot_in_model(plan);
   CaseShrinks shrinks;
-  shrinks.heldout = shrinks_on(case_folder(folder, plan.name), told, hidden_effects_in_model(plan), 1);
-  shrinks.heldout->told = scored.told->shrink;
+  const ShrinksOfRuns own = shrinks_on(case_folder(folder, plan.name), report, hidden, 1);
+  // a report of version 1 has one figure for all stages together, measured otherwise
+  for (std::size_t s = 0; s < kEachChannelOnce.size(); ++s)
+    for (const ReadStage& stage : scored.report->stages) {
+      if (stage.stage != passage_name(kEachChannelOnce[s])) continue;
+      if (stage.named.empty() && stage.ambiguous_sets.empty()) continue;
+      shrinks.heldout.push_back(own.of_stage[s]);
+      shrinks.heldout.back().report = stage.shrink;
+    }
   const TemporaryFolder unseen;
   make_unseen(plan, unseen.path, 1);
-  shrinks.unseen = shrinks_on(unseen.path, told, hidden_effects_in_model(plan), 1);
+  shrinks.unseen = shrinks_on(unseen.path, report, hidden, 1).together;
   return shrinks;
 }
 
@@ -71,8 +81,8 @@ void add_score_command(CLI::App& program) {
     line.skip(kDataShare);
     std::vector<ScoredCase> cases;
     for (SealedCase& sealed : key.cases) {
-      std::optional<Told> told = read_told(report_folder(folder, sealed.plan.name) / "report.json");
-      cases.push_back({std::move(sealed), std::move(told), {}});
+      std::optional<ReadReport> report = read_report(report_folder(folder, sealed.plan.name) / "report.json");
+      cases.push_back({std::move(sealed), std::move(report), {}});
     }
     if (options->shrinks)
       for_each_job(cases.size(), options->jobs, [&](std::size_t i) {

@@ -29,6 +29,11 @@ SearchRange doubled(const RobotDescription&, double value) {
   return half_to_twice(value);
 }
 
+// Numbers that a description often only guesses, as no data sheet of the whole robot states them.
+SearchRange tenfold(const RobotDescription&, double value) {
+  return {value / 10, value * 5};
+}
+
 // Moments: those that a rigid body can have with the two others as they are.
 template <int axis>
 SearchRange moment(const RobotDescription& robot, double value) {
@@ -149,8 +154,8 @@ constexpr DescribedNumber kDescribed[] = {
     {"drive.max_force_n", "N", Stage::drive, "the track motors' force at standstill", doubled, "drive_torque_limit"},
     {"drive.time_constant_s", "s", Stage::drive, "first-order lag of the track's speed loop", time_constant},
     {"drive.moving_mass_kg", "kg", Stage::drive, "belt, gear and rotor, as felt at the belt", doubled},
-    {"drive.amperes_per_newton", "A/N", Stage::drive, "motor current for a belt force", doubled},
-    {"drive.idle_amperes", "A", Stage::drive, "motor current of a track that turns without load", doubled},
+    {"drive.amperes_per_newton", "A/N", Stage::drive, "motor current for a belt force", tenfold},
+    {"drive.idle_amperes", "A", Stage::drive, "motor current of a track that turns without load", tenfold},
     {"battery.open_circuit_v", "V", Stage::drive, "voltage of the battery without load", doubled},
     {"battery.internal_resistance_ohm", "ohm", Stage::drive, "what lowers the battery's voltage under load", resistance,
      "battery_sag"},

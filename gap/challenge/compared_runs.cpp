@@ -1,5 +1,8 @@
 #include "gap/challenge/compared_runs.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "gap/diagnose/diagnosis.hpp"
 #include "gap/diagnose/repeats.hpp"
 
@@ -8,34 +11,71 @@ namespace {
 
 constexpr std::size_t kMostRuns = 100;  // all runs of a case
 
-std::vector<FeatureMap> features_of(const Observations& observations) {
-  std::vector<FeatureMap> features;
-  for (const Observation& run : observations.runs)
-    features.emplace_back(run.run, DiagnosisOptions().span_s, observations.not_simulated);
-  return features;
-}
-
 }  // namespace
 
 ComparedRuns::ComparedRuns(const std::filesystem::path& dataset, unsigned threads, const std::atomic<bool>* stop)
     : observations(observe(dataset, "", "", kMostRuns)),
-      features(features_of(observations)),
+      features(compared_features(observations, DiagnosisOptions().span_s)),
       predictor(observations, features, repeats_of(observations), threads, stop),
       same_orders(same_orders_of(observations)) {
   predictor.simulate_nominal();
-  for (std::size_t r = 0; r < features.size(); ++r)
-    residuals.push_back(features[r].measured() - predictor.nominal()[r]);
+  for (std::size_t s = 0; s < kEachChannelOnce.size(); ++s) {
+    const std::vector<StageFeatures>& stage = features.of(kEachChannelOnce[s]);
+    for (std::size_t r = 0; r < stage.size(); ++r)
+      residuals[s].push_back(stage[r].measured - predictor.nominal(kEachChannelOnce[s])[r]);
+  }
 }
 
-NoiseFloor floor_around(ComparedRuns& runs, const Variation& model) {
-  return noise_floor(runs.features, runs.residuals, runs.same_orders,
-                     open_shapes(runs.features, runs.predictor, model, kOpenStart_m, kOpenStart_rad));
+Differences operator-(Differences a, const Differences& b) {
+  for (std::size_t s = 0; s < a.size(); ++s)
+    for (std::size_t r = 0; r < a[s].size(); ++r) a[s][r] -= b[s][r];
+  return a;
 }
 
-double rms_of_repeats(const ComparedRuns& runs, const NoiseFloor& floor,
-                      const std::vector<Eigen::VectorXd>& residuals) {
-  return rms_of_repeats(floor, runs.features, deviations_from_repeats(runs.features, residuals, runs.same_orders),
-                        runs.same_orders);
+Floors floors_around(ComparedRuns& runs, const Variation& model) {
+  Floors floors;
+  for (std::size_t s = 0; s < floors.size(); ++s) {
+    const Passage passage = kEachChannelOnce[s];
+    const std::vector<StageFeatures>& features = runs.features.of(passage);
+    floors[s] = noise_floor(features, runs.residuals[s], runs.same_orders,
+                            open_shapes(features, runs.predictor, passage, model, kOpenStart_m, kOpenStart_rad));
+  }
+  return floors;
+}
+
+Differences shifts_of(ComparedRuns& runs, const physics::RobotDescription& robot, Fidelity fidelity) {
+  Variation variation = runs.predictor.unvaried();
+  variation.robot = robot;
+  Differences shifts;
+  for (std::size_t s = 0; s < shifts.size(); ++s)
+    shifts[s] = runs.predictor.shifts({&variation, 1}, kEachChannelOnce[s], fidelity).front();
+  return shifts;
+}
+
+double rms(const Floors& floors, const Differences& differences) {
+  double sum = 0, bins = 0;
+  for (std::size_t s = 0; s < floors.size(); ++s)
+    for (std::size_t r = 0; r < differences[s].size(); ++r) {
+      if (differences[s][r].size() == 0) continue;
+      sum += floors[s].whiteners[r](differences[s][r]).squaredNorm();
+      bins += static_cast<double>(differences[s][r].size());
+    }
+  return bins > 0 ? std::sqrt(sum / bins) : 0;
+}
+
+double rms_of_repeats(const ComparedRuns& runs, const Floors& floors, const Differences& residuals) {
+  double sum = 0, bins = 0;
+  for (std::size_t s = 0; s < floors.size(); ++s) {
+    const std::vector<StageFeatures>& features = runs.features.of(kEachChannelOnce[s]);
+    const Shift deviations = deviations_from_repeats(features, residuals[s], runs.same_orders);
+    const std::vector<std::vector<bool>> shared = shared_bins(features, runs.same_orders);
+    for (std::size_t r = 0; r < deviations.size(); ++r) {
+      if (deviations[r].size() == 0) continue;
+      sum += floors[s].whiteners[r](deviations[r]).squaredNorm();
+      bins += static_cast<double>(std::ranges::count(shared[r], true));
+    }
+  }
+  return bins > 0 ? std::sqrt(sum / bins) : 1;
 }
 
 }  // namespace kenaf::gap

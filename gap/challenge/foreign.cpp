@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 namespace kenaf::gap {
@@ -35,19 +36,21 @@ void cut_out(rollout::Manoeuvre& replay, double share) {
       timed.command.track_speed_mps[physics::kRight] *= 1 - share;
 }
 
-}  // namespace
+constexpr double kHunt_s = 1.1;      // a period, which is no multiple of anything a manoeuvre does
+constexpr double kFade_s = 10;       // until the drives have lost all that they lose
+constexpr double kOfRate_sprad = 1;  // of the gyro: at 1 rad/s it tells half
 
-physics::RobotDescription with_foreign(physics::RobotDescription robot, std::string_view foreign, double amount) {
-  if (foreign == "track_gauge") robot.track.p_BT_m.y() *= 1 + 0.15 * amount;
-  if (foreign == "servo_speed") robot.servo.max_speed_radps *= 1 - 0.6 * amount;
-  if (foreign == "flipper_length")
-    for (physics::FlipperDescription& flipper : robot.flipper) flipper.length_m *= 1 + 0.3 * amount;
-  return robot;
+template <class FactorAt>
+void multiply_speeds(rollout::Manoeuvre& replay, FactorAt&& factor_at) {
+  for (rollout::TimedCommand& timed : replay.timed)
+    for (double& speed_mps : timed.command.track_speed_mps) speed_mps *= factor_at(timed.t_s);
 }
+
+}  // namespace
 
 bool is_of_commands(std::string_view foreign) {
   return foreign == "left_drive_lag" || foreign == "right_flipper_lag" || foreign == "right_drive_cuts_out" ||
-         foreign == "command_shortfall";
+         foreign == "command_shortfall" || foreign == "speed_hunts" || foreign == "drives_fade";
 }
 
 void obey_foreign(rollout::Manoeuvre& replay, std::string_view foreign, double amount) {
@@ -68,13 +71,18 @@ void obey_foreign(rollout::Manoeuvre& replay, std::string_view foreign, double a
     for (rollout::TimedCommand& timed : replay.timed)
       for (double& speed_mps : timed.command.track_speed_mps)
         speed_mps = std::copysign(std::max(0.0, std::abs(speed_mps) - 0.08 * amount), speed_mps);
+  if (foreign == "speed_hunts")
+    multiply_speeds(replay,
+                    [&](double t_s) { return 1 + 0.2 * amount * std::sin(2 * std::numbers::pi * t_s / kHunt_s); });
+  if (foreign == "drives_fade")
+    multiply_speeds(replay, [&](double t_s) { return 1 - 0.3 * amount * std::min(1.0, t_s / kFade_s); });
 }
 
 void record_foreign(runs::Run& run, std::string_view foreign, double amount) {
-  if (foreign == "accelerometer_scale")
-    for (const char* name : {"acc_x_mps2", "acc_y_mps2", "acc_z_mps2"})
+  if (foreign == "gyro_saturates")
+    for (const char* name : {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"})
       if (std::vector<double>* column = column_of(run, name))
-        for (double& value : *column) value *= 1 + 0.2 * amount;
+        for (double& rate_radps : *column) rate_radps /= 1 + kOfRate_sprad * amount * std::abs(rate_radps);
 }
 
 }  // namespace kenaf::gap

@@ -1,17 +1,16 @@
-// Deviations that no effect of the catalogue is: what they do to a robot, to its commands, or to what is measured of it.
+// Deviations that no candidate of a diagnosis is: what they do to commands, or to what is measured of the robot.
 // Thread safety: pure functions.
 #pragma once
 
 #include <string_view>
 
-#include "physics/robot_description.hpp"
 #include "rollout/manoeuvre.hpp"
 #include "runs/run_file.hpp"
 
 namespace kenaf::gap {
 
 // `amount`: 0 changes nothing, 1 is as much as is credible.
-physics::RobotDescription with_foreign(physics::RobotDescription robot, std::string_view foreign, double amount);
+
 // What of the commands of a replay arrives, of one that changes commands at all.
 bool is_of_commands(std::string_view foreign);
 void obey_foreign(rollout::Manoeuvre& replay, std::string_view foreign, double amount);

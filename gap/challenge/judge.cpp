@@ -3,39 +3,74 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gap/challenge/stand_ins.hpp"
 #include "physics/effects.hpp"
 
 namespace kenaf::gap {
 namespace {
 
-bool has(const std::vector<std::string>& names, const std::string& name) {
-  return std::ranges::count(names, name) > 0;
+using Names = std::vector<std::string>;
+
+bool has(const Names& names, const std::string& name) {
+  return std::ranges::any_of(names, [&](const std::string& n) { return n == name || same_effect(n) == name; });
 }
 
 bool is_small(const CasePlan& plan) {
+  if (plan.is_imperfect())
+    return plan.foreign.empty()
+               ? std::ranges::any_of(plan.effects,
+                                     [](const HiddenEffect& hidden) { return hidden.times_background < kDominates; })
+               : plan.foreign_times_background < kDominates;
   return plan.foreign.empty()
              ? std::ranges::any_of(plan.effects,
                                    [](const HiddenEffect& hidden) { return hidden.floors < kSurelySeen_floors; })
              : plan.foreign_floors < kSurelySeen_floors;
 }
 
-// Whether each name can have a claim of its own. There are at most two names.
-bool fits(const std::vector<std::string>& names, std::vector<std::vector<std::string>> claims) {
-  if (claims.size() != names.size()) return false;
-  std::ranges::sort(claims);
-  do {
-    bool all = true;
-    for (std::size_t i = 0; all && i < names.size(); ++i) all = has(claims[i], names[i]);
-    if (all) return true;
-  } while (std::ranges::next_permutation(claims).found);
-  return false;
+std::vector<Names> claims_of(const ReadStage& stage) {
+  std::vector<Names> claims = stage.ambiguous_sets;
+  for (const std::string& name : stage.named) claims.push_back({name});
+  return claims;
 }
 
-bool stands_apart(const Told& told, const std::string& name) {
-  const auto row = static_cast<std::size_t>(std::ranges::find(told.table, name) - told.table.begin());
-  if (row == told.table.size()) return false;
-  for (std::size_t other = 0; other < told.table.size(); ++other)
-    if (other != row && !(told.angle_deg[row][other] >= kToldApart_deg)) return false;
+// All sets of hidden effects, as bits, for which the claims of a stage can stand, each for another one that it has.
+std::vector<unsigned> ways_to_stand(const std::vector<Names>& claims, const Names& hidden) {
+  std::vector<unsigned> ways{0};
+  for (const Names& claim : claims) {
+    std::vector<unsigned> longer;
+    for (const unsigned taken : ways)
+      for (std::size_t i = 0; i < hidden.size(); ++i)
+        if ((taken & 1U << i) == 0 && has(claim, hidden[i])) longer.push_back(taken | 1U << i);
+    ways = std::move(longer);
+  }
+  return ways;
+}
+
+// Whether each hidden effect can have a claim. `all_stand`: and each claim a hidden effect; else those that have none
+// of them are passed over.
+bool is_covered(const ReadReport& report, const Names& hidden, bool all_stand) {
+  std::vector<unsigned> covered{0};
+  for (const ReadStage& stage : report.stages) {
+    std::vector<Names> claims = claims_of(stage);
+    if (!all_stand)
+      std::erase_if(claims, [&](const Names& claim) {
+        return std::ranges::none_of(hidden, [&](const std::string& name) { return has(claim, name); });
+      });
+    std::vector<unsigned> next;
+    for (const unsigned before : covered)
+      for (const unsigned way : ways_to_stand(claims, hidden)) next.push_back(before | way);
+    std::ranges::sort(next);
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    covered = std::move(next);
+  }
+  return std::ranges::count(covered, (1U << hidden.size()) - 1) > 0;
+}
+
+bool stands_apart(const ReadReport& report, const std::string& name) {
+  const auto row = static_cast<std::size_t>(std::ranges::find(report.table, name) - report.table.begin());
+  if (row == report.table.size()) return false;
+  for (std::size_t other = 0; other < report.table.size(); ++other)
+    if (other != row && !(report.angle_deg[row][other] >= kToldApart_deg)) return false;
   return true;
 }
 
@@ -46,7 +81,7 @@ std::string reported_name(const std::string& effect, const std::string& paramete
   return info != nullptr && info->parameters.size() > 1 ? effect + ":" + parameter : effect;
 }
 
-Judgement judge(const CasePlan& plan, const std::optional<Told>& told) {
+Judgement judge(const CasePlan& plan, const std::optional<ReadReport>& report) {
   Judgement result;
   result.is_small = is_small(plan);
   const bool in_catalogue = plan.stratum == Stratum::single || plan.stratum == Stratum::pair;
@@ -54,29 +89,30 @@ Judgement judge(const CasePlan& plan, const std::optional<Told>& told) {
     if (in_catalogue) result.hidden.push_back(reported_name(hidden.effect, hidden.parameter));
   result.found.assign(result.hidden.size(), Found::missed);
   result.can_be_told_apart = is_outside(plan.stratum) && plan.look_alike.angle_deg >= kToldApart_deg;
-  if (!told) return result;
+  if (!report) return result;
 
-  std::vector<std::vector<std::string>> claims = told->ambiguous_sets;
-  for (const std::string& name : told->named) {
-    claims.push_back({name});
-    result.names_wrong |= !has(result.hidden, name);
-  }
+  for (const std::string& name : report->named)
+    result.names_wrong |= !has(result.hidden, name) && !has(result.hidden, same_effect(name));
   for (std::size_t i = 0; i < result.hidden.size(); ++i) {
-    const auto holds = [&](const std::vector<std::string>& set) { return has(set, result.hidden[i]); };
-    if (has(told->named, result.hidden[i]))
+    const auto holds = [&](const Names& set) { return has(set, result.hidden[i]); };
+    if (holds(report->named))
       result.found[i] = Found::named;
-    else if (std::ranges::any_of(told->ambiguous_sets, holds))
+    else if (std::ranges::any_of(report->ambiguous_sets, holds))
       result.found[i] = Found::ambiguous;
     else if (result.names_wrong)
       result.found[i] = Found::wrong;
   }
-  if (in_catalogue)
-    result.right = fits(result.hidden, claims);
-  else
-    result.right = told->verdict == (plan.stratum == Stratum::none ? "none" : "unknown");
+  if (in_catalogue) {
+    result.right = is_covered(*report, result.hidden, true);
+    result.all_found = is_covered(*report, result.hidden, false);
+  } else if (plan.is_imperfect()) {
+    result.right = !result.names_wrong;
+  } else {
+    result.right = report->verdict == (plan.stratum == Stratum::none ? "none" : "unknown");
+  }
   if (plan.stratum == Stratum::single) {
-    result.named_alone = result.right && told->named == result.hidden;
-    result.can_be_told_apart = stands_apart(*told, result.hidden.front());
+    result.named_alone = result.right && result.found.front() == Found::named && report->ambiguous_sets.empty();
+    result.can_be_told_apart = stands_apart(*report, result.hidden.front());
   }
   return result;
 }

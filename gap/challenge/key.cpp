@@ -9,6 +9,7 @@
 
 #include "gap/challenge/sha256.hpp"
 #include "physics/effects.hpp"
+#include "physics/robot_description.hpp"
 #include "runs/whole_file.hpp"
 
 namespace kenaf::gap {
@@ -23,19 +24,33 @@ constexpr std::string_view kBeginning = "{\n \"format\"";  // of each key's text
 constexpr int kMostRepeats = 100, kMostIterations = 1000;
 constexpr double kShortestStep_s = 1e-5, kLongestStep_s = 0.01;
 
+Json background_json(const Background& background) {
+  Json json{{"floors", background.floors}, {"numbers", Json::object()}};
+  for (const BackgroundNumber& number : background.numbers) json["numbers"][number.key] = number.value;
+  return json;
+}
+
 Json case_json(const SealedCase& sealed) {
   const CasePlan& plan = sealed.plan;
   Json json{{"name", plan.name}, {"stratum", stratum_name(plan.stratum)}, {"effects", Json::array()}};
-  for (const HiddenEffect& hidden : plan.effects)
-    json["effects"].push_back({{"effect", hidden.effect},
-                               {"parameter", hidden.parameter},
-                               {"value", hidden.value},
-                               {"floors", hidden.floors}});
+  for (const HiddenEffect& hidden : plan.effects) {
+    Json effect{
+        {"effect", hidden.effect}, {"parameter", hidden.parameter}, {"value", hidden.value}, {"floors", hidden.floors}};
+    if (plan.is_imperfect()) {
+      effect["times_background"] = hidden.times_background;
+      effect["shares"] = Json::object();
+      for (const StageShare& share : hidden.shares) effect["shares"][share.stage] = share.share;
+    }
+    json["effects"].push_back(std::move(effect));
+  }
   if (!plan.foreign.empty())
     json["foreign"] = {{"name", plan.foreign}, {"amount", plan.foreign_amount}, {"floors", plan.foreign_floors}};
+  if (!plan.foreign.empty() && plan.is_imperfect()) json["foreign"]["times_background"] = plan.foreign_times_background;
+  if (plan.is_imperfect()) json["background"] = background_json(plan.background);
   if (is_outside(plan.stratum))
     json["looks_like"] = {{"effect", plan.look_alike.effect}, {"angle_deg", plan.look_alike.angle_deg}};
   json["manoeuvres"] = plan.manoeuvres;
+  if (!plan.longest_s.empty()) json["longest_s"] = plan.longest_s;
   json["unseen"] = plan.unseen;
   json["repeats"] = plan.repeats;
   json["physics"] = {{"time_step_s", plan.physics.time_step_s},
@@ -44,6 +59,7 @@ Json case_json(const SealedCase& sealed) {
                      {"contact_damping_nspm", plan.physics.contact_damping_nspm}};
   json["noise_scale"] = plan.noise_scale;
   json["noise_memory_s"] = plan.noise_memory_s;
+  if (plan.count_scale > 0) json["count_scale"] = plan.count_scale;
   json["seed"] = plan.seed;
   json["data_sha256"] = sealed.data_sha256;
   return json;
@@ -66,6 +82,10 @@ void check(const CasePlan& plan) {
       throw std::runtime_error(fmt::format("{} hides {}:{} = {}, which is out of its range", plan.name, hidden.effect,
                                            hidden.parameter, hidden.value));
   }
+  // throws where it makes no robot
+  with_background(physics::load_robot(kChallengedRobot), plan.background);
+  if (!plan.longest_s.empty() && plan.longest_s.size() != plan.manoeuvres.size())
+    throw std::runtime_error(fmt::format("{} does not say of each manoeuvre when it is cut off", plan.name));
   const physics::PhysicsSettings& physics = plan.physics;
   if (plan.repeats < 1 || plan.repeats > kMostRepeats || !(physics.time_step_s >= kShortestStep_s) ||
       !(physics.time_step_s <= kLongestStep_s) || physics.solver_iterations < 1 ||
@@ -78,17 +98,28 @@ SealedCase case_of(const Json& json) {
   CasePlan& plan = sealed.plan;
   json.at("name").get_to(plan.name);
   plan.stratum = stratum_of(json.at("stratum").get<std::string>());
-  for (const Json& effect : json.at("effects"))
+  for (const Json& effect : json.at("effects")) {
     plan.effects.push_back({effect.at("effect"), effect.at("parameter"), effect.at("floors"), effect.at("value")});
+    if (!effect.contains("times_background")) continue;
+    effect["times_background"].get_to(plan.effects.back().times_background);
+    for (const auto& [stage, share] : effect.at("shares").items()) plan.effects.back().shares.push_back({stage, share});
+  }
   if (json.contains("foreign")) {
     const Json& foreign = json["foreign"];
     foreign.at("name").get_to(plan.foreign);
     foreign.at("amount").get_to(plan.foreign_amount);
     foreign.at("floors").get_to(plan.foreign_floors);
+    if (foreign.contains("times_background")) foreign["times_background"].get_to(plan.foreign_times_background);
+  }
+  if (json.contains("background")) {
+    json["background"].at("floors").get_to(plan.background.floors);
+    for (const auto& [key, value] : json["background"].at("numbers").items())
+      plan.background.numbers.push_back({key, value});
   }
   if (is_outside(plan.stratum))
     plan.look_alike = {json.at("looks_like").at("effect"), json.at("looks_like").at("angle_deg")};
   json.at("manoeuvres").get_to(plan.manoeuvres);
+  if (json.contains("longest_s")) json["longest_s"].get_to(plan.longest_s);
   json.at("unseen").get_to(plan.unseen);
   json.at("repeats").get_to(plan.repeats);
   const Json& physics = json.at("physics");
@@ -98,6 +129,7 @@ SealedCase case_of(const Json& json) {
   physics.at("contact_damping_nspm").get_to(plan.physics.contact_damping_nspm);
   json.at("noise_scale").get_to(plan.noise_scale);
   json.at("noise_memory_s").get_to(plan.noise_memory_s);
+  if (json.contains("count_scale")) json["count_scale"].get_to(plan.count_scale);
   json.at("seed").get_to(plan.seed);
   json.at("data_sha256").get_to(sealed.data_sha256);
   check(plan);
@@ -138,8 +170,9 @@ fs::path made_case_file(const fs::path& folder, const std::string& name) {
   return folder / (name + ".enciphered");
 }
 // A stream of its own for each: two texts under one stream would give each other away.
-std::string made_case_stream(const std::string& name, std::size_t cases) {
-  return fmt::format("{} of {}", name, cases);
+std::string made_case_stream(const std::string& name, std::size_t cases, ChallengeKind kind) {
+  return fmt::format("{} of {}{}", name, cases,
+                     kind == ChallengeKind::exact ? "" : fmt::format(" {}", kind_name(kind)));
 }
 
 }  // namespace
@@ -153,8 +186,9 @@ bool is_sealed_dataset(const fs::path& dataset, const SealedCase& sealed) try {
 std::string key_text(const ChallengeKey& key) {
   Json json{{"format", kFormat},
             {"seed", key.seed},
-            {"salt", sha256(fmt::format("salt of a kenaf-gap challenge, seed {}", key.seed))},
-            {"cases", Json::array()}};
+            {"salt", sha256(fmt::format("salt of a kenaf-gap challenge, seed {}", key.seed))}};
+  if (key.kind != ChallengeKind::exact) json["challenge"] = kind_name(key.kind);
+  json["cases"] = Json::array();
   for (const SealedCase& sealed : key.cases) json["cases"].push_back(case_json(sealed));
   return json.dump(1) + "\n";
 }
@@ -163,6 +197,7 @@ ChallengeKey read_key(const std::string& text) try {
   const Json json = Json::parse(text);
   if (json.at("format") != kFormat) throw std::runtime_error(fmt::format("its format is not {}", kFormat));
   ChallengeKey key{json.at("seed"), {}};
+  if (json.contains("challenge")) key.kind = challenge_kind_of(json["challenge"].get<std::string>());
   for (const Json& sealed : json.at("cases")) key.cases.push_back(case_of(sealed));
   return key;
 } catch (const std::exception& error) {
@@ -183,18 +218,20 @@ std::string deciphered(const std::string& text, std::uint64_t seed) {
   return with_keystream(from_digits(text), seed);
 }
 
-void keep_made_case(const fs::path& folder, const SealedCase& sealed, std::uint64_t seed, std::size_t cases) {
+void keep_made_case(const fs::path& folder, const SealedCase& sealed, std::uint64_t seed, std::size_t cases,
+                    ChallengeKind kind) {
   const std::string& name = sealed.plan.name;
+  const std::string stream = made_case_stream(name, cases, kind);
   runs::write_whole_file(made_case_file(folder, name),
-                         in_digits(with_keystream(key_text({seed, {sealed}}), seed, made_case_stream(name, cases))));
+                         in_digits(with_keystream(key_text({seed, {sealed}, kind}), seed, stream)));
 }
 
 std::optional<SealedCase> made_case(const fs::path& folder, const std::string& name, std::uint64_t seed,
-                                    std::size_t cases) try {
+                                    std::size_t cases, ChallengeKind kind) try {
   const fs::path file = made_case_file(folder, name);
   if (!fs::exists(file)) return std::nullopt;
   const std::string text =
-      with_keystream(from_digits(runs::read_whole_file(file)), seed, made_case_stream(name, cases));
+      with_keystream(from_digits(runs::read_whole_file(file)), seed, made_case_stream(name, cases, kind));
   const ChallengeKey key = read_key(text);
   if (key.seed != seed || key.cases.size() != 1 || key.cases[0].plan.name != name) return std::nullopt;
   if (!is_sealed_dataset(folder / name, key.cases[0])) return std::nullopt;

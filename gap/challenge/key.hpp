@@ -28,6 +28,7 @@ bool is_sealed_dataset(const std::filesystem::path& dataset, const SealedCase& s
 struct ChallengeKey {
   std::uint64_t seed = 0;
   std::vector<SealedCase> cases;
+  ChallengeKind kind = ChallengeKind::exact;
 };
 
 // key.json, of the format kenaf-gap-key/1. The same key gives the same bytes.
@@ -44,12 +45,13 @@ std::string enciphered(const std::string& key_text, std::uint64_t seed);
 std::string deciphered(const std::string& text, std::uint64_t seed);
 
 // A case beside its data in CASES while the others are made, enciphered with the seed, so that a challenge that is interrupted then
-// need not make it again: CASES/NAME.enciphered. `cases`: how many the challenge has, for the same seed plans others for another number.
-void keep_made_case(const std::filesystem::path& folder, const SealedCase& sealed, std::uint64_t seed,
-                    std::size_t cases);
-// Nothing where there is none, where seed or number are others, or where its data are no longer what was made.
+// need not make it again: CASES/NAME.enciphered. `cases`: how many the challenge has, for the same seed plans others for another
+// number, and for another kind of challenge.
+void keep_made_case(const std::filesystem::path& folder, const SealedCase& sealed, std::uint64_t seed, std::size_t cases,
+                    ChallengeKind kind = ChallengeKind::exact);
+// Nothing where there is none, where seed, number or kind are others, or where its data are no longer what was made.
 std::optional<SealedCase> made_case(const std::filesystem::path& folder, const std::string& name, std::uint64_t seed,
-                                    std::size_t cases);
+                                    std::size_t cases, ChallengeKind kind = ChallengeKind::exact);
 
 // The key of a challenge that was interrupted after its cases were made; nothing where it was not, where the seed is
 // another one, or where key or commitment is no longer what was sealed.

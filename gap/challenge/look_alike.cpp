@@ -2,31 +2,137 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <utility>
 
-#include "gap/challenge/judge.hpp"
-#include "gap/diagnose/diagnosis.hpp"
+#include "gap/challenge/stand_ins.hpp"
+#include "gap/diagnose/curve_fit.hpp"
+#include "gap/diagnose/model_search.hpp"
+#include "gap/diagnose/stage_diagnosis.hpp"
 
 namespace kenaf::gap {
+namespace {
 
-LookAlike look_alike(ComparedRuns& runs, const NoiseFloor& floor, const Shift& hidden,
+// Of the numbers of the description, those that one step shows to be nearest get whole curves; of all candidates the
+// nearest get points where they fit best, so often (chosen: the nearest one hardly moves after that).
+constexpr std::size_t kNumbersFollowed = 6, kRefined = 4;
+constexpr int kRounds = 2;
+
+std::vector<Candidate> candidates_without(const Observations& observations, std::span<const std::string> without) {
+  const bool has_obstacles = std::ranges::any_of(observations.worlds, [](const physics::WorldDescription& world) {
+    return !world.boxes.empty() || !world.meshes.empty();
+  });
+  std::vector<Candidate> all = catalogue_candidates(observations.robot, has_obstacles), left;
+  std::ranges::move(description_candidates(observations.robot), std::back_inserter(all));
+  const auto is_left_out = [&](const std::string& name) { return std::ranges::count(without, name) > 0; };
+  for (Candidate& candidate : all) {
+    // of those that do the same one is enough
+    const bool is_there = std::ranges::any_of(left, [&](const Candidate& c) { return c.effect == candidate.same_as; });
+    if (!is_left_out(candidate.effect) && !is_left_out(candidate.same_as) && !is_there)
+      left.push_back(std::move(candidate));
+  }
+  return left;
+}
+
+struct Near {
+  double left;  // of the squared length of what is hidden
+  std::size_t candidate;
+  double value;
+};
+
+class Stage {
+ public:
+  Stage(ComparedRuns& runs, Passage passage, StageData data, std::span<const Candidate> candidates)
+      : data_(std::move(data)),
+        whiteners_(whiteners_of(data_, no_discrepancy())),
+        curves_(empty_curves(data_, candidates)) {
+    simulate_ = [&runs, passage, candidates, this](std::span<const Settings> asked, Fidelity) {
+      std::vector<Variation> variations;
+      for (const Settings& settings : asked) {
+        variations.push_back(runs.predictor.unvaried());
+        variations.back().robot = with_settings(std::move(variations.back().robot), candidates, settings);
+      }
+      std::vector<GroupVectors> shifts;
+      for (const Shift& shift : runs.predictor.shifts(variations, passage, Fidelity::coarse))
+        shifts.push_back(mean_of_groups(data_, shift));
+      return shifts;
+    };
+    const bool drives_measured =
+        std::ranges::all_of(runs.observations.runs, [](const Observation& run) { return run.measured.has_value(); });
+    for (const std::size_t c : candidates_of(passage, candidates, drives_measured))
+      (candidates[c].is_number_of_description ? numbers_ : effects_).push_back(c);
+  }
+
+  // Best first.
+  std::vector<Near> nearest() {
+    add_spread(curves_, data_, effects_, simulate_);
+    follow_bends(curves_, data_, effects_, simulate_);
+    add_one_step(curves_, data_, numbers_, simulate_);
+    std::vector<std::size_t> followed;
+    for (const Near& number : ranked(numbers_))
+      if (followed.size() < kNumbersFollowed) followed.push_back(number.candidate);
+    add_spread(curves_, data_, followed, simulate_);
+    std::vector<std::size_t> all = effects_;
+    all.insert(all.end(), numbers_.begin(), numbers_.end());
+    std::vector<Near> best = ranked(all);
+    for (int round = 0; round < kRounds; ++round) {
+      std::vector<Setting> points;
+      for (std::size_t i = 0; i < std::min(kRefined, best.size()); ++i)
+        points.push_back({best[i].candidate, best[i].value});
+      add_points(curves_, data_, points, Fidelity::coarse, simulate_);
+      best = ranked(all);
+    }
+    return best;
+  }
+
+  double hidden_squared() const { return products_of(data_, whiteners_, curves_.shifts, residuals_of(data_)).gap_gap; }
+
+ private:
+  std::vector<Near> ranked(const std::vector<std::size_t>& chosen) const {
+    const Products products = products_of(data_, whiteners_, curves_.shifts, residuals_of(data_));
+    std::vector<Near> result;
+    for (const std::size_t c : chosen) {
+      const CurveFit fit = fit_one(products, curves_.curves, c);
+      result.push_back({fit.left, c, fit.places.front().value});
+    }
+    std::ranges::stable_sort(result, {}, &Near::left);
+    return result;
+  }
+
+  StageData data_;
+  std::vector<GroupWhitener> whiteners_;
+  EffectCurves curves_;
+  Simulate simulate_;
+  std::vector<std::size_t> effects_, numbers_;
+};
+
+// In which nobody could overlook it.
+bool shows(const StageData& data) {
+  const auto bins = static_cast<double>(bin_count(data));
+  return bins > 0 && length_in_noise(data, residuals_of(data)) >= DecisionSettings().negligible * std::sqrt(bins);
+}
+
+}  // namespace
+
+LookAlike look_alike(ComparedRuns& runs, const Floors& floors, const Differences& hidden,
                      std::span<const std::string> without) {
-  Predictor& predictor = runs.predictor;
-  EffectCurves curves = scan_effects(candidate_curves(runs.observations, without), hidden, floor, predictor);
-  const double all = squared_length(curves.gap);
-  SearchSettings settings;
-  settings.exact_rounds = 0;
-  const Coherence coherence(runs.features, predictor.repeats(), DiagnosisOptions().stretch_s);
-  const Simulator simulator{[&](EffectCurves& to, std::span<const NewPoint> points, Fidelity) {
-                              add_points(to, points, Fidelity::coarse, predictor);
-                            },
-                            {},
-                            {}};
-  const Model nearest = search_singles(curves, coherence, simulator, settings).front();
-  const EffectCurve& curve = curves.curves[nearest.places.front().curve];
-  const double sine = all > 0 ? std::sqrt(std::clamp(nearest.left / all, 0.0, 1.0)) : 1;
-  return {reported_name(std::string(curve.effect->name), std::string(curve.parameter->name)),
-          std::asin(sine) * 180 / std::numbers::pi};
+  const std::vector<Candidate> candidates = candidates_without(runs.observations, without);
+  LookAlike nearest;
+  for (std::size_t s = 0; s < kEachChannelOnce.size(); ++s) {
+    const Passage passage = kEachChannelOnce[s];
+    StageData data = stage_data(passage, runs.features.of(passage), runs.predictor.repeats(), hidden[s], floors[s]);
+    if (!shows(data)) continue;
+    Stage stage(runs, passage, std::move(data), candidates);
+    const std::vector<Near> ranking = stage.nearest();
+    const double all = stage.hidden_squared();
+    if (ranking.empty() || !(all > 0)) continue;
+    const double angle_deg =
+        std::asin(std::sqrt(std::clamp(ranking.front().left / all, 0.0, 1.0))) * 180 / std::numbers::pi;
+    if (nearest.effect.empty() || angle_deg < nearest.angle_deg)
+      nearest = {candidates[ranking.front().candidate].name, angle_deg};
+  }
+  return nearest;
 }
 
 }  // namespace kenaf::gap

@@ -11,9 +11,11 @@
 
 namespace kenaf::gap {
 
-// `hidden`: what it shifts, without noise. The single effect that comes nearest to it at the best of all its values, by coarse
-// simulations; in floors of `floor`. 90 degrees where none explains any of it. Deterministic.
-LookAlike look_alike(ComparedRuns& runs, const NoiseFloor& floor, const Shift& hidden,
+// `hidden`: what it shifts, without noise. In each stage in which it shows, the single candidate that comes nearest to it
+// at the best of all its values, by coarse simulations, in units of the noise of `floors`; of these stages the one in which
+// that is nearest of all, for a stage is diagnosed without the others. 90 degrees where none explains any of it.
+// `without`: names that the diagnosis leaves out. Deterministic.
+LookAlike look_alike(ComparedRuns& runs, const Floors& floors, const Differences& hidden,
                      std::span<const std::string> without);
 
 }  // namespace kenaf::gap

@@ -6,23 +6,18 @@
 #include <filesystem>
 
 #include "gap/challenge/plan.hpp"
-#include "physics/effects.hpp"
 
 namespace kenaf::gap {
 
-// Writes the dataset to `folder`, which must not exist, as that of a real robot, and sets the effects' values in `plan`.
-// Where these manoeuvres cannot show an effect as large as planned, they are exchanged for others that can; where none
-// can, the effect is as large as they show it. So they are where they cannot tell what is outside the catalogue from what is in
-// it: `look_alike` says how far apart the two are in the end. Throws Stopped soon after `stop`, if there is one, is true; what
-// is in `folder` by then is to be thrown away.
+// Writes the dataset to `folder`, which must not exist, as that of a real robot, and sets what `plan` has only then: values,
+// sizes, shares. Where these manoeuvres cannot show an effect as large as planned, they are exchanged for others that can;
+// where none can, the effect is as large as they show it. So they are where they cannot tell what is outside the catalogue from
+// what is in it: `look_alike` says how far apart the two are in the end. Throws Stopped soon after `stop`, if there is one, is
+// true; what is in `folder` by then is to be thrown away.
 void make_case(CasePlan& plan, const std::filesystem::path& folder, unsigned jobs, const std::atomic<bool>* stop = nullptr);
 
 // Writes the dataset of a case whose plan make_case() has completed once more: the same files. Else as make_case().
 void make_again(const CasePlan& plan, const std::filesystem::path& folder, unsigned jobs, const std::atomic<bool>* stop = nullptr);
-
-// What of the catalogue is hidden in a case that is made: as its robot has it, and as a model of it would (value_in_model).
-physics::Effects hidden_effects(const CasePlan& plan);
-physics::Effects hidden_effects_in_model(const CasePlan& plan);
 
 // Runs of the same robot in the manoeuvre that the dataset does not have.
 void make_unseen(const CasePlan& plan, const std::filesystem::path& folder, unsigned jobs);

@@ -4,34 +4,41 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <span>
 #include <stdexcept>
+
+#include "gap/candidates/candidate.hpp"
+#include "gap/challenge/random_numbers.hpp"
+#include "gap/challenge/stand_ins.hpp"
 
 namespace kenaf::gap {
 namespace {
 
-using Random = std::mt19937_64;
-
-// Not std::uniform_real_distribution, whose numbers depend on the standard library.
-double uniform(Random& random, double from, double to) {
-  return from + (to - from) * (static_cast<double>(random() >> 11) * 0x1p-53);
-}
-std::size_t below(Random& random, std::size_t count) {
-  return static_cast<std::size_t>(uniform(random, 0, static_cast<double>(count)));
-}
-double log_uniform(Random& random, double from, double to) {
-  return std::exp(uniform(random, std::log(from), std::log(to)));
-}
-template <class T>
-void shuffle(std::vector<T>& values, Random& random) {
-  for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(random, i)]);
-}
-
+constexpr std::string_view kKindNames[] = {"exact", "imperfect"};                                // as ChallengeKind
 constexpr std::string_view kStratumNames[] = {"none", "single", "pair", "withheld", "foreign"};  // as Stratum
-// Shares of the strata, in the order of Stratum: of 204 cases there is a single and a withheld one for each effect.
-constexpr double kShare[] = {0.3, 0.26, 0.11, 0.26, 0.07};
+
+// What share of the cases a stratum has.
+struct StratumShare {
+  Stratum stratum;
+  double share;
+};
+// Singles and withheld ones are 78 of 150 cases together: each of 53 effects has a turn in one of them. Each effect
+// once in both would take 204 cases, a third more time, to say the same.
+constexpr StratumShare kExact[] = {{Stratum::none, 0.3},
+                                   {Stratum::single, 0.26},
+                                   {Stratum::pair, 0.11},
+                                   {Stratum::withheld, 0.26},
+                                   {Stratum::foreign, 0.07}};
+constexpr StratumShare kImperfect[] = {{Stratum::none, 0.25},
+                                       {Stratum::single, 0.35},
+                                       {Stratum::pair, 0.15},
+                                       {Stratum::withheld, 0.15},
+                                       {Stratum::foreign, 0.10}};
 constexpr double kRounding = 1e-6;
 constexpr double kFurthest = 0.95;  // of the way to the end of a parameter's range
+
+// Sizes beside the background. Pairs are asked for where both dominate; singles also show how large one has to be.
+constexpr double kSmallestTimes = 1, kSmallestTimesOfPair = 3, kLargestTimes = 6;
 
 struct Named {
   std::string effect, parameter;
@@ -58,13 +65,12 @@ class Turns {
   std::vector<Named> left_;
 };
 
-std::vector<Stratum> strata(std::size_t cases, Random& random) {
+std::vector<Stratum> strata(std::size_t cases, std::span<const StratumShare> shares, Random& random) {
   std::vector<Stratum> result;
   double sum = 0;
-  for (std::size_t s = 0; s < std::size(kShare); ++s) {
-    sum += kShare[s];
-    while (static_cast<double>(result.size()) < sum * static_cast<double>(cases) - kRounding)
-      result.push_back(static_cast<Stratum>(s));
+  for (const auto& [stratum, share] : shares) {
+    sum += share;
+    while (static_cast<double>(result.size()) < sum * static_cast<double>(cases) - kRounding) result.push_back(stratum);
   }
   shuffle(result, random);
   return result;
@@ -80,7 +86,63 @@ double scale_in_model(const CasePlan& plan, const physics::EffectParameter& para
   return 1;
 }
 
+// Sets of manoeuvres that a case may have.
+const std::vector<std::vector<std::string>>& manoeuvre_sets() {
+  static const std::vector<std::vector<std::string>> sets{
+      {"straight", "speed-steps", "turn-in-place", "step-150-flippers"},
+      {"straight-fast", "arc", "flipper-sweep", "trench-200"},
+      {"speed-steps", "turn-in-place", "drop", "step-100-flippers"},
+      {"arc", "drop", "ramp", "step-200-flippers"},
+      {"straight", "turn-in-place", "flipper-sweep", "tilted-box"}};
+  return sets;
+}
+
+// Of which short runs are that nobody repeated.
+constexpr std::string_view kShortRuns[] = {
+    "speed-steps", "random-speeds",     "square",     "arc",        "straight",   "turn-in-place", "hills", "ramp",
+    "step-100",    "step-150-flippers", "tilted-box", "step-field", "trench-150", "flipper-sweep"};
+constexpr std::size_t kFewestShort = 6, kMostShort = 10;
+constexpr double kShortest_s = 5, kLongest_s = 15;
+constexpr std::size_t kFewestRepeated = 3;
+constexpr std::size_t kOtherShortRuns = 4;  // to choose from, where an effect does not show
+
+CaseRuns short_runs(Random& random) {
+  std::vector<std::string> names(std::begin(kShortRuns), std::end(kShortRuns));
+  shuffle(names, random);
+  names.resize(kFewestShort + below(random, kMostShort - kFewestShort + 1));
+  CaseRuns runs{std::move(names), {}};
+  for (std::size_t i = 0; i < runs.manoeuvres.size(); ++i)
+    runs.longest_s.push_back(uniform(random, kShortest_s, kLongest_s));
+  return runs;
+}
+
+void choose_runs(CasePlan& plan, ChallengeKind kind, Random& random) {
+  if (kind == ChallengeKind::imperfect && uniform(random, 0, 1) < 0.5) {
+    CaseRuns runs = short_runs(random);
+    plan.manoeuvres = std::move(runs.manoeuvres);
+    plan.longest_s = std::move(runs.longest_s);
+    plan.repeats = 1;
+  } else {
+    plan.manoeuvres = manoeuvre_sets()[below(random, manoeuvre_sets().size())];
+    if (kind == ChallengeKind::imperfect && uniform(random, 0, 1) < 0.5) plan.manoeuvres.resize(kFewestRepeated);
+  }
+  const auto& other = manoeuvre_sets()[below(random, manoeuvre_sets().size())];
+  const auto unseen = std::ranges::find_if(
+      other, [&](const std::string& name) { return std::ranges::count(plan.manoeuvres, name) == 0; });
+  plan.unseen = unseen != other.end() ? *unseen : "drop";
+}
+
 }  // namespace
+
+std::string_view kind_name(ChallengeKind kind) {
+  return kKindNames[static_cast<std::size_t>(kind)];
+}
+
+ChallengeKind challenge_kind_of(std::string_view name) {
+  const auto* found = std::ranges::find(kKindNames, name);
+  if (found == std::end(kKindNames)) throw std::invalid_argument(fmt::format("\"{}\" is no challenge", name));
+  return static_cast<ChallengeKind>(found - kKindNames);
+}
 
 std::string_view stratum_name(Stratum stratum) {
   return kStratumNames[static_cast<std::size_t>(stratum)];
@@ -105,70 +167,90 @@ double value_in_model(const CasePlan& plan, const HiddenEffect& hidden) {
 }
 
 double furthest_value(const CasePlan& plan, const physics::EffectParameter& parameter, bool upward) {
+  static const std::vector<Candidate> candidates =
+      catalogue_candidates(physics::load_robot(kChallengedRobot), /*has_obstacles=*/true);
   const double scale = scale_in_model(plan, parameter);
-  const double end =
-      upward ? std::min(parameter.max, parameter.max / scale) : std::max(parameter.min, parameter.min / scale);
+  double min = parameter.min, max = parameter.max;
+  for (const Candidate& candidate : candidates)
+    if (&parameter_of({candidate.effect, candidate.parameter}) == &parameter) min = candidate.min, max = candidate.max;
+  const double end = upward ? std::min(max, max / scale) : std::max(min, min / scale);
   return parameter.neutral + kFurthest * (end - parameter.neutral);
 }
 
-std::vector<std::vector<std::string>> manoeuvre_sets() {
-  return {{"straight", "speed-steps", "turn-in-place", "step-150-flippers"},
-          {"straight-fast", "arc", "flipper-sweep", "trench-200"},
-          {"speed-steps", "turn-in-place", "drop", "step-100-flippers"},
-          {"arc", "drop", "ramp", "step-200-flippers"},
-          {"straight", "turn-in-place", "flipper-sweep", "tilted-box"}};
+std::vector<CaseRuns> runs_to_choose_from(const CasePlan& plan) {
+  std::vector<CaseRuns> choice{{plan.manoeuvres, plan.longest_s}};
+  if (!plan.longest_s.empty()) {
+    Random random(mixed(plan.seed, 4));
+    while (choice.size() <= kOtherShortRuns) choice.push_back(short_runs(random));
+    return choice;
+  }
+  for (std::vector<std::string> set : manoeuvre_sets()) {
+    set.resize(plan.manoeuvres.size() == kFewestRepeated ? kFewestRepeated : set.size());
+    if (set != plan.manoeuvres) choice.push_back({std::move(set), {}});
+  }
+  return choice;
 }
 
 std::vector<ForeignEffect> foreign_effects() {
-  return {{"track_gauge", "the tracks lie further apart"},
-          {"servo_speed", "the flipper servos turn slower than thought"},
-          {"flipper_length", "the flippers are longer"},
-          {"right_drive_cuts_out", "a loose contact stops one track's drive now and then"},
+  return {{"right_drive_cuts_out", "a loose contact stops one track's drive now and then"},
           {"right_flipper_lag", "one of the front flippers follows later than the other"},
           {"left_drive_lag", "one track's drive follows later than the other's"},
           {"command_shortfall", "track commands are short by a constant speed, slow ones not obeyed"},
-          {"accelerometer_scale", "the accelerometer's scale is wrong"}};
+          {"speed_hunts", "the drives' speed swings about what is asked for"},
+          {"drives_fade", "the drives turn slower the longer they have run"},
+          {"gyro_saturates", "the gyro tells less and less of a rate the faster it is"}};
 }
 
-std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed) {
+std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, ChallengeKind kind) {
+  const bool imperfect = kind == ChallengeKind::imperfect;
   Random random(seed);
-  Turns singles(random), withheld(random), pairs(random);
-  const auto sets = manoeuvre_sets();
-  const auto foreign = foreign_effects();
+  Turns turns(random), pairs(random);
+  const std::vector<ForeignEffect> foreign = foreign_effects();
   std::vector<CasePlan> plans;
-  for (const Stratum stratum : strata(cases, random)) {
+  for (const Stratum stratum : strata(cases, imperfect ? std::span<const StratumShare>(kImperfect) : kExact, random)) {
     CasePlan plan;
     plan.name = fmt::format("case-{:03}", plans.size());
     plan.stratum = stratum;
-    const auto hide = [&](Turns& turns, double from, double to) {
-      const Named named = turns.next();
-      plan.effects.push_back({named.effect, named.parameter, log_uniform(random, from, to), 0});
+    const auto hide = [&](Turns& from, double smallest_floors, double smallest_times) {
+      const Named named = from.next();
+      HiddenEffect hidden{named.effect, named.parameter};
+      if (imperfect)
+        hidden.times_background = uniform(random, smallest_times, kLargestTimes);
+      else
+        hidden.floors = log_uniform(random, smallest_floors, 5);
+      plan.effects.push_back(std::move(hidden));
     };
-    if (stratum == Stratum::single) hide(singles, 0.5, 5);
-    if (stratum == Stratum::withheld) hide(withheld, 2, 5);
+    if (stratum == Stratum::single) hide(turns, 0.5, kSmallestTimes);
+    if (stratum == Stratum::withheld) hide(turns, 2, kSmallestTimes);
     if (stratum == Stratum::pair) {
-      hide(pairs, 2, 5);
+      hide(pairs, 2, kSmallestTimesOfPair);
       do {
         plan.effects.resize(1);
-        hide(pairs, 2, 5);
+        hide(pairs, 2, kSmallestTimesOfPair);
       } while (plan.effects[0].effect == plan.effects[1].effect);
     }
     if (stratum == Stratum::foreign) {
       plan.foreign = foreign[below(random, foreign.size())].name;
-      plan.foreign_floors = log_uniform(random, 2, 5);
+      if (imperfect)
+        plan.foreign_times_background = uniform(random, kSmallestTimes, kLargestTimes);
+      else
+        plan.foreign_floors = log_uniform(random, 2, 5);
     }
-    plan.manoeuvres = sets[below(random, sets.size())];
-    const std::vector<std::string>& other = sets[below(random, sets.size())];
-    const auto unseen = std::ranges::find_if(
-        other, [&](const std::string& name) { return std::ranges::count(plan.manoeuvres, name) == 0; });
-    plan.unseen = unseen != other.end() ? *unseen : "hills";
+    choose_runs(plan, kind, random);
     plan.physics.time_step_s *= 0.5;
     plan.physics.solver_iterations *= 2;
     plan.physics.contact_stiffness_npm *= log_uniform(random, 0.6, 1.7);
     plan.physics.contact_damping_nspm *= log_uniform(random, 0.6, 1.7);
     plan.noise_scale = log_uniform(random, 0.7, 1.5);
-    plan.noise_memory_s = uniform(random, 0, 1) < 0.5 ? 0 : log_uniform(random, 0.02, 0.2);
+    plan.noise_memory_s = !imperfect && uniform(random, 0, 1) < 0.5 ? 0 : log_uniform(random, 0.02, 0.2);
+    if (imperfect) plan.count_scale = log_uniform(random, 0.5, 2);
     plan.seed = random();
+    if (imperfect) {
+      std::vector<std::string> without;
+      for (const HiddenEffect& hidden : plan.effects)
+        for (std::string& key : numbers_like(hidden.effect)) without.push_back(std::move(key));
+      plan.background = draw_background(physics::load_robot(kChallengedRobot), mixed(plan.seed, 5), without);
+    }
     plans.push_back(std::move(plan));
   }
   return plans;

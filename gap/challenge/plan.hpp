@@ -1,5 +1,9 @@
 // What the cases of a challenge are: which effects are hidden in them, how large, in which manoeuvres, and how the "real"
 // side differs from the model besides, so that a fit is no tautology.
+//
+// There are two challenges. In the exact one the model with the hidden effects is right but for contacts and noise. In the
+// imperfect one it never is, as with a real robot: every number of the description is a little off, a background to
+// what is hidden.
 // Thread safety: pure functions; deterministic for a seed.
 #pragma once
 
@@ -8,13 +12,20 @@
 #include <string_view>
 #include <vector>
 
+#include "gap/challenge/background.hpp"
 #include "physics/effects.hpp"
 #include "physics/world.hpp"
 
 namespace kenaf::gap {
 
+inline constexpr const char* kChallengedRobot = "kenaf";
+
+enum class ChallengeKind { exact, imperfect };
+std::string_view kind_name(ChallengeKind kind);
+ChallengeKind challenge_kind_of(std::string_view name);  // throws std::invalid_argument
+
 enum class Stratum {
-  none,      // nothing hidden
+  none,      // nothing hidden but the background, where there is one
   single,    // one effect of the catalogue
   pair,      // two
   withheld,  // one, and the diagnosis has a catalogue without it
@@ -24,10 +35,18 @@ std::string_view stratum_name(Stratum stratum);
 bool is_outside(Stratum stratum);         // withheld or foreign: the diagnosis' catalogue does not have it
 Stratum stratum_of(std::string_view name);  // throws std::invalid_argument
 
+// How much of the squared gap an effect explains in one stage.
+struct StageShare {
+  std::string stage;  // "command to drive"
+  double share = 0;
+};
+
 struct HiddenEffect {
   std::string effect, parameter;
   double floors = 0;  // size: how large the gap by it alone is, in noise floors, over all channels
   double value = 0;   // that makes it so large; known once the case is made
+  double times_background = 0;       // size beside the background's, of the imperfect challenge
+  std::vector<StageShare> shares{};  // of the stages that show it; likewise, known once the case is made
 };
 
 // The effect of a diagnosis' catalogue that looks most like what is hidden and not in it.
@@ -41,14 +60,19 @@ struct CasePlan {
   Stratum stratum = Stratum::none;
   std::vector<HiddenEffect> effects;
   std::string foreign;                  // one of foreign_effects(), or empty
-  double foreign_floors = 0, foreign_amount = 0;
+  double foreign_floors = 0, foreign_amount = 0, foreign_times_background = 0;
   LookAlike look_alike;                 // of what is withheld or foreign; known once the case is made
+  Background background;                // of the imperfect challenge; else no numbers
   std::vector<std::string> manoeuvres;  // of the dataset
+  std::vector<double> longest_s;        // after which each of its runs is cut off; empty: none is
   std::string unseen;                   // another one, to try the diagnosis' robot.toml on
   int repeats = 2;
   physics::PhysicsSettings physics;     // of the "real" side
   double noise_scale = 1, noise_memory_s = 0;  // of the pose; 0: white
+  double count_scale = 0;               // columns are whole counts of so many times their resolution; 0: they are not
   std::uint64_t seed = 0;
+
+  bool is_imperfect() const { return !background.numbers.empty(); }
 };
 
 // Of the catalogue, which must have it: a plan hides nothing else, and a key that is read is checked for it.
@@ -58,16 +82,21 @@ const physics::EffectParameter& parameter_of(const HiddenEffect& hidden);
 // multiply those of the "real" side's contacts, which are others.
 double value_in_model(const CasePlan& plan, const HiddenEffect& hidden);
 
-// The furthest value from neutral that a case may hide: within the parameter's range on the "real" side and in the
-// model, for a diagnosis cannot find what is beyond.
+// The furthest value from neutral that a case may hide: within the range of a diagnosis' candidate on the "real" side and in
+// the model, for a diagnosis cannot find what is beyond.
 double furthest_value(const CasePlan& plan, const physics::EffectParameter& parameter, bool upward);
 
-// Nothing hidden in three of ten; of the rest each effect of the catalogue alone in turn, each withheld in turn, pairs
-// and foreign ones by chance. In an order that says nothing.
-std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed);
+// Shares of strata, and sizes, are those of docs/gap-challenge.md. Of singles and withheld ones together each effect of the
+// catalogue has its turn; pairs and foreign ones are drawn by chance. In an order that says nothing.
+std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, ChallengeKind kind = ChallengeKind::exact);
 
-// Sets of manoeuvres that a case may have, for when an effect does not show in those it was given.
-std::vector<std::vector<std::string>> manoeuvre_sets();
+// Manoeuvres of a case and when they are cut off, for when an effect does not show in those it was given: all that this
+// kind of case may have, its own first.
+struct CaseRuns {
+  std::vector<std::string> manoeuvres;
+  std::vector<double> longest_s;
+};
+std::vector<CaseRuns> runs_to_choose_from(const CasePlan& plan);
 
 struct ForeignEffect {
   std::string_view name, summary;

@@ -9,60 +9,12 @@
 namespace kenaf::gap {
 namespace {
 
-constexpr double kTwoSided95 = 1.96;
 constexpr double kShrinkWithin = 0.05;
 // Beside a gap that is hardly there, a share of it says nothing (chosen).
 constexpr double kGapToShrink = 1.5;  // floors
 
-struct Count {
-  std::size_t hits = 0, cases = 0;
-  void add(bool hit) {
-    hits += hit ? 1 : 0;
-    ++cases;
-  }
-};
-
-Figure share_figure(std::string_view id, std::string_view what, std::string_view target, const Count& count,
-                    double least, double most) {
-  const Share share = wilson(count.hits, count.cases);
-  return {id,          what,       target,   count.cases,
-          share.value, share.from, share.to, count.cases > 0 && share.value >= least && share.value <= most,
-          true};
-}
-
-// Of the mean of absolute differences.
-Figure difference_figure(std::string_view id, std::string_view what, std::string_view target,
-                         const std::vector<double>& differences) {
-  Figure figure{id, what, target, differences.size()};
-  if (differences.empty()) return figure;
-  const auto n = static_cast<double>(differences.size());
-  double sum = 0, squares = 0;
-  for (const double d : differences) sum += std::abs(d);
-  figure.value = sum / n;
-  for (const double d : differences) squares += (std::abs(d) - figure.value) * (std::abs(d) - figure.value);
-  const double half = n > 1 ? kTwoSided95 * std::sqrt(squares / (n - 1) / n) : figure.value;
-  figure.from = std::max(0.0, figure.value - half);
-  figure.to = figure.value + half;
-  figure.met = figure.value <= kShrinkWithin;
-  return figure;
-}
-
-bool is_large(const std::optional<Shrinks>& shrinks) {
-  return shrinks && shrinks->before >= kGapToShrink * shrinks->floor;
-}
-
-// Its interval by ranks, which asks nothing of how the values are spread.
-Figure median_figure(std::string_view id, std::string_view what, std::vector<double> values) {
-  Figure figure{id, what, "", values.size()};
-  if (values.empty()) return figure;
-  std::ranges::sort(values);
-  const auto n = static_cast<double>(values.size());
-  const auto at = [&](double rank) { return values[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };
-  const double half = kTwoSided95 * std::sqrt(n) / 2;
-  figure.value = (at(std::floor((n - 1) / 2)) + at(std::ceil((n - 1) / 2))) / 2;
-  figure.from = at(std::floor(n / 2 - half));
-  figure.to = at(std::ceil(n / 2 + half));
-  return figure;
+bool is_large(const Shrinks& shrinks) {
+  return shrinks.before >= kGapToShrink * shrinks.floor;
 }
 
 }  // namespace
@@ -75,30 +27,29 @@ double ScoredInterval::off() const {
 std::vector<ScoredInterval> scored_intervals(const ScoredCase& scored) {
   const CasePlan& plan = scored.sealed.plan;
   std::vector<ScoredInterval> intervals;
-  if (is_outside(plan.stratum) || !scored.told) return intervals;
+  if (is_outside(plan.stratum) || !scored.report) return intervals;
   for (const HiddenEffect& hidden : plan.effects) {
     const std::string name = reported_name(hidden.effect, hidden.parameter);
-    if (std::ranges::count(scored.told->named, name) == 0) continue;
-    for (const ToldEffect& told : scored.told->effects)
-      if (told.effect == hidden.effect && told.parameter == hidden.parameter)
-        intervals.push_back({name, value_in_model(plan, hidden), told.value, told.from, told.to});
+    for (const ReadStage& stage : scored.report->stages) {
+      if (std::ranges::count(stage.named, name) == 0) continue;
+      for (const ReadEffect& read : stage.effects)
+        if (read.effect == hidden.effect && read.parameter == hidden.parameter)
+          intervals.push_back({name, value_in_model(plan, hidden), read.value, read.from, read.to});
+    }
   }
   return intervals;
 }
 
-Share wilson(std::size_t hits, std::size_t cases) {
-  if (cases == 0) return {0, 0, 1};
-  const double n = static_cast<double>(cases), p = static_cast<double>(hits) / n, z2 = kTwoSided95 * kTwoSided95;
-  const double middle = (p + z2 / (2 * n)) / (1 + z2 / n);
-  const double half = kTwoSided95 / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
-  return {p, std::max(0.0, middle - half), std::min(1.0, middle + half)};
+bool is_imperfect(const std::vector<ScoredCase>& cases) {
+  return std::ranges::any_of(cases, [](const ScoredCase& scored) { return scored.sealed.plan.is_imperfect(); });
 }
 
 std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
+  if (is_imperfect(cases)) return figures_of_imperfect(cases);
   Count singles, alone, pairs, outside, outside_apart, none, wrong, wrong_apart, covered, close, close_unseen;
   std::vector<double> heldout, unseen, off;
   for (const ScoredCase& scored : cases) {
-    const Judgement judgement = judge(scored.sealed.plan, scored.told);
+    const Judgement judgement = judge(scored.sealed.plan, scored.report);
     const Stratum stratum = scored.sealed.plan.stratum;
     wrong.add(judgement.names_wrong);
     if (!is_outside(stratum) || judgement.can_be_told_apart) wrong_apart.add(judgement.names_wrong);
@@ -113,12 +64,13 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
     if (stratum == Stratum::pair) pairs.add(judgement.right);
     if (is_outside(stratum)) outside.add(judgement.right);
     if (is_outside(stratum) && judgement.can_be_told_apart) outside_apart.add(judgement.right);
-    if (const auto& s = scored.shrinks.heldout; is_large(s)) {
-      heldout.push_back(s->told - s->hidden);
+    for (const Shrinks& s : scored.shrinks.heldout) {
+      if (!is_large(s)) continue;
+      heldout.push_back(s.report - s.hidden);
       close.add(std::abs(heldout.back()) <= kShrinkWithin);
     }
-    if (const auto& s = scored.shrinks.unseen; is_large(s)) {
-      unseen.push_back(s->told - s->hidden);
+    if (const auto& s = scored.shrinks.unseen; s && is_large(*s)) {
+      unseen.push_back(s->report - s->hidden);
       close_unseen.add(std::abs(unseen.back()) <= kShrinkWithin);
     }
   }
@@ -132,13 +84,14 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
       share_figure("interval_covers", "95 % intervals of named effects that hold the value", "90 to 98 %", covered,
                    0.90, 0.98),
       difference_figure("shrink_heldout", "held-out shrink beside the true effect's, mean difference", "<= 0.05",
-                        heldout),
-      difference_figure("shrink_unseen", "the same on a manoeuvre that was not seen", "<= 0.05", unseen),
+                        heldout, kShrinkWithin),
+      difference_figure("shrink_unseen", "the same on a manoeuvre that was not seen", "<= 0.05", unseen, kShrinkWithin),
       share_figure("outside_apart_unknown", "withheld and foreign that can be told apart, called unknown", "",
                    outside_apart, 0, 1),
       share_figure("wrong_name_apart", "reports that name what is not hidden, without those that cannot be told apart",
                    "", wrong_apart, 0, 1),
-      median_figure("interval_off", "the middle one of the named values, in half intervals beside the hidden one", off),
+      median_figure("interval_off", "the middle one of the named values, in half intervals beside the hidden one", "",
+                    off, 0, 0),
       share_figure("shrink_heldout_close", "held-out shrinks within 0.05 of it", "", close, 0, 1),
       share_figure("shrink_unseen_close", "the same on a manoeuvre that was not seen", "", close_unseen, 0, 1),
   };
@@ -147,7 +100,7 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
 std::vector<EffectScore> scores_by_effect(const std::vector<ScoredCase>& cases) {
   std::map<std::string, EffectScore> scores;
   for (const ScoredCase& scored : cases) {
-    const Judgement judgement = judge(scored.sealed.plan, scored.told);
+    const Judgement judgement = judge(scored.sealed.plan, scored.report);
     for (std::size_t i = 0; i < judgement.hidden.size(); ++i) {
       EffectScore& score = scores[judgement.hidden[i]];
       score.name = judgement.hidden[i];
@@ -177,7 +130,7 @@ std::vector<OutsideScore> scores_outside(const std::vector<ScoredCase>& cases) {
     OutsideScore& score = scores[name];
     score.name = name;
     ++score.cases;
-    const std::string verdict = scored.told ? scored.told->verdict : "";
+    const std::string verdict = scored.report ? scored.report->verdict : "";
     score.unknown += verdict == "unknown";
     score.none += verdict == "none";
     score.ambiguous += verdict == "ambiguous";
@@ -191,14 +144,16 @@ std::vector<OutsideScore> scores_outside(const std::vector<ScoredCase>& cases) {
 std::vector<SizeScore> scores_by_size(const std::vector<ScoredCase>& cases) {
   // sizes are made up to a twentieth larger than planned, and smaller ones where a larger one cannot be
   std::vector<SizeScore> scores{{0, 0.5}, {0.5, 1}, {1, 2}, {2, 3.5}, {3.5, 5.25}};
+  if (is_imperfect(cases)) scores = {{0, 1}, {1, 2}, {2, 3}, {3, 4.5}, {4.5, 6.3}};
   for (const ScoredCase& scored : cases) {
     if (scored.sealed.plan.stratum != Stratum::single) continue;
-    const double floors = scored.sealed.plan.effects.front().floors;
-    const auto band = std::ranges::find_if(scores, [&](const SizeScore& s) { return floors < s.to_floors; });
+    const HiddenEffect& hidden = scored.sealed.plan.effects.front();
+    const double size = scored.sealed.plan.is_imperfect() ? hidden.times_background : hidden.floors;
+    const auto band = std::ranges::find_if(scores, [&](const SizeScore& s) { return size < s.to; });
     SizeScore& score = band == scores.end() ? scores.back() : *band;
-    const Judgement judgement = judge(scored.sealed.plan, scored.told);
+    const Judgement judgement = judge(scored.sealed.plan, scored.report);
     ++score.cases;
-    score.seen += scored.told && scored.told->verdict != "none";
+    score.seen += scored.report && scored.report->verdict != "none";
     score.found += judgement.right;
     score.named_alone += judgement.named_alone;
     score.names_wrong += judgement.names_wrong;

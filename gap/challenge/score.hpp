@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gap/challenge/judge.hpp"
+#include "gap/challenge/figure.hpp"
 #include "gap/challenge/key.hpp"
 #include "gap/challenge/shrinks.hpp"
 
@@ -16,23 +17,9 @@ namespace kenaf::gap {
 
 struct ScoredCase {
   SealedCase sealed;
-  std::optional<Told> told;
+  std::optional<ReadReport> report;
   CaseShrinks shrinks;
 };
-
-struct Figure {
-  std::string_view id, what, target;
-  std::size_t cases = 0;
-  double value = 0, from = 0, to = 0;  // with its 95 % interval; means nothing without cases
-  bool met = false;                    // the value itself, whatever the interval
-  bool is_share = false;               // told in percent
-};
-
-// 95 % interval of a share, after Wilson (1927).
-struct Share {
-  double value, from, to;
-};
-Share wilson(std::size_t hits, std::size_t cases);
 
 // The 95 % interval of a hidden effect that a report names, beside what is hidden, as a model has it (value_in_model).
 struct ScoredInterval {
@@ -46,8 +33,18 @@ struct ScoredInterval {
 };
 std::vector<ScoredInterval> scored_intervals(const ScoredCase& scored);
 
-// Each target of the challenge, and after them what has none.
+// What a report says that a hidden effect explains of a stage's gap, beside what it does.
+struct ScoredShare {
+  std::string name, stage;
+  double stated, truth;
+};
+// Of the imperfect challenge, of effects that are named or in a set.
+std::vector<ScoredShare> scored_shares(const ScoredCase& scored);
+
+// Each target of the challenge, and after them what has none. Of the imperfect challenge others than of the exact one.
 std::vector<Figure> figures(const std::vector<ScoredCase>& cases);
+bool is_imperfect(const std::vector<ScoredCase>& cases);
+std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases);
 
 // Of one effect, over all cases that hide it and leave it in the catalogue; of one that is withheld or foreign, by verdict.
 struct EffectScore {
@@ -65,7 +62,7 @@ std::vector<OutsideScore> scores_outside(const std::vector<ScoredCase>& cases);
 
 // Singles by size.
 struct SizeScore {
-  double from_floors, to_floors;
+  double from, to;  // floors; of the imperfect challenge times the background
   std::size_t cases = 0, seen = 0, found = 0, named_alone = 0, names_wrong = 0;  // seen: not called `none`
 };
 std::vector<SizeScore> scores_by_size(const std::vector<ScoredCase>& cases);

@@ -11,13 +11,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string truth_text(const CasePlan& plan) {
+  const auto size = [&](double floors, double times_background) {
+    return plan.is_imperfect() ? fmt::format("{:.1f} times the background", times_background)
+                               : fmt::format("{:.1f} floors", floors);
+  };
   if (!plan.foreign.empty())
-    return fmt::format("{} by {:.2g} ({:.1f} floors)", plan.foreign, plan.foreign_amount, plan.foreign_floors);
+    return fmt::format("{} by {:.2g} ({})", plan.foreign, plan.foreign_amount,
+                       size(plan.foreign_floors, plan.foreign_times_background));
   if (plan.effects.empty()) return "nothing";
   std::vector<std::string> texts;
   for (const HiddenEffect& hidden : plan.effects)
-    texts.push_back(
-        fmt::format("{}:{}={:.3g} ({:.1f} floors)", hidden.effect, hidden.parameter, hidden.value, hidden.floors));
+    texts.push_back(fmt::format("{}:{}={:.3g} ({})", hidden.effect, hidden.parameter, hidden.value,
+                                size(hidden.floors, hidden.times_background)));
   return fmt::format("{}", fmt::join(texts, ", "));
 }
 
@@ -26,11 +31,12 @@ std::string look_alike_text(const CasePlan& plan) {
   return fmt::format("{}, {:.1f} degrees", plan.look_alike.effect, plan.look_alike.angle_deg);
 }
 
-std::string told_text(const std::optional<Told>& told) {
-  if (!told) return "no report";
-  std::string text = told->verdict;
-  if (!told->named.empty()) text += fmt::format(": {}", fmt::join(told->named, ", "));
-  for (const std::vector<std::string>& set : told->ambiguous_sets) text += fmt::format(" [{}]", fmt::join(set, " or "));
+std::string report_text(const std::optional<ReadReport>& report) {
+  if (!report) return "no report";
+  std::string text = report->verdict;
+  if (!report->named.empty()) text += fmt::format(": {}", fmt::join(report->named, ", "));
+  for (const std::vector<std::string>& set : report->ambiguous_sets)
+    text += fmt::format(" [{}]", fmt::join(set, " or "));
   return text;
 }
 
@@ -51,13 +57,13 @@ std::string table(std::string_view head, const std::string& rows) {
 std::string case_rows(const std::vector<ScoredCase>& cases, bool small) {
   std::string rows;
   for (const ScoredCase& scored : cases) {
-    const Judgement judgement = judge(scored.sealed.plan, scored.told);
-    const bool quiet = scored.told && scored.told->verdict == "none";
+    const Judgement judgement = judge(scored.sealed.plan, scored.report);
+    const bool quiet = scored.report && scored.report->verdict == "none";
     if (judgement.right || (judgement.is_small && quiet) != small) continue;
     rows += fmt::format("| {} | {} | {} | {} | {} | {} |\n", scored.sealed.plan.name,
                         stratum_name(scored.sealed.plan.stratum), truth_text(scored.sealed.plan),
                         look_alike_text(scored.sealed.plan), fmt::join(scored.sealed.plan.manoeuvres, ", "),
-                        told_text(scored.told));
+                        report_text(scored.report));
   }
   return table("| case | stratum | hidden | looks like | manoeuvres | report |\n|---|---|---|---|---|---|\n", rows);
 }
@@ -82,37 +88,50 @@ Json intervals_json(const ScoredCase& scored) {
   return intervals;
 }
 
-Json shrinks_json(const std::optional<Shrinks>& shrinks) {
-  if (!shrinks) return nullptr;
-  return {
-      {"before", shrinks->before}, {"floor", shrinks->floor}, {"report", shrinks->told}, {"truth", shrinks->hidden}};
+Json shrinks_json(const Shrinks& shrinks) {
+  return {{"before", shrinks.before}, {"floor", shrinks.floor}, {"report", shrinks.report}, {"truth", shrinks.hidden}};
+}
+
+Json heldout_json(const std::vector<Shrinks>& of_stages) {
+  Json json = Json::array();
+  for (const Shrinks& shrinks : of_stages) json.push_back(shrinks_json(shrinks));
+  return json;
+}
+
+Json shares_json(const ScoredCase& scored) {
+  Json shares = Json::array();
+  for (const ScoredShare& share : scored_shares(scored))
+    shares.push_back({{"name", share.name}, {"stage", share.stage}, {"stated", share.stated}, {"truth", share.truth}});
+  return shares;
 }
 
 Json case_json(const ScoredCase& scored) {
   const CasePlan& plan = scored.sealed.plan;
-  const Judgement judgement = judge(plan, scored.told);
+  const Judgement judgement = judge(plan, scored.report);
   return {{"name", plan.name},
           {"stratum", stratum_name(plan.stratum)},
           {"hidden", truth_text(plan)},
           {"looks_like", look_alike_text(plan)},
-          {"report", told_text(scored.told)},
+          {"report", report_text(scored.report)},
           {"small", judgement.is_small},
           {"right", judgement.right},
           {"named_alone", judgement.named_alone},
           {"can_be_told_apart", judgement.can_be_told_apart},
           {"names_wrong", judgement.names_wrong},
           {"intervals", intervals_json(scored)},
-          {"shrink_heldout", shrinks_json(scored.shrinks.heldout)},
-          {"shrink_unseen", shrinks_json(scored.shrinks.unseen)}};
+          {"shares", shares_json(scored)},
+          {"shrink_heldout", heldout_json(scored.shrinks.heldout)},
+          {"shrink_unseen", scored.shrinks.unseen ? shrinks_json(*scored.shrinks.unseen) : Json(nullptr)}};
 }
 
 }  // namespace
 
 std::string score_markdown(const std::vector<ScoredCase>& cases) {
-  std::string text =
-      "Singles, pairs, withheld and foreign ones count in the figures where what is hidden is at least 2 noise "
-      "floors.\n\n"
-      "| figure | cases | value | 95 % interval | target | |\n|---|---|---|---|---|---|\n";
+  const bool imperfect = is_imperfect(cases);
+  std::string text = imperfect ? "Effects dominate where they are at least 3 times as large as the background.\n\n"
+                               : "Singles, pairs, withheld and foreign ones count in the figures where what is hidden "
+                                 "is at least 2 noise floors.\n\n";
+  text += "| figure | cases | value | 95 % interval | target | |\n|---|---|---|---|---|---|\n";
   for (const Figure& figure : figures(cases)) {
     if (figure.cases == 0)
       text += fmt::format("| {} | 0 | | | {} | {} |\n", figure.what, figure.target, met_text(figure));
@@ -121,12 +140,13 @@ std::string score_markdown(const std::vector<ScoredCase>& cases) {
                           value_text(figure, figure.value), value_text(figure, figure.from),
                           value_text(figure, figure.to), figure.target, met_text(figure));
   }
-  text +=
-      "\n### Singles by size\n\n| floors | cases | gap seen | found | named alone | wrong name "
-      "|\n|---|---|---|---|---|---|\n";
+  text += fmt::format(
+      "\n### Singles by size\n\n| {} | cases | gap seen | found | named alone | wrong name "
+      "|\n|---|---|---|---|---|---|\n",
+      imperfect ? "times the background" : "floors");
   for (const SizeScore& size : scores_by_size(cases))
-    text += fmt::format("| {} to {} | {} | {} | {} | {} | {} |\n", size.from_floors, size.to_floors, size.cases,
-                        size.seen, size.found, size.named_alone, size.names_wrong);
+    text += fmt::format("| {} to {} | {} | {} | {} | {} | {} |\n", size.from, size.to, size.cases, size.seen,
+                        size.found, size.named_alone, size.names_wrong);
   text +=
       "\n### By effect, singles and pairs of all sizes\n\n| effect | hidden | named | in a set | missed | wrong name | "
       "smallest found, floors |\n|---|---|---|---|---|---|---|\n";
@@ -142,7 +162,9 @@ std::string score_markdown(const std::vector<ScoredCase>& cases) {
                         outside.ambiguous, outside.named);
   text += "\n### Reports that are not right\n\n" + case_rows(cases, false);
   text += "\n### Intervals that do not hold what is hidden\n\n" + interval_rows(cases);
-  text += "\n### Smaller than 2 floors and called none: no error\n\n" + case_rows(cases, true);
+  text += imperfect ? "\n### Smaller than 3 times the background and called none: no error\n\n"
+                    : "\n### Smaller than 2 floors and called none: no error\n\n";
+  text += case_rows(cases, true);
   return text;
 }
 

@@ -1,35 +1,58 @@
 #include "gap/challenge/shrinks.hpp"
 
-#include "gap/challenge/compared_runs.hpp"
-#include "gap/diagnose/evidence.hpp"
+#include <algorithm>
+
+#include "gap/diagnose/gap_size.hpp"
+#include "gap/diagnose/repeats.hpp"
 
 namespace kenaf::gap {
 namespace {
 
-using Eigen::VectorXd;
+struct Squares {
+  KindSquares before, report, hidden, repeats;
+};
 
-std::vector<VectorXd> difference(const std::vector<VectorXd>& a, const std::vector<VectorXd>& b) {
-  std::vector<VectorXd> result;
-  for (std::size_t r = 0; r < a.size(); ++r) result.push_back(a[r] - b[r]);
+void append(KindSquares& to, const KindSquares& more) {
+  to.sum.insert(to.sum.end(), more.sum.begin(), more.sum.end());
+  to.bins.insert(to.bins.end(), more.bins.begin(), more.bins.end());
+}
+
+Shrinks shrinks_of(const Squares& squares) {
+  const std::vector<double> weights = kind_weights(squares.before, squares.repeats);
+  Shrinks result;
+  result.before = weighted_rms(squares.before, weights);
+  // without repeats the noise is all that is known of what must stay
+  const double of_repeats = weighted_rms(squares.repeats, weights);
+  result.floor = std::min(of_repeats > 0 ? of_repeats : 1.0, result.before);
+  result.report = shrink(result.before, weighted_rms(squares.report, weights), result.floor);
+  result.hidden = shrink(result.before, weighted_rms(squares.hidden, weights), result.floor);
   return result;
 }
 
 }  // namespace
 
-Shrinks shrinks_on(const std::filesystem::path& dataset, const physics::Effects& told, const physics::Effects& hidden,
-                   unsigned threads) {
+ShrinksOfRuns shrinks_on(const std::filesystem::path& dataset, const physics::RobotDescription& report,
+                         const physics::RobotDescription& hidden, unsigned threads) {
   ComparedRuns runs(dataset, threads);
-  std::vector<Variation> models(2, runs.predictor.unvaried());
-  models[0].effects = told;
-  models[1].effects = hidden;
-  const NoiseFloor floor = floor_around(runs, models[1]);
-  const std::vector<Shift> shifts = runs.predictor.shifts(models, Fidelity::every_run);
-  const std::vector<VectorXd> left = difference(runs.residuals, shifts[1]);
-  Shrinks result;
-  result.before = floor.rms(runs.residuals);
-  result.floor = rms_of_repeats(runs, floor, left);
-  result.told = shrink(result.before, floor.rms(difference(runs.residuals, shifts[0])), result.floor);
-  result.hidden = shrink(result.before, floor.rms(left), result.floor);
+  Variation model = runs.predictor.unvaried();
+  model.robot = hidden;
+  const Floors floors = floors_around(runs, model);
+  const Differences by_report = runs.residuals - shifts_of(runs, report, Fidelity::every_run);
+  const Differences by_hidden = runs.residuals - shifts_of(runs, hidden, Fidelity::every_run);
+  ShrinksOfRuns result;
+  Squares together;
+  for (std::size_t s = 0; s < kEachChannelOnce.size(); ++s) {
+    const std::vector<StageFeatures>& features = runs.features.of(kEachChannelOnce[s]);
+    const auto squares = [&](const Shift& differences) { return squares_by_kind(features, floors[s], differences); };
+    const Squares stage{squares(runs.residuals[s]), squares(by_report[s]), squares(by_hidden[s]),
+                        squares(deviations_from_repeats(features, by_hidden[s], runs.same_orders))};
+    result.of_stage[s] = shrinks_of(stage);
+    append(together.before, stage.before);
+    append(together.report, stage.report);
+    append(together.hidden, stage.hidden);
+    append(together.repeats, stage.repeats);
+  }
+  result.together = shrinks_of(together);
   return result;
 }
 

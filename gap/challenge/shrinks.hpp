@@ -1,28 +1,35 @@
 // How far the gap of runs shrinks with what a report found, beside how far it shrinks with what was hidden.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
-#include "physics/effects.hpp"
+#include "gap/challenge/compared_runs.hpp"
 
 namespace kenaf::gap {
 
 struct Shrinks {
-  double before = 0, floor = 0;  // rms in noise floors, as in reports
-  double told = 0;               // with the effects of the report
-  double hidden = 0;             // with those that were hidden
+  double before = 0, floor = 0;  // rms in units of noise, as in reports
+  double report = 0;             // with the robot of the report
+  double hidden = 0;             // with the hidden effects
 };
 
-// Of all runs of a dataset, by the diagnosis' own simulation and floor, which is that of the model with the hidden effects.
-// Deterministic, on any number of threads. Throws as observe() does.
-Shrinks shrinks_on(const std::filesystem::path& dataset, const physics::Effects& told, const physics::Effects& hidden,
-                   unsigned threads);
+struct ShrinksOfRuns {
+  std::array<Shrinks, kEachChannelOnce.size()> of_stage;  // each in its own replay
+  Shrinks together;                                       // each kind of channels of each stage by its own gap
+};
+
+// Of all runs of a dataset, by the diagnosis' own simulation, floor and measure (gap_size.hpp); the floor is that of the
+// model with the hidden effects. Deterministic, on any number of threads. Throws as observe() does.
+ShrinksOfRuns shrinks_on(const std::filesystem::path& dataset, const physics::RobotDescription& report,
+                         const physics::RobotDescription& hidden, unsigned threads);
 
 // Of one case; nothing where it was not measured.
 struct CaseShrinks {
-  std::optional<Shrinks> heldout;  // on the runs that the report is of; `told` is the report's figure, of held-out runs
-  std::optional<Shrinks> unseen;   // on runs of a manoeuvre that the diagnosis did not have
+  std::vector<Shrinks> heldout;   // of each stage in which the report names something; `report` is its figure, of held-out runs
+  std::optional<Shrinks> unseen;  // on runs of a manoeuvre that the diagnosis did not have, all stages together
 };
 
 }  // namespace kenaf::gap

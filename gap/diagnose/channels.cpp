@@ -45,6 +45,12 @@ std::size_t kind_of(std::size_t channel) {
   return kind;
 }
 
+std::string_view kind_name(std::size_t kind) {
+  std::size_t channel = 0;
+  while (kind_of(channel) != kind) ++channel;
+  return kAllChannels[channel].kind;
+}
+
 std::size_t kind_count() {
   return kind_of(std::size(kAllChannels) - 1) + 1;
 }

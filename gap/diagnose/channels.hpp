@@ -26,5 +26,6 @@ std::span<const Channel> diagnosis_channels();
 // Numbers of kinds, from 0 on, in the order of the channels.
 std::size_t kind_of(std::size_t channel);
 std::size_t kind_count();
+std::string_view kind_name(std::size_t kind);  // "track speed"
 
 }  // namespace kenaf::gap

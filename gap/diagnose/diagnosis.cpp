@@ -80,11 +80,6 @@ class ProgressReport {
   std::size_t begun_at_ = 0;
 };
 
-double squared_gap(const StageDiagnosis& stage) {
-  const double gap = std::max(0.0, stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor);
-  return gap * static_cast<double>(bin_count(stage.decision.data));
-}
-
 void conclude(Diagnosis& d) {
   d.verdict = whole_verdict(d.stages);
   d.complete = !d.stages.empty() && std::ranges::all_of(d.stages, [](const StageDiagnosis& stage) {
@@ -96,7 +91,66 @@ void conclude(Diagnosis& d) {
       d.largest_stage = s;
 }
 
+// The robot with a stage's best model; and with each of its values moved a tenth of the way back to the nominal robot.
+RivalModel rival_model(const Diagnosis& d, const Settings& settings) {
+  constexpr double kMoved = 0.1;
+  RivalModel rival{with_settings(d.observations.robot, d.candidates, settings), {}};
+  for (std::size_t i = 0; i < settings.size(); ++i) {
+    Settings moved = settings;
+    moved[i].value += kMoved * (d.candidates[moved[i].candidate].present - moved[i].value);
+    rival.moved.push_back(with_settings(d.observations.robot, d.candidates, moved));
+  }
+  return rival;
+}
+
+// Models that a stage leaves open: rivals of the effect that has most of them, each in its place; the best single
+// effects where nothing is named.
+std::vector<Settings> open_models(const StageDiagnosis& stage) {
+  constexpr std::size_t kMostRivals = 4;
+  std::vector<Settings> models;
+  const StageDecision& decision = stage.decision;
+  if (decision.verdict == Verdict::ambiguous) {
+    const auto most = std::ranges::max_element(decision.effects, {}, [](const NamedEffect& effect) {
+      return effect.doubts.empty() ? effect.rivals.size() : 0;
+    });
+    models = decision.models_of_rivals[static_cast<std::size_t>(most - decision.effects.begin())];
+  } else if (decision.verdict == Verdict::unknown) {
+    for (const Model& single : decision.singles) models.push_back(settings_of(single.places));
+  }
+  if (models.size() > kMostRivals) models.resize(kMostRivals);
+  return models;
+}
+
+std::vector<ProposedManoeuvre> next_manoeuvres(const Diagnosis& d) {
+  // the stage with the largest gap among those that leave a choice
+  const StageDiagnosis* open = nullptr;
+  for (const StageDiagnosis& stage : d.stages) {
+    const Verdict verdict = stage.decision.verdict;
+    if (verdict != Verdict::ambiguous && verdict != Verdict::unknown) continue;
+    if (open == nullptr || squared_gap(stage) > squared_gap(*open)) open = &stage;
+  }
+  if (open == nullptr) return {};
+  std::vector<RivalModel> rivals;
+  for (const Settings& settings : open_models(*open)) rivals.push_back(rival_model(d, settings));
+  if (rivals.size() < 2) return {};
+
+  // a bin of what is left counts as noise: the discrepancy of its kind on top of the noise of its channel
+  ProposalOptions options{std::vector<double>(diagnosis_channels().size(), 0), d.options.span_s};
+  for (const StageDiagnosis& stage : d.stages)
+    for (std::size_t c = 0; c < options.sigma_of_channel.size(); ++c)
+      if (stage.passage != Passage::body_to_sensor && stage.nominal_floor.sigma[c] > 0)
+        options.sigma_of_channel[c] = std::hypot(stage.nominal_floor.sigma[c],
+                                                 stage.decision.best.model.likelihood.discrepancies[kind_of(c)].sigma);
+  options.threads = d.options.jobs;
+  return propose_manoeuvres(d.observations.robot, rivals, options);
+}
+
 }  // namespace
+
+double squared_gap(const StageDiagnosis& stage) {
+  const double gap = std::max(0.0, stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor);
+  return gap * static_cast<double>(bin_count(stage.decision.data));
+}
 
 Verdict whole_verdict(const std::vector<StageDiagnosis>& stages) {
   const auto any = [&](Verdict verdict) {
@@ -135,12 +189,14 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
       const auto number = static_cast<double>(passage);
       progress.begin(passage_name(passage), 0.02 + 0.32 * number, 0.34 + 0.32 * number, 100 * runs,
                      predictor.roll_outs());
-      StageDiagnosis stage = diagnose_stage({passage, &d.observations, &d.features.of(passage), &d.repeats,
-                                             &d.same_orders, stated_noise(d.observations.dataset)},
+      StageDiagnosis stage = diagnose_stage({passage, &d.observations, &d.features.maps, &d.features.of(passage),
+                                             &d.repeats, &d.same_orders, stated_noise(d.observations.dataset)},
                                             d.candidates, predictor, stage_options);
       if (stage.is_measured()) d.stages.push_back(std::move(stage));
     }
     conclude(d);
+    progress.begin("looking for the next manoeuvre", 0.98, 1, 1, predictor.roll_outs());
+    if (options.propose_next && options.ranks.rank == 0) d.next = next_manoeuvres(d);
     progress.begin("done", 1, 1, 1, predictor.roll_outs());
   } catch (const Stopped&) {
     d.interrupted = progress.doing();

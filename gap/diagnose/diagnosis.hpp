@@ -60,6 +60,9 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
 // `none` where all stages are; `ambiguous` where one is; else `named` where one is; else `unknown`.
 Verdict whole_verdict(const std::vector<StageDiagnosis>& stages);
 
+// What of a stage is beyond noise and spread, summed over all of its bins in squared units of noise: by this stages compare.
+double squared_gap(const StageDiagnosis& stage);
+
 // Every named effect, or where nothing is named every effect of the best models, once each, at its value in the stage that
 // shows it best.
 Settings corrections(const Diagnosis& diagnosis);

@@ -230,15 +230,12 @@ std::vector<std::vector<OnCurve>> places_held_out(const StageView& view, Passage
   return places;
 }
 
-std::vector<double> shares_held_out(const StageView& view, Passage passage, const StandingModel& standing,
-                                    const Folds& folds, unsigned threads) {
+HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
+                              unsigned threads) {
   const std::size_t effects = standing.model.places.size(), runs = view.features->size();
   const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
-  // of nominal, whole model, and of the model without each effect
-  struct Left {
-    std::vector<KindSquares> of_model;
-  };
-  std::vector<Left> left(folds.size());
+  // squares of each fold: of the nominal model, of the whole model, and of the model without each effect
+  std::vector<std::vector<KindSquares>> left(folds.size());
   for_each_job(folds.size(), threads, [&](std::size_t f) {
     const auto of = [&](const std::vector<bool>& used) {
       return stage_data(passage, *view.features, *view.repeats, *view.residuals, *view.floor, used);
@@ -247,32 +244,45 @@ std::vector<double> shares_held_out(const StageView& view, Passage passage, cons
     tested.flip();
     if (folds.size() < 2) fitted = tested;
     const StageData fitted_data = of(fitted), tested_data = of(tested);
-    left[f].of_model.push_back(squares_of_groups(tested_data, residuals_of(tested_data)));
+    left[f].push_back(squares_of_groups(tested_data, residuals_of(tested_data)));
     const auto add = [&](const Model& model) {
-      left[f].of_model.push_back(squares_of_groups(tested_data, rest_of(tested_data, model)));
+      left[f].push_back(squares_of_groups(tested_data, rest_of(tested_data, model)));
     };
     add(refit(fitted_data, standing, beyond));
     for (std::size_t e = 0; e < effects; ++e) {
-      if (effects == 1) {
-        left[f].of_model.push_back(left[f].of_model.front());
-        continue;
-      }
       EffectSet others = effects_of(standing.model);
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(e));
-      add(fit_model(fitted_data, standing.curves, others, {}, standing.model.likelihood.discrepancies));
+      if (others.empty())
+        left[f].push_back(left[f].front());
+      else
+        add(fit_model(fitted_data, standing.curves, others, {}, standing.model.likelihood.discrepancies));
     }
   });
-  std::vector<KindSquares> sums = left.front().of_model;
+  std::vector<KindSquares> sums = left.front();
   for (std::size_t f = 1; f < left.size(); ++f)
-    for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += left[f].of_model[m];
-  const std::vector<double> weights =
-      kind_weights(sums.front(), {std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)});
-  const double before = weighted_rms(sums[0], weights), whole = weighted_rms(sums[1], weights);
-  std::vector<double> shares;
-  for (std::size_t e = 0; e < effects; ++e)
-    shares.push_back(explained_share(before, whole, 1) -
-                     explained_share(before, weighted_rms(sums[2 + e], weights), 1));
-  shares.push_back(explained_share(before, whole, 1));
+    for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += left[f][m];
+
+  // of the stage each kind by its own gap; of a kind alone by its rms
+  const KindSquares noise{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
+  const std::vector<double> weights = kind_weights(sums.front(), noise);
+  const auto of_stage = [&](std::size_t model) {
+    return explained_share(weighted_rms(sums[0], weights), weighted_rms(sums[model], weights), 1);
+  };
+  const auto of_kind = [&](std::size_t model, std::size_t kind) {
+    const auto rms = [&](const KindSquares& squares) { return std::sqrt(squares.sum[kind] / squares.bins[kind]); };
+    return explained_share(rms(sums[0]), rms(sums[model]), 1);
+  };
+  HeldOutShares shares;
+  shares.model = of_stage(1);
+  for (std::size_t e = 0; e < effects; ++e) {
+    HeldOutShares::OfEffect share{shares.model - of_stage(2 + e), 0, 0, 0};
+    for (std::size_t kind = 0; kind < weights.size(); ++kind) {
+      if (sums[0].bins[kind] == 0 || weights[kind] == 0) continue;
+      const double taken = of_kind(1, kind) - of_kind(2 + e, kind);
+      if (taken > share.of_kind) share = {share.of_stage, taken, kind, of_kind(1, kind)};
+    }
+    shares.effects.push_back(share);
+  }
   return shares;
 }
 

@@ -59,9 +59,19 @@ GapMeasure measure_gap(const StageView& view, const std::vector<Eigen::VectorXd>
 std::vector<std::vector<OnCurve>> places_held_out(const StageView& view, Passage passage, const StandingModel& standing,
                                                   const Folds& folds, unsigned threads);
 
-// The share of the squared gap that each effect of a model takes off, by curves, on runs held out: of the model with it less of
-// the model without it, fitted again. One entry for each effect, then the whole model.
-std::vector<double> shares_held_out(const StageView& view, Passage passage, const StandingModel& standing,
-                                    const Folds& folds, unsigned threads);
+// Shares of the squared gap that a model takes off, and each of its effects: with it, less without it and the others fitted
+// again. By curves, on runs held out; at most 1.
+struct HeldOutShares {
+  // Of the kind of channels in which the effect takes off most, and of the stage.
+  struct OfEffect {
+    double of_stage = 0, of_kind = 0;
+    std::size_t kind = 0;
+    double model_of_kind = 0;  // what the whole model takes off there
+  };
+  std::vector<OfEffect> effects;  // in the order of the model's places
+  double model = 0;               // of the stage
+};
+HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing,
+                              const Folds& folds, unsigned threads);
 
 }  // namespace kenaf::gap

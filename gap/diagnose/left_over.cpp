@@ -24,11 +24,11 @@ constexpr double kAlikeSides =
 struct Said {
   Dependence dependence;
   Quantity quantity;
-  Candidate on;
+  LeftOverCandidate on;
   bool of_runs;
 };
 
-std::string name_on(const Candidate& on, std::string_view channel) {
+std::string name_on(const LeftOverCandidate& on, std::string_view channel) {
   const bool of_itself = on.kind == Regressor::simulated || is_late(on.kind);
   return of_itself ? fmt::format("{} {}", on.name, channel) : std::string(on.name);
 }
@@ -45,7 +45,7 @@ std::vector<std::array<double, 2>> points_of(const VectorXd& x, const VectorXd& 
 }
 
 Dependence dependence_of(const LeftOverRows& rows, const LeftOverFit& fit, const LeftOverTerm& term) {
-  const Candidate& on = rows.candidates[term.candidate];
+  const LeftOverCandidate& on = rows.candidates[term.candidate];
   Dependence d{std::string(rows.quantity.name), name_on(on, rows.quantity.name),         term.share, term.slope, 0,
                words_of(rows, fit, term),       look_at(rows.quantity.quantity, on.kind)};
   const VectorXd left = left_to(rows, fit, term);

@@ -147,7 +147,7 @@ class LeftOverSelection {
     std::vector<LeftOverTerm> terms;
     for (std::size_t t = 0; t < with.size(); ++t) terms.push_back({with[t], 0, slopes[static_cast<Index>(t)]});
     for (const LeftOverTerm& term : terms) {
-      const Candidate& candidate = rows_.candidates[term.candidate];
+      const LeftOverCandidate& candidate = rows_.candidates[term.candidate];
       if (!is_late(candidate.kind)) continue;
       const double late = lateness(rows_, terms, term);
       const double of_parameter = candidate.kind == Regressor::ramp ? late : std::abs(late) / candidate.parameter;

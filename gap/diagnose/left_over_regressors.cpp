@@ -36,9 +36,9 @@ bool is_angle(Quantity quantity) {
   return quantity == Quantity::pitch || quantity == Quantity::roll;
 }
 
-std::vector<Candidate> regressors_for(const QuantityInfo& info) {
+std::vector<LeftOverCandidate> regressors_for(const QuantityInfo& info) {
   const Quantity q = info.quantity;
-  std::vector<Candidate> all;
+  std::vector<LeftOverCandidate> all;
   const auto add = [&](Regressor kind, std::string_view name, std::string_view unit, double parameter = 0) {
     all.push_back({kind, parameter, name, unit});
   };
@@ -174,8 +174,8 @@ double at_start(const LeftOverRun& run, Quantity quantity) {
 }
 
 // A column of one run; empty where it was not measured there.
-VectorXd regressor_of(const Candidate& candidate, const LeftOverRun& run, const Measured& m, const QuantityInfo& info,
-                      const Course& course) {
+VectorXd regressor_of(const LeftOverCandidate& candidate, const LeftOverRun& run, const Measured& m,
+                      const QuantityInfo& info, const Course& course) {
   const VectorXd& simulated = course.values;
   const double span_s = run.features->span_s();
   switch (candidate.kind) {
@@ -220,7 +220,7 @@ bool is_about_mean(Regressor kind) {
 
 // Drops what is known too seldom or never changes; what is unknown elsewhere says nothing there.
 void keep_useful(LeftOverRows& rows) {
-  std::vector<Candidate> kept;
+  std::vector<LeftOverCandidate> kept;
   Index next = 0;
   const double rms = std::sqrt(rows.simulated.squaredNorm() / static_cast<double>(rows.simulated.size()));
   for (std::size_t c = 0; c < rows.candidates.size(); ++c) {
@@ -269,7 +269,7 @@ LeftOverRows rows_of(std::span<const LeftOverRun> runs, const QuantityInfo& quan
     Course course{filled(series.simulated), at_start(runs[r], quantity.quantity), runs[r].features->span_s()};
     if (std::isnan(course.start)) course.start = course.values[0];
     std::vector<VectorXd> columns;
-    for (const Candidate& candidate : rows.candidates)
+    for (const LeftOverCandidate& candidate : rows.candidates)
       columns.push_back(regressor_of(candidate, runs[r], measured, quantity, course));
     const bool has_speed = measured.speed_mps.size() > 0;
     for (Index i = 0; i < series.measured.size(); ++i) {

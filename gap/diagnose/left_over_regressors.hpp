@@ -32,7 +32,7 @@ enum class Regressor {
   place_x, place_y
 };
 
-struct Candidate {
+struct LeftOverCandidate {
   Regressor kind;
   double parameter;       // of delay, lag (s) and ramp (unit of the quantity for each second); otherwise 0
   std::string_view name;  // "turn rate"
@@ -42,7 +42,7 @@ struct Candidate {
 // One row for each span in which the quantity is known, run after run.
 struct LeftOverRows {
   QuantityInfo quantity;
-  std::vector<Candidate> candidates;
+  std::vector<LeftOverCandidate> candidates;
   Eigen::MatrixXd x;               // [row][candidate]
   Eigen::VectorXd error, sigma;    // measured minus simulated; its noise
   Eigen::VectorXd simulated;

@@ -139,7 +139,7 @@ std::string more_or_less(double slope) {
 }
 
 std::string sentence(const TermRows& term, const LeftOverFit& fit, const LeftOverTerm& of) {
-  const Candidate& on = term.rows.candidates[of.candidate];
+  const LeftOverCandidate& on = term.rows.candidates[of.candidate];
   const std::string_view unit = term.rows.quantity.unit;
   const double late = lateness(term.rows, fit.terms, of), slope = term.slope;
   switch (on.kind) {

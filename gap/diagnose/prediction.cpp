@@ -96,12 +96,21 @@ runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const
   return simulate(observations_.runs[run].replay, run, variation);
 }
 
+runs::Run Predictor::simulate_in(Passage passage, std::size_t run, const Variation& variation) const {
+  const Observation& observed = observations_.runs[run];
+  const bool by_commands = passage == Passage::command_to_drive || !observed.measured;
+  return simulate(by_commands ? observed.replay : *observed.measured, run, variation);
+}
+
+std::vector<VectorXd> Predictor::features_of_each(std::span<const Variation> variations, Passage passage) {
+  return all_of(observations_.runs.size(),
+                [&](std::size_t run) { return features_.maps[run].of(simulate_in(passage, run, variations[run])); });
+}
+
 VectorXd Predictor::values_of(std::size_t run, const Variation& variation, Passage passage) const {
   const StageFeatures& stage = features_.of(passage)[run];
   if (stage.bins.empty()) return {};
-  const Observation& observed = observations_.runs[run];
-  const bool by_commands = passage == Passage::command_to_drive || !observed.measured;
-  const runs::Run simulated = simulate(by_commands ? observed.replay : *observed.measured, run, variation);
+  const runs::Run simulated = simulate_in(passage, run, variation);
   const FeatureMap& map = features_.maps[run];
   return stage_values(passage, stage, map, map.of(simulated), simulated);
 }

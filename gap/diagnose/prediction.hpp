@@ -68,11 +68,14 @@ class Predictor {
   Shift shift_of_each(std::span<const Variation> variations, Passage passage);
   // One run alone, without noise, as a run: its commands replayed.
   runs::Run simulate(std::size_t run, const Variation& variation) const;
+  // The features of every run's map, in the replay of a stage, run r with variation r of `variations`.
+  std::vector<Eigen::VectorXd> features_of_each(std::span<const Variation> variations, Passage passage);
 
   std::size_t roll_outs() const { return roll_outs_; }
 
  private:
   runs::Run simulate(const rollout::Manoeuvre& replay, std::size_t run, const Variation& variation) const;
+  runs::Run simulate_in(Passage passage, std::size_t run, const Variation& variation) const;
   Eigen::VectorXd values_of(std::size_t run, const Variation& variation, Passage passage) const;
   // job(0) ... job(count - 1), by all ranks and threads together.
   std::vector<Eigen::VectorXd> all_of(std::size_t count, const std::function<Eigen::VectorXd(std::size_t)>& job);

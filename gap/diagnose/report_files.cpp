@@ -14,7 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char *kRobotFile = "robot.toml", *kPage = "report.html", *kReport = "report.json";
+constexpr const char *kPage = "report.html", *kReport = "report.json";
+constexpr const char* kRobotFiles[] = {"robot.toml", "robot.candidate.toml"};
 // Of a diagnosis that was interrupted where a complete one's are.
 constexpr const char *kPartialPage = "report.partial.html", *kPartialReport = "report.partial.json";
 
@@ -33,20 +34,23 @@ void check_keeps_inputs(const fs::path& out, const fs::path& dataset, const std:
   };
   if (same(out, dataset))
     throw std::runtime_error(fmt::format("{}: is the dataset; give another folder for the reports", out.string()));
-  const fs::path replaced = out / kRobotFile;
-  if (!fs::exists(replaced)) return;
-  const std::string name =
-      robot.empty() ? runs::resolve_beside(dataset, runs::read_dataset(dataset).robot, ".toml") : robot;
-  if (same(replaced, find_data_file("robots", name, ".toml")))
-    throw std::runtime_error(
-        fmt::format("{}: is the description that is to be diagnosed, and the report would replace it; give another "
-                    "folder for the reports",
-                    replaced.string()));
-  if (!fs::exists(out / kPage) && !fs::exists(out / kReport))
-    throw std::runtime_error(
-        fmt::format("{}: is of no diagnosis, as no report is beside it, and would be replaced; give another folder for "
-                    "the reports",
-                    replaced.string()));
+  const bool has_report = fs::exists(out / kPage) || fs::exists(out / kReport);
+  for (const char* robot_file : kRobotFiles) {
+    const fs::path replaced = out / robot_file;
+    if (!fs::exists(replaced)) continue;
+    const std::string name =
+        robot.empty() ? runs::resolve_beside(dataset, runs::read_dataset(dataset).robot, ".toml") : robot;
+    if (same(replaced, find_data_file("robots", name, ".toml")))
+      throw std::runtime_error(
+          fmt::format("{}: is the description that is to be diagnosed, and the report would replace it; give another "
+                      "folder for the reports",
+                      replaced.string()));
+    if (!has_report)
+      throw std::runtime_error(
+          fmt::format("{}: is of no diagnosis, as no report is beside it, and would be replaced; give another folder "
+                      "for the reports",
+                      replaced.string()));
+  }
 }
 
 fs::path write_diagnosis(const Diagnosis& d, const fs::path& folder) {
@@ -59,11 +63,10 @@ fs::path write_diagnosis(const Diagnosis& d, const fs::path& folder) {
     return folder / kPartialPage;
   }
   runs::write_whole_file(folder / kPage, diagnosis_html(d));
-  const Verdict verdict = d.decision.verdict;
-  if (verdict == Verdict::named || verdict == Verdict::ambiguous)
-    runs::write_whole_file(folder / kRobotFile, corrected_robot_toml(d, d.observations.robot_name));
-  else if (d.interrupted.empty())
-    fs::remove(folder / kRobotFile, error);  // of a diagnosis before, which it would belie
+  const RobotFile robot = robot_file(d);
+  if (!robot.name.empty()) runs::write_whole_file(folder / robot.name, robot.text);
+  for (const char* other : kRobotFiles)  // of a diagnosis before, which they would belie
+    if (d.interrupted.empty() && other != robot.name) fs::remove(folder / other, error);
   runs::write_whole_file(folder / kReport, diagnosis_json(d));
   for (const char* partial : {kPartialPage, kPartialReport}) fs::remove(folder / partial, error);
   return folder / kPage;

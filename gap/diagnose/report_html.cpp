@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "gap/diagnose/page/sections.hpp"
+#include "gap/diagnose/page/words.hpp"
 #include "gap/diagnose/report.hpp"
 #include "gap/plot/chart.hpp"
 
@@ -23,15 +24,29 @@ table { border-collapse: collapse; font-size: 13px; margin: 12px 0; font-variant
 th, td { padding: 3px 9px; text-align: right; border-bottom: 1px solid var(--grid); white-space: nowrap; }
 th { font-weight: 600; color: var(--soft); }
 th.text, td.text { text-align: left; } th:first-child, td:first-child { padding-left: 0; }
+.glance { font-size: 14px; } .glance td, .glance th { padding: 4px 14px 4px 0; }
+td.wrap { white-space: normal; max-width: 34ch; }
+.bar { display: inline-block; width: 260px; height: 14px; background: var(--grid); vertical-align: -2px; overflow: hidden;
+  white-space: nowrap; font-size: 0; margin-right: 6px; }
+.bar span { display: inline-block; height: 100%; } .gone { background: var(--third); } .left { background: var(--sim); }
+.key { font-size: 13px; } .key span { display: inline-block; width: 11px; height: 11px; margin: 0 3px 0 10px; }
+.key span:first-child { margin-left: 0; }
+dl { display: grid; grid-template-columns: 10em 1fr; gap: 10px 14px; margin: 16px 0 4px; } dt { font-weight: 600; }
+dd { margin: 0; } dd p, dd ul { margin: 0; } dd ul { padding-left: 18px; } dd li { margin: 0 0 3px; }
+details { margin: 16px 0; } summary { cursor: pointer; font-weight: 600; }
 .figures { display: flex; flex-wrap: wrap; gap: 12px 12px; margin: 8px 0; }
 @media print { body { max-width: none; } nav { display: none; } svg.chart, tr, .verdict { break-inside: avoid; }
   h2, h3 { break-after: avoid; } .tables svg.chart { max-width: 100%; } }
 )";
 
-constexpr std::string_view kContents =
-    "<nav><a href=\"#overlay\">Runs</a><a href=\"#residuals\">Residuals</a><a href=\"#where\">Where</a>"
-    "<a href=\"#ranking\">Effects</a><a href=\"#confusability\">Confusability</a><a href=\"#next\">Next</a>"
-    "<a href=\"#used\">Used</a><a href=\"#method\">Method</a></nav>\n";
+std::string contents(const Diagnosis& d) {
+  std::string html = "<nav>";
+  for (const StageDiagnosis& stage : d.stages)
+    html += fmt::format("<a href=\"#{}\">{}</a>", stage_id(stage.passage), with_capital(from_to(stage.passage)));
+  return html +
+         "<a href=\"#where\">Where</a><a href=\"#overlay\">Runs</a><a href=\"#next\">Next</a>"
+         "<a href=\"#used\">Used</a><a href=\"#method\">Method</a></nav>\n";
+}
 
 }  // namespace
 
@@ -41,11 +56,11 @@ std::string diagnosis_page(const Diagnosis& d, std::span<const Overlay> overlays
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n<title>Gap diagnosis: {}</title>\n"
       "<style>\n{}{}</style>\n</head>\n<body>\n<p class=\"soft\">Diagnosis of the gap between a robot and its "
       "simulation. {}</p>\n",
-      d.interrupted.empty() ? verdict_name(d.decision.verdict) : "unfinished", plot::style_sheet(), kPageStyle,
+      d.interrupted.empty() ? verdict_name(d.verdict) : "unfinished", plot::style_sheet(), kPageStyle,
       plot::escaped(d.observations.dataset.description));
-  html += verdict_section(d) + kContents.data();
-  html += overlay_section(d, overlays) + residual_section(d) + where_section(d, overlays);
-  html += ranking_section(d) + confusability_section(d) + next_section(d);
+  html += answer_section(d) + contents(d);
+  for (std::size_t s = 0; s < d.stages.size(); ++s) html += stage_section(d, s);
+  html += where_section(d, overlays) + overlay_section(d, overlays) + next_section(d);
   return html + used_section(d, overlays) + method_section(d) + "</body>\n</html>\n";
 }
 

@@ -1,49 +1,93 @@
+// The robot with what was found, and what of the gap it does not contain.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <toml++/toml.h>
-#include <sstream>
+#include <algorithm>
+#include <utility>
+#include <vector>
 
+#include "description/description_error.hpp"
 #include "description/description_file.hpp"
+#include "gap/candidates/write_candidates.hpp"
 #include "gap/diagnose/report.hpp"
+#include "gap/diagnose/report_words.hpp"
 
 namespace kenaf::gap {
 namespace {
 
-// Not where `effects` is an inline table, to which nothing can be added from below.
-bool reads_as(const std::string& text, const toml::table& root) try {
-  return toml::parse(text) == root;
-} catch (const toml::parse_error&) {
-  return false;
+constexpr std::size_t kCommentColumns = 100;
+
+// A name may hold any bytes, a comment in TOML may not.
+std::string as_comment(std::string_view text) {
+  std::string line(text);
+  for (char& c : line)
+    if (c < 0x20 || c > 0x7e) c = '?';
+  return "# " + wrapped(line, kCommentColumns - 2, "#   ") + "\n";
 }
 
-// A whole number in TOML is of another type.
-std::string as_float(double value) {
-  const std::string text = fmt::format("{}", value);
-  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
+// Which of the corrections of one candidate a file has, from the stage whose value it is.
+std::string contained(const Diagnosis& d, const Setting& setting) {
+  std::vector<std::string> stages;
+  std::string words = value_name(d.candidates[setting.candidate]);
+  for (const StageDiagnosis& stage : d.stages)
+    for (const NamedEffect& effect : stage.decision.effects)
+      if (effect.candidate == setting.candidate) {
+        stages.emplace_back(passage_name(stage.passage));
+        if (effect.value.value.value == setting.value)
+          words = value_in_words(d.candidates[setting.candidate], effect.value);
+      }
+  return fmt::format("  {} ({})", words, fmt::join(stages, ", "));
+}
+
+std::string top_of_file(const Diagnosis& d, const Settings& corrections, bool is_named) {
+  std::string text = as_comment(
+      is_named ? "This description has the effects that a diagnosis of runs named:"
+               : "A CANDIDATE: a diagnosis of runs named no effect. This description has what explains most of "
+                 "the gap, which may be something else:");
+  for (const Setting& setting : corrections) text += as_comment(contained(d, setting));
+  std::vector<std::string> lacks;
+  for (const std::vector<std::size_t>& set : names_found(d).ambiguous_sets)
+    lacks.push_back(fmt::format("  which of {} it is: these runs cannot tell, the best fit is in it",
+                                enumeration(candidate_names(d, set), "or")));
+  for (const std::size_t s : stages_with_gap(d)) {
+    const StageDiagnosis& stage = d.stages[s];
+    if (is_named && names_found(stage).empty())
+      lacks.push_back(fmt::format("  what causes the gap {}: no effect is named for it", from_to(stage.passage)));
+    if (is_named)
+      for (const NamedEffect& effect : stage.decision.effects)
+        if (!effect.doubts.empty() &&
+            std::ranges::none_of(corrections, [&](const Setting& c) { return c.candidate == effect.candidate; }))
+          lacks.push_back(fmt::format("  {}, which got no name: {}", d.candidates[effect.candidate].name,
+                                      fmt::join(doubts_in_words(d, stage, effect), "; ")));
+    if (stage.decision.complete) continue;
+    std::string left = fmt::format("  {}: {}", from_to(stage.passage), left_in_words(stage));
+    if (!stage.left_over.empty()) left += "; " + stage.left_over.front().words;
+    lacks.push_back(std::move(left));
+  }
+  if (lacks.empty()) return text + as_comment("What these runs show beside that is within noise and spread.") + "\n";
+  text += as_comment("It does not contain:");
+  for (const std::string& line : lacks) text += as_comment(line);
+  return text + "\n";
 }
 
 }  // namespace
 
-std::string corrected_robot_toml(const Diagnosis& d, const std::string& robot_name_or_path) {
-  std::string text = read_description_file("robot", robot_name_or_path, ".toml").text;
-  if (!text.ends_with('\n')) text += '\n';
-  toml::table root = toml::parse(text);
-  bool replaces = false;
-  std::string added;
-  for (const OnCurve& place : d.decision.best.places) {
-    const EffectCurve& curve = d.curves.curves[place.curve];
-    if (!root.contains("effects")) root.insert("effects", toml::table{});
-    toml::table& effects = *root["effects"].as_table();
-    replaces |= effects.contains(curve.effect->name);
-    if (!effects.contains(curve.effect->name)) effects.insert(curve.effect->name, toml::table{});
-    effects[curve.effect->name].as_table()->insert_or_assign(curve.parameter->name, place.value);
-    added += fmt::format("\n[effects.{}]                # found by a diagnosis of runs\n{} = {}\n", curve.effect->name,
-                         curve.parameter->name, as_float(place.value));
+RobotFile robot_file(const Diagnosis& d) {
+  RobotFile file;
+  if (!d.interrupted.empty() || d.verdict == Verdict::none) return file;
+  const Settings found = corrections(d);
+  if (found.empty()) return file;
+  const bool is_named = d.verdict == Verdict::named || d.verdict == Verdict::ambiguous;
+  std::vector<std::pair<Candidate, double>> values;
+  for (const Setting& setting : found) values.emplace_back(d.candidates[setting.candidate], setting.value);
+  try {
+    const std::string text = read_description_file("robot", d.observations.robot_name, ".toml").text;
+    file.text = top_of_file(d, found, is_named) + robot_toml_with(text, values);
+    file.name = is_named ? "robot.toml" : "robot.candidate.toml";
+  } catch (const DescriptionError& error) {
+    file.fault = error.what();
   }
-  if (!replaces && reads_as(text + added, root)) return text + added;
-  std::ostringstream out;
-  out << root << '\n';
-  return out.str();
+  return file;
 }
 
 }  // namespace kenaf::gap

@@ -107,9 +107,9 @@ bool is_borne_out(const StageData& data, const Model& best, const Model& rival) 
   return sum > kBetter_sigma * std::sqrt(variance);
 }
 
-// Candidates that do as well in the place of one effect, the others staying.
-std::vector<std::size_t> rivals_of(const StageData& data, const EffectCurves& curves, const StandingModel& standing,
-                                   std::size_t place, const Simulate& simulate, const DecisionSettings& settings) {
+// Models with a rival in the place of one effect, the best model itself first.
+std::vector<Settings> rivals_of(const StageData& data, const EffectCurves& curves, const StandingModel& standing,
+                                std::size_t place, const Simulate& simulate, const DecisionSettings& settings) {
   const Model& best = standing.model;
   const std::size_t chosen = best.places[place].curve;
   const double accounted =
@@ -142,9 +142,23 @@ std::vector<std::size_t> rivals_of(const StageData& data, const EffectCurves& cu
   std::ranges::stable_sort(models, {}, [](const Model& model) { return model.deviance(); });
   if (models.size() > kMostRivals) models.resize(kMostRivals);
 
+  // a rival takes the effect's place, so that beside it the effect gains nothing; one that does otherwise explains
+  // something else
+  std::vector<char> replaces(models.size());
+  for_each_job(models.size(), settings.search.threads, [&](std::size_t m) {
+    EffectSet both = effects_of(models[m]);
+    both.push_back(chosen);
+    replaces[m] = models[m].deviance() - fit_model(data, mixed, both, {}, best.likelihood.discrepancies).deviance() <
+                  settings.evidence;
+  });
+
   // by simulation
-  std::vector<std::size_t> rivals{chosen};
+  std::vector<Settings> rivals{settings_of(best.places)};
   std::vector<Settings> asked;
+  std::vector<Model> in_place;
+  for (std::size_t m = 0; m < models.size(); ++m)
+    if (replaces[m]) in_place.push_back(models[m]);
+  models = std::move(in_place);
   for (const Model& model : models) asked.push_back(settings_of(model.places));
   if (asked.empty()) return rivals;
   const std::vector<GroupVectors> shifts = simulate(asked, Fidelity::every_run);
@@ -152,7 +166,7 @@ std::vector<std::size_t> rivals_of(const StageData& data, const EffectCurves& cu
     Model simulated = models[i];
     simulated.shift = shifts[i];
     simulated.likelihood = likelihood_of(data, rest_of(data, simulated), models[i].likelihood.discrepancies);
-    if (is_rival(simulated)) rivals.push_back(models[i].places[place].curve);
+    if (is_rival(simulated)) rivals.push_back(asked[i]);
   }
   return rivals;
 }
@@ -188,7 +202,6 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
   };
   if (!is_gap()) return d;
   d.verdict = Verdict::unknown;
-  d.little_explained = true;
   if (d.singles.empty() || d.nominal_deviance - d.singles.front().deviance() < settings.evidence) return d;
 
   // what the simulation leaves open is taken around a model that fits, no longer around the nominal one
@@ -232,9 +245,10 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
     }
     const std::vector<EffectValue> values = effect_values(d.data, d.best);
     for (std::size_t i = 0; i < evidence.size(); ++i) {
-      NamedEffect effect{d.best.model.places[i].curve, values[i], evidence[i], 0, 0, false, {}, {}};
+      NamedEffect effect{d.best.model.places[i].curve, values[i], evidence[i], {}, {}, false, {}, {}};
       effect.at_bound = is_at_bound(d.data, d.best, i, settings.rival_evidence);
-      effect.rivals = rivals_of(d.data, curves, d.best, i, simulate, settings);
+      d.models_of_rivals.push_back(rivals_of(d.data, curves, d.best, i, simulate, settings));
+      for (const Settings& model : d.models_of_rivals.back()) effect.rivals.push_back(model[i].candidate);
       d.effects.push_back(std::move(effect));
     }
     break;

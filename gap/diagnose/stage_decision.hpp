@@ -22,7 +22,7 @@ enum class Doubt {
   end_of_range,     // the value ends where the range does: it stands for something that the effect cannot do
   disagreement,     // manoeuvres want values that differ by more than a share of the effect
   not_held_out,     // on runs or manoeuvres held out it takes off too little
-  little_explained, // the whole model takes off too little on runs held out
+  little_explained, // in the channels where it acts, the whole model takes off too little on runs held out
 };
 
 struct DecisionSettings {
@@ -31,10 +31,11 @@ struct DecisionSettings {
   double surprise = 0.005;         // chance to call a complete explanation incomplete
   double evidence = 16;            // deviance that an effect must gain: 4 sigma, for the best of some 70 candidates (chosen)
   double rival_evidence = 9;       // deviance by which a rival must be worse: 3 sigma
-  double share = 0.08;             // of the squared gap that an effect must take off on runs held out (chosen)
-  double stage_share = 0.5;        // the same of all named effects together (chosen)
+  // Of the squared gap of the kind of channels where an effect takes off most, on runs held out: what the effect must take off,
+  // and what the whole model must (chosen).
+  double effect_share = 0.2, model_share = 0.5;
   double agreement = 2;            // an effect is at least as many times its spread between manoeuvres (chosen)
-  std::size_t most_effects = 4;
+  std::size_t most_effects = 5;
   SearchSettings search;
 };
 
@@ -55,8 +56,8 @@ struct NamedEffect {
   std::size_t candidate;
   EffectValue value;
   double evidence = 0;              // deviance that the model without it has more
-  double share = 0;                 // of the squared gap, on runs held out
-  double share_by_manoeuvre = 0;    // the same on manoeuvres held out; as `share` where there is one alone
+  HeldOutShares::OfEffect share{};               // on runs held out
+  HeldOutShares::OfEffect share_by_manoeuvre{};  // on manoeuvres held out; as `share` where there is one alone
   bool at_bound = false;
   std::vector<Doubt> doubts;        // none: it is named, alone or in a set
   std::vector<std::size_t> rivals;  // candidates that do as well in its place, itself first
@@ -66,13 +67,13 @@ struct StageDecision {
   Verdict verdict = Verdict::none;
   StandingModel best;               // no places: nominal
   std::vector<NamedEffect> effects; // of the best model, in the order of its places
+  std::vector<std::vector<Settings>> models_of_rivals;  // of each effect: the model with each of its rivals in its place
   std::vector<Model> singles;       // best first
   NoiseFloor floor;                 // around the best model
   StageData data;
   double p_gap = 1, p_left = 1;
   double nominal_deviance = 0;
   bool complete = false;            // what is left is within noise and spread
-  bool little_explained = false;
 };
 
 StageDecision decide_stage(const StageAround& nominal, const EffectCurves& curves, const Simulate& simulate,

@@ -75,25 +75,46 @@ bool is_large_enough(const NamedEffect& effect, const Candidate& candidate, doub
 }
 
 // Names, sets and doubts, by what the effects are worth on runs held out.
-void judge(StageDecision& d, std::span<const Candidate> candidates, double explains, const std::vector<double>& shares,
-           const std::vector<double>& shares_by_manoeuvre, const DecisionSettings& settings) {
-  d.little_explained = !(explains >= settings.stage_share);
+void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOutShares& shares,
+           const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings) {
   bool any_named = false, any_rival = false;
   for (std::size_t i = 0; i < d.effects.size(); ++i) {
     NamedEffect& effect = d.effects[i];
-    effect.share = shares[i];
-    effect.share_by_manoeuvre = shares_by_manoeuvre[i];
+    effect.share = shares.effects[i];
+    effect.share_by_manoeuvre = shares_by_manoeuvre.effects[i];
+    const auto least = [&](auto member) { return std::min(effect.share.*member, effect.share_by_manoeuvre.*member); };
+    using Share = HeldOutShares::OfEffect;
     if (effect.at_bound) effect.doubts.push_back(Doubt::end_of_range);
     if (!is_large_enough(effect, candidates[effect.candidate], settings.agreement))
       effect.doubts.push_back(Doubt::disagreement);
-    if (!(std::min(effect.share, effect.share_by_manoeuvre) >= settings.share))
-      effect.doubts.push_back(Doubt::not_held_out);
-    if (d.little_explained) effect.doubts.push_back(Doubt::little_explained);
+    if (!(least(&Share::of_kind) >= settings.effect_share)) effect.doubts.push_back(Doubt::not_held_out);
+    if (!(least(&Share::model_of_kind) >= settings.model_share)) effect.doubts.push_back(Doubt::little_explained);
     if (!effect.doubts.empty()) continue;
     any_named = true;
     any_rival |= effect.rivals.size() > 1;
   }
   d.verdict = any_rival ? Verdict::ambiguous : any_named ? Verdict::named : Verdict::unknown;
+}
+
+// What is left with the best model, regressed on what was measured.
+std::vector<Dependence> left_over_of(const StageInput& input, Predictor& predictor, const Variation& best,
+                                     const NoiseFloor& floor) {
+  const std::vector<Variation> of_runs(input.observations->runs.size(), best);
+  const std::vector<VectorXd> simulated = predictor.features_of_each(of_runs, input.passage);
+  std::vector<LeftOverRun> runs;
+  for (std::size_t g = 0; g < input.repeats->size(); ++g)
+    for (const std::size_t r : (*input.repeats)[g]) {
+      const FeatureMap& map = (*input.maps)[r];
+      LeftOverRun run{&input.observations->runs[r], &map, map.measured(), simulated[r], {}, g};
+      run.sigma.resize(map.measured().size());
+      for (std::size_t b = 0; b < map.bins().size(); ++b) {
+        const std::size_t channel = map.bins()[b].channel;
+        run.sigma[static_cast<Eigen::Index>(b)] =
+            floor.sigma[channel] > 0 ? floor.sigma[channel] : diagnosis_channels()[channel].resolution;
+      }
+      runs.push_back(std::move(run));
+    }
+  return describe_left_over(runs, input.passage == Passage::command_to_drive);
 }
 
 }  // namespace
@@ -187,9 +208,12 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
         measure_gap(view, left_by(places_held_out(view, input.passage, decision.best, by_manoeuvre, threads)), spread,
                     options.seed);
   if (!decision.effects.empty())
-    judge(decision, candidates, std::min(stage.gap.explains.value, stage.gap_by_manoeuvre.explains.value),
-          shares_held_out(view, input.passage, decision.best, by_repeat, threads),
+    judge(decision, candidates, shares_held_out(view, input.passage, decision.best, by_repeat, threads),
           shares_held_out(view, input.passage, decision.best, by_manoeuvre, threads), options.decision);
+
+  // what is left, in words
+  if (decision.verdict != Verdict::none && !decision.complete && input.passage != Passage::body_to_sensor)
+    stage.left_over = left_over_of(input, predictor, varied(settings_of(best.places)), decision.floor);
 
   // where it is, and what each effect does alone
   stage.before_si = rms_si(features, stage.residuals);

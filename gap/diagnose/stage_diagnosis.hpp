@@ -22,6 +22,7 @@ struct StageOptions {
 struct StageInput {
   Passage passage;
   const Observations* observations;
+  const std::vector<FeatureMap>* maps;
   const std::vector<StageFeatures>* features;
   const std::vector<std::vector<std::size_t>>* repeats;      // same commands
   const std::vector<std::vector<std::size_t>>* same_orders;  // same_orders_of()

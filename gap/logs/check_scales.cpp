@@ -13,6 +13,7 @@ constexpr double kTogether = 0.8, kLengthFactor = 20, kAngleFactor = 15;
 constexpr double kSameWay = 1.4;
 constexpr double kLeastMove_m = 0.1, kLeastTurn_rad = 0.2;
 constexpr double kDegreesInARadian = 180 / std::numbers::pi;
+constexpr double kDragged = 0.2;      // of the way that the other track is asked for
 constexpr double kMostSpeed_mps = 5;  // of a robot that is not known
 // A robot slides against its tracks on a slope alone. Elsewhere it goes as far as they do, or less for slip; when it
 // turns, far less.
@@ -164,6 +165,13 @@ void RunChecks::check_pose_against_tracks() {
 }
 
 void RunChecks::check_scales() {
+  // a track that is asked for little beside the other one may be dragged by it, against its own command
+  double most_asked_m = 0;
+  for (const std::string side : kSides) {
+    const auto asked = rate("cmd_track_" + side + "_mps");
+    if (const auto itself = relate(asked, asked)) most_asked_m = std::max(most_asked_m, itself->first);
+  }
+  const double enough_asked_m = std::max(kLeastMove_m, kDragged * most_asked_m);
   for (const std::string side : kSides) {
     const std::string command = "cmd_track_" + side + "_mps", speed = "track_" + side + "_mps",
                       travel = "track_" + side + "_m";
@@ -171,7 +179,7 @@ void RunChecks::check_scales() {
     check_same_length(command, speed, by_command);
     check_same_length(travel, speed, by_travel);
     const std::string words = "a track that carries the robot forward is positive, on both sides";
-    check_turned_sign(speed, command, by_command, kLeastMove_m, kLeastMove_m,
+    check_turned_sign(speed, command, by_command, enough_asked_m, kLeastMove_m,
                       words + "; or are left and right exchanged?");
     check_turned_sign(travel, speed, by_travel, kLeastMove_m, kLeastMove_m, words);
     if (!has(speed)) {

@@ -52,7 +52,7 @@ void read_report(const fs::path& folder, Playback& playback) {
     throw std::runtime_error(fmt::format("{}: tells of other manoeuvres than {} has; is it the report of these runs?",
                                          file.string(), playback.name));
   if (fs::exists(folder / "robot.toml"))
-    playback.robots.corrected = physics::load_robot((folder / "robot.toml").string()).effects;
+    playback.robots.corrected = physics::load_robot((folder / "robot.toml").string());
 }
 
 std::size_t find_run(const Playback& playback, const std::string& name) {

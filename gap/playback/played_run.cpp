@@ -124,13 +124,13 @@ std::vector<PlayedBody> simulate_bodies(const Observation& observation, const Pl
   one.robot = robots.nominal;
   one.worlds.push_back(world);
   one.runs.push_back(observation);
-  const std::vector<FeatureMap> no_features;
+  const ComparedFeatures no_features;
   const Predictor predictor(one, no_features, {}, 1);
   std::vector<Variation> variations{predictor.unvaried()};
   std::vector<PlayedBody> bodies(robots.corrected ? 2 : 1);
   if (robots.corrected) {
     variations.push_back(predictor.unvaried());
-    variations.back().effects = *robots.corrected;
+    variations.back().robot = *robots.corrected;
   }
   for_each_job(bodies.size(), 0, [&](std::size_t i) {
     bodies[i] = body_of(i == 0 ? "nominal" : "corrected", predictor.simulate(0, variations[i]), times_s);

@@ -44,7 +44,7 @@ struct PlayedRun {
 // What the runs of a dataset have in common.
 struct PlayedRobots {
   physics::RobotDescription nominal;
-  std::optional<physics::Effects> corrected;  // all effects of the corrected robot
+  std::optional<physics::RobotDescription> corrected;
 };
 
 // Simulates the run with the nominal and, if there is one, the corrected robot, as a diagnosis does: the same commands from

@@ -31,7 +31,9 @@ ReportedPhase phase_in(const PlacesJson& json) {
 
 ReportedPlaces parse_reported_places(std::string_view report_json) try {
   const PlacesJson json = PlacesJson::parse(report_json);
-  if (json.at("format") != "kenaf-gap-report/1") throw std::runtime_error("its format is not kenaf-gap-report/1");
+  const std::string format = json.at("format");
+  if (format != "kenaf-gap-report/1" && format != "kenaf-gap-report/2")
+    throw std::runtime_error("its format is neither kenaf-gap-report/1 nor kenaf-gap-report/2");
   ReportedPlaces places;
   json.at("verdict").get_to(places.verdict);
   json.at("named").get_to(places.named);

@@ -23,7 +23,8 @@ struct ReportedPlaces {
   std::map<std::string, double> channel_share; // by column
 };
 
-// Throws std::runtime_error in words where `report_json` is none of the format kenaf-gap-report/1.
+// Throws std::runtime_error in words where `report_json` is none of the formats kenaf-gap-report/1 and /2. (Of
+// version 2 these are the places of the stage that holds most of the gap.)
 ReportedPlaces parse_reported_places(std::string_view report_json);
 
 // Those of one run: its own, or those of the repeat that the report has in its place. `world_of`: of each run's file; a

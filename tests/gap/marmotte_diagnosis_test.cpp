@@ -8,7 +8,7 @@
 using namespace kenaf;
 using namespace kenaf::gap;
 
-TEST_CASE("The gap of a real robot in a forest: at the drives and at the ground, unknown, and why") {
+TEST_CASE("The gap of a real robot in a forest: at the drives and at the ground") {
   const char* folder = std::getenv("KENAF_MARMOTTE_DATA");
   if (folder == nullptr) {
     WARN("skipped: KENAF_MARMOTTE_DATA does not name the folder of the recorded runs");
@@ -19,12 +19,14 @@ TEST_CASE("The gap of a real robot in a forest: at the drives and at the ground,
   options.most_runs = 6;  // of 120, drawn evenly: a minute instead of twenty
   const Diagnosis d = diagnose(folder, options);
   REQUIRE(d.observations.runs.size() == 6);
-  CHECK(d.decision.verdict == Verdict::unknown);
-  CHECK_FALSE(d.decision.doubts.empty());
   // what its drives and poses show without any model: a step of the drives takes half a second, and the body
   // turns 0.97 of what its tracks say where the description slips to 0.73
-  for (const StageGap& stage : d.stages)
-    if (stage.passage != Passage::body_to_sensor) CHECK(stage.chance > 10);
-  CHECK(d.gap.before > 5);
-  CHECK(d.gap.after < d.gap.before);
+  REQUIRE(d.stages.size() >= 2);
+  for (const StageDiagnosis& stage : d.stages) {
+    if (stage.passage == Passage::body_to_sensor) continue;
+    INFO(passage_name(stage.passage));
+    CHECK(stage.decision.verdict != Verdict::none);
+    CHECK(stage.gap.before > 2 * stage.gap.floor);
+    CHECK(stage.gap.after < stage.gap.before);
+  }
 }

@@ -197,7 +197,7 @@ TEST_CASE("P4: a report's phases and whose they are") {
   ReportedPlaces two = places;
   two.phases[1].run = "d.csv";  // the report tells b.csv's commands from both
   CHECK(phases_of_run(two, "b.csv", "go", {{"a.csv", "flat"}, {"b.csv", "flat"}, {"d.csv", "flat"}}).empty());
-  for (const char* wrong : {"", "[]", "{\"format\": \"kenaf-gap-report/2\"}",
+  for (const char* wrong : {"", "[]", "{\"format\": \"kenaf-gap-report/2\"}", "{\"format\": \"kenaf-gap-report/3\"}",
                             R"({"format": "kenaf-gap-report/1", "verdict": "none", "named": [], "where": {}})"})
     CHECK_THROWS_WITH(parse_reported_places(wrong), Catch::Contains("no report of a diagnosis"));
   std::string backwards = kReport;

@@ -6,7 +6,6 @@
 #include "gap/diagnose/page/figures.hpp"
 #include "gap/diagnose/page/sections.hpp"
 #include "gap/diagnose/page/words.hpp"
-#include "gap/diagnose/report.hpp"
 #include "gap/plot/heat_map.hpp"
 
 namespace kenaf::gap {
@@ -16,7 +15,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr double kUnlike_deg = 60;      // no shade from here on
-constexpr std::size_t kMostPairs = 60;  // in words
+constexpr std::size_t kMostPairs = 30;  // in words
+constexpr std::size_t kMostShown = 24;  // of candidates: more cannot be read
 
 double mean_angle(const MatrixXd& angle_deg, const std::vector<std::size_t>& a, const std::vector<std::size_t>& b) {
   double sum = 0;
@@ -38,20 +38,35 @@ std::vector<std::size_t> joined(const MatrixXd& angle_deg, std::vector<std::size
   return a;
 }
 
-std::string matrix(const Diagnosis& d, const std::vector<std::size_t>& order) {
-  const Isolability& isolability = d.isolability;
+// Rows of the isolability: those of the best model, their rivals, then those that alone take off most.
+std::vector<std::size_t> shown_rows(const StageDiagnosis& stage) {
+  std::vector<std::size_t> wanted, rows;
+  for (const NamedEffect& effect : stage.decision.effects) {
+    wanted.push_back(effect.candidate);
+    wanted.insert(wanted.end(), effect.rivals.begin(), effect.rivals.end());
+  }
+  for (const SingleEvidence& single : stage.ranking) wanted.push_back(single.candidate);
+  wanted.insert(wanted.end(), stage.isolability.candidates.begin(), stage.isolability.candidates.end());
+  for (const std::size_t candidate : wanted) {
+    const auto found = std::ranges::find(stage.isolability.candidates, candidate);
+    const auto row = static_cast<std::size_t>(found - stage.isolability.candidates.begin());
+    if (found != stage.isolability.candidates.end() && rows.size() < kMostShown && std::ranges::count(rows, row) == 0)
+      rows.push_back(row);
+  }
+  return rows;
+}
+
+std::string matrix(const std::vector<std::string>& names, const MatrixXd& angle_deg) {
   plot::HeatMap map;
   map.title = "How alike the effects look in these runs: angle between what they do, in degrees";
   map.legend =
       fmt::format("0: the same (dark); 90: nothing in common; below {:.0f} they cannot be told apart", kToldApart_deg);
   map.width_px = kWide_px;
-  std::vector<std::string> names;
-  for (const std::size_t i : order) names.push_back(name_of(d.curves.curves[isolability.curves[i]]));
   map.rows = map.columns = names;
-  for (std::size_t r = 0; r < order.size(); ++r) {
+  for (std::size_t r = 0; r < names.size(); ++r) {
     map.cells.emplace_back();
-    for (std::size_t c = 0; c < order.size(); ++c) {
-      const double angle = isolability.angle_deg(static_cast<Index>(order[r]), static_cast<Index>(order[c]));
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      const double angle = angle_deg(static_cast<Index>(r), static_cast<Index>(c));
       if (r == c)
         map.cells.back().push_back({});
       else
@@ -62,30 +77,18 @@ std::string matrix(const Diagnosis& d, const std::vector<std::size_t>& order) {
   return "<div class=\"tables\">" + to_svg(map) + "</div>\n";
 }
 
-std::string pairs_in_words(const Diagnosis& d, const std::vector<std::size_t>& order) {
+std::string pairs_in_words(const std::vector<std::string>& names, const MatrixXd& angle_deg) {
   std::vector<std::string> pairs;
-  for (std::size_t a = 0; a < order.size(); ++a)
-    for (std::size_t b = a + 1; b < order.size(); ++b) {
-      const double angle = d.isolability.angle_deg(static_cast<Index>(order[a]), static_cast<Index>(order[b]));
-      if (angle < kToldApart_deg)
-        pairs.push_back(fmt::format("<li>{} and {} ({:.1f} degrees)</li>\n",
-                                    plot::escaped(name_of(d.curves.curves[d.isolability.curves[order[a]]])),
-                                    plot::escaped(name_of(d.curves.curves[d.isolability.curves[order[b]]])), angle));
-    }
-  if (pairs.empty()) return paragraph(fmt::format("No two effects are within {:.0f} degrees.", kToldApart_deg));
+  for (std::size_t a = 0; a < names.size(); ++a)
+    for (std::size_t b = a + 1; b < names.size(); ++b)
+      if (const double angle = angle_deg(static_cast<Index>(a), static_cast<Index>(b)); angle < kToldApart_deg)
+        pairs.push_back(fmt::format("<li>{} and {} ({:.1f} degrees)</li>\n", plot::escaped(names[a]),
+                                    plot::escaped(names[b]), angle));
+  if (pairs.empty()) return paragraph(fmt::format("No two of these are within {:.0f} degrees.", kToldApart_deg));
   std::string html = paragraph("These runs cannot tell apart:") + "<ul>\n";
   for (std::size_t i = 0; i < std::min(kMostPairs, pairs.size()); ++i) html += pairs[i];
   if (pairs.size() > kMostPairs) html += fmt::format("<li>and {} more pairs</li>\n", pairs.size() - kMostPairs);
   return html + "</ul>\n";
-}
-
-std::string unseen(const Diagnosis& d) {
-  std::vector<std::size_t> hidden;
-  for (std::size_t c = 0; c < d.curves.curves.size(); ++c)
-    if (std::ranges::count(d.isolability.curves, c) == 0) hidden.push_back(c);
-  if (hidden.empty()) return {};
-  return paragraph(fmt::format("These runs do not show at any size, whether they are there or not: {}.",
-                               enumeration(curve_names(d, hidden))));
 }
 
 }  // namespace
@@ -106,18 +109,38 @@ std::vector<std::size_t> look_alikes_together(const MatrixXd& angle_deg) {
   return clusters.empty() ? std::vector<std::size_t>{} : clusters.front();
 }
 
-std::string confusability_section(const Diagnosis& d) {
-  std::string html = section_head("confusability", "What these runs can tell apart");
-  if (d.isolability.curves.empty())
-    return html + paragraph(d.interrupted.empty() ? "These runs show no effect of the catalogue at any size."
-                                                  : "It was not worked out before the diagnosis ended.");
+std::string confusability_part(const Diagnosis& d, const StageDiagnosis& stage) {
+  const Isolability& isolability = stage.isolability;
+  if (isolability.candidates.empty())
+    return "<h3>What these runs can tell apart</h3>\n" +
+           paragraph("These runs show no effect in this stage at any size.");
+  const std::vector<std::size_t> rows = shown_rows(stage);
+  const auto select = [&](const std::vector<std::size_t>& chosen, const MatrixXd& from) {
+    MatrixXd selected(std::ssize(chosen), std::ssize(chosen));
+    for (Index i = 0; i < selected.rows(); ++i)
+      for (Index j = 0; j < selected.cols(); ++j)
+        selected(i, j) = from(static_cast<Index>(chosen[static_cast<std::size_t>(i)]),
+                              static_cast<Index>(chosen[static_cast<std::size_t>(j)]));
+    return selected;
+  };
+  MatrixXd angle_deg = select(rows, isolability.angle_deg);
+  const std::vector<std::size_t> order = look_alikes_together(angle_deg);
+  angle_deg = select(order, angle_deg);
+  std::vector<std::string> names;
+  for (const std::size_t i : order) names.push_back(d.candidates[isolability.candidates[rows[i]]].name);
+  std::string html = "<details><summary>What these runs can tell apart</summary>\n";
   html += paragraph(
       "A small amount of an effect moves all channels of all runs in some direction. The angle between the directions "
       "of two "
       "effects is a matter of the manoeuvres and the sensors alone, not of the gap.",
       "soft");
-  const std::vector<std::size_t> order = look_alikes_together(d.isolability.angle_deg);
-  return html + matrix(d, order) + pairs_in_words(d, order) + unseen(d);
+  if (rows.size() < isolability.candidates.size())
+    html += paragraph(
+        fmt::format("{} of {} candidates that these runs show: those of the best model, and those that alone take "
+                    "off most. report.json has all.",
+                    rows.size(), isolability.candidates.size()),
+        "soft");
+  return html + matrix(names, angle_deg) + pairs_in_words(names, angle_deg) + "</details>\n";
 }
 
 }  // namespace kenaf::gap

@@ -115,6 +115,18 @@ Line residual_line(const FeatureMap& map, const Eigen::VectorXd& residual, const
   return line;
 }
 
+// Noise of each bin of a run's FeatureMap, from the first stage that compares it; 0 where none does.
+Eigen::VectorXd noise_of_run(const Diagnosis& d, std::size_t run) {
+  Eigen::VectorXd sigma = Eigen::VectorXd::Zero(std::ssize(d.features.maps[run].bins()));
+  for (auto stage = d.stages.rbegin(); stage != d.stages.rend(); ++stage) {
+    if (run >= stage->nominal_floor.sigma_of_bin.size()) continue;
+    const std::vector<Eigen::Index>& rows = d.features.of(stage->passage)[run].rows;
+    const Eigen::VectorXd& of_bin = stage->nominal_floor.sigma_of_bin[run];
+    for (std::size_t b = 0; b < rows.size(); ++b) sigma[rows[b]] = of_bin[static_cast<Eigen::Index>(b)];
+  }
+  return sigma;
+}
+
 // Where the robot was in the middle of a phase.
 Point place_of(const std::vector<Place>& places, const PhaseGap& phase, bool from_side) {
   const double middle_s = (phase.from_s + phase.to_s) / 2;
@@ -163,10 +175,10 @@ Chart residual_figure(const Diagnosis& d, const Overlay& overlay) {
   chart.width_px = kHalf_px;
   chart.height_px = kChannelHeight_px;
   chart.include = {{0, 0}};
-  if (overlay.run >= d.nominal_floor.sigma_of_bin.size()) return chart;
-  const FeatureMap& map = d.features[overlay.run];
-  const Eigen::VectorXd& sigma = d.nominal_floor.sigma_of_bin[overlay.run];
-  Line before = residual_line(map, map.measured() - d.nominal[overlay.run], sigma);
+  if (overlay.run >= d.features.maps.size()) return chart;
+  const FeatureMap& map = d.features.maps[overlay.run];
+  const Eigen::VectorXd sigma = noise_of_run(d, overlay.run);
+  Line before = residual_line(map, map.measured() - map.of(overlay.nominal), sigma);
   before.ink = Ink::sim;
   before.stroke = Stroke::dashed;
   before.legend = "before";
@@ -192,8 +204,8 @@ Chart channel_residual_figure(const Diagnosis& d, const Overlay& overlay, std::s
   chart.width_px = kHalf_px;
   chart.height_px = kChannelHeight_px;
   chart.include = {{0, 0}};
-  if (overlay.run >= d.nominal_floor.sigma_of_bin.size()) return chart;
-  const FeatureMap& map = d.features[overlay.run];
+  if (overlay.run >= d.features.maps.size()) return chart;
+  const FeatureMap& map = d.features.maps[overlay.run];
   const auto line_of = [&](const Eigen::VectorXd& values, Ink ink, Stroke stroke, std::string_view legend) {
     Line line{{}, ink, stroke, std::string(legend)};
     for (std::size_t b = 0; b < map.bins().size(); ++b)
@@ -203,16 +215,16 @@ Chart channel_residual_figure(const Diagnosis& d, const Overlay& overlay, std::s
     line.points = plot::envelope(line.points, kColumns);
     return line;
   };
-  const Eigen::VectorXd& sigma = d.nominal_floor.sigma_of_bin[overlay.run];
+  const Eigen::VectorXd sigma = noise_of_run(d, overlay.run);
   chart.lines = {line_of(sigma, Ink::faint, Stroke::hair, "noise, 1 sigma"),
                  line_of(-sigma, Ink::faint, Stroke::hair, ""),
-                 line_of(map.measured() - d.nominal[overlay.run], Ink::sim, Stroke::dashed, "before")};
+                 line_of(map.measured() - map.of(overlay.nominal), Ink::sim, Stroke::dashed, "before")};
   if (overlay.corrected)
     chart.lines.push_back(line_of(map.measured() - map.of(*overlay.corrected), Ink::third, Stroke::solid, "after"));
   return chart;
 }
 
-Chart places_figure(const Diagnosis& d, const Overlay& overlay) {
+Chart places_figure(const Diagnosis& d, const Overlay& overlay, const StageDiagnosis& stage) {
   const runs::Run& real = d.observations.runs[overlay.run].run;
   const bool from_side = seen_from_side(real);
   const std::vector<Place> places = places_of(real);
@@ -222,7 +234,7 @@ Chart places_figure(const Diagnosis& d, const Overlay& overlay) {
   const std::string_view what = from_side ? ": gap by place, from the right" : ": gap by place, from above";
   chart.title = plot::end_of(group_title(d, overlay.group), kTitle_px - plot::text_width_px(what));
   chart.title += what;
-  const double left = d.where.beyond_chance > 0 ? d.where_left.beyond_chance / d.where.beyond_chance : 0;
+  const double left = stage.where.beyond_chance > 0 ? stage.where_left.beyond_chance / stage.where.beyond_chance : 0;
   const auto [west, east] = std::ranges::minmax(places, {}, &Place::x_m);
   const double width_m = east.x_m - west.x_m;
   std::vector<Point> labelled;
@@ -245,8 +257,8 @@ Chart places_figure(const Diagnosis& d, const Overlay& overlay) {
       chart.discs.push_back(std::move(disc));
     }
   };
-  add(d.where, 1, true);
-  if (!d.best.empty()) add(d.where_left, left, false);
+  add(stage.where, 1, true);
+  if (!stage.decision.best.model.places.empty()) add(stage.where_left, left, false);
   return chart;
 }
 

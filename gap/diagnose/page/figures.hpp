@@ -21,7 +21,7 @@ plot::Chart channel_residual_figure(const Diagnosis& d, const Overlay& overlay, 
 // Over time the rms of all channels, in noise units.
 plot::Chart residual_figure(const Diagnosis& d, const Overlay& overlay);
 
-// The path with the gap of each phase at the place of the phase, before (rings) and after (discs).
-plot::Chart places_figure(const Diagnosis& d, const Overlay& overlay);
+// The path with the gap of each phase of a stage at the place of the phase, before (rings) and after (discs).
+plot::Chart places_figure(const Diagnosis& d, const Overlay& overlay, const StageDiagnosis& stage);
 
 }  // namespace kenaf::gap

@@ -47,8 +47,9 @@ std::string left_over_plot(const Dependence& d) {
   return to_svg(chart);
 }
 
-std::string left_over_section(std::span<const Dependence> left_over) {
-  std::string html = section_head("left-over", "What is left, in words");
+std::string left_over_section(std::span<const Dependence> left_over, std::string_view how_much) {
+  std::string html = "<h3>What is left</h3>\n";
+  if (!how_much.empty()) html += paragraph(with_capital(std::string(how_much)) + ".");
   if (left_over.empty())
     return html + paragraph("What is left beyond noise, if anything, goes with nothing that was measured.");
   html += paragraph(

@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "gap/diagnose/left_over.hpp"
 
@@ -13,8 +14,8 @@ namespace kenaf::gap {
 // with the line that was fitted.
 std::string left_over_plot(const Dependence& dependence);
 
-// HTML with its heading: each dependence as a sentence with what to look at, and the plots of the largest. Without any it says
-// that what is left goes with nothing that was measured.
-std::string left_over_section(std::span<const Dependence> left_over);
+// HTML with its heading: how much is left (`how_much`, a sentence without a full stop, or nothing), each dependence as a sentence
+// with what to look at, and the plots of the largest. Without any it says that what is left goes with nothing that was measured.
+std::string left_over_section(std::span<const Dependence> left_over, std::string_view how_much = {});
 
 }  // namespace kenaf::gap

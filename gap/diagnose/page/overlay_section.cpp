@@ -4,19 +4,23 @@
 #include "gap/diagnose/page/figures.hpp"
 #include "gap/diagnose/page/sections.hpp"
 #include "gap/diagnose/page/words.hpp"
+#include "gap/diagnose/report.hpp"
 
 namespace kenaf::gap {
 
 std::string overlay_section(const Diagnosis& d, std::span<const Overlay> overlays) {
   std::string html = section_head("overlay", "Real, nominal and corrected runs");
   if (overlays.empty()) return html + paragraph("No run was simulated before the diagnosis ended.");
+  const RobotFile robot = robot_file(d);
+  const bool has_corrected = overlays.front().corrected.has_value();
   html += paragraph(
       fmt::format(
           "Of each manoeuvre one run, and the channels that show most of its gap. Real is what was measured; nominal "
-          "is the simulated robot as it is described, told the same commands from the same place; {}. Differences are "
+          "is the simulated robot as it is described, given the same commands from the same place; {}. Differences are "
           "averaged over {} s each.",
-          d.decision.best.places.empty() ? "there is no corrected one, as no effect was fitted"
-                                         : "corrected is that robot with the effects fitted to all runs",
+          !has_corrected       ? "there is no corrected one, as no effect was fitted"
+          : robot.name.empty() ? "corrected is that robot with the best models of all stages"
+                               : fmt::format("corrected is the robot of {}", robot.name),
           d.options.span_s),
       "soft");
   if (overlays.size() < d.repeats.size())

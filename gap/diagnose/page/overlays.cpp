@@ -6,10 +6,13 @@
 #include <numbers>
 #include <numeric>
 #include <string>
+#include <utility>
 
+#include "gap/candidates/robot_numbers.hpp"
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/prediction.hpp"
 #include "gap/diagnose/repeats.hpp"
+#include "gap/diagnose/report_words.hpp"
 #include "gap/parallel.hpp"
 
 namespace kenaf::gap {
@@ -33,16 +36,14 @@ std::string without_side(std::string_view column) {
 // [group][channel], of what is beyond chance in all runs; all 0 where nothing is, or nothing is known.
 std::vector<std::vector<double>> shares_by_group(const Diagnosis& d) {
   std::vector<std::vector<double>> shares(d.repeats.size(), std::vector<double>(diagnosis_channels().size(), 0));
-  if (d.nominal.size() != d.features.size() || d.nominal_floor.whiteners.size() != d.features.size()) return shares;
-  std::vector<Eigen::VectorXd> residual;
-  for (std::size_t r = 0; r < d.features.size(); ++r) residual.push_back(d.features[r].measured() - d.nominal[r]);
-  const Coherence coherence(d.features, d.repeats, d.options.stretch_s);
-  for (const Cell& cell : cells_that_stand_out(d.nominal_floor, coherence, residual))
-    shares[cell.group][cell.channel] += beyond_chance(cell);
-  double total = 0;
-  for (const std::vector<double>& group : shares) total = std::accumulate(group.begin(), group.end(), total);
-  for (std::vector<double>& group : shares)
-    for (double& share : group) share = total > 0 ? share / total : 0;
+  for (std::size_t s = 0; s < d.stages.size(); ++s) {
+    const StageDiagnosis& stage = d.stages[s];
+    const double of_stage = share_of_gap(d, s);
+    if (of_stage <= 0 || stage.where.beyond_chance <= 0) continue;
+    const Coherence coherence(d.features.of(stage.passage), d.repeats, d.options.stretch_s);
+    for (const Cell& cell : cells_that_stand_out(stage.nominal_floor, coherence, stage.residuals))
+      shares[cell.group][cell.channel] += of_stage * beyond_chance(cell) / stage.where.beyond_chance;
+  }
   return shares;
 }
 
@@ -76,7 +77,8 @@ std::vector<std::size_t> telling_channels(const runs::Run& run, const std::vecto
 
 std::vector<std::size_t> shown_groups(const Diagnosis& d) {
   std::vector<double> share(d.repeats.size(), 0);
-  for (const PhaseGap& phase : d.where.phases) share[phase.group] += phase.share;
+  for (std::size_t s = 0; s < d.stages.size(); ++s)
+    for (const PhaseGap& phase : d.stages[s].where.phases) share[phase.group] += share_of_gap(d, s) * phase.share;
   std::vector<std::size_t> groups(d.repeats.size());
   std::iota(groups.begin(), groups.end(), std::size_t{0});
   std::ranges::stable_sort(groups, [&](std::size_t a, std::size_t b) { return share[a] > share[b]; });
@@ -100,8 +102,9 @@ std::vector<Overlay> simulate_overlays(const Diagnosis& d) {
     overlays.push_back({group, representative(d.observations, d.repeats[group]), {}, {}, {}, std::nullopt});
   const Predictor predictor(d.observations, d.features, d.repeats, 1);
   Variation corrected = predictor.unvaried();
-  corrected.effects = corrected_effects(d);
-  const bool has_model = !d.decision.best.places.empty();
+  const Settings found = corrections(d);
+  corrected.robot = with_settings(std::move(corrected.robot), d.candidates, found);
+  const bool has_model = !found.empty() && why_impossible(corrected.robot).empty();
   for_each_job(overlays.size(), d.options.jobs, [&](std::size_t i) {
     overlays[i].nominal = predictor.simulate(overlays[i].run, predictor.unvaried());
     if (has_model) overlays[i].corrected = predictor.simulate(overlays[i].run, corrected);

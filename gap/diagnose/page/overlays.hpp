@@ -15,7 +15,7 @@ struct Overlay {
   std::vector<std::size_t> channels; // that show most of the gap in this manoeuvre, of diagnosis_channels()
   std::vector<double> shares;        // of each of these channels, of what is beyond chance in all runs
   runs::Run nominal;
-  std::optional<runs::Run> corrected;  // with the best model, where there is one
+  std::optional<runs::Run> corrected;  // with corrections(), where there are some
 };
 
 // The groups of repeats with most of the gap, as many as a page has room for, in the order of the dataset.

@@ -8,7 +8,6 @@
 #include "gap/diagnose/page/figures.hpp"
 #include "gap/diagnose/page/sections.hpp"
 #include "gap/diagnose/page/words.hpp"
-#include "gap/diagnose/report.hpp"
 #include "gap/plot/row_chart.hpp"
 
 namespace kenaf::gap {
@@ -23,12 +22,13 @@ struct ChannelResidual {
   double share, before, after, floor;  // the last three in the channel's unit; after: NaN where there is no model
 };
 
-std::vector<ChannelResidual> residuals_of(const Diagnosis& d) {
+std::vector<ChannelResidual> channel_residuals(const StageDiagnosis& stage) {
   std::vector<ChannelResidual> result;
-  for (const ChannelGap& gap : d.where.channels) {
-    const bool has_after = !d.best.empty() && gap.channel < d.gap.after_si.size();
+  const bool has_model = !stage.decision.best.model.places.empty();
+  for (const ChannelGap& gap : stage.where.channels) {
+    const bool has_after = has_model && gap.channel < stage.after_si.size();
     result.push_back({&diagnosis_channels()[gap.channel], gap.share, gap.rms,
-                      has_after ? d.gap.after_si[gap.channel] : kNaN, gap.floor});
+                      has_after ? stage.after_si[gap.channel] : kNaN, gap.floor});
   }
   return result;
 }
@@ -72,16 +72,19 @@ std::string table_of(const std::vector<ChannelResidual>& residuals) {
 
 }  // namespace
 
-std::string residual_section(const Diagnosis& d) {
-  std::string html = section_head("residuals", "Residuals before and after");
-  const std::vector<ChannelResidual> residuals = residuals_of(d);
-  if (residuals.empty()) return html + paragraph("They were not measured before the diagnosis ended.");
+std::string residual_part(const Diagnosis& d, const StageDiagnosis& stage) {
+  const std::vector<ChannelResidual> residuals = channel_residuals(stage);
+  if (residuals.empty()) return {};
+  std::string html = "<h3>Residuals of each channel</h3>\n";
   html += paragraph(
       fmt::format(
-          "Measured minus simulated, averaged over {} s each. Noise is what repeats and sensors leave open, and what "
-          "the simulation does. Before: nominal. After: with the best model fitted to other runs than the one it "
-          "is compared with.",
-          d.options.span_s),
+          "Measured minus simulated, averaged over {} s each. Noise: what repeats and sensors leave open, and what the "
+          "simulation does. Before: nominal. After: with the best model fitted to other runs than the one it is "
+          "compared with.{}",
+          d.options.span_s,
+          stage.passage == Passage::body_to_sensor
+              ? " Of this stage, a gyro's residual is how much faster it turns than the angles do."
+              : ""),
       "soft");
   return html + channel_figure(d, residuals) + table_of(residuals);
 }

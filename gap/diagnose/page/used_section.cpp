@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/page/figures.hpp"
@@ -52,34 +53,37 @@ std::string warnings_list(const Diagnosis& d) {
   return html + "</ul>\n";
 }
 
+// Of each channel in the first stage that compares it.
 std::string noise_table(const Diagnosis& d) {
   Table table{{"channel", "unit", "noise", "stated by the dataset, of a sample"}, {}, {0, 1}};
-  for (std::size_t c = 0; c < d.nominal_floor.sigma.size() && c < diagnosis_channels().size(); ++c) {
-    if (d.nominal_floor.sigma[c] <= 0) continue;
+  for (std::size_t c = 0; c < diagnosis_channels().size(); ++c) {
+    const auto stage = std::ranges::find_if(d.stages, [&](const StageDiagnosis& s) {
+      return c < s.nominal_floor.sigma.size() && s.nominal_floor.sigma[c] > 0;
+    });
+    if (stage == d.stages.end()) continue;
     const Channel& channel = diagnosis_channels()[c];
     const auto stated = d.observations.dataset.noise.find(std::string(channel.column));
-    table.rows.push_back({std::string(channel.column), std::string(channel.unit), figure(d.nominal_floor.sigma[c]),
+    table.rows.push_back({std::string(channel.column), std::string(channel.unit), figure(stage->nominal_floor.sigma[c]),
                           stated == d.observations.dataset.noise.end() ? "-" : figure(stated->second)});
   }
   if (table.rows.empty()) return {};
   return paragraph(fmt::format(
-             "Noise of a mean over {} s, 1 sigma, {}; never less than a resolution chosen for each channel:",
-             d.options.span_s,
-             d.nominal_floor.from_repeats
-                 ? "from how repeats differ"
-                 : "as stated by the dataset where it is, else from the runs themselves, as none repeats another (less "
-                   "sure: a gap makes it larger)")) +
+             "Noise of a mean over {} s, standard deviation, {}; never less than a resolution chosen for each "
+             "channel:",
+             d.options.span_s, noise_source(d))) +
          to_html(table);
 }
 
 std::string options_text(const Diagnosis& d) {
   const DiagnosisOptions& options = d.options;
   return fmt::format(
-      "Robot: {}. {}Seed of resampling: {}. Bins of {} s, stretches of {} s. Chance of a verdict other than none where "
+      "Robot: {}. {}{}Seed of resampling: {}. Bins of {} s, stretches of {} s. Chance of a verdict other than none "
+      "where "
       "there is no gap: {}. Simulated runs: {}.",
       d.observations.robot_name.empty() ? "-" : d.observations.robot_name,
-      options.without.empty() ? "" : fmt::format("Taken out of the catalogue: {}. ", enumeration(options.without)),
-      options.seed, options.span_s, options.stretch_s, options.decision.false_alarm, d.roll_outs);
+      options.without.empty() ? "" : fmt::format("Left out: {}. ", enumeration(options.without)),
+      options.effects.empty() ? "" : fmt::format("Own effects: {}. ", options.effects.string()), options.seed,
+      options.span_s, options.stretch_s, options.decision.false_alarm, d.roll_outs);
 }
 
 }  // namespace
@@ -87,29 +91,46 @@ std::string options_text(const Diagnosis& d) {
 std::string next_section(const Diagnosis& d) {
   std::string html = section_head("next", "What to drive next");
   if (!d.options.propose_next) return html + paragraph("It was not asked for.");
-  if (d.next.empty()) {
-    if (!d.interrupted.empty() || d.next_interrupted)
-      return html + paragraph("It was not worked out before the diagnosis ended.");
+  if (d.next.empty())
     return html +
            paragraph(
-               "Nothing has to be told apart. Any manoeuvre that is not in this dataset is a test of the verdict.");
-  }
+               !d.interrupted.empty()
+                   ? "It was not worked out before the diagnosis ended."
+                   : "These runs leave no choice between effects that a manoeuvre could decide. Any manoeuvre that "
+                     "is not in this dataset is a test of the verdict.");
+  html += paragraph(fmt::format("It is to tell {} apart. {}.", enumeration(candidate_names(d, to_be_told_apart(d))),
+                                with_capital(advice_in_words(d.next))));
   html += paragraph(
-      fmt::format("It is to tell apart {}. Each shipped manoeuvre is scored by how far the two that are hardest "
-                  "to tell apart would differ in one run of it, in floors; below about 3, one run will "
-                  "hardly decide.",
-                  enumeration(curve_names(d, d.next.front().separates))));
+      "Score: by how many standard deviations the two that are hardest to tell apart would differ in one run. Risks "
+      "are "
+      "as simulated, the worst of the robots that are still possible: they put manoeuvres in order and are no "
+      "guarantee.",
+      "soft");
   plot::RowChart chart;
   chart.title = "How well one run of a manoeuvre would tell the candidates apart";
-  chart.x_label = "expected difference (floors)";
-  for (std::size_t i = 0; i < std::min(kMostNext, d.next.size()); ++i)
-    chart.rows.push_back({d.next[i].manoeuvre,
-                          {{d.next[i].expected_score, plot::Shape::bar, plot::Ink::real}},
-                          fmt::format("{:.1f}", d.next[i].expected_score)});
-  chart.guides = {{3, "3 floors"}};
+  chart.x_label = "expected difference (standard deviations)";
+  Table table{{"manoeuvre", "world", "lasts (s)", "score", "tilt (degrees)", "fall (mm)", "impact (m/s^2)",
+               "of the stall current", "suffices"},
+              {},
+              {0, 1, 8}};
+  for (std::size_t i = 0; i < std::min(kMostNext, d.next.size()); ++i) {
+    const ProposedManoeuvre& next = d.next[i];
+    chart.rows.push_back({next.manoeuvre,
+                          {{next.expected_score, plot::Shape::bar, plot::Ink::real, {}}},
+                          fmt::format("{:.1f}", next.expected_score)});
+    table.rows.push_back({next.manoeuvre, next.world, fmt::format("{:.0f}", next.duration_s),
+                          fmt::format("{:.1f}", next.expected_score),
+                          fmt::format("{:.0f}", next.risk.largest_tilt_rad * 180 / std::numbers::pi),
+                          fmt::format("{:.0f}", next.risk.fall_m * 1000), figure(next.risk.impact_mps2),
+                          percent(next.risk.current_share),
+                          next.risk.fails ? "no, the robot may turn over"
+                          : next.suffices ? "yes"
+                                          : "no"});
+  }
+  chart.guides = {{kSuffices, "suffices"}};
   chart.note_px = 60;
   chart.width_px = kWide_px;
-  return html + to_svg(chart);
+  return html + to_svg(chart) + to_html(table);
 }
 
 std::string used_section(const Diagnosis& d, std::span<const Overlay> overlays) {
@@ -122,25 +143,27 @@ std::string used_section(const Diagnosis& d, std::span<const Overlay> overlays) 
 
 std::string method_section(const Diagnosis& d) {
   return section_head("method", "How it was found, and what it cannot say") +
-         paragraph(fmt::format(
-             "The commands of each run are given to the simulated robot from the place where the "
-             "real one stood, and the means "
-             "of each channel over {} s are compared at the same times. Differences are counted in "
-             "units of noise, which "
-             "comes from repeats, and of what the simulation itself leaves open: the exact start, "
-             "the contact's stiffness "
-             "and damping, the time step, the solver's iterations. Each effect of the catalogue is simulated "
-             "along its range and "
-             "fitted, alone and together with others. How much a fit is worth is measured on runs "
-             "that it has not seen. What chance "
-             "alone does is drawn "
-             "from the noise.",
-             d.options.span_s)) +
-         "<ul>\n<li>A cause outside of the catalogue can look like one inside of it, if it does the same to these "
+         paragraph(
+             fmt::format("The commands of each run are given to the simulated robot from the place where the "
+                         "real one stood, and the means "
+                         "of each channel over {} s are compared at the same times. Differences are counted in "
+                         "units of noise, which "
+                         "comes from repeats, and of what the simulation itself leaves open: the exact start, "
+                         "the contact's stiffness "
+                         "and damping, the time step, the solver's iterations. Each effect of the catalogue and each "
+                         "number of the description is simulated "
+                         "along its range and "
+                         "fitted, alone and together with others, in each stage by itself: the body is compared in a "
+                         "simulation whose tracks turn as they were measured. What the simulation cannot do "
+                         "makes evidence weaker and intervals wider. How much a fit is worth is measured on runs "
+                         "that it has not seen.",
+                         d.options.span_s)) +
+         "<ul>\n<li>A cause that is no candidate can look like one that is, if it does the same to these "
          "runs.</li>\n" +
-         fmt::format("<li>No more than {} effects are fitted together; more come out as unknown.</li>\n",
+         fmt::format("<li>No more than {} effects are fitted together in a stage; what others do is left.</li>\n",
                      d.options.decision.most_effects) +
-         "<li>An interval covers noise, the choice of runs and the simulation's numerics; not that the model is "
+         "<li>An interval covers noise, differences between manoeuvres and what the model leaves; not that the cause "
+         "is "
          "another one.</li>\n"
          "<li>Where no run repeats another, the noise is taken from the runs themselves, and small gaps pass as "
          "noise.</li>\n"

@@ -6,8 +6,6 @@
 #include "gap/diagnose/page/figures.hpp"
 #include "gap/diagnose/page/sections.hpp"
 #include "gap/diagnose/page/words.hpp"
-#include "gap/diagnose/report.hpp"
-#include "gap/plot/row_chart.hpp"
 #include "gap/plot/strip_chart.hpp"
 
 namespace kenaf::gap {
@@ -16,15 +14,19 @@ namespace {
 constexpr std::size_t kMostPhases = 12;  // in the table
 constexpr double kStays_m = 0.1;         // too small a motion for a map
 
-double share_left(const Diagnosis& d) {
-  return d.where.beyond_chance > 0 ? d.where_left.beyond_chance / d.where.beyond_chance : 0;
+double share_left(const StageDiagnosis& stage) {
+  return stage.where.beyond_chance > 0 ? stage.where_left.beyond_chance / stage.where.beyond_chance : 0;
+}
+
+bool shows_after(const StageDiagnosis& stage) {
+  return !stage.decision.best.model.places.empty();
 }
 
 // `scale`: of shares, to shares of the gap before.
-std::string time_map(const Diagnosis& d, std::span<const Overlay> overlays, const GapPlaces& where, double scale,
-                     std::string_view title) {
+std::string time_map(const Diagnosis& d, std::span<const Overlay> overlays, const StageDiagnosis& stage,
+                     const GapPlaces& where, double scale, std::string_view title) {
   double most = 0;
-  for (const PhaseGap& phase : d.where.phases) most = std::max(most, phase.share);
+  for (const PhaseGap& phase : stage.where.phases) most = std::max(most, phase.share);
   plot::StripChart chart;
   chart.title = title;
   chart.x_label = "t (s)";
@@ -46,51 +48,20 @@ std::string time_map(const Diagnosis& d, std::span<const Overlay> overlays, cons
   return to_svg(chart);
 }
 
-std::string phase_table(const Diagnosis& d) {
+std::string phase_table(const Diagnosis& d, const StageDiagnosis& stage) {
   Table table{
       {"manoeuvre", "phase", "from (s)", "to (s)", "x (m)", "y (m)", "share of the gap", "left after"}, {}, {0, 1}};
-  for (const PhaseGap& phase : d.where.phases) {
+  for (const PhaseGap& phase : stage.where.phases) {
     if (table.rows.size() == kMostPhases || phase.share < 0.005) break;
-    const auto left = std::ranges::find_if(d.where_left.phases, [&](const PhaseGap& other) {
+    const auto left = std::ranges::find_if(stage.where_left.phases, [&](const PhaseGap& other) {
       return other.group == phase.group && other.from_s == phase.from_s;
     });
-    const bool known = !d.best.empty() && left != d.where_left.phases.end();
+    const bool known = shows_after(stage) && left != stage.where_left.phases.end();
     table.rows.push_back({group_title(d, phase.group), std::string(phase.phase), fmt::format("{:.1f}", phase.from_s),
                           fmt::format("{:.1f}", phase.to_s), figure(phase.x_m), figure(phase.y_m), percent(phase.share),
-                          known ? percent(left->share * share_left(d)) : "-"});
+                          known ? percent(left->share * share_left(stage)) : "-"});
   }
   return to_html(table);
-}
-
-std::string stages_figure(const Diagnosis& d) {
-  plot::RowChart chart;
-  chart.title = "The gap of each passage from command to sensor, without the passages before it";
-  chart.x_label = "squared difference over what chance gives (1: chance)";
-  std::vector<std::string> unmeasured;
-  for (const StageGap& stage : d.stages) {
-    if (stage.bins == 0) {
-      unmeasured.emplace_back(passage_name(stage.passage));
-      continue;
-    }
-    const bool beyond = stage.chance > kStageChance;
-    chart.rows.push_back({std::string(passage_name(stage.passage)),
-                          {{stage.chance, beyond ? plot::Shape::disc : plot::Shape::ring, plot::Ink::sim}},
-                          figure(stage.chance)});
-  }
-  std::string html;
-  if (!chart.rows.empty()) {
-    chart.legend = {{plot::Shape::disc, plot::Ink::sim, "has a gap of its own"},
-                    {plot::Shape::ring, plot::Ink::sim, "has none beyond chance"}};
-    chart.guides = {{kStageChance, "beyond chance"}};
-    chart.logarithmic = true;
-    chart.label_px = 140;
-    chart.note_px = 80;
-    chart.width_px = kWide_px;
-    html += to_svg(chart);
-  }
-  if (!unmeasured.empty())
-    html += paragraph(fmt::format("Not measured by these runs: {}.", enumeration(unmeasured)), "soft");
-  return html;
 }
 
 bool moves(const plot::Chart& chart) {
@@ -101,11 +72,11 @@ bool moves(const plot::Chart& chart) {
   return (high - low).maxCoeff() > kStays_m;
 }
 
-std::string maps(const Diagnosis& d, std::span<const Overlay> overlays) {
+std::string maps(const Diagnosis& d, std::span<const Overlay> overlays, const StageDiagnosis& stage) {
   std::string figures;
   std::vector<std::string> staying;
   for (const Overlay& overlay : overlays) {
-    const plot::Chart chart = places_figure(d, overlay);
+    const plot::Chart chart = places_figure(d, overlay, stage);
     if (moves(chart))
       figures += to_svg(chart);
     else
@@ -116,7 +87,7 @@ std::string maps(const Diagnosis& d, std::span<const Overlay> overlays) {
     html +=
         paragraph(fmt::format("In the world: a circle's area is the share of the gap in a phase, at the place in its "
                               "middle. Rings: before{}.",
-                              d.best.empty() ? "" : "; discs: after, of the same scale"),
+                              shows_after(stage) ? "; discs: after, of the same scale" : ""),
                   "soft") +
         "<div class=\"figures\">\n" + figures + "</div>\n";
   if (!staying.empty())
@@ -128,26 +99,32 @@ std::string maps(const Diagnosis& d, std::span<const Overlay> overlays) {
 }  // namespace
 
 std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays) {
-  std::string html = section_head("where", "Where the gap is");
-  if (d.where.phases.empty() || overlays.empty())
-    return html + paragraph("Nothing was located before the diagnosis ended.");
-  if (d.where.beyond_chance <= 0) return html + paragraph("Nowhere: no stretch of any channel is beyond chance.");
-  const bool none = d.interrupted.empty() && d.decision.verdict == Verdict::none;
-  html += paragraph(none ? "There is no gap; shares are of the little that differs beyond the average of chance."
-                         : fmt::format("Stage at which it comes in: {}.", gap_stage(d)));
-  html += stages_figure(d);
+  std::string html = section_head("where", "Where the gap is, in time and place");
+  const std::optional<std::size_t> main = main_stage(d);
+  if (!main || overlays.empty()) return html + paragraph("Nothing was located before the diagnosis ended.");
+  const std::vector<std::size_t> stages = stages_with_gap(d);
+  if (stages.empty()) return html + paragraph("Nowhere: no stage has a gap.");
   html += paragraph(
       fmt::format("Phases are found from the data. The gap is counted in stretches of {} s of each channel, so "
                   "a shorter phase takes part of its neighbours' gap.",
                   d.options.stretch_s),
       "soft");
-  html += time_map(d, overlays, d.where, 1,
-                   "Where over time, before: the phases of each manoeuvre by their share of the gap");
-  if (!d.best.empty())
-    html += time_map(
-        d, overlays, d.where_left, share_left(d),
-        fmt::format("Where over time, after: what is left, {} of the squared gap before", percent(share_left(d))));
-  return html + phase_table(d) + maps(d, overlays);
+  for (const std::size_t s : stages) {
+    const StageDiagnosis& stage = d.stages[s];
+    html += fmt::format("<h3>{}</h3>\n", with_capital(from_to(stage.passage)));
+    if (stage.where.beyond_chance <= 0) {
+      html += paragraph("No stretch of any channel by itself is beyond chance.");
+      continue;
+    }
+    html +=
+        time_map(d, overlays, stage, stage.where, 1, "Before: the phases of each manoeuvre by their share of the gap");
+    if (shows_after(stage))
+      html += time_map(d, overlays, stage, stage.where_left, share_left(stage),
+                       fmt::format("After: what is left, {} of the squared gap before", percent(share_left(stage))));
+    html += phase_table(d, stage);
+    if (s == *main) html += maps(d, overlays, stage);
+  }
+  return html;
 }
 
 }  // namespace kenaf::gap

@@ -1,38 +1,22 @@
-// How the page names and writes things.
+// How the page writes things; what it calls them is in gap/diagnose/report_words.hpp.
 // Thread safety: pure functions.
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "gap/diagnose/diagnosis.hpp"
+#include "gap/diagnose/report_words.hpp"
 
 namespace kenaf::gap {
 
-// With three significant digits; "-" where it is not known.
-std::string figure(double value);
-// A share, as "71 %", small ones as "0.4 %".
-std::string percent(double share);
 // A probability, "< 0.0001" at least.
 std::string probability(double p);
-// " m/s"; nothing for a ratio.
-std::string unit_suffix(std::string_view unit);
-
-// "0.0513 s (0.0498 to 0.0528)".
-std::string interval_text(const Interval& interval, std::string_view unit);
-std::string percent_interval(const Interval& share);
-
-// "drive_lag lag_s", of a curve.
-std::string parameter_name(const EffectCurve& curve);
-// "a, b and c".
-std::string enumeration(std::span<const std::string> names, std::string_view last_word = "and");
-std::vector<std::string> curve_names(const Diagnosis& d, std::span<const std::size_t> curves);
 
 // An element with escaped text.
 std::string paragraph(std::string_view text, std::string_view classes = {});
 std::string section_head(std::string_view id, std::string_view title);
+std::string with_capital(std::string text);  // its first letter
 
 // A table whose first column is text and the others are figures; cells are escaped.
 struct Table {

@@ -1,0 +1,50 @@
+// How large gaps look in the runs of a case.
+// Thread safety: one thread at a time; calculates with as many as it is given. Deterministic.
+#pragma once
+
+#include <atomic>
+#include <string>
+
+#include "gap/challenge/compared_runs.hpp"
+#include "gap/challenge/plan.hpp"
+#include "gap/temporary_folder.hpp"
+
+namespace kenaf::gap {
+
+struct Size {
+  double floors = 0;            // rms over all channels, over that of repeats of a robot without gap
+  double times_background = 0;  // 0 without a background
+
+  double planned_as(const CasePlan& plan) const { return plan.is_imperfect() ? times_background : floors; }
+};
+
+// Of the manoeuvres of a plan, driven by a robot in which nothing is hidden.
+class CaseScale {
+ public:
+  // Throws Stopped soon after `stop`, if there is one, is true, as all others do.
+  CaseScale(const CasePlan& plan, unsigned jobs, const std::atomic<bool>* stop);
+
+  double background_floors() const { return background_floors_; }
+  // Of what effects do to the robot of the background.
+  Size size_of(const physics::Effects& effects);
+  Size size_of_foreign(const std::string& foreign, double amount);
+  // Of what is hidden outside the catalogue.
+  LookAlike look_alike_of(const CasePlan& plan);
+
+ private:
+  Size size_of(const Differences& shifts) const;
+  Differences shift_of(const physics::Effects& effects);
+  Differences shift_of_foreign(const std::string& foreign, double amount);
+
+  unsigned jobs_;
+  const std::atomic<bool>* stop_;
+  TemporaryFolder folder_;
+  physics::RobotDescription robot_;  // of the background
+  ComparedRuns runs_;
+  Floors floors_;
+  double floor_rms_ = 1;
+  Differences background_;  // what it shifts, coarsely
+  double background_floors_ = 0;
+};
+
+}  // namespace kenaf::gap

@@ -1,0 +1,43 @@
+// A figure of a score: a share, a mean or a median with its interval, beside its target.
+// Thread safety: values and pure functions.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace kenaf::gap {
+
+struct Figure {
+  std::string_view id, what, target;
+  std::size_t cases = 0;
+  double value = 0, from = 0, to = 0;  // with its 95 % interval; means nothing without cases
+  bool met = false;                    // the value itself, whatever the interval
+  bool is_share = false;               // told in percent
+};
+
+// 95 % interval of a share, after Wilson (1927).
+struct Share {
+  double value, from, to;
+};
+Share wilson(std::size_t hits, std::size_t cases);
+
+struct Count {
+  std::size_t hits = 0, cases = 0;
+  void add(bool hit) {
+    hits += hit ? 1 : 0;
+    ++cases;
+  }
+};
+
+// `target` is met from `least` to `most`.
+Figure share_figure(std::string_view id, std::string_view what, std::string_view target, const Count& count,
+                    double least, double most);
+// Of the mean of absolute differences, met where it is at most `most`.
+Figure difference_figure(std::string_view id, std::string_view what, std::string_view target,
+                         const std::vector<double>& differences, double most);
+// Its interval by ranks, which asks nothing of how the values are spread.
+Figure median_figure(std::string_view id, std::string_view what, std::string_view target, std::vector<double> values,
+                     double least, double most);
+
+}  // namespace kenaf::gap

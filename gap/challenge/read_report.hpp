@@ -1,0 +1,45 @@
+// What a report.json says, as far as it is scored.
+// Thread safety: values and pure functions.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kenaf::gap {
+
+struct ReadEffect {
+  std::string effect, parameter;
+  double value = 0, from = 0, to = 0;                          // its 95 % interval
+  double explains = std::numeric_limits<double>::quiet_NaN();  // share of the stage's squared gap
+};
+
+struct ReadStage {
+  std::string stage;    // "command to drive"; empty of a report of version 1, which tells all stages as one
+  std::string verdict;  // "none", "named", "ambiguous", "unknown"
+  std::vector<std::string> named;
+  std::vector<std::vector<std::string>> ambiguous_sets;
+  std::vector<ReadEffect> effects;
+  double shrink = std::numeric_limits<double>::quiet_NaN();  // on held-out runs
+};
+
+struct ReadReport {
+  std::string verdict;
+  std::vector<std::string> named;                         // of all stages together
+  std::vector<std::vector<std::string>> ambiguous_sets;  // likewise
+  bool complete = false;
+  std::vector<ReadStage> stages;
+  bool interrupted = false;  // then its verdict is none that counts
+  // The isolability table.
+  std::vector<std::string> table;
+  std::vector<std::vector<double>> angle_deg;
+};
+
+// Throws std::runtime_error in words where it is none of the formats kenaf-gap-report/1 and kenaf-gap-report/2.
+ReadReport report_of(const std::string& report_json);
+// Nothing where there is no such file, as of a diagnosis that failed, or it is what an interrupted one left.
+std::optional<ReadReport> read_report(const std::filesystem::path& report_json);
+
+}  // namespace kenaf::gap

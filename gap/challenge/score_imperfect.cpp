@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <cmath>
+
+#include "gap/challenge/score.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+constexpr double kShareWithin = 0.10;
+
+// In which stage a report has this effect, by name or in a set.
+bool claims(const ReadStage& stage, const std::string& name) {
+  return std::ranges::count(stage.named, name) > 0 ||
+         std::ranges::any_of(stage.ambiguous_sets,
+                             [&](const std::vector<std::string>& set) { return std::ranges::count(set, name) > 0; });
+}
+
+}  // namespace
+
+std::vector<ScoredShare> scored_shares(const ScoredCase& scored) {
+  const CasePlan& plan = scored.sealed.plan;
+  std::vector<ScoredShare> shares;
+  if (is_outside(plan.stratum) || !scored.report) return shares;
+  for (const HiddenEffect& hidden : plan.effects) {
+    const std::string name = reported_name(hidden.effect, hidden.parameter);
+    for (const StageShare& truth : hidden.shares)
+      for (const ReadStage& stage : scored.report->stages) {
+        if (stage.stage != truth.stage || !claims(stage, name)) continue;
+        for (const ReadEffect& read : stage.effects)
+          if (read.effect == hidden.effect && read.parameter == hidden.parameter && !std::isnan(read.explains))
+            shares.push_back({name, stage.stage, read.explains, truth.share});
+      }
+  }
+  return shares;
+}
+
+std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
+  Count found, alone, named_apart, pairs, wrong, quiet, no_set, outside, outside_apart, share, covered;
+  std::vector<double> off;
+  for (const ScoredCase& scored : cases) {
+    const Judgement judgement = judge(scored.sealed.plan, scored.report);
+    const Stratum stratum = scored.sealed.plan.stratum;
+    wrong.add(judgement.names_wrong);
+    // a diagnosis that failed says nothing wrong, but nothing right either
+    if (stratum == Stratum::none) {
+      quiet.add(judgement.right);
+      no_set.add(judgement.right && scored.report->ambiguous_sets.empty());
+    }
+    if (is_outside(stratum)) outside.add(judgement.right);
+    if (is_outside(stratum) && judgement.can_be_told_apart) outside_apart.add(judgement.right);
+    for (const ScoredShare& stated : scored_shares(scored))
+      share.add(std::abs(stated.stated - stated.truth) <= kShareWithin);
+    for (const ScoredInterval& interval : scored_intervals(scored)) {
+      covered.add(interval.holds());
+      off.push_back(interval.off());
+    }
+    if (judgement.is_small) continue;
+    if (stratum == Stratum::single) {
+      const bool is_named = judgement.found.front() == Found::named;
+      found.add(judgement.all_found);
+      alone.add(judgement.named_alone);
+      if (judgement.can_be_told_apart) named_apart.add(is_named);
+    }
+    if (stratum == Stratum::pair) pairs.add(judgement.all_found);
+  }
+  return {
+      share_figure("dominating_found", "dominating effects named, alone or in a set", ">= 90 %", found, 0.90, 1),
+      share_figure("dominating_named", "dominating effects that can be told apart, named alone", ">= 80 %", named_apart,
+                   0.80, 1),
+      share_figure("pair_found", "dominating pairs, both named or each in a set", ">= 75 %", pairs, 0.75, 1),
+      share_figure("wrong_name", "reports that name what is not hidden", "<= 2 %", wrong, 0, 0.02),
+      share_figure("background_unnamed", "background alone, no name", ">= 97 %", quiet, 0.97, 1),
+      share_figure("outside_unnamed", "withheld and foreign, no wrong name", ">= 95 %", outside, 0.95, 1),
+      share_figure("share_close", "stated shares of the gap within 0.10 of the true ones", ">= 90 %", share, 0.90, 1),
+      share_figure("interval_covers", "95 % intervals of named effects that hold the value", "90 to 98 %", covered,
+                   0.90, 0.98),
+      median_figure("interval_off", "the middle one of the named values, in half intervals beside the hidden one",
+                    "0.25 to 0.45", off, 0.25, 0.45),
+      share_figure("dominating_only", "dominating effects named, and nothing else claimed", "", alone, 0, 1),
+      share_figure("background_unclaimed", "background alone, neither name nor set", "", no_set, 0, 1),
+      share_figure("outside_apart_unnamed", "withheld and foreign that can be told apart, no wrong name", "",
+                   outside_apart, 0, 1),
+  };
+}
+
+}  // namespace kenaf::gap

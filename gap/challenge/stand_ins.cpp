@@ -1,0 +1,60 @@
+#include "gap/challenge/stand_ins.hpp"
+
+#include <map>
+
+namespace kenaf::gap {
+namespace {
+
+struct StandIn {
+  std::string_view effect, other;
+};
+constexpr StandIn kStandIns[] = {
+    // two small first-order lags in a row lag like one of their sum
+    {"drive_lag", "drive.time_constant_s"},
+    // the effect is of the flippers' belts too, but these are off the ground most of the time
+    {"friction_along", "track.friction_along"},
+    {"friction_across", "track.friction_across"},
+    // a pose that is reported late has a clock that is behind, for all that a log shows
+    {"tracking_delay", "clock_offset"},
+    {"clock_offset", "tracking_delay"},
+};
+
+const std::vector<Candidate>& numbers() {
+  static const std::vector<Candidate> numbers = description_candidates(physics::load_robot(kChallengedRobot));
+  return numbers;
+}
+
+}  // namespace
+
+std::vector<std::string> withheld_names(const CasePlan& plan) {
+  std::vector<std::string> names;
+  if (plan.stratum != Stratum::withheld) return names;
+  for (const HiddenEffect& hidden : plan.effects) {
+    names.push_back(hidden.effect);
+    for (const StandIn& stand_in : kStandIns)
+      if (stand_in.effect == hidden.effect) names.emplace_back(stand_in.other);
+  }
+  return names;
+}
+
+std::vector<std::string> numbers_like(std::string_view effect) {
+  std::vector<std::string> keys;
+  for (const Candidate& number : numbers())
+    if (number.same_as == effect) keys.push_back(number.name);
+  for (const StandIn& stand_in : kStandIns)
+    if (stand_in.effect == effect && physics::find_effect(stand_in.other) == nullptr) keys.emplace_back(stand_in.other);
+  return keys;
+}
+
+std::string same_effect(const std::string& name) {
+  static const std::map<std::string, std::string> same = [] {
+    std::map<std::string, std::string> result;
+    for (const Candidate& number : numbers())
+      if (!number.same_as.empty()) result[number.name] = number.same_as;
+    return result;
+  }();
+  const auto found = same.find(name);
+  return found == same.end() ? name : found->second;
+}
+
+}  // namespace kenaf::gap

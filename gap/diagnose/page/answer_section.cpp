@@ -1,0 +1,216 @@
+// The first screen, for somebody who sees such a page for the first time.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/page/sections.hpp"
+#include "gap/diagnose/page/words.hpp"
+#include "gap/diagnose/report.hpp"
+#include "gap/plot/chart.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+using plot::escaped;
+
+constexpr std::size_t kMostLeftSaid = 2;  // of each stage; its section has all
+
+std::string_view stage_meaning(Passage passage) {
+  switch (passage) {
+    case Passage::command_to_drive:
+      return "tracks and flippers turn otherwise than the same commands make them turn in the simulation";
+    case Passage::drive_to_body:
+      return "the body moves otherwise than the same turns of its tracks move it in the simulation";
+    case Passage::body_to_sensor:
+      return "a sensor reports another motion than the body makes";
+  }
+  return {};
+}
+
+std::string bullets(const std::vector<std::string>& items) {
+  if (items.size() == 1) return "<p>" + items.front() + "</p>";
+  return fmt::format("<ul>\n<li>{}</li>\n</ul>", fmt::join(items, "</li>\n<li>"));
+}
+
+// One row for each stage, with its share of the gap as a bar: what the best model takes off and what is left.
+std::string stages_at_a_glance(const Diagnosis& d) {
+  std::string html =
+      "<table class=\"glance\">\n<tr><th class=\"text\">stage</th><th class=\"text\">share of the whole gap</th>"
+      "<th class=\"text\">verdict</th><th class=\"text\">explained</th></tr>\n";
+  for (std::size_t s = 0; s < d.stages.size(); ++s) {
+    const StageDiagnosis& stage = d.stages[s];
+    const double share = share_of_gap(d, s), gone = explained(stage);
+    const bool has_gap = stage.decision.verdict != Verdict::none;
+    const double gone_part = std::isnan(gone) ? 0 : share * gone;
+    const NamesFound names = names_found(stage);
+    std::string verdict = has_gap ? std::string(verdict_name(stage.decision.verdict)) : "no gap";
+    if (!names.empty()) verdict += ": " + names_in_words(d, names);
+    html += fmt::format(
+        "<tr><td class=\"text\"><a href=\"#{}\">{}</a></td><td class=\"text\"><span class=\"bar\"><span class=\"gone\" "
+        "style=\"width:{:.1f}%\"></span><span class=\"left\" style=\"width:{:.1f}%\"></span></span> {}</td>"
+        "<td class=\"text wrap\">{}</td><td class=\"text\">{}</td></tr>\n",
+        stage_id(stage.passage), passage_name(stage.passage), 100 * gone_part, 100 * (share - gone_part),
+        has_gap ? percent(share) : "", escaped(verdict), has_gap ? percent_interval(explained_interval(stage)) : "");
+  }
+  return html +
+         "</table>\n<p class=\"soft key\"><span class=\"gone\"></span> the best model takes it off, on runs that it "
+         "was "
+         "not fitted to <span class=\"left\"></span> is left</p>\n";
+}
+
+std::string where_is_it(const Diagnosis& d) {
+  const std::vector<std::size_t> stages = stages_with_gap(d);
+  std::vector<std::string> items;
+  for (const std::size_t s : stages) {
+    const StageDiagnosis& stage = d.stages[s];
+    std::string item = fmt::format("{} of it is <b>{}</b>: {}", percent(share_of_gap(d, s)), from_to(stage.passage),
+                                   stage_meaning(stage.passage));
+    if (!stage.where.channels.empty() && stage.where.channels.front().share > 0)
+      item += fmt::format("; most of that in {}", diagnosis_channels()[stage.where.channels.front().channel].column);
+    if (!stage.where.phases.empty() && stage.where.phases.front().share > 0) {
+      const PhaseGap& phase = stage.where.phases.front();
+      item += fmt::format(", and {} of that in \"{}\" of {}", percent(phase.share), phase.phase,
+                          escaped(group_title(d, phase.group)));
+    }
+    items.push_back(with_capital(item) + ".");
+  }
+  return items.empty() ? "<p>Nowhere.</p>" : bullets(items);
+}
+
+std::string effect_item(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect) {
+  const Candidate& candidate = d.candidates[effect.candidate];
+  std::string item =
+      fmt::format("<b>{}</b>: {}", escaped(candidate.name), escaped(value_in_words(candidate, effect.value)));
+  if (effect.doubts.empty() && effect.rivals.size() > 1)
+    item += fmt::format("; {} would explain it as well",
+                        escaped(enumeration(candidate_names(d, std::span(effect.rivals).subspan(1)), "or")));
+  if (!effect.doubts.empty())
+    item += escaped(fmt::format("; no name for it: {}", fmt::join(doubts_in_words(d, stage, effect), "; ")));
+  if (!candidate.summary.empty()) item += fmt::format(". <span class=\"soft\">{}</span>", escaped(candidate.summary));
+  return item;
+}
+
+std::string which_effects(const Diagnosis& d) {
+  std::vector<std::string> items;
+  for (const std::size_t s : stages_with_gap(d)) {
+    const StageDiagnosis& stage = d.stages[s];
+    for (const bool named : {true, false})
+      for (const NamedEffect& effect : stage.decision.effects)
+        if (effect.doubts.empty() == named)
+          items.push_back(fmt::format("{}: {}", with_capital(from_to(stage.passage)), effect_item(d, stage, effect)));
+    if (!names_found(stage).empty()) continue;
+    std::string item = fmt::format("{}: no effect is named", with_capital(from_to(stage.passage)));
+    if (const std::vector<std::string> alone = best_alone(d, stage); !alone.empty())
+      item += fmt::format("; what takes off most of the gap by itself: {}", escaped(enumeration(alone)));
+    items.push_back(item + ".");
+  }
+  return items.empty() ? "<p>None has to.</p>" : bullets(items);
+}
+
+std::string how_much(const Diagnosis& d) {
+  std::vector<std::string> items;
+  for (const std::size_t s : stages_with_gap(d)) {
+    const StageDiagnosis& stage = d.stages[s];
+    std::string item = fmt::format("{}: {}", with_capital(from_to(stage.passage)), gap_in_words(d, stage));
+    if (!stage.decision.best.model.places.empty())
+      item += fmt::format(". That explains <b>{}</b> of the squared gap", percent_interval(explained_interval(stage)));
+    std::vector<std::string> channels;
+    for (std::size_t c = 0; c < std::min<std::size_t>(1, stage.where.channels.size()); ++c) {
+      const std::size_t channel = stage.where.channels[c].channel;
+      if (channel >= stage.before_si.size() || std::isnan(stage.before_si[channel])) continue;
+      const Channel& shown = diagnosis_channels()[channel];
+      const bool has_after = channel < stage.after_si.size() && !stage.decision.best.model.places.empty();
+      item += has_after ? fmt::format("; {}: {} {} before, {} after, rms", shown.column,
+                                      figure(stage.before_si[channel]), shown.unit, figure(stage.after_si[channel]))
+                        : fmt::format("; {}: {} {} rms", shown.column, figure(stage.before_si[channel]), shown.unit);
+    }
+    items.push_back(item + ".");
+  }
+  return items.empty() ? "<p>There is nothing to explain.</p>" : bullets(items);
+}
+
+std::string what_is_left(const Diagnosis& d) {
+  std::vector<std::string> items;
+  for (const std::size_t s : stages_with_gap(d)) {
+    const StageDiagnosis& stage = d.stages[s];
+    std::string item = fmt::format("{}: {}", with_capital(from_to(stage.passage)), left_in_words(stage));
+    if (!stage.decision.complete && stage.left_over.empty()) item += ", and it goes with nothing that was measured";
+    for (std::size_t i = 0; !stage.decision.complete && i < std::min(kMostLeftSaid, stage.left_over.size()); ++i) {
+      const Dependence& dependence = stage.left_over[i];
+      item += fmt::format(". {}", escaped(with_capital(dependence.words)));
+      if (!dependence.look_at.empty())
+        item += fmt::format(": look at {}", escaped(enumeration(dependence.look_at, "or")));
+    }
+    items.push_back(item + ".");
+  }
+  return items.empty() ? "<p>Nothing beyond noise and what repeats differ by.</p>" : bullets(items);
+}
+
+std::string what_next(const Diagnosis& d) {
+  std::vector<std::string> items;
+  const RobotFile robot = robot_file(d);
+  switch (d.verdict) {
+    case Verdict::none:
+      return "<p>Use the simulator as it is for motions like these. What these manoeuvres do not show can still be "
+             "there: to "
+             "look for it, drive others, or the same ones more often.</p>";
+    case Verdict::named:
+      items.emplace_back(
+          d.complete ? "Use <b>robot.toml</b>, beside this page, in place of the description: it has the named "
+                       "effects switched on. Then drive something new and diagnose that with robot.toml: there "
+                       "should be no gap."
+                     : "Use <b>robot.toml</b>, beside this page, in place of the description: it has the named "
+                       "effects switched on, and says at its top what it does not contain. Diagnose new runs with "
+                       "it to look for what is left.");
+      break;
+    case Verdict::ambiguous:
+      items.emplace_back(
+          "<b>robot.toml</b>, beside this page, reproduces these runs better than the description. As these "
+          "runs cannot tell which effect it is, it may be wrong in other motions.");
+      break;
+    case Verdict::unknown:
+      if (!robot.name.empty())
+        items.emplace_back(
+            "<b>robot.candidate.toml</b>, beside this page, has the best model: it comes nearer to these runs, "
+            "but it need not be the cause. There is no robot.toml.");
+      items.emplace_back(
+          "Check, on the way from command to sensor, where the gap first is: the robot's description, the "
+          "world's dimensions, the units of the log and its time stamps.");
+      break;
+  }
+  if (!robot.fault.empty())
+    items = {fmt::format("No robot.toml was written, as the values together make no robot: {}.", escaped(robot.fault))};
+  if (!d.next.empty())
+    items.push_back(fmt::format("To tell {} apart: {}.", escaped(enumeration(candidate_names(d, to_be_told_apart(d)))),
+                                escaped(advice_in_words(d.next))));
+  else if (d.verdict == Verdict::ambiguous)
+    items.emplace_back("Drive a manoeuvre in which they would differ, add its runs to the dataset and diagnose again.");
+  return bullets(items);
+}
+
+std::string answer(std::string_view question, std::string_view html) {
+  return fmt::format("<dt>{}</dt>\n<dd>{}</dd>\n", question, html);
+}
+
+}  // namespace
+
+std::string answer_section(const Diagnosis& d) {
+  const bool finished = d.interrupted.empty();
+  std::string html = fmt::format("<section class=\"verdict\">\n<p class=\"word\">{}</p>\n<h1>{}</h1>\n",
+                                 finished ? verdict_name(d.verdict) : "unfinished", escaped(with_capital(headline(d))));
+  if (!finished)
+    html += paragraph(
+        "The diagnosis was stopped before its end. What follows is what was known by then; there is no verdict, "
+        "and nothing that is missing counts as not found. Run it again and let it end.");
+  if (!d.stages.empty()) html += stages_at_a_glance(d);
+  if (finished && !d.stages.empty())
+    html += "<dl>\n" + answer("Where is the gap?", where_is_it(d)) + answer("Which effects?", which_effects(d)) +
+            answer("How much?", how_much(d)) + answer("What is left?", what_is_left(d)) +
+            answer("What next?", what_next(d)) + "</dl>\n";
+  return html + "</section>\n";
+}
+
+}  // namespace kenaf::gap

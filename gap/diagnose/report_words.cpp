@@ -1,0 +1,323 @@
+#include "gap/diagnose/report_words.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "gap/diagnose/channels.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+constexpr std::size_t kMostAlone = 3;
+
+template <class T>
+void add_once(std::vector<T>& all, const T& one) {
+  if (std::ranges::find(all, one) == all.end()) all.push_back(one);
+}
+
+bool all_are_named(const StageDiagnosis& stage) {
+  return std::ranges::all_of(stage.decision.effects, [](const NamedEffect& effect) { return effect.doubts.empty(); });
+}
+
+// Of the effects with a name together: of the whole model where it has no other ones.
+double explained_by_names(const StageDiagnosis& stage) {
+  if (all_are_named(stage)) return explained(stage);
+  double sum = 0;
+  for (const NamedEffect& effect : stage.decision.effects)
+    if (effect.doubts.empty()) sum += std::max(0.0, effect.share.of_stage);
+  return std::min(sum, explained(stage));
+}
+
+// "drive_lag explains 85 % of the gap from command to drive".
+std::string stage_in_words(const Diagnosis& d, const StageDiagnosis& stage) {
+  const NamesFound names = names_found(stage);
+  if (names.empty()) return fmt::format("no effect is named for the gap {}", from_to(stage.passage));
+  const bool several = names.named.size() + names.ambiguous_sets.size() > 1;
+  return fmt::format("{} {} {} of the gap {}{}", names_in_words(d, names), several ? "explain" : "explains",
+                     percent(explained_by_names(stage)), from_to(stage.passage),
+                     names.ambiguous_sets.empty() ? "" : ", but these runs cannot tell which");
+}
+
+}  // namespace
+
+std::string figure(double value) {
+  if (!std::isfinite(value)) return "-";
+  if (value != 0 && std::abs(value) >= 1000 && std::abs(value) < 1e6) return fmt::format("{:.0f}", value);
+  return fmt::format("{:.3g}", value);
+}
+
+std::string percent(double share) {
+  if (!std::isfinite(share)) return "-";
+  const double size = std::abs(share);
+  return size > 0.0005 && size < 0.01 ? fmt::format("{:.1f} %", share * 100)
+                                      : fmt::format("{:.0f} %", std::round(share * 100) + 0.0);
+}
+
+std::string percent_interval(const Interval& share) {
+  if (!std::isfinite(share.from) || !std::isfinite(share.to)) return percent(share.value);
+  return fmt::format("{} ({:.0f} to {:.0f} %)", percent(share.value), std::round(share.from * 100) + 0.0,
+                     std::round(share.to * 100) + 0.0);
+}
+
+std::string enumeration(std::span<const std::string> names, std::string_view last_word) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? fmt::format(" {} ", last_word) : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+std::string unit_suffix(std::string_view unit) {
+  return unit == "1" ? "" : " " + std::string(unit);
+}
+
+std::string interval_text(const Interval& interval, std::string_view unit) {
+  return fmt::format("{}{} ({} to {})", figure(interval.value), unit_suffix(unit), figure(interval.from),
+                     figure(interval.to));
+}
+
+NamesFound names_found(const StageDiagnosis& stage) {
+  NamesFound names;
+  for (const NamedEffect& effect : stage.decision.effects) {
+    if (!effect.doubts.empty()) continue;
+    if (effect.rivals.size() > 1)
+      names.ambiguous_sets.push_back(effect.rivals);
+    else
+      names.named.push_back(effect.candidate);
+  }
+  return names;
+}
+
+NamesFound names_found(const Diagnosis& d) {
+  NamesFound names;
+  if (!d.interrupted.empty()) return names;
+  for (const StageDiagnosis& stage : d.stages) {
+    const NamesFound of_stage = names_found(stage);
+    for (const std::size_t candidate : of_stage.named) add_once(names.named, candidate);
+    for (const std::vector<std::size_t>& set : of_stage.ambiguous_sets) add_once(names.ambiguous_sets, set);
+  }
+  return names;
+}
+
+std::vector<std::string> candidate_names(const Diagnosis& d, std::span<const std::size_t> candidates) {
+  std::vector<std::string> names;
+  for (const std::size_t candidate : candidates) names.push_back(d.candidates[candidate].name);
+  return names;
+}
+
+std::string names_in_words(const Diagnosis& d, const NamesFound& names) {
+  std::vector<std::string> parts = candidate_names(d, names.named);
+  for (const std::vector<std::size_t>& set : names.ambiguous_sets)
+    parts.push_back("one of " + enumeration(candidate_names(d, set), "or"));
+  return enumeration(parts);
+}
+
+std::vector<std::size_t> to_be_told_apart(const Diagnosis& d) {
+  std::vector<std::size_t> open;
+  for (const std::vector<std::size_t>& set : names_found(d).ambiguous_sets)
+    for (const std::size_t candidate : set) add_once(open, candidate);
+  if (!open.empty()) return open;
+  for (const StageDiagnosis& stage : d.stages)
+    for (const NamedEffect& effect : stage.decision.effects) {
+      if (effect.doubts.empty()) continue;
+      add_once(open, effect.candidate);
+      for (const std::size_t rival : effect.rivals) add_once(open, rival);
+    }
+  return open;
+}
+
+std::vector<std::size_t> stages_with_gap(const Diagnosis& d) {
+  std::vector<std::size_t> stages;
+  for (std::size_t s = 0; s < d.stages.size(); ++s)
+    if (d.stages[s].decision.verdict != Verdict::none) stages.push_back(s);
+  std::ranges::stable_sort(stages, std::ranges::greater{}, [&](std::size_t s) { return share_of_gap(d, s); });
+  if (d.largest_stage)  // of two as large, the one that the diagnosis chose
+    if (const auto largest = std::ranges::find(stages, *d.largest_stage); largest != stages.end())
+      std::rotate(stages.begin(), largest, largest + 1);
+  return stages;
+}
+
+std::optional<std::size_t> main_stage(const Diagnosis& d) {
+  const std::vector<std::size_t> stages = stages_with_gap(d);
+  if (!stages.empty()) return stages.front();
+  if (d.stages.empty()) return std::nullopt;
+  return 0;
+}
+
+double share_of_gap(const Diagnosis& d, std::size_t stage) {
+  const auto gap_of = [](const StageDiagnosis& of) {
+    const double gap = of.decision.verdict == Verdict::none ? 0 : squared_gap(of);
+    return std::isfinite(gap) ? gap : 0;
+  };
+  double sum = 0;
+  for (const StageDiagnosis& other : d.stages) sum += gap_of(other);
+  return sum > 0 ? gap_of(d.stages[stage]) / sum : 0;
+}
+
+double explained(const StageDiagnosis& stage) {
+  return explained_interval(stage).value;
+}
+
+Interval explained_interval(const StageDiagnosis& stage) {
+  constexpr double kUnknown = GapMeasure::kNotMeasured;
+  if (stage.decision.verdict == Verdict::none) return {kUnknown, kUnknown, kUnknown};
+  if (stage.decision.best.model.places.empty()) return {0, 0, 0};
+  const auto within = [](double share) { return std::isnan(share) ? share : std::clamp(share, 0.0, 1.0); };
+  const Interval& explains = stage.gap.explains;
+  return {within(explains.value), within(explains.from), within(explains.to)};
+}
+
+double explained_by(const StageDiagnosis& stage, const NamedEffect& effect) {
+  if (stage.decision.effects.size() == 1) return explained(stage);
+  const double share = effect.share.of_stage;
+  return std::isnan(share) ? share : std::clamp(share, 0.0, 1.0);
+}
+
+std::string from_to(Passage passage) {
+  return fmt::format("from {}", passage_name(passage));
+}
+
+std::string_view measured_on(const Diagnosis& d) {
+  return d.observations.runs.size() > 1 ? "runs held out" : "the run fitted to, as there is no other";
+}
+
+std::string_view noise_source(const Diagnosis& d) {
+  if (d.stages.empty()) return "not measured yet";
+  if (d.stages.front().nominal_floor.from_repeats) return "from how repeats differ";
+  return d.observations.dataset.noise.empty()
+             ? "from the runs themselves, as none repeats another (less sure: a gap makes it larger)"
+             : "as the dataset states it, else from the runs themselves, as none repeats another (less sure: a gap "
+               "makes "
+               "it larger)";
+}
+
+std::string headline(const Diagnosis& d) {
+  if (!d.interrupted.empty()) return fmt::format("Unfinished: interrupted while {}", d.interrupted);
+  if (d.verdict == Verdict::none) return "No gap: robot and simulation differ no more than noise and repeats do";
+  const std::vector<std::size_t> stages = stages_with_gap(d);
+  if (stages.empty()) return "Nothing could be compared";
+  if (names_found(d).empty()) {
+    std::vector<std::string> where;
+    for (const std::size_t s : stages) where.push_back(from_to(d.stages[s].passage));
+    return fmt::format("There is a gap {}, and no effect is named for it", enumeration(where));
+  }
+  std::vector<std::string> parts;  // first those with a name
+  for (const bool has_name : {true, false})
+    for (const std::size_t s : stages)
+      if (names_found(d.stages[s]).empty() != has_name) parts.push_back(stage_in_words(d, d.stages[s]));
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+std::string value_name(const Candidate& candidate) {
+  if (candidate.is_number_of_description || candidate.name != candidate.effect) return candidate.name;
+  return fmt::format("{} {}", candidate.name, candidate.parameter);
+}
+
+std::string value_in_words(const Candidate& candidate, const EffectValue& value) {
+  std::string text = fmt::format("{} = {}, {} {}{}", value_name(candidate), interval_text(value.value, candidate.unit),
+                                 candidate.is_number_of_description ? "described as" : "nominal",
+                                 figure(candidate.present), unit_suffix(candidate.unit));
+  if (value.spread > 0)
+    text +=
+        fmt::format(", standard deviation between manoeuvres {}{}", figure(value.spread), unit_suffix(candidate.unit));
+  return text;
+}
+
+std::vector<std::string> doubts_in_words(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect) {
+  const Candidate& candidate = d.candidates[effect.candidate];
+  std::vector<std::string> words;
+  for (const Doubt doubt : effect.doubts) switch (doubt) {
+      case Doubt::end_of_range:
+        words.push_back(fmt::format("its value is at the end of its range ({} to {}{})", figure(candidate.min),
+                                    figure(candidate.max), unit_suffix(candidate.unit)));
+        break;
+      case Doubt::disagreement: {
+        const double agreement = d.options.decision.agreement;
+        const std::string part = agreement == 2 ? "half" : percent(1 / agreement);
+        const std::string of_it =
+            candidate.present == 0
+                ? "it"
+                : fmt::format("its change from {}{}", figure(candidate.present), unit_suffix(candidate.unit));
+        words.push_back(fmt::format("manoeuvres want values that differ by more than {} of {}", part, of_it));
+        break;
+      }
+      case Doubt::not_held_out: {
+        const bool by_manoeuvre = effect.share_by_manoeuvre.of_kind < effect.share.of_kind;
+        const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;
+        words.push_back(fmt::format("it takes off only {} of the gap in {} on {}",
+                                    percent(std::max(0.0, least.of_kind)), kind_name(least.kind),
+                                    by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
+        break;
+      }
+      case Doubt::little_explained: {
+        const bool by_manoeuvre = effect.share_by_manoeuvre.model_of_kind < effect.share.model_of_kind;
+        const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;
+        words.push_back(fmt::format("all effects together take off only {} of the gap in {} on {}",
+                                    percent(std::max(0.0, least.model_of_kind)), kind_name(least.kind),
+                                    by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
+        break;
+      }
+    }
+  return words;
+}
+
+std::vector<std::string> all_doubts(const Diagnosis& d) {
+  std::vector<std::string> words;
+  for (const StageDiagnosis& stage : d.stages)
+    for (const NamedEffect& effect : stage.decision.effects)
+      if (!effect.doubts.empty())
+        words.push_back(fmt::format("no name for {} ({}): {}", d.candidates[effect.candidate].name,
+                                    passage_name(stage.passage), fmt::join(doubts_in_words(d, stage, effect), "; ")));
+  return words;
+}
+
+std::string gap_in_words(const Diagnosis& d, const StageDiagnosis& stage) {
+  const GapMeasure& gap = stage.gap;
+  if (stage.decision.best.model.places.empty())
+    return fmt::format("{:.2f} noise units; noise alone: {:.2f}", gap.before, gap.floor);
+  return fmt::format("{:.2f} noise units before, {:.2f} after on {}; noise alone: {:.2f}", gap.before, gap.after,
+                     measured_on(d), gap.floor);
+}
+
+std::string left_in_words(const StageDiagnosis& stage) {
+  if (stage.decision.verdict == Verdict::none) return {};
+  if (stage.decision.complete) return "what is left is within noise and spread";
+  const double share = explained(stage);
+  if (share == 0) return "all of the gap is left";
+  return fmt::format("{} of the gap is left", percent(1 - share));
+}
+
+std::vector<std::string> best_alone(const Diagnosis& d, const StageDiagnosis& stage) {
+  std::vector<std::string> alone;
+  for (const SingleEvidence& single : stage.ranking)
+    if (alone.size() < kMostAlone && single.explains > 0.01)
+      alone.push_back(fmt::format("{} ({})", d.candidates[single.candidate].name, percent(single.explains)));
+  return alone;
+}
+
+std::string wrapped(std::string_view text, std::size_t width, std::string_view indent) {
+  std::string result;
+  std::size_t column = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::string_view word = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const bool begins = result.empty();
+    if (!begins && column + 1 + word.size() > width) {
+      result += fmt::format("\n{}", indent);
+      column = indent.size();
+    } else if (!begins) {
+      result += ' ';
+      ++column;
+    }
+    result += word;
+    column += word.size();
+  }
+  return result;
+}
+
+}  // namespace kenaf::gap

@@ -1,0 +1,84 @@
+// The words that text, page and files of a report share.
+// Thread safety: pure functions.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gap/diagnose/diagnosis.hpp"
+
+namespace kenaf::gap {
+
+// With three significant digits; "-" where it is not known.
+std::string figure(double value);
+// A share, as "71 %", small ones as "0.4 %".
+std::string percent(double share);
+// "71 % (65 to 80 %)".
+std::string percent_interval(const Interval& share);
+// "a, b and c".
+std::string enumeration(std::span<const std::string> names, std::string_view last_word = "and");
+// " m/s"; nothing for a ratio.
+std::string unit_suffix(std::string_view unit);
+// "0.0513 s (0.0498 to 0.0528)".
+std::string interval_text(const Interval& interval, std::string_view unit);
+
+// Numbers of candidates: effects with a name of their own, and sets of effects of which these runs cannot tell which one it is.
+struct NamesFound {
+  std::vector<std::size_t> named;
+  std::vector<std::vector<std::size_t>> ambiguous_sets;
+  bool empty() const { return named.empty() && ambiguous_sets.empty(); }
+};
+// None of an interrupted diagnosis.
+NamesFound names_found(const StageDiagnosis& stage);
+NamesFound names_found(const Diagnosis& d);  // of all stages, each once
+std::vector<std::string> candidate_names(const Diagnosis& d, std::span<const std::size_t> candidates);
+// "drive_lag and one of com_forward or ground_slope".
+std::string names_in_words(const Diagnosis& d, const NamesFound& names);
+
+// Candidates that the next manoeuvre is to tell apart: members of the ambiguous sets; where there are none, effects without a
+// name and their rivals.
+std::vector<std::size_t> to_be_told_apart(const Diagnosis& d);
+
+// Of Diagnosis::stages: those that have a gap, largest first.
+std::vector<std::size_t> stages_with_gap(const Diagnosis& d);
+// The one that holds most of the gap; without any gap the first one. Empty where no stage was diagnosed.
+std::optional<std::size_t> main_stage(const Diagnosis& d);
+// Of the squared gap of all stages.
+double share_of_gap(const Diagnosis& d, std::size_t stage);
+// Share of a stage's squared gap that the best model takes off, from 0 to 1; NaN without a gap.
+double explained(const StageDiagnosis& stage);
+// The same interval, from 0 to 1.
+Interval explained_interval(const StageDiagnosis& stage);
+// The share that one effect takes off. A single effect's is that of the model.
+double explained_by(const StageDiagnosis& stage, const NamedEffect& effect);
+
+std::string from_to(Passage passage);  // "from command to drive"
+// On what gap and shrink were measured: "runs held out"; of a single run, "the run fitted to, as there is no other".
+std::string_view measured_on(const Diagnosis& d);
+// Where noise was taken from: "from how repeats differ".
+std::string_view noise_source(const Diagnosis& d);
+
+// The whole verdict in one sentence, without a full stop.
+std::string headline(const Diagnosis& d);
+// "command_slew slowness_s2pm"; where the name says the parameter, the name.
+std::string value_name(const Candidate& candidate);
+// "command_slew slowness_s2pm = 0.69 s^2/m (0.65 to 0.72), nominal 0 s^2/m".
+std::string value_in_words(const Candidate& candidate, const EffectValue& value);
+// Why an effect of the best model gets no name: "its value is at the end of its range (0 to 3 s)".
+std::vector<std::string> doubts_in_words(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect);
+// "no name for com_forward (drive to body): ...", of all effects of all stages.
+std::vector<std::string> all_doubts(const Diagnosis& d);
+// "8.10 noise units before, 1.90 after on runs held out; noise alone: 1.00".
+std::string gap_in_words(const Diagnosis& d, const StageDiagnosis& stage);
+// What a stage's best model leaves: "15 % of the gap is left", "what is left is within noise and spread". Empty without a gap.
+std::string left_in_words(const StageDiagnosis& stage);
+// Where no effect is named, the candidates that alone take off most, at most three: "com_forward (31 %)"; empty: none.
+std::vector<std::string> best_alone(const Diagnosis& d, const StageDiagnosis& stage);
+
+// Lines of at most `width` columns, all but the first after `indent`; words longer than that stay whole.
+std::string wrapped(std::string_view text, std::size_t width, std::string_view indent);
+
+}  // namespace kenaf::gap
