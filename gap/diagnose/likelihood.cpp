@@ -96,6 +96,9 @@ GroupWhitener::GroupWhitener(const StageGroup& group, const Discrepancies& discr
     log_determinant_ += parts_.back().whitener.log_determinant();
   }
   MatrixXd shapes = group.local_shapes;
+  directions_.resize(shapes.rows(), 0);
+  shrink_.resize(0);
+  if (shapes.cols() == 0) return;
   for (const Part& part : parts_) part.whitener.whiten(shapes.middleRows(part.first, part.count));
 
   // covariance in whitened units: 1 + S S'; along its direction u_i the variance is 1 + s_i^2

@@ -1,18 +1,24 @@
-// A world in which the diagnosis' statistics have answers by hand: noise of sigma 1 in every bin, and effects whose shifts
-// are fixed vectors times their parameter, so that any two add and every curve is straight.
+// A world in which the diagnosis' statistics have answers by hand: noise of sigma 1 in every bin of a run, and effects whose
+// shifts are fixed vectors times their parameter, so that any two add and every curve is straight.
 //
-// Two manoeuvres of 3 s, twice each, four channels, two of them of the drives: 192 bins of 0.25 s. A direction is constant in a cell (one channel in
-// one second of a manoeuvre, in both repeats: 8 bins) and of length 1; directions 0 to 23 are orthonormal.
+// Manoeuvres, each repeated, in four channels of different kinds, two of them of the drives; bins of 0.25 s. A direction is
+// constant in a cell (one channel in one second of a manoeuvre, in all repeats) and of length 1 in noise; directions are
+// orthonormal. A length in noise is the same over all runs as over the means of repeats: of n repeats the mean has 1 / n of the variance.
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
+#include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "gap/diagnose/channels.hpp"
-#include "gap/diagnose/decision.hpp"
-#include "tests/gap/made_run.hpp"
+#include "gap/diagnose/stage_decision.hpp"
 
 namespace kenaf::test {
 
@@ -21,141 +27,181 @@ using Whole = Eigen::VectorXd;  // all bins of all runs, one after another
 // The channels, in the order of their bins.
 enum class WorldChannel { track, battery, x, yaw };
 
+struct WorldSize {
+  std::size_t manoeuvres = 2, repeats = 2, seconds = 3;
+};
+
 class LinearWorld {
  public:
-  static constexpr std::size_t kRuns = 4, kBinsOfRun = 48, kBins = kRuns * kBinsOfRun, kCells = 24;
+  using Size = WorldSize;
+  // What settings together shift.
+  using Moved = std::function<Whole(const gap::Settings&)>;
+  static constexpr std::size_t kChannels = 4, kBinsOfSecond = 4, kCandidates = 16;
 
-  LinearWorld() {
-    const auto zero = [](double) { return 0.0; };
-    const runs::Run run = made_run(3, 0.05, {{"track_left_mps", zero}, {"battery_v", zero}, {"x_m", zero}, {"yaw_rad", zero}});
-    for (std::size_t r = 0; r < kRuns; ++r) features.emplace_back(run, 0.25);
+  explicit LinearWorld(Size of = {}) : size(of) {
+    for (std::size_t r = 0; r < runs(); ++r) {
+      features.push_back({{}, 0.25, Eigen::VectorXd::Zero(bins_of_run()), {}});
+      for (const char* column : {"track_left_mps", "battery_v", "x_m", "yaw_rad"})
+        for (std::size_t span = 0; span < size.seconds * kBinsOfSecond; ++span)
+          features.back().bins.push_back({channel_of(column), span, 5});
+    }
+    for (std::size_t m = 0; m < size.manoeuvres; ++m) {
+      repeats.emplace_back();
+      for (std::size_t r = 0; r < size.repeats; ++r) repeats.back().push_back(m * size.repeats + r);
+    }
+    for (std::size_t c = 0; c < kCandidates; ++c) {
+      candidates_.push_back({});
+      candidates_.back().name = "effect " + std::to_string(c);
+      candidates_.back().min = -1;
+      candidates_.back().max = 1;
+    }
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal;
-    const Eigen::MatrixXd any = Eigen::MatrixXd::NullaryExpr(kCells, kCells, [&] { return normal(random); });
-    cells_ = Eigen::HouseholderQR<Eigen::MatrixXd>(any).householderQ();
+    const auto cells = static_cast<Eigen::Index>(size.manoeuvres * kChannels * size.seconds);
+    const Eigen::MatrixXd any = Eigen::MatrixXd::NullaryExpr(cells, std::min<Eigen::Index>(cells, 24), [&] { return normal(random); });
+    cells_ = Eigen::HouseholderQR<Eigen::MatrixXd>(any).householderQ() * Eigen::MatrixXd::Identity(any.rows(), any.cols());
   }
 
-  Whole direction(std::size_t number) const {
-    Whole whole(kBins);
-    for (std::size_t i = 0; i < kBins; ++i) {
-      const std::size_t run = i / kBinsOfRun, channel = i % kBinsOfRun / 12, second = i % 12 / 4;
-      const std::size_t cell = (run / 2 * 4 + channel) * 3 + second;
-      whole[static_cast<Eigen::Index>(i)] =
-          cells_(static_cast<Eigen::Index>(cell), static_cast<Eigen::Index>(number)) / std::sqrt(8.0);
+  std::size_t runs() const { return size.manoeuvres * size.repeats; }
+  Eigen::Index bins_of_channel() const { return static_cast<Eigen::Index>(size.seconds * kBinsOfSecond); }
+  Eigen::Index bins_of_run() const { return static_cast<Eigen::Index>(kChannels) * bins_of_channel(); }
+  Eigen::Index bins() const { return static_cast<Eigen::Index>(runs()) * bins_of_run(); }
+  Eigen::Index bins_of_manoeuvre() const { return static_cast<Eigen::Index>(size.repeats) * bins_of_run(); }
+
+  Whole direction(Eigen::Index number) const {
+    Whole whole(bins());
+    for (Eigen::Index i = 0; i < bins(); ++i) {
+      const Eigen::Index manoeuvre = i / bins_of_manoeuvre(), channel = i % bins_of_run() / bins_of_channel();
+      const Eigen::Index second = i % bins_of_channel() / static_cast<Eigen::Index>(kBinsOfSecond);
+      const auto seconds = static_cast<Eigen::Index>(size.seconds);
+      whole[i] = cells_((manoeuvre * static_cast<Eigen::Index>(kChannels) + channel) * seconds + second, number) /
+                 std::sqrt(static_cast<double>(kBinsOfSecond * size.repeats));
     }
     return whole;
   }
 
-  // The same in all bins of a channel, of that length in floors. Second manoeuvre: the same, or the opposite of it.
-  static Whole in_channel(WorldChannel channel, double length, double second_manoeuvre = 1) {
-    constexpr double kBinsOfChannel = 48;
-    Whole whole = Whole::Zero(kBins);
-    for (std::size_t i = 0; i < kBins; ++i)
-      if (i % kBinsOfRun / 12 == static_cast<std::size_t>(channel))
-        whole[static_cast<Eigen::Index>(i)] =
-            length / std::sqrt(kBinsOfChannel) * (i < kBins / 2 ? 1 : second_manoeuvre);
+  // The same in all bins of a channel, of that length in noise.
+  Whole in_channel(WorldChannel channel, double length) const {
+    Whole whole = Whole::Zero(bins());
+    for (Eigen::Index i = 0; i < bins(); ++i)
+      if (i % bins_of_run() / bins_of_channel() == static_cast<Eigen::Index>(channel))
+        whole[i] = length / std::sqrt(static_cast<double>(runs() * size.seconds * kBinsOfSecond));
     return whole;
   }
 
-  static Whole noise(std::uint64_t seed) {
+  Whole noise(std::uint64_t seed) const {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
-    return Whole::NullaryExpr(kBins, [&] { return normal(random); });
+    return Whole::NullaryExpr(bins(), [&] { return normal(random); });
   }
 
-  static std::vector<Eigen::VectorXd> by_run(const Whole& whole) {
-    std::vector<Eigen::VectorXd> runs;
-    for (std::size_t r = 0; r < kRuns; ++r)
-      runs.push_back(whole.segment(static_cast<Eigen::Index>(r * kBinsOfRun), kBinsOfRun));
-    return runs;
-  }
-
-  // Curves of effects that shift by `per_value[i]` for each unit of their parameter beyond neutral. Their catalogue entries
-  // only lend names and ranges: each from -1 to 1, neutral at 0.
-  // Coarse simulations say `rough` times as much.
-  gap::EffectCurves curves(const std::vector<Whole>& per_value, const Whole& gap, double rough = 1) const {
-    gap::EffectCurves curves;
-    curves.residual = curves.gap = by_run(gap);
-    for (std::size_t r = 0; r < kRuns; ++r) curves.raw_shifts.emplace_back(kBinsOfRun, 0);
-    curves.shifts = curves.raw_shifts;
-    gap::set_whiteners(curves, whiteners());
-    std::vector<gap::NewPoint> points;
-    for (std::size_t i = 0; i < per_value.size(); ++i) {
-      curves.curves.push_back({&physics::effect_catalogue()[i], &kParameter, {{0, -1, true}}, 0});
-      for (const double value : {-1.0, -0.25, 0.25, 1.0}) points.push_back({i, value});
+  // A discrepancy: of each manoeuvre and channel a stationary Ornstein-Uhlenbeck process, the same in all repeats.
+  Whole wander(double sigma, double memory_s, std::uint64_t seed) const {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    const double decay = std::exp(-0.25 / memory_s);
+    Whole whole(bins());
+    for (std::size_t m = 0; m < size.manoeuvres; ++m) {
+      Eigen::VectorXd one(bins_of_run());
+      for (Eigen::Index i = 0; i < one.size(); ++i)
+        one[i] = i % bins_of_channel() == 0 ? sigma * normal(random)
+                                            : decay * one[i - 1] + sigma * std::sqrt(1 - decay * decay) * normal(random);
+      for (const std::size_t r : repeats[m]) whole.segment(static_cast<Eigen::Index>(r) * bins_of_run(), bins_of_run()) = one;
     }
-    simulator(per_value, rough).add_points(curves, points, gap::Fidelity::coarse);
+    return whole;
+  }
+
+  std::vector<Eigen::VectorXd> by_run(const Whole& whole) const {
+    std::vector<Eigen::VectorXd> result;
+    for (std::size_t r = 0; r < runs(); ++r)
+      result.push_back(whole.segment(static_cast<Eigen::Index>(r) * bins_of_run(), bins_of_run()));
+    return result;
+  }
+  gap::GroupVectors by_group(const Whole& whole) const { return gap::mean_of_groups(data(Whole::Zero(bins())), by_run(whole)); }
+
+  gap::NoiseFloor floor() const {
+    const Eigen::VectorXd sigma = Eigen::VectorXd::Ones(bins_of_run());
+    const Eigen::MatrixXd none(bins_of_run(), 0);
+    return {std::vector<double>(gap::diagnosis_channels().size(), 1),
+            std::vector<Eigen::VectorXd>(runs(), sigma),
+            std::vector<gap::Whitener>(runs(), gap::Whitener(sigma, none)),
+            true,
+            std::vector<gap::OpenShapes>(runs(), {none, none, Eigen::VectorXd::Zero(bins_of_run())}),
+            std::vector<Eigen::VectorXd>(runs(), sigma)};
+  }
+  gap::StageData data(const Whole& gap, const std::vector<bool>& used = {}) const {
+    return gap::stage_data(gap::Passage::drive_to_body, features, repeats, by_run(gap), floor(), used);
+  }
+
+  // The first ones of kCandidates, each from -1 to 1, neutral at 0.
+  std::span<const gap::Candidate> candidates(std::size_t count) const { return {candidates_.data(), count}; }
+
+  // Effects that shift by `per_value[i]` for each unit of their parameter.
+  static Moved linear(const std::vector<Whole>& per_value) {
+    return [per_value](const gap::Settings& settings) {
+      Whole whole = Whole::Zero(per_value.front().size());
+      for (const gap::Setting& setting : settings) whole += setting.value * per_value[setting.candidate];
+      return whole;
+    };
+  }
+  // Coarse simulations say `rough` times as much.
+  gap::Simulate simulate(const Moved& moved, double rough = 1) const {
+    return [this, moved, rough](std::span<const gap::Settings> asked, gap::Fidelity fidelity) {
+      std::vector<gap::GroupVectors> shifts;
+      for (const gap::Settings& settings : asked)
+        shifts.push_back(by_group((fidelity == gap::Fidelity::coarse ? rough : 1) * moved(settings)));
+      return shifts;
+    };
+  }
+
+  // Of `count` effects, at a quarter and the whole of the way to either end.
+  gap::EffectCurves curves(const Moved& moved, std::size_t count, const gap::StageData& of, double rough = 1) const {
+    gap::EffectCurves curves = gap::empty_curves(of, candidates(count));
+    std::vector<std::size_t> all;
+    for (std::size_t c = 0; c < count; ++c) all.push_back(c);
+    gap::add_spread(curves, of, all, simulate(moved, rough));
     return curves;
   }
-
-  gap::Simulator simulator(const std::vector<Whole>& per_value, double rough = 1) const {
-    const auto shift_of = [per_value, rough](std::span<const gap::NewPoint> effects, gap::Fidelity fidelity) {
-      const double factor = fidelity == gap::Fidelity::coarse ? rough : 1;
-      Whole whole = Whole::Zero(kBins);
-      for (const gap::NewPoint& effect : effects) whole += factor * effect.value * per_value[effect.curve];
-      return by_run(whole);
-    };
-    return {[shift_of](gap::EffectCurves& curves, std::span<const gap::NewPoint> points, gap::Fidelity fidelity) {
-              std::vector<gap::Shift> shifts;
-              for (const gap::NewPoint& point : points) shifts.push_back(shift_of({&point, 1}, fidelity));
-              gap::insert_points(curves, points, shifts, fidelity);
-            },
-            [shift_of](std::span<const std::vector<gap::NewPoint>> asked, gap::Fidelity fidelity) {
-              std::vector<gap::Shift> shifts;
-              for (const std::vector<gap::NewPoint>& effects : asked) shifts.push_back(shift_of(effects, fidelity));
-              return shifts;
-            },
-            [](std::span<const gap::NewPoint>) { return whiteners(); }, [] { return std::vector<Eigen::MatrixXd>{}; },
-            [](const gap::Shift&) { return static_cast<double>(kBins); }};
+  gap::EffectCurves curves(const std::vector<Whole>& per_value, const gap::StageData& of, double rough = 1) const {
+    return curves(linear(per_value), per_value.size(), of, rough);
   }
 
-  gap::Coherence coherence() const { return {features, repeats, 1}; }
-  static gap::Spread spread() { return {1, static_cast<double>(kBins)}; }
-  gap::NoiseFloor floor() const {
-    return {std::vector<double>(gap::diagnosis_channels().size(), 1),
-            std::vector<Eigen::VectorXd>(kRuns, Eigen::VectorXd::Ones(kBinsOfRun)), whiteners(), true};
+  // The best fit of these effects on straight curves.
+  gap::StandingModel fitted(const std::vector<Whole>& per_value, const gap::StageData& of,
+                            const std::vector<std::size_t>& effects) const {
+    gap::EffectCurves known = curves(per_value, of);
+    gap::Model model = gap::fit_model(of, known, effects, {}, gap::no_discrepancy());
+    return {std::move(model), std::move(known)};
   }
 
-  gap::Decision decide(const std::vector<Whole>& per_value, const Whole& gap,
-                       const gap::DecisionSettings& settings, double rough = 1) const {
-    gap::EffectCurves known = curves(per_value, gap, rough);
-    return gap::decide(known, coherence(), spread(), simulator(per_value, rough), settings, 1);
+  // The simulation leaves the same open around any model: nothing.
+  gap::StageDecision decide(const Moved& moved, std::size_t count, const Whole& gap, double rough = 1,
+                            const gap::GapTest& test = {}, const gap::DecisionSettings& settings = {}) const {
+    const gap::StageAround nominal{floor(), data(gap)};
+    return gap::decide_stage(nominal, curves(moved, count, nominal.data, rough), simulate(moved, rough),
+                             [&](const gap::Settings&) { return nominal; }, test, settings);
+  }
+  gap::StageDecision decide(const std::vector<Whole>& per_value, const Whole& gap, double rough = 1) const {
+    return decide(linear(per_value), per_value.size(), gap, rough);
   }
 
-  // The best fit of these effects, as a model that was simulated.
-  gap::Model fitted(const gap::EffectCurves& curves, std::initializer_list<std::size_t> effects) const {
-    const gap::Products products = gap::products_of(curves, curves.gap);
-    const std::size_t first = *effects.begin();
-    const gap::CurveFit fit = effects.size() == 1 ? gap::fit_one(products, curves.curves, first)
-                                                  : gap::fit_two(products, curves.curves, first, *(effects.begin() + 1));
-    gap::Model model{fit.places, {}, true};
-    for (const Eigen::MatrixXd& shifts : curves.raw_shifts) model.shift.push_back(gap::shift_at(shifts, fit.places));
-    gap::measure(model, curves, coherence());
-    return model;
-  }
-
-  std::vector<gap::FeatureMap> features;
-  static inline const std::vector<std::vector<std::size_t>> repeats{{0, 1}, {2, 3}};
+  const Size size;
+  std::vector<gap::StageFeatures> features;
+  std::vector<std::vector<std::size_t>> repeats;
 
  private:
-  static constexpr physics::EffectParameter kParameter{"amount", "1", 0, -1, 1, &physics::Effects::command_gain};
-  static std::vector<gap::Whitener> whiteners() {
-    const Eigen::VectorXd sigma = Eigen::VectorXd::Ones(kBinsOfRun);
-    return std::vector<gap::Whitener>(kRuns, gap::Whitener(sigma, Eigen::MatrixXd::Zero(kBinsOfRun, 1)));
+  static std::size_t channel_of(std::string_view column) {
+    std::size_t channel = 0;
+    while (gap::diagnosis_channels()[channel].column != column) ++channel;
+    return channel;
   }
+  std::vector<gap::Candidate> candidates_;
   Eigen::MatrixXd cells_;
 };
 
 inline const LinearWorld& world() {
   static const LinearWorld world;  // every test case is a process: only those that use it pay
   return world;
-}
-
-// Draws enough for probabilities down to 0.0025, and no more.
-inline gap::DecisionSettings quick() {
-  gap::DecisionSettings settings;
-  settings.null_draws = 500;
-  return settings;
 }
 
 }  // namespace kenaf::test
