@@ -14,9 +14,9 @@
 namespace kenaf::gap {
 namespace {
 
-// Of the numbers of the description, those that one step shows to be nearest get whole curves; of all candidates the
-// nearest get points where they fit best, so often (chosen: the nearest one hardly moves after that).
-constexpr std::size_t kNumbersFollowed = 6, kRefined = 4;
+// Those that a first look shows to be nearest get whole curves; of them the nearest get points where they fit best, so
+// often (chosen: the nearest one hardly moves after that).
+constexpr std::size_t kFollowed = 12, kRefined = 4;
 constexpr int kRounds = 2;
 
 std::vector<Candidate> candidates_without(const Observations& observations, std::span<const std::string> without) {
@@ -60,28 +60,24 @@ class Stage {
     };
     const bool drives_measured =
         std::ranges::all_of(runs.observations.runs, [](const Observation& run) { return run.measured.has_value(); });
-    for (const std::size_t c : candidates_of(passage, candidates, drives_measured))
-      (candidates[c].is_number_of_description ? numbers_ : effects_).push_back(c);
+    possible_ = candidates_of(passage, candidates, drives_measured);
   }
 
   // Best first.
   std::vector<Near> nearest() {
-    add_spread(curves_, data_, effects_, simulate_);
-    follow_bends(curves_, data_, effects_, simulate_);
-    add_first_look(curves_, data_, numbers_, simulate_);
+    add_first_look(curves_, data_, possible_, simulate_);
     std::vector<std::size_t> followed;
-    for (const Near& number : ranked(numbers_))
-      if (followed.size() < kNumbersFollowed) followed.push_back(number.candidate);
+    for (const Near& near : ranked())
+      if (followed.size() < kFollowed) followed.push_back(near.candidate);
     add_spread(curves_, data_, followed, simulate_);
-    std::vector<std::size_t> all = effects_;
-    all.insert(all.end(), numbers_.begin(), numbers_.end());
-    std::vector<Near> best = ranked(all);
+    follow_bends(curves_, data_, followed, simulate_);
+    std::vector<Near> best = ranked();
     for (int round = 0; round < kRounds; ++round) {
       std::vector<Setting> points;
       for (std::size_t i = 0; i < std::min(kRefined, best.size()); ++i)
         points.push_back({best[i].candidate, best[i].value});
       add_points(curves_, data_, points, Fidelity::coarse, simulate_);
-      best = ranked(all);
+      best = ranked();
     }
     return best;
   }
@@ -89,10 +85,10 @@ class Stage {
   double hidden_squared() const { return products_of(data_, whiteners_, curves_.shifts, residuals_of(data_)).gap_gap; }
 
  private:
-  std::vector<Near> ranked(const std::vector<std::size_t>& chosen) const {
+  std::vector<Near> ranked() const {
     const Products products = products_of(data_, whiteners_, curves_.shifts, residuals_of(data_));
     std::vector<Near> result;
-    for (const std::size_t c : chosen) {
+    for (const std::size_t c : possible_) {
       const CurveFit fit = fit_one(products, curves_.curves, c);
       result.push_back({fit.left, c, fit.places.front().value});
     }
@@ -104,7 +100,7 @@ class Stage {
   std::vector<GroupWhitener> whiteners_;
   EffectCurves curves_;
   Simulate simulate_;
-  std::vector<std::size_t> effects_, numbers_;
+  std::vector<std::size_t> possible_;
 };
 
 // In which nobody could overlook it.
