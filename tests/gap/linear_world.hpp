@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "gap/diagnose/channels.hpp"
-#include "gap/diagnose/stage_decision.hpp"
+#include "gap/diagnose/stage_diagnosis.hpp"
 
 namespace kenaf::test {
 
@@ -178,8 +178,17 @@ class LinearWorld {
   gap::StageDecision decide(const Moved& moved, std::size_t count, const Whole& gap, double rough = 1,
                             const gap::GapTest& test = {}, const gap::DecisionSettings& settings = {}) const {
     const gap::StageAround nominal{floor(), data(gap)};
-    return gap::decide_stage(nominal, curves(moved, count, nominal.data, rough), simulate(moved, rough),
-                             [&](const gap::Settings&) { return nominal; }, test, settings);
+    gap::StageDecision decision =
+        gap::decide_stage(nominal, curves(moved, count, nominal.data, rough), simulate(moved, rough),
+                          [&](const gap::Settings&) { return nominal; }, test, settings);
+    if (decision.effects.empty()) return decision;
+    const std::vector<Eigen::VectorXd> residuals = by_run(gap);
+    const gap::StageView view{&features, &repeats, &residuals, &decision.floor};
+    const auto shares = [&](const gap::Folds& folds) {
+      return gap::shares_held_out(view, gap::Passage::drive_to_body, decision.best, folds, 1);
+    };
+    gap::judge(decision, candidates(count), shares(gap::folds_by_repeat(repeats)), shares(repeats), settings);
+    return decision;
   }
   gap::StageDecision decide(const std::vector<Whole>& per_value, const Whole& gap, double rough = 1) const {
     return decide(linear(per_value), per_value.size(), gap, rough);
