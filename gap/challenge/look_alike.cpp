@@ -68,7 +68,7 @@ class Stage {
   std::vector<Near> nearest() {
     add_spread(curves_, data_, effects_, simulate_);
     follow_bends(curves_, data_, effects_, simulate_);
-    add_one_step(curves_, data_, numbers_, simulate_);
+    add_first_look(curves_, data_, numbers_, simulate_);
     std::vector<std::size_t> followed;
     for (const Near& number : ranked(numbers_))
       if (followed.size() < kNumbersFollowed) followed.push_back(number.candidate);

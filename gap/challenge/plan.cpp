@@ -129,7 +129,8 @@ void choose_runs(CasePlan& plan, ChallengeKind kind, Random& random) {
   const auto& other = manoeuvre_sets()[below(random, manoeuvre_sets().size())];
   const auto unseen = std::ranges::find_if(
       other, [&](const std::string& name) { return std::ranges::count(plan.manoeuvres, name) == 0; });
-  plan.unseen = unseen != other.end() ? *unseen : "drop";
+  // "hills" is in no set, "drop" is no short run
+  plan.unseen = unseen != other.end() ? *unseen : plan.longest_s.empty() ? "hills" : "drop";
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ rollout::RollOutOptions coarse() {
 }
 
 // One manoeuvre and what the nominal robot does in it.
-struct Candidate {
+struct ManoeuvreToTry {
   rollout::Manoeuvre manoeuvre;
   physics::WorldDescription world;
   bool is_flat;
@@ -54,8 +54,8 @@ bool can_drive(const physics::RobotDescription& robot, const rollout::Manoeuvre&
   return robot.has_flippers() || !has_flipper_angles;
 }
 
-std::vector<Candidate> candidates_for(const physics::RobotDescription& nominal) {
-  std::vector<Candidate> candidates;
+std::vector<ManoeuvreToTry> candidates_for(const physics::RobotDescription& nominal) {
+  std::vector<ManoeuvreToTry> candidates;
   for (rollout::Manoeuvre& manoeuvre : rollout::shipped_manoeuvres()) {
     if (manoeuvre.at_most_s() > kLongestProposed_s || !can_drive(nominal, manoeuvre)) continue;
     std::vector<std::string> ignored;
@@ -81,17 +81,17 @@ class Proposer {
 
   // Tries `candidates` class by class up to `roughest`, as the nominal robot drives them, and leaves those that are
   // rougher. Whether one suffices that is as gentle as its class.
-  bool try_up_to(Gentleness roughest, std::vector<Candidate>& candidates) {
+  bool try_up_to(Gentleness roughest, std::vector<ManoeuvreToTry>& candidates) {
     drive_nominal(candidates);
-    std::erase_if(candidates, [](const Candidate& candidate) { return candidate.gentleness == Gentleness::fails; });
-    std::ranges::stable_sort(candidates, {}, [](const Candidate& candidate) {
+    std::erase_if(candidates, [](const ManoeuvreToTry& candidate) { return candidate.gentleness == Gentleness::fails; });
+    std::ranges::stable_sort(candidates, {}, [](const ManoeuvreToTry& candidate) {
       return std::tuple(candidate.gentleness, candidate.duration_s);
     });
     auto begin = candidates.begin();
     while (begin != candidates.end() && begin->gentleness <= roughest) {
       const Gentleness asked = begin->gentleness;
       const auto end = std::ranges::find_if(
-          begin, candidates.end(), [asked](const Candidate& candidate) { return candidate.gentleness != asked; });
+          begin, candidates.end(), [asked](const ManoeuvreToTry& candidate) { return candidate.gentleness != asked; });
       while (begin != end && sufficient(asked) < kWanted) {
         const auto size = std::min(std::ptrdiff_t{kBatch}, end - begin);
         try_batch({begin, begin + size});
@@ -121,14 +121,14 @@ class Proposer {
     }));
   }
 
-  rollout::RollOut driven(const physics::RobotDescription& robot, const Candidate& candidate) const {
+  rollout::RollOut driven(const physics::RobotDescription& robot, const ManoeuvreToTry& candidate) const {
     return rollout::roll_out(with_exact_sensors(robot), candidate.world, candidate.manoeuvre, without_noise());
   }
 
-  void drive_nominal(std::vector<Candidate>& candidates) const {
+  void drive_nominal(std::vector<ManoeuvreToTry>& candidates) const {
     for_each_job(candidates.size(), options_.threads, [&](std::size_t i) {
       check_goes_on(options_.stop);
-      Candidate& candidate = candidates[i];
+      ManoeuvreToTry& candidate = candidates[i];
       if (candidate.plain.row_count() > 0) return;  // it was before
       rollout::RollOut out = driven(nominal_, candidate);
       candidate.risk = risk_of(out, candidate.manoeuvre, nominal_);
@@ -140,7 +140,7 @@ class Proposer {
 
   // One candidate with all rivals.
   struct Trial {
-    const Candidate& candidate;
+    const ManoeuvreToTry& candidate;
     FeatureMap map;
     rollout::Manoeuvre replay;              // of the nominal robot's commands
     std::vector<Eigen::VectorXd> features;  // of each model under them
@@ -151,9 +151,9 @@ class Proposer {
   };
 
   // A few candidates side by side.
-  void try_batch(std::span<const Candidate> batch) {
+  void try_batch(std::span<const ManoeuvreToTry> batch) {
     std::vector<Trial> trials;
-    for (const Candidate& candidate : batch)
+    for (const ManoeuvreToTry& candidate : batch)
       trials.push_back({candidate, FeatureMap(candidate.plain, options_.span_s),
                         rollout::replay_of(candidate.plain, candidate.manoeuvre.name),
                         std::vector<Eigen::VectorXd>(models_.size()), std::vector<char>(models_.size(), 0),
@@ -198,7 +198,7 @@ class Proposer {
   }
 
   void add(const Trial& trial) {
-    const Candidate& candidate = trial.candidate;
+    const ManoeuvreToTry& candidate = trial.candidate;
     ProposedManoeuvre proposed{.manoeuvre = candidate.manoeuvre.name,
                                .world = candidate.manoeuvre.world,
                                .duration_s = std::max(candidate.duration_s, std::ranges::max(trial.duration_s)),
@@ -291,8 +291,8 @@ std::vector<ProposedManoeuvre> propose_manoeuvres(const physics::RobotDescriptio
                                             options.sigma_of_channel.size(), diagnosis_channels().size()));
   if (!(options.span_s > 0)) throw std::invalid_argument(fmt::format("span_s = {} must be above 0", options.span_s));
   if (rivals.size() < 2) return {};
-  std::vector<Candidate> flat = candidates_for(nominal), others;
-  const auto rough = std::ranges::stable_partition(flat, &Candidate::is_flat);
+  std::vector<ManoeuvreToTry> flat = candidates_for(nominal), others;
+  const auto rough = std::ranges::stable_partition(flat, &ManoeuvreToTry::is_flat);
   std::ranges::move(rough, std::back_inserter(others));
   flat.erase(rough.begin(), rough.end());
   Proposer proposer(nominal, rivals, options);

@@ -92,7 +92,7 @@ Json effect_json(const Diagnosis& d, const StageDiagnosis& stage, const NamedEff
           {"at_bound", effect.at_bound},
           {"is_named", effect.doubts.empty() && d.interrupted.empty()},
           {"rivals", candidate_names(d, effect.rivals)},
-          {"doubts", doubts_in_words(d, stage, effect)}};
+          {"doubts", doubts_in_words(d, effect)}};
 }
 
 Json ranking_json(const Diagnosis& d, const StageDiagnosis& stage) {

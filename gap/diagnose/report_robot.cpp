@@ -58,7 +58,7 @@ std::string top_of_file(const Diagnosis& d, const Settings& corrections, bool is
         if (!effect.doubts.empty() &&
             std::ranges::none_of(corrections, [&](const Setting& c) { return c.candidate == effect.candidate; }))
           lacks.push_back(fmt::format("  {}, which got no name: {}", d.candidates[effect.candidate].name,
-                                      fmt::join(doubts_in_words(d, stage, effect), "; ")));
+                                      fmt::join(doubts_in_words(d, effect), "; ")));
     if (stage.decision.complete) continue;
     std::string left = fmt::format("  {}: {}", from_to(stage.passage), left_in_words(stage));
     if (!stage.left_over.empty()) left += "; " + stage.left_over.front().words;

@@ -54,7 +54,7 @@ void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
     const Candidate& candidate = d.candidates[effect.candidate];
     std::string line = "  " + value_in_words(candidate, effect.value);
     if (!effect.doubts.empty())
-      line += fmt::format("; no name: {}", fmt::join(doubts_in_words(d, stage, effect), "; "));
+      line += fmt::format("; no name: {}", fmt::join(doubts_in_words(d, effect), "; "));
     else
       line += fmt::format("; takes off {}", percent(explained_by(stage, effect)));
     if (effect.doubts.empty() && effect.rivals.size() > 1)

@@ -227,7 +227,7 @@ std::string value_in_words(const Candidate& candidate, const EffectValue& value)
   return text;
 }
 
-std::vector<std::string> doubts_in_words(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect) {
+std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& effect) {
   const Candidate& candidate = d.candidates[effect.candidate];
   std::vector<std::string> words;
   for (const Doubt doubt : effect.doubts) switch (doubt) {
@@ -271,7 +271,7 @@ std::vector<std::string> all_doubts(const Diagnosis& d) {
     for (const NamedEffect& effect : stage.decision.effects)
       if (!effect.doubts.empty())
         words.push_back(fmt::format("no name for {} ({}): {}", d.candidates[effect.candidate].name,
-                                    passage_name(stage.passage), fmt::join(doubts_in_words(d, stage, effect), "; ")));
+                                    passage_name(stage.passage), fmt::join(doubts_in_words(d, effect), "; ")));
   return words;
 }
 

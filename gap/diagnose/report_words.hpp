@@ -68,7 +68,7 @@ std::string value_name(const Candidate& candidate);
 // "command_slew slowness_s2pm = 0.69 s^2/m (0.65 to 0.72), nominal 0 s^2/m".
 std::string value_in_words(const Candidate& candidate, const EffectValue& value);
 // Why an effect of the best model gets no name: "its value is at the end of its range (0 to 3 s)".
-std::vector<std::string> doubts_in_words(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect);
+std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& effect);
 // "no name for com_forward (drive to body): ...", of all effects of all stages.
 std::vector<std::string> all_doubts(const Diagnosis& d);
 // "8.10 noise units before, 1.90 after on runs held out; noise alone: 1.00".

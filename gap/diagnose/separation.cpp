@@ -7,7 +7,7 @@ namespace kenaf::gap {
 namespace {
 
 constexpr int kAtMostRounds = 100;
-constexpr double kSettled = 1e-6;  // standard deviations, of all bins together
+constexpr double kFitSettled = 1e-6;  // standard deviations, of all bins together
 
 }  // namespace
 
@@ -22,7 +22,7 @@ double separation(const Eigen::VectorXd& difference, const Eigen::MatrixXd& free
       const Eigen::VectorXd next = difference - free * amounts;
       const double moved = (next - left).norm();
       left = next;
-      if (round > 0 && moved < kSettled) break;
+      if (round > 0 && moved < kFitSettled) break;
       root_weight =
           left.unaryExpr([](double bin) { return std::sqrt(kOfOneBin / std::max(kOfOneBin, std::abs(bin))); });
     }

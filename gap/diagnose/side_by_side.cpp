@@ -15,7 +15,7 @@ constexpr double kNearest = 0.1, kFarthest = 0.5, kShifted_floors = 6;
 constexpr double kRoundABend = 2;
 constexpr int kTries = 4;
 constexpr double kStraightTo = 0.5;  // of the way from neutral: a curve has to come back to what it is there
-constexpr int kRounds = 3;
+constexpr int kMostRounds = 3;
 constexpr double kGained = 0.5;  // deviance that a round must gain to be followed by another one
 
 struct Known {
@@ -133,7 +133,7 @@ void stand(const StageData& data, EffectCurves& curves, const Simulate& simulate
 StandingModel fit_side_by_side(const StageData& data, EffectCurves curves, const Simulate& simulate, Model model) {
   const auto is_present = [&](const OnCurve& place) { return place.value == curves.candidates[place.curve].present; };
   const EffectSet effects = effects_of(model);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMostRounds; ++round) {
     // one that is not there has no side to stand on
     if (std::ranges::any_of(model.places, is_present)) break;
     stand(data, curves, simulate, model);

@@ -30,7 +30,7 @@ std::vector<double> rms_si(const std::vector<StageFeatures>& features, const std
   return squares;
 }
 
-std::vector<VectorXd> difference(std::vector<VectorXd> a, const std::vector<VectorXd>& b) {
+std::vector<VectorXd> less_shift(std::vector<VectorXd> a, const std::vector<VectorXd>& b) {
   for (std::size_t r = 0; r < a.size(); ++r)
     if (a[r].size() > 0) a[r] -= b[r];
   return a;
@@ -145,7 +145,8 @@ std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidat
 StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor,
                               const StageOptions& options) {
   const std::vector<StageFeatures>& features = *input.features;
-  StageDiagnosis stage{input.passage, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  StageDiagnosis stage;
+  stage.passage = input.passage;
   for (std::size_t r = 0; r < features.size(); ++r)
     stage.residuals.push_back(features[r].measured - predictor.nominal(input.passage)[r]);
   if (std::ranges::all_of(features, [](const StageFeatures& run) { return run.bins.empty(); })) return stage;
@@ -195,7 +196,7 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
   const auto left_by = [&](const std::vector<std::vector<OnCurve>>& places) {
     std::vector<Variation> variations;
     for (const std::vector<OnCurve>& of_run : places) variations.push_back(varied(settings_of(of_run)));
-    return difference(stage.residuals, predictor.shift_of_each(variations, input.passage));
+    return less_shift(stage.residuals, predictor.shift_of_each(variations, input.passage));
   };
   const unsigned threads = options.decision.search.threads;
   const Folds by_repeat = folds_by_repeat(*input.repeats), by_manoeuvre = folds_by_manoeuvre(*input.observations);

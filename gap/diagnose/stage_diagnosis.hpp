@@ -38,7 +38,7 @@ struct SingleEvidence {
 };
 
 struct StageDiagnosis {
-  Passage passage;
+  Passage passage = Passage::command_to_drive;
   std::vector<Eigen::VectorXd> residuals;  // measured minus nominal, of each run; empty where it does not measure the stage
   NoiseFloor nominal_floor;
   StageDecision decision;

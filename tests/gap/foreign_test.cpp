@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "gap/candidates/candidate.hpp"
 #include "gap/challenge/plan.hpp"
 #include "physics/effects.hpp"
 
@@ -48,6 +49,32 @@ TEST_CASE("A foreign deviation is none of the catalogue's, changes nothing at 0,
     CHECK(same(none, drive()));
     CHECK(same(all, drive()) == !is_of_commands(foreign.name));
   }
+}
+
+TEST_CASE("No foreign deviation is a number of the description, which a diagnosis would find") {
+  for (const Candidate& number : description_candidates(physics::load_robot(kChallengedRobot)))
+    for (const ForeignEffect& foreign : foreign_effects()) CHECK(number.name != foreign.name);
+}
+
+TEST_CASE("Drives that hunt swing by a fifth in 1.1 s, drives that fade have lost 30 % after 10 s") {
+  rollout::Manoeuvre hunts = drive(), fades = drive();
+  obey_foreign(hunts, "speed_hunts", 1);
+  obey_foreign(fades, "drives_fade", 1);
+  for (const std::size_t side : {physics::kLeft, physics::kRight}) {
+    CHECK(at(hunts, 0).track_speed_mps[side] == 0.3);
+    CHECK(at(hunts, 0.55).track_speed_mps[side] == Approx(0.3));                        // half a period
+    CHECK(at(hunts, 1.1 + 0.275).track_speed_mps[side] == Approx(0.36).epsilon(1e-3));  // a quarter of one
+    CHECK(at(fades, 0).track_speed_mps[side] == 0.3);
+    CHECK(at(fades, 2).track_speed_mps[side] == Approx(0.3 * 0.94));
+  }
+}
+
+TEST_CASE("A gyro that saturates tells half of 1 rad/s, and two thirds of half") {
+  runs::Run run{{"t_s", "gyro_z_radps"}, {{0, 1, 2}, {1, -0.5, 0}}};
+  record_foreign(run, "gyro_saturates", 1);
+  CHECK(run.column("gyro_z_radps")[0] == Approx(0.5));
+  CHECK(run.column("gyro_z_radps")[1] == Approx(-1.0 / 3));
+  CHECK(run.column("gyro_z_radps")[2] == 0);
 }
 
 TEST_CASE("One flipper that lags by half a second is 1 - 1/e of its way after that, the others are there") {

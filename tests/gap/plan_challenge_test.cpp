@@ -53,15 +53,21 @@ TEST_CASE("The order of cases says nothing of what they hide") {
   for (std::size_t i = 0; i < plans.size(); ++i) CHECK(plans[i].name.size() == std::string("case-000").size());
 }
 
-TEST_CASE("Of 150 cases each effect of the catalogue is hidden alone in one, and withheld in one") {
-  std::map<Stratum, std::set<std::string>> hidden;
+TEST_CASE("Of 150 cases each effect of the catalogue is hidden alone in one, or withheld in one") {
+  // Once in both strata would be 106 of the 150 cases, which leaves too few of the others. 26 % of 150 for each of the
+  // two are 78 together: no fewer than the 53 effects that take turns, each of which has one before any has a second
+  // one.
+  std::map<std::string, std::size_t> hidden;
   for (const CasePlan& plan : plan_challenge(150, 5))
-    for (const gap::HiddenEffect& effect : plan.effects) hidden[plan.stratum].insert(effect.effect);
-  // 26 % of 150 are 39: no fewer than the effects that take turns
+    if (plan.stratum != Stratum::pair)
+      for (const gap::HiddenEffect& effect : plan.effects) ++hidden[effect.effect];
   for (const physics::EffectInfo& effect : physics::effect_catalogue()) {
     const bool is_chance = effect.name == "command_loss";  // has no size that could be made
-    CHECK(hidden[Stratum::single].contains(std::string(effect.name)) == !is_chance);
-    CHECK(hidden[Stratum::withheld].contains(std::string(effect.name)) == !is_chance);
+    const std::size_t turns = hidden[std::string(effect.name)];
+    if (is_chance)
+      CHECK(turns == 0);
+    else
+      CHECK((turns == 1 || turns == 2));
   }
 }
 

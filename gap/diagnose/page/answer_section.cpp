@@ -80,15 +80,18 @@ std::string where_is_it(const Diagnosis& d) {
   return items.empty() ? "<p>Nowhere.</p>" : bullets(items);
 }
 
-std::string effect_item(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect) {
+std::string effect_item(const Diagnosis& d, const NamedEffect& effect) {
   const Candidate& candidate = d.candidates[effect.candidate];
   std::string item =
       fmt::format("<b>{}</b>: {}", escaped(candidate.name), escaped(value_in_words(candidate, effect.value)));
+  if (effect.doubts.empty())
+    item +=
+        fmt::format("; it takes off {} of the gap in {}", percent(effect.share.of_kind), kind_name(effect.share.kind));
   if (effect.doubts.empty() && effect.rivals.size() > 1)
     item += fmt::format("; {} would explain it as well",
                         escaped(enumeration(candidate_names(d, std::span(effect.rivals).subspan(1)), "or")));
   if (!effect.doubts.empty())
-    item += escaped(fmt::format("; no name for it: {}", fmt::join(doubts_in_words(d, stage, effect), "; ")));
+    item += escaped(fmt::format("; no name for it: {}", fmt::join(doubts_in_words(d, effect), "; ")));
   if (!candidate.summary.empty()) item += fmt::format(". <span class=\"soft\">{}</span>", escaped(candidate.summary));
   return item;
 }
@@ -100,7 +103,7 @@ std::string which_effects(const Diagnosis& d) {
     for (const bool named : {true, false})
       for (const NamedEffect& effect : stage.decision.effects)
         if (effect.doubts.empty() == named)
-          items.push_back(fmt::format("{}: {}", with_capital(from_to(stage.passage)), effect_item(d, stage, effect)));
+          items.push_back(fmt::format("{}: {}", with_capital(from_to(stage.passage)), effect_item(d, effect)));
     if (!names_found(stage).empty()) continue;
     std::string item = fmt::format("{}: no effect is named", with_capital(from_to(stage.passage)));
     if (const std::vector<std::string> alone = best_alone(d, stage); !alone.empty())

@@ -109,7 +109,7 @@ std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
     const Candidate& candidate = d.candidates[effect.candidate];
     std::string name = "yes";
     if (!effect.doubts.empty())
-      name = fmt::format("no: {}", fmt::join(doubts_in_words(d, stage, effect), "; "));
+      name = fmt::format("no: {}", fmt::join(doubts_in_words(d, effect), "; "));
     else if (effect.rivals.size() > 1)
       name = fmt::format("one of {}", enumeration(candidate_names(d, effect.rivals), "or"));
     table.rows.push_back({value_name(candidate), interval_text(effect.value.value, candidate.unit),

@@ -1,0 +1,170 @@
+// What the cases of the imperfect challenge are.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "gap/candidates/candidate.hpp"
+#include "gap/candidates/robot_numbers.hpp"
+#include "gap/challenge/background.hpp"
+#include "gap/challenge/case_runs.hpp"
+#include "gap/challenge/plan.hpp"
+#include "gap/challenge/stand_ins.hpp"
+#include "physics/effects.hpp"
+
+using namespace kenaf;
+using namespace kenaf::gap;
+
+namespace {
+
+std::vector<CasePlan> imperfect(std::size_t cases, std::uint64_t seed) {
+  return plan_challenge(cases, seed, ChallengeKind::imperfect);
+}
+
+}  // namespace
+
+TEST_CASE("A background moves every number of the description, by at most 3 %, and makes a robot") {
+  const physics::RobotDescription robot = physics::load_robot(kChallengedRobot);
+  const std::vector<Candidate> candidates = description_candidates(robot);
+  double furthest = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const Background background = draw_background(robot, seed, {});
+    // all but the belly's length, which the track's moves
+    CHECK(background.numbers.size() == candidates.size() - 1);
+    CHECK(why_impossible(with_background(robot, background)).empty());
+    for (const BackgroundNumber& number : background.numbers) {
+      INFO(number.key);
+      const auto candidate = std::ranges::find(candidates, number.key, &Candidate::name);
+      REQUIRE(candidate != candidates.end());
+      const double whole = candidate->present != 0 ? candidate->present : candidate->max - candidate->min;
+      const double off = std::abs(number.value - candidate->present) / std::abs(whole);
+      CHECK(off <= 0.03 + 1e-12);
+      CHECK((number.value >= candidate->min && number.value <= candidate->max));
+      CHECK(
+          find_robot_number(with_background(robot, background), number.key)->get(with_background(robot, background)) ==
+          Approx(number.value));
+      furthest = std::max(furthest, off);
+    }
+  }
+  CHECK(furthest > 0.029);
+  const Background one = draw_background(robot, 7, {}), again = draw_background(robot, 7, {}),
+                   without = draw_background(robot, 7, std::vector<std::string>{"body.mass_kg"});
+  REQUIRE(one.numbers.size() == again.numbers.size());
+  CHECK(without.numbers.size() == one.numbers.size() - 1);
+  for (std::size_t i = 0; i < one.numbers.size(); ++i) CHECK(one.numbers[i].value == again.numbers[i].value);
+  // leaving one out leaves the others as they were
+  CHECK(without.numbers.back().value == one.numbers.back().value);
+}
+
+TEST_CASE("No number that does what is hidden is in the background, so that the hidden value is the true one") {
+  CHECK(numbers_like("mass") == std::vector<std::string>{"body.mass_kg"});
+  CHECK(numbers_like("drive_lag") == std::vector<std::string>{"drive.time_constant_s"});
+  CHECK(numbers_like("command_delay").empty());
+  for (const CasePlan& plan : imperfect(60, 2))
+    for (const HiddenEffect& hidden : plan.effects)
+      for (const std::string& key : numbers_like(hidden.effect))
+        CHECK(std::ranges::count(plan.background.numbers, key, &BackgroundNumber::key) == 0);
+}
+
+TEST_CASE("What stands in for a withheld effect is withheld with it") {
+  CasePlan plan;
+  plan.stratum = Stratum::withheld;
+  plan.effects = {{"drive_lag", "lag_s"}};
+  CHECK(withheld_names(plan) == std::vector<std::string>{"drive_lag", "drive.time_constant_s"});
+  plan.effects = {{"tracking_delay", "delay_s"}};
+  CHECK(withheld_names(plan) == std::vector<std::string>{"tracking_delay", "clock_offset"});
+  plan.effects = {{"mass", "scale"}};  // the diagnosis itself leaves out body.mass_kg then
+  CHECK(withheld_names(plan) == std::vector<std::string>{"mass"});
+  plan.stratum = Stratum::single;
+  CHECK(withheld_names(plan).empty());
+}
+
+TEST_CASE("Every name that is withheld is a candidate of the diagnosis") {
+  const physics::RobotDescription robot = physics::load_robot(kChallengedRobot);
+  std::set<std::string> names;
+  for (const Candidate& candidate : catalogue_candidates(robot, true)) names.insert(candidate.effect);
+  for (const Candidate& candidate : description_candidates(robot)) names.insert(candidate.effect);
+  for (const physics::EffectInfo& effect : physics::effect_catalogue()) {
+    if (effect.name == "command_loss") continue;
+    CasePlan plan;
+    plan.stratum = Stratum::withheld;
+    plan.effects = {{std::string(effect.name), std::string(effect.parameters.front().name)}};
+    for (const std::string& name : withheld_names(plan)) CHECK(names.contains(name));
+  }
+}
+
+TEST_CASE("Imperfect: strata have the shares that are documented") {
+  std::map<Stratum, std::size_t> count;
+  const auto plans = imperfect(200, 3);
+  for (const CasePlan& plan : plans) ++count[plan.stratum];
+  CHECK(count[Stratum::none] == 50);
+  CHECK(count[Stratum::single] == 70);
+  CHECK(count[Stratum::pair] == 30);
+  CHECK(count[Stratum::withheld] == 30);
+  CHECK(count[Stratum::foreign] == 20);
+}
+
+TEST_CASE("Imperfect: every case has a background, counts and coloured noise, and half of them short runs") {
+  std::size_t short_runs = 0;
+  double smallest = 10, largest = 0;
+  const auto plans = imperfect(200, 4);
+  for (const CasePlan& plan : plans) {
+    CHECK(plan.is_imperfect());
+    CHECK(plan.noise_memory_s > 0);
+    CHECK((plan.count_scale >= 0.5 && plan.count_scale <= 2));
+    CHECK(plan.physics.time_step_s == physics::PhysicsSettings{}.time_step_s / 2);
+    CHECK(std::ranges::count(plan.manoeuvres, plan.unseen) == 0);
+    const std::set<std::string> different(plan.manoeuvres.begin(), plan.manoeuvres.end());
+    CHECK(different.size() == plan.manoeuvres.size());
+    if (plan.longest_s.empty()) {
+      CHECK(plan.repeats == 2);
+      CHECK((plan.manoeuvres.size() == 3 || plan.manoeuvres.size() == 4));
+    } else {
+      ++short_runs;
+      CHECK(plan.repeats == 1);
+      CHECK((plan.manoeuvres.size() >= 6 && plan.manoeuvres.size() <= 10));
+      REQUIRE(plan.longest_s.size() == plan.manoeuvres.size());
+      for (const double longest_s : plan.longest_s) CHECK((longest_s >= 5 && longest_s <= 15));
+    }
+    for (const HiddenEffect& hidden : plan.effects) {
+      CHECK((hidden.times_background >= (plan.stratum == Stratum::pair ? 3 : 1) && hidden.times_background <= 6));
+      smallest = std::min(smallest, hidden.times_background);
+      largest = std::max(largest, hidden.times_background);
+    }
+    if (plan.stratum == Stratum::foreign)
+      CHECK((plan.foreign_times_background >= 1 && plan.foreign_times_background <= 6));
+    for (const CaseRuns& runs : runs_to_choose_from(plan)) {
+      CHECK(runs.longest_s.empty() == plan.longest_s.empty());
+      CHECK((runs.longest_s.empty() || runs.longest_s.size() == runs.manoeuvres.size()));
+    }
+    CHECK(runs_to_choose_from(plan).size() == 5);
+  }
+  // of 200 by chance: three standard deviations are 21
+  CHECK((short_runs > 79 && short_runs < 121));
+  CHECK(smallest < 1.2);
+  CHECK(largest > 5.8);
+}
+
+TEST_CASE("Imperfect: the same seed plans the same challenge, to the last number of the background") {
+  const auto one = imperfect(20, 7), again = imperfect(20, 7), other = imperfect(20, 8);
+  const auto same = [](const CasePlan& a, const CasePlan& b) {
+    return a.stratum == b.stratum && a.manoeuvres == b.manoeuvres && a.longest_s == b.longest_s &&
+           a.count_scale == b.count_scale && a.seed == b.seed &&
+           std::ranges::equal(a.background.numbers, b.background.numbers,
+                              [](const BackgroundNumber& x, const BackgroundNumber& y) {
+                                return x.key == y.key && x.value == y.value;
+                              });
+  };
+  CHECK(std::ranges::equal(one, again, same));
+  CHECK_FALSE(std::ranges::equal(one, other, same));
+}
+
+TEST_CASE("Of 150 imperfect cases each effect of the catalogue is hidden alone or withheld in one") {
+  // 50 % of 150 are 75: no fewer than the 53 effects that take turns
+  std::set<std::string> hidden;
+  for (const CasePlan& plan : imperfect(150, 5))
+    if (plan.stratum != Stratum::pair)
+      for (const HiddenEffect& effect : plan.effects) hidden.insert(effect.effect);
+  CHECK(hidden.size() == physics::effect_catalogue().size() - 1);  // all but command_loss
+}
