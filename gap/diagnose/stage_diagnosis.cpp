@@ -74,7 +74,8 @@ bool is_large_enough(const NamedEffect& effect, const Candidate& candidate, doub
   return std::abs(effect.value.value.value - candidate.present) >= agreement * effect.value.spread;
 }
 
-// Names, sets and doubts, by what the effects are worth on runs held out.
+}  // namespace
+
 void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOutShares& shares,
            const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings) {
   bool any_named = false, any_rival = false;
@@ -95,6 +96,8 @@ void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOu
   }
   d.verdict = any_rival ? Verdict::ambiguous : any_named ? Verdict::named : Verdict::unknown;
 }
+
+namespace {
 
 // What is left with the best model, regressed on what was measured.
 std::vector<Dependence> left_over_of(const StageInput& input, Predictor& predictor, const Variation& best,

@@ -61,6 +61,10 @@ std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidat
 StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor,
                               const StageOptions& options);
 
+// Names, sets and doubts of the effects of a best model, by what they are worth on runs held out.
+void judge(StageDecision& decision, std::span<const Candidate> candidates, const HeldOutShares& shares,
+           const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings);
+
 // The nominal robot with candidates at these values.
 physics::RobotDescription with_settings(physics::RobotDescription robot, std::span<const Candidate> candidates,
                                         const Settings& settings);

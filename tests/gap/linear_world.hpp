@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "gap/diagnose/channels.hpp"
-#include "gap/diagnose/stage_decision.hpp"
+#include "gap/diagnose/stage_diagnosis.hpp"
 
 namespace kenaf::test {
 
@@ -60,6 +60,7 @@ class LinearWorld {
     const auto cells = static_cast<Eigen::Index>(size.manoeuvres * kChannels * size.seconds);
     const Eigen::MatrixXd any = Eigen::MatrixXd::NullaryExpr(cells, std::min<Eigen::Index>(cells, 24), [&] { return normal(random); });
     cells_ = Eigen::HouseholderQR<Eigen::MatrixXd>(any).householderQ() * Eigen::MatrixXd::Identity(any.rows(), any.cols());
+    groups_ = data(Whole::Zero(bins()));
   }
 
   std::size_t runs() const { return size.manoeuvres * size.repeats; }
@@ -117,7 +118,7 @@ class LinearWorld {
       result.push_back(whole.segment(static_cast<Eigen::Index>(r) * bins_of_run(), bins_of_run()));
     return result;
   }
-  gap::GroupVectors by_group(const Whole& whole) const { return gap::mean_of_groups(data(Whole::Zero(bins())), by_run(whole)); }
+  gap::GroupVectors by_group(const Whole& whole) const { return gap::mean_of_groups(groups_, by_run(whole)); }
 
   gap::NoiseFloor floor() const {
     const Eigen::VectorXd sigma = Eigen::VectorXd::Ones(bins_of_run());
@@ -178,8 +179,17 @@ class LinearWorld {
   gap::StageDecision decide(const Moved& moved, std::size_t count, const Whole& gap, double rough = 1,
                             const gap::GapTest& test = {}, const gap::DecisionSettings& settings = {}) const {
     const gap::StageAround nominal{floor(), data(gap)};
-    return gap::decide_stage(nominal, curves(moved, count, nominal.data, rough), simulate(moved, rough),
-                             [&](const gap::Settings&) { return nominal; }, test, settings);
+    gap::StageDecision decision =
+        gap::decide_stage(nominal, curves(moved, count, nominal.data, rough), simulate(moved, rough),
+                          [&](const gap::Settings&) { return nominal; }, test, settings);
+    if (decision.effects.empty()) return decision;
+    const std::vector<Eigen::VectorXd> residuals = by_run(gap);
+    const gap::StageView view{&features, &repeats, &residuals, &decision.floor};
+    const auto shares = [&](const gap::Folds& folds) {
+      return gap::shares_held_out(view, gap::Passage::drive_to_body, decision.best, folds, 1);
+    };
+    gap::judge(decision, candidates(count), shares(gap::folds_by_repeat(repeats)), shares(repeats), settings);
+    return decision;
   }
   gap::StageDecision decide(const std::vector<Whole>& per_value, const Whole& gap, double rough = 1) const {
     return decide(linear(per_value), per_value.size(), gap, rough);
@@ -197,6 +207,7 @@ class LinearWorld {
   }
   std::vector<gap::Candidate> candidates_;
   Eigen::MatrixXd cells_;
+  gap::StageData groups_{gap::Passage::drive_to_body, {}};  // without a gap
 };
 
 inline const LinearWorld& world() {

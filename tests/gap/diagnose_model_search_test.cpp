@@ -1,0 +1,112 @@
+// From curves to exact models.
+#include "gap/diagnose/model_search.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+
+#include "tests/gap/linear_world.hpp"
+
+using namespace kenaf;
+using namespace kenaf::gap;
+using test::LinearWorld;
+using test::Whole;
+using test::world;
+
+namespace {
+
+std::vector<Whole> six_effects() {
+  std::vector<Whole> effects;
+  for (Eigen::Index i = 0; i < 6; ++i) effects.push_back(60 * world().direction(i));
+  return effects;
+}
+
+std::vector<Model> pairs_found(const LinearWorld::Moved& moved, const Whole& gap) {
+  const StageData data = world().data(gap);
+  const EffectCurves curves = world().curves(moved, 6, data);
+  return search_sets(data, curves, no_discrepancy(), world().simulate(moved), {}, all_pairs(curves),
+                     nominal_model(data).deviance());
+}
+
+double value_of(const Model& model, std::size_t effect) {
+  for (const OnCurve& place : model.places)
+    if (place.curve == effect) return place.value;
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("A model is fitted with the discrepancies that suit what it leaves") {
+  const std::vector<Whole> effects = six_effects();
+  const StageData data = world().data(0.4 * effects[2]);
+  const EffectCurves curves = world().curves(effects, data);
+  const std::vector<std::size_t> right{2}, wrong{3};
+  const Model model = fit_model(data, curves, right, {}, no_discrepancy());
+  CHECK(model.places.at(0).value == Approx(0.4));
+  CHECK(length_in_noise(data, rest_of(data, model)) < 1e-6);
+  for (const Discrepancy& discrepancy : model.likelihood.discrepancies) CHECK(discrepancy.sigma == 0);
+  const Model other = fit_model(data, curves, wrong, {}, no_discrepancy());
+  CHECK(length_in_noise(data, rest_of(data, other)) == Approx(24).margin(0.5));
+  CHECK(std::ranges::any_of(other.likelihood.discrepancies, [](const Discrepancy& d) { return d.sigma > 0.5; }));
+  CHECK(other.deviance() > model.deviance() + 16);
+  // what a simulation has beyond the curves is no part of what they are fitted to
+  const GroupVectors beyond = world().by_group(0.1 * effects[2]);
+  CHECK(fit_model(data, curves, right, beyond, no_discrepancy()).places.at(0).value == Approx(0.3));
+}
+
+TEST_CASE("Exact simulations correct what coarse ones said of an effect's size, anywhere in its range") {
+  const std::vector<Whole> effects = six_effects();
+  for (const double rough : {0.8, 1.25})
+    for (const double value : {-0.9, -0.3, 0.2, 0.6, 0.75, 0.95}) {
+      INFO("coarse simulations say " << rough << " times as much of " << value);
+      const StageData data = world().data(value * effects[3] + world().noise(1));
+      EffectCurves curves = world().curves(effects, data, rough);
+      const std::vector<Model> singles =
+          search_singles(data, curves, no_discrepancy(), world().simulate(LinearWorld::linear(effects), rough), {});
+      REQUIRE(!singles.empty());
+      CHECK(singles[0].exact);
+      REQUIRE(singles[0].places.at(0).curve == 3);
+      CHECK(singles[0].places[0].value == Approx(value).margin(4.0 / 60));  // its sigma is 1 / 60
+      CHECK(std::ranges::is_sorted(singles, {}, &Model::deviance));
+    }
+}
+
+TEST_CASE("Effects that these runs do not show are in no set") {
+  std::vector<Whole> effects = six_effects();
+  effects[1] *= 0.9 / 60;  // less than noise at the end of its range
+  const StageData data = world().data(Whole::Zero(world().bins()));
+  const EffectCurves curves = world().curves(effects, data);
+  const std::vector<EffectSet> pairs = all_pairs(curves);
+  CHECK(pairs.size() == 10);  // of five
+  CHECK(std::ranges::none_of(pairs, [](const EffectSet& set) { return std::ranges::count(set, 1u) > 0; }));
+  CHECK(with_one_more(curves, {0, 2}) == std::vector<EffectSet>{{0, 2, 3}, {0, 2, 4}, {0, 2, 5}});
+}
+
+TEST_CASE("Of all pairs the two that are there are found, simulated at the full rate") {
+  const std::vector<Whole> effects = six_effects();
+  const std::vector<Model> found =
+      pairs_found(LinearWorld::linear(effects), 0.5 * effects[1] - 0.4 * effects[4] + world().noise(1));
+  REQUIRE(!found.empty());
+  CHECK(found[0].exact);
+  CHECK(effects_of(found[0]) == EffectSet{1, 4});
+  CHECK(value_of(found[0], 1) == Approx(0.5).margin(4.0 / 60));
+  CHECK(value_of(found[0], 4) == Approx(-0.4).margin(4.0 / 60));
+}
+
+TEST_CASE("Effects that change what the other one does are found together") {
+  // beside a half of effect 4, effect 1 does 1.5 times what it does alone
+  const std::vector<Whole> effects = six_effects();
+  const auto moved = [&](const Settings& settings) {
+    double one = 0, four = 0;
+    for (const Setting& setting : settings) {
+      if (setting.candidate == 1) one = setting.value;
+      if (setting.candidate == 4) four = setting.value;
+    }
+    return Whole(LinearWorld::linear(effects)(settings) + one * four * effects[1]);
+  };
+  const std::vector<Model> found = pairs_found(moved, moved({{1, 0.4}, {4, 0.5}}) + world().noise(2));
+  REQUIRE(!found.empty());
+  CHECK(effects_of(found[0]) == EffectSet{1, 4});
+  // where the sum of both alone would have it, 0.6, it is not
+  CHECK(value_of(found[0], 1) == Approx(0.4).margin(0.1));
+  CHECK(value_of(found[0], 4) == Approx(0.5).margin(0.1));
+}
