@@ -5,7 +5,6 @@
 #include <cmath>
 #include <random>
 
-#include "gap/diagnose/chance.hpp"
 #include "gap/diagnose/channels.hpp"
 #include "tests/gap/made_run.hpp"
 
@@ -18,9 +17,22 @@ namespace {
 
 // A run of x alone, 1000 bins of 0.25 s with two samples each.
 constexpr std::size_t kBins = 1000;
-const FeatureMap& long_map() {
-  static const FeatureMap map(test::made_run(250, 0.125, {{"x_m", [](double) { return 0.0; }}}), 0.25);
-  return map;
+StageFeatures features_of(const runs::Run& run) {
+  return stage_features(Passage::drive_to_body, FeatureMap(run, 0.25), run);
+}
+const StageFeatures& long_run() {
+  static const StageFeatures features = features_of(test::made_run(250, 0.125, {{"x_m", [](double) { return 0.0; }}}));
+  return features;
+}
+
+// With nothing left open by the simulation.
+OpenShapes closed(Eigen::Index bins = kBins) {
+  return {MatrixXd(bins, 0), MatrixXd(bins, 0), VectorXd::Zero(bins)};
+}
+OpenShapes rough(const VectorXd& roughness) {
+  OpenShapes open = closed(roughness.size());
+  open.roughness = roughness;
+  return open;
 }
 
 VectorXd white(double sigma, std::mt19937_64& random) {
@@ -28,14 +40,12 @@ VectorXd white(double sigma, std::mt19937_64& random) {
   return VectorXd::NullaryExpr(kBins, [&] { return normal(random); });
 }
 
-// With nothing left open by the simulation.
 NoiseFloor floor_of(const std::vector<VectorXd>& residuals, const std::vector<std::vector<std::size_t>>& repeats) {
-  const std::vector<FeatureMap> features(residuals.size(), long_map());
-  const OpenShapes closed{MatrixXd::Zero(kBins, 1), VectorXd::Zero(kBins)};
-  return noise_floor(features, residuals, repeats, std::vector<OpenShapes>(residuals.size(), closed));
+  const std::vector<StageFeatures> features(residuals.size(), long_run());
+  return noise_floor(features, residuals, repeats, std::vector<OpenShapes>(residuals.size(), closed()));
 }
 double sigma_of_x(const NoiseFloor& floor) {
-  return floor.sigma[long_map().bins()[0].channel];
+  return floor.sigma[long_run().bins[0].channel];
 }
 
 MatrixXd as_matrix(const Whitener& whitener, Eigen::Index size) {
@@ -49,15 +59,15 @@ MatrixXd as_matrix(const Whitener& whitener, Eigen::Index size) {
 // What somebody knows of a sample is sigma / sqrt(2) of a bin of two samples.
 TEST_CASE("A noise that is stated stands where nothing repeats, and gives way to repeats") {
   std::mt19937_64 random(4);
-  const std::vector<FeatureMap> features(2, long_map());
-  const std::vector<OpenShapes> closed(2, {MatrixXd::Zero(kBins, 1), VectorXd::Zero(kBins)});
+  const std::vector<StageFeatures> features(2, long_run());
+  const std::vector<OpenShapes> none_open(2, closed());
   const std::vector<VectorXd> residuals{white(0.02, random), white(0.02, random)};
   std::vector<double> stated(diagnosis_channels().size(), 0);
-  CHECK(sigma_of_x(noise_floor(features, residuals, {{0}, {1}}, closed, stated)) == Approx(0.02).epsilon(0.15));
-  stated[long_map().bins()[0].channel] = 0.1;
-  const double alone = sigma_of_x(noise_floor(features, residuals, {{0}, {1}}, closed, stated));
+  CHECK(sigma_of_x(noise_floor(features, residuals, {{0}, {1}}, none_open, stated)) == Approx(0.02).epsilon(0.15));
+  stated[long_run().bins[0].channel] = 0.1;
+  const double alone = sigma_of_x(noise_floor(features, residuals, {{0}, {1}}, none_open, stated));
   CHECK(alone == Approx(0.1 / std::sqrt(2)));
-  CHECK(sigma_of_x(noise_floor(features, residuals, {{0, 1}}, closed, stated)) == Approx(0.02).epsilon(0.15));
+  CHECK(sigma_of_x(noise_floor(features, residuals, {{0, 1}}, none_open, stated)) == Approx(0.02).epsilon(0.15));
 }
 
 // A median of absolute values knows sigma to 1.17 / sqrt(n); that neighbouring second differences share bins makes it
@@ -90,7 +100,7 @@ TEST_CASE("A twentieth of the bins at which something happens does not count as 
 TEST_CASE("Nothing is known finer than a channel's resolution, what was never measured has no sigma") {
   const NoiseFloor floor = floor_of({VectorXd::Zero(kBins), VectorXd::Zero(kBins)}, {{0, 1}});
   for (std::size_t c = 0; c < diagnosis_channels().size(); ++c)
-    CHECK(floor.sigma[c] == (c == long_map().bins()[0].channel ? diagnosis_channels()[c].resolution : 0));
+    CHECK(floor.sigma[c] == (c == long_run().bins[0].channel ? diagnosis_channels()[c].resolution : 0));
 }
 
 TEST_CASE("A wander too slow to show from bin to bin shows in repeats") {
@@ -119,23 +129,23 @@ TEST_CASE("One manoeuvre whose repeats differ by chance is no noise of the other
 }
 
 TEST_CASE("Where one repeat goes on alone nothing is learnt of noise, and nothing is lost") {
-  const FeatureMap half(test::made_run(125, 0.125, {{"x_m", [](double) { return 0.0; }}}), 0.25);
+  const StageFeatures half = features_of(test::made_run(125, 0.125, {{"x_m", [](double) { return 0.0; }}}));
   std::mt19937_64 random(7);
   const VectorXd whole = white(0.02, random), first = white(0.02, random).head(kBins / 2);
-  const auto closed = [](Eigen::Index bins) { return OpenShapes{MatrixXd::Zero(bins, 1), VectorXd::Zero(bins)}; };
   const NoiseFloor floor =
-      noise_floor({long_map(), half}, {whole, first}, {{0, 1}}, {closed(kBins), closed(kBins / 2)});
+      noise_floor({long_run(), half}, {whole, first}, {{0, 1}}, {closed(kBins), closed(kBins / 2)});
   // 500 pairs: 1.6 / sqrt(500) = 7 %, of which 3 are allowed
   CHECK(sigma_of_x(floor) == Approx(0.02).epsilon(0.21));
 }
 
 TEST_CASE("A bin with half the samples has sqrt(2) of the noise, roughness adds to it") {
-  const FeatureMap map(test::made_run(1, 0.125, {{"x_m", [](double t_s) { return t_s > 0.8 ? NAN : 0.0; }}}), 0.25);
-  REQUIRE(map.bins().back().samples == 1);
+  const StageFeatures run =
+      features_of(test::made_run(1, 0.125, {{"x_m", [](double t_s) { return t_s > 0.8 ? NAN : 0.0; }}}));
+  REQUIRE(run.bins.back().samples == 1);
   const VectorXd none = VectorXd::Zero(4);
-  OpenShapes open{MatrixXd::Zero(4, 1), none};
+  OpenShapes open = closed(4);
   open.roughness[0] = 5e-4 * std::sqrt(3);
-  const NoiseFloor floor = noise_floor({map}, {none}, {{0}}, {open});
+  const NoiseFloor floor = noise_floor({run}, {none}, {{0}}, {open});
   CHECK(floor.sigma_of_bin[0][3] == Approx(5e-4 * std::sqrt(2)));
   CHECK(floor.sigma_of_bin[0][0] == Approx(5e-4 * 2));  // sqrt(1 + 3)
   CHECK(floor.rms({VectorXd(floor.sigma_of_bin[0] * 3)}) == Approx(3));
@@ -161,35 +171,45 @@ TEST_CASE("A shift along a shape s sigma long shrinks to 1 / sqrt(1 + s^2), one 
 
 TEST_CASE("Around another model bins are as rough as the rougher one has them") {
   // noise is x's resolution, 5e-4; roughness in units of it: of the nominal model, of the other one, and by hand
-  const FeatureMap map(test::made_run(1, 0.125, {{"x_m", [](double) { return 0.0; }}}), 0.25);
-  REQUIRE(map.bins().size() == 4);
+  const StageFeatures run = features_of(test::made_run(1, 0.125, {{"x_m", [](double) { return 0.0; }}}));
+  REQUIRE(run.bins.size() == 4);
   const VectorXd none = VectorXd::Zero(4), nominal_rough = (VectorXd(4) << 0, 0, 1, 2).finished(),
                  other_rough = (VectorXd(4) << 0, 1, 1, 1).finished();
-  const NoiseFloor nominal = noise_floor({map}, {none}, {{0}}, {{MatrixXd::Zero(4, 1), 5e-4 * nominal_rough}});
-  const NoiseFloor around = with_open_shapes(nominal, {{MatrixXd::Zero(4, 1), 5e-4 * other_rough}});
+  const NoiseFloor nominal = noise_floor({run}, {none}, {{0}}, {rough(5e-4 * nominal_rough)});
+  const NoiseFloor around = with_open_shapes(nominal, {rough(5e-4 * other_rough)});
   const double expected[] = {1, std::sqrt(2), std::sqrt(2), std::sqrt(5)};
   for (Eigen::Index b = 0; b < 4; ++b) CHECK(around.sigma_of_bin[0][b] == Approx(5e-4 * expected[b]));
   // and from there on to a third: the roughness of all that it was taken around before
-  const NoiseFloor third = with_open_shapes(around, {{MatrixXd::Zero(4, 1), none}});
+  const NoiseFloor third = with_open_shapes(around, {closed(4)});
   for (Eigen::Index b = 0; b < 4; ++b) CHECK(third.sigma_of_bin[0][b] == Approx(5e-4 * expected[b]));
 }
 
-TEST_CASE("Repeats that differ as the floor says inflate nothing, a second of wander does") {
-  std::mt19937_64 random(6);
-  const std::vector<FeatureMap> features(2, long_map());
-  const double sigma = 0.02;
-  std::vector<VectorXd> residuals{white(sigma, random), white(sigma, random)};
-  const auto inflation = [&] {
-    const NoiseFloor floor = floor_of(residuals, {{0, 1}});
-    return inflation_from_repeats(features, floor, deviations_from_repeats(features, residuals, {{0, 1}}), 1);
+TEST_CASE("Local and numeric shapes are open alike in a run's floor, and another model brings its own") {
+  const StageFeatures run = features_of(test::made_run(1, 0.125, {{"x_m", [](double) { return 0.0; }}}));
+  const double sigma = diagnosis_channels()[run.bins[0].channel].resolution;
+  OpenShapes open = closed(4);
+  open.local = 3 * sigma * VectorXd::Unit(4, 0);
+  open.numerics = 7 * sigma * VectorXd::Unit(4, 2);
+  const NoiseFloor floor = noise_floor({run}, {VectorXd::Zero(4)}, {{0}}, {open});
+  const VectorXd white = floor.whiteners[0](VectorXd::Constant(4, sigma));
+  // variances of 1, and 1 + 3^2, and 1 + 7^2
+  CHECK(white[0] == Approx(1 / std::sqrt(10.0)));
+  CHECK(white[1] == Approx(1));
+  CHECK(white[2] == Approx(1 / std::sqrt(50.0)));
+  CHECK((with_open_shapes(floor, {closed(4)}).whiteners[0](VectorXd::Constant(4, sigma)) - VectorXd::Ones(4)).norm() <
+        1e-12);
+}
+
+TEST_CASE("What repeats differ by is measured over the bins that more than one of them has") {
+  // the second one ends half way; each is off from their mean by half of 6, as one run's sqrt(2) times that
+  const StageFeatures whole = features_of(test::made_run(1, 0.125, {{"x_m", [](double) { return 0.0; }}}));
+  const StageFeatures half = features_of(test::made_run(0.5, 0.125, {{"x_m", [](double) { return 0.0; }}}));
+  NoiseFloor floor;
+  for (const Eigen::Index bins : {4, 2}) floor.whiteners.emplace_back(VectorXd::Ones(bins), MatrixXd(bins, 0));
+  const std::vector<VectorXd> residuals{VectorXd::Constant(4, 6), VectorXd::Zero(2)};
+  const auto rms = [&](const std::vector<std::vector<std::size_t>>& repeats) {
+    return rms_of_repeats(floor, {whole, half}, deviations_from_repeats({whole, half}, residuals, repeats), repeats);
   };
-  // 250 cells, each in both runs with opposite signs: sigma of their mean square sqrt(2 / 250) = 9 %
-  CHECK(inflation() < 1.3);
-  // whole seconds, four bins, that are off together by sigma: their mean's variance is 1/4 + 1 instead of 1/4 of
-  // sigma^2, while a bin's is twice what it was: 2.5 times. A wander at a bin's own pace is seen by the floor in part.
-  std::normal_distribution<double> normal(0, sigma);
-  for (VectorXd& run : residuals)
-    for (Eigen::Index i = 0; i < run.size(); i += 4) run.segment(i, 4).array() += normal(random);
-  CHECK(inflation() > 2);
-  CHECK(inflation() < 4);
+  CHECK(rms({{0, 1}}) == Approx(3 * std::sqrt(2.0)));
+  CHECK(rms({{0}, {1}}) == 1);
 }

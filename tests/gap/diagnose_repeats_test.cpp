@@ -48,11 +48,13 @@ Observation ordered(std::initializer_list<double> speeds_mps) {
   return observation;
 }
 
-std::vector<FeatureMap> maps(std::initializer_list<double> durations_s) {
-  std::vector<FeatureMap> maps;
-  for (const double duration_s : durations_s)
-    maps.emplace_back(test::made_run(duration_s, 0.1, {{"x_m", [](double) { return 0.0; }}}), 0.25);
-  return maps;
+std::vector<StageFeatures> lasting(std::initializer_list<double> durations_s) {
+  std::vector<StageFeatures> features;
+  for (const double duration_s : durations_s) {
+    const runs::Run run = test::made_run(duration_s, 0.1, {{"x_m", [](double) { return 0.0; }}});
+    features.push_back(stage_features(Passage::drive_to_body, FeatureMap(run, 0.25), run));
+  }
+  return features;
 }
 
 }  // namespace
@@ -116,7 +118,7 @@ TEST_CASE("A run that was cut short repeats as far as it goes") {
 }
 
 TEST_CASE("Deviations are from the mean of the repeats, with the variance of one run") {
-  const auto features = maps({0.5, 0.5, 0.5});
+  const auto features = lasting({0.5, 0.5, 0.5});
   const std::vector<Eigen::VectorXd> residuals{Eigen::Vector2d(1, 5), Eigen::Vector2d(3, 5), Eigen::Vector2d(7, 7)};
   // of 1 and 3: mean 2, deviations -1 and 1, their variance 1; that of one run is n / (n - 1) = 2 times it
   const auto of_two = deviations_from_repeats(features, residuals, {{0, 1}, {2}});
@@ -132,12 +134,12 @@ TEST_CASE("Deviations of noise have the noise's variance, for any number of repe
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal(0, 2);
   for (const std::size_t count : {2u, 3u, 5u}) {
-    std::vector<FeatureMap> features;
+    std::vector<StageFeatures> features;
     std::vector<Eigen::VectorXd> residuals;
     Groups group(1);
     double square = 0, bins = 0;
     for (std::size_t r = 0; r < count; ++r) {
-      features.push_back(maps({250}).front());
+      features.push_back(lasting({250}).front());
       residuals.push_back(Eigen::VectorXd::NullaryExpr(1000, [&] { return normal(random); }));
       group[0].push_back(r);
     }
@@ -152,7 +154,7 @@ TEST_CASE("Deviations of noise have the noise's variance, for any number of repe
 
 TEST_CASE("Where one repeat alone goes on there is no deviation") {
   const auto deviations =
-      deviations_from_repeats(maps({0.5, 1}), {Eigen::Vector2d(1, 1), Eigen::Vector4d(3, 3, 9, 9)}, {{0, 1}});
+      deviations_from_repeats(lasting({0.5, 1}), {Eigen::Vector2d(1, 1), Eigen::Vector4d(3, 3, 9, 9)}, {{0, 1}});
   CHECK(deviations[1][0] == Approx(std::sqrt(2.0)));
   CHECK(deviations[1][3] == 0);
 }
@@ -161,4 +163,11 @@ TEST_CASE("A group is represented by the run of middle duration") {
   Observations observations;
   observations.runs = {told("a", 0.3, 0, 1), told("a", 0.3, 0, 9), told("a", 0.3, 0, 4)};
   CHECK(representative(observations, {0, 1, 2}) == 2);
+}
+
+TEST_CASE("Bins are shared where more than one repeat has them") {
+  const std::vector<std::vector<bool>> shared = shared_bins(lasting({0.5, 1, 1}), {{0, 1}, {2}});
+  CHECK(shared[0] == std::vector<bool>{true, true});
+  CHECK(shared[1] == std::vector<bool>{true, true, false, false});
+  CHECK(shared[2] == std::vector<bool>(4, false));
 }

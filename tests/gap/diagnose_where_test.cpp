@@ -20,8 +20,9 @@ TEST_CASE("Before a gap begins there is none, whatever offset its channel may ha
   const auto above = [](double t_s) { return t_s < 5 ? 0 : 0.005; };
   only.run =
       test::made_run(10, 0.05, {{"cmd_track_left_mps", drives}, {"cmd_track_right_mps", drives}, {"z_m", above}});
-  const std::vector<FeatureMap> features{{only.run, 0.25}};
-  const auto bins = static_cast<Eigen::Index>(features[0].bins().size());
+  const std::vector<StageFeatures> features{
+      stage_features(Passage::drive_to_body, FeatureMap(only.run, 0.25), only.run)};
+  const auto bins = std::ssize(features[0].bins);
   const Eigen::VectorXd sigma = Eigen::VectorXd::Constant(bins, kSigma_m);
   const NoiseFloor floor{std::vector<double>(diagnosis_channels().size(), kSigma_m),
                          {sigma},
@@ -29,7 +30,7 @@ TEST_CASE("Before a gap begins there is none, whatever offset its channel may ha
                          true};
   const std::vector<std::vector<std::size_t>> repeats{{0}};
   const GapPlaces places =
-      locate(observations, features, floor, repeats, Coherence(features, repeats, 1), {features[0].measured()});
+      locate(observations, features, floor, repeats, Coherence(features, repeats, 1), {features[0].measured});
   double standing = 0, going = 0;
   for (const PhaseGap& phase : places.phases) (phase.to_s <= 5 ? standing : going) += phase.share;
   CHECK(standing == Approx(0).margin(1e-12));
