@@ -22,13 +22,14 @@ nav { margin: 14px 0; font-size: 13px; } nav a { margin-right: 14px; white-space
 .tables { overflow-x: auto; } .tables svg.chart { max-width: none; }
 table { border-collapse: collapse; font-size: 13px; margin: 12px 0; font-variant-numeric: tabular-nums; }
 th, td { padding: 3px 9px; text-align: right; border-bottom: 1px solid var(--grid); white-space: nowrap; }
-th { font-weight: 600; color: var(--soft); }
+th { font-weight: 600; color: var(--soft); white-space: normal; vertical-align: bottom; }
+td.text { white-space: normal; max-width: 46ch; }
 th.text, td.text { text-align: left; } th:first-child, td:first-child { padding-left: 0; }
 .glance { font-size: 14px; } .glance td, .glance th { padding: 4px 14px 4px 0; }
 td.wrap { white-space: normal; max-width: 34ch; }
-.bar { display: inline-block; width: 260px; height: 14px; background: var(--grid); vertical-align: -2px; overflow: hidden;
+.share { display: inline-block; width: 260px; height: 14px; background: var(--grid); vertical-align: -2px; overflow: hidden;
   white-space: nowrap; font-size: 0; margin-right: 6px; }
-.bar span { display: inline-block; height: 100%; } .gone { background: var(--third); } .left { background: var(--sim); }
+.share span { display: inline-block; height: 100%; } .gone { background: var(--third); } .left { background: var(--sim); }
 .key { font-size: 13px; } .key span { display: inline-block; width: 11px; height: 11px; margin: 0 3px 0 10px; }
 .key span:first-child { margin-left: 0; }
 dl { display: grid; grid-template-columns: 10em 1fr; gap: 10px 14px; margin: 16px 0 4px; } dt { font-weight: 600; }

@@ -36,7 +36,7 @@ std::string contained(const Diagnosis& d, const Setting& setting) {
         if (effect.value.value.value == setting.value)
           words = value_in_words(d.candidates[setting.candidate], effect.value);
       }
-  return fmt::format("  {} ({})", words, fmt::join(stages, ", "));
+  return fmt::format("- {} ({})", words, fmt::join(stages, ", "));
 }
 
 std::string top_of_file(const Diagnosis& d, const Settings& corrections, bool is_named) {
@@ -47,20 +47,20 @@ std::string top_of_file(const Diagnosis& d, const Settings& corrections, bool is
   for (const Setting& setting : corrections) text += as_comment(contained(d, setting));
   std::vector<std::string> lacks;
   for (const std::vector<std::size_t>& set : names_found(d).ambiguous_sets)
-    lacks.push_back(fmt::format("  which of {} it is: these runs cannot tell, the best fit is in it",
+    lacks.push_back(fmt::format("- which of {} it is: these runs cannot tell, the best fit is in it",
                                 enumeration(candidate_names(d, set), "or")));
   for (const std::size_t s : stages_with_gap(d)) {
     const StageDiagnosis& stage = d.stages[s];
     if (is_named && names_found(stage).empty())
-      lacks.push_back(fmt::format("  what causes the gap {}: no effect is named for it", from_to(stage.passage)));
+      lacks.push_back(fmt::format("- what causes the gap {}: no effect is named for it", from_to(stage.passage)));
     if (is_named)
       for (const NamedEffect& effect : stage.decision.effects)
         if (!effect.doubts.empty() &&
             std::ranges::none_of(corrections, [&](const Setting& c) { return c.candidate == effect.candidate; }))
-          lacks.push_back(fmt::format("  {}, which got no name: {}", d.candidates[effect.candidate].name,
+          lacks.push_back(fmt::format("- {}, which got no name: {}", d.candidates[effect.candidate].name,
                                       fmt::join(doubts_in_words(d, effect), "; ")));
     if (stage.decision.complete) continue;
-    std::string left = fmt::format("  {}: {}", from_to(stage.passage), left_in_words(stage));
+    std::string left = fmt::format("- {}: {}", from_to(stage.passage), left_in_words(stage));
     if (!stage.left_over.empty()) left += "; " + stage.left_over.front().words;
     lacks.push_back(std::move(left));
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gap/diagnose/channels.hpp"
 
@@ -22,6 +23,11 @@ bool all_are_named(const StageDiagnosis& stage) {
   return std::ranges::all_of(stage.decision.effects, [](const NamedEffect& effect) { return effect.doubts.empty(); });
 }
 
+// "only 3 %", "nothing"
+std::string only(double share) {
+  return share >= 0.0005 ? "only " + percent(share) : "nothing";
+}
+
 // Of the effects with a name together: of the whole model where it has no other ones.
 double explained_by_names(const StageDiagnosis& stage) {
   if (all_are_named(stage)) return explained(stage);
@@ -34,11 +40,12 @@ double explained_by_names(const StageDiagnosis& stage) {
 // "drive_lag explains 85 % of the gap from command to drive".
 std::string stage_in_words(const Diagnosis& d, const StageDiagnosis& stage) {
   const NamesFound names = names_found(stage);
-  if (names.empty()) return fmt::format("no effect is named for the gap {}", from_to(stage.passage));
   const bool several = names.named.size() + names.ambiguous_sets.size() > 1;
-  return fmt::format("{} {} {} of the gap {}{}", names_in_words(d, names), several ? "explain" : "explains",
-                     percent(explained_by_names(stage)), from_to(stage.passage),
-                     names.ambiguous_sets.empty() ? "" : ", but these runs cannot tell which");
+  std::string words = fmt::format("{} {} {} of the gap {}", names_in_words(d, names), several ? "explain" : "explains",
+                                  percent(explained_by_names(stage)), from_to(stage.passage));
+  if (!all_are_named(stage))
+    words += fmt::format(" ({} together with effects that get no name)", percent(explained(stage)));
+  return words + (names.ambiguous_sets.empty() ? "" : ", but these runs cannot tell which");
 }
 
 }  // namespace
@@ -200,16 +207,18 @@ std::string headline(const Diagnosis& d) {
   if (d.verdict == Verdict::none) return "No gap: robot and simulation differ no more than noise and repeats do";
   const std::vector<std::size_t> stages = stages_with_gap(d);
   if (stages.empty()) return "Nothing could be compared";
-  if (names_found(d).empty()) {
-    std::vector<std::string> where;
-    for (const std::size_t s : stages) where.push_back(from_to(d.stages[s].passage));
-    return fmt::format("There is a gap {}, and no effect is named for it", enumeration(where));
+  std::vector<std::string> named, unnamed;
+  for (const std::size_t s : stages) {
+    if (names_found(d.stages[s]).empty())
+      unnamed.push_back(from_to(d.stages[s].passage));
+    else
+      named.push_back(stage_in_words(d, d.stages[s]));
   }
-  std::vector<std::string> parts;  // first those with a name
-  for (const bool has_name : {true, false})
-    for (const std::size_t s : stages)
-      if (names_found(d.stages[s]).empty() != has_name) parts.push_back(stage_in_words(d, d.stages[s]));
-  return fmt::format("{}", fmt::join(parts, "; "));
+  if (named.empty()) return fmt::format("There is a gap {}, and no effect is named for it", enumeration(unnamed));
+  if (!unnamed.empty()) named.push_back(fmt::format("no effect is named for the gap {}", enumeration(unnamed, "or")));
+  std::string words = fmt::format("{}", fmt::join(named, "; "));
+  if (words.starts_with("one of ")) words.front() = 'O';  // a name stays as it is
+  return words;
 }
 
 std::string value_name(const Candidate& candidate) {
@@ -218,9 +227,10 @@ std::string value_name(const Candidate& candidate) {
 }
 
 std::string value_in_words(const Candidate& candidate, const EffectValue& value) {
-  std::string text = fmt::format("{} = {}, {} {}{}", value_name(candidate), interval_text(value.value, candidate.unit),
-                                 candidate.is_number_of_description ? "described as" : "nominal",
-                                 figure(candidate.present), unit_suffix(candidate.unit));
+  std::string text =
+      fmt::format("{} = {}{} (95 % interval {} to {}), {} {}", value_name(candidate), figure(value.value.value),
+                  unit_suffix(candidate.unit), figure(value.value.from), figure(value.value.to),
+                  candidate.is_number_of_description ? "described as" : "nominal", figure(candidate.present));
   if (value.spread > 0)
     text +=
         fmt::format(", standard deviation between manoeuvres {}{}", figure(value.spread), unit_suffix(candidate.unit));
@@ -248,16 +258,15 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& 
       case Doubt::not_held_out: {
         const bool by_manoeuvre = effect.share_by_manoeuvre.of_kind < effect.share.of_kind;
         const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;
-        words.push_back(fmt::format("it takes off only {} of the gap in {} on {}",
-                                    percent(std::max(0.0, least.of_kind)), kind_name(least.kind),
+        words.push_back(fmt::format("it takes off {} of the gap in {} on {}", only(least.of_kind), kind_name(least.kind),
                                     by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
         break;
       }
       case Doubt::little_explained: {
         const bool by_manoeuvre = effect.share_by_manoeuvre.model_of_kind < effect.share.model_of_kind;
         const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;
-        words.push_back(fmt::format("all effects together take off only {} of the gap in {} on {}",
-                                    percent(std::max(0.0, least.model_of_kind)), kind_name(least.kind),
+        words.push_back(fmt::format("all effects together take off {} of the gap in {} on {}",
+                                    only(least.model_of_kind), kind_name(least.kind),
                                     by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
         break;
       }
@@ -276,11 +285,12 @@ std::vector<std::string> all_doubts(const Diagnosis& d) {
 }
 
 std::string gap_in_words(const Diagnosis& d, const StageDiagnosis& stage) {
+  const auto rms = [](double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : std::string("-"); };
   const GapMeasure& gap = stage.gap;
   if (stage.decision.best.model.places.empty())
-    return fmt::format("{:.2f} noise units; noise alone: {:.2f}", gap.before, gap.floor);
-  return fmt::format("{:.2f} noise units before, {:.2f} after on {}; noise alone: {:.2f}", gap.before, gap.after,
-                     measured_on(d), gap.floor);
+    return fmt::format("{} noise units; noise alone: {}", rms(gap.before), rms(gap.floor));
+  return fmt::format("{} noise units before, {} after on {}; noise alone: {}", rms(gap.before), rms(gap.after),
+                     measured_on(d), rms(gap.floor));
 }
 
 std::string left_in_words(const StageDiagnosis& stage) {
@@ -288,12 +298,22 @@ std::string left_in_words(const StageDiagnosis& stage) {
   if (stage.decision.complete) return "what is left is within noise and spread";
   const double share = explained(stage);
   if (share == 0) return "all of the gap is left";
-  return fmt::format("{} of the gap is left", percent(1 - share));
+  const bool some_lack_a_name = !names_found(stage).empty() && !all_are_named(stage);
+  return fmt::format("{} of the gap is left{}", percent(1 - share),
+                     some_lack_a_name ? ", even with the effects that get no name" : "");
+}
+
+std::vector<SingleEvidence> ranked_by_share(const StageDiagnosis& stage) {
+  std::vector<SingleEvidence> ranking = stage.ranking;
+  std::ranges::stable_sort(ranking, std::ranges::greater{}, [](const SingleEvidence& single) {
+    return std::isnan(single.explains) ? -std::numeric_limits<double>::infinity() : single.explains;
+  });
+  return ranking;
 }
 
 std::vector<std::string> best_alone(const Diagnosis& d, const StageDiagnosis& stage) {
   std::vector<std::string> alone;
-  for (const SingleEvidence& single : stage.ranking)
+  for (const SingleEvidence& single : ranked_by_share(stage))
     if (alone.size() < kMostAlone && single.explains > 0.01)
       alone.push_back(fmt::format("{} ({})", d.candidates[single.candidate].name, percent(single.explains)));
   return alone;

@@ -65,7 +65,7 @@ std::string_view noise_source(const Diagnosis& d);
 std::string headline(const Diagnosis& d);
 // "command_slew slowness_s2pm"; where the name says the parameter, the name.
 std::string value_name(const Candidate& candidate);
-// "command_slew slowness_s2pm = 0.69 s^2/m (0.65 to 0.72), nominal 0 s^2/m".
+// "command_slew slowness_s2pm = 0.69 s^2/m (95 % interval 0.65 to 0.72), nominal 0". Begins with the candidate's name.
 std::string value_in_words(const Candidate& candidate, const EffectValue& value);
 // Why an effect of the best model gets no name: "its value is at the end of its range (0 to 3 s)".
 std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& effect);
@@ -75,6 +75,8 @@ std::vector<std::string> all_doubts(const Diagnosis& d);
 std::string gap_in_words(const Diagnosis& d, const StageDiagnosis& stage);
 // What a stage's best model leaves: "15 % of the gap is left", "what is left is within noise and spread". Empty without a gap.
 std::string left_in_words(const StageDiagnosis& stage);
+// StageDiagnosis::ranking by the share that each takes off, largest first.
+std::vector<SingleEvidence> ranked_by_share(const StageDiagnosis& stage);
 // Where no effect is named, the candidates that alone take off most, at most three: "com_forward (31 %)"; empty: none.
 std::vector<std::string> best_alone(const Diagnosis& d, const StageDiagnosis& stage);
 

@@ -17,6 +17,7 @@ namespace {
 using plot::escaped;
 
 constexpr std::size_t kMostLeftSaid = 2;  // of each stage; its section has all
+constexpr double kWorthSaying = 0.02;     // of the whole gap: of a smaller stage without a name the table says enough
 
 std::string_view stage_meaning(Passage passage) {
   switch (passage) {
@@ -49,7 +50,8 @@ std::string stages_at_a_glance(const Diagnosis& d) {
     std::string verdict = has_gap ? std::string(verdict_name(stage.decision.verdict)) : "no gap";
     if (!names.empty()) verdict += ": " + names_in_words(d, names);
     html += fmt::format(
-        "<tr><td class=\"text\"><a href=\"#{}\">{}</a></td><td class=\"text\"><span class=\"bar\"><span class=\"gone\" "
+        "<tr><td class=\"text\"><a href=\"#{}\">{}</a></td><td class=\"text\"><span class=\"share\"><span "
+        "class=\"gone\" "
         "style=\"width:{:.1f}%\"></span><span class=\"left\" style=\"width:{:.1f}%\"></span></span> {}</td>"
         "<td class=\"text wrap\">{}</td><td class=\"text\">{}</td></tr>\n",
         stage_id(stage.passage), passage_name(stage.passage), 100 * gone_part, 100 * (share - gone_part),
@@ -61,74 +63,82 @@ std::string stages_at_a_glance(const Diagnosis& d) {
          "not fitted to <span class=\"left\"></span> is left</p>\n";
 }
 
+// Those that words are about.
+std::vector<std::size_t> stages_told(const Diagnosis& d) {
+  std::vector<std::size_t> stages = stages_with_gap(d);
+  std::erase_if(stages, [&](std::size_t s) {
+    return s != stages_with_gap(d).front() && share_of_gap(d, s) < kWorthSaying && names_found(d.stages[s]).empty();
+  });
+  return stages;
+}
+
 std::string where_is_it(const Diagnosis& d) {
-  const std::vector<std::size_t> stages = stages_with_gap(d);
   std::vector<std::string> items;
-  for (const std::size_t s : stages) {
+  for (const std::size_t s : stages_told(d)) {
     const StageDiagnosis& stage = d.stages[s];
     std::string item = fmt::format("{} of it is <b>{}</b>: {}", percent(share_of_gap(d, s)), from_to(stage.passage),
                                    stage_meaning(stage.passage));
     if (!stage.where.channels.empty() && stage.where.channels.front().share > 0)
-      item += fmt::format("; most of that in {}", diagnosis_channels()[stage.where.channels.front().channel].column);
-    if (!stage.where.phases.empty() && stage.where.phases.front().share > 0) {
-      const PhaseGap& phase = stage.where.phases.front();
-      item += fmt::format(", and {} of that in \"{}\" of {}", percent(phase.share), phase.phase,
-                          escaped(group_title(d, phase.group)));
-    }
-    items.push_back(with_capital(item) + ".");
+      item += fmt::format(". Most of that is in {}", diagnosis_channels()[stage.where.channels.front().channel].column);
+    items.push_back(item + ".");
   }
   return items.empty() ? "<p>Nowhere.</p>" : bullets(items);
 }
 
-std::string effect_item(const Diagnosis& d, const NamedEffect& effect) {
+std::string effect_item(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect) {
   const Candidate& candidate = d.candidates[effect.candidate];
-  std::string item =
-      fmt::format("<b>{}</b>: {}", escaped(candidate.name), escaped(value_in_words(candidate, effect.value)));
-  if (effect.doubts.empty())
-    item +=
-        fmt::format("; it takes off {} of the gap in {}", percent(effect.share.of_kind), kind_name(effect.share.kind));
-  if (effect.doubts.empty() && effect.rivals.size() > 1)
+  const std::string words = value_in_words(candidate, effect.value);  // begins with the name
+  std::string item = fmt::format("{}: <b>{}</b>{}", with_capital(from_to(stage.passage)), escaped(candidate.name),
+                                 escaped(words.substr(candidate.name.size())));
+  item += fmt::format("; it takes off {} of the gap in {}", percent(effect.share.of_kind), kind_name(effect.share.kind));
+  if (effect.rivals.size() > 1)
     item += fmt::format("; {} would explain it as well",
                         escaped(enumeration(candidate_names(d, std::span(effect.rivals).subspan(1)), "or")));
-  if (!effect.doubts.empty())
-    item += escaped(fmt::format("; no name for it: {}", fmt::join(doubts_in_words(d, effect), "; ")));
   if (!candidate.summary.empty()) item += fmt::format(". <span class=\"soft\">{}</span>", escaped(candidate.summary));
   return item;
 }
 
+std::string without_name(const Diagnosis& d, const StageDiagnosis& stage) {
+  std::vector<std::string> doubted;
+  for (const NamedEffect& effect : stage.decision.effects)
+    if (!effect.doubts.empty())
+      doubted.push_back(fmt::format("{} ({})", d.candidates[effect.candidate].name,
+                                    fmt::join(doubts_in_words(d, effect), "; ")));
+  std::string item = names_found(stage).empty() ? "no effect is named. " : "";
+  if (!doubted.empty()) item += fmt::format("{}o name for {}. ", item.empty() ? 'n' : 'N', enumeration(doubted));
+  if (names_found(stage).empty())
+    if (const std::vector<std::string> alone = best_alone(d, stage); !alone.empty())
+      item += fmt::format("What takes off most of the gap by itself: {}.", enumeration(alone));
+  if (item.empty()) return {};
+  return escaped(fmt::format("{}: {}", with_capital(from_to(stage.passage)), item));
+}
+
 std::string which_effects(const Diagnosis& d) {
   std::vector<std::string> items;
-  for (const std::size_t s : stages_with_gap(d)) {
+  for (const std::size_t s : stages_told(d)) {
     const StageDiagnosis& stage = d.stages[s];
-    for (const bool named : {true, false})
-      for (const NamedEffect& effect : stage.decision.effects)
-        if (effect.doubts.empty() == named)
-          items.push_back(fmt::format("{}: {}", with_capital(from_to(stage.passage)), effect_item(d, effect)));
-    if (!names_found(stage).empty()) continue;
-    std::string item = fmt::format("{}: no effect is named", with_capital(from_to(stage.passage)));
-    if (const std::vector<std::string> alone = best_alone(d, stage); !alone.empty())
-      item += fmt::format("; what takes off most of the gap by itself: {}", escaped(enumeration(alone)));
-    items.push_back(item + ".");
+    for (const NamedEffect& effect : stage.decision.effects)
+      if (effect.doubts.empty()) items.push_back(effect_item(d, stage, effect));
+    if (std::string others = without_name(d, stage); !others.empty()) items.push_back(std::move(others));
   }
   return items.empty() ? "<p>None has to.</p>" : bullets(items);
 }
 
 std::string how_much(const Diagnosis& d) {
   std::vector<std::string> items;
-  for (const std::size_t s : stages_with_gap(d)) {
+  for (const std::size_t s : stages_told(d)) {
     const StageDiagnosis& stage = d.stages[s];
+    const bool has_model = !stage.decision.best.model.places.empty();
     std::string item = fmt::format("{}: {}", with_capital(from_to(stage.passage)), gap_in_words(d, stage));
-    if (!stage.decision.best.model.places.empty())
-      item += fmt::format(". That explains <b>{}</b> of the squared gap", percent_interval(explained_interval(stage)));
-    std::vector<std::string> channels;
-    for (std::size_t c = 0; c < std::min<std::size_t>(1, stage.where.channels.size()); ++c) {
-      const std::size_t channel = stage.where.channels[c].channel;
-      if (channel >= stage.before_si.size() || std::isnan(stage.before_si[channel])) continue;
+    if (has_model)
+      item += fmt::format("; <b>{}</b> of the squared gap is explained", percent_interval(explained_interval(stage)));
+    if (!stage.where.channels.empty()) {
+      const std::size_t channel = stage.where.channels.front().channel;
       const Channel& shown = diagnosis_channels()[channel];
-      const bool has_after = channel < stage.after_si.size() && !stage.decision.best.model.places.empty();
-      item += has_after ? fmt::format("; {}: {} {} before, {} after, rms", shown.column,
-                                      figure(stage.before_si[channel]), shown.unit, figure(stage.after_si[channel]))
-                        : fmt::format("; {}: {} {} rms", shown.column, figure(stage.before_si[channel]), shown.unit);
+      if (channel < stage.before_si.size() && !std::isnan(stage.before_si[channel]))
+        item += fmt::format(". {}: {} {} rms", shown.column, figure(stage.before_si[channel]), shown.unit);
+      if (has_model && channel < stage.after_si.size() && !std::isnan(stage.after_si[channel]))
+        item += fmt::format(" before, {} after", figure(stage.after_si[channel]));
     }
     items.push_back(item + ".");
   }
@@ -137,10 +147,10 @@ std::string how_much(const Diagnosis& d) {
 
 std::string what_is_left(const Diagnosis& d) {
   std::vector<std::string> items;
-  for (const std::size_t s : stages_with_gap(d)) {
+  for (const std::size_t s : stages_told(d)) {
     const StageDiagnosis& stage = d.stages[s];
     std::string item = fmt::format("{}: {}", with_capital(from_to(stage.passage)), left_in_words(stage));
-    if (!stage.decision.complete && stage.left_over.empty()) item += ", and it goes with nothing that was measured";
+    if (!stage.decision.complete && stage.left_over.empty()) item += "; it goes with nothing that was measured";
     for (std::size_t i = 0; !stage.decision.complete && i < std::min(kMostLeftSaid, stage.left_over.size()); ++i) {
       const Dependence& dependence = stage.left_over[i];
       item += fmt::format(". {}", escaped(with_capital(dependence.words)));
@@ -203,7 +213,7 @@ std::string answer(std::string_view question, std::string_view html) {
 std::string answer_section(const Diagnosis& d) {
   const bool finished = d.interrupted.empty();
   std::string html = fmt::format("<section class=\"verdict\">\n<p class=\"word\">{}</p>\n<h1>{}</h1>\n",
-                                 finished ? verdict_name(d.verdict) : "unfinished", escaped(with_capital(headline(d))));
+                                 finished ? verdict_name(d.verdict) : "unfinished", escaped(headline(d)));
   if (!finished)
     html += paragraph(
         "The diagnosis was stopped before its end. What follows is what was known by then; there is no verdict, "

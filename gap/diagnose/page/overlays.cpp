@@ -39,10 +39,13 @@ std::vector<std::vector<double>> shares_by_group(const Diagnosis& d) {
   for (std::size_t s = 0; s < d.stages.size(); ++s) {
     const StageDiagnosis& stage = d.stages[s];
     const double of_stage = share_of_gap(d, s);
-    if (of_stage <= 0 || stage.where.beyond_chance <= 0) continue;
+    if (of_stage <= 0) continue;
     const Coherence coherence(d.features.of(stage.passage), d.repeats, d.options.stretch_s);
-    for (const Cell& cell : cells_that_stand_out(stage.nominal_floor, coherence, stage.residuals))
-      shares[cell.group][cell.channel] += of_stage * beyond_chance(cell) / stage.where.beyond_chance;
+    const std::vector<Cell> cells = cells_that_stand_out(stage.nominal_floor, coherence, stage.residuals);
+    double total = 0;
+    for (const Cell& cell : cells) total += beyond_chance(cell);
+    for (const Cell& cell : cells)
+      if (total > 0) shares[cell.group][cell.channel] += of_stage * beyond_chance(cell) / total;
   }
   return shares;
 }

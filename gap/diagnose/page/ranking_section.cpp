@@ -15,10 +15,11 @@ constexpr std::size_t kMostRows = 12, kMostTableRows = 100;
 
 std::string ranking_figure(const Diagnosis& d, const StageDiagnosis& stage) {
   plot::RowChart chart;
-  chart.title = "What each candidate takes off alone, best first";
+  chart.title = "What each candidate takes off alone, largest share first";
   chart.x_label = "share of the squared gap, on the runs it was fitted to (%)";
-  for (std::size_t i = 0; i < std::min(kMostRows, stage.ranking.size()); ++i) {
-    const SingleEvidence& single = stage.ranking[i];
+  const std::vector<SingleEvidence> ranking = ranked_by_share(stage);
+  for (std::size_t i = 0; i < std::min(kMostRows, ranking.size()); ++i) {
+    const SingleEvidence& single = ranking[i];
     const bool in_best = std::ranges::any_of(
         stage.decision.effects, [&](const NamedEffect& effect) { return effect.candidate == single.candidate; });
     chart.rows.push_back(
@@ -55,10 +56,12 @@ std::string ranking_part(const Diagnosis& d, const StageDiagnosis& stage) {
   std::string html = "<h3>Each candidate alone</h3>\n";
   html += paragraph(
       "Each is fitted by itself. Where several candidates are the cause together, one alone takes off less, or takes "
-      "some of the others' part.",
+      "some of the others' part. Evidence, by which the table is sorted, counts each channel by its noise and by "
+      "what no candidate explains in it.",
       "soft");
   html += ranking_figure(d, stage);
-  return html + fmt::format("<details><summary>All {} with their values</summary>\n", stage.ranking.size()) +
+  return html +
+         fmt::format("<details><summary>All {} with their values, by evidence</summary>\n", stage.ranking.size()) +
          ranking_table(d, stage) + "</details>\n";
 }
 

@@ -32,8 +32,7 @@ std::string verdict_words(const Diagnosis& d, const StageDiagnosis& stage) {
     return fmt::format("No gap: a difference this large comes by chance with {}, or is smaller than anybody would see.",
                        chance(decision.p_gap));
   const NamesFound names = names_found(stage);
-  std::string words =
-      names.empty() ? "A gap for which no effect is named." : with_capital(names_in_words(d, names)) + ".";
+  std::string words = names.empty() ? "A gap for which no effect is named." : names_in_words(d, names) + ".";
   if (!names.ambiguous_sets.empty()) words += " These runs cannot tell the members of a set apart.";
   words += fmt::format(" A difference this large comes by chance with {}.", chance(decision.p_gap));
   if (!has_model(stage)) return words + " No candidate alone gains enough evidence to be fitted.";
@@ -101,10 +100,10 @@ std::string value_figure(const Diagnosis& d, const NamedEffect& effect) {
 }
 
 std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
-  Table table{{"effect", "value (95 %)", "nominal", "differs between manoeuvres by (sd)", "takes off, runs held out",
-               "manoeuvres held out", "where it acts most", "evidence", "name"},
+  Table table{{"effect", "name", "value (95 % interval)", "nominal", "differs between manoeuvres by (sd)", "takes off",
+               "takes off manoeuvres held out", "where it acts most", "evidence"},
               {},
-              {0, 8}};
+              {0, 1}};
   for (const NamedEffect& effect : stage.decision.effects) {
     const Candidate& candidate = d.candidates[effect.candidate];
     std::string name = "yes";
@@ -112,16 +111,16 @@ std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
       name = fmt::format("no: {}", fmt::join(doubts_in_words(d, effect), "; "));
     else if (effect.rivals.size() > 1)
       name = fmt::format("one of {}", enumeration(candidate_names(d, effect.rivals), "or"));
-    table.rows.push_back({value_name(candidate), interval_text(effect.value.value, candidate.unit),
-                          figure(candidate.present) + unit_suffix(candidate.unit),
-                          effect.value.spread > 0 ? figure(effect.value.spread) + unit_suffix(candidate.unit) : "0",
-                          percent(effect.share.of_stage), percent(effect.share_by_manoeuvre.of_stage),
+    table.rows.push_back({value_name(candidate), std::move(name), interval_text(effect.value.value, candidate.unit),
+                          figure(candidate.present), figure(effect.value.spread), percent(effect.share.of_stage),
+                          percent(effect.share_by_manoeuvre.of_stage),
                           fmt::format("{} of {}", percent(effect.share.of_kind), kind_name(effect.share.kind)),
-                          figure(effect.evidence), std::move(name)});
+                          figure(effect.evidence)});
   }
   return to_html(table) +
          paragraph(
-             "Takes off: the share of the squared gap that the model with the effect takes off more than the model "
+             "Takes off: the share of the squared gap on runs held out that the model with the effect takes off more "
+             "than the model "
              "without it. Evidence: by how much the deviance (-2 log likelihood) falls with the effect.",
              "soft");
 }
