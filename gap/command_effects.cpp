@@ -1,11 +1,16 @@
-// kenaf-gap effects: the catalogue of effects.
+// kenaf-gap effects: the catalogue of effects, or what a diagnosis of one robot looks for.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
+#include "gap/candidates/candidate.hpp"
 #include "gap/commands.hpp"
 #include "physics/effects.hpp"
 
@@ -46,13 +51,62 @@ std::string as_text() {
   return text;
 }
 
+// Whatever a world shows: those that only obstacles show as well.
+std::vector<Candidate> candidates_of(const physics::RobotDescription& robot) {
+  std::vector<Candidate> candidates = catalogue_candidates(robot, true);
+  std::ranges::move(description_candidates(robot), std::back_inserter(candidates));
+  return candidates;
+}
+
+std::string as_json(const std::vector<Candidate>& candidates) {
+  auto list = nlohmann::ordered_json::array();
+  for (const Candidate& c : candidates) {
+    if (list.empty() || list.back()["name"] != c.effect)
+      list.push_back({{"name", c.effect},
+                      {"stage", stage_name(c.stage)},
+                      {"summary", c.summary},
+                      {"parameters", nlohmann::ordered_json::array()}});
+    list.back()["parameters"].push_back(
+        {{"name", c.parameter}, {"unit", c.unit}, {"neutral", c.neutral}, {"min", c.min}, {"max", c.max}});
+  }
+  return list.dump(2) + "\n";
+}
+
+std::string as_text(const std::vector<Candidate>& candidates, const std::string& robot) {
+  std::string text = fmt::format(
+      "What a diagnosis of {} looks for: effects of the catalogue, and numbers of the description.\n"
+      "--without leaves any of them out, by name.\n\n"
+      "{:<34} {:<8} {:>10} {:>10} {:>10}  unit\n",
+      robot, "name", "stage", "described", "from", "to");
+  for (const Candidate& c : candidates)
+    text += fmt::format("{:<34} {:<8} {:>10.4g} {:>10.4g} {:>10.4g}  {}\n", c.name, stage_name(c.stage), c.present,
+                        c.min, c.max, c.unit);
+  return text;
+}
+
 }  // namespace
 
 void add_effects_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("effects", "lists the effects by which a robot may differ");
-  const auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "as JSON");
-  command->callback([json] { std::fputs((*json ? as_json() : as_text()).c_str(), stdout); });
+  struct Options {
+    bool json = false;
+    std::string robot;
+  };
+  const auto options = std::make_shared<Options>();
+  command->add_option("--robot", options->robot,
+                      "what a diagnosis of this robot looks for, with its ranges: a shipped name or a TOML file");
+  command->add_flag("--json", options->json, "as JSON");
+  command->callback([options] {
+    const auto& [json, robot] = *options;
+    std::string text;
+    if (robot.empty()) {
+      text = json ? as_json() : as_text();
+    } else {
+      const std::vector<Candidate> candidates = candidates_of(physics::load_robot(robot));
+      text = json ? as_json(candidates) : as_text(candidates, robot);
+    }
+    std::fputs(text.c_str(), stdout);
+  });
 }
 
 }  // namespace kenaf::gap

@@ -52,6 +52,31 @@ MatrixXd slopes(const StandingModel& standing, std::size_t group) {
   return result;
 }
 
+// By how much each effect should lessen the deviance of these data, the others fitted again, if the model is right.
+VectorXd evidence_expected(const StageData& data, const StandingModel& standing) {
+  std::vector<MatrixXd> columns;
+  for (std::size_t g = 0; g < data.groups.size(); ++g) columns.push_back(slopes(standing, g));
+  const MatrixXd information =
+      inner_products(data, whiteners_of(data, standing.model.likelihood.discrepancies), columns);
+  VectorXd expected(information.rows());
+  for (Index e = 0; e < expected.size(); ++e) {
+    std::vector<Index> others;
+    for (Index i = 0; i < expected.size(); ++i)
+      if (i != e) others.push_back(i);
+    // what is left of the effect's direction when the others take up what they can (Schur complement)
+    double taken_up = 0;
+    if (!others.empty()) {
+      const VectorXd shared = information(others, e);
+      const MatrixXd of_others = information(others, others);
+      taken_up = shared.dot(of_others.completeOrthogonalDecomposition().solve(shared));
+    }
+    const OnCurve& place = standing.model.places[static_cast<std::size_t>(e)];
+    const double away = place.value - standing.curves.candidates[place.curve].present;
+    expected[e] = away * away * std::max(0.0, information(e, e) - taken_up);
+  }
+  return expected;
+}
+
 // What one manoeuvre says of one value, the others held.
 struct OwnValue {
   double offset, information;  // from the common value; 1 / variance
@@ -236,6 +261,7 @@ HeldOutShares shares_held_out(const StageView& view, Passage passage, const Stan
   const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
   // squares of each fold: of the nominal model, of the whole model, and of the model without each effect
   std::vector<std::vector<KindSquares>> left(folds.size());
+  std::vector<VectorXd> shown(folds.size());
   for_each_job(folds.size(), threads, [&](std::size_t f) {
     const auto of = [&](const std::vector<bool>& used) {
       return stage_data(passage, *view.features, *view.repeats, *view.residuals, *view.floor, used);
@@ -244,6 +270,7 @@ HeldOutShares shares_held_out(const StageView& view, Passage passage, const Stan
     tested.flip();
     if (folds.size() < 2) fitted = tested;
     const StageData fitted_data = of(fitted), tested_data = of(tested);
+    shown[f] = evidence_expected(fitted_data, standing);
     left[f].push_back(squares_of_groups(tested_data, residuals_of(tested_data)));
     const auto add = [&](const Model& model) {
       left[f].push_back(squares_of_groups(tested_data, rest_of(tested_data, model)));
@@ -275,11 +302,13 @@ HeldOutShares shares_held_out(const StageView& view, Passage passage, const Stan
   HeldOutShares shares;
   shares.model = of_stage(1);
   for (std::size_t e = 0; e < effects; ++e) {
-    HeldOutShares::OfEffect share{shares.model - of_stage(2 + e), 0, 0, 0};
+    HeldOutShares::OfEffect share{shares.model - of_stage(2 + e), 0, 0, 0, std::numeric_limits<double>::infinity()};
+    for (const VectorXd& of_fold : shown)
+      share.shown_by_others = std::min(share.shown_by_others, of_fold[static_cast<Index>(e)]);
     for (std::size_t kind = 0; kind < weights.size(); ++kind) {
       if (sums[0].bins[kind] == 0 || weights[kind] == 0) continue;
       const double taken = of_kind(1, kind) - of_kind(2 + e, kind);
-      if (taken > share.of_kind) share = {share.of_stage, taken, kind, of_kind(1, kind)};
+      if (taken > share.of_kind) share = {share.of_stage, taken, kind, of_kind(1, kind), share.shown_by_others};
     }
     shares.effects.push_back(share);
   }

@@ -67,6 +67,9 @@ struct HeldOutShares {
     double of_stage = 0, of_kind = 0;
     std::size_t kind = 0;
     double model_of_kind = 0;  // what the whole model takes off there
+    // Deviance that the effect should take off the runs that are fitted to, if the model is right; of the fold where it
+    // is least. Little: only the runs held out show the effect, and no others can foretell it.
+    double shown_by_others = 0;
   };
   std::vector<OfEffect> effects;  // in the order of the model's places
   double model = 0;               // of the stage

@@ -57,7 +57,8 @@ struct NamedEffect {
   EffectValue value;
   double evidence = 0;              // deviance that the model without it has more
   HeldOutShares::OfEffect share{};               // on runs held out
-  HeldOutShares::OfEffect share_by_manoeuvre{};  // on manoeuvres held out; as `share` where there is one alone
+  // On manoeuvres held out; as `share` where there is one alone, not a number where one alone shows the effect.
+  HeldOutShares::OfEffect share_by_manoeuvre{};
   bool at_bound = false;
   std::vector<Doubt> doubts;        // none: it is named, alone or in a set
   std::vector<std::size_t> rivals;  // candidates that do as well in its place, itself first

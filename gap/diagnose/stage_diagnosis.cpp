@@ -70,6 +70,9 @@ EffectCurves scanned(const StageData& data, std::span<const Candidate> candidate
   return curves;
 }
 
+constexpr HeldOutShares::OfEffect kNotHeldOut{GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, 0,
+                                              GapMeasure::kNotMeasured, 0};
+
 bool is_large_enough(const NamedEffect& effect, const Candidate& candidate, double agreement) {
   return std::abs(effect.value.value.value - candidate.present) >= agreement * effect.value.spread;
 }
@@ -83,7 +86,9 @@ void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOu
     NamedEffect& effect = d.effects[i];
     effect.share = shares.effects[i];
     effect.share_by_manoeuvre = shares_by_manoeuvre.effects[i];
-    const auto least = [&](auto member) { return std::min(effect.share.*member, effect.share_by_manoeuvre.*member); };
+    // an effect that one manoeuvre alone shows is held out by repeats alone
+    if (effect.share_by_manoeuvre.shown_by_others < settings.evidence) effect.share_by_manoeuvre = kNotHeldOut;
+    const auto least = [&](auto member) { return std::fmin(effect.share.*member, effect.share_by_manoeuvre.*member); };
     using Share = HeldOutShares::OfEffect;
     if (effect.at_bound) effect.doubts.push_back(Doubt::end_of_range);
     if (!is_large_enough(effect, candidates[effect.candidate], settings.agreement))

@@ -94,7 +94,7 @@ TEST_CASE("A catalogue of which nothing is left is no catalogue") {
   const TemporaryFolder folder;
   REQUIRE(kenaf_gap(folder, "simulate --manoeuvre straight --out real").status == 0);
   std::string all;
-  for (const auto& effect : nlohmann::json::parse(kenaf_gap(folder, "effects --json").out))
+  for (const auto& effect : nlohmann::json::parse(kenaf_gap(folder, "effects --robot kenaf --json").out))
     all += (all.empty() ? "" : ",") + effect["name"].get<std::string>();
   const Outcome outcome = kenaf_gap(folder, "diagnose real --out out --without " + all);
   CHECK(outcome.status == 2);

@@ -77,7 +77,7 @@ TEST_CASE("A difference's length in noise counts each bin by its own") {
   CHECK(length_in_noise(data, world().by_group(7 * world().direction(3))) == Approx(3.5));
 }
 
-TEST_CASE("Near an exact point rough ones are forgotten, but for the ends of a curve; the same value is replaced") {
+TEST_CASE("Near an exact point rough ones are forgotten, but for the ends of a curve, and the same value is replaced") {
   OneEffect rough{[](double value) { return 12 * value; }}, exact{[](double value) { return 10 * value; }};
   const StageData data = world().data(Whole::Zero(world().bins()));
   EffectCurves curves = known_at(rough, data, {-1, -0.25, 0.125, 0.25, 0.5, 0.75, 1});

@@ -150,7 +150,7 @@ TEST_CASE("Two effects of one stage are both named, with what each takes off") {
   d.stages[0].decision.effects.back().doubts = {Doubt::not_held_out};
   CHECK_THAT(page_of(d), Contains("<h1>drive_lag explains 84 % of the gap from command to drive (85 % together with "
                                   "effects that get no name)</h1>") &&
-                             Contains("it takes off only 11 % on manoeuvres held out"));
+                             Contains("it takes off only 11 % of the gap in track speed on manoeuvres held out"));
 }
 
 TEST_CASE("What is not known is a dash, never a number") {
@@ -214,11 +214,11 @@ TEST_CASE("Doubts are in words, with the numbers they go by") {
              Contains("its value is at the end of its range (" + figure(com.min) + " to " + figure(com.max) + " m)"));
   effect.share.of_kind = 0.2;
   effect.share_by_manoeuvre.of_kind = 0.03;
-  CHECK_THAT(doubt(Doubt::not_held_out), Contains("it takes off only 3 % on manoeuvres held out"));
+  CHECK_THAT(doubt(Doubt::not_held_out), Contains("it takes off only 3 % of the gap in track speed on manoeuvres held out"));
   effect.share.model_of_kind = 0.31;
   effect.share_by_manoeuvre.model_of_kind = 0.4;
   CHECK_THAT(doubt(Doubt::little_explained),
-             Contains("all effects together take off only 31 % of the gap on runs held out"));
+             Contains("all effects together take off only 31 % of the gap in track speed on runs held out"));
   effect.candidate = track_separation;  // of a number of the description, from where it is described
   CHECK_THAT(doubt(Doubt::disagreement), Contains("differ by more than half of its change from "));
 }

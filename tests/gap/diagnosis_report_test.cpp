@@ -335,6 +335,6 @@ TEST_CASE("The text has every value and doubt in words, on one screen") {
                             "track.separation_m or friction_across"));
   CHECK_THAT(text, Contains("no name: its value is at the end of its range (") &&
                        Contains("manoeuvres want values that differ by more than half of it") &&
-                       Contains("it takes off only 3 % on runs held out") &&
-                       Contains("all effects together take off only 31 % of the gap on runs held out"));
+                       Contains("it takes off only 3 % of the gap in track speed on runs held out") &&
+                       Contains("all effects together take off only 31 % of the gap in track speed on runs held out"));
 }

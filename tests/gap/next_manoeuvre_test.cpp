@@ -50,7 +50,7 @@ rollout::RollOut made(double speed_mps, double pitch_rad, const std::function<do
 
 }  // namespace
 
-TEST_CASE("Separation: what directions cannot take up; a bin far out counts as three and pulls nothing along") {
+TEST_CASE("Separation: what directions cannot take up, and that a bin far out counts as three and pulls nothing along") {
   Eigen::VectorXd difference(4);
   difference << 2, 2, 1, 0;
   CHECK(separation(difference, Eigen::MatrixXd(4, 0)) == Approx(3));  // sqrt(4 + 4 + 1)
