@@ -117,8 +117,8 @@ TEST_CASE("What is wrong with an effect is said with file, line and column") {
             .find("test.toml:9:10: effects.comand_delay is not a known key") == 0);
   CHECK(error("[effects.command_delay]\ndelay = 0.1\n")
             .find("test.toml:10:1: effects.command_delay.delay is not a known key") == 0);
-  CHECK(error("[effects.command_delay]\ndelay_s = 0.7\n")
-            .find("test.toml:10:11: effects.command_delay.delay_s is 0.7, but must be from 0 to 0.5") == 0);
+  CHECK(error("[effects.command_delay]\ndelay_s = 3\n")
+            .find("test.toml:10:11: effects.command_delay.delay_s is 3, but must be from 0 to 1") == 0);
   CHECK(error("[effects.command_delay]\ndelay_s = \"long\"\n")
             .find("test.toml:10:11: effects.command_delay.delay_s must be a number") == 0);
   CHECK(error("[effects]\ncommand_delay = 0.1\n").find("test.toml:10:17: effects.command_delay must be a table") == 0);

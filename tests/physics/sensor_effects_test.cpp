@@ -98,7 +98,7 @@ TEST_CASE("Gyro: rates in the body times scale, and a bias about z alone") {
   CHECK((imu.angular_velocity_radps - expected).norm() < 1e-12);
 }
 
-TEST_CASE("Gyro delay: rates of then, in proportion between two steps; posture and acceleration are in time") {
+TEST_CASE("Gyro delay: rates of then, in proportion between two steps, while posture and acceleration are in time") {
   const auto driven = [](double delay_s) {
     World world(ground(), {}, 1);
     RobotDescription robot = robot_with({.gyro_delay_s = delay_s}, {SensorType::imu});

@@ -170,7 +170,7 @@ TEST_CASE("Values of another time: on the line between two of them, and beyond t
   CHECK(delayed(two, across, 0.5, true)[1] == Approx(pi + just));  // the short way of 4 just
 }
 
-TEST_CASE("A clock that is behind is a delay; one that is ahead shows what comes, until the run ends") {
+TEST_CASE("A clock that is behind is a delay, one that is ahead shows what comes, until the run ends") {
   const runs::Run prompt = driven({}, 0.1, 0.3, kSomewhere),
                   late_run = driven({.tracking_delay_s = 0.105}, 0.1, 0.3, kSomewhere),
                   behind = driven({.clock_offset_s = 0.105}, 0.1, 0.3, kSomewhere),
