@@ -26,6 +26,9 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
   command->add_option("DATASET", options->dataset, "the runs, a folder; required")->type_name("");
   command->add_option("--out", options->out, "folder for report.json, report.html and the robot with what was found; required")
       ->type_name("DIR");
+  command->add_option("--against", diagnosis.against,
+                      "a dataset of the same manoeuvres from before: names what changed since then")
+      ->type_name("BASELINE");
   command->add_option("--robot", diagnosis.robot, "a shipped name or a TOML file [the dataset's]");
   command->add_option("--world", diagnosis.world, "a shipped name or an SDF file, for all runs [each run's own]");
   command->add_option("--effects", diagnosis.effects, "a TOML file with effects of your own, looked for beside all others")
@@ -54,6 +57,7 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
     if (reports) {
       check_can_write(options->out);
       check_keeps_inputs(options->out, options->dataset, options->diagnosis.robot);
+      if (!options->diagnosis.against.empty()) check_is_other_folder(options->out, options->diagnosis.against);
     }
     const Diagnosis result = diagnose(options->dataset, options->diagnosis);
     if (!reports) return;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -10,6 +11,7 @@
 #include <utility>
 
 #include "gap/candidates/own_effects.hpp"
+#include "gap/diagnose/baseline.hpp"
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/repeats.hpp"
 
@@ -146,6 +148,21 @@ std::vector<ProposedManoeuvre> next_manoeuvres(const Diagnosis& d) {
   return propose_manoeuvres(d.observations.robot, rivals, options);
 }
 
+// Simulates the baseline's runs and takes off what they differ by.
+void take_off(const Baseline& baseline, Diagnosis& d, const DiagnosisOptions& options) {
+  const ComparedFeatures before = compared_features(baseline.observations, options.span_s);
+  Predictor predictor(baseline.observations, before, repeats_of(baseline.observations), options.jobs, options.stop,
+                      options.ranks);
+  predictor.simulate_nominal();
+  std::array<std::vector<Eigen::VectorXd>, kPassages.size()> residuals;
+  for (const Passage passage : kPassages)
+    for (std::size_t r = 0; r < baseline.observations.runs.size(); ++r)
+      residuals[static_cast<std::size_t>(passage)].push_back(before.of(passage)[r].measured -
+                                                             predictor.nominal(passage)[r]);
+  compare_against(d.features, baseline, before, residuals);
+  d.baseline_runs = baseline.observations.runs.size();
+}
+
 }  // namespace
 
 double squared_gap(const StageDiagnosis& stage) {
@@ -168,6 +185,8 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
   d.options.progress = {};
   d.options.stop = nullptr;
   d.observations = observe(folder, options.robot, options.world, options.most_runs);
+  std::optional<Baseline> baseline;
+  if (!options.against.empty()) baseline = observe_baseline(options.against, d.observations, options.world);
   d.candidates = candidates_for(d.observations, options);
   d.features = compared_features(d.observations, options.span_s);
   if (std::ranges::all_of(d.features.maps, [](const FeatureMap& map) { return map.bins().empty(); }))
@@ -185,6 +204,7 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
   stage_options.decision.search.threads = options.jobs;
   try {
     progress.begin("simulating the nominal robot", 0, 0.02, 2 * runs, 0);
+    if (baseline) take_off(*baseline, d, options);
     predictor.simulate_nominal();
     for (const Passage passage : kPassages) {
       const auto number = static_cast<double>(passage);

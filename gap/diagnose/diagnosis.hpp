@@ -25,6 +25,7 @@ struct Progress {
 
 struct DiagnosisOptions {
   std::string robot, world;           // instead of the dataset's; empty: its own
+  std::filesystem::path against;      // a dataset of before a change, which alone is looked for (baseline.hpp); empty: none
   std::filesystem::path effects;      // a file with effects of one's own (candidates/own_effects.hpp); empty: none
   std::vector<std::string> without;   // candidates that are left out, by their effect's name or their key; of those that do
                                       // the same, all. Throws std::invalid_argument for others
@@ -43,7 +44,8 @@ struct DiagnosisOptions {
 struct Diagnosis {
   DiagnosisOptions options;               // that it was made with, without `progress` and `stop`
   Observations observations;
-  ComparedFeatures features;
+  ComparedFeatures features;              // less what the baseline differs by, where there is one
+  std::size_t baseline_runs = 0;          // that repeat these
   std::vector<std::vector<std::size_t>> repeats, same_orders;
   std::vector<Candidate> candidates;
   std::vector<StageDiagnosis> stages;     // that these runs measure, from command to sensor

@@ -27,9 +27,10 @@ struct RobotFile {
 };
 RobotFile robot_file(const Diagnosis& diagnosis);
 
-// Throws std::runtime_error in words where reports in `out` would replace what they are about, that is the dataset or the
+// Throw std::runtime_error in words where reports in `out` would replace what they are about, that is a dataset or the
 // description `robot` (empty: the dataset's), or a robot's file that no diagnosis wrote. For asking before something long is
 // calculated.
+void check_is_other_folder(const std::filesystem::path& out, const std::filesystem::path& dataset);
 void check_keeps_inputs(const std::filesystem::path& out, const std::filesystem::path& dataset, const std::string& robot);
 
 // Writes report.json, report.html and the robot's file, if any, into `folder`, each whole or not at all; returns where the

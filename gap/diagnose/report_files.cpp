@@ -25,15 +25,20 @@ bool has_complete_report(const fs::path& folder) {
   return report.is_object() && report.contains("verdict") && !report.contains("interrupted");
 }
 
+bool same(const fs::path& a, const fs::path& b) {
+  std::error_code neither_is_there;
+  return fs::equivalent(a, b, neither_is_there);
+}
+
 }  // namespace
 
-void check_keeps_inputs(const fs::path& out, const fs::path& dataset, const std::string& robot) {
-  const auto same = [](const fs::path& a, const fs::path& b) {
-    std::error_code neither_is_there;
-    return fs::equivalent(a, b, neither_is_there);
-  };
+void check_is_other_folder(const fs::path& out, const fs::path& dataset) {
   if (same(out, dataset))
     throw std::runtime_error(fmt::format("{}: is the dataset; give another folder for the reports", out.string()));
+}
+
+void check_keeps_inputs(const fs::path& out, const fs::path& dataset, const std::string& robot) {
+  check_is_other_folder(out, dataset);
   const bool has_report = fs::exists(out / kPage) || fs::exists(out / kReport);
   for (const char* robot_file : kRobotFiles) {
     const fs::path replaced = out / robot_file;

@@ -201,6 +201,8 @@ void add_main_stage(Json& json, const Diagnosis& d, const StageDiagnosis* stage)
 std::string diagnosis_json(const Diagnosis& d) {
   Json json{{"format", "kenaf-gap-report/2"}, {"verdict", verdict_name(d.verdict)}};
   if (!d.interrupted.empty()) json["interrupted"] = d.interrupted;
+  if (!d.options.against.empty())
+    json["against"] = {{"dataset", d.options.against.string()}, {"runs", d.baseline_runs}};
   const NamesFound names = names_found(d);
   add_names(json, d, names);
   json["complete"] = d.complete && d.interrupted.empty();

@@ -49,6 +49,9 @@ std::string top_of_file(const Diagnosis& d, const Settings& corrections, bool is
   for (const std::vector<std::size_t>& set : names_found(d).ambiguous_sets)
     lacks.push_back(fmt::format("- which of {} it is: these runs cannot tell, the best fit is in it",
                                 enumeration(candidate_names(d, set), "or")));
+  if (!d.options.against.empty())
+    lacks.push_back(fmt::format("- what {} differs from the simulation by: only the change since then was looked for",
+                                d.options.against.string()));
   for (const std::size_t s : stages_with_gap(d)) {
     const StageDiagnosis& stage = d.stages[s];
     if (is_named && names_found(stage).empty())

@@ -101,6 +101,7 @@ std::string diagnosis_text(const Diagnosis& d) {
   screen.add(first_line(d));
   screen.add(
       fmt::format("{} runs of {} manoeuvres; noise {}", d.observations.runs.size(), d.repeats.size(), noise_source(d)));
+  if (!d.options.against.empty()) screen.add(against_in_words(d) + ".");
   for (std::size_t i = 0; i < std::min(kWarnings, d.observations.warnings.size()); ++i)
     screen.add(fmt::format("warning: {}", d.observations.warnings[i]));
   if (d.observations.warnings.size() > kWarnings)

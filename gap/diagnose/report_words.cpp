@@ -221,6 +221,14 @@ std::string headline(const Diagnosis& d) {
   return words;
 }
 
+std::string against_in_words(const Diagnosis& d) {
+  if (d.options.against.empty()) return {};
+  return fmt::format(
+      "The gap is what changed since {}, of which {} runs repeat these; what both differ from the simulation by is no "
+      "part of it",
+      d.options.against.string(), d.baseline_runs);
+}
+
 std::string value_name(const Candidate& candidate) {
   if (candidate.is_number_of_description || candidate.name != candidate.effect) return candidate.name;
   return fmt::format("{} {}", candidate.name, candidate.parameter);
@@ -262,6 +270,10 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& 
                                     by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
         break;
       }
+      case Doubt::trifle:
+        words.push_back(fmt::format("it takes off only {} of the stage's gap",
+                                    percent(std::fmin(effect.share.of_stage, effect.share_by_manoeuvre.of_stage))));
+        break;
       case Doubt::little_explained: {
         const bool by_manoeuvre = effect.share_by_manoeuvre.model_of_kind < effect.share.model_of_kind;
         const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;

@@ -63,6 +63,8 @@ std::string_view noise_source(const Diagnosis& d);
 
 // The whole verdict in one sentence, without a full stop.
 std::string headline(const Diagnosis& d);
+// "The gap is what changed since before, of which 12 runs repeat these; ...". Without a full stop; empty without a baseline.
+std::string against_in_words(const Diagnosis& d);
 // "command_slew slowness_s2pm"; where the name says the parameter, the name.
 std::string value_name(const Candidate& candidate);
 // "command_slew slowness_s2pm = 0.69 s^2/m (95 % interval 0.65 to 0.72), nominal 0". Begins with the candidate's name.

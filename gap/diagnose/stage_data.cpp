@@ -77,8 +77,14 @@ StageData stage_data(Passage passage, const std::vector<StageFeatures>& features
       if (!features[r].bins.empty()) runs.push_back(r);
     if (runs.empty()) continue;
     StageGroup group = bins_of_group(features, std::move(runs), used);
-    const VectorXd one_run = group.count.cwiseMax(1).cwiseInverse();
+    VectorXd one_run = group.count.cwiseMax(1).cwiseInverse();
     group.residual = mean_over_runs(group, 1, used, [&](std::size_t r) -> const VectorXd& { return residuals[r]; });
+
+    // of a difference of two means, that of both
+    const bool has_baseline = features[group.runs.front()].baseline_runs.size() > 0;
+    if (has_baseline)
+      one_run += VectorXd(mean_over_runs(group, 1, {}, [&](std::size_t r) { return features[r].baseline_runs; }))
+                     .cwiseInverse();
 
     // noise is independent from run to run: the variance of a mean of n is that of one over n
     const MatrixXd variance =
@@ -86,7 +92,7 @@ StageData stage_data(Passage passage, const std::vector<StageFeatures>& features
     group.variance = (group.count.array() > 0).select(variance.cwiseProduct(one_run), kNotMeasured);
 
     // so are start poses and counts; the simulator's numbers are the same in all runs, but for what is not linear in
-    // them
+    // them: against a baseline nothing else is left of them
     const std::size_t any = group.runs.front();
     const MatrixXd local = mean_over_runs(group, floor.open[any].local.cols(), used,
                                           [&](std::size_t r) -> const MatrixXd& { return floor.open[r].local; });
@@ -94,6 +100,7 @@ StageData stage_data(Passage passage, const std::vector<StageFeatures>& features
                                          [&](std::size_t r) -> const MatrixXd& { return floor.open[r].numerics; });
     group.local_shapes.resize(local.rows(), local.cols() + group.shared_shapes.cols());
     group.local_shapes << one_run.cwiseSqrt().asDiagonal() * local, kNumericsOfRun * group.shared_shapes;
+    if (has_baseline) group.shared_shapes.setZero();
     data.groups.push_back(std::move(group));
   }
   return data;

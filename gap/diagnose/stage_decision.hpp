@@ -22,6 +22,7 @@ enum class Doubt {
   end_of_range,     // the value ends where the range does: it stands for something that the effect cannot do
   disagreement,     // manoeuvres want values that differ by more than a share of the effect
   not_held_out,     // on runs or manoeuvres held out it takes off too little
+  trifle,           // of the stage's whole gap it takes off next to nothing
   little_explained, // in the channels where it acts, the whole model takes off too little on runs held out
 };
 
@@ -34,6 +35,7 @@ struct DecisionSettings {
   // Of the squared gap of the kind of channels where an effect takes off most, on runs held out: what the effect must take off,
   // and what the whole model must (chosen).
   double effect_share = 0.2, model_share = 0.5;
+  double stage_share = 0.05;       // of the stage's whole squared gap, what the effect must take off (chosen)
   double agreement = 2;            // an effect is at least as many times its spread between manoeuvres (chosen)
   std::size_t most_effects = 5;
   SearchSettings search;

@@ -70,6 +70,12 @@ EffectCurves scanned(const StageData& data, std::span<const Candidate> candidate
   return curves;
 }
 
+// Of a run less the mean of its baseline's, over that of a run; of each bin.
+VectorXd noise_of_difference(const StageFeatures& run) {
+  if (run.baseline_runs.size() == 0) return VectorXd::Ones(std::ssize(run.bins));
+  return (1 + run.baseline_runs.array().inverse()).sqrt();
+}
+
 constexpr HeldOutShares::OfEffect kNotHeldOut{GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, 0,
                                               GapMeasure::kNotMeasured, 0};
 
@@ -94,6 +100,8 @@ void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOu
     if (!is_large_enough(effect, candidates[effect.candidate], settings.agreement))
       effect.doubts.push_back(Doubt::disagreement);
     if (!(least(&Share::of_kind) >= settings.effect_share)) effect.doubts.push_back(Doubt::not_held_out);
+    else if (!(least(&Share::of_stage) >= settings.stage_share))
+      effect.doubts.push_back(Doubt::trifle);
     if (!(least(&Share::model_of_kind) >= settings.model_share)) effect.doubts.push_back(Doubt::little_explained);
     if (!effect.doubts.empty()) continue;
     any_named = true;
@@ -114,6 +122,8 @@ std::vector<Dependence> left_over_of(const StageInput& input, Predictor& predict
     for (const std::size_t r : (*input.repeats)[g]) {
       const FeatureMap& map = (*input.maps)[r];
       LeftOverRun run{&input.observations->runs[r], &map, map.measured(), simulated[r], {}, g};
+      const StageFeatures& stage = (*input.features)[r];
+      if (input.passage != Passage::body_to_sensor) run.measured(stage.rows) = stage.measured;
       run.sigma.resize(map.measured().size());
       for (std::size_t b = 0; b < map.bins().size(); ++b) {
         const std::size_t channel = map.bins()[b].channel;
@@ -209,7 +219,9 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
   if (!best.places.empty())
     stage.left = left_by(places_held_out(view, input.passage, decision.best, by_repeat, threads));
   // around a model: where the nominal robot falls in one repeat and not in the other, the real one need not
-  const std::vector<VectorXd> spread = deviations_from_repeats(features, stage.left, *input.same_orders);
+  std::vector<VectorXd> spread = deviations_from_repeats(features, stage.left, *input.same_orders);
+  for (std::size_t r = 0; r < spread.size(); ++r)
+    if (spread[r].size() > 0) spread[r].array() *= noise_of_difference(features[r]).array();
   stage.gap = measure_gap(view, stage.left, spread, options.seed);
   stage.gap_by_manoeuvre = stage.gap;
   if (!best.places.empty() && by_manoeuvre.size() > 1 && by_manoeuvre != by_repeat)
@@ -219,6 +231,11 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
   if (!decision.effects.empty())
     judge(decision, candidates, shares_held_out(view, input.passage, decision.best, by_repeat, threads),
           shares_held_out(view, input.passage, decision.best, by_manoeuvre, threads), options.decision);
+
+  // what is beyond chance, but of a size that nobody would see, and has no name, is no gap
+  const double seen = stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor;
+  if (decision.verdict == Verdict::unknown && seen < options.decision.negligible * options.decision.negligible)
+    decision.verdict = Verdict::none;
 
   // what is left, in words
   if (decision.verdict != Verdict::none && !decision.complete && input.passage != Passage::body_to_sensor)

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "gap/diagnose/channels.hpp"
@@ -75,10 +76,10 @@ std::vector<RateBin> rate_bins(const FeatureMap& map) {
 }
 
 // Rate by the gyro less rate by the angle, over the two spans around each bin.
-VectorXd gyro_against_angles(const FeatureMap& map, const VectorXd& features, const runs::Run& run) {
+VectorXd gyro_against_angles(const FeatureMap& map, std::span<const RateBin> bins, const VectorXd& features,
+                             const runs::Run& run) {
   const VectorXd turned = map.of(integrated(run));
-  const std::vector<RateBin> bins = rate_bins(map);
-  VectorXd result(std::ssize(bins));
+  VectorXd result(static_cast<Index>(bins.size()));
   for (std::size_t i = 0; i < bins.size(); ++i) {
     const auto& [gyro, before, after] = bins[i];
     const double by_gyro = turned[after] - turned[before], by_angle = features[after] - features[before];
@@ -97,8 +98,9 @@ std::string_view passage_name(Passage passage) {
 StageFeatures stage_features(Passage passage, const FeatureMap& map, const runs::Run& measured) {
   StageFeatures stage{{}, map.span_s(), {}, {}};
   if (passage == Passage::body_to_sensor) {
-    for (const RateBin& bin : rate_bins(map)) stage.rows.push_back(bin.gyro);
-    stage.measured = gyro_against_angles(map, map.measured(), measured);
+    const std::vector<RateBin> bins = rate_bins(map);
+    for (const RateBin& bin : bins) stage.rows.push_back(bin.gyro);
+    stage.measured = gyro_against_angles(map, bins, map.measured(), measured);
   } else {
     for (std::size_t b = 0; b < map.bins().size(); ++b)
       if (is_drive(map.bins()[b]) == (passage == Passage::command_to_drive))
@@ -112,8 +114,10 @@ StageFeatures stage_features(Passage passage, const FeatureMap& map, const runs:
 VectorXd stage_values(Passage passage, const StageFeatures& stage, const FeatureMap& map, const VectorXd& features,
                       const runs::Run& simulated) {
   if (stage.rows.empty()) return {};
-  if (passage == Passage::body_to_sensor) return gyro_against_angles(map, features, simulated);
-  return features(stage.rows);
+  if (passage != Passage::body_to_sensor) return features(stage.rows);
+  std::vector<RateBin> bins = rate_bins(map);
+  std::erase_if(bins, [&](const RateBin& bin) { return !std::ranges::binary_search(stage.rows, bin.gyro); });
+  return gyro_against_angles(map, bins, features, simulated);
 }
 
 }  // namespace kenaf::gap

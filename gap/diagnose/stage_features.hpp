@@ -28,6 +28,7 @@ struct StageFeatures {
   double span_s = 0;                // of a bin
   Eigen::VectorXd measured;         // mean of each bin, in the unit of its channel
   std::vector<Eigen::Index> rows{}; // of the bins in the run's FeatureMap
+  Eigen::VectorXd baseline_runs{};  // of each bin, how many runs it is compared against (baseline.hpp); empty: no baseline
 };
 StageFeatures stage_features(Passage passage, const FeatureMap& map, const runs::Run& measured);
 

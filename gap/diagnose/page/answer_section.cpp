@@ -214,6 +214,7 @@ std::string answer_section(const Diagnosis& d) {
   const bool finished = d.interrupted.empty();
   std::string html = fmt::format("<section class=\"verdict\">\n<p class=\"word\">{}</p>\n<h1>{}</h1>\n",
                                  finished ? verdict_name(d.verdict) : "unfinished", escaped(headline(d)));
+  if (!d.options.against.empty()) html += paragraph(plot::escaped(against_in_words(d)) + ".", "soft");
   if (!finished)
     html += paragraph(
         "The diagnosis was stopped before its end. What follows is what was known by then; there is no verdict, "

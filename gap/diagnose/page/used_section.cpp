@@ -137,6 +137,9 @@ std::string used_section(const Diagnosis& d, std::span<const Overlay> overlays) 
   std::string html = section_head("used", "What was used");
   html += paragraph(fmt::format("{} runs of {} manoeuvres, {} of them drawn on this page.", d.observations.runs.size(),
                                 d.repeats.size(), overlays.size()));
+  if (!d.options.against.empty())
+    html += paragraph(plot::escaped(against_in_words(d)) +
+                      ". Overlays and residuals over time show all that differs, as measured.");
   return html + runs_table(d) + "<h3>Warnings</h3>\n" + warnings_list(d) + "<h3>Noise and options</h3>\n" +
          noise_table(d) + paragraph(options_text(d));
 }
