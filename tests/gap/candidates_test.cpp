@@ -80,9 +80,9 @@ TEST_CASE("Forces, lags and lengths are searched as far as they make sense for a
   CHECK(max_for("kenaf", "drive_viscous") == Approx(200));
   CHECK(max_for("kenaf", "command_slew") == Approx(10));
   CHECK(max_for("kenaf", "com_forward") == Approx(0.087));
-  // Marmotte: 52 kg, 0.978 m, 2 m/s
+  // Marmotte: 52 kg, 0.62 m, 2 m/s
   CHECK(max_for("marmotte", "drive_coulomb") == Approx(std::min(260.0, max_in_catalogue("drive_coulomb"))));
-  CHECK(max_for("marmotte", "com_forward") == Approx(std::min(0.1467, max_in_catalogue("com_forward"))));
+  CHECK(max_for("marmotte", "com_forward") == Approx(std::min(0.093, max_in_catalogue("com_forward"))));
   CHECK(max_for("marmotte", "command_slew") == Approx(2.5));
   CHECK(max_for("marmotte", "command_delay") == Approx(std::min(0.6, max_in_catalogue("command_delay"))));
   CHECK(max_for("marmotte", "drive_lag") == Approx(std::min(2.0, max_in_catalogue("drive_lag"))));
