@@ -3,10 +3,14 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <set>
 
+#include "gap/candidates/robot_numbers.hpp"
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/left_over.hpp"
+#include "gap/diagnose/left_over_words.hpp"
 #include "gap/diagnose/page/left_over_section.hpp"
+#include "tests/gap/candidates_robots.hpp"
 #include "tests/gap/made_run.hpp"
 #include "tests/gap/well_formed.hpp"
 
@@ -249,6 +253,35 @@ TEST_CASE("One track that is slower is told as that track's") {
   REQUIRE_FALSE(told.empty());
   CHECK_THAT(told[0].words, Contains("left track speed: measured 0.80 of the simulated, in every run"));
   for (const Dependence& d : told) CHECK(d.channel != "right track speed");
+}
+
+TEST_CASE("What a dependence says to look at is an effect of the catalogue that is looked for, or a key of a description") {
+  std::set<std::string> effects, keys;
+  for (const char* name : {"kenaf", "marmotte", "p2at", "p2dx"}) {
+    const physics::RobotDescription robot = test::robot_of(name);
+    for (const Candidate& candidate : catalogue_candidates(robot, true)) effects.insert(candidate.effect);
+    for (const Candidate& candidate : description_candidates(robot)) keys.insert(candidate.name);
+  }
+  // no run shows it, as tracks are in metres; whoever makes runs of a log may have used a wrong one
+  REQUIRE(find_robot_number(test::robot_of("kenaf"), "drive.sprocket_radius_m").has_value());
+  keys.insert("drive.sprocket_radius_m");
+
+  std::size_t told = 0;
+  const auto check = [&](const std::vector<std::string>& names) {
+    CHECK(std::set(names.begin(), names.end()).size() == names.size());
+    for (const std::string& name : names) {
+      INFO(name);
+      CHECK((effects.contains(name) || keys.contains(name)));
+      ++told;
+    }
+  };
+  for (const QuantityInfo& quantity : left_over_quantities()) {
+    INFO(quantity.name);
+    for (auto on = 0; on <= static_cast<int>(Regressor::place_y); ++on)
+      check(look_at(quantity.quantity, static_cast<Regressor>(on)));
+    check(look_at_for_runs(quantity.quantity));
+  }
+  CHECK(told > 100);
 }
 
 TEST_CASE("The same runs are described the same twice, and sizes are checked") {

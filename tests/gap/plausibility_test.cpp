@@ -207,6 +207,26 @@ TEST_CASE("Signs that are turned are refused, and sides that are exchanged") {
   CHECK_THAT(found(exchanged), Catch::Contains("left and right are exchanged"));
 }
 
+TEST_CASE("A track that is asked for less than a fifth of the other is no turned sign where that one drags it back") {
+  // 3.5 s of each: the left track does as it is told, the right one goes back at 0.1 m/s whatever it is told
+  const auto dragged = [](double left_mps, double right_mps) {
+    const auto steady = [](double speed_mps) { return [=](double t_s) { return t_s < 0.5 ? 0 : speed_mps; }; };
+    return found(test::made_run(4, 0.01,
+                                {{"cmd_track_left_mps", steady(left_mps)},
+                                 {"cmd_track_right_mps", steady(right_mps)},
+                                 {"track_left_mps", steady(left_mps)},
+                                 {"track_right_mps", steady(-0.1)}}));
+  };
+  const auto is_refused = Catch::Contains("track_right_mps: has the sign turned against cmd_track_right_mps");
+  CHECK_THAT(dragged(0.5, 0.05), !is_refused);
+  CHECK_THAT(dragged(0.5, 0.09), !is_refused);
+  CHECK_THAT(dragged(-0.5, 0.09), !is_refused);
+  CHECK_THAT(dragged(0.5, 0.12), is_refused);
+  CHECK_THAT(dragged(-0.5, 0.12), is_refused);
+  // beside a track that is asked for as little it is
+  CHECK_THAT(dragged(0.09, 0.09), is_refused);
+}
+
 TEST_CASE("A robot that slides down a ramp against its tracks is warned of, whatever its speed") {
   for (const double speed_mps : {-0.1, -0.2, -0.5}) {
     const auto findings = gap::check_run(carried(speed_mps, -0.5), "run.csv", &robot());
