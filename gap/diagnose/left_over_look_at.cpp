@@ -28,7 +28,7 @@ constexpr Cause kOfTracks[] = {
     {R::turn_size, {"drive_droop", "friction_across", "drive.max_force_n", "drive_torque_limit"}},
     {R::load, {"drive_droop", "battery_sag", "battery.internal_resistance_ohm", "drive.max_force_n"}},
     {R::pitch, {"drive_droop", "mass", "body.mass_kg", "drive.max_force_n"}},
-    {R::time, {"battery_sag", "battery.capacity_s"}}};
+    {R::time, {"battery_sag"}}};
 
 constexpr Cause kOfCurrent[] = {{R::simulated, {"drive.amperes_per_newton", "friction_across", "mass", "body.mass_kg"}},
                                 {R::delay, {"drive_lag", "command_delay"}},
@@ -40,14 +40,14 @@ constexpr Cause kOfCurrent[] = {{R::simulated, {"drive.amperes_per_newton", "fri
                                 {R::turn_size, {"friction_across", "track.friction_across", "track.contact_length_m"}},
                                 {R::acceleration, {"mass", "body.mass_kg", "drive.moving_mass_kg"}},
                                 {R::pitch, {"mass", "body.mass_kg"}},
-                                {R::time, {"drive_coulomb", "battery.capacity_s"}}};
+                                {R::time, {"drive_coulomb"}}};
 
 constexpr Cause kOfBattery[] = {{R::constant, {"battery.open_circuit_v"}},
                                 {R::load, {"battery.internal_resistance_ohm", "battery_sag"}},
                                 {R::speed, {"battery_sag", "drive_viscous"}},
                                 {R::turn_size, {"battery_sag", "friction_across"}},
                                 {R::acceleration, {"battery_sag", "drive.amperes_per_newton"}},
-                                {R::time, {"battery.capacity_s", "battery.open_circuit_v"}}};
+                                {R::time, {"battery.open_circuit_v"}}};
 
 constexpr Cause kOfForward[] = {
     {R::simulated, {"drive.sprocket_radius_m", "encoder_scale", "slip_with_speed", "tracking_scale"}},
