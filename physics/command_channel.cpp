@@ -18,6 +18,10 @@ double step_of(double slowness, double time_step_s) {
   return slowness > 0 ? time_step_s / slowness : std::numeric_limits<double>::infinity();
 }
 
+double limit_of(double slowness) {
+  return slowness > 0 ? 1 / slowness : std::numeric_limits<double>::infinity();
+}
+
 RobotCommand between(const RobotCommand& newer, const RobotCommand& older, double older_share) {
   RobotCommand out = newer;
   for (std::size_t i = 0; i < kTrackCount; ++i)
@@ -42,7 +46,10 @@ CommandChannel::CommandChannel(const Effects& effects, std::uint64_t world_seed,
     : noise_(world_seed, robot, kGeneratorName),
       loss_(effects.command_loss),
       gain_(effects.command_gain),
+      gain_turn_(effects.command_gain_turn),
       dead_band_mps_(effects.command_dead_band_mps),
+      most_forward_mps_(limit_of(effects.command_limit_forward_spm)),
+      most_turn_mps_(track_gauge_m / 2 * limit_of(effects.command_limit_turn_sprad)),
       side_step_mps_(step_of(effects.command_slew_s2pm, time_step_s)),
       forward_step_mps_(step_of(effects.command_slew_forward_s2pm, time_step_s)),
       turn_step_mps_(track_gauge_m / 2 * step_of(effects.command_slew_turn_s2prad, time_step_s)),
@@ -78,10 +85,19 @@ void CommandChannel::send(const RobotCommand& command) {
 
 void CommandChannel::receive() {
   received_ = sent_;
-  for (double& speed : received_.track_speed_mps) {
-    speed *= gain_;
-    if (std::abs(speed) < dead_band_mps_) speed = 0;
+  auto& [left, right] = received_.track_speed_mps;
+  left *= gain_;
+  right *= gain_;
+  // only where there is something to do: a sum of halves is not always the number itself
+  if (gain_turn_ != 1 || std::abs(left + right) / 2 > most_forward_mps_ ||
+      std::abs(right - left) / 2 > most_turn_mps_) {
+    const double forward = std::clamp((left + right) / 2, -most_forward_mps_, most_forward_mps_);
+    const double turn = std::clamp(gain_turn_ * (right - left) / 2, -most_turn_mps_, most_turn_mps_);
+    left = forward - turn;
+    right = forward + turn;
   }
+  for (double& speed : received_.track_speed_mps)
+    if (std::abs(speed) < dead_band_mps_) speed = 0;
 }
 
 void CommandChannel::move_ramp(const std::array<double, kTrackCount>& target_mps) {

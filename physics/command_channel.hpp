@@ -16,8 +16,9 @@ namespace kenaf::physics {
 // In the order in which a command meets them:
 // 1. loss: a message is lost as a whole, on the link; the one before goes on to hold.
 // 2. gain: what one side's metre per second is to the other. As long as it stands behind the loss and before the slew
-//    limit its place changes nothing, since a delay of a multiple is a multiple of the delay.
-// 3. dead band: of what arrives, after the gain, a track's speed that is too small counts as none. Before the delay, so
+//    limit its place changes nothing, since a delay of a multiple is a multiple of the delay. Then the gain of the turn
+//    rate, and the limits of forward speed and turn rate: of a controller that takes these two in place of two tracks.
+// 3. dead band: of what arrives, after gains and limits, a track's speed that is too small counts as none. Before the delay, so
 //    that no speed between two commands, which nobody sent, falls into it.
 // 4. delay: of what arrives, joints' modes and values included. One that is no whole number of steps lies on the
 //    straight line between the two steps beside it, so that what a robot does changes smoothly with the delay.
@@ -48,7 +49,9 @@ class CommandChannel {
   void move_ramp(const std::array<double, kTrackCount>& target_mps);
 
   NoiseSource noise_;
-  double loss_, gain_, dead_band_mps_;
+  double loss_, gain_, gain_turn_, dead_band_mps_;
+  // Of the mean of both tracks, and of half their difference. Infinite: no limit.
+  double most_forward_mps_, most_turn_mps_;
   // What the ramp moves in a step at most: each track's speed, the mean of both, and half their difference. Infinite: no
   // limit.
   double side_step_mps_, forward_step_mps_, turn_step_mps_;

@@ -16,6 +16,9 @@ using E = Effects;
 constexpr P kCommandDelay[] = {{"delay_s", "s", 0, 0, 1, &E::command_delay_s}};
 constexpr P kCommandLoss[] = {{"probability", "1", 0, 0, 0.9, &E::command_loss}};
 constexpr P kCommandGain[] = {{"gain", "1", 1, 0.5, 1.5, &E::command_gain}};
+constexpr P kCommandGainTurn[] = {{"gain", "1", 1, 0.5, 1.5, &E::command_gain_turn}};
+constexpr P kCommandLimitForward[] = {{"slowness_spm", "s/m", 0, 0, 100, &E::command_limit_forward_spm}};
+constexpr P kCommandLimitTurn[] = {{"slowness_sprad", "s/rad", 0, 0, 100, &E::command_limit_turn_sprad}};
 constexpr P kCommandDeadBand[] = {{"speed_mps", "m/s", 0, 0, 0.3, &E::command_dead_band_mps}};
 constexpr P kCommandSlew[] = {{"slowness_s2pm", "s^2/m", 0, 0, 10, &E::command_slew_s2pm}};
 constexpr P kCommandSlewForward[] = {{"slowness_s2pm", "s^2/m", 0, 0, 10, &E::command_slew_forward_s2pm}};
@@ -72,6 +75,9 @@ constexpr EffectInfo kCatalogue[] = {
     {"command_delay", Stage::command, "commands reach the drives late", kCommandDelay},
     {"command_loss", Stage::command, "a share of the commands never arrives; the one before holds", kCommandLoss},
     {"command_gain", Stage::command, "track speeds arrive multiplied", kCommandGain},
+    {"command_gain_turn", Stage::command, "the turn rate arrives multiplied", kCommandGainTurn},
+    {"command_limit_forward", Stage::command, "the forward speed is at most 1 / slowness", kCommandLimitForward},
+    {"command_limit_turn", Stage::command, "the turn rate is at most 1 / slowness", kCommandLimitTurn},
     {"command_dead_band", Stage::command, "track commands that are slower than this do not move a track",
      kCommandDeadBand},
     {"command_slew", Stage::command, "track speeds change by at most 1 / slowness", kCommandSlew},

@@ -22,6 +22,8 @@ struct Effects {
   double command_delay_s = 0;
   double command_loss = 0;           // share of commands that do not arrive
   double command_gain = 1;           // of track speeds
+  double command_gain_turn = 1;      // of the turn rate alone
+  double command_limit_forward_spm = 0, command_limit_turn_sprad = 0;  // forward speed and turn rate are at most 1 / this
   double command_dead_band_mps = 0;  // slower track commands do not move a track
   double command_slew_s2pm = 0;      // track speeds change by 1 / this at most
   double command_slew_forward_s2pm = 0, command_slew_turn_s2prad = 0;  // the same of forward speed and turn rate

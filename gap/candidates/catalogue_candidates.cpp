@@ -43,6 +43,15 @@ constexpr RangeOfEffect kRangesOfEffects[] = {
      [](const RobotDescription& robot) {
        return SearchRange{0, 5 / robot.drive.max_speed_mps};
      }},
+    // a tenth of what the tracks can do
+    {"command_limit_forward", "s/m",
+     [](const RobotDescription& robot) {
+       return SearchRange{0, 10 / robot.drive.max_speed_mps};
+     }},
+    {"command_limit_turn", "s/rad",
+     [](const RobotDescription& robot) {
+       return SearchRange{0, 5 * robot.track_gauge_m() / robot.drive.max_speed_mps};
+     }},
     // half of the robot's weight, on any ground
     {"drive_coulomb", "N",
      [](const RobotDescription& robot) {

@@ -45,8 +45,8 @@ std::vector<Candidate> candidates_for(const Observations& observations, const Di
     const bool is_known = physics::find_effect(name) != nullptr ||
                           std::ranges::any_of(all, [&](const Candidate& c) { return c.effect == name; });
     if (!is_known)
-      throw std::invalid_argument(fmt::format("--without {}: no such effect; `kenaf-gap effects --robot {}` lists them", name,
-                                              observations.robot.name));
+      throw std::invalid_argument(fmt::format("--without {}: no such effect; `kenaf-gap effects --robot {}` lists them",
+                                              name, observations.robot.name));
     for (const Candidate& c : all)
       if (c.effect == name && !c.same_as.empty()) left_out.push_back(c.same_as);
   }

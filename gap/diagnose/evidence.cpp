@@ -259,7 +259,11 @@ HeldOutShares shares_held_out(const StageView& view, Passage passage, const Stan
                               unsigned threads) {
   const std::size_t effects = standing.model.places.size(), runs = view.features->size();
   const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
-  // squares of each fold: of the nominal model, of the whole model, and of the model without each effect
+  std::vector<std::vector<std::size_t>> left_out;  // places
+  for (std::size_t e = 0; e < effects; ++e) left_out.push_back({e});
+  for (std::size_t e = 0; e < effects; ++e)
+    for (std::size_t other = e + 1; other < effects; ++other) left_out.push_back({e, other});
+  // squares of each fold: of the nominal model, of the whole model, and of the model without each effect and each two
   std::vector<std::vector<KindSquares>> left(folds.size());
   std::vector<VectorXd> shown(folds.size());
   for_each_job(folds.size(), threads, [&](std::size_t f) {
@@ -276,9 +280,10 @@ HeldOutShares shares_held_out(const StageView& view, Passage passage, const Stan
       left[f].push_back(squares_of_groups(tested_data, rest_of(tested_data, model)));
     };
     add(refit(fitted_data, standing, beyond));
-    for (std::size_t e = 0; e < effects; ++e) {
-      EffectSet others = effects_of(standing.model);
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(e));
+    for (const std::vector<std::size_t>& without : left_out) {
+      EffectSet others;
+      for (std::size_t e = 0; e < effects; ++e)
+        if (std::ranges::count(without, e) == 0) others.push_back(standing.model.places[e].curve);
       if (others.empty())
         left[f].push_back(left[f].front());
       else
@@ -301,16 +306,16 @@ HeldOutShares shares_held_out(const StageView& view, Passage passage, const Stan
   };
   HeldOutShares shares;
   shares.model = of_stage(1);
-  for (std::size_t e = 0; e < effects; ++e) {
+  for (std::size_t e = 0; e < left_out.size(); ++e) {
     HeldOutShares::OfEffect share{shares.model - of_stage(2 + e), 0, 0, 0, std::numeric_limits<double>::infinity()};
     for (const VectorXd& of_fold : shown)
-      share.shown_by_others = std::min(share.shown_by_others, of_fold[static_cast<Index>(e)]);
+      share.shown_by_others = std::min(share.shown_by_others, of_fold[static_cast<Index>(left_out[e].front())]);
     for (std::size_t kind = 0; kind < weights.size(); ++kind) {
       if (sums[0].bins[kind] == 0 || weights[kind] == 0) continue;
       const double taken = of_kind(1, kind) - of_kind(2 + e, kind);
       if (taken > share.of_kind) share = {share.of_stage, taken, kind, of_kind(1, kind), share.shown_by_others};
     }
-    shares.effects.push_back(share);
+    (e < effects ? shares.effects : shares.pairs).push_back(share);
   }
   return shares;
 }

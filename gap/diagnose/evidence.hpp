@@ -29,8 +29,9 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
 
 // Runs that are held out together: each run once.
 using Folds = std::vector<std::vector<std::size_t>>;
-// Runs dealt out in turn, manoeuvre by manoeuvre, to as many folds as the most repeated one has runs, at most five: repeats
-// of a manoeuvre are in different folds. Where nothing is repeated, to as many folds as there are manoeuvres, at most five.
+// Runs dealt out in turn, manoeuvre by manoeuvre, to as many folds as the most repeated one has runs, at most five:
+// repeats of a manoeuvre are in different folds. Where nothing is repeated, to as many folds as there are manoeuvres,
+// at most five.
 Folds folds_by_repeat(const std::vector<std::vector<std::size_t>>& repeats);
 // All repeats of a manoeuvre together, dealt out to at most five folds.
 Folds folds_by_manoeuvre(const Observations& observations);
@@ -50,17 +51,18 @@ struct GapMeasure {
   Interval shrink{kNotMeasured, kNotMeasured, kNotMeasured};
   Interval explains{kNotMeasured, kNotMeasured, kNotMeasured};
 };
-// `after`: what a model leaves of each run; intervals from resampling groups of repeats. `repeats_rest`: what repeats differ by,
-// of each run, empty without repeats.
+// `after`: what a model leaves of each run; intervals from resampling groups of repeats. `repeats_rest`: what repeats
+// differ by, of each run, empty without repeats.
 GapMeasure measure_gap(const StageView& view, const std::vector<Eigen::VectorXd>& after,
                        const std::vector<Eigen::VectorXd>& deviations, std::uint64_t seed);
 
-// The places of a model fitted without the runs of each fold, for every run those of its fold. A single fold holds nothing out.
+// The places of a model fitted without the runs of each fold, for every run those of its fold. A single fold holds
+// nothing out.
 std::vector<std::vector<OnCurve>> places_held_out(const StageView& view, Passage passage, const StandingModel& standing,
                                                   const Folds& folds, unsigned threads);
 
-// Shares of the squared gap that a model takes off, and each of its effects: with it, less without it and the others fitted
-// again. By curves, on runs held out; at most 1.
+// Shares of the squared gap that a model takes off, and each of its effects and each two: with them, less without them
+// and the others fitted again. By curves, on runs held out; at most 1.
 struct HeldOutShares {
   // Of the kind of channels in which the effect takes off most, and of the stage.
   struct OfEffect {
@@ -72,9 +74,12 @@ struct HeldOutShares {
     double shown_by_others = 0;
   };
   std::vector<OfEffect> effects;  // in the order of the model's places
-  double model = 0;               // of the stage
+  // What two effects take off that neither does alone, as each takes up what the other leaves: of each place with each
+  // later one, (0, 1), (0, 2) ... (1, 2) ...
+  std::vector<OfEffect> pairs;
+  double model = 0;  // of the stage
 };
-HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing,
-                              const Folds& folds, unsigned threads);
+HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
+                              unsigned threads);
 
 }  // namespace kenaf::gap

@@ -23,9 +23,9 @@ constexpr Cause kOfTracks[] = {
     {R::ramp, {"command_slew", "command_slew_forward", "command_slew_turn", "drive.max_force_n", "drive_torque_limit"}},
     {R::constant, {"drive_asymmetry", "encoder_asymmetry"}},
     {R::direction, {"command_dead_band", "drive_coulomb", "drive_droop"}},
-    {R::command, {"command_gain", "drive.max_speed_mps", "drive_viscous"}},
-    {R::turn, {"drive_asymmetry", "encoder_asymmetry", "friction_across"}},
-    {R::turn_size, {"drive_droop", "friction_across", "drive.max_force_n", "drive_torque_limit"}},
+    {R::command, {"command_gain", "drive.max_speed_mps", "command_limit_forward", "drive_viscous"}},
+    {R::turn, {"command_gain_turn", "command_limit_turn", "drive_asymmetry", "encoder_asymmetry", "friction_across"}},
+    {R::turn_size, {"command_limit_turn", "drive_droop", "friction_across", "drive.max_force_n", "drive_torque_limit"}},
     {R::load, {"drive_droop", "battery_sag", "battery.internal_resistance_ohm", "drive.max_force_n"}},
     {R::pitch, {"drive_droop", "mass", "body.mass_kg", "drive.max_force_n"}},
     {R::time, {"battery_sag"}}};

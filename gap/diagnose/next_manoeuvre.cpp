@@ -83,7 +83,8 @@ class Proposer {
   // rougher. Whether one suffices that is as gentle as its class.
   bool try_up_to(Gentleness roughest, std::vector<ManoeuvreToTry>& candidates) {
     drive_nominal(candidates);
-    std::erase_if(candidates, [](const ManoeuvreToTry& candidate) { return candidate.gentleness == Gentleness::fails; });
+    std::erase_if(candidates,
+                  [](const ManoeuvreToTry& candidate) { return candidate.gentleness == Gentleness::fails; });
     std::ranges::stable_sort(candidates, {}, [](const ManoeuvreToTry& candidate) {
       return std::tuple(candidate.gentleness, candidate.duration_s);
     });

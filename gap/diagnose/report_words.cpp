@@ -91,6 +91,8 @@ NamesFound names_found(const StageDiagnosis& stage) {
   NamesFound names;
   for (const NamedEffect& effect : stage.decision.effects) {
     if (!effect.doubts.empty()) continue;
+    const std::size_t place = static_cast<std::size_t>(&effect - stage.decision.effects.data());
+    if (effect.partner && *effect.partner < place) continue;  // one set, which has both
     if (effect.rivals.size() > 1)
       names.ambiguous_sets.push_back(effect.rivals);
     else
@@ -255,19 +257,19 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& 
         break;
       case Doubt::disagreement: {
         const double agreement = d.options.decision.agreement;
-        const std::string part = agreement == 2 ? "half" : percent(1 / agreement);
+        const std::string part = agreement == 1 ? "" : fmt::format("{} of ", percent(1 / agreement));
         const std::string of_it =
             candidate.present == 0
                 ? "it"
                 : fmt::format("its change from {}{}", figure(candidate.present), unit_suffix(candidate.unit));
-        words.push_back(fmt::format("manoeuvres want values that differ by more than {} of {}", part, of_it));
+        words.push_back(fmt::format("manoeuvres want values that differ by more than {}{}", part, of_it));
         break;
       }
       case Doubt::not_held_out: {
         const bool by_manoeuvre = effect.share_by_manoeuvre.of_kind < effect.share.of_kind;
         const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;
-        words.push_back(fmt::format("it takes off {} of the gap in {} on {}", only(least.of_kind), kind_name(least.kind),
-                                    by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
+        words.push_back(fmt::format("it takes off {} of the gap in {} on {}", only(least.of_kind),
+                                    kind_name(least.kind), by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
         break;
       }
       case Doubt::trifle:

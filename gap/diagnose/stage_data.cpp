@@ -83,8 +83,9 @@ StageData stage_data(Passage passage, const std::vector<StageFeatures>& features
     // of a difference of two means, that of both
     const bool has_baseline = features[group.runs.front()].baseline_runs.size() > 0;
     if (has_baseline)
-      one_run += VectorXd(mean_over_runs(group, 1, {}, [&](std::size_t r) { return features[r].baseline_runs; }))
-                     .cwiseInverse();
+      one_run += VectorXd(mean_over_runs(group, 1, {}, [&](std::size_t r) {
+                   return features[r].baseline_runs;
+                 })).cwiseInverse();
 
     // noise is independent from run to run: the variance of a mean of n is that of one over n
     const MatrixXd variance =

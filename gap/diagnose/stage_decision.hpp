@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,8 +37,9 @@ struct DecisionSettings {
   // and what the whole model must (chosen).
   double effect_share = 0.2, model_share = 0.5;
   double stage_share = 0.05;       // of the stage's whole squared gap, what the effect must take off (chosen)
-  double agreement = 2;            // an effect is at least as many times its spread between manoeuvres (chosen)
-  std::size_t most_effects = 5;
+  double agreement = 1;            // an effect is at least as many times its spread between manoeuvres (chosen): then five in
+                                   // six of them agree on its sign
+  std::size_t most_effects = 6;
   SearchSettings search;
 };
 
@@ -64,6 +66,10 @@ struct NamedEffect {
   bool at_bound = false;
   std::vector<Doubt> doubts;        // none: it is named, alone or in a set
   std::vector<std::size_t> rivals;  // candidates that do as well in its place, itself first
+  // Of an effect that takes off enough only together with another one of the model, as each takes up what the other leaves:
+  // that one's place, and what both take off. It is among the rivals.
+  std::optional<std::size_t> partner{};
+  HeldOutShares::OfEffect share_of_both{};
 };
 
 struct StageDecision {

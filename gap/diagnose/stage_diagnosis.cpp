@@ -83,11 +83,41 @@ bool is_large_enough(const NamedEffect& effect, const Candidate& candidate, doub
   return std::abs(effect.value.value.value - candidate.present) >= agreement * effect.value.spread;
 }
 
+// Two effects that stand in for each other, as a lag and a ramp do: without either the other takes up most of it,
+// without both the gap is there. They are named as a set.
+void name_in_pairs(std::vector<NamedEffect>& effects, const std::vector<HeldOutShares::OfEffect>& pairs,
+                   const std::vector<HeldOutShares::OfEffect>& pairs_by_manoeuvre, const DecisionSettings& settings) {
+  const auto lacks_share_alone = [](const NamedEffect& effect) {
+    return !effect.partner && !effect.doubts.empty() && std::ranges::all_of(effect.doubts, [](Doubt doubt) {
+      return doubt == Doubt::not_held_out || doubt == Doubt::trifle;
+    });
+  };
+  std::size_t pair = 0;
+  for (std::size_t a = 0; a < effects.size(); ++a)
+    for (std::size_t b = a + 1; b < effects.size(); ++b, ++pair) {
+      if (pair >= pairs.size() || !lacks_share_alone(effects[a]) || !lacks_share_alone(effects[b])) continue;
+      HeldOutShares::OfEffect both = pairs[pair];
+      const HeldOutShares::OfEffect& by_manoeuvre = pairs_by_manoeuvre[pair];
+      if (by_manoeuvre.shown_by_others >= settings.evidence && by_manoeuvre.of_kind < both.of_kind) both = by_manoeuvre;
+      if (both.of_kind < settings.effect_share || both.of_stage < settings.stage_share ||
+          both.model_of_kind < settings.model_share)
+        continue;
+      const auto add = [&](NamedEffect& effect, std::size_t partner) {
+        effect.doubts.clear();
+        effect.partner = partner;
+        effect.share_of_both = both;
+        effect.rivals.insert(effect.rivals.begin() + 1, effects[partner].candidate);
+      };
+      add(effects[a], b);
+      add(effects[b], a);
+    }
+}
+
 }  // namespace
 
 void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOutShares& shares,
            const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings) {
-  bool any_named = false, any_rival = false;
+  using Share = HeldOutShares::OfEffect;
   for (std::size_t i = 0; i < d.effects.size(); ++i) {
     NamedEffect& effect = d.effects[i];
     effect.share = shares.effects[i];
@@ -95,17 +125,20 @@ void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOu
     // an effect that one manoeuvre alone shows is held out by repeats alone
     if (effect.share_by_manoeuvre.shown_by_others < settings.evidence) effect.share_by_manoeuvre = kNotHeldOut;
     const auto least = [&](auto member) { return std::fmin(effect.share.*member, effect.share_by_manoeuvre.*member); };
-    using Share = HeldOutShares::OfEffect;
     if (effect.at_bound) effect.doubts.push_back(Doubt::end_of_range);
     if (!is_large_enough(effect, candidates[effect.candidate], settings.agreement))
       effect.doubts.push_back(Doubt::disagreement);
-    if (!(least(&Share::of_kind) >= settings.effect_share)) effect.doubts.push_back(Doubt::not_held_out);
+    if (!(least(&Share::of_kind) >= settings.effect_share))
+      effect.doubts.push_back(Doubt::not_held_out);
     else if (!(least(&Share::of_stage) >= settings.stage_share))
       effect.doubts.push_back(Doubt::trifle);
     if (!(least(&Share::model_of_kind) >= settings.model_share)) effect.doubts.push_back(Doubt::little_explained);
-    if (!effect.doubts.empty()) continue;
-    any_named = true;
-    any_rival |= effect.rivals.size() > 1;
+  }
+  name_in_pairs(d.effects, shares.pairs, shares_by_manoeuvre.pairs, settings);
+  bool any_named = false, any_rival = false;
+  for (const NamedEffect& effect : d.effects) {
+    any_named |= effect.doubts.empty();
+    any_rival |= effect.doubts.empty() && effect.rivals.size() > 1;
   }
   d.verdict = any_rival ? Verdict::ambiguous : any_named ? Verdict::named : Verdict::unknown;
 }

@@ -259,6 +259,8 @@ TEST_CASE("Each of two effects has the share that the model without it leaves, i
     CHECK(kind_name(shares.effects[e].kind) == "position");
   }
   CHECK(shares.model == 1);
+  REQUIRE(shares.pairs.size() == 1);
+  CHECK(shares.pairs[0].of_stage == 1);  // without both nothing is taken off
 
   // half of what x lacks is explained, and all of the voltage: each in its own channels, whatever the other one's size
   const HeldOutShares two = shares_of(0.5 * effects[0] + 0.4 * effects[1] + 0.9 * effects[2], {0, 2});

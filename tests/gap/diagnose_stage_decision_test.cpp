@@ -1,8 +1,10 @@
 // Verdicts in a world whose effects are fixed vectors: tests/gap/linear_world.hpp.
 #include "gap/diagnose/stage_decision.hpp"
+#include "gap/diagnose/stage_diagnosis.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <optional>
 
 #include "tests/gap/linear_world.hpp"
 
@@ -237,4 +239,47 @@ TEST_CASE("A floor that is wider around an effect excuses a gap only where that 
   CHECK(verdict_of(effects[4] / 3 + world().noise(4)) == Verdict::none);  // all of it is along the effect
   // a quarter of it is, what is left is there all the same
   CHECK(verdict_of(30 * world().direction(kEffects + 1) + effects[4] / 3 + world().noise(4)) != Verdict::none);
+}
+
+namespace {
+
+// Judged by these shares of the gap, on runs and on manoeuvres held out alike.
+StageDecision judged(double first, double second, double both, double shown_by_others = 1000) {
+  const auto share = [&](double taken) { return HeldOutShares::OfEffect{taken, taken, 0, 0.9, shown_by_others}; };
+  const HeldOutShares shares{{share(first), share(second)}, {share(both)}, 0.9};
+  StageDecision decision;
+  std::vector<Candidate> candidates(2);
+  for (std::size_t c = 0; c < candidates.size(); ++c)
+    decision.effects.push_back({c, {{1, 0.9, 1.1}, 0, 1}, 100, {}, {}, false, {}, {c}, {}, {}});
+  judge(decision, candidates, shares, shares, {});
+  return decision;
+}
+
+}  // namespace
+
+TEST_CASE("Two effects that take up what the other leaves are named as a set, a trifle beside another one is not") {
+  const StageDecision set = judged(0.05, 0.13, 0.8);
+  CHECK(set.verdict == Verdict::ambiguous);
+  CHECK(set.effects[0].rivals == std::vector<std::size_t>{0, 1});
+  CHECK(set.effects[1].rivals == std::vector<std::size_t>{1, 0});
+  CHECK(set.effects[0].partner == std::optional<std::size_t>(1));
+  CHECK(set.effects[1].share_of_both.of_kind == 0.8);
+
+  const StageDecision one = judged(0.6, 0.04, 0.64);
+  CHECK(one.verdict == Verdict::named);
+  CHECK(one.effects[0].doubts.empty());
+  CHECK(one.effects[1].doubts == std::vector<Doubt>{Doubt::not_held_out});
+  CHECK(judged(0.05, 0.04, 0.1).verdict == Verdict::unknown);
+}
+
+TEST_CASE("What one manoeuvre alone shows is judged by its repeats, as no other one foretells it") {
+  const HeldOutShares by_repeat{{{0.9, 0.9, 0, 0.9, 500}}, {}, 0.9};
+  const auto verdict = [&](double shown_by_others) {
+    StageDecision decision;
+    decision.effects.push_back({0, {{1, 0.9, 1.1}, 0, 1}, 100, {}, {}, false, {}, {0}, {}, {}});
+    judge(decision, std::vector<Candidate>(1), by_repeat, {{{0, 0, 0, 0, shown_by_others}}, {}, 0}, {});
+    return decision.verdict;
+  };
+  CHECK(verdict(1) == Verdict::named);      // the others hardly show it: nothing can be held out
+  CHECK(verdict(400) == Verdict::unknown);  // they should, and foretell nothing of it
 }

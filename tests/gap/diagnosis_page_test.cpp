@@ -54,7 +54,7 @@ TEST_CASE("The first screen says where, which, how much, what is left and what n
              Contains("73 % of it is <b>from command to drive</b>") && Contains("Most of that is in track_left_mps."));
   CHECK_THAT(answers, Contains("<b>drive_lag</b> lag_s = 0.0513 s (95 % interval 0.0498 to 0.0528), nominal 0"));
   CHECK_THAT(answers,
-             Contains("No name for com_forward (manoeuvres want values that differ by more than half of it)."));
+             Contains("No name for com_forward (manoeuvres want values that differ by more than it)."));
   CHECK_THAT(answers, Contains("8.25 noise units before, 1.50 after on runs held out; noise alone: 1.25") &&
                           Contains("<b>85 % (81 to 88 %)</b> of the squared gap is explained") &&
                           Contains("track_left_mps: 0.05 m/s rms before, 0.0123 after"));
@@ -70,7 +70,7 @@ TEST_CASE("A page has every number of every stage") {
   CHECK_THAT(page, Contains(">8.25<") && Contains(">1.5<") && Contains("noise 1.25") && Contains(">96 %<") &&
                        Contains(">87 %<"));
   CHECK_THAT(page, Contains("<td>0.0513 s (0.0498 to 0.0528)</td><td>0</td><td>0</td><td>84 %</td><td>83 %</td>"));
-  CHECK_THAT(page, Contains("no: manoeuvres want values that differ by more than half of it"));
+  CHECK_THAT(page, Contains("no: manoeuvres want values that differ by more than it"));
   // ranking, residuals in units and in noise: 0.05 m/s is 5 times the noise of 0.01 m/s
   CHECK_THAT(page, Contains("com_forward") && Contains("ground_slope") && Contains("track.separation_m"));
   CHECK_THAT(page, Contains("<td>0.05</td><td>0.0123</td><td>0.01</td><td>5</td><td>1.23</td><td>90 %</td>"));
@@ -220,7 +220,7 @@ TEST_CASE("Doubts are in words, with the numbers they go by") {
   CHECK_THAT(doubt(Doubt::little_explained),
              Contains("all effects together take off only 31 % of the gap in track speed on runs held out"));
   effect.candidate = track_separation;  // of a number of the description, from where it is described
-  CHECK_THAT(doubt(Doubt::disagreement), Contains("differ by more than half of its change from "));
+  CHECK_THAT(doubt(Doubt::disagreement), Contains("differ by more than its change from "));
 }
 
 TEST_CASE("Look-alikes become neighbours") {

@@ -79,9 +79,9 @@ TEST_CASE("A report has every stage with its verdict, values, gap and what is le
   CHECK(body["named"].empty());
   CHECK(body["effects"][0]["is_named"] == false);
   CHECK(body["effects"][0]["parameters"].begin()->at("spread") == 0.02);
-  CHECK(body["effects"][0]["doubts"] == json{"manoeuvres want values that differ by more than half of it"});
+  CHECK(body["effects"][0]["doubts"] == json{"manoeuvres want values that differ by more than it"});
   CHECK(report["doubts"] == json{"no name for com_forward (drive to body): manoeuvres want values that differ by more "
-                                 "than half of it"});
+                                 "than it"});
 }
 
 TEST_CASE("What version 1 had stands at the top of a report: of the stage with most of the gap, effects of all") {
@@ -334,7 +334,7 @@ TEST_CASE("The text has every value and doubt in words, on one screen") {
   CHECK_THAT(text, Contains("15 % of the gap is left; yaw rate: measured 0.80 of the simulated, in every run; look at "
                             "track.separation_m or friction_across"));
   CHECK_THAT(text, Contains("no name: its value is at the end of its range (") &&
-                       Contains("manoeuvres want values that differ by more than half of it") &&
+                       Contains("manoeuvres want values that differ by more than it") &&
                        Contains("it takes off only 3 % of the gap in track speed on runs held out") &&
                        Contains("all effects together take off only 31 % of the gap in track speed on runs held out"));
 }

@@ -100,6 +100,27 @@ TEST_CASE("Command gain: the tracks run by that much faster, the flippers go whe
   CHECK(world.truth(id).flipper_rad[kFrontLeft] == Approx(0.6).margin(1e-3));
 }
 
+TEST_CASE("Command gain of the turn, and limits: forward speed and turn rate, each by itself") {
+  // v = 0.2 m/s and w = (0.5 - -0.1) / 0.4 = 1.5 rad/s
+  const auto told = [](const Effects& effects) {
+    CommandChannel channel = channel_with(effects);
+    channel.send(drive(-0.1, 0.5));
+    const auto [left, right] = channel.step().track_speed_mps;
+    return std::array{(left + right) / 2, (right - left) / kGauge_m};
+  };
+  const auto check = [&](const Effects& effects, double v_mps, double w_radps) {
+    const auto [v, w] = told(effects);
+    CHECK(v == Approx(v_mps));
+    CHECK(w == Approx(w_radps));
+  };
+  check({.command_gain_turn = 0.8}, 0.2, 1.2);
+  check({.command_limit_forward_spm = 10}, 0.1, 1.5);   // 1 / (10 s/m)
+  check({.command_limit_turn_sprad = 2}, 0.2, 0.5);     // 1 / (2 s/rad)
+  check({.command_limit_forward_spm = 4, .command_limit_turn_sprad = 0.5}, 0.2, 1.5);  // 0.25 m/s and 2 rad/s: beyond
+  // the limit is of what the gains make of it: 1.2 * 1.5 rad/s, and 0.24 m/s
+  check({.command_gain = 1.2, .command_limit_forward_spm = 4.5, .command_limit_turn_sprad = 0.6}, 1 / 4.5, 1 / 0.6);
+}
+
 TEST_CASE("Command slew: speed = time / slowness, up and down") {
   RobotDescription robot = load_robot("kenaf");
   robot.effects.command_slew_s2pm = 5;
