@@ -22,8 +22,8 @@ struct StratumShare {
   Stratum stratum;
   double share;
 };
-// Singles and withheld ones are 78 of 150 cases together: each of 53 effects has a turn in one of them. Each effect
-// once in both would take 204 cases, a third more time, to say the same.
+// Singles and withheld ones are 78 of 150 cases together: each of 56 effects has a turn in one of them. Each effect
+// once in both would take 216 cases, a third more time, to say the same.
 constexpr StratumShare kExact[] = {{Stratum::none, 0.3},
                                    {Stratum::single, 0.26},
                                    {Stratum::pair, 0.11},
