@@ -23,7 +23,7 @@ struct StratumShare {
   double share;
 };
 // Singles and withheld ones are 78 of 150 cases together: each of 56 effects has a turn in one of them. Each effect
-// once in both would take 216 cases, a third more time, to say the same.
+// once in both would take 216 cases, nearly half as much time again, to say the same.
 constexpr StratumShare kExact[] = {{Stratum::none, 0.3},
                                    {Stratum::single, 0.26},
                                    {Stratum::pair, 0.11},
