@@ -307,12 +307,13 @@ HeldOutShares shares_held_out(const StageView& view, Passage passage, const Stan
   HeldOutShares shares;
   shares.model = of_stage(1);
   for (std::size_t e = 0; e < left_out.size(); ++e) {
-    HeldOutShares::OfEffect share{shares.model - of_stage(2 + e), 0, 0, 0, std::numeric_limits<double>::infinity()};
+    // without it the others may leave more than there was
+    HeldOutShares::OfEffect share{std::min(1.0, shares.model - of_stage(2 + e)), 0, 0, 0, std::numeric_limits<double>::infinity()};
     for (const VectorXd& of_fold : shown)
       share.shown_by_others = std::min(share.shown_by_others, of_fold[static_cast<Index>(left_out[e].front())]);
     for (std::size_t kind = 0; kind < weights.size(); ++kind) {
       if (sums[0].bins[kind] == 0 || weights[kind] == 0) continue;
-      const double taken = of_kind(1, kind) - of_kind(2 + e, kind);
+      const double taken = std::min(1.0, of_kind(1, kind) - of_kind(2 + e, kind));
       if (taken > share.of_kind) share = {share.of_stage, taken, kind, of_kind(1, kind), share.shown_by_others};
     }
     (e < effects ? shares.effects : shares.pairs).push_back(share);

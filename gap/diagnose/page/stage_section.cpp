@@ -100,8 +100,8 @@ std::string value_figure(const Diagnosis& d, const NamedEffect& effect) {
 }
 
 std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
-  Table table{{"effect", "name", "value (95 % interval)", "nominal", "differs between manoeuvres by (sd)", "takes off",
-               "takes off manoeuvres held out", "where it acts most", "evidence"},
+  Table table{{"effect", "name", "value (95 % interval)", "nominal", "differs by (sd)", "takes off", "most, of",
+               "evidence"},
               {},
               {0, 1}};
   for (const NamedEffect& effect : stage.decision.effects) {
@@ -112,16 +112,18 @@ std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
     else if (effect.rivals.size() > 1)
       name = fmt::format("one of {}", enumeration(candidate_names(d, effect.rivals), "or"));
     table.rows.push_back({value_name(candidate), std::move(name), interval_text(effect.value.value, candidate.unit),
-                          figure(candidate.present), figure(effect.value.spread), percent(effect.share.of_stage),
-                          percent(effect.share_by_manoeuvre.of_stage),
+                          figure(candidate.present), figure(effect.value.spread),
+                          fmt::format("{} ({})", percent(effect.share.of_stage),
+                                      percent(effect.share_by_manoeuvre.of_stage)),
                           fmt::format("{} of {}", percent(effect.share.of_kind), kind_name(effect.share.kind)),
                           figure(effect.evidence)});
   }
   return to_html(table) +
          paragraph(
-             "Takes off: the share of the squared gap on runs held out that the model with the effect takes off more "
-             "than the model "
-             "without it. Evidence: by how much the deviance (-2 log likelihood) falls with the effect.",
+             "Differs by: the standard deviation between manoeuvres of the value that each wants. Takes off: the share "
+             "of the squared gap on runs held out, and on manoeuvres held out, that the model with the effect takes "
+             "off more than the model without it; most, of: the same in the kind of channels where it takes off most. "
+             "Evidence: by how much the deviance (-2 log likelihood) falls with the effect.",
              "soft");
 }
 
