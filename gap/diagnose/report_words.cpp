@@ -43,8 +43,9 @@ std::string stage_in_words(const Diagnosis& d, const StageDiagnosis& stage) {
   const bool several = names.named.size() + names.ambiguous_sets.size() > 1;
   std::string words = fmt::format("{} {} {} of the gap {}", names_in_words(d, names), several ? "explain" : "explains",
                                   percent(explained_by_names(stage)), from_to(stage.passage));
-  if (!all_are_named(stage))
-    words += fmt::format(" ({} together with effects that get no name)", percent(explained(stage)));
+  const std::string together = percent(explained(stage));
+  if (!all_are_named(stage) && together != percent(explained_by_names(stage)))
+    words += fmt::format(" ({} together with effects that get no name)", together);
   return words + (names.ambiguous_sets.empty() ? "" : ", but these runs cannot tell which");
 }
 
