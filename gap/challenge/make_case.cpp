@@ -55,7 +55,7 @@ struct Sized {
 template <class FurthestAt, class SizeAt>
 Sized sized(double planned, double neutral, double smallest_share, bool upward_first, FurthestAt&& furthest_at,
             SizeAt&& size_at) {
-  Sized best;
+  Sized best{-1, neutral};
   for (const bool upward : {upward_first, !upward_first}) {
     const double furthest = furthest_at(upward);
     if (furthest == neutral || best.of_planned >= kCloseToPlanned) continue;
