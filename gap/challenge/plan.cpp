@@ -38,7 +38,7 @@ constexpr StratumShare kImperfect[] = {
     {Stratum::none, 0.24},    {Stratum::single, 0.30},          {Stratum::pair, 0.13},    {Stratum::withheld, 0.10},
     {Stratum::foreign, 0.07}, {Stratum::withheld_number, 0.06}, {Stratum::baseline, 0.10}};
 constexpr double kRounding = 1e-6;
-constexpr int kHalvings = 10;       // of the way to a number's end, until it makes a robot
+constexpr int kRangeHalvings = 10;  // of the way to a number's end, until it makes a robot
 constexpr double kFurthest = 0.95;  // of the way to the end of a parameter's range
 
 // Sizes beside the background. Pairs are asked for where both dominate; singles also show how large one has to be.
@@ -190,7 +190,7 @@ double furthest_value_of_number(const CasePlan& plan, bool upward) {
   const Candidate& number = *std::ranges::find(numbers, plan.number.key, &Candidate::name);
   physics::RobotDescription robot = with_background(physics::load_robot(kChallengedRobot), plan.background);
   double value = number.present + kFurthest * ((upward ? number.max : number.min) - number.present);
-  for (int halving = 0; halving < kHalvings; ++halving) {
+  for (int halving = 0; halving < kRangeHalvings; ++halving) {
     find_robot_number(robot, number.name)->set(robot, value);
     if (why_impossible(robot).empty()) return value;
     value = std::midpoint(value, number.present);
