@@ -211,7 +211,8 @@ std::size_t run(const Options& options, std::uint64_t seed) {
   std::vector<std::string> names;
   for (const SealedCase& sealed : key.cases) {
     const CasePlan& plan = sealed.plan;
-    CaseToDiagnose one{case_folder(folder, plan.name), report_folder(folder, plan.name), withheld_names(plan)};
+    CaseToDiagnose one{case_folder(folder, plan.name), report_folder(folder, plan.name), withheld_names(plan), {}};
+    if (plan.stratum == Stratum::baseline) one.against = one.data / kBeforeFolder;
     if (!one.without.empty())
       runs::write_whole_file(one.data / "without.txt", fmt::format("{}\n", fmt::join(one.without, "\n")));
     if (is_diagnosed(one)) {

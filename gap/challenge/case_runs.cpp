@@ -96,9 +96,15 @@ runs::Run make_run(const CasePlan& plan, const physics::RobotDescription& robot,
 }  // namespace
 
 physics::RobotDescription hidden_robot(const CasePlan& plan) {
-  physics::RobotDescription robot = with_background(physics::load_robot(kChallengedRobot), plan.background);
+  Background numbers = plan.background;
+  if (!plan.number.key.empty()) numbers.numbers.push_back({plan.number.key, plan.number.value});
+  physics::RobotDescription robot = with_background(physics::load_robot(kChallengedRobot), numbers);
   for (const HiddenEffect& hidden : plan.effects) robot.effects.*parameter_of(hidden).value = hidden.value;
   return robot;
+}
+
+physics::RobotDescription robot_before(const CasePlan& plan) {
+  return with_background(physics::load_robot(kChallengedRobot), plan.background);
 }
 
 physics::RobotDescription hidden_robot_in_model(const CasePlan& plan, const std::vector<std::string>& without) {

@@ -13,8 +13,10 @@
 
 namespace kenaf::gap {
 
-// The "real" robot: background and effects, as the plan has them.
+// The "real" robot: background, number and effects, as the plan has them.
 physics::RobotDescription hidden_robot(const CasePlan& plan);
+// The same before its last change: of the background alone.
+physics::RobotDescription robot_before(const CasePlan& plan);
 // The nominal robot with its hidden effects at the values that a model needs for the same (value_in_model); those named in
 // `without` are left out.
 physics::RobotDescription hidden_robot_in_model(const CasePlan& plan, const std::vector<std::string>& without = {});

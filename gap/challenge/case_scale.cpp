@@ -41,7 +41,13 @@ Size CaseScale::size_of(const Differences& shifts) const {
 }
 
 Size CaseScale::size_of(const physics::Effects& effects) {
-  return size_of(shift_of(effects));
+  physics::RobotDescription robot = robot_;
+  robot.effects = effects;
+  return size_of(shift_of(robot));
+}
+
+Size CaseScale::size_of_number(const std::string& key, double value) {
+  return size_of(shift_of(with_background(robot_, {{{key, value}}, 0})));
 }
 
 Size CaseScale::size_of_foreign(const std::string& foreign, double amount) {
@@ -51,13 +57,11 @@ Size CaseScale::size_of_foreign(const std::string& foreign, double amount) {
 LookAlike CaseScale::look_alike_of(const CasePlan& plan) {
   return look_alike(
       runs_, floors_,
-      plan.foreign.empty() ? shift_of(hidden_robot(plan).effects) : shift_of_foreign(plan.foreign, plan.foreign_amount),
+      plan.foreign.empty() ? shift_of(hidden_robot(plan)) : shift_of_foreign(plan.foreign, plan.foreign_amount),
       withheld_names(plan));
 }
 
-Differences CaseScale::shift_of(const physics::Effects& effects) {
-  physics::RobotDescription robot = robot_;
-  robot.effects = effects;
+Differences CaseScale::shift_of(const physics::RobotDescription& robot) {
   return shifts_of(runs_, robot, Fidelity::coarse) - background_;
 }
 

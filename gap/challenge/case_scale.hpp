@@ -15,7 +15,7 @@ struct Size {
   double floors = 0;            // rms over all channels, over that of repeats of a robot without gap
   double times_background = 0;  // 0 without a background
 
-  double planned_as(const CasePlan& plan) const { return plan.is_imperfect() ? times_background : floors; }
+  double planned_as(const CasePlan& plan) const { return plan.is_sized_by_background() ? times_background : floors; }
 };
 
 // Of the manoeuvres of a plan, driven by a robot in which nothing is hidden.
@@ -27,13 +27,15 @@ class CaseScale {
   double background_floors() const { return background_floors_; }
   // Of what effects do to the robot of the background.
   Size size_of(const physics::Effects& effects);
+  Size size_of_number(const std::string& key, double value);
   Size size_of_foreign(const std::string& foreign, double amount);
   // Of what is hidden outside the catalogue.
   LookAlike look_alike_of(const CasePlan& plan);
 
  private:
   Size size_of(const Differences& shifts) const;
-  Differences shift_of(const physics::Effects& effects);
+  // Of a robot that is the background's but for what is hidden.
+  Differences shift_of(const physics::RobotDescription& robot);
   Differences shift_of_foreign(const std::string& foreign, double amount);
 
   unsigned jobs_;

@@ -67,6 +67,10 @@ pid_t start(const CaseToDiagnose& one, int program) {
     arguments.emplace_back("--without");
     arguments.push_back(fmt::format("{}", fmt::join(one.without, ",")));
   }
+  if (!one.against.empty()) {
+    arguments.emplace_back("--against");
+    arguments.push_back(one.against.string());
+  }
   std::vector<std::string> environment;
   for (const char* name : {"KENAF_DATA_DIR", "PATH", "HOME"})
     if (const char* value = std::getenv(name)) environment.push_back(fmt::format("{}={}", name, value));

@@ -14,6 +14,7 @@ namespace kenaf::gap {
 struct CaseToDiagnose {
   std::filesystem::path data, report;  // folders; the latter is made
   std::vector<std::string> without;    // effects
+  std::filesystem::path against;       // a dataset within `data`; empty: none
 };
 
 // Up to `at_once` processes of one thread each. `ended` is called after each one, with its index and whether it could

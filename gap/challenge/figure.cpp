@@ -23,7 +23,7 @@ Figure share_figure(std::string_view id, std::string_view what, std::string_view
   const Share share = wilson(count.hits, count.cases);
   return {id,          what,       target,   count.cases,
           share.value, share.from, share.to, count.cases > 0 && share.value >= least && share.value <= most,
-          true};
+          true,        count.hits};
 }
 
 Figure difference_figure(std::string_view id, std::string_view what, std::string_view target,

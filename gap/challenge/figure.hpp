@@ -14,6 +14,7 @@ struct Figure {
   double value = 0, from = 0, to = 0;  // with its 95 % interval; means nothing without cases
   bool met = false;                    // the value itself, whatever the interval
   bool is_share = false;               // told in percent
+  std::size_t hits = 0;                // of the cases, of a share
 };
 
 // 95 % interval of a share, after Wilson (1927).

@@ -16,15 +16,14 @@ bool has(const Names& names, const std::string& name) {
 }
 
 bool is_small(const CasePlan& plan) {
-  if (plan.is_imperfect())
-    return plan.foreign.empty()
-               ? std::ranges::any_of(plan.effects,
-                                     [](const HiddenEffect& hidden) { return hidden.times_background < kDominates; })
-               : plan.foreign_times_background < kDominates;
-  return plan.foreign.empty()
-             ? std::ranges::any_of(plan.effects,
-                                   [](const HiddenEffect& hidden) { return hidden.floors < kSurelySeen_floors; })
-             : plan.foreign_floors < kSurelySeen_floors;
+  const auto small = [&](double floors, double times_background) {
+    if (plan.is_sized_by_background()) return times_background < kDominates;
+    return floors < (plan.stratum == Stratum::baseline ? kSurelySeenSince_floors : kSurelySeen_floors);
+  };
+  if (!plan.foreign.empty()) return small(plan.foreign_floors, plan.foreign_times_background);
+  if (!plan.number.key.empty()) return small(plan.number.floors, plan.number.times_background);
+  return std::ranges::any_of(plan.effects,
+                             [&](const HiddenEffect& hidden) { return small(hidden.floors, hidden.times_background); });
 }
 
 std::vector<Names> claims_of(const ReadStage& stage) {
@@ -66,11 +65,19 @@ bool is_covered(const ReadReport& report, const Names& hidden, bool all_stand) {
   return std::ranges::count(covered, (1U << hidden.size()) - 1) > 0;
 }
 
-bool stands_apart(const ReadReport& report, const std::string& name) {
-  const auto row = static_cast<std::size_t>(std::ranges::find(report.table, name) - report.table.begin());
-  if (row == report.table.size()) return false;
-  for (std::size_t other = 0; other < report.table.size(); ++other)
-    if (other != row && !(report.angle_deg[row][other] >= kToldApart_deg)) return false;
+// Of the stage in which the effect explains most; where the key has no shares, of the one that holds most of the gap.
+const ReadTable& table_for(const ReadReport& report, const HiddenEffect& hidden) {
+  const auto most = std::ranges::max_element(hidden.shares, {}, &StageShare::share);
+  if (most == hidden.shares.end()) return report.table;
+  const auto stage = std::ranges::find(report.stages, most->stage, &ReadStage::stage);
+  return stage == report.stages.end() ? report.table : stage->table;
+}
+
+bool stands_apart(const ReadTable& table, const std::string& name) {
+  const auto row = static_cast<std::size_t>(std::ranges::find(table.effects, name) - table.effects.begin());
+  if (row == table.effects.size()) return false;
+  for (std::size_t other = 0; other < table.effects.size(); ++other)
+    if (other != row && !(table.angle_deg[row][other] >= kToldApart_deg)) return false;
   return true;
 }
 
@@ -84,7 +91,7 @@ std::string reported_name(const std::string& effect, const std::string& paramete
 Judgement judge(const CasePlan& plan, const std::optional<ReadReport>& report) {
   Judgement result;
   result.is_small = is_small(plan);
-  const bool in_catalogue = plan.stratum == Stratum::single || plan.stratum == Stratum::pair;
+  const bool in_catalogue = !plan.effects.empty() && !is_outside(plan.stratum);
   for (const HiddenEffect& hidden : plan.effects)
     if (in_catalogue) result.hidden.push_back(reported_name(hidden.effect, hidden.parameter));
   result.found.assign(result.hidden.size(), Found::missed);
@@ -105,14 +112,14 @@ Judgement judge(const CasePlan& plan, const std::optional<ReadReport>& report) {
   if (in_catalogue) {
     result.right = is_covered(*report, result.hidden, true);
     result.all_found = is_covered(*report, result.hidden, false);
-  } else if (plan.is_imperfect()) {
+  } else if (plan.is_imperfect() && plan.stratum != Stratum::baseline) {
     result.right = !result.names_wrong;
   } else {
-    result.right = report->verdict == (plan.stratum == Stratum::none ? "none" : "unknown");
+    result.right = report->verdict == (is_outside(plan.stratum) ? "unknown" : "none");
   }
-  if (plan.stratum == Stratum::single) {
+  if (result.hidden.size() == 1) {
     result.named_alone = result.right && result.found.front() == Found::named && report->ambiguous_sets.empty();
-    result.can_be_told_apart = stands_apart(*report, result.hidden.front());
+    result.can_be_told_apart = stands_apart(table_for(*report, plan.effects.front()), result.hidden.front());
   }
   return result;
 }

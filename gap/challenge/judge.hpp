@@ -3,7 +3,8 @@
 // Each stage claims as many effects as it has names and ambiguity sets together, and each claim of a stage stands for a hidden
 // effect of its own that it has. A report is right about hidden effects where all claims of all stages do, and each hidden
 // effect has one; right about nothing hidden where it says `none`; right about what its catalogue did not have where it says
-// `unknown`. In the imperfect challenge the report is right, too, that the background deviates: there only its names count.
+// `unknown`. In the imperfect challenge the report is right, too, that the background deviates: there only its names count,
+// but of a baseline, since which it is the same.
 // A number of the description stands for the effect that does the same (stand_ins.hpp).
 // Thread safety: pure functions.
 #pragma once
@@ -22,6 +23,8 @@ namespace kenaf::gap {
 constexpr double kSurelySeen_floors = 2;
 // Beside the background, an effect so many times its size dominates: smaller ones need not be found.
 constexpr double kDominates = 3;
+// Since a baseline, whose noise is in the difference as well.
+constexpr double kSurelySeenSince_floors = 2.7;  // a tenth less than the smallest that is planned
 
 enum class Found {
   named,      // by its name

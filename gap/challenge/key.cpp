@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "gap/challenge/case_runs.hpp"
 #include "gap/challenge/sha256.hpp"
 #include "physics/effects.hpp"
 #include "physics/robot_description.hpp"
@@ -46,6 +47,11 @@ Json case_json(const SealedCase& sealed) {
   if (!plan.foreign.empty())
     json["foreign"] = {{"name", plan.foreign}, {"amount", plan.foreign_amount}, {"floors", plan.foreign_floors}};
   if (!plan.foreign.empty() && plan.is_imperfect()) json["foreign"]["times_background"] = plan.foreign_times_background;
+  if (!plan.number.key.empty())
+    json["number"] = {{"key", plan.number.key},
+                      {"value", plan.number.value},
+                      {"floors", plan.number.floors},
+                      {"times_background", plan.number.times_background}};
   if (plan.is_imperfect()) json["background"] = background_json(plan.background);
   if (is_outside(plan.stratum))
     json["looks_like"] = {{"effect", plan.look_alike.effect}, {"angle_deg", plan.look_alike.angle_deg}};
@@ -67,10 +73,12 @@ Json case_json(const SealedCase& sealed) {
 
 // Throws where a case does not hide what its stratum says.
 void check(const CasePlan& plan) {
-  const std::size_t effects = plan.stratum == Stratum::pair                                          ? 2
-                              : plan.stratum == Stratum::single || plan.stratum == Stratum::withheld ? 1
-                                                                                                     : 0;
-  if (plan.effects.size() != effects || plan.foreign.empty() == (plan.stratum == Stratum::foreign))
+  const Stratum stratum = plan.stratum;
+  const bool hides_one = stratum == Stratum::single || stratum == Stratum::withheld;
+  const std::size_t effects = stratum == Stratum::pair ? 2 : hides_one ? 1 : 0;
+  const bool has_effects = stratum == Stratum::baseline ? plan.effects.size() <= 1 : plan.effects.size() == effects;
+  if (!has_effects || plan.foreign.empty() == (stratum == Stratum::foreign) ||
+      plan.number.key.empty() == (stratum == Stratum::withheld_number))
     throw std::runtime_error(fmt::format("{} does not hide what its stratum says", plan.name));
   for (const HiddenEffect& hidden : plan.effects) {
     const auto* effect = physics::find_effect(hidden.effect);
@@ -83,7 +91,7 @@ void check(const CasePlan& plan) {
                                            hidden.parameter, hidden.value));
   }
   // throws where it makes no robot
-  with_background(physics::load_robot(kChallengedRobot), plan.background);
+  hidden_robot(plan);
   if (!plan.longest_s.empty() && plan.longest_s.size() != plan.manoeuvres.size())
     throw std::runtime_error(fmt::format("{} does not say of each manoeuvre when it is cut off", plan.name));
   const physics::PhysicsSettings& physics = plan.physics;
@@ -110,6 +118,10 @@ SealedCase case_of(const Json& json) {
     foreign.at("amount").get_to(plan.foreign_amount);
     foreign.at("floors").get_to(plan.foreign_floors);
     if (foreign.contains("times_background")) foreign["times_background"].get_to(plan.foreign_times_background);
+  }
+  if (json.contains("number")) {
+    const Json& number = json["number"];
+    plan.number = {number.at("key"), number.at("value"), number.at("floors"), number.at("times_background")};
   }
   if (json.contains("background")) {
     json["background"].at("floors").get_to(plan.background.floors);

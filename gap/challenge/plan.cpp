@@ -4,18 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 
 #include "gap/candidates/candidate.hpp"
+#include "gap/candidates/robot_numbers.hpp"
 #include "gap/challenge/random_numbers.hpp"
 #include "gap/challenge/stand_ins.hpp"
 
 namespace kenaf::gap {
 namespace {
 
-constexpr std::string_view kKindNames[] = {"exact", "imperfect"};                                // as ChallengeKind
-constexpr std::string_view kStratumNames[] = {"none", "single", "pair", "withheld", "foreign"};  // as Stratum
+constexpr std::string_view kKindNames[] = {"exact", "imperfect"};             // as ChallengeKind
+constexpr std::string_view kStratumNames[] = {"none",     "single",  "pair",  // as Stratum
+                                              "withheld", "foreign", "withheld-number",
+                                              "baseline"};
 
 // What share of the cases a stratum has.
 struct StratumShare {
@@ -29,16 +33,19 @@ constexpr StratumShare kExact[] = {{Stratum::none, 0.3},
                                    {Stratum::pair, 0.11},
                                    {Stratum::withheld, 0.26},
                                    {Stratum::foreign, 0.07}};
-constexpr StratumShare kImperfect[] = {{Stratum::none, 0.25},
-                                       {Stratum::single, 0.35},
-                                       {Stratum::pair, 0.15},
-                                       {Stratum::withheld, 0.15},
-                                       {Stratum::foreign, 0.10}};
+// Of 150 cases 36 are background alone: of fewer than 34 one wrong name would be more than 3 %.
+constexpr StratumShare kImperfect[] = {
+    {Stratum::none, 0.24},    {Stratum::single, 0.30},          {Stratum::pair, 0.13},    {Stratum::withheld, 0.10},
+    {Stratum::foreign, 0.07}, {Stratum::withheld_number, 0.06}, {Stratum::baseline, 0.10}};
 constexpr double kRounding = 1e-6;
+constexpr int kRangeHalvings = 10;  // of the way to a number's end, until it makes a robot
 constexpr double kFurthest = 0.95;  // of the way to the end of a parameter's range
 
 // Sizes beside the background. Pairs are asked for where both dominate; singles also show how large one has to be.
 constexpr double kSmallestTimes = 1, kSmallestTimesOfPair = 3, kLargestTimes = 6;
+// Since a baseline, in floors: what is there before and after cancels, only noise does not.
+constexpr double kSmallestChange_floors = 3, kLargestChange_floors = 10;
+constexpr double kNothingChanged = 0.3;  // share of the baselines
 
 struct Named {
   std::string effect, parameter;
@@ -150,7 +157,7 @@ std::string_view stratum_name(Stratum stratum) {
 }
 
 bool is_outside(Stratum stratum) {
-  return stratum == Stratum::withheld || stratum == Stratum::foreign;
+  return stratum == Stratum::withheld || stratum == Stratum::foreign || stratum == Stratum::withheld_number;
 }
 
 Stratum stratum_of(std::string_view name) {
@@ -176,6 +183,19 @@ double furthest_value(const CasePlan& plan, const physics::EffectParameter& para
     if (&parameter_of({candidate.effect, candidate.parameter}) == &parameter) min = candidate.min, max = candidate.max;
   const double end = upward ? std::min(max, max / scale) : std::max(min, min / scale);
   return parameter.neutral + kFurthest * (end - parameter.neutral);
+}
+
+double furthest_value_of_number(const CasePlan& plan, bool upward) {
+  static const std::vector<Candidate> numbers = description_candidates(physics::load_robot(kChallengedRobot));
+  const Candidate& number = *std::ranges::find(numbers, plan.number.key, &Candidate::name);
+  physics::RobotDescription robot = with_background(physics::load_robot(kChallengedRobot), plan.background);
+  double value = number.present + kFurthest * ((upward ? number.max : number.min) - number.present);
+  for (int halving = 0; halving < kRangeHalvings; ++halving) {
+    find_robot_number(robot, number.name)->set(robot, value);
+    if (why_impossible(robot).empty()) return value;
+    value = std::midpoint(value, number.present);
+  }
+  return number.present;
 }
 
 std::vector<CaseRuns> runs_to_choose_from(const CasePlan& plan) {
@@ -205,7 +225,8 @@ std::vector<ForeignEffect> foreign_effects() {
 std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, ChallengeKind kind) {
   const bool imperfect = kind == ChallengeKind::imperfect;
   Random random(seed);
-  Turns turns(random), pairs(random);
+  Turns turns(random), pairs(random), changes(random);
+  std::vector<std::string> numbers;
   const std::vector<ForeignEffect> foreign = foreign_effects();
   std::vector<CasePlan> plans;
   for (const Stratum stratum : strata(cases, imperfect ? std::span<const StratumShare>(kImperfect) : kExact, random)) {
@@ -215,7 +236,9 @@ std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, Chal
     const auto hide = [&](Turns& from, double smallest_floors, double smallest_times) {
       const Named named = from.next();
       HiddenEffect hidden{named.effect, named.parameter};
-      if (imperfect)
+      if (plan.stratum == Stratum::baseline)
+        hidden.floors = log_uniform(random, kSmallestChange_floors, kLargestChange_floors);
+      else if (imperfect)
         hidden.times_background = uniform(random, smallest_times, kLargestTimes);
       else
         hidden.floors = log_uniform(random, smallest_floors, 5);
@@ -237,6 +260,16 @@ std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, Chal
       else
         plan.foreign_floors = log_uniform(random, 2, 5);
     }
+    if (stratum == Stratum::withheld_number) {
+      if (numbers.empty()) {
+        numbers = numbers_like_nothing_else();
+        shuffle(numbers, random);
+      }
+      plan.number.key = numbers.back();
+      numbers.pop_back();
+      plan.number.times_background = uniform(random, kSmallestTimes, kLargestTimes);
+    }
+    if (stratum == Stratum::baseline && uniform(random, 0, 1) >= kNothingChanged) hide(changes, 0, 0);
     choose_runs(plan, kind, random);
     plan.physics.time_step_s *= 0.5;
     plan.physics.solver_iterations *= 2;
@@ -250,6 +283,7 @@ std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, Chal
       std::vector<std::string> without;
       for (const HiddenEffect& hidden : plan.effects)
         for (std::string& key : numbers_like(hidden.effect)) without.push_back(std::move(key));
+      if (!plan.number.key.empty()) without.push_back(plan.number.key);
       plan.background = draw_background(physics::load_robot(kChallengedRobot), mixed(plan.seed, 5), without);
     }
     plans.push_back(std::move(plan));

@@ -19,6 +19,8 @@
 namespace kenaf::gap {
 
 inline constexpr const char* kChallengedRobot = "kenaf";
+// In a case's folder, the dataset of the robot as it was before.
+inline constexpr const char* kBeforeFolder = "before";
 
 enum class ChallengeKind { exact, imperfect };
 std::string_view kind_name(ChallengeKind kind);
@@ -30,6 +32,8 @@ enum class Stratum {
   pair,      // two
   withheld,  // one, and the diagnosis has a catalogue without it
   foreign,   // something that the catalogue never had
+  withheld_number,  // one number of the description, and the diagnosis does not search for it
+  baseline,         // one effect, or nothing, since runs of before that the diagnosis has as well
 };
 std::string_view stratum_name(Stratum stratum);
 bool is_outside(Stratum stratum);         // withheld or foreign: the diagnosis' catalogue does not have it
@@ -49,6 +53,12 @@ struct HiddenEffect {
   std::vector<StageShare> shares{};  // of the stages that show it; likewise, known once the case is made
 };
 
+struct HiddenNumber {
+  std::string key;  // "drive.max_force_n"; empty: none is hidden
+  double value = 0;
+  double floors = 0, times_background = 0;  // as of an effect
+};
+
 // The effect of a diagnosis' catalogue that looks most like what is hidden and not in it.
 struct LookAlike {
   std::string effect;     // as reports name it
@@ -61,6 +71,7 @@ struct CasePlan {
   std::vector<HiddenEffect> effects;
   std::string foreign;                  // one of foreign_effects(), or empty
   double foreign_floors = 0, foreign_amount = 0, foreign_times_background = 0;
+  HiddenNumber number;                  // of the description
   LookAlike look_alike;                 // of what is withheld or foreign; known once the case is made
   Background background;                // of the imperfect challenge; else no numbers
   std::vector<std::string> manoeuvres;  // of the dataset
@@ -73,6 +84,8 @@ struct CasePlan {
   std::uint64_t seed = 0;
 
   bool is_imperfect() const { return !background.numbers.empty(); }
+  // Else by noise floors: also where runs of before have the same background, so that it cancels.
+  bool is_sized_by_background() const { return is_imperfect() && stratum != Stratum::baseline; }
 };
 
 // Of the catalogue, which must have it: a plan hides nothing else, and a key that is read is checked for it.
@@ -85,6 +98,8 @@ double value_in_model(const CasePlan& plan, const HiddenEffect& hidden);
 // The furthest value from neutral that a case may hide: within the range of a diagnosis' candidate on the "real" side and in
 // the model, for a diagnosis cannot find what is beyond.
 double furthest_value(const CasePlan& plan, const physics::EffectParameter& parameter, bool upward);
+// Likewise of the hidden number of the description; with it the robot of the background is one that its description allows.
+double furthest_value_of_number(const CasePlan& plan, bool upward);
 
 // Shares of strata, and sizes, are those of docs/gap-challenge.md. Of singles and withheld ones together each effect of the
 // catalogue has its turn; pairs and foreign ones are drawn by chance. In an order that says nothing.

@@ -17,7 +17,20 @@ double number(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
 
-// Verdict, names, sets, effects and shrink stand in version 1 at the top, in version 2 in each stage.
+ReadTable table_of(const Json& json) {
+  ReadTable table;
+  json.at("effects").get_to(table.effects);
+  for (const Json& row : json.at("angle_deg")) {
+    table.angle_deg.emplace_back();
+    for (const Json& angle : row) table.angle_deg.back().push_back(number(angle));
+    if (table.angle_deg.back().size() != table.effects.size())
+      throw std::runtime_error("its angles are no square table");
+  }
+  if (table.angle_deg.size() != table.effects.size()) throw std::runtime_error("its angles are no square table");
+  return table;
+}
+
+// Verdict, names, sets, effects, shrink and table stand in version 1 at the top, in version 2 in each stage.
 ReadStage stage_of(const Json& json, std::string name) {
   ReadStage stage;
   stage.stage = std::move(name);
@@ -31,18 +44,8 @@ ReadStage stage_of(const Json& json, std::string name) {
                                number(fit.at("ci95").at(1)), explains});
   }
   stage.shrink = number(json.at("gap").at("shrink"));
+  if (json.contains("isolability")) stage.table = table_of(json["isolability"]);
   return stage;
-}
-
-void read_table(const Json& json, ReadReport& report) {
-  json.at("effects").get_to(report.table);
-  for (const Json& row : json.at("angle_deg")) {
-    report.angle_deg.emplace_back();
-    for (const Json& angle : row) report.angle_deg.back().push_back(number(angle));
-    if (report.angle_deg.back().size() != report.table.size())
-      throw std::runtime_error("its angles are no square table");
-  }
-  if (report.angle_deg.size() != report.table.size()) throw std::runtime_error("its angles are no square table");
 }
 
 }  // namespace
@@ -64,7 +67,7 @@ ReadReport report_of(const std::string& report_json) try {
     report.complete = report.verdict != "unknown";  // what was not explained whole had no names
     report.stages.push_back(stage_of(json, ""));
   }
-  if (json.contains("isolability")) read_table(json["isolability"], report);
+  if (json.contains("isolability")) report.table = table_of(json["isolability"]);
   return report;
 } catch (const std::exception& error) {
   throw std::runtime_error(fmt::format("no report of a diagnosis: {}", error.what()));

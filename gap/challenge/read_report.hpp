@@ -16,6 +16,12 @@ struct ReadEffect {
   double explains = std::numeric_limits<double>::quiet_NaN();  // share of the stage's squared gap
 };
 
+// The isolability table.
+struct ReadTable {
+  std::vector<std::string> effects;
+  std::vector<std::vector<double>> angle_deg;
+};
+
 struct ReadStage {
   std::string stage;    // "command to drive"; empty of a report of version 1, which tells all stages as one
   std::string verdict;  // "none", "named", "ambiguous", "unknown"
@@ -23,6 +29,7 @@ struct ReadStage {
   std::vector<std::vector<std::string>> ambiguous_sets;
   std::vector<ReadEffect> effects;
   double shrink = std::numeric_limits<double>::quiet_NaN();  // on held-out runs
+  ReadTable table{};
 };
 
 struct ReadReport {
@@ -32,9 +39,7 @@ struct ReadReport {
   bool complete = false;
   std::vector<ReadStage> stages;
   bool interrupted = false;  // then its verdict is none that counts
-  // The isolability table.
-  std::vector<std::string> table;
-  std::vector<std::vector<double>> angle_deg;
+  ReadTable table;           // of the stage that holds most of the gap
 };
 
 // Throws std::runtime_error in words where it is none of the formats kenaf-gap-report/1 and kenaf-gap-report/2.

@@ -100,6 +100,7 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
 std::vector<EffectScore> scores_by_effect(const std::vector<ScoredCase>& cases) {
   std::map<std::string, EffectScore> scores;
   for (const ScoredCase& scored : cases) {
+    if (scored.sealed.plan.stratum == Stratum::baseline) continue;  // another question: they have figures of their own
     const Judgement judgement = judge(scored.sealed.plan, scored.report);
     for (std::size_t i = 0; i < judgement.hidden.size(); ++i) {
       EffectScore& score = scores[judgement.hidden[i]];
@@ -126,7 +127,9 @@ std::vector<OutsideScore> scores_outside(const std::vector<ScoredCase>& cases) {
   for (const ScoredCase& scored : cases) {
     const CasePlan& plan = scored.sealed.plan;
     if (!is_outside(plan.stratum)) continue;
-    const std::string name = plan.foreign.empty() ? "without " + plan.effects.front().effect : plan.foreign;
+    const std::string name = !plan.foreign.empty()      ? plan.foreign
+                             : !plan.number.key.empty() ? "without " + plan.number.key
+                                                        : "without " + plan.effects.front().effect;
     OutsideScore& score = scores[name];
     score.name = name;
     ++score.cases;

@@ -12,13 +12,18 @@ using Json = nlohmann::ordered_json;
 
 std::string truth_text(const CasePlan& plan) {
   const auto size = [&](double floors, double times_background) {
-    return plan.is_imperfect() ? fmt::format("{:.1f} times the background", times_background)
-                               : fmt::format("{:.1f} floors", floors);
+    return plan.is_sized_by_background() ? fmt::format("{:.1f} times the background", times_background)
+                                         : fmt::format("{:.1f} floors", floors);
   };
   if (!plan.foreign.empty())
     return fmt::format("{} by {:.2g} ({})", plan.foreign, plan.foreign_amount,
                        size(plan.foreign_floors, plan.foreign_times_background));
-  if (plan.effects.empty()) return "nothing";
+  if (!plan.number.key.empty())
+    return fmt::format("{}={:.3g} ({})", plan.number.key, plan.number.value,
+                       size(plan.number.floors, plan.number.times_background));
+  if (plan.effects.empty())
+    return plan.is_imperfect() ? fmt::format("nothing (a background of {:.1f} floors)", plan.background.floors)
+                               : "nothing";
   std::vector<std::string> texts;
   for (const HiddenEffect& hidden : plan.effects)
     texts.push_back(fmt::format("{}:{}={:.3g} ({})", hidden.effect, hidden.parameter, hidden.value,
@@ -131,14 +136,16 @@ std::string score_markdown(const std::vector<ScoredCase>& cases) {
   std::string text = imperfect ? "Effects dominate where they are at least 3 times as large as the background.\n\n"
                                : "Singles, pairs, withheld and foreign ones count in the figures where what is hidden "
                                  "is at least 2 noise floors.\n\n";
-  text += "| figure | cases | value | 95 % interval | target | |\n|---|---|---|---|---|---|\n";
+  text += "| figure | of cases | value | 95 % interval | target | |\n|---|---|---|---|---|---|\n";
   for (const Figure& figure : figures(cases)) {
     if (figure.cases == 0)
       text += fmt::format("| {} | 0 | | | {} | {} |\n", figure.what, figure.target, met_text(figure));
     else
-      text += fmt::format("| {} | {} | {} | {} to {} | {} | {} |\n", figure.what, figure.cases,
-                          value_text(figure, figure.value), value_text(figure, figure.from),
-                          value_text(figure, figure.to), figure.target, met_text(figure));
+      text += fmt::format(
+          "| {} | {} | {} | {} to {} | {} | {} |\n", figure.what,
+          figure.is_share ? fmt::format("{} of {}", figure.hits, figure.cases) : fmt::format("{}", figure.cases),
+          value_text(figure, figure.value), value_text(figure, figure.from), value_text(figure, figure.to),
+          figure.target, met_text(figure));
   }
   text += fmt::format(
       "\n### Singles by size\n\n| {} | cases | gap seen | found | named alone | wrong name "
@@ -172,6 +179,7 @@ std::string score_json(const std::vector<ScoredCase>& cases) {
   Json json{{"format", "kenaf-gap-score/1"}, {"figures", Json::array()}, {"cases", Json::array()}};
   for (const Figure& figure : figures(cases)) {
     Json line{{"id", figure.id}, {"what", figure.what}, {"cases", figure.cases}};
+    if (figure.cases > 0 && figure.is_share) line["hits"] = figure.hits;
     if (figure.cases > 0) line.update({{"value", figure.value}, {"ci95", {figure.from, figure.to}}});
     if (!figure.target.empty()) line["target"] = figure.target;
     if (!figure.target.empty() && figure.cases > 0) line["met"] = figure.met;

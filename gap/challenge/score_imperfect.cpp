@@ -36,6 +36,7 @@ std::vector<ScoredShare> scored_shares(const ScoredCase& scored) {
 
 std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
   Count found, alone, named_apart, pairs, wrong, quiet, no_set, outside, outside_apart, share, covered;
+  Count since, since_named, since_none;
   std::vector<double> off;
   for (const ScoredCase& scored : cases) {
     const Judgement judgement = judge(scored.sealed.plan, scored.report);
@@ -55,6 +56,11 @@ std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
       off.push_back(interval.off());
     }
     if (judgement.is_small) continue;
+    if (stratum == Stratum::baseline) {
+      since.add(judgement.right);
+      if (judgement.hidden.empty()) since_none.add(judgement.right);
+      if (judgement.can_be_told_apart) since_named.add(judgement.named_alone);
+    }
     if (stratum == Stratum::single) {
       const bool is_named = judgement.found.front() == Found::named;
       found.add(judgement.all_found);
@@ -71,6 +77,8 @@ std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
       share_figure("wrong_name", "reports that name what is not hidden", "<= 2 %", wrong, 0, 0.02),
       share_figure("background_unnamed", "background alone, no name", ">= 97 %", quiet, 0.97, 1),
       share_figure("outside_unnamed", "withheld and foreign, no wrong name", ">= 95 %", outside, 0.95, 1),
+      share_figure("baseline_right", "what changed since a baseline, named or in the only set; none where nothing did",
+                   ">= 90 %", since, 0.90, 1),
       share_figure("share_close", "stated shares of the gap within 0.10 of the true ones", ">= 90 %", share, 0.90, 1),
       share_figure("interval_covers", "95 % intervals of named effects that hold the value", "90 to 98 %", covered,
                    0.90, 0.98),
@@ -78,6 +86,9 @@ std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
                     "0.25 to 0.45", off, 0.25, 0.45),
       share_figure("dominating_only", "dominating effects named, and nothing else claimed", "", alone, 0, 1),
       share_figure("background_unclaimed", "background alone, neither name nor set", "", no_set, 0, 1),
+      share_figure("baseline_named", "what changed since a baseline and can be told apart, named alone", "",
+                   since_named, 0, 1),
+      share_figure("baseline_none", "nothing changed since a baseline, called none", "", since_none, 0, 1),
       share_figure("outside_apart_unnamed", "withheld and foreign that can be told apart, no wrong name", "",
                    outside_apart, 0, 1),
   };

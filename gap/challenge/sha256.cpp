@@ -5,6 +5,7 @@
 
 #include <span>
 
+#include "gap/challenge/plan.hpp"
 #include "runs/dataset.hpp"
 #include "runs/whole_file.hpp"
 
@@ -39,11 +40,14 @@ std::string sha256(std::string_view bytes) {
 
 std::string sha256_of_dataset(const std::filesystem::path& folder) {
   Hash hash;
-  const auto add = [&](const std::string& file) {
-    runs::read_in_chunks(folder / file, [&](std::string_view bytes) { hash.add(bytes); });
+  const auto add = [&](const std::filesystem::path& file) {
+    runs::read_in_chunks(file, [&](std::string_view bytes) { hash.add(bytes); });
   };
-  add("dataset.toml");
-  for (const runs::DatasetRun& run : runs::read_dataset(folder).runs) add(run.file);
+  for (const std::filesystem::path& dataset : {folder, folder / kBeforeFolder}) {
+    if (dataset != folder && !std::filesystem::exists(dataset)) continue;
+    add(dataset / "dataset.toml");
+    for (const runs::DatasetRun& run : runs::read_dataset(dataset).runs) add(dataset / run.file);
+  }
   return hash.hex();
 }
 

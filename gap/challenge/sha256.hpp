@@ -11,7 +11,8 @@ namespace kenaf::gap {
 // 64 hexadecimal digits, as sha256sum prints them.
 std::string sha256(std::string_view bytes);
 
-// Of a dataset: of its dataset.toml and the runs that are in it, in order. Throws runs::RunFileError where one cannot be
+// Of a dataset: of its dataset.toml and the runs that are in it, in order, and where one of before is in it
+// (kBeforeFolder), of that likewise. Throws runs::RunFileError where one cannot be
 // read.
 std::string sha256_of_dataset(const std::filesystem::path& folder);
 

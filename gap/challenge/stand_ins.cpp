@@ -1,5 +1,6 @@
 #include "gap/challenge/stand_ins.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace kenaf::gap {
@@ -28,6 +29,7 @@ const std::vector<Candidate>& numbers() {
 
 std::vector<std::string> withheld_names(const CasePlan& plan) {
   std::vector<std::string> names;
+  if (plan.stratum == Stratum::withheld_number) names.push_back(plan.number.key);
   if (plan.stratum != Stratum::withheld) return names;
   for (const HiddenEffect& hidden : plan.effects) {
     names.push_back(hidden.effect);
@@ -43,6 +45,14 @@ std::vector<std::string> numbers_like(std::string_view effect) {
     if (number.same_as == effect) keys.push_back(number.name);
   for (const StandIn& stand_in : kStandIns)
     if (stand_in.effect == effect && physics::find_effect(stand_in.other) == nullptr) keys.emplace_back(stand_in.other);
+  return keys;
+}
+
+std::vector<std::string> numbers_like_nothing_else() {
+  std::vector<std::string> keys;
+  for (const Candidate& number : numbers())
+    if (number.same_as.empty() && std::ranges::count(kStandIns, number.name, &StandIn::other) == 0)
+      keys.push_back(number.name);
   return keys;
 }
 

@@ -20,6 +20,9 @@ std::vector<std::string> withheld_names(const CasePlan& plan);
 // of the effect would not be the hidden one then.
 std::vector<std::string> numbers_like(std::string_view effect);
 
+// The numbers of the description that no effect does the same as, or nearly: what withheld_number hides.
+std::vector<std::string> numbers_like_nothing_else();
+
 // An effect of the catalogue where that does the same as the named number of the description; else the name itself.
 std::string same_effect(const std::string& name);
 

@@ -162,12 +162,12 @@ TEST_CASE("A name is wrong where it is not hidden, beside right ones too, a set 
 TEST_CASE("An effect can be told apart where no other is within 10 degrees of it in the report's table") {
   const CasePlan plan = plan_of(Stratum::single, {kMass});
   ReadReport report = told("unknown");
-  report.table = {"com_up", "mass", "drive_lag"};
-  report.angle_deg = {{0, 10, 5}, {10, 0, 60}, {5, 60, 0}};  // com_up and drive_lag are alike, mass is not
+  report.table.effects = {"com_up", "mass", "drive_lag"};
+  report.table.angle_deg = {{0, 10, 5}, {10, 0, 60}, {5, 60, 0}};  // com_up and drive_lag are alike, mass is not
   CHECK(judge(plan, report).can_be_told_apart);
-  report.angle_deg[1][0] = 9.9;
+  report.table.angle_deg[1][0] = 9.9;
   CHECK_FALSE(judge(plan, report).can_be_told_apart);
-  report.table = {"com_up", "com_left", "drive_lag"};  // not seen at all
+  report.table.effects = {"com_up", "com_left", "drive_lag"};  // not seen at all
   CHECK_FALSE(judge(plan, report).can_be_told_apart);
 }
 
@@ -224,12 +224,11 @@ TEST_CASE("Shares count the cases that they are of") {
 
 TEST_CASE("Named alone is asked of singles that the report's table can tell apart") {
   ReadReport apart = told("ambiguous", {}, {{"mass", "com_up"}});
-  apart.table = {"mass", "com_up"};
-  apart.angle_deg = {{0, 40}, {40, 0}};
+  apart.table.effects = {"mass", "com_up"};
+  apart.table.angle_deg = {{0, 40}, {40, 0}};
   ReadReport alike = apart, named = told("named", {"mass"});
-  alike.angle_deg = {{0, 4}, {4, 0}};
+  alike.table.angle_deg = {{0, 4}, {4, 0}};
   named.table = apart.table;
-  named.angle_deg = apart.angle_deg;
   const CasePlan plan = plan_of(Stratum::single, {kMass});
   CHECK(figure({scored(plan, alike)}, "single_named").cases == 0);
   CHECK(figure(times(9, scored(plan, named), 1, scored(plan, apart)), "single_named").met);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gap/candidates/candidate.hpp"
+#include "gap/candidates/robot_numbers.hpp"
 #include "gap/challenge/case_runs.hpp"
 #include "gap/challenge/look_alike.hpp"
 #include "gap/challenge/sealed_data.hpp"
@@ -79,6 +80,40 @@ TEST_CASE("Data of a sealed challenge that are gone or changed are made again, t
   CHECK_THROWS_WITH(make_missing(), Catch::Contains("not what was sealed"));
   CHECK(test::read_file(data / "run-001.csv") == run);  // nothing is replaced by what is not right
   CHECK_FALSE(std::filesystem::exists(data.string() + ".part"));
+}
+
+TEST_CASE(
+    "A baseline has runs of before: the same robot and commands, noise of their own, and sealed as the others are") {
+  const TemporaryFolder folder;
+  SealedCase sealed;
+  CasePlan& plan = sealed.plan;
+  plan.name = "case-000";
+  plan.stratum = Stratum::baseline;
+  plan.manoeuvres = {"straight"};
+  plan.longest_s = {2};
+  plan.unseen = "arc";
+  plan.repeats = 1;
+  plan.seed = 3;
+  plan.background.numbers = {{"track.separation_m", 0.203}};
+  const std::filesystem::path data = case_folder(folder.path(), "case-000"), before = data / kBeforeFolder;
+  make_case(plan, data, 1);
+  CHECK(plan.background.floors > 0);
+  const runs::Run now_run = runs::read_run(data / "run-000.csv"), before_run = runs::read_run(before / "run-000.csv");
+  CHECK(now_run.columns == before_run.columns);
+  CHECK(now_run.row_count() == before_run.row_count());
+  CHECK(std::ranges::equal(now_run.column("cmd_track_left_mps"), before_run.column("cmd_track_left_mps")));
+  CHECK_FALSE(std::ranges::equal(now_run.column("x_m"), before_run.column("x_m")));
+
+  sealed.data_sha256 = sha256_of_dataset(data);
+  CHECK(is_sealed_dataset(data, sealed));
+  const std::string run = test::read_file(before / "run-000.csv");
+  test::write_file(before / "run-000.csv", "t_s,x_m\n0,0\n1,2\n");
+  CHECK_FALSE(is_sealed_dataset(data, sealed));
+  std::filesystem::remove_all(before);
+  CHECK_FALSE(is_sealed_dataset(data, sealed));
+  make_missing_data(folder.path(), {3, {sealed}, ChallengeKind::imperfect}, 1, nullptr,
+                    [](std::size_t, std::size_t) {});
+  CHECK(test::read_file(before / "run-000.csv") == run);
 }
 
 TEST_CASE("A case is made: its effect is as large as asked, and its folder does not say which it is", "[long]") {
@@ -158,6 +193,27 @@ TEST_CASE("Imperfect: an effect is as many times as large as the background as a
   CHECK(run.column("t_s").back() - run.column("t_s").front() == Approx(6).margin(0.011));
   for (const double speed_mps : run.column("track_left_mps"))  // of whole millimetres a second
     CHECK(std::abs(speed_mps * 1000 - std::round(speed_mps * 1000)) < 1e-6);
+}
+
+TEST_CASE("Imperfect: a number of the description is as many times as large as the background as asked", "[long]") {
+  const TemporaryFolder folder;
+  CasePlan plan;
+  plan.name = "case-007";
+  plan.stratum = Stratum::withheld_number;
+  plan.number.key = "track.separation_m";
+  plan.number.times_background = 4;
+  plan.manoeuvres = {"arc", "turn-in-place"};
+  plan.longest_s = {4, 4};
+  plan.unseen = "straight";
+  plan.repeats = 1;
+  plan.seed = 3;
+  plan.background.numbers = {{"battery.open_circuit_v", 25.7}, {"drive.idle_amperes", 0.309}};
+  make_case(plan, folder / "case", 1);
+  CHECK(plan.number.times_background == Approx(4).epsilon(0.06));
+  CHECK(plan.number.floors == Approx(plan.number.times_background * plan.background.floors));
+  CHECK(find_robot_number(hidden_robot(plan), plan.number.key)->get(hidden_robot(plan)) == Approx(plan.number.value));
+  CHECK_FALSE(plan.look_alike.effect.empty());
+  CHECK(plan.look_alike.effect != plan.number.key);
 }
 
 TEST_CASE("In a turn in place more friction across looks like less along, as only their ratio counts there", "[long]") {

@@ -78,6 +78,10 @@ TEST_CASE("What stands in for a withheld effect is withheld with it") {
   CHECK(withheld_names(plan) == std::vector<std::string>{"mass"});
   plan.stratum = Stratum::single;
   CHECK(withheld_names(plan).empty());
+  plan.stratum = Stratum::withheld_number;
+  plan.effects.clear();
+  plan.number.key = "drive.max_force_n";
+  CHECK(withheld_names(plan) == std::vector<std::string>{"drive.max_force_n"});
 }
 
 TEST_CASE("Every name that is withheld is a candidate of the diagnosis") {
@@ -94,15 +98,66 @@ TEST_CASE("Every name that is withheld is a candidate of the diagnosis") {
   }
 }
 
+TEST_CASE("A number that is withheld is one that no effect stands in for, and is in no background but as hidden") {
+  const std::vector<std::string> keys = numbers_like_nothing_else();
+  CHECK(keys.size() > 20);
+  for (const std::string& key : keys) {
+    INFO(key);
+    CHECK(same_effect(key) == key);
+    for (const physics::EffectInfo& effect : physics::effect_catalogue())
+      CHECK(std::ranges::count(numbers_like(effect.name), key) == 0);
+  }
+  CHECK(std::ranges::count(keys, "body.mass_kg") == 0);
+  CHECK(std::ranges::count(keys, "drive.time_constant_s") == 0);
+
+  std::size_t hidden = 0;
+  for (CasePlan& plan : imperfect(200, 6)) {
+    CHECK(plan.number.key.empty() == (plan.stratum != Stratum::withheld_number));
+    if (plan.number.key.empty()) continue;
+    ++hidden;
+    INFO(plan.number.key);
+    CHECK(std::ranges::count(keys, plan.number.key) == 1);
+    CHECK((plan.number.times_background >= 1 && plan.number.times_background <= 6));
+    CHECK(std::ranges::count(plan.background.numbers, plan.number.key, &BackgroundNumber::key) == 0);
+    for (const bool upward : {false, true}) {
+      plan.number.value = furthest_value_of_number(plan, upward);
+      const physics::RobotDescription robot = hidden_robot(plan);  // throws where it is none
+      CHECK(find_robot_number(robot, plan.number.key)->get(robot) == Approx(plan.number.value));
+    }
+  }
+  CHECK(hidden == 12);
+}
+
+TEST_CASE(
+    "Since a baseline nothing or one effect has changed, of a size in floors, and before there was only background") {
+  std::size_t nothing = 0, all = 0;
+  for (CasePlan& plan : imperfect(300, 6)) {
+    if (plan.stratum != Stratum::baseline) continue;
+    ++all;
+    nothing += plan.effects.empty();
+    if (plan.effects.empty()) continue;
+    REQUIRE(plan.effects.size() == 1);
+    HiddenEffect& hidden = plan.effects.front();
+    CHECK((hidden.floors >= 3 && hidden.floors <= 10));
+    hidden.value = furthest_value(plan, parameter_of(hidden), true);
+    CHECK(robot_before(plan).effects.*parameter_of(hidden).value == parameter_of(hidden).neutral);
+    CHECK(hidden_robot(plan).effects.*parameter_of(hidden).value == hidden.value);
+  }
+  CHECK(all == 30);
+  CHECK((nothing >= 2 && nothing <= 17));  // 9 by chance: three standard deviations are 7.5
+}
+
 TEST_CASE("Imperfect: strata have the shares that are documented") {
   std::map<Stratum, std::size_t> count;
   const auto plans = imperfect(200, 3);
   for (const CasePlan& plan : plans) ++count[plan.stratum];
-  CHECK(count[Stratum::none] == 50);
-  CHECK(count[Stratum::single] == 70);
-  CHECK(count[Stratum::pair] == 30);
-  CHECK(count[Stratum::withheld] == 30);
-  CHECK(count[Stratum::foreign] == 20);
+  CHECK(count[Stratum::none] == 48);
+  CHECK(count[Stratum::single] == 60);
+  CHECK(count[Stratum::pair] == 26);
+  CHECK(count[Stratum::withheld] == 20);
+  CHECK(count[Stratum::foreign] == 14);
+  CHECK(count[Stratum::withheld_number] == 12);
+  CHECK(count[Stratum::baseline] == 20);
 }
 
 TEST_CASE("Imperfect: every case has a background, counts and coloured noise, and half of them short runs") {
@@ -128,6 +183,7 @@ TEST_CASE("Imperfect: every case has a background, counts and coloured noise, an
       for (const double longest_s : plan.longest_s) CHECK((longest_s >= 5 && longest_s <= 15));
     }
     for (const HiddenEffect& hidden : plan.effects) {
+      if (plan.stratum == Stratum::baseline) continue;
       CHECK((hidden.times_background >= (plan.stratum == Stratum::pair ? 3 : 1) && hidden.times_background <= 6));
       smallest = std::min(smallest, hidden.times_background);
       largest = std::max(largest, hidden.times_background);
@@ -161,10 +217,10 @@ TEST_CASE("Imperfect: the same seed plans the same challenge, to the last number
 }
 
 TEST_CASE("Of 150 imperfect cases each effect of the catalogue is hidden alone or withheld in one") {
-  // 50 % of 150 are 75: no fewer than the 53 effects that take turns
+  // 40 % of 150 are 60: no fewer than the 53 effects that take turns
   std::set<std::string> hidden;
   for (const CasePlan& plan : imperfect(150, 5))
-    if (plan.stratum != Stratum::pair)
+    if (plan.stratum == Stratum::single || plan.stratum == Stratum::withheld)
       for (const HiddenEffect& effect : plan.effects) hidden.insert(effect.effect);
   CHECK(hidden.size() == physics::effect_catalogue().size() - 1);  // all but command_loss
 }

@@ -25,7 +25,7 @@ TEST_CASE("A report of version 1 is one stage") {
   CHECK(read.stages[0].effects.at(0).to == 1.3);
   CHECK(std::isnan(read.stages[0].effects.at(0).explains));
   CHECK(read.stages[0].shrink == 0.9);
-  CHECK(read.angle_deg[0][1] == 30);
+  CHECK(read.table.angle_deg[0][1] == 30);
 }
 
 TEST_CASE("A report of version 2 has names, values and shares of each stage") {
@@ -35,7 +35,8 @@ TEST_CASE("A report of version 2 has names, values and shares of each stage") {
       {"stage": "command to drive", "verdict": "named", "named": ["command_slew"], "ambiguous_sets": [],
        "complete": true, "explains": 0.85, "gap": {"before": 8, "after": 2, "floor": 1, "shrink": 0.87},
        "effects": [{"name": "command_slew", "explains": 0.85, "parameters": {"slowness_s2pm":
-         {"value": 0.69, "ci95": [0.65, 0.72], "spread": 0.05}}}], "left": {"share": 0.15, "depends_on": []}},
+         {"value": 0.69, "ci95": [0.65, 0.72], "spread": 0.05}}}], "left": {"share": 0.15, "depends_on": []},
+       "isolability": {"effects": ["command_slew", "drive_lag"], "angle_deg": [[0, 20], [20, 0]]}},
       {"stage": "drive to body", "verdict": "ambiguous", "named": ["track.separation_m"],
        "ambiguous_sets": [["mass", "com_up"]], "complete": false, "explains": 0.6, "gap": {"shrink": null},
        "effects": [
@@ -53,6 +54,9 @@ TEST_CASE("A report of version 2 has names, values and shares of each stage") {
   CHECK(read.stages[0].effects.at(0).from == 0.65);
   CHECK(read.stages[0].effects.at(0).explains == 0.85);
   CHECK(read.stages[0].shrink == 0.87);
+  CHECK(read.stages[0].table.angle_deg.at(0).at(1) == 20);
+  CHECK(read.stages[1].table.effects.empty());
+  CHECK(read.table.effects == std::vector<std::string>{"command_slew"});
   CHECK(read.stages[1].verdict == "ambiguous");
   CHECK(read.stages[1].ambiguous_sets.at(0).at(1) == "com_up");
   CHECK(read.stages[1].effects.at(1).value == 1.2);

@@ -22,6 +22,7 @@ CasePlan plan_of(Stratum stratum, std::vector<HiddenEffect> effects = {}) {
   plan.stratum = stratum;
   plan.effects = std::move(effects);
   plan.background = {{{"track.separation_m", 0.203}}, 4};
+  if (stratum == Stratum::withheld_number) plan.number = {"drive.max_force_n", 300, 16, 4};
   if (stratum == Stratum::foreign) plan.foreign = "drives_fade", plan.foreign_times_background = 4;
   if (is_outside(stratum)) plan.look_alike = {"com_up", 40};
   return plan;
@@ -81,15 +82,13 @@ TEST_CASE("Imperfect: what is smaller than 3 times the background need not be fo
 
 TEST_CASE("Imperfect: named alone is asked where the report's table tells the effect apart") {
   ReadReport apart = told("named", {"mass"});
-  apart.table = {"mass", "com_up"};
-  apart.angle_deg = {{0, 40}, {40, 0}};
+  apart.stages.front().table = {{"mass", "com_up"}, {{0, 40}, {40, 0}}};
   ReadReport in_set = told("ambiguous", {}, {{"mass", "com_up"}});
-  in_set.table = apart.table;
-  in_set.angle_deg = apart.angle_deg;
+  in_set.stages.front().table = apart.stages.front().table;
   const CasePlan plan = plan_of(Stratum::single, {kMass});
   CHECK(figure(times(4, scored(plan, apart), 1, scored(plan, in_set)), "dominating_named").met);
   CHECK_FALSE(figure(times(3, scored(plan, apart), 1, scored(plan, in_set)), "dominating_named").met);
-  in_set.angle_deg = {{0, 9}, {9, 0}};
+  in_set.stages.front().table.angle_deg = {{0, 9}, {9, 0}};
   CHECK(figure({scored(plan, in_set)}, "dominating_named").cases == 0);
 }
 
@@ -126,6 +125,55 @@ TEST_CASE("Imperfect: of what is outside the catalogue nothing may be named") {
   CHECK(figure(times(18, quiet, 1, also), "outside_unnamed").value == 1);
   CHECK(figure(times(19, quiet, 1, named), "outside_unnamed").met);
   CHECK_FALSE(figure(times(18, quiet, 1, named), "outside_unnamed").met);  // 94.7 %
+}
+
+TEST_CASE("Imperfect: a number that the diagnosis does not search for is not to be called anything else") {
+  const CasePlan plan = plan_of(Stratum::withheld_number);
+  CHECK(judge(plan, told("unknown")).right);
+  CHECK(judge(plan, told("ambiguous", {}, {{"mass", "com_up"}})).right);
+  CHECK(judge(plan, told("named", {"drive_weak"})).names_wrong);
+  CHECK(figure({scored(plan, told("named", {"drive_weak"}))}, "outside_unnamed").value == 0);
+  CHECK(scores_outside({scored(plan, told("unknown"))}).at(0).name == "without drive.max_force_n");
+  CHECK_THAT(score_markdown({scored(plan, told("named", {"drive_weak"}))}),
+             Catch::Contains("drive.max_force_n=300 (4.0 times the background)"));
+}
+
+TEST_CASE("Imperfect: since a baseline the background is no part of the gap, and nothing else may be claimed") {
+  const CasePlan changed = plan_of(Stratum::baseline, {kMass}), same = plan_of(Stratum::baseline);
+  CHECK(judge(changed, told("named", {"mass"})).named_alone);
+  CHECK(judge(changed, told("ambiguous", {}, {{"mass", "com_up"}})).right);
+  CHECK_FALSE(judge(changed, told("named", {"mass", "com_up"})).right);
+  CHECK_FALSE(judge(changed, told("unknown")).right);
+  CHECK_FALSE(judge(changed, std::nullopt).right);
+  CHECK(judge(same, told("none")).right);
+  // of a background alone these would be right
+  CHECK_FALSE(judge(same, told("unknown")).right);
+  CHECK_FALSE(judge(same, told("ambiguous", {}, {{"mass", "com_up"}})).right);
+  const ScoredCase good = scored(changed, told("named", {"mass"})), bad = scored(same, told("unknown"));
+  CHECK(figure(times(9, good, 1, bad), "baseline_right").met);
+  CHECK_FALSE(figure(times(8, good, 1, bad), "baseline_right").met);
+  CHECK(figure({good, bad}, "baseline_none").cases == 1);
+  CHECK(figure({good, bad}, "background_unnamed").cases == 0);
+
+  CasePlan small = plan_of(Stratum::baseline, {hidden("mass", "scale", 1.01, 0.6)});  // of 2.4 floors
+  CHECK(figure({scored(small, told("none"))}, "baseline_right").cases == 0);
+  small.effects.front().floors = 2.8;
+  CHECK(figure({scored(small, told("none"))}, "baseline_right").cases == 1);
+}
+
+TEST_CASE("Imperfect: shares are told with their cases, and with Wilson's interval") {
+  const ScoredCase quiet = scored(plan_of(Stratum::none), told("unknown"));
+  const ScoredCase named = scored(plan_of(Stratum::none), told("named", {"mass"}));
+  const std::string text = score_markdown(times(33, quiet, 1, named));
+  CHECK_THAT(text,
+             Catch::Contains("| background alone, no name | 33 of 34 | 97.1 % | 85.1 % to 99.5 % | >= 97 % | met |"));
+  const auto json = nlohmann::json::parse(score_json(times(33, quiet, 1, named)));
+  for (const auto& line : json["figures"])
+    if (line["id"] == "background_unnamed") CHECK((line["hits"] == 33 && line["cases"] == 34));
+  // each target of docs/gap-challenge.md has a line
+  for (const char* id : {"dominating_found", "dominating_named", "pair_found", "wrong_name", "background_unnamed",
+                         "outside_unnamed", "share_close", "interval_covers", "interval_off", "baseline_right"})
+    CHECK_FALSE(figure({quiet}, id).target.empty());
 }
 
 TEST_CASE("Imperfect: a stated share is held against the true one of the same stage") {
@@ -166,7 +214,13 @@ TEST_CASE("Imperfect: the key has the background, sizes and shares, and is read 
   plan.longest_s = {5.5, 12.25};
   plan.repeats = 1;
   plan.count_scale = 0.7;
-  const std::string text = key_text({17, {{plan, "data"}, {plan_of(Stratum::foreign), ""}}, ChallengeKind::imperfect});
+  const std::string text = key_text({17,
+                                     {{plan, "data"},
+                                      {plan_of(Stratum::foreign), ""},
+                                      {plan_of(Stratum::withheld_number), ""},
+                                      {plan_of(Stratum::baseline), ""},
+                                      {plan_of(Stratum::baseline, {kMass}), ""}},
+                                     ChallengeKind::imperfect});
   const ChallengeKey key = read_key(text);
   CHECK(key.kind == ChallengeKind::imperfect);
   const CasePlan& read = key.cases.at(0).plan;
@@ -180,6 +234,11 @@ TEST_CASE("Imperfect: the key has the background, sizes and shares, and is read 
   CHECK(read.longest_s == plan.longest_s);
   CHECK(read.count_scale == 0.7);
   CHECK(key.cases.at(1).plan.foreign_times_background == 4);
+  CHECK(key.cases.at(2).plan.number.key == "drive.max_force_n");
+  CHECK(key.cases.at(2).plan.number.value == 300);
+  CHECK(key.cases.at(2).plan.number.floors == 16);
+  CHECK(key.cases.at(2).plan.number.times_background == 4);
+  CHECK(key.cases.at(3).plan.stratum == Stratum::baseline);
   CHECK(key_text(key) == text);
 
   const auto with = [](CasePlan other) { return key_text({17, {{std::move(other), ""}}, ChallengeKind::imperfect}); };
@@ -188,6 +247,12 @@ TEST_CASE("Imperfect: the key has the background, sizes and shares, and is read 
   CHECK_THROWS_WITH(read_key(with(none)), Catch::Contains("makes no robot"));
   none.background.numbers = {{"track.colour", 1}};
   CHECK_THROWS_WITH(read_key(with(none)), Catch::Contains("track.colour"));
+  CHECK_THROWS_WITH(read_key(with(plan_of(Stratum::baseline, {kMass, kDelay}))), Catch::Contains("its stratum"));
+  CasePlan number = plan_of(Stratum::withheld_number);
+  number.number.value = -1;
+  CHECK_THROWS_WITH(read_key(with(number)), Catch::Contains("makes no robot"));
+  number.number.key.clear();
+  CHECK_THROWS_WITH(read_key(with(number)), Catch::Contains("its stratum"));
   CasePlan cut = plan_of(Stratum::none);
   cut.manoeuvres = {"straight", "arc"};
   cut.longest_s = {5};
