@@ -425,7 +425,7 @@ TEST_CASE("A finished challenge is scored, a key or data that were changed are r
   CAPTURE(outcome.error);
   REQUIRE(outcome.status == 0);
   CHECK_THAT(outcome.out,
-             Catch::Contains("| nothing hidden, called none | 1 | 100.0 % | 20.7 % to 100.0 % | >= 99 % | met |"));
+             Catch::Contains("| nothing hidden, called none | 1 of 1 | 100.0 % | 20.7 % to 100.0 % | >= 99 % | met |"));
   CHECK(read_file(folder / "score.md") == outcome.out);
   const auto json = nlohmann::json::parse(read_file(folder / "score.json"));
   CHECK(json.at("cases").at(0).at("right") == true);
