@@ -141,6 +141,18 @@ KindSquares& operator+=(KindSquares& sum, const KindSquares& more) {
   return sum;
 }
 
+// {0}, {1} ... {0, 1} ..., all that are not empty.
+std::vector<std::vector<std::size_t>> subsets_small_first(std::size_t count) {
+  std::vector<std::vector<std::size_t>> subsets;
+  for (std::size_t bits = 1; bits < std::size_t{1} << count; ++bits) {
+    subsets.emplace_back();
+    for (std::size_t i = 0; i < count; ++i)
+      if (bits >> i & 1) subsets.back().push_back(i);
+  }
+  std::ranges::stable_sort(subsets, {}, &std::vector<std::size_t>::size);
+  return subsets;
+}
+
 }  // namespace
 
 std::vector<EffectValue> effect_values(const StageData& data, const StandingModel& standing) {
@@ -259,11 +271,8 @@ HeldOutShares shares_held_out(const StageView& view, Passage passage, const Stan
                               unsigned threads) {
   const std::size_t effects = standing.model.places.size(), runs = view.features->size();
   const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
-  std::vector<std::vector<std::size_t>> left_out;  // places
-  for (std::size_t e = 0; e < effects; ++e) left_out.push_back({e});
-  for (std::size_t e = 0; e < effects; ++e)
-    for (std::size_t other = e + 1; other < effects; ++other) left_out.push_back({e, other});
-  // squares of each fold: of the nominal model, of the whole model, and of the model without each effect and each two
+  const std::vector<std::vector<std::size_t>> left_out = subsets_small_first(effects);
+  // squares of each fold: of the nominal model, of the whole model, and of the model without each set of effects
   std::vector<std::vector<KindSquares>> left(folds.size());
   std::vector<VectorXd> shown(folds.size());
   for_each_job(folds.size(), threads, [&](std::size_t f) {
@@ -316,7 +325,10 @@ HeldOutShares shares_held_out(const StageView& view, Passage passage, const Stan
       const double taken = std::min(1.0, of_kind(1, kind) - of_kind(2 + e, kind));
       if (taken > share.of_kind) share = {share.of_stage, taken, kind, of_kind(1, kind), share.shown_by_others};
     }
-    (e < effects ? shares.effects : shares.pairs).push_back(share);
+    if (left_out[e].size() == 1)
+      shares.effects.push_back(share);
+    else
+      shares.sets.push_back({left_out[e], share});
   }
   return shares;
 }

@@ -61,7 +61,7 @@ GapMeasure measure_gap(const StageView& view, const std::vector<Eigen::VectorXd>
 std::vector<std::vector<OnCurve>> places_held_out(const StageView& view, Passage passage, const StandingModel& standing,
                                                   const Folds& folds, unsigned threads);
 
-// Shares of the squared gap that a model takes off, and each of its effects and each two: with them, less without them
+// Shares of the squared gap that a model takes off, each of its effects and each set of them: with them, less without them
 // and the others fitted again. By curves, on runs held out; at most 1.
 struct HeldOutShares {
   // Of the kind of channels in which the effect takes off most, and of the stage.
@@ -74,9 +74,12 @@ struct HeldOutShares {
     double shown_by_others = 0;
   };
   std::vector<OfEffect> effects;  // in the order of the model's places
-  // What two effects take off that neither does alone, as each takes up what the other leaves: of each place with each
-  // later one, (0, 1), (0, 2) ... (1, 2) ...
-  std::vector<OfEffect> pairs;
+  // What several effects take off together, which none of them may do alone, as each takes up what the others leave.
+  struct OfSet {
+    std::vector<std::size_t> places;  // two or more, ascending
+    OfEffect share;
+  };
+  std::vector<OfSet> sets;  // all, small ones first
   double model = 0;  // of the stage
 };
 HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,

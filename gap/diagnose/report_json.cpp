@@ -92,9 +92,9 @@ Json effect_json(const Diagnosis& d, const StageDiagnosis& stage, const NamedEff
           {"at_bound", effect.at_bound},
           {"is_named", effect.doubts.empty() && d.interrupted.empty()},
           {"rivals", candidate_names(d, effect.rivals)},
-          {"partner",
-           effect.partner ? Json(d.candidates[stage.decision.effects[*effect.partner].candidate].name) : Json(nullptr)},
-          {"explains_with_partner", effect.partner ? share_json(effect.share_of_both.of_stage) : Json(nullptr)},
+          {"partners", partner_names(d, stage, effect)},
+          {"explains_with_partners",
+           effect.partners.empty() ? Json(nullptr) : share_json(effect.share_of_set.of_stage)},
           {"doubts", doubts_in_words(d, effect)}};
 }
 

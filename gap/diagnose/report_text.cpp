@@ -57,9 +57,9 @@ void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
       line += fmt::format("; no name: {}", fmt::join(doubts_in_words(d, effect), "; "));
     else
       line += fmt::format("; takes off {}", percent(explained_by(stage, effect)));
-    if (effect.partner)
-      line += fmt::format("; with {} {}", d.candidates[stage.decision.effects[*effect.partner].candidate].name,
-                          percent(effect.share_of_both.of_stage));
+    if (!effect.partners.empty())
+      line += fmt::format("; with {} {}", enumeration(partner_names(d, stage, effect)),
+                          percent(effect.share_of_set.of_stage));
     if (effect.doubts.empty() && effect.rivals.size() > 1)
       line += fmt::format("; as good: {}", enumeration(candidate_names(d, std::span(effect.rivals).subspan(1)), "or"));
     screen.add(line, "    ");

@@ -93,7 +93,7 @@ NamesFound names_found(const StageDiagnosis& stage) {
   for (const NamedEffect& effect : stage.decision.effects) {
     if (!effect.doubts.empty()) continue;
     const std::size_t place = static_cast<std::size_t>(&effect - stage.decision.effects.data());
-    if (effect.partner && *effect.partner < place) continue;  // one set, which has both
+    if (!effect.partners.empty() && effect.partners.front() < place) continue;  // one set, which has all
     if (effect.rivals.size() > 1)
       names.ambiguous_sets.push_back(effect.rivals);
     else
@@ -116,6 +116,13 @@ NamesFound names_found(const Diagnosis& d) {
 std::vector<std::string> candidate_names(const Diagnosis& d, std::span<const std::size_t> candidates) {
   std::vector<std::string> names;
   for (const std::size_t candidate : candidates) names.push_back(d.candidates[candidate].name);
+  return names;
+}
+
+std::vector<std::string> partner_names(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect) {
+  std::vector<std::string> names;
+  for (const std::size_t place : effect.partners)
+    names.push_back(d.candidates[stage.decision.effects[place].candidate].name);
   return names;
 }
 

@@ -35,6 +35,8 @@ struct NamesFound {
 NamesFound names_found(const StageDiagnosis& stage);
 NamesFound names_found(const Diagnosis& d);  // of all stages, each once
 std::vector<std::string> candidate_names(const Diagnosis& d, std::span<const std::size_t> candidates);
+// Of the effects that it takes off enough with only together.
+std::vector<std::string> partner_names(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect);
 // "drive_lag and one of com_forward or ground_slope".
 std::string names_in_words(const Diagnosis& d, const NamesFound& names);
 

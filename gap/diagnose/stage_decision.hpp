@@ -5,7 +5,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,10 +65,10 @@ struct NamedEffect {
   bool at_bound = false;
   std::vector<Doubt> doubts;        // none: it is named, alone or in a set
   std::vector<std::size_t> rivals;  // candidates that do as well in its place, itself first
-  // Of an effect that takes off enough only together with another one of the model, as each takes up what the other leaves:
-  // that one's place, and what both take off. It is among the rivals.
-  std::optional<std::size_t> partner{};
-  HeldOutShares::OfEffect share_of_both{};
+  // Of an effect that takes off enough only together with others of the model, as each takes up what the others leave:
+  // their places, and what all of them take off. They are among the rivals.
+  std::vector<std::size_t> partners{};
+  HeldOutShares::OfEffect share_of_set{};
 };
 
 struct StageDecision {

@@ -79,38 +79,45 @@ VectorXd noise_of_difference(const StageFeatures& run) {
 constexpr HeldOutShares::OfEffect kNotHeldOut{GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, 0,
                                               GapMeasure::kNotMeasured, 0};
 
+bool is_lack_of_share(Doubt doubt) {
+  return doubt == Doubt::not_held_out || doubt == Doubt::trifle;
+}
+
 bool is_large_enough(const NamedEffect& effect, const Candidate& candidate, double agreement) {
   return std::abs(effect.value.value.value - candidate.present) >= agreement * effect.value.spread;
 }
 
-// Two effects that stand in for each other, as a lag and a ramp do: without either the other takes up most of it,
-// without both the gap is there. They are named as a set.
-void name_in_pairs(std::vector<NamedEffect>& effects, const std::vector<HeldOutShares::OfEffect>& pairs,
-                   const std::vector<HeldOutShares::OfEffect>& pairs_by_manoeuvre, const DecisionSettings& settings) {
-  const auto lacks_share_alone = [](const NamedEffect& effect) {
-    return !effect.partner && !effect.doubts.empty() && std::ranges::all_of(effect.doubts, [](Doubt doubt) {
-      return doubt == Doubt::not_held_out || doubt == Doubt::trifle;
-    });
+// Effects that stand in for each other, as a lag and a ramp do: without one the others take up most of it, without all of
+// them the gap is there. They are named as a set, the smallest that takes off enough.
+void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutShares::OfSet>& sets,
+                  const std::vector<HeldOutShares::OfSet>& sets_by_manoeuvre, const DecisionSettings& settings) {
+  // how much is whose is not known, so manoeuvres may disagree on it
+  const auto lacks_share_alone = [&](std::size_t place) {
+    const std::vector<Doubt>& doubts = effects[place].doubts;
+    return effects[place].partners.empty() && std::ranges::any_of(doubts, is_lack_of_share) &&
+           std::ranges::all_of(
+               doubts, [](Doubt doubt) { return is_lack_of_share(doubt) || doubt == Doubt::disagreement; });
   };
-  std::size_t pair = 0;
-  for (std::size_t a = 0; a < effects.size(); ++a)
-    for (std::size_t b = a + 1; b < effects.size(); ++b, ++pair) {
-      if (pair >= pairs.size() || !lacks_share_alone(effects[a]) || !lacks_share_alone(effects[b])) continue;
-      HeldOutShares::OfEffect both = pairs[pair];
-      const HeldOutShares::OfEffect& by_manoeuvre = pairs_by_manoeuvre[pair];
-      if (by_manoeuvre.shown_by_others >= settings.evidence && by_manoeuvre.of_kind < both.of_kind) both = by_manoeuvre;
-      if (both.of_kind < settings.effect_share || both.of_stage < settings.stage_share ||
-          both.model_of_kind < settings.model_share)
-        continue;
-      const auto add = [&](NamedEffect& effect, std::size_t partner) {
-        effect.doubts.clear();
-        effect.partner = partner;
-        effect.share_of_both = both;
-        effect.rivals.insert(effect.rivals.begin() + 1, effects[partner].candidate);
-      };
-      add(effects[a], b);
-      add(effects[b], a);
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    const std::vector<std::size_t>& places = sets[s].places;
+    if (!std::ranges::all_of(places, lacks_share_alone)) continue;
+    HeldOutShares::OfEffect share = sets[s].share;
+    const HeldOutShares::OfEffect& by_manoeuvre = sets_by_manoeuvre[s].share;
+    if (by_manoeuvre.shown_by_others >= settings.evidence && by_manoeuvre.of_kind < share.of_kind) share = by_manoeuvre;
+    if (share.of_kind < settings.effect_share || share.of_stage < settings.stage_share ||
+        share.model_of_kind < settings.model_share)
+      continue;
+    for (const std::size_t place : places) {
+      NamedEffect& effect = effects[place];
+      effect.doubts.clear();
+      effect.share_of_set = share;
+      for (const std::size_t other : places) {
+        if (other == place) continue;
+        effect.partners.push_back(other);
+        effect.rivals.insert(effect.rivals.begin() + std::ssize(effect.partners), effects[other].candidate);
+      }
     }
+  }
 }
 
 }  // namespace
@@ -134,7 +141,7 @@ void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOu
       effect.doubts.push_back(Doubt::trifle);
     if (!(least(&Share::model_of_kind) >= settings.model_share)) effect.doubts.push_back(Doubt::little_explained);
   }
-  name_in_pairs(d.effects, shares.pairs, shares_by_manoeuvre.pairs, settings);
+  name_in_sets(d.effects, shares.sets, shares_by_manoeuvre.sets, settings);
   bool any_named = false, any_rival = false;
   for (const NamedEffect& effect : d.effects) {
     any_named |= effect.doubts.empty();

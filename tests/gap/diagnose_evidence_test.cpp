@@ -259,8 +259,9 @@ TEST_CASE("Each of two effects has the share that the model without it leaves, i
     CHECK(kind_name(shares.effects[e].kind) == "position");
   }
   CHECK(shares.model == 1);
-  REQUIRE(shares.pairs.size() == 1);
-  CHECK(shares.pairs[0].of_stage == 1);  // without both nothing is taken off
+  REQUIRE(shares.sets.size() == 1);
+  CHECK(shares.sets[0].places == std::vector<std::size_t>{0, 1});
+  CHECK(shares.sets[0].share.of_stage == 1);  // without both nothing is taken off
 
   // half of what x lacks is explained, and all of the voltage: each in its own channels, whatever the other one's size
   const HeldOutShares two = shares_of(0.5 * effects[0] + 0.4 * effects[1] + 0.9 * effects[2], {0, 2});

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <optional>
 
 #include "tests/gap/linear_world.hpp"
 
@@ -246,7 +245,7 @@ namespace {
 // Judged by these shares of the gap, on runs and on manoeuvres held out alike.
 StageDecision judged(double first, double second, double both, double shown_by_others = 1000) {
   const auto share = [&](double taken) { return HeldOutShares::OfEffect{taken, taken, 0, 0.9, shown_by_others}; };
-  const HeldOutShares shares{{share(first), share(second)}, {share(both)}, 0.9};
+  const HeldOutShares shares{{share(first), share(second)}, {{{0, 1}, share(both)}}, 0.9};
   StageDecision decision;
   std::vector<Candidate> candidates(2);
   for (std::size_t c = 0; c < candidates.size(); ++c)
@@ -262,8 +261,8 @@ TEST_CASE("Two effects that take up what the other leaves are named as a set, a 
   CHECK(set.verdict == Verdict::ambiguous);
   CHECK(set.effects[0].rivals == std::vector<std::size_t>{0, 1});
   CHECK(set.effects[1].rivals == std::vector<std::size_t>{1, 0});
-  CHECK(set.effects[0].partner == std::optional<std::size_t>(1));
-  CHECK(set.effects[1].share_of_both.of_kind == 0.8);
+  CHECK(set.effects[0].partners == std::vector<std::size_t>{1});
+  CHECK(set.effects[1].share_of_set.of_kind == 0.8);
 
   const StageDecision one = judged(0.6, 0.04, 0.64);
   CHECK(one.verdict == Verdict::named);

@@ -91,10 +91,9 @@ std::string effect_item(const Diagnosis& d, const StageDiagnosis& stage, const N
   std::string item = fmt::format("{}: <b>{}</b>{}", with_capital(from_to(stage.passage)), escaped(candidate.name),
                                  escaped(words.substr(candidate.name.size())));
   item += fmt::format("; it takes off {} of the gap in {}", percent(effect.share.of_kind), kind_name(effect.share.kind));
-  if (effect.partner)
+  if (!effect.partners.empty())
     item += fmt::format("; with {} {}, and how much of it is whose these runs do not tell",
-                        escaped(d.candidates[stage.decision.effects[*effect.partner].candidate].name),
-                        percent(effect.share_of_both.of_kind));
+                        escaped(enumeration(partner_names(d, stage, effect))), percent(effect.share_of_set.of_kind));
   if (effect.rivals.size() > 1)
     item += fmt::format("; {} would explain it as well",
                         escaped(enumeration(candidate_names(d, std::span(effect.rivals).subspan(1)), "or")));
