@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <span>
 
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/significance.hpp"
@@ -52,12 +53,17 @@ MatrixXd slopes(const StandingModel& standing, std::size_t group) {
   return result;
 }
 
+// The same of every group.
+std::vector<MatrixXd> slopes(const StandingModel& standing, const StageData& data) {
+  std::vector<MatrixXd> result;
+  for (std::size_t g = 0; g < data.groups.size(); ++g) result.push_back(slopes(standing, g));
+  return result;
+}
+
 // By how much each effect should lessen the deviance of these data, the others fitted again, if the model is right.
 VectorXd evidence_expected(const StageData& data, const StandingModel& standing) {
-  std::vector<MatrixXd> columns;
-  for (std::size_t g = 0; g < data.groups.size(); ++g) columns.push_back(slopes(standing, g));
   const MatrixXd information =
-      inner_products(data, whiteners_of(data, standing.model.likelihood.discrepancies), columns);
+      inner_products(data, whiteners_of(data, standing.model.likelihood.discrepancies), slopes(standing, data));
   VectorXd expected(information.rows());
   for (Index e = 0; e < expected.size(); ++e) {
     std::vector<Index> others;
@@ -141,16 +147,87 @@ KindSquares& operator+=(KindSquares& sum, const KindSquares& more) {
   return sum;
 }
 
-// {0}, {1} ... {0, 1} ..., all that are not empty.
-std::vector<std::vector<std::size_t>> subsets_small_first(std::size_t count) {
-  std::vector<std::vector<std::size_t>> subsets;
-  for (std::size_t bits = 1; bits < std::size_t{1} << count; ++bits) {
-    subsets.emplace_back();
-    for (std::size_t i = 0; i < count; ++i)
-      if (bits >> i & 1) subsets.back().push_back(i);
+using Places = std::vector<std::size_t>;
+
+// All of two places and more.
+std::vector<Places> sets_small_first(std::span<const std::size_t> places) {
+  std::vector<Places> sets;
+  for (std::size_t bits = 1; bits < std::size_t{1} << places.size(); ++bits) {
+    Places set;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (bits >> i & 1) set.push_back(places[i]);
+    if (set.size() > 1) sets.push_back(std::move(set));
   }
-  std::ranges::stable_sort(subsets, {}, &std::vector<std::size_t>::size);
-  return subsets;
+  std::ranges::stable_sort(sets, {}, &Places::size);
+  return sets;
+}
+
+// What the whole model takes off the stage, and what it does more than without each of `left_out`, in that order.
+struct SharesWithout {
+  double model;
+  std::vector<HeldOutShares::OfEffect> left_out;
+};
+
+SharesWithout shares_without(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
+                             std::span<const Places> left_out, unsigned threads) {
+  const std::size_t effects = standing.model.places.size(), runs = view.features->size();
+  const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
+  // squares of each fold: of the nominal model, of the whole model, and of the model without each set of effects
+  std::vector<std::vector<KindSquares>> left(folds.size());
+  std::vector<VectorXd> shown(folds.size());
+  for_each_job(folds.size(), threads, [&](std::size_t f) {
+    const auto of = [&](const std::vector<bool>& used) {
+      return stage_data(passage, *view.features, *view.repeats, *view.residuals, *view.floor, used);
+    };
+    std::vector<bool> fitted = used_without(runs, folds[f]), tested = fitted;
+    tested.flip();
+    if (folds.size() < 2) fitted = tested;
+    const StageData fitted_data = of(fitted), tested_data = of(tested);
+    shown[f] = evidence_expected(fitted_data, standing);
+    left[f].push_back(squares_of_groups(tested_data, residuals_of(tested_data)));
+    const auto add = [&](const Model& model) {
+      left[f].push_back(squares_of_groups(tested_data, rest_of(tested_data, model)));
+    };
+    add(refit(fitted_data, standing, beyond));
+    for (const Places& without : left_out) {
+      EffectSet others;
+      for (std::size_t e = 0; e < effects; ++e)
+        if (std::ranges::count(without, e) == 0) others.push_back(standing.model.places[e].curve);
+      if (others.empty())
+        left[f].push_back(left[f].front());
+      else
+        add(fit_model(fitted_data, standing.curves, others, {}, standing.model.likelihood.discrepancies));
+    }
+  });
+  std::vector<KindSquares> sums = left.front();
+  for (std::size_t f = 1; f < left.size(); ++f)
+    for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += left[f][m];
+
+  // of the stage each kind by its own gap; of a kind alone by its rms
+  const KindSquares noise{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
+  const std::vector<double> weights = kind_weights(sums.front(), noise);
+  const auto of_stage = [&](std::size_t model) {
+    return explained_share(weighted_rms(sums[0], weights), weighted_rms(sums[model], weights), 1);
+  };
+  const auto of_kind = [&](std::size_t model, std::size_t kind) {
+    const auto rms = [&](const KindSquares& squares) { return std::sqrt(squares.sum[kind] / squares.bins[kind]); };
+    return explained_share(rms(sums[0]), rms(sums[model]), 1);
+  };
+  SharesWithout shares{of_stage(1), {}};
+  for (std::size_t s = 0; s < left_out.size(); ++s) {
+    // without it the others may leave more than there was
+    const double taken_of_stage = std::min(1.0, shares.model - of_stage(2 + s));
+    HeldOutShares::OfEffect share{taken_of_stage, 0, 0, 0, std::numeric_limits<double>::infinity()};
+    for (const VectorXd& of_fold : shown)
+      share.shown_by_others = std::min(share.shown_by_others, of_fold[static_cast<Index>(left_out[s].front())]);
+    for (std::size_t kind = 0; kind < weights.size(); ++kind) {
+      if (sums[0].bins[kind] == 0 || weights[kind] == 0) continue;
+      const double taken = std::min(1.0, of_kind(1, kind) - of_kind(2 + s, kind));
+      if (taken > share.of_kind) share = {share.of_stage, taken, kind, of_kind(1, kind), share.shown_by_others};
+    }
+    shares.left_out.push_back(share);
+  }
+  return shares;
 }
 
 }  // namespace
@@ -161,8 +238,7 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
   const std::vector<GroupWhitener> whiteners = whiteners_of(data, model.likelihood.discrepancies);
 
   // generalised least squares: the covariance of all values together
-  std::vector<MatrixXd> columns;
-  for (std::size_t g = 0; g < data.groups.size(); ++g) columns.push_back(slopes(standing, g));
+  const std::vector<MatrixXd> columns = slopes(standing, data);
   const MatrixXd information = inner_products(data, whiteners, columns);
   const MatrixXd covariance = information.completeOrthogonalDecomposition().pseudoInverse();
 
@@ -269,68 +345,21 @@ std::vector<std::vector<OnCurve>> places_held_out(const StageView& view, Passage
 
 HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
                               unsigned threads) {
-  const std::size_t effects = standing.model.places.size(), runs = view.features->size();
-  const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
-  const std::vector<std::vector<std::size_t>> left_out = subsets_small_first(effects);
-  // squares of each fold: of the nominal model, of the whole model, and of the model without each set of effects
-  std::vector<std::vector<KindSquares>> left(folds.size());
-  std::vector<VectorXd> shown(folds.size());
-  for_each_job(folds.size(), threads, [&](std::size_t f) {
-    const auto of = [&](const std::vector<bool>& used) {
-      return stage_data(passage, *view.features, *view.repeats, *view.residuals, *view.floor, used);
-    };
-    std::vector<bool> fitted = used_without(runs, folds[f]), tested = fitted;
-    tested.flip();
-    if (folds.size() < 2) fitted = tested;
-    const StageData fitted_data = of(fitted), tested_data = of(tested);
-    shown[f] = evidence_expected(fitted_data, standing);
-    left[f].push_back(squares_of_groups(tested_data, residuals_of(tested_data)));
-    const auto add = [&](const Model& model) {
-      left[f].push_back(squares_of_groups(tested_data, rest_of(tested_data, model)));
-    };
-    add(refit(fitted_data, standing, beyond));
-    for (const std::vector<std::size_t>& without : left_out) {
-      EffectSet others;
-      for (std::size_t e = 0; e < effects; ++e)
-        if (std::ranges::count(without, e) == 0) others.push_back(standing.model.places[e].curve);
-      if (others.empty())
-        left[f].push_back(left[f].front());
-      else
-        add(fit_model(fitted_data, standing.curves, others, {}, standing.model.likelihood.discrepancies));
-    }
-  });
-  std::vector<KindSquares> sums = left.front();
-  for (std::size_t f = 1; f < left.size(); ++f)
-    for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += left[f][m];
+  std::vector<Places> singles;
+  for (std::size_t e = 0; e < standing.model.places.size(); ++e) singles.push_back({e});
+  SharesWithout shares = shares_without(view, passage, standing, folds, singles, threads);
+  return {std::move(shares.left_out), {}, shares.model};
+}
 
-  // of the stage each kind by its own gap; of a kind alone by its rms
-  const KindSquares noise{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
-  const std::vector<double> weights = kind_weights(sums.front(), noise);
-  const auto of_stage = [&](std::size_t model) {
-    return explained_share(weighted_rms(sums[0], weights), weighted_rms(sums[model], weights), 1);
-  };
-  const auto of_kind = [&](std::size_t model, std::size_t kind) {
-    const auto rms = [&](const KindSquares& squares) { return std::sqrt(squares.sum[kind] / squares.bins[kind]); };
-    return explained_share(rms(sums[0]), rms(sums[model]), 1);
-  };
-  HeldOutShares shares;
-  shares.model = of_stage(1);
-  for (std::size_t e = 0; e < left_out.size(); ++e) {
-    // without it the others may leave more than there was
-    HeldOutShares::OfEffect share{std::min(1.0, shares.model - of_stage(2 + e)), 0, 0, 0, std::numeric_limits<double>::infinity()};
-    for (const VectorXd& of_fold : shown)
-      share.shown_by_others = std::min(share.shown_by_others, of_fold[static_cast<Index>(left_out[e].front())]);
-    for (std::size_t kind = 0; kind < weights.size(); ++kind) {
-      if (sums[0].bins[kind] == 0 || weights[kind] == 0) continue;
-      const double taken = std::min(1.0, of_kind(1, kind) - of_kind(2 + e, kind));
-      if (taken > share.of_kind) share = {share.of_stage, taken, kind, of_kind(1, kind), share.shown_by_others};
-    }
-    if (left_out[e].size() == 1)
-      shares.effects.push_back(share);
-    else
-      shares.sets.push_back({left_out[e], share});
-  }
-  return shares;
+std::vector<HeldOutShares::OfSet> shares_of_sets_held_out(const StageView& view, Passage passage,
+                                                          const StandingModel& standing, const Folds& folds,
+                                                          std::span<const std::size_t> places, unsigned threads) {
+  const std::vector<Places> sets = sets_small_first(places);
+  if (sets.empty()) return {};
+  const SharesWithout shares = shares_without(view, passage, standing, folds, sets, threads);
+  std::vector<HeldOutShares::OfSet> result;
+  for (std::size_t s = 0; s < sets.size(); ++s) result.push_back({sets[s], shares.left_out[s]});
+  return result;
 }
 
 }  // namespace kenaf::gap

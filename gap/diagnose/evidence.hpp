@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "gap/diagnose/gap_size.hpp"
@@ -61,7 +62,7 @@ GapMeasure measure_gap(const StageView& view, const std::vector<Eigen::VectorXd>
 std::vector<std::vector<OnCurve>> places_held_out(const StageView& view, Passage passage, const StandingModel& standing,
                                                   const Folds& folds, unsigned threads);
 
-// Shares of the squared gap that a model takes off, each of its effects and each set of them: with them, less without them
+// Shares of the squared gap that a model takes off, each of its effects and sets of them: with them, less without them
 // and the others fitted again. By curves, on runs held out; at most 1.
 struct HeldOutShares {
   // Of the kind of channels in which the effect takes off most, and of the stage.
@@ -79,10 +80,15 @@ struct HeldOutShares {
     std::vector<std::size_t> places;  // two or more, ascending
     OfEffect share;
   };
-  std::vector<OfSet> sets;  // all, small ones first
+  std::vector<OfSet> sets;  // those of interest, small ones first; shares_of_sets_held_out()
   double model = 0;  // of the stage
 };
 HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
                               unsigned threads);
+
+// Every set of two and more of these places: as many fits of each fold as there are sets.
+std::vector<HeldOutShares::OfSet> shares_of_sets_held_out(const StageView& view, Passage passage,
+                                                          const StandingModel& standing, const Folds& folds,
+                                                          std::span<const std::size_t> places, unsigned threads);
 
 }  // namespace kenaf::gap

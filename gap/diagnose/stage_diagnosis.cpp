@@ -87,6 +87,18 @@ bool is_large_enough(const NamedEffect& effect, const Candidate& candidate, doub
   return std::abs(effect.value.value.value - candidate.present) >= agreement * effect.value.spread;
 }
 
+// Places of the effects that may lack a share by themselves: sets of others are of no interest.
+std::vector<std::size_t> small_alone(const HeldOutShares& shares, const HeldOutShares& shares_by_manoeuvre,
+                                     const DecisionSettings& settings) {
+  const auto is_small = [&](const HeldOutShares::OfEffect& share) {
+    return !(share.of_kind >= settings.effect_share) || !(share.of_stage >= settings.stage_share);
+  };
+  std::vector<std::size_t> places;
+  for (std::size_t e = 0; e < shares.effects.size(); ++e)
+    if (is_small(shares.effects[e]) || is_small(shares_by_manoeuvre.effects[e])) places.push_back(e);
+  return places;
+}
+
 // Effects that stand in for each other, as a lag and a ramp do: without one the others take up most of it, without all of
 // them the gap is there. They are named as a set, the smallest that takes off enough.
 void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutShares::OfSet>& sets,
@@ -268,9 +280,14 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
     stage.gap_by_manoeuvre =
         measure_gap(view, left_by(places_held_out(view, input.passage, decision.best, by_manoeuvre, threads)), spread,
                     options.seed);
-  if (!decision.effects.empty())
-    judge(decision, candidates, shares_held_out(view, input.passage, decision.best, by_repeat, threads),
-          shares_held_out(view, input.passage, decision.best, by_manoeuvre, threads), options.decision);
+  if (!decision.effects.empty()) {
+    HeldOutShares of_repeats = shares_held_out(view, input.passage, decision.best, by_repeat, threads);
+    HeldOutShares of_manoeuvres = shares_held_out(view, input.passage, decision.best, by_manoeuvre, threads);
+    const std::vector<std::size_t> small = small_alone(of_repeats, of_manoeuvres, options.decision);
+    of_repeats.sets = shares_of_sets_held_out(view, input.passage, decision.best, by_repeat, small, threads);
+    of_manoeuvres.sets = shares_of_sets_held_out(view, input.passage, decision.best, by_manoeuvre, small, threads);
+    judge(decision, candidates, of_repeats, of_manoeuvres, options.decision);
+  }
 
   // what is beyond chance, but of a size that nobody would see, and has no name, is no gap
   const double seen = stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor;

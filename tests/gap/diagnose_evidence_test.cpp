@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
+#include <numeric>
 #include <set>
 
 #include "tests/gap/linear_world.hpp"
@@ -246,8 +247,13 @@ TEST_CASE("Each of two effects has the share that the model without it leaves, i
   const std::vector<Whole> effects{60 * plain, 80 * turned, 100 * world().in_channel(test::WorldChannel::battery, 1)};
   const auto shares_of = [&](const Whole& gap, const std::vector<std::size_t>& of) {
     const Measured measured(world(), gap);
-    return shares_held_out(measured.view, Passage::drive_to_body, world().fitted(effects, world().data(gap), of),
-                           folds_by_repeat(world().repeats), 1);
+    const StandingModel standing = world().fitted(effects, world().data(gap), of);
+    const Folds folds = folds_by_repeat(world().repeats);
+    HeldOutShares shares = shares_held_out(measured.view, Passage::drive_to_body, standing, folds, 1);
+    std::vector<std::size_t> places(of.size());
+    std::iota(places.begin(), places.end(), std::size_t{0});
+    shares.sets = shares_of_sets_held_out(measured.view, Passage::drive_to_body, standing, folds, places, 1);
+    return shares;
   };
   const HeldOutShares shares = shares_of(0.5 * effects[0] + 0.5 * effects[1], {0, 1});
   REQUIRE(shares.effects.size() == 2);
