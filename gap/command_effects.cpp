@@ -2,9 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
-#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -51,13 +49,6 @@ std::string as_text() {
   return text;
 }
 
-// Whatever a world shows: those that only obstacles show as well.
-std::vector<Candidate> candidates_of(const physics::RobotDescription& robot) {
-  std::vector<Candidate> candidates = catalogue_candidates(robot, true);
-  std::ranges::move(description_candidates(robot), std::back_inserter(candidates));
-  return candidates;
-}
-
 std::string as_json(const std::vector<Candidate>& candidates) {
   auto list = nlohmann::ordered_json::array();
   for (const Candidate& c : candidates) {
@@ -102,7 +93,8 @@ void add_effects_command(CLI::App& program) {
     if (robot.empty()) {
       text = json ? as_json() : as_text();
     } else {
-      const std::vector<Candidate> candidates = candidates_of(physics::load_robot(robot));
+      const bool has_obstacles = true;  // whatever a world shows
+      const std::vector<Candidate> candidates = all_candidates(physics::load_robot(robot), has_obstacles);
       text = json ? as_json(candidates) : as_text(candidates, robot);
     }
     std::fputs(text.c_str(), stdout);

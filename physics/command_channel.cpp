@@ -14,12 +14,20 @@ constexpr double kWholeStep = 1e-6;  // of a step: a delay this near to whole st
 // No sensor has a name with a blank, so no sensor draws from the same generator.
 constexpr std::string_view kGeneratorName = "command channel";
 
-double step_of(double slowness, double time_step_s) {
-  return slowness > 0 ? time_step_s / slowness : std::numeric_limits<double>::infinity();
+// A slowness of 0 is no limit.
+double limit_of(double amount, double slowness) {
+  return slowness > 0 ? amount / slowness : std::numeric_limits<double>::infinity();
 }
 
-double limit_of(double slowness) {
-  return slowness > 0 ? 1 / slowness : std::numeric_limits<double>::infinity();
+// Forward speed, that is the mean, and turn, that is half the difference, multiplied, are each as large as that at most.
+std::array<double, kTrackCount> limited(const std::array<double, kTrackCount>& tracks, double turn_gain,
+                                        double most_forward, double most_turn) {
+  const double forward = std::clamp((tracks[kLeft] + tracks[kRight]) / 2, -most_forward, most_forward);
+  const double turn = std::clamp(turn_gain * (tracks[kRight] - tracks[kLeft]) / 2, -most_turn, most_turn);
+  std::array<double, kTrackCount> result;
+  result[kLeft] = forward - turn;
+  result[kRight] = forward + turn;
+  return result;
 }
 
 RobotCommand between(const RobotCommand& newer, const RobotCommand& older, double older_share) {
@@ -48,11 +56,11 @@ CommandChannel::CommandChannel(const Effects& effects, std::uint64_t world_seed,
       gain_(effects.command_gain),
       gain_turn_(effects.command_gain_turn),
       dead_band_mps_(effects.command_dead_band_mps),
-      most_forward_mps_(limit_of(effects.command_limit_forward_spm)),
-      most_turn_mps_(track_gauge_m / 2 * limit_of(effects.command_limit_turn_sprad)),
-      side_step_mps_(step_of(effects.command_slew_s2pm, time_step_s)),
-      forward_step_mps_(step_of(effects.command_slew_forward_s2pm, time_step_s)),
-      turn_step_mps_(track_gauge_m / 2 * step_of(effects.command_slew_turn_s2prad, time_step_s)),
+      most_forward_mps_(limit_of(1, effects.command_limit_forward_spm)),
+      most_turn_mps_(track_gauge_m / 2 * limit_of(1, effects.command_limit_turn_sprad)),
+      side_step_mps_(limit_of(time_step_s, effects.command_slew_s2pm)),
+      forward_step_mps_(limit_of(time_step_s, effects.command_slew_forward_s2pm)),
+      turn_step_mps_(track_gauge_m / 2 * limit_of(time_step_s, effects.command_slew_turn_s2prad)),
       ramps_(std::isfinite(side_step_mps_) || std::isfinite(forward_step_mps_) || std::isfinite(turn_step_mps_)) {
   const double steps = effects.command_delay_s / time_step_s;
   delay_steps_ = static_cast<std::size_t>(std::floor(steps + kWholeStep));
@@ -85,29 +93,20 @@ void CommandChannel::send(const RobotCommand& command) {
 
 void CommandChannel::receive() {
   received_ = sent_;
-  auto& [left, right] = received_.track_speed_mps;
-  left *= gain_;
-  right *= gain_;
+  std::array<double, kTrackCount>& tracks = received_.track_speed_mps;
+  for (double& speed : tracks) speed *= gain_;
   // only where there is something to do: a sum of halves is not always the number itself
-  if (gain_turn_ != 1 || std::abs(left + right) / 2 > most_forward_mps_ ||
-      std::abs(right - left) / 2 > most_turn_mps_) {
-    const double forward = std::clamp((left + right) / 2, -most_forward_mps_, most_forward_mps_);
-    const double turn = std::clamp(gain_turn_ * (right - left) / 2, -most_turn_mps_, most_turn_mps_);
-    left = forward - turn;
-    right = forward + turn;
-  }
-  for (double& speed : received_.track_speed_mps)
+  if (gain_turn_ != 1 || std::abs(tracks[kLeft] + tracks[kRight]) / 2 > most_forward_mps_ ||
+      std::abs(tracks[kRight] - tracks[kLeft]) / 2 > most_turn_mps_)
+    tracks = limited(tracks, gain_turn_, most_forward_mps_, most_turn_mps_);
+  for (double& speed : tracks)
     if (std::abs(speed) < dead_band_mps_) speed = 0;
 }
 
 void CommandChannel::move_ramp(const std::array<double, kTrackCount>& target_mps) {
   std::array<double, kTrackCount> change{target_mps[kLeft] - ramp_mps_[kLeft], target_mps[kRight] - ramp_mps_[kRight]};
-  if (std::isfinite(forward_step_mps_) || std::isfinite(turn_step_mps_)) {
-    const double forward = std::clamp((change[kLeft] + change[kRight]) / 2, -forward_step_mps_, forward_step_mps_);
-    const double turn = std::clamp((change[kRight] - change[kLeft]) / 2, -turn_step_mps_, turn_step_mps_);
-    change[kLeft] = forward - turn;
-    change[kRight] = forward + turn;
-  }
+  if (std::isfinite(forward_step_mps_) || std::isfinite(turn_step_mps_))
+    change = limited(change, 1, forward_step_mps_, turn_step_mps_);
   for (std::size_t i = 0; i < kTrackCount; ++i) ramp_mps_[i] += std::clamp(change[i], -side_step_mps_, side_step_mps_);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,5 +51,12 @@ std::vector<Candidate> catalogue_candidates(const physics::RobotDescription& rob
 // in metres), and where INS and IMU are mounted (only a recorded acceleration does, which no diagnosis reads; a posture
 // sensor that is mounted turned or tilted is posture_mount, posture_bias).
 std::vector<Candidate> description_candidates(const physics::RobotDescription& robot);
+
+// Both of these.
+std::vector<Candidate> all_candidates(const physics::RobotDescription& robot, bool has_obstacles);
+
+// Without those whose effect is named in `left_out`, or which do the same as one named there; of candidates that do the
+// same, the first.
+std::vector<Candidate> leave_out(std::vector<Candidate> all, std::span<const std::string> left_out);
 
 }  // namespace kenaf::gap

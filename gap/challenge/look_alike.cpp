@@ -19,22 +19,6 @@ namespace {
 constexpr std::size_t kFollowed = 12, kRefined = 4;
 constexpr int kRounds = 2;
 
-std::vector<Candidate> candidates_without(const Observations& observations, std::span<const std::string> without) {
-  const bool has_obstacles = std::ranges::any_of(observations.worlds, [](const physics::WorldDescription& world) {
-    return !world.boxes.empty() || !world.meshes.empty();
-  });
-  std::vector<Candidate> all = catalogue_candidates(observations.robot, has_obstacles), left;
-  std::ranges::move(description_candidates(observations.robot), std::back_inserter(all));
-  const auto is_left_out = [&](const std::string& name) { return std::ranges::count(without, name) > 0; };
-  for (Candidate& candidate : all) {
-    // of those that do the same one is enough
-    const bool is_there = std::ranges::any_of(left, [&](const Candidate& c) { return c.effect == candidate.same_as; });
-    if (!is_left_out(candidate.effect) && !is_left_out(candidate.same_as) && !is_there)
-      left.push_back(std::move(candidate));
-  }
-  return left;
-}
-
 struct Near {
   double left;  // of the squared length of what is hidden
   std::size_t candidate;
@@ -113,7 +97,8 @@ bool shows(const StageData& data) {
 
 LookAlike look_alike(ComparedRuns& runs, const Floors& floors, const Differences& hidden,
                      std::span<const std::string> without) {
-  const std::vector<Candidate> candidates = candidates_without(runs.observations, without);
+  const std::vector<Candidate> candidates =
+      leave_out(all_candidates(runs.observations.robot, has_obstacles(runs.observations)), without);
   LookAlike nearest;
   for (std::size_t s = 0; s < kEachChannelOnce.size(); ++s) {
     const Passage passage = kEachChannelOnce[s];

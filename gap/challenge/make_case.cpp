@@ -1,4 +1,5 @@
 #include "gap/challenge/make_case.hpp"
+#include "gap/challenge/stand_ins.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +7,10 @@
 #include <tuple>
 #include <utility>
 
-#include "gap/candidates/robot_numbers.hpp"
 #include "gap/challenge/case_runs.hpp"
 #include "gap/challenge/case_scale.hpp"
 #include "gap/challenge/random_numbers.hpp"
+#include "gap/challenge/stand_ins.hpp"
 #include "gap/challenge/true_shares.hpp"
 #include "gap/diagnose/isolability.hpp"
 
@@ -19,8 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 double present_value(const std::string& key) {
-  const physics::RobotDescription robot = physics::load_robot(kChallengedRobot);
-  return find_robot_number(robot, key)->get(robot);
+  return std::ranges::find(challenged_numbers(), key, &Candidate::name)->present;
 }
 
 constexpr int kHalvings = 12;

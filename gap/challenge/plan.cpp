@@ -186,8 +186,7 @@ double furthest_value(const CasePlan& plan, const physics::EffectParameter& para
 }
 
 double furthest_value_of_number(const CasePlan& plan, bool upward) {
-  static const std::vector<Candidate> numbers = description_candidates(physics::load_robot(kChallengedRobot));
-  const Candidate& number = *std::ranges::find(numbers, plan.number.key, &Candidate::name);
+  const Candidate& number = *std::ranges::find(challenged_numbers(), plan.number.key, &Candidate::name);
   physics::RobotDescription robot = with_background(physics::load_robot(kChallengedRobot), plan.background);
   double value = number.present + kFurthest * ((upward ? number.max : number.min) - number.present);
   for (int halving = 0; halving < kRangeHalvings; ++halving) {

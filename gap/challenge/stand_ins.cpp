@@ -20,12 +20,12 @@ constexpr StandIn kStandIns[] = {
     {"clock_offset", "tracking_delay"},
 };
 
-const std::vector<Candidate>& numbers() {
+}  // namespace
+
+const std::vector<Candidate>& challenged_numbers() {
   static const std::vector<Candidate> numbers = description_candidates(physics::load_robot(kChallengedRobot));
   return numbers;
 }
-
-}  // namespace
 
 std::vector<std::string> withheld_names(const CasePlan& plan) {
   std::vector<std::string> names;
@@ -41,7 +41,7 @@ std::vector<std::string> withheld_names(const CasePlan& plan) {
 
 std::vector<std::string> numbers_like(std::string_view effect) {
   std::vector<std::string> keys;
-  for (const Candidate& number : numbers())
+  for (const Candidate& number : challenged_numbers())
     if (number.same_as == effect) keys.push_back(number.name);
   for (const StandIn& stand_in : kStandIns)
     if (stand_in.effect == effect && physics::find_effect(stand_in.other) == nullptr) keys.emplace_back(stand_in.other);
@@ -50,7 +50,7 @@ std::vector<std::string> numbers_like(std::string_view effect) {
 
 std::vector<std::string> numbers_like_nothing_else() {
   std::vector<std::string> keys;
-  for (const Candidate& number : numbers())
+  for (const Candidate& number : challenged_numbers())
     if (number.same_as.empty() && std::ranges::count(kStandIns, number.name, &StandIn::other) == 0)
       keys.push_back(number.name);
   return keys;
@@ -59,7 +59,7 @@ std::vector<std::string> numbers_like_nothing_else() {
 std::string same_effect(const std::string& name) {
   static const std::map<std::string, std::string> same = [] {
     std::map<std::string, std::string> result;
-    for (const Candidate& number : numbers())
+    for (const Candidate& number : challenged_numbers())
       if (!number.same_as.empty()) result[number.name] = number.same_as;
     return result;
   }();

@@ -20,6 +20,8 @@ std::vector<std::string> withheld_names(const CasePlan& plan);
 // of the effect would not be the hidden one then.
 std::vector<std::string> numbers_like(std::string_view effect);
 
+// Of the challenged robot's description.
+const std::vector<Candidate>& challenged_numbers();
 // The numbers of the description that no effect does the same as, or nearly: what withheld_number hides.
 std::vector<std::string> numbers_like_nothing_else();
 

@@ -22,10 +22,10 @@ bool seen_alike(const Observation& a, const Observation& b) {
 }
 
 // Both datasets' runs as one, the baseline's last, without names: a manoeuvre may be called otherwise in each.
-Observations joined(const Observations& now, const Observations& before) {
+Observations joined(const Observations& now, Observations before) {
   Observations both;
   both.runs = now.runs;
-  for (Observation run : before.runs) {
+  for (Observation& run : before.runs) {
     const std::string& name = before.worlds[run.world].name;
     const auto same = std::ranges::find(now.worlds, name, &physics::WorldDescription::name);
     if (same == now.worlds.end()) continue;
@@ -73,8 +73,8 @@ StageFeatures less(const StageFeatures& stage, const MeanResiduals& means) {
 }  // namespace
 
 Baseline observe_baseline(const std::filesystem::path& folder, Observations& now, const std::string& world) {
-  const Observations before = observe(folder, now.robot_name, world, std::numeric_limits<std::size_t>::max());
-  const Observations both = joined(now, before);
+  const Observations both =
+      joined(now, observe(folder, now.robot_name, world, std::numeric_limits<std::size_t>::max()));
   const std::size_t count = now.runs.size();
 
   // of each group the baseline's runs, for each of the new ones

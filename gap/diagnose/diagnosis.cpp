@@ -27,18 +27,11 @@ std::vector<double> stated_noise(const runs::Dataset& dataset) {
   return stated;
 }
 
-bool has_obstacles(const Observations& observations) {
-  return std::ranges::any_of(observations.worlds, [](const physics::WorldDescription& world) {
-    return !world.boxes.empty() || !world.meshes.empty();
-  });
-}
-
 // Catalogue, numbers of the description and effects of one's own, without those left out; of candidates that do the
 // same, the first.
 std::vector<Candidate> candidates_for(const Observations& observations, const DiagnosisOptions& options) {
   const physics::RobotDescription& robot = observations.robot;
-  std::vector<Candidate> all = catalogue_candidates(robot, has_obstacles(observations));
-  std::ranges::move(description_candidates(robot), std::back_inserter(all));
+  std::vector<Candidate> all = all_candidates(robot, has_obstacles(observations));
   if (!options.effects.empty()) std::ranges::move(read_own_effects(options.effects, robot), std::back_inserter(all));
   std::vector<std::string> left_out = options.without;
   for (const std::string& name : options.without) {
@@ -50,14 +43,7 @@ std::vector<Candidate> candidates_for(const Observations& observations, const Di
     for (const Candidate& c : all)
       if (c.effect == name && !c.same_as.empty()) left_out.push_back(c.same_as);
   }
-  const auto is_left_out = [&](const std::string& name) { return std::ranges::count(left_out, name) > 0; };
-  std::vector<Candidate> result;
-  for (Candidate& candidate : all) {
-    const bool is_there =
-        std::ranges::any_of(result, [&](const Candidate& c) { return c.effect == candidate.same_as; });
-    if (is_left_out(candidate.effect) || is_left_out(candidate.same_as) || is_there) continue;
-    result.push_back(std::move(candidate));
-  }
+  std::vector<Candidate> result = leave_out(std::move(all), left_out);
   if (result.empty()) throw std::invalid_argument("--without leaves no effect to look for");
   return result;
 }

@@ -131,6 +131,12 @@ std::vector<std::string> channels_not_simulated(const Observations& observations
 
 }  // namespace
 
+bool has_obstacles(const Observations& observations) {
+  return std::ranges::any_of(observations.worlds, [](const physics::WorldDescription& world) {
+    return !world.boxes.empty() || !world.meshes.empty();
+  });
+}
+
 Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const std::string& path) {
   Observation observation{entry.file, entry.manoeuvre, 0, std::move(run), {}, {}, 0};
   count_time_from_zero(observation.run);

@@ -33,6 +33,9 @@ struct Observations {
   std::vector<std::string> warnings;       // what was left out and why, in words
 };
 
+// Whether some world of theirs is more than level ground.
+bool has_obstacles(const Observations& observations);
+
 // One run of a dataset, of world 0. `path` names its file in errors. Throws runs::RunFileError where it has no commands or no start.
 Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const std::string& path);
 

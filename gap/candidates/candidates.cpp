@@ -1,0 +1,26 @@
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "gap/candidates/candidate.hpp"
+
+namespace kenaf::gap {
+
+std::vector<Candidate> all_candidates(const physics::RobotDescription& robot, bool has_obstacles) {
+  std::vector<Candidate> all = catalogue_candidates(robot, has_obstacles);
+  std::ranges::move(description_candidates(robot), std::back_inserter(all));
+  return all;
+}
+
+std::vector<Candidate> leave_out(std::vector<Candidate> all, std::span<const std::string> left_out) {
+  const auto is_left_out = [&](const std::string& name) { return std::ranges::count(left_out, name) > 0; };
+  std::vector<Candidate> kept;
+  for (Candidate& candidate : all) {
+    const bool is_there = std::ranges::any_of(kept, [&](const Candidate& c) { return c.effect == candidate.same_as; });
+    if (!is_left_out(candidate.effect) && !is_left_out(candidate.same_as) && !is_there)
+      kept.push_back(std::move(candidate));
+  }
+  return kept;
+}
+
+}  // namespace kenaf::gap
