@@ -59,6 +59,7 @@ std::optional<relay::State> FakeTransport::wait_state() {
   if (robot_->interrupted && (!answered_ || robot_->late_interrupts-- <= 0)) return std::nullopt;
   if (first_) {
     first_ = false;
+    robot_->travel_m.push_back(robot_->plant.state.track_m[0]);
     return robot_->plant.state;
   }
   // A program that does not call lets time run on: not faster than a test can watch.
@@ -66,7 +67,7 @@ std::optional<relay::State> FakeTransport::wait_state() {
   std::this_thread::sleep_for(std::chrono::microseconds(20));
   lock.lock();
   do {
-    robot_->plant.advance(command_);
+    robot_->travel_m.push_back(robot_->plant.advance(command_).track_m[0]);
   } while (robot_->plant.state.frame == robot_->skipped_frame);
   answered_ = false;
   if (robot_->reset_at_frame != 0 && robot_->plant.state.frame >= robot_->reset_at_frame) {

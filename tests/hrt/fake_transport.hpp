@@ -29,6 +29,7 @@ struct FakeRobot {
   std::mutex mutex;
   std::condition_variable changed;
   std::vector<DriveCommand> commands;  // commands[i] answers frame i + 1
+  std::vector<double> travel_m;        // travel_m[i] is the left track's in frame i + 1
   bool interrupted = false, closed = false;
   std::string close_error;  // what close says of a robot that did not stop; "": it stopped
 };

@@ -292,24 +292,32 @@ TEST_CASE("R4 KENAF_RECORD records the same as the call, from the first cycle on
     REQUIRE(hrt_go_forward(50) == HRT_OK);
     REQUIRE(hrt_close() == HRT_OK);
   };
-  hrt::test::use_fake_robot();
+  const auto driven_by_variable = hrt::test::use_fake_robot();
   ::setenv("KENAF_RECORD", by_variable.c_str(), 1);
   const int opened = hrt_kenaf_init();
   ::unsetenv("KENAF_RECORD");
   REQUIRE(opened == HRT_OK);
   drive();
 
-  hrt::test::use_fake_robot();
+  const auto driven_by_call = hrt::test::use_fake_robot();
   REQUIRE(hrt_kenaf_init() == HRT_OK);
   REQUIRE(hrt_record_start(by_call.c_str()) == HRT_OK);
   drive();
 
+  // The call may come in a later cycle than the first. From there on each recording holds what its robot did.
   const runs::Run variable = runs::read_run(by_variable), call = runs::read_run(by_call);
   CHECK(variable.columns == call.columns);
   CHECK(variable.column("frame")[0] == 1);
-  // The call may come in a later cycle than the first; from there on both are the same drive.
-  REQUIRE(call.row_count() > 0);
-  const auto travel_by_variable = variable.column("track_left_m"), travel_by_call = call.column("track_left_m");
-  CHECK(travel_by_variable.back() == Approx(0.05).margin(0.001));
-  CHECK(travel_by_call.back() == travel_by_variable.back());
+  const auto check_drive = [](const runs::Run& run, const hrt::test::FakeRobot& robot) {
+    REQUIRE(run.row_count() > 0);
+    const auto frame = run.column("frame"), travel_m = run.column("track_left_m");
+    for (std::size_t row = 0; row < run.row_count(); ++row) {
+      const auto first = static_cast<std::size_t>(frame[0]);
+      REQUIRE(frame[row] == static_cast<double>(first + row));
+      REQUIRE(travel_m[row] == robot.travel_m.at(first + row - 1));
+    }
+    CHECK(travel_m.back() == Approx(0.05).margin(0.001));
+  };
+  check_drive(variable, *driven_by_variable);
+  check_drive(call, *driven_by_call);
 }
