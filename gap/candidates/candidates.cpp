@@ -16,9 +16,12 @@ std::vector<Candidate> leave_out(std::vector<Candidate> all, std::span<const std
   const auto is_left_out = [&](const std::string& name) { return std::ranges::count(left_out, name) > 0; };
   std::vector<Candidate> kept;
   for (Candidate& candidate : all) {
-    const bool is_there = std::ranges::any_of(kept, [&](const Candidate& c) { return c.effect == candidate.same_as; });
-    if (!is_left_out(candidate.effect) && !is_left_out(candidate.same_as) && !is_there)
+    if (is_left_out(candidate.effect) || is_left_out(candidate.same_as)) continue;
+    const auto same = std::ranges::find(kept, candidate.same_as, &Candidate::effect);
+    if (same == kept.end())
       kept.push_back(std::move(candidate));
+    else if (same->whole == 0)
+      same->whole = same->neutral != 0 ? same->neutral : candidate.whole;  // a ratio, or an offset
   }
   return kept;
 }

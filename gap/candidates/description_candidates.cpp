@@ -226,6 +226,7 @@ void add_candidate(std::vector<Candidate>& candidates, const DescribedNumber& de
   candidate.min = range.min;
   candidate.max = range.max;
   candidate.is_number_of_description = true;
+  candidate.whole = value != 0 ? std::abs(value) : range.max - range.min;
   if (does_the_same(described.same_as, robot)) candidate.same_as = described.same_as;
   candidate.keys = {number->written_as};
   candidate.set = number->set;

@@ -43,8 +43,8 @@ Background draw_background(const physics::RobotDescription& robot, std::uint64_t
       const double part = uniform(random, -kBackgroundOff, kBackgroundOff);
       // drawn for all, so that the others stay what they are whatever is left out
       if (std::ranges::count(without, number.name) > 0) continue;
-      const double whole = number.present != 0 ? number.present : number.max - number.min;
-      background.numbers.push_back({number.name, std::clamp(number.present + part * whole, number.min, number.max)});
+      const double value = number.present + part * number.whole;
+      background.numbers.push_back({number.name, std::clamp(value, number.min, number.max)});
     }
     if (why_impossible(moved(robot, background)).empty()) return background;
   }

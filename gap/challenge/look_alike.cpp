@@ -66,11 +66,11 @@ class Stage {
     return best;
   }
 
-  double hidden_squared() const { return products_of(data_, whiteners_, curves_.shifts, residuals_of(data_)).gap_gap; }
+  double hidden_squared() const { return products_of(whiteners_, curves_.shifts, residuals_of(data_)).gap_gap; }
 
  private:
   std::vector<Near> ranked() const {
-    const Products products = products_of(data_, whiteners_, curves_.shifts, residuals_of(data_));
+    const Products products = products_of(whiteners_, curves_.shifts, residuals_of(data_));
     std::vector<Near> result;
     for (const std::size_t c : possible_) {
       const CurveFit fit = fit_one(products, curves_.curves, c);

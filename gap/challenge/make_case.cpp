@@ -23,24 +23,31 @@ double present_value(const std::string& key) {
   return std::ranges::find(challenged_numbers(), key, &Candidate::name)->present;
 }
 
-constexpr int kHalvings = 12;
+constexpr int kTries = 14;
+constexpr double kNarrow = 1.5;  // ratio of the ends of a bracket in which a power law is trusted
 constexpr double kSmallestShare = 1e-5, kCloseEnough = 1.05;
 constexpr double kSmallestPlay = 0.01;  // 3 mrad of backlash: of less there is little but the give of the teeth
 constexpr double kCloseToPlanned = 0.9;
 
-// The share of the way at which `size_at` is as large as `wanted`, and its size there; all of the way where it is not
-// reached. By ratios: effects of a thousandth of their range can be seen.
+// The share of the way at which `size_at` is as large as `wanted`, or up to kCloseEnough of it larger, and its size there;
+// all of the way where it is not reached. By ratios: effects of a thousandth of their range can be seen.
 template <class SizeAt>
 std::pair<double, double> share_for(double wanted, double smallest_share, SizeAt&& size_at) {
   const double most = size_at(1);
   if (!(most > wanted)) return {1, most};
-  double below = smallest_share, above = 1, size = most;
-  for (int i = 0; i < kHalvings && size > kCloseEnough * wanted; ++i) {
-    const double middle = std::sqrt(below * above), at_middle = size_at(middle);
-    if (at_middle < wanted)
-      below = middle;
+  double below = smallest_share, above = 1, size = most, size_below = 0;
+  for (int i = 0; i < kTries && size > kCloseEnough * wanted; ++i) {
+    // as a power of the share, where that leads inside; in turn with halving, for sizes that jump
+    const double aim = std::sqrt(kCloseEnough) * wanted;
+    const double power = size_below > 0 ? std::log(size / size_below) / std::log(above / below) : 1;
+    const double by_power = above * std::pow(aim / size, 1 / power);
+    const bool halves = i % 2 != 0 && above / below > kNarrow;
+    const double next = !halves && by_power > below && by_power < above ? by_power : std::sqrt(below * above);
+    const double at_next = size_at(next);
+    if (at_next < wanted)
+      below = next, size_below = at_next;
     else
-      above = middle, size = at_middle;
+      above = next, size = at_next;
   }
   return {above, size};
 }

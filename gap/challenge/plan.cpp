@@ -104,19 +104,21 @@ const std::vector<std::vector<std::string>>& manoeuvre_sets() {
   return sets;
 }
 
-// Of which short runs are that nobody repeated.
-constexpr std::string_view kShortRuns[] = {
-    "speed-steps", "random-speeds",     "square",     "arc",        "straight",   "turn-in-place", "hills", "ramp",
-    "step-100",    "step-150-flippers", "tilted-box", "step-field", "trench-150", "flipper-sweep"};
-constexpr std::size_t kFewestShort = 6, kMostShort = 10;
-constexpr double kShortest_s = 5, kLongest_s = 15;
-constexpr std::size_t kFewestRepeated = 3;
+// Of which the runs of the imperfect challenge are: short, and either few with a repeat or some that nobody repeated, as
+// logs of real robots are.
+constexpr std::string_view kShortRuns[] = {"speed-steps", "random-speeds", "square",   "arc",
+                                           "straight",    "turn-in-place", "ramp",     "step-100",
+                                           "step-150-flippers", "tilted-box", "trench-150", "flipper-sweep"};
+constexpr std::size_t kFewestUnrepeated = 5, kMostUnrepeated = 8, kFewestRepeated = 3, kMostRepeated = 4;
+constexpr double kShortest_s = 3, kLongest_s = 7;
 constexpr std::size_t kOtherShortRuns = 4;  // to choose from, where an effect does not show
 
-CaseRuns short_runs(Random& random) {
+CaseRuns short_runs(int repeats, Random& random) {
+  const std::size_t fewest = repeats == 1 ? kFewestUnrepeated : kFewestRepeated,
+                    most = repeats == 1 ? kMostUnrepeated : kMostRepeated;
   std::vector<std::string> names(std::begin(kShortRuns), std::end(kShortRuns));
   shuffle(names, random);
-  names.resize(kFewestShort + below(random, kMostShort - kFewestShort + 1));
+  names.resize(fewest + below(random, most - fewest + 1));
   CaseRuns runs{std::move(names), {}};
   for (std::size_t i = 0; i < runs.manoeuvres.size(); ++i)
     runs.longest_s.push_back(uniform(random, kShortest_s, kLongest_s));
@@ -124,20 +126,19 @@ CaseRuns short_runs(Random& random) {
 }
 
 void choose_runs(CasePlan& plan, ChallengeKind kind, Random& random) {
-  if (kind == ChallengeKind::imperfect && uniform(random, 0, 1) < 0.5) {
-    CaseRuns runs = short_runs(random);
+  if (kind == ChallengeKind::imperfect) {
+    plan.repeats = uniform(random, 0, 1) < 0.5 ? 1 : 2;
+    CaseRuns runs = short_runs(plan.repeats, random);
     plan.manoeuvres = std::move(runs.manoeuvres);
     plan.longest_s = std::move(runs.longest_s);
-    plan.repeats = 1;
   } else {
     plan.manoeuvres = manoeuvre_sets()[below(random, manoeuvre_sets().size())];
-    if (kind == ChallengeKind::imperfect && uniform(random, 0, 1) < 0.5) plan.manoeuvres.resize(kFewestRepeated);
   }
   const auto& other = manoeuvre_sets()[below(random, manoeuvre_sets().size())];
   const auto unseen = std::ranges::find_if(
       other, [&](const std::string& name) { return std::ranges::count(plan.manoeuvres, name) == 0; });
   // "hills" is in no set, "drop" is no short run
-  plan.unseen = unseen != other.end() ? *unseen : plan.longest_s.empty() ? "hills" : "drop";
+  plan.unseen = unseen != other.end() ? *unseen : kind == ChallengeKind::exact ? "hills" : "drop";
 }
 
 }  // namespace
@@ -199,15 +200,13 @@ double furthest_value_of_number(const CasePlan& plan, bool upward) {
 
 std::vector<CaseRuns> runs_to_choose_from(const CasePlan& plan) {
   std::vector<CaseRuns> choice{{plan.manoeuvres, plan.longest_s}};
-  if (!plan.longest_s.empty()) {
+  if (plan.is_imperfect()) {
     Random random(mixed(plan.seed, 4));
-    while (choice.size() <= kOtherShortRuns) choice.push_back(short_runs(random));
+    while (choice.size() <= kOtherShortRuns) choice.push_back(short_runs(plan.repeats, random));
     return choice;
   }
-  for (std::vector<std::string> set : manoeuvre_sets()) {
-    set.resize(plan.manoeuvres.size() == kFewestRepeated ? kFewestRepeated : set.size());
-    if (set != plan.manoeuvres) choice.push_back({std::move(set), {}});
-  }
+  for (const std::vector<std::string>& set : manoeuvre_sets())
+    if (set != plan.manoeuvres) choice.push_back({set, {}});
   return choice;
 }
 

@@ -25,13 +25,10 @@ class StageGap {
     for (std::size_t r = 0; r < features_.size(); ++r)
       residuals_.push_back(features_[r].measured - runs.predictor.nominal(passage)[r]);
     if (!is_measured()) return;
-    const auto open = [&](const physics::RobotDescription& robot) {
-      Variation model = runs_.predictor.unvaried();
-      model.robot = robot;
-      return open_shapes(features_, runs_.predictor, passage_, model, kOpenStart_m, kOpenStart_rad);
-    };
-    floor_ = with_open_shapes(noise_floor(features_, residuals_, runs_.same_orders, open(runs_.observations.robot)),
-                              open(truth));
+    Variation model = runs_.predictor.unvaried();
+    model.robot = truth;
+    floor_ = noise_floor(features_, residuals_, runs_.same_orders,
+                         open_shapes(features_, runs_.predictor, passage_, model, kOpenStart_m, kOpenStart_rad));
     left_by_truth_ = difference(residuals_, shift(truth));
     const KindSquares before = squares(residuals_);
     const KindSquares repeats = squares(deviations_from_repeats(features_, left_by_truth_, runs_.same_orders));

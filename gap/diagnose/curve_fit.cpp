@@ -44,14 +44,14 @@ OnCurve on_segment(std::size_t curve, const Segment& segment, double share) {
 
 }  // namespace
 
-Products products_of(const StageData& data, const std::vector<GroupWhitener>& whiteners,
-                     const std::vector<Eigen::MatrixXd>& shifts, const GroupVectors& target) {
+Products products_of(const std::vector<GroupWhitener>& whiteners, const std::vector<Eigen::MatrixXd>& shifts,
+                     const GroupVectors& target) {
   std::vector<Eigen::MatrixXd> columns;
   for (std::size_t g = 0; g < target.size(); ++g) {
     columns.emplace_back(target[g].size(), shifts[g].cols() + 1);
     columns.back() << shifts[g], target[g];
   }
-  const Eigen::MatrixXd all = inner_products(data, whiteners, columns);
+  const Eigen::MatrixXd all = inner_products(whiteners, columns);
   const Eigen::Index count = all.cols() - 1;
   return {all(count, count), all.col(count).head(count), all.topLeftCorner(count, count)};
 }

@@ -21,8 +21,8 @@ struct Products {
   Eigen::MatrixXd shift_shift;
 };
 // `target`: what is to be explained, of each group.
-Products products_of(const StageData& data, const std::vector<GroupWhitener>& whiteners,
-                     const std::vector<Eigen::MatrixXd>& shifts, const GroupVectors& target);
+Products products_of(const std::vector<GroupWhitener>& whiteners, const std::vector<Eigen::MatrixXd>& shifts,
+                     const GroupVectors& target);
 
 // A place on a curve, as weights of at most two of its columns.
 struct OnCurve {

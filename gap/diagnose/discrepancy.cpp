@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "gap/golden_section.hpp"
+
 namespace kenaf::gap {
 namespace {
 
@@ -11,7 +13,6 @@ namespace {
 constexpr double kMemories_s[] = {0.25, 0.7, 2, 6, 16};
 // Golden section over the logarithm of sigma: to 3 %.
 constexpr int kSections = 12;
-const double kGolden = (std::sqrt(5.0) - 1) / 2;
 
 double minus_two_log_likelihood(std::span<const SeriesOfKind> series, const Discrepancy& discrepancy) {
   double sum = 0;
@@ -71,20 +72,10 @@ Discrepancy most_likely_discrepancy(std::span<const SeriesOfKind> series) {
   if (!(from < to)) return best;
   for (const double memory_s : kMemories_s) {
     const auto at = [&](double log_sigma) { return minus_two_log_likelihood(series, {std::exp(log_sigma), memory_s}); };
-    double low = from, high = to, a = high - kGolden * (high - low), b = low + kGolden * (high - low);
-    double at_a = at(a), at_b = at(b);
-    for (int i = 0; i < kSections; ++i) {
-      if (at_a < at_b) {
-        high = b, b = a, at_b = at_a;
-        a = high - kGolden * (high - low), at_a = at(a);
-      } else {
-        low = a, a = b, at_a = at_b;
-        b = low + kGolden * (high - low), at_b = at(b);
-      }
-    }
-    if (std::min(at_a, at_b) < least) {
-      least = std::min(at_a, at_b);
-      best = {std::exp(at_a < at_b ? a : b), memory_s};
+    const auto [log_sigma, value] = golden_section(from, to, kSections, at);
+    if (value < least) {
+      least = value;
+      best = {std::exp(log_sigma), memory_s};
     }
   }
   return best;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace kenaf::gap {
 namespace {
@@ -37,8 +38,8 @@ double length_of_column(const EffectCurves& curves, const StageData& data, int c
 }
 
 // Half way between neighbours to one side of the present value between which a bent curve becomes longer than `length`.
-void add_halves(const EffectCurves& curves, const StageData& data, std::size_t c, double length,
-                std::vector<Setting>& halves) {
+std::vector<Setting> halves_of_bends(const EffectCurves& curves, const StageData& data, std::size_t c, double length) {
+  std::vector<Setting> halves;
   const std::vector<CurvePoint>& points = curves.curves[c].points;
   const double present = curves.candidates[c].present;
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -51,6 +52,7 @@ void add_halves(const EffectCurves& curves, const StageData& data, std::size_t c
     if (inner_length < length && outer_length > std::max(length, kBent * straight))
       halves.push_back({c, (inner.value + outer.value) / 2});
   }
+  return halves;
 }
 
 // Nearer to the present value than the innermost one of the points on a side, where that is longer than `length` and
@@ -97,6 +99,10 @@ double length_in_noise(const StageData& data, const GroupVectors& difference) {
   return std::sqrt(squares);
 }
 
+bool is_bent(const EffectCurves& curves, const StageData& data, std::size_t c, double length) {
+  return !halves_of_bends(curves, data, c, length).empty();
+}
+
 EffectCurves empty_curves(const StageData& data, std::span<const Candidate> candidates) {
   EffectCurves curves{candidates, {}, {}};
   for (std::size_t c = 0; c < candidates.size(); ++c)
@@ -132,7 +138,7 @@ void follow_bends(EffectCurves& curves, const StageData& data, std::span<const s
   for (int i = 0; i < kHalvings; ++i) {
     std::vector<Setting> points;
     for (const std::size_t c : chosen) {
-      add_halves(curves, data, c, gap, points);
+      std::ranges::copy(halves_of_bends(curves, data, c, gap), std::back_inserter(points));
       add_inner(curves, data, c, gap, points);
     }
     if (points.empty()) return;

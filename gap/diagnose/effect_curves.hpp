@@ -61,6 +61,10 @@ void add_spread(EffectCurves& curves, const StageData& data, std::span<const std
 void follow_bends(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                   const Simulate& simulate);
 
+// Whether a curve moves little up to one of its points and is longer than `length` at the next: what it does between them is
+// not known yet (commands below a dead band).
+bool is_bent(const EffectCurves& curves, const StageData& data, std::size_t candidate, double length);
+
 // Simulates points and adds them. One that is there at the same value is replaced.
 void add_points(EffectCurves& curves, const StageData& data, std::span<const Setting> points, Fidelity fidelity,
                 const Simulate& simulate);

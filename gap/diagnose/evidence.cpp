@@ -63,7 +63,7 @@ std::vector<MatrixXd> slopes(const StandingModel& standing, const StageData& dat
 // By how much each effect should lessen the deviance of these data, the others fitted again, if the model is right.
 VectorXd evidence_expected(const StageData& data, const StandingModel& standing) {
   const MatrixXd information =
-      inner_products(data, whiteners_of(data, standing.model.likelihood.discrepancies), slopes(standing, data));
+      inner_products(whiteners_of(data, standing.model.likelihood.discrepancies), slopes(standing, data));
   VectorXd expected(information.rows());
   for (Index e = 0; e < expected.size(); ++e) {
     std::vector<Index> others;
@@ -239,7 +239,7 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
 
   // generalised least squares: the covariance of all values together
   const std::vector<MatrixXd> columns = slopes(standing, data);
-  const MatrixXd information = inner_products(data, whiteners, columns);
+  const MatrixXd information = inner_products(whiteners, columns);
   const MatrixXd covariance = information.completeOrthogonalDecomposition().pseudoInverse();
 
   // what each manoeuvre says by itself of each value

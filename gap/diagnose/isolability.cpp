@@ -32,7 +32,7 @@ int direction_column(const EffectCurve& curve, const VectorXd& length) {
 }  // namespace
 
 Isolability isolability(const StageData& data, const EffectCurves& curves) {
-  const MatrixXd products = inner_products(data, whiteners_of(data, no_discrepancy()), curves.shifts);
+  const MatrixXd products = inner_products(whiteners_of(data, no_discrepancy()), curves.shifts);
   const VectorXd length = products.diagonal().cwiseMax(0).cwiseSqrt();
   Isolability result;
   std::vector<int> columns;

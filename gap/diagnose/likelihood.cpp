@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "gap/diagnose/channels.hpp"
+#include "gap/golden_section.hpp"
 
 namespace kenaf::gap {
 namespace {
@@ -17,6 +18,10 @@ using Eigen::VectorXd;
 constexpr int kRounds = 3;
 // A shape shorter than this, in standard deviations, leaves nothing open.
 constexpr double kNoShape = 1e-3;
+// How far numbers of a description are off: from what cannot be seen to what nobody would call a description of this
+// robot (chosen). Golden section over the logarithm, to 3 %.
+constexpr double kLeastOff = 1e-4, kMostOff = 0.05;
+constexpr int kSectionsOfOff = 11;
 
 // Products of shared shapes with each other, and with a residual; the amounts that the residual makes most likely.
 struct Shared {
@@ -26,24 +31,54 @@ struct Shared {
   double log_determinant = 0;
 };
 
-Shared shared_of(const StageData& data, const std::vector<GroupWhitener>& whiteners, const GroupVectors& residual,
+Shared shared_of(const std::vector<GroupWhitener>& whiteners, const GroupVectors& residual,
                  std::vector<VectorXd>& white) {
-  const Index count = data.groups.empty() ? 0 : data.groups.front().shared_shapes.cols();
+  const Index count = whiteners.empty() ? 0 : whiteners.front().shared().cols();
   Shared shared{MatrixXd::Identity(count, count), VectorXd::Zero(count), VectorXd::Zero(count), 0};
   white.clear();
-  for (std::size_t g = 0; g < data.groups.size(); ++g) {
-    MatrixXd columns(residual[g].size(), count + 1);
-    columns << data.groups[g].shared_shapes, residual[g];
-    columns = whiteners[g](std::move(columns));
-    shared.shapes.noalias() += columns.leftCols(count).transpose() * columns.leftCols(count);
-    shared.residual.noalias() += columns.leftCols(count).transpose() * columns.col(count);
-    white.push_back(columns.col(count));
+  for (std::size_t g = 0; g < whiteners.size(); ++g) {
+    const MatrixXd& shapes = whiteners[g].shared();
+    white.push_back(whiteners[g](residual[g]));
+    shared.shapes.noalias() += shapes.transpose() * shapes;
+    shared.residual.noalias() += shapes.transpose() * white.back();
   }
   if (count == 0) return shared;
   const Eigen::LLT<MatrixXd> factor(shared.shapes);
   shared.amounts = factor.solve(shared.residual);
   shared.log_determinant = 2 * factor.matrixL().toDenseMatrix().diagonal().array().log().sum();
   return shared;
+}
+
+// Of one group, each with the amount of 1 sigma.
+MatrixXd shared_shapes(const StageGroup& group, double numbers_off) {
+  if (numbers_off == 0) return group.shared_shapes;
+  MatrixXd shapes(group.shared_shapes.rows(), group.shared_shapes.cols() + group.number_shapes.cols());
+  shapes << group.shared_shapes, numbers_off * group.number_shapes;
+  return shapes;
+}
+
+// How far off the numbers of the description most likely are, beside given discrepancies of channels.
+double most_likely_numbers_off(const StageData& data, const GroupVectors& residual, Discrepancies discrepancies) {
+  const Index numbers = data.groups.empty() ? 0 : data.groups.front().number_shapes.cols();
+  if (numbers == 0) return 0;
+  // products with numbers off by their whole; by a part they are scaled
+  discrepancies.numbers_off = 1;
+  std::vector<VectorXd> white;
+  const Shared whole = shared_of(whiteners_of(data, discrepancies), residual, white);
+  const Index count = whole.residual.size();
+  const MatrixXd products = whole.shapes - MatrixXd::Identity(count, count);
+  const auto deviance = [&](double off) {
+    VectorXd scale = VectorXd::Ones(count);
+    scale.tail(numbers).setConstant(off);
+    MatrixXd normal = scale.asDiagonal() * products * scale.asDiagonal();
+    normal.diagonal().array() += 1;
+    const VectorXd along = scale.cwiseProduct(whole.residual);
+    const Eigen::LLT<MatrixXd> factor(normal);
+    return 2 * factor.matrixLLT().diagonal().array().log().sum() - along.dot(factor.solve(along));
+  };
+  const auto [log_off, least] = golden_section(std::log(kLeastOff), std::log(kMostOff), kSectionsOfOff,
+                                               [&](double at) { return deviance(std::exp(at)); });
+  return least < deviance(0) ? std::exp(log_off) : 0;
 }
 
 // The amounts of local shapes that a residual makes most likely, taken off it: what noise and discrepancy are left
@@ -53,7 +88,7 @@ VectorXd without_local_shapes(const StageGroup& group, const Discrepancies& disc
   columns << group.local_shapes, residual;
   for (const Series& series : group.series)
     SeriesWhitener({group.t_s.data() + series.first, static_cast<std::size_t>(series.count)},
-                   group.variance.segment(series.first, series.count), discrepancies[series.kind])
+                   group.variance.segment(series.first, series.count), discrepancies.of_kind[series.kind])
         .whiten(columns.middleRows(series.first, series.count));
   const Index count = group.local_shapes.cols();
   const auto shapes = columns.leftCols(count);
@@ -63,8 +98,8 @@ VectorXd without_local_shapes(const StageGroup& group, const Discrepancies& disc
   return residual;
 }
 
-Discrepancies estimated(const StageData& data, const GroupVectors& rest) {
-  Discrepancies result = no_discrepancy();
+std::vector<Discrepancy> estimated(const StageData& data, const GroupVectors& rest) {
+  std::vector<Discrepancy> result(kind_count());
   for (std::size_t kind = 0; kind < result.size(); ++kind) {
     std::vector<SeriesOfKind> all;
     for (std::size_t g = 0; g < data.groups.size(); ++g) {
@@ -85,20 +120,23 @@ Discrepancies estimated(const StageData& data, const GroupVectors& rest) {
 }  // namespace
 
 Discrepancies no_discrepancy() {
-  return Discrepancies(kind_count());
+  return {std::vector<Discrepancy>(kind_count()), 0};
 }
 
 GroupWhitener::GroupWhitener(const StageGroup& group, const Discrepancies& discrepancies) {
   for (const Series& series : group.series) {
     parts_.push_back({series.first, series.count,
                       SeriesWhitener({group.t_s.data() + series.first, static_cast<std::size_t>(series.count)},
-                                     group.variance.segment(series.first, series.count), discrepancies[series.kind])});
+                                     group.variance.segment(series.first, series.count), discrepancies.of_kind[series.kind])});
     log_determinant_ += parts_.back().whitener.log_determinant();
   }
   MatrixXd shapes = group.local_shapes;
   directions_.resize(shapes.rows(), 0);
   shrink_.resize(0);
-  if (shapes.cols() == 0) return;
+  if (shapes.cols() == 0) {
+    shared_ = (*this)(shared_shapes(group, discrepancies.numbers_off));
+    return;
+  }
   for (const Part& part : parts_) part.whitener.whiten(shapes.middleRows(part.first, part.count));
 
   // covariance in whitened units: 1 + S S'; along its direction u_i the variance is 1 + s_i^2
@@ -111,6 +149,7 @@ GroupWhitener::GroupWhitener(const StageGroup& group, const Discrepancies& discr
       shapes * eigen.eigenvectors().rightCols(count) * squares.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
   shrink_ = 1 - (1 + squares.tail(count).array()).rsqrt();
   log_determinant_ += (1 + squares.tail(count).array()).log().sum();
+  shared_ = (*this)(shared_shapes(group, discrepancies.numbers_off));
 }
 
 MatrixXd GroupWhitener::operator()(MatrixXd columns) const {
@@ -126,16 +165,15 @@ std::vector<GroupWhitener> whiteners_of(const StageData& data, const Discrepanci
   return whiteners;
 }
 
-MatrixXd inner_products(const StageData& data, const std::vector<GroupWhitener>& whiteners,
+MatrixXd inner_products(const std::vector<GroupWhitener>& whiteners,
                         const std::vector<MatrixXd>& columns, std::span<const double> weights) {
-  const Index count = columns.front().cols(), shared = data.groups.front().shared_shapes.cols();
+  const Index count = columns.front().cols(), shared = whiteners.front().shared().cols();
   MatrixXd sum = MatrixXd::Zero(count + shared, count + shared);
-  for (std::size_t g = 0; g < data.groups.size(); ++g) {
+  for (std::size_t g = 0; g < whiteners.size(); ++g) {
     const double weight = weights.empty() ? 1 : weights[g];
     if (weight == 0) continue;
     MatrixXd all(columns[g].rows(), count + shared);
-    all << columns[g], data.groups[g].shared_shapes;
-    all = whiteners[g](std::move(all));
+    all << whiteners[g](columns[g]), whiteners[g].shared();
     sum.noalias() += weight * (all.transpose() * all);
   }
 
@@ -149,7 +187,7 @@ MatrixXd inner_products(const StageData& data, const std::vector<GroupWhitener>&
 Likelihood likelihood_with(const StageData& data, const GroupVectors& residual, const Discrepancies& discrepancies) {
   const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
   std::vector<VectorXd> white;
-  const Shared shared = shared_of(data, whiteners, residual, white);
+  const Shared shared = shared_of(whiteners, residual, white);
   Likelihood result{shared.log_determinant, -shared.residual.dot(shared.amounts), discrepancies};
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
     result.chi_squared += white[g].squaredNorm();
@@ -162,14 +200,17 @@ Likelihood likelihood_with(const StageData& data, const GroupVectors& residual, 
 Likelihood likelihood_of(const StageData& data, const GroupVectors& residual, const Discrepancies& start) {
   Discrepancies discrepancies = start;
   for (int round = 0; round < kRounds; ++round) {
-    // open shapes at their most likely amounts, then the discrepancies that make the rest most likely
+    // numbers first, which are the same in all groups; then open shapes at their most likely amounts, and the discrepancies
+    // that make the rest most likely
+    discrepancies.numbers_off = most_likely_numbers_off(data, residual, discrepancies);
     std::vector<VectorXd> white;
-    const Shared shared = shared_of(data, whiteners_of(data, discrepancies), residual, white);
+    const Shared shared = shared_of(whiteners_of(data, discrepancies), residual, white);
     GroupVectors rest;
-    for (std::size_t g = 0; g < data.groups.size(); ++g)
-      rest.push_back(without_local_shapes(data.groups[g], discrepancies,
-                                          residual[g] - data.groups[g].shared_shapes * shared.amounts));
-    discrepancies = estimated(data, rest);
+    for (std::size_t g = 0; g < data.groups.size(); ++g) {
+      const MatrixXd shapes = shared_shapes(data.groups[g], discrepancies.numbers_off);
+      rest.push_back(without_local_shapes(data.groups[g], discrepancies, residual[g] - shapes * shared.amounts));
+    }
+    discrepancies.of_kind = estimated(data, rest);
   }
   return likelihood_with(data, residual, discrepancies);
 }
@@ -178,9 +219,9 @@ std::vector<VectorXd> whitened_rest(const StageData& data, const GroupVectors& r
                                     const Discrepancies& discrepancies) {
   const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
   std::vector<VectorXd> white;
-  const Shared shared = shared_of(data, whiteners, residual, white);
+  const Shared shared = shared_of(whiteners, residual, white);
   for (std::size_t g = 0; g < data.groups.size(); ++g)
-    white[g] -= whiteners[g](MatrixXd(data.groups[g].shared_shapes * shared.amounts)).col(0);
+    white[g] -= whiteners[g].shared() * shared.amounts;
   return white;
 }
 

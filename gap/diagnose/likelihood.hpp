@@ -2,9 +2,10 @@
 //
 //   noise (diagonal) + discrepancy (of each channel) + L L'    and over all groups together + N N'
 //
-// L: shapes that are open in each group by itself, N: shapes with one amount in all groups. The sizes of the discrepancies
-// are those that make the residuals most likely (empirical Bayes), so a model that leaves a lot is believed less, in
-// the channels where it leaves a lot. All is done by inner products of whitened columns.
+// L: shapes that are open in each group by itself, N: shapes with one amount in all groups, among them what the numbers of the
+// description shift that are each a little off. The sizes of the discrepancies and of that are those that make the
+// residuals most likely (empirical Bayes), so a model that leaves a lot is believed less, in the channels where it
+// leaves a lot. All is done by inner products of whitened columns.
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -17,10 +18,14 @@
 
 namespace kenaf::gap {
 
-using GroupVectors = std::vector<Eigen::VectorXd>;   // of each group of a stage, its bins
-using Discrepancies = std::vector<Discrepancy>;      // of each kind of channels
+using GroupVectors = std::vector<Eigen::VectorXd>;  // of each group of a stage, its bins
 
-// No discrepancy at all.
+// What a model lacks.
+struct Discrepancies {
+  std::vector<Discrepancy> of_kind;  // of channels
+  double numbers_off = 0;            // of each number of the description, in parts of it (number_shapes.hpp), 1 sigma
+};
+// Nothing.
 Discrepancies no_discrepancy();
 
 // Turns differences of one group into independent numbers of variance 1, but for shared shapes.
@@ -30,6 +35,8 @@ class GroupWhitener {
   // Columns of the group's bins.
   Eigen::MatrixXd operator()(Eigen::MatrixXd columns) const;
   double log_determinant() const { return log_determinant_; }
+  // The group's shared shapes, whitened, those of the numbers as large as numbers are off.
+  const Eigen::MatrixXd& shared() const { return shared_; }
 
  private:
   struct Part {
@@ -39,14 +46,15 @@ class GroupWhitener {
   std::vector<Part> parts_;
   Eigen::MatrixXd directions_;  // orthonormal, of the local shapes
   Eigen::VectorXd shrink_;
+  Eigen::MatrixXd shared_;
   double log_determinant_ = 0;
 };
 std::vector<GroupWhitener> whiteners_of(const StageData& data, const Discrepancies& discrepancies);
 
 // Inner products of columns, summed over groups, with the amounts of shared shapes integrated out: x' C^-1 y for all pairs of
 // columns, C the covariance. `columns`: of each group, the same number. `weights`: of groups; empty: 1.
-Eigen::MatrixXd inner_products(const StageData& data, const std::vector<GroupWhitener>& whiteners,
-                               const std::vector<Eigen::MatrixXd>& columns, std::span<const double> weights = {});
+Eigen::MatrixXd inner_products(const std::vector<GroupWhitener>& whiteners, const std::vector<Eigen::MatrixXd>& columns,
+                               std::span<const double> weights = {});
 
 struct Likelihood {
   double deviance = 0;     // -2 log likelihood, but for a constant

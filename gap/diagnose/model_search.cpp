@@ -179,7 +179,7 @@ Model fit_model(const StageData& data, const EffectCurves& curves, std::span<con
   model.likelihood.discrepancies = start;
   for (int round = 0; round < kFitRounds; ++round) {
     const Products products =
-        products_of(data, whiteners_of(data, model.likelihood.discrepancies), selection.shifts, target);
+        products_of(whiteners_of(data, model.likelihood.discrepancies), selection.shifts, target);
     model.places.clear();
     for (const OnCurve& place : fit_together(products, selection.curves, numbers).places)
       model.places.push_back(in_whole(place, selection, effects));
@@ -260,7 +260,7 @@ std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves
                                const Simulate& simulate, const SearchSettings& settings, std::vector<EffectSet> sets,
                                double to_beat) {
   // all sets by what they leave beneath the same discrepancies
-  const Products products = products_of(data, whiteners_of(data, start), curves.shifts, residuals_of(data));
+  const Products products = products_of(whiteners_of(data, start), curves.shifts, residuals_of(data));
   std::vector<double> left(sets.size());
   for_each_job(sets.size(), settings.threads,
                [&](std::size_t i) { left[i] = fit_together(products, curves.curves, sets[i]).left; });

@@ -48,6 +48,8 @@ struct NoiseFloor {
   bool from_repeats = false;        // otherwise as stated, or from the residuals alone, which a gap makes larger
   std::vector<OpenShapes> open{};   // of each run
   std::vector<Eigen::VectorXd> noise_of_bin{};  // of each run: sigma_of_bin without roughness
+  // Of each group of stage_data() (number_shapes.hpp), no part of the floor of a run; empty: none.
+  std::vector<Eigen::MatrixXd> number_shapes{};
 
   // Of all bins of all runs that are not empty, whitened: 1 is the floor, whatever its shapes.
   double rms(const std::vector<Eigen::VectorXd>& differences) const;

@@ -22,7 +22,7 @@ constexpr double kNumericsOfRun = 0.3;
 // The bins of all runs of a group, and where in them each run's own are.
 StageGroup bins_of_group(const std::vector<StageFeatures>& features, std::vector<std::size_t> runs,
                          const std::vector<bool>& used) {
-  StageGroup group{std::move(runs), {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  StageGroup group{std::move(runs), {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   std::map<std::pair<std::size_t, std::size_t>, Index> place;
   for (const std::size_t r : group.runs)
     for (const Bin& bin : features[r].bins) place[{bin.channel, bin.span}] = 0;
@@ -102,6 +102,8 @@ StageData stage_data(Passage passage, const std::vector<StageFeatures>& features
     group.local_shapes.resize(local.rows(), local.cols() + group.shared_shapes.cols());
     group.local_shapes << one_run.cwiseSqrt().asDiagonal() * local, kNumericsOfRun * group.shared_shapes;
     if (has_baseline) group.shared_shapes.setZero();
+    group.number_shapes = has_baseline || floor.number_shapes.empty() ? MatrixXd(local.rows(), 0)
+                                                                      : floor.number_shapes[data.groups.size()];
     data.groups.push_back(std::move(group));
   }
   return data;

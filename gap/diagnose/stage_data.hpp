@@ -32,6 +32,7 @@ struct StageGroup {
   Eigen::VectorXd variance;                      // of its independent noise
   Eigen::MatrixXd local_shapes;                  // in columns; each with an amount of its own in this group, 1 sigma
   Eigen::MatrixXd shared_shapes;                 // in columns; each with one amount in all groups, 1 sigma
+  Eigen::MatrixXd number_shapes;                 // likewise; 1 sigma is as far as numbers of the description are off
 };
 
 struct StageData {

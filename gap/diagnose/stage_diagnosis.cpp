@@ -5,6 +5,7 @@
 
 #include "gap/diagnose/cells.hpp"
 #include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/number_shapes.hpp"
 #include "gap/diagnose/repeats.hpp"
 
 namespace kenaf::gap {
@@ -36,10 +37,11 @@ std::vector<VectorXd> less_shift(std::vector<VectorXd> a, const std::vector<Vect
   return a;
 }
 
-// The candidates that one linear step shows to matter most, beneath the discrepancies of the nominal model.
+// The candidates that one linear step shows to matter most, beneath the discrepancies of the nominal model, and those of which
+// one step says nothing.
 std::vector<std::size_t> that_matter(const StageData& data, const EffectCurves& curves,
                                      std::span<const std::size_t> looked_at, const Discrepancies& discrepancies) {
-  const Products products = products_of(data, whiteners_of(data, discrepancies), curves.shifts, residuals_of(data));
+  const Products products = products_of(whiteners_of(data, discrepancies), curves.shifts, residuals_of(data));
   std::vector<std::pair<double, std::size_t>> explained;
   for (const std::size_t c : looked_at) {
     for (const CurvePoint& point : curves.curves[c].points) {
@@ -54,20 +56,28 @@ std::vector<std::size_t> that_matter(const StageData& data, const EffectCurves& 
   std::vector<std::size_t> result;
   for (const auto& [share, c] : explained)
     if (result.size() < kMostCurves && std::ranges::count(result, c) == 0) result.push_back(c);
+  const double gap = length_in_noise(data, residuals_of(data));
+  for (const std::size_t c : looked_at)
+    if (std::ranges::count(result, c) == 0 && is_bent(curves, data, c, gap)) result.push_back(c);
   std::ranges::sort(result);
   return result;
 }
 
-// Curves of the candidates that can matter, after a first look at all.
-EffectCurves scanned(const StageData& data, std::span<const Candidate> candidates,
-                     std::span<const std::size_t> possible, const Simulate& simulate) {
+// One point of each candidate that may act in the stage.
+EffectCurves first_look(const StageData& data, std::span<const Candidate> candidates,
+                        std::span<const std::size_t> possible, const Simulate& simulate) {
   EffectCurves curves = empty_curves(data, candidates);
   add_first_look(curves, data, possible, simulate);
+  return curves;
+}
+
+// After the first look, whole curves of the candidates that can matter.
+void follow_those_that_matter(EffectCurves& curves, const StageData& data, std::span<const std::size_t> possible,
+                              const Simulate& simulate) {
   const std::vector<std::size_t> matter =
       that_matter(data, curves, possible, nominal_model(data).likelihood.discrepancies);
   add_spread(curves, data, matter, simulate);
   follow_bends(curves, data, matter, simulate);
-  return curves;
 }
 
 // Of a run less the mean of its baseline's, over that of a run; of each bin.
@@ -231,7 +241,7 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
   const auto data_in = [&](const NoiseFloor& floor) {
     return stage_data(input.passage, features, *input.repeats, stage.residuals, floor);
   };
-  const StageAround nominal{stage.nominal_floor, data_in(stage.nominal_floor)};
+  StageAround nominal{stage.nominal_floor, data_in(stage.nominal_floor)};
   const Around around = [&](const Settings& settings) {
     StageAround result{with_open_shapes(stage.nominal_floor, open_around(settings)), {}};
     result.data = data_in(result.floor);
@@ -250,7 +260,10 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
   const bool drives_measured =
       std::ranges::all_of(input.observations->runs, [](const Observation& run) { return run.measured.has_value(); });
   const std::vector<std::size_t> possible = candidates_of(input.passage, candidates, drives_measured);
-  const EffectCurves curves = scanned(nominal.data, candidates, possible, simulate);
+  EffectCurves curves = first_look(nominal.data, candidates, possible, simulate);
+  stage.nominal_floor.number_shapes = number_shapes(nominal.data, curves, possible);
+  nominal = {stage.nominal_floor, data_in(stage.nominal_floor)};
+  follow_those_that_matter(curves, nominal.data, possible, simulate);
   const std::vector<VectorXd> deviations = deviations_from_repeats(features, stage.residuals, *input.same_orders);
   const GapTest test{inflation_from_repeats(features, stage.nominal_floor, deviations, options.stretch_s),
                      options.stretch_s};

@@ -189,6 +189,17 @@ TEST_CASE("A number of the description names the effect that does the same, wher
   CHECK(find_candidate(marmotte, "track.lug_height_m")->same_as == "");
 }
 
+TEST_CASE("An effect that is kept in a number's place says by how much it is off where the number is") {
+  const RobotDescription robot = robot_of("kenaf");
+  const std::vector<Candidate> kept = leave_out(all_candidates(robot, true), {});
+  const auto whole = [&](std::string_view name) { return find_candidate(kept, name)->whole; };
+  CHECK(whole("mass") == 1);                                                   // a ratio
+  CHECK(whole("battery.open_circuit_v") == robot.battery.open_circuit_v);  // the number itself
+  CHECK(whole("gyro_delay") == 0.6);                                           // 0 s now, searched up to 0.6 s
+  CHECK(whole("command_slew") == 0);                                           // no number of the description
+  CHECK(find_candidate(kept, "body.mass_kg") == nullptr);
+}
+
 TEST_CASE("Numbers are those of what the robot has, and of the sensors that are recorded") {
   RobotDescription robot = robot_of("marmotte");
   physics::SensorDescription second{};

@@ -23,7 +23,7 @@ struct Fitting {
   Fitting(const std::vector<Whole>& per_value, const Whole& gap)
       : data(world().data(gap)),
         curves(world().curves(per_value, data)),
-        products(products_of(data, whiteners_of(data, no_discrepancy()), curves.shifts, residuals_of(data))) {}
+        products(products_of(whiteners_of(data, no_discrepancy()), curves.shifts, residuals_of(data))) {}
 };
 
 // One manoeuvre of two numbers, in which a single effect goes along the given points.
@@ -47,7 +47,7 @@ struct Bent {
       curves.shifts[0].conservativeResize(Eigen::NoChange, curves.shifts[0].cols() + 1);
       curves.shifts[0].rightCols(1) = shift;
     }
-    products = products_of(data, whiteners_of(data, no_discrepancy()), curves.shifts, {gap});
+    products = products_of(whiteners_of(data, no_discrepancy()), curves.shifts, {gap});
   }
 };
 
