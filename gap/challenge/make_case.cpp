@@ -29,8 +29,8 @@ constexpr double kSmallestShare = 1e-5, kCloseEnough = 1.05;
 constexpr double kSmallestPlay = 0.01;  // 3 mrad of backlash: of less there is little but the give of the teeth
 constexpr double kCloseToPlanned = 0.9;
 
-// The share of the way at which `size_at` is as large as `wanted`, or up to kCloseEnough of it larger, and its size there;
-// all of the way where it is not reached. By ratios: effects of a thousandth of their range can be seen.
+// The share of the way at which `size_at` is as large as `wanted`, or up to kCloseEnough of it larger, and its size
+// there; all of the way where it is not reached. By ratios: effects of a thousandth of their range can be seen.
 template <class SizeAt>
 std::pair<double, double> share_for(double wanted, double smallest_share, SizeAt&& size_at) {
   const double most = size_at(1);

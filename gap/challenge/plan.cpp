@@ -104,11 +104,11 @@ const std::vector<std::vector<std::string>>& manoeuvre_sets() {
   return sets;
 }
 
-// Of which the runs of the imperfect challenge are: short, and either few with a repeat or some that nobody repeated, as
-// logs of real robots are.
-constexpr std::string_view kShortRuns[] = {"speed-steps", "random-speeds", "square",   "arc",
-                                           "straight",    "turn-in-place", "ramp",     "step-100",
-                                           "step-150-flippers", "tilted-box", "trench-150", "flipper-sweep"};
+// Of which the runs of the imperfect challenge are: short, and either few with a repeat or some that nobody repeated,
+// as logs of real robots are.
+constexpr std::string_view kShortRuns[] = {"speed-steps",       "random-speeds", "square",     "arc",
+                                           "straight",          "turn-in-place", "ramp",       "step-100",
+                                           "step-150-flippers", "tilted-box",    "trench-150", "flipper-sweep"};
 constexpr std::size_t kFewestUnrepeated = 5, kMostUnrepeated = 8, kFewestRepeated = 3, kMostRepeated = 4;
 constexpr double kShortest_s = 3, kLongest_s = 7;
 constexpr std::size_t kOtherShortRuns = 4;  // to choose from, where an effect does not show

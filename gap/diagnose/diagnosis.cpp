@@ -128,8 +128,8 @@ std::vector<ProposedManoeuvre> next_manoeuvres(const Diagnosis& d) {
   for (const StageDiagnosis& stage : d.stages)
     for (std::size_t c = 0; c < options.sigma_of_channel.size(); ++c)
       if (stage.passage != Passage::body_to_sensor && stage.nominal_floor.sigma[c] > 0)
-        options.sigma_of_channel[c] = std::hypot(stage.nominal_floor.sigma[c],
-                                                 stage.decision.best.model.likelihood.discrepancies.of_kind[kind_of(c)].sigma);
+        options.sigma_of_channel[c] = std::hypot(
+            stage.nominal_floor.sigma[c], stage.decision.best.model.likelihood.discrepancies.of_kind[kind_of(c)].sigma);
   options.threads = d.options.jobs;
   return propose_manoeuvres(d.observations.robot, rivals, options);
 }

@@ -9,6 +9,8 @@ namespace {
 
 // Parts of the way from neutral to an end of the range.
 constexpr double kSpread[] = {0.25, 1};
+// Of Candidate::whole: as far as numbers of a description are off that was made with care (chosen).
+constexpr double kOrdinarilyOff = 0.02;
 
 constexpr double kRoughReach = 2;
 
@@ -124,6 +126,9 @@ void add_first_look(EffectCurves& curves, const StageData& data, std::span<const
     const bool both_ways = candidate.min < candidate.present && candidate.present < candidate.max;
     const double end = candidate.max > candidate.present ? candidate.max : candidate.min;
     points.push_back({c, candidate.present + kSpread[0] * (end - candidate.present)});
+    const double ordinarily_off = std::min(kOrdinarilyOff * candidate.whole, std::abs(end - candidate.present));
+    if (ordinarily_off > 0)
+      points.push_back({c, candidate.present + std::copysign(ordinarily_off, end - candidate.present)});
     // what begins from some value on (drives that stall) shows only farther out
     if (!both_ways) points.push_back({c, end});
   }

@@ -48,7 +48,7 @@ using Simulate = std::function<std::vector<GroupVectors>(std::span<const Setting
 EffectCurves empty_curves(const StageData& data, std::span<const Candidate> candidates);
 
 // For a first look: one point near the present value of each of `chosen`; of an effect that goes one way alone also the end of
-// its range.
+// its range, of a number of the description also one as near as such numbers ordinarily are off.
 void add_first_look(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                     const Simulate& simulate);
 // Simulates points spread over the range of each of `chosen`, denser near the present value, where there are none.

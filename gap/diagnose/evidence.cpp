@@ -242,17 +242,14 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
   const MatrixXd information = inner_products(whiteners, columns);
   const MatrixXd covariance = information.completeOrthogonalDecomposition().pseudoInverse();
 
-  // what each manoeuvre says by itself of each value
+  // what each manoeuvre says by itself of each value, with what all share at its most likely amounts
   std::vector<std::vector<OwnValue>> own(model.places.size());
-  const GroupVectors rest = rest_of(data, model);
+  const std::vector<VectorXd> rest = whitened_rest(data, rest_of(data, model), model.likelihood.discrepancies);
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
-    MatrixXd all(rest[g].size(), effects + 1);
-    all << columns[g], rest[g];
-    const MatrixXd white = whiteners[g](std::move(all));
+    const MatrixXd white = whiteners[g](columns[g]);
     for (Index e = 0; e < effects; ++e) {
       const double squares = white.col(e).squaredNorm();
-      own[static_cast<std::size_t>(e)].push_back(
-          {squares > 0 ? white.col(e).dot(white.col(effects)) / squares : 0, squares});
+      own[static_cast<std::size_t>(e)].push_back({squares > 0 ? white.col(e).dot(rest[g]) / squares : 0, squares});
     }
   }
 

@@ -125,9 +125,10 @@ Discrepancies no_discrepancy() {
 
 GroupWhitener::GroupWhitener(const StageGroup& group, const Discrepancies& discrepancies) {
   for (const Series& series : group.series) {
-    parts_.push_back({series.first, series.count,
-                      SeriesWhitener({group.t_s.data() + series.first, static_cast<std::size_t>(series.count)},
-                                     group.variance.segment(series.first, series.count), discrepancies.of_kind[series.kind])});
+    parts_.push_back(
+        {series.first, series.count,
+         SeriesWhitener({group.t_s.data() + series.first, static_cast<std::size_t>(series.count)},
+                        group.variance.segment(series.first, series.count), discrepancies.of_kind[series.kind])});
     log_determinant_ += parts_.back().whitener.log_determinant();
   }
   MatrixXd shapes = group.local_shapes;
@@ -165,8 +166,8 @@ std::vector<GroupWhitener> whiteners_of(const StageData& data, const Discrepanci
   return whiteners;
 }
 
-MatrixXd inner_products(const std::vector<GroupWhitener>& whiteners,
-                        const std::vector<MatrixXd>& columns, std::span<const double> weights) {
+MatrixXd inner_products(const std::vector<GroupWhitener>& whiteners, const std::vector<MatrixXd>& columns,
+                        std::span<const double> weights) {
   const Index count = columns.front().cols(), shared = whiteners.front().shared().cols();
   MatrixXd sum = MatrixXd::Zero(count + shared, count + shared);
   for (std::size_t g = 0; g < whiteners.size(); ++g) {
@@ -200,8 +201,8 @@ Likelihood likelihood_with(const StageData& data, const GroupVectors& residual, 
 Likelihood likelihood_of(const StageData& data, const GroupVectors& residual, const Discrepancies& start) {
   Discrepancies discrepancies = start;
   for (int round = 0; round < kRounds; ++round) {
-    // numbers first, which are the same in all groups; then open shapes at their most likely amounts, and the discrepancies
-    // that make the rest most likely
+    // numbers first, which are the same in all groups; then open shapes at their most likely amounts, and the
+    // discrepancies that make the rest most likely
     discrepancies.numbers_off = most_likely_numbers_off(data, residual, discrepancies);
     std::vector<VectorXd> white;
     const Shared shared = shared_of(whiteners_of(data, discrepancies), residual, white);
@@ -220,8 +221,7 @@ std::vector<VectorXd> whitened_rest(const StageData& data, const GroupVectors& r
   const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
   std::vector<VectorXd> white;
   const Shared shared = shared_of(whiteners, residual, white);
-  for (std::size_t g = 0; g < data.groups.size(); ++g)
-    white[g] -= whiteners[g].shared() * shared.amounts;
+  for (std::size_t g = 0; g < data.groups.size(); ++g) white[g] -= whiteners[g].shared() * shared.amounts;
   return white;
 }
 

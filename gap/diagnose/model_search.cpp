@@ -178,8 +178,7 @@ Model fit_model(const StageData& data, const EffectCurves& curves, std::span<con
   Model model;
   model.likelihood.discrepancies = start;
   for (int round = 0; round < kFitRounds; ++round) {
-    const Products products =
-        products_of(whiteners_of(data, model.likelihood.discrepancies), selection.shifts, target);
+    const Products products = products_of(whiteners_of(data, model.likelihood.discrepancies), selection.shifts, target);
     model.places.clear();
     for (const OnCurve& place : fit_together(products, selection.curves, numbers).places)
       model.places.push_back(in_whole(place, selection, effects));

@@ -12,8 +12,8 @@ using Eigen::MatrixXd;
 
 // Chosen: what more directions add is a few per cent of what numbers shift.
 constexpr Index kMostDirections = 12;
-// Length in noise, of numbers off by all of themselves, below which nobody sees a direction where they are off by a few per
-// cent.
+// Length in noise, of numbers off by all of themselves, below which nobody sees a direction where they are off by a few
+// per cent.
 constexpr double kVisibleDirection = 3;
 
 const CurvePoint* nearest_to_present(const EffectCurve& curve, double present) {

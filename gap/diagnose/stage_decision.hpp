@@ -35,7 +35,7 @@ struct DecisionSettings {
   // Of the squared gap of the kind of channels where an effect takes off most, on runs held out: what the effect must take off,
   // and what the whole model must (chosen).
   double effect_share = 0.2, model_share = 0.5;
-  double stage_share = 0.05;       // of the stage's whole squared gap, what the effect must take off (chosen)
+  double stage_share = 0.1;        // of the stage's whole squared gap, what the effect must take off (chosen)
   double agreement = 1;            // an effect is at least as many times its spread between manoeuvres (chosen): then five in
                                    // six of them agree on its sign
   std::size_t most_effects = 6;

@@ -37,8 +37,8 @@ std::vector<VectorXd> less_shift(std::vector<VectorXd> a, const std::vector<Vect
   return a;
 }
 
-// The candidates that one linear step shows to matter most, beneath the discrepancies of the nominal model, and those of which
-// one step says nothing.
+// The candidates that one linear step shows to matter most, beneath the discrepancies of the nominal model, and those
+// of which one step says nothing.
 std::vector<std::size_t> that_matter(const StageData& data, const EffectCurves& curves,
                                      std::span<const std::size_t> looked_at, const Discrepancies& discrepancies) {
   const Products products = products_of(whiteners_of(data, discrepancies), curves.shifts, residuals_of(data));
@@ -109,16 +109,16 @@ std::vector<std::size_t> small_alone(const HeldOutShares& shares, const HeldOutS
   return places;
 }
 
-// Effects that stand in for each other, as a lag and a ramp do: without one the others take up most of it, without all of
-// them the gap is there. They are named as a set, the smallest that takes off enough.
+// Effects that stand in for each other, as a lag and a ramp do: without one the others take up most of it, without all
+// of them the gap is there. They are named as a set, the smallest that takes off enough.
 void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutShares::OfSet>& sets,
                   const std::vector<HeldOutShares::OfSet>& sets_by_manoeuvre, const DecisionSettings& settings) {
   // how much is whose is not known, so manoeuvres may disagree on it
   const auto lacks_share_alone = [&](std::size_t place) {
     const std::vector<Doubt>& doubts = effects[place].doubts;
     return effects[place].partners.empty() && std::ranges::any_of(doubts, is_lack_of_share) &&
-           std::ranges::all_of(
-               doubts, [](Doubt doubt) { return is_lack_of_share(doubt) || doubt == Doubt::disagreement; });
+           std::ranges::all_of(doubts,
+                               [](Doubt doubt) { return is_lack_of_share(doubt) || doubt == Doubt::disagreement; });
   };
   for (std::size_t s = 0; s < sets.size(); ++s) {
     const std::vector<std::size_t>& places = sets[s].places;

@@ -193,10 +193,10 @@ TEST_CASE("An effect that is kept in a number's place says by how much it is off
   const RobotDescription robot = robot_of("kenaf");
   const std::vector<Candidate> kept = leave_out(all_candidates(robot, true), {});
   const auto whole = [&](std::string_view name) { return find_candidate(kept, name)->whole; };
-  CHECK(whole("mass") == 1);                                                   // a ratio
+  CHECK(whole("mass") == 1);                                               // a ratio
   CHECK(whole("battery.open_circuit_v") == robot.battery.open_circuit_v);  // the number itself
-  CHECK(whole("gyro_delay") == 0.6);                                           // 0 s now, searched up to 0.6 s
-  CHECK(whole("command_slew") == 0);                                           // no number of the description
+  CHECK(whole("gyro_delay") == 0.6);                                       // 0 s now, searched up to 0.6 s
+  CHECK(whole("command_slew") == 0);                                       // no number of the description
   CHECK(find_candidate(kept, "body.mass_kg") == nullptr);
 }
 

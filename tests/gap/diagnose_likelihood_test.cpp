@@ -154,8 +154,7 @@ TEST_CASE("By group the deviance has shared shapes at the amounts that all group
   const std::vector<VectorXd> white = whitened_rest(data, residuals_in(data), small_discrepancies());
   REQUIRE(found.size() == 2);
   for (std::size_t g = 0; g < 2; ++g) {
-    const VectorXd rest =
-        data.groups[g].residual - all_shared(data.groups[g], small_discrepancies()) * amounts;
+    const VectorXd rest = data.groups[g].residual - all_shared(data.groups[g], small_discrepancies()) * amounts;
     const double squares = rest.dot(own[g].llt().solve(rest));
     CHECK(white[g].squaredNorm() == Approx(squares));
     CHECK(found[g] == Approx(squares + log_determinant(own[g])));
@@ -164,7 +163,8 @@ TEST_CASE("By group the deviance has shared shapes at the amounts that all group
 
 TEST_CASE("Nothing need be left open by the simulation") {
   StageData data = small_data();
-  for (StageGroup& group : data.groups) group.local_shapes.resize(7, 0), group.shared_shapes.resize(7, 0), group.number_shapes.resize(7, 0);
+  for (StageGroup& group : data.groups)
+    group.local_shapes.resize(7, 0), group.shared_shapes.resize(7, 0), group.number_shapes.resize(7, 0);
   double deviance = 0, squares = 0;
   for (const StageGroup& group : data.groups) {
     squares += group.residual.dot(group.residual.cwiseQuotient(group.variance));

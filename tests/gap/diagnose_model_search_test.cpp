@@ -46,7 +46,8 @@ TEST_CASE("A model is fitted with the discrepancies that suit what it leaves") {
   for (const Discrepancy& discrepancy : model.likelihood.discrepancies.of_kind) CHECK(discrepancy.sigma == 0);
   const Model other = fit_model(data, curves, wrong, {}, no_discrepancy());
   CHECK(length_in_noise(data, rest_of(data, other)) == Approx(24).margin(0.5));
-  CHECK(std::ranges::any_of(other.likelihood.discrepancies.of_kind, [](const Discrepancy& d) { return d.sigma > 0.5; }));
+  CHECK(
+      std::ranges::any_of(other.likelihood.discrepancies.of_kind, [](const Discrepancy& d) { return d.sigma > 0.5; }));
   CHECK(other.deviance() > model.deviance() + 16);
   // what a simulation has beyond the curves is no part of what they are fitted to
   const GroupVectors beyond = world().by_group(0.1 * effects[2]);

@@ -65,8 +65,8 @@ TEST_CASE("Numbers that cannot be seen make no shapes, and two that do the same 
   const LinearWorld world({2, 2, 3});
   const StageData data = world.data(world.noise(1));
   const std::vector<Candidate> candidates{number(1, 1, 0.5, 2), number(1, 1, 0.5, 2), number(1, 1, 0.5, 2)};
-  const EffectCurves curves = curves_of(world, data, candidates,
-                                        {30 * world.direction(0), 40 * world.direction(0), 0.5 * world.direction(1)});
+  const EffectCurves curves =
+      curves_of(world, data, candidates, {30 * world.direction(0), 40 * world.direction(0), 0.5 * world.direction(1)});
   const std::vector<std::size_t> possible{0, 1, 2}, none;
   const std::vector<MatrixXd> shapes = number_shapes(data, curves, possible);
   // of independent amounts: the root of 30^2 + 40^2

@@ -160,7 +160,8 @@ TEST_CASE("Imperfect: strata have the shares that are documented") {
   CHECK(count[Stratum::baseline] == 20);
 }
 
-TEST_CASE("Imperfect: every case has a background, counts and coloured noise, and short runs of which half are repeated") {
+TEST_CASE(
+    "Imperfect: every case has a background, counts and coloured noise, and short runs of which half are repeated") {
   std::size_t repeated = 0;
   double smallest = 10, largest = 0;
   const auto plans = imperfect(200, 4);
