@@ -92,7 +92,17 @@ std::vector<Setting> parts_of_ranges(const EffectCurves& curves, std::span<const
   return points;
 }
 
+// The upper end of the range; the lower one where there is nothing above.
+double end_of_range(const Candidate& candidate) {
+  return candidate.max > candidate.present ? candidate.max : candidate.min;
+}
+
 }  // namespace
+
+double ordinarily_off(const Candidate& candidate) {
+  const double to_end = end_of_range(candidate) - candidate.present;
+  return candidate.present + std::copysign(std::min(kOrdinarilyOff * candidate.whole, std::abs(to_end)), to_end);
+}
 
 double length_in_noise(const StageData& data, const GroupVectors& difference) {
   double squares = 0;
@@ -124,11 +134,9 @@ void add_first_look(EffectCurves& curves, const StageData& data, std::span<const
   for (const std::size_t c : chosen) {
     const Candidate& candidate = curves.candidates[c];
     const bool both_ways = candidate.min < candidate.present && candidate.present < candidate.max;
-    const double end = candidate.max > candidate.present ? candidate.max : candidate.min;
+    const double end = end_of_range(candidate);
     points.push_back({c, candidate.present + kSpread[0] * (end - candidate.present)});
-    const double ordinarily_off = std::min(kOrdinarilyOff * candidate.whole, std::abs(end - candidate.present));
-    if (ordinarily_off > 0)
-      points.push_back({c, candidate.present + std::copysign(ordinarily_off, end - candidate.present)});
+    if (candidate.whole > 0) points.push_back({c, ordinarily_off(candidate)});
     // what begins from some value on (drives that stall) shows only farther out
     if (!both_ways) points.push_back({c, end});
   }

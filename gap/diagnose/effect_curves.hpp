@@ -44,6 +44,9 @@ using Settings = std::vector<Setting>;  // together in one robot
 // What a search asks of the simulator: what the groups shift by each of these settings.
 using Simulate = std::function<std::vector<GroupVectors>(std::span<const Settings>, Fidelity)>;
 
+// A number of the description that is off as far as such numbers ordinarily are; the present value of what is no number.
+double ordinarily_off(const Candidate& candidate);
+
 // No points but the present ones.
 EffectCurves empty_curves(const StageData& data, std::span<const Candidate> candidates);
 

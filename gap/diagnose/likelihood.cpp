@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "gap/diagnose/channels.hpp"
 #include "gap/golden_section.hpp"
@@ -23,30 +25,54 @@ constexpr double kNoShape = 1e-3;
 constexpr double kLeastOff = 1e-4, kMostOff = 0.05;
 constexpr int kSectionsOfOff = 11;
 
-// Products of shared shapes with each other, and with a residual; the amounts that the residual makes most likely.
-struct Shared {
-  MatrixXd shapes;  // N' A^-1 N + 1
-  VectorXd residual;
-  VectorXd amounts;
-  double log_determinant = 0;
+std::vector<VectorXd> whitened(const std::vector<GroupWhitener>& whiteners, const GroupVectors& residual) {
+  std::vector<VectorXd> white;
+  for (std::size_t g = 0; g < whiteners.size(); ++g) white.emplace_back(whiteners[g](residual[g]));
+  return white;
+}
+
+// Inner products of shared shapes with each other and with a residual, over all groups.
+struct SharedProducts {
+  MatrixXd shapes;    // N' A^-1 N
+  VectorXd residual;  // N' A^-1 r
 };
 
-Shared shared_of(const std::vector<GroupWhitener>& whiteners, const GroupVectors& residual,
-                 std::vector<VectorXd>& white) {
+SharedProducts shared_products(const std::vector<GroupWhitener>& whiteners, const std::vector<VectorXd>& white) {
   const Index count = whiteners.empty() ? 0 : whiteners.front().shared().cols();
-  Shared shared{MatrixXd::Identity(count, count), VectorXd::Zero(count), VectorXd::Zero(count), 0};
-  white.clear();
+  SharedProducts products{MatrixXd::Zero(count, count), VectorXd::Zero(count)};
   for (std::size_t g = 0; g < whiteners.size(); ++g) {
     const MatrixXd& shapes = whiteners[g].shared();
-    white.push_back(whiteners[g](residual[g]));
-    shared.shapes.noalias() += shapes.transpose() * shapes;
-    shared.residual.noalias() += shapes.transpose() * white.back();
+    products.shapes.noalias() += shapes.transpose() * shapes;
+    products.residual.noalias() += shapes.transpose() * white[g];
   }
-  if (count == 0) return shared;
-  const Eigen::LLT<MatrixXd> factor(shared.shapes);
-  shared.amounts = factor.solve(shared.residual);
-  shared.log_determinant = 2 * factor.matrixL().toDenseMatrix().diagonal().array().log().sum();
-  return shared;
+  return products;
+}
+
+// The last `numbers` shapes `part` times as large.
+SharedProducts with_numbers_off(SharedProducts products, Index numbers, double part) {
+  VectorXd scale = VectorXd::Ones(products.residual.size());
+  scale.tail(numbers).setConstant(part);
+  products.shapes = scale.asDiagonal() * products.shapes * scale.asDiagonal();
+  products.residual.array() *= scale.array();
+  return products;
+}
+
+// Amounts of shared shapes, N(0, 1) before anything was measured.
+struct Amounts {
+  VectorXd most_likely;
+  // With all amounts integrated out; less than with none.
+  double log_determinant = 0, chi_squared = 0;
+  double deviance() const { return log_determinant + chi_squared; }
+};
+
+Amounts amounts_of(const SharedProducts& products) {
+  if (products.residual.size() == 0) return {};
+  MatrixXd normal = products.shapes;
+  normal.diagonal().array() += 1;
+  const Eigen::LLT<MatrixXd> factor(normal);
+  Amounts amounts{factor.solve(products.residual), 2 * factor.matrixLLT().diagonal().array().log().sum(), 0};
+  amounts.chi_squared = -products.residual.dot(amounts.most_likely);
+  return amounts;
 }
 
 // Of one group, each with the amount of 1 sigma.
@@ -57,28 +83,25 @@ MatrixXd shared_shapes(const StageGroup& group, double numbers_off) {
   return shapes;
 }
 
-// How far off the numbers of the description most likely are, beside given discrepancies of channels.
-double most_likely_numbers_off(const StageData& data, const GroupVectors& residual, Discrepancies discrepancies) {
-  const Index numbers = data.groups.empty() ? 0 : data.groups.front().number_shapes.cols();
+// How far off the numbers of the description most likely are; `whole`: of numbers that are off by all of themselves.
+double most_likely_numbers_off(const SharedProducts& whole, Index numbers) {
   if (numbers == 0) return 0;
-  // products with numbers off by their whole; by a part they are scaled
-  discrepancies.numbers_off = 1;
-  std::vector<VectorXd> white;
-  const Shared whole = shared_of(whiteners_of(data, discrepancies), residual, white);
-  const Index count = whole.residual.size();
-  const MatrixXd products = whole.shapes - MatrixXd::Identity(count, count);
-  const auto deviance = [&](double off) {
-    VectorXd scale = VectorXd::Ones(count);
-    scale.tail(numbers).setConstant(off);
-    MatrixXd normal = scale.asDiagonal() * products * scale.asDiagonal();
-    normal.diagonal().array() += 1;
-    const VectorXd along = scale.cwiseProduct(whole.residual);
-    const Eigen::LLT<MatrixXd> factor(normal);
-    return 2 * factor.matrixLLT().diagonal().array().log().sum() - along.dot(factor.solve(along));
-  };
+  const auto deviance = [&](double off) { return amounts_of(with_numbers_off(whole, numbers, off)).deviance(); };
   const auto [log_off, least] = golden_section(std::log(kLeastOff), std::log(kMostOff), kSectionsOfOff,
                                                [&](double at) { return deviance(std::exp(at)); });
   return least < deviance(0) ? std::exp(log_off) : 0;
+}
+
+// S S' by unit vectors and their squared lengths; directions along which nothing is open are left out.
+std::pair<MatrixXd, VectorXd> directions_of(const MatrixXd& shapes) {
+  if (shapes.cols() == 0) return {shapes, VectorXd()};
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(shapes.transpose() * shapes);
+  const VectorXd& squares = eigen.eigenvalues();
+  Index first = 0;
+  while (first < squares.size() && squares[first] < kNoShape * kNoShape) ++first;
+  const Index count = squares.size() - first;
+  return {shapes * eigen.eigenvectors().rightCols(count) * squares.tail(count).cwiseSqrt().cwiseInverse().asDiagonal(),
+          squares.tail(count)};
 }
 
 // The amounts of local shapes that a residual makes most likely, taken off it: what noise and discrepancy are left
@@ -132,24 +155,13 @@ GroupWhitener::GroupWhitener(const StageGroup& group, const Discrepancies& discr
     log_determinant_ += parts_.back().whitener.log_determinant();
   }
   MatrixXd shapes = group.local_shapes;
-  directions_.resize(shapes.rows(), 0);
-  shrink_.resize(0);
-  if (shapes.cols() == 0) {
-    shared_ = (*this)(shared_shapes(group, discrepancies.numbers_off));
-    return;
-  }
   for (const Part& part : parts_) part.whitener.whiten(shapes.middleRows(part.first, part.count));
 
   // covariance in whitened units: 1 + S S'; along its direction u_i the variance is 1 + s_i^2
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(shapes.transpose() * shapes);
-  const VectorXd squares = eigen.eigenvalues();
-  Index first = 0;
-  while (first < squares.size() && squares[first] < kNoShape * kNoShape) ++first;
-  const Index count = squares.size() - first;
-  directions_ =
-      shapes * eigen.eigenvectors().rightCols(count) * squares.tail(count).cwiseSqrt().cwiseInverse().asDiagonal();
-  shrink_ = 1 - (1 + squares.tail(count).array()).rsqrt();
-  log_determinant_ += (1 + squares.tail(count).array()).log().sum();
+  VectorXd squares;
+  std::tie(directions_, squares) = directions_of(shapes);
+  shrink_ = 1 - (1 + squares.array()).rsqrt();
+  log_determinant_ += (1 + squares.array()).log().sum();
   shared_ = (*this)(shared_shapes(group, discrepancies.numbers_off));
 }
 
@@ -187,9 +199,9 @@ MatrixXd inner_products(const std::vector<GroupWhitener>& whiteners, const std::
 
 Likelihood likelihood_with(const StageData& data, const GroupVectors& residual, const Discrepancies& discrepancies) {
   const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
-  std::vector<VectorXd> white;
-  const Shared shared = shared_of(whiteners, residual, white);
-  Likelihood result{shared.log_determinant, -shared.residual.dot(shared.amounts), discrepancies};
+  const std::vector<VectorXd> white = whitened(whiteners, residual);
+  const Amounts amounts = amounts_of(shared_products(whiteners, white));
+  Likelihood result{amounts.log_determinant, amounts.chi_squared, discrepancies};
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
     result.chi_squared += white[g].squaredNorm();
     result.deviance += whiteners[g].log_determinant();
@@ -199,18 +211,22 @@ Likelihood likelihood_with(const StageData& data, const GroupVectors& residual, 
 }
 
 Likelihood likelihood_of(const StageData& data, const GroupVectors& residual, const Discrepancies& start) {
+  const Index numbers = data.groups.empty() ? 0 : data.groups.front().number_shapes.cols();
   Discrepancies discrepancies = start;
   for (int round = 0; round < kRounds; ++round) {
-    // numbers first, which are the same in all groups; then open shapes at their most likely amounts, and the
-    // discrepancies that make the rest most likely
-    discrepancies.numbers_off = most_likely_numbers_off(data, residual, discrepancies);
-    std::vector<VectorXd> white;
-    const Shared shared = shared_of(whiteners_of(data, discrepancies), residual, white);
+    // numbers first, which are the same in all groups
+    discrepancies.numbers_off = 1;
+    const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
+    const SharedProducts whole = shared_products(whiteners, whitened(whiteners, residual));
+    discrepancies.numbers_off = most_likely_numbers_off(whole, numbers);
+
+    // then open shapes at their most likely amounts, and the discrepancies that make the rest most likely
+    VectorXd amounts = amounts_of(with_numbers_off(whole, numbers, discrepancies.numbers_off)).most_likely;
+    amounts.tail(numbers) *= discrepancies.numbers_off;
     GroupVectors rest;
-    for (std::size_t g = 0; g < data.groups.size(); ++g) {
-      const MatrixXd shapes = shared_shapes(data.groups[g], discrepancies.numbers_off);
-      rest.push_back(without_local_shapes(data.groups[g], discrepancies, residual[g] - shapes * shared.amounts));
-    }
+    for (std::size_t g = 0; g < data.groups.size(); ++g)
+      rest.push_back(without_local_shapes(data.groups[g], discrepancies,
+                                          residual[g] - shared_shapes(data.groups[g], 1) * amounts));
     discrepancies.of_kind = estimated(data, rest);
   }
   return likelihood_with(data, residual, discrepancies);
@@ -219,9 +235,9 @@ Likelihood likelihood_of(const StageData& data, const GroupVectors& residual, co
 std::vector<VectorXd> whitened_rest(const StageData& data, const GroupVectors& residual,
                                     const Discrepancies& discrepancies) {
   const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
-  std::vector<VectorXd> white;
-  const Shared shared = shared_of(whiteners, residual, white);
-  for (std::size_t g = 0; g < data.groups.size(); ++g) white[g] -= whiteners[g].shared() * shared.amounts;
+  std::vector<VectorXd> white = whitened(whiteners, residual);
+  const VectorXd amounts = amounts_of(shared_products(whiteners, white)).most_likely;
+  for (std::size_t g = 0; g < data.groups.size(); ++g) white[g] -= whiteners[g].shared() * amounts;
   return white;
 }
 

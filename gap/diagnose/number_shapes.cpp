@@ -25,11 +25,63 @@ const CurvePoint* nearest_to_present(const EffectCurve& curve, double present) {
   return nearest;
 }
 
+// Those of `possible` that are numbers of the description and that `settings` leave as they are.
+std::vector<std::size_t> numbers_but(std::span<const Candidate> candidates, std::span<const std::size_t> possible,
+                                     const Settings& settings) {
+  std::vector<std::size_t> numbers;
+  for (const std::size_t c : possible)
+    if (candidates[c].whole > 0 && std::ranges::count(settings, c, &Setting::candidate) == 0) numbers.push_back(c);
+  return numbers;
+}
+
+// Of each group, what each number shifts beside `settings`, off by all of itself.
+std::vector<MatrixXd> shifts_beside(const StageData& data, std::span<const Candidate> candidates,
+                                    std::span<const std::size_t> numbers, const Settings& settings,
+                                    const Simulate& simulate) {
+  std::vector<Settings> asked{settings};
+  for (const std::size_t c : numbers) {
+    asked.push_back(settings);
+    asked.back().push_back({c, ordinarily_off(candidates[c])});
+  }
+  const std::vector<GroupVectors> simulated = simulate(asked, Fidelity::coarse);
+  std::vector<MatrixXd> shifts;
+  for (std::size_t g = 0; g < data.groups.size(); ++g) {
+    shifts.emplace_back(std::ssize(data.groups[g].bins), std::ssize(numbers));
+    for (std::size_t n = 0; n < numbers.size(); ++n) {
+      const Candidate& candidate = candidates[numbers[n]];
+      shifts.back().col(static_cast<Index>(n)) =
+          candidate.whole / (ordinarily_off(candidate) - candidate.present) * (simulated[n + 1][g] - simulated[0][g]);
+    }
+  }
+  return shifts;
+}
+
+// The principal directions of what all numbers shift together. `shifts`: of each group; of each number, off by all of
+// itself, a column.
+std::vector<MatrixXd> principal_directions(const StageData& data, std::vector<MatrixXd> shifts) {
+  const Index numbers = shifts.empty() ? 0 : shifts.front().cols();
+  if (numbers == 0) return shifts;
+  MatrixXd products = MatrixXd::Zero(numbers, numbers);
+  for (std::size_t g = 0; g < shifts.size(); ++g) {
+    const MatrixXd white = data.groups[g].variance.cwiseSqrt().cwiseInverse().asDiagonal() * shifts[g];
+    products.noalias() += white.transpose() * white;
+  }
+
+  // of the covariance of all shifts, in units of noise
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(products);
+  Index count = 0;
+  while (count < std::min(kMostDirections, numbers) &&
+         eigen.eigenvalues()[numbers - 1 - count] > kVisibleDirection * kVisibleDirection)
+    ++count;
+  const MatrixXd directions = eigen.eigenvectors().rightCols(count).rowwise().reverse();
+  for (MatrixXd& group : shifts) group = group * directions;
+  return shifts;
+}
+
 }  // namespace
 
 std::vector<MatrixXd> number_shapes(const StageData& data, const EffectCurves& curves,
                                     std::span<const std::size_t> possible) {
-  // what each number shifts, off by all of itself
   std::vector<int> columns;
   std::vector<double> scales;
   for (const std::size_t c : possible) {
@@ -42,23 +94,26 @@ std::vector<MatrixXd> number_shapes(const StageData& data, const EffectCurves& c
   }
   const Eigen::Map<const Eigen::VectorXd> scale(scales.data(), std::ssize(scales));
   std::vector<MatrixXd> shifts;
-  MatrixXd products = MatrixXd::Zero(std::ssize(columns), std::ssize(columns));
-  for (std::size_t g = 0; g < data.groups.size(); ++g) {
+  for (std::size_t g = 0; g < data.groups.size(); ++g)
     shifts.emplace_back(curves.shifts[g](Eigen::all, columns) * scale.asDiagonal());
-    const MatrixXd white = data.groups[g].variance.cwiseSqrt().cwiseInverse().asDiagonal() * shifts.back();
-    products.noalias() += white.transpose() * white;
-  }
-  if (columns.empty()) return shifts;
+  return principal_directions(data, std::move(shifts));
+}
 
-  // of the covariance of all shifts together the principal directions, in units of noise
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(products);
-  Index count = 0;
-  while (count < std::min(kMostDirections, products.cols()) &&
-         eigen.eigenvalues()[products.cols() - 1 - count] > kVisibleDirection * kVisibleDirection)
-    ++count;
-  const MatrixXd directions = eigen.eigenvectors().rightCols(count).rowwise().reverse();
-  for (MatrixXd& group : shifts) group = group * directions;
-  return shifts;
+std::vector<MatrixXd> number_shapes_around(const StageData& data, std::span<const Candidate> candidates,
+                                           std::span<const std::size_t> possible, const Settings& settings,
+                                           const Simulate& simulate) {
+  return principal_directions(
+      data, shifts_beside(data, candidates, numbers_but(candidates, possible, settings), settings, simulate));
+}
+
+std::vector<MatrixXd> number_shapes_of_change(const StageData& data, std::span<const Candidate> candidates,
+                                              std::span<const std::size_t> possible, const Settings& settings,
+                                              const Simulate& simulate) {
+  const std::vector<std::size_t> numbers = numbers_but(candidates, possible, settings);
+  std::vector<MatrixXd> shifts = shifts_beside(data, candidates, numbers, settings, simulate);
+  const std::vector<MatrixXd> before = shifts_beside(data, candidates, numbers, {}, simulate);
+  for (std::size_t g = 0; g < shifts.size(); ++g) shifts[g] -= before[g];
+  return principal_directions(data, std::move(shifts));
 }
 
 }  // namespace kenaf::gap

@@ -102,8 +102,8 @@ StageData stage_data(Passage passage, const std::vector<StageFeatures>& features
     group.local_shapes.resize(local.rows(), local.cols() + group.shared_shapes.cols());
     group.local_shapes << one_run.cwiseSqrt().asDiagonal() * local, kNumericsOfRun * group.shared_shapes;
     if (has_baseline) group.shared_shapes.setZero();
-    group.number_shapes = has_baseline || floor.number_shapes.empty() ? MatrixXd(local.rows(), 0)
-                                                                      : floor.number_shapes[data.groups.size()];
+    group.number_shapes =
+        floor.number_shapes.empty() ? MatrixXd(local.rows(), 0) : floor.number_shapes[data.groups.size()];
     data.groups.push_back(std::move(group));
   }
   return data;

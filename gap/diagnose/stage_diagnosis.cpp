@@ -242,11 +242,6 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
     return stage_data(input.passage, features, *input.repeats, stage.residuals, floor);
   };
   StageAround nominal{stage.nominal_floor, data_in(stage.nominal_floor)};
-  const Around around = [&](const Settings& settings) {
-    StageAround result{with_open_shapes(stage.nominal_floor, open_around(settings)), {}};
-    result.data = data_in(result.floor);
-    return result;
-  };
   const Simulate simulate = [&](std::span<const Settings> asked, Fidelity fidelity) {
     std::vector<Variation> variations;
     for (const Settings& settings : asked) variations.push_back(varied(settings));
@@ -255,13 +250,23 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
       shifts.push_back(mean_of_groups(nominal.data, shift));
     return shifts;
   };
-
-  // curves, then the decision
   const bool drives_measured =
       std::ranges::all_of(input.observations->runs, [](const Observation& run) { return run.measured.has_value(); });
   const std::vector<std::size_t> possible = candidates_of(input.passage, candidates, drives_measured);
+  const bool has_baseline =
+      std::ranges::any_of(features, [](const StageFeatures& run) { return run.baseline_runs.size() > 0; });
+  const Around around = [&](const Settings& settings) {
+    StageAround result{with_open_shapes(stage.nominal_floor, open_around(settings)), {}};
+    const auto shapes = has_baseline ? number_shapes_of_change : number_shapes_around;
+    result.floor.number_shapes = shapes(nominal.data, candidates, possible, settings, simulate);
+    result.data = data_in(result.floor);
+    return result;
+  };
+
+  // curves, then the decision
   EffectCurves curves = first_look(nominal.data, candidates, possible, simulate);
-  stage.nominal_floor.number_shapes = number_shapes(nominal.data, curves, possible);
+  // numbers that are a little off are so in a baseline, too
+  if (!has_baseline) stage.nominal_floor.number_shapes = number_shapes(nominal.data, curves, possible);
   nominal = {stage.nominal_floor, data_in(stage.nominal_floor)};
   follow_those_that_matter(curves, nominal.data, possible, simulate);
   const std::vector<VectorXd> deviations = deviations_from_repeats(features, stage.residuals, *input.same_orders);

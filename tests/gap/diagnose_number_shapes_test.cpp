@@ -77,3 +77,46 @@ TEST_CASE("Numbers that cannot be seen make no shapes, and two that do the same 
   }
   for (const MatrixXd& group : number_shapes(data, curves, none)) CHECK(group.cols() == 0);
 }
+
+TEST_CASE(
+    "Around a model a number shifts what it does beside the model's values, and the model's own numbers are no "
+    "shapes") {
+  // tracks that are wider do nothing to track speeds, but for a robot whose turns are limited: 20 a metre and a unit of
+  // the limit; without the limit 3 a metre; mass 7 a kilogram, whatever else
+  const LinearWorld world({2, 2, 3});
+  const StageData data = world.data(world.noise(1));
+  const std::vector<Candidate> candidates{number(0, 0, 0, 2), number(10, 10, 5, 20), number(1, 1, 0.5, 2)};
+  const auto moved = [&](const Settings& settings) {
+    double limit = 0, metres = 0, kilograms = 0;
+    for (const Setting& setting : settings)
+      (setting.candidate == 0   ? limit
+       : setting.candidate == 1 ? metres
+                                : kilograms) = setting.value - candidates[setting.candidate].present;
+    return Whole(40 * limit * world.direction(0) + (3 + 20 * limit) * metres * world.direction(1) +
+                 7 * kilograms * world.direction(2));
+  };
+  const Simulate simulate = [&](std::span<const Settings> asked, Fidelity) {
+    std::vector<GroupVectors> shifts;
+    for (const Settings& settings : asked) shifts.push_back(world.by_group(moved(settings)));
+    return shifts;
+  };
+  const std::vector<std::size_t> possible{0, 1, 2};
+  const auto is = [&](const std::vector<MatrixXd>& shapes, const Whole& first, const Whole& second) {
+    const std::vector<Eigen::VectorXd> a = world.by_group(first), b = world.by_group(second);
+    for (std::size_t g = 0; g < 2; ++g) {
+      const MatrixXd expected = covariance(a[g]) + covariance(b[g]);
+      CHECK((covariance(shapes[g]) - expected).norm() < 1e-9 * covariance(world.by_group(first + second)[g]).norm());
+    }
+  };
+  const Whole none = Whole::Zero(world.bins());
+
+  // at a limit of 0.5 a metre shifts 3 + 20 * 0.5 = 13; tracks are 10 m apart, so all of them shift 130
+  const Settings limited{{0, 0.5}};
+  is(number_shapes_around(data, candidates, possible, limited, simulate), 130 * world.direction(1),
+     7 * world.direction(2));
+  // mass is one of the model's values, and no longer open
+  const Settings limited_and_heavy{{0, 0.5}, {2, 1.2}};
+  is(number_shapes_around(data, candidates, possible, limited_and_heavy, simulate), 130 * world.direction(1), none);
+  // what tracks shift without a limit, and mass, both datasets have
+  is(number_shapes_of_change(data, candidates, possible, limited, simulate), 100 * world.direction(1), none);
+}
