@@ -27,6 +27,7 @@ void check(const std::filesystem::path& folder) {
   std::vector<std::vector<std::string>> columns;
   std::size_t refused = 0, warned = 0;
   KnownRuns known_runs;
+  HeldInRuns held;
   const auto take = [&](const std::vector<Finding>& findings) {
     print(findings);
     for (const Finding& finding : findings) ++(finding.severity == Finding::Severity::refuse ? refused : warned);
@@ -35,8 +36,12 @@ void check(const std::filesystem::path& folder) {
     const runs::Run run = runs::read_run(folder / entry.file);
     columns.push_back(run.columns);
     if (const auto copy = known_runs.copy(run, entry.file)) take({*copy});
-    if (entry.fault.empty()) take(check_run(run, entry.file, &robot));
+    if (!entry.fault.empty()) continue;
+    std::vector<Finding> found = check_run(run, entry.file, &robot);
+    held.take_off(found);
+    take(found);
   }
+  take(held.findings());
   take(check_noise(dataset, columns));
   const std::string counts =
       fmt::format("{} runs; findings: {} refused, {} warned of", dataset.runs.size(), refused, warned);

@@ -20,6 +20,27 @@ bool any_refused(std::span<const Finding> findings) {
   return std::ranges::find(findings, Finding::Severity::refuse, &Finding::severity) != findings.end();
 }
 
+void HeldInRuns::take_off(std::vector<Finding>& found) {
+  for (const Finding& finding : found) {
+    if (finding.severity != Finding::Severity::held) continue;
+    const auto known = std::ranges::find(columns_, finding.column, [](const OfColumn& of) { return of.first.column; });
+    if (known == columns_.end())
+      columns_.push_back({finding, 1});
+    else
+      ++known->runs;
+  }
+  std::erase_if(found, [](const Finding& finding) { return finding.severity == Finding::Severity::held; });
+}
+
+std::vector<Finding> HeldInRuns::findings() const {
+  std::vector<Finding> findings;
+  for (const OfColumn& of : columns_) {
+    findings.push_back(of.first);
+    if (of.runs > 1) findings.back().text += fmt::format(" (as in {} more)", of.runs - 1);
+  }
+  return findings;
+}
+
 std::vector<Finding> check_run(const runs::Run& run, const std::string& file, const physics::RobotDescription* robot) {
   constexpr std::size_t kFewestRows = 10;
   if (run.row_count() < kFewestRows)
@@ -33,6 +54,7 @@ std::vector<Finding> check_run(const runs::Run& run, const std::string& file, co
   checks.check_scales();
   checks.check_commands();
   checks.check_constants();
+  checks.check_held();
   checks.check_pose();
   std::ranges::move(checks.take(), std::back_inserter(findings));
   return findings;
@@ -61,11 +83,15 @@ std::vector<Finding> check_plausibility(const runs::Dataset& dataset, std::span<
                                         const physics::RobotDescription* robot) {
   std::vector<std::vector<std::string>> columns;
   std::vector<Finding> findings;
+  HeldInRuns held;
   for (std::size_t i = 0; i < std::min(runs.size(), dataset.runs.size()); ++i) {
     columns.push_back(runs[i].columns);
     if (!dataset.runs[i].fault.empty()) continue;
-    std::ranges::move(check_run(runs[i], dataset.runs[i].file, robot), std::back_inserter(findings));
+    std::vector<Finding> found = check_run(runs[i], dataset.runs[i].file, robot);
+    held.take_off(found);
+    std::ranges::move(found, std::back_inserter(findings));
   }
+  std::ranges::move(held.findings(), std::back_inserter(findings));
   std::ranges::move(check_noise(dataset, columns), std::back_inserter(findings));
   return findings;
 }

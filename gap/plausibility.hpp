@@ -22,6 +22,7 @@ namespace kenaf::gap {
 struct Finding {
   enum class Severity {
     warn,
+    held,  // rows repeat a value that came more rarely: a diagnosis takes the repeats for rows in which nothing was measured
     dead,  // the column holds no measurement: a diagnosis takes it for one that was never measured
     refuse,
   };
@@ -35,6 +36,21 @@ struct Finding {
 // "run-000.csv:17: x_m: jumps ..."; without a line "run-000.csv: x_m: ...".
 std::string in_words(const Finding& finding);
 bool any_refused(std::span<const Finding> findings);
+
+// Takes those of Severity::held off what was found in a run, since all runs of a log have the same: one remains of each
+// column, which says in how many runs.
+class HeldInRuns {
+ public:
+  void take_off(std::vector<Finding>& found);
+  std::vector<Finding> findings() const;
+
+ private:
+  struct OfColumn {
+    Finding first;
+    std::size_t runs;
+  };
+  std::vector<OfColumn> columns_;
+};
 
 // Of one run. `robot`: whose limits it has; null: not known, and fewer things are certain.
 std::vector<Finding> check_run(const runs::Run& run, const std::string& file, const physics::RobotDescription* robot);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "gap/diagnose/channels.hpp"
+#include "gap/logs/course.hpp"
 
 namespace kenaf::gap {
 namespace {
@@ -37,7 +38,7 @@ FeatureMap::FeatureMap(const runs::Run& measured, double span_s, std::span<const
     const Channel& channel = diagnosis_channels()[c];
     if (std::ranges::find(left_out, channel.column) != left_out.end()) continue;
     const std::span<const double> column = measured.column(channel.column);
-    Series series{c, {}, {}};
+    Series series{c, {}, {}, 0};
     for (std::size_t i = 0; i < column.size(); ++i) {
       if (std::isnan(column[i]) || (channel.level && upright[i])) continue;
       series.t_s.push_back(time[i] - time.front());
@@ -45,6 +46,7 @@ FeatureMap::FeatureMap(const runs::Run& measured, double span_s, std::span<const
     }
     if (series.t_s.empty()) continue;
     if (channel.angle) unwrap(series.value);
+    series.interval_s = series.t_s.size() > 1 ? median_step(series.t_s, series.value) : 0;
     for (std::size_t i = 0; i < series.t_s.size(); ++i) {
       // a time on a border belongs to the later span, whatever its last bit
       const auto span = static_cast<std::size_t>(series.t_s[i] / span_s + 1e-6);
@@ -62,7 +64,7 @@ FeatureMap::FeatureMap(const runs::Run& measured, double span_s, std::span<const
     measured_[static_cast<Eigen::Index>(b)] /= static_cast<double>(bins_[b].samples);
 }
 
-std::vector<double> FeatureMap::simulated_at(const runs::Run& simulated, const Series& series) const {
+std::vector<double> FeatureMap::simulated_at(const runs::Run& simulated, const Series& series, double late) const {
   const Channel& channel = diagnosis_channels()[series.channel];
   const std::span<const double> time = simulated.column("t_s"), column = simulated.column(channel.column);
   std::vector<double> t_s, value, result(series.t_s.size(), 0.0);
@@ -79,24 +81,25 @@ std::vector<double> FeatureMap::simulated_at(const runs::Run& simulated, const S
   }
   std::size_t next = 0;
   for (std::size_t i = 0; i < result.size(); ++i) {
-    while (next < t_s.size() && t_s[next] < series.t_s[i]) ++next;
+    const double taken_s = series.t_s[i] - late * series.interval_s;
+    while (next < t_s.size() && t_s[next] < taken_s) ++next;
     if (next == 0)
       result[i] = value.front();
     else if (next == t_s.size())
       result[i] = value.back();
     else {
-      const double share = (series.t_s[i] - t_s[next - 1]) / (t_s[next] - t_s[next - 1]);
+      const double share = (taken_s - t_s[next - 1]) / (t_s[next] - t_s[next - 1]);
       result[i] = value[next - 1] + share * (value[next] - value[next - 1]);
     }
   }
   return result;
 }
 
-Eigen::VectorXd FeatureMap::of(const runs::Run& simulated) const {
+Eigen::VectorXd FeatureMap::of(const runs::Run& simulated, double late) const {
   Eigen::VectorXd means = Eigen::VectorXd::Zero(measured_.size());
   Eigen::Index bin = 0;
   for (const Series& series : series_) {
-    const std::vector<double> at = simulated_at(simulated, series);
+    const std::vector<double> at = simulated_at(simulated, series, late);
     std::size_t in_bin = 0;
     for (const double value : at) {
       if (in_bin == bins_[static_cast<std::size_t>(bin)].samples) {

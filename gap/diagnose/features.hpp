@@ -29,15 +29,17 @@ class FeatureMap {
   double span_s() const { return span_s_; }
   const Eigen::VectorXd& measured() const { return measured_; }
   // A simulated run at the times at which the channels were measured, interpolated, then likewise averaged. Where it
-  // ended early its last value stands; a channel that it does not have is 0.
-  Eigen::VectorXd of(const runs::Run& simulated) const;
+  // ended early its last value stands; a channel that it does not have is 0. `late`: how much earlier than they say the
+  // samples were taken, in parts of the time since the one before.
+  Eigen::VectorXd of(const runs::Run& simulated, double late = 0) const;
 
  private:
   struct Series {
     std::size_t channel;
     std::vector<double> t_s, value;
+    double interval_s;  // from one sample to the next, the median
   };
-  std::vector<double> simulated_at(const runs::Run& simulated, const Series& series) const;
+  std::vector<double> simulated_at(const runs::Run& simulated, const Series& series, double late) const;
 
   double span_s_;
   std::vector<Series> series_;

@@ -69,7 +69,7 @@ std::vector<LeftOverCandidate> regressors_for(const QuantityInfo& info) {
 
 // A simulated quantity by span, with what it was when the run began: half a span before the middle of the first one, in
 // which a step at the start is all but over.
-struct Course {
+struct CourseOfBins {
   VectorXd values;
   double start, span_s;
 
@@ -78,7 +78,7 @@ struct Course {
 };
 
 // In a steady state before the run, as the other ones below.
-VectorXd delayed(const Course& course, double delay_s) {
+VectorXd delayed(const CourseOfBins& course, double delay_s) {
   VectorXd result(course.values.size());
   for (Index i = 0; i < result.size(); ++i) {
     const double at = static_cast<double>(i) - delay_s / course.span_s;
@@ -91,7 +91,7 @@ VectorXd delayed(const Course& course, double delay_s) {
 }
 
 // A first-order lag of what is straight between spans.
-VectorXd lagged(const Course& course, double lag_s) {
+VectorXd lagged(const CourseOfBins& course, double lag_s) {
   VectorXd result(course.values.size());
   double behind = 0;  // the input less the lagged one
   for (Index i = 0; i < result.size(); ++i) {
@@ -104,7 +104,7 @@ VectorXd lagged(const Course& course, double lag_s) {
   return result;
 }
 
-VectorXd limited(const Course& course, double limit) {
+VectorXd limited(const CourseOfBins& course, double limit) {
   VectorXd result(course.values.size());
   double now = course.start;
   for (Index i = 0; i < result.size(); ++i) {
@@ -175,7 +175,7 @@ double at_start(const LeftOverRun& run, Quantity quantity) {
 
 // A column of one run; empty where it was not measured there.
 VectorXd regressor_of(const LeftOverCandidate& candidate, const LeftOverRun& run, const Measured& m,
-                      const QuantityInfo& info, const Course& course) {
+                      const QuantityInfo& info, const CourseOfBins& course) {
   const VectorXd& simulated = course.values;
   const double span_s = run.features->span_s();
   switch (candidate.kind) {
@@ -266,7 +266,7 @@ LeftOverRows rows_of(std::span<const LeftOverRun> runs, const QuantityInfo& quan
     const QuantitySeries series = series_of(runs[r], quantity.quantity);
     if (series.measured.size() == 0) continue;
     const Measured measured = measured_in(runs[r]);
-    Course course{filled(series.simulated), at_start(runs[r], quantity.quantity), runs[r].features->span_s()};
+    CourseOfBins course{filled(series.simulated), at_start(runs[r], quantity.quantity), runs[r].features->span_s()};
     if (std::isnan(course.start)) course.start = course.values[0];
     std::vector<VectorXd> columns;
     for (const LeftOverCandidate& candidate : rows.candidates)

@@ -3,6 +3,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "gap/diagnose/channels.hpp"
 
@@ -16,6 +17,9 @@ constexpr double kMadToSigma = 1.4826;
 // Of the largest squares, which are events, not noise. What is left is not made larger for their absence, as for a
 // Gaussian: repeats differ mostly by a slow wander, which is alike in all bins.
 constexpr double kTrimmed = 0.05;
+
+// A sample was taken at any time since the one before it: 1 sigma of an even distribution, in parts of its width.
+const double kClockError = 1 / std::sqrt(12.0);
 
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + std::ssize(values) / 2;
@@ -41,6 +45,14 @@ std::vector<std::size_t> full_bins(const std::vector<StageFeatures>& features) {
   for (const StageFeatures& map : features)
     for (const Bin& bin : map.bins) full[bin.channel] = std::max(full[bin.channel], bin.samples);
   return full;
+}
+
+// Of any run.
+std::vector<std::size_t> measured_channels(const std::vector<StageFeatures>& features) {
+  std::set<std::size_t> channels;
+  for (const StageFeatures& run : features)
+    for (const Bin& bin : run.bins) channels.insert(bin.channel);
+  return {channels.begin(), channels.end()};
 }
 
 VectorXd hypot(const VectorXd& a, const VectorXd& b) {
@@ -207,8 +219,9 @@ NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShape
 std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, Predictor& predictor, Passage passage,
                                     const Variation& model, double start_sigma_m, double start_sigma_rad) {
   constexpr std::size_t kOfStart = 3, kOpen = 7;  // after those of the start, numbers of the simulator
-  // the model itself, and with each open number varied both ways
-  std::vector<Variation> variations(2 * kOpen + 1, model);
+  // the model itself, with each open number varied both ways, and with samples that are late
+  std::vector<Variation> variations(2 * kOpen + 2, model);
+  variations[2 * kOpen].samples_late = kClockError;
   for (const bool minus : {false, true}) {
     Variation* v = variations.data() + (minus ? kOpen : 0);
     const double sign = minus ? -1 : 1, factor = minus ? 0.5 : 2;
@@ -222,17 +235,20 @@ std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, 
         minus ? std::max(1, model.physics.solver_iterations / 2) : 2 * model.physics.solver_iterations;
   }
   const std::vector<Shift> shifts = predictor.shifts(variations, passage, Fidelity::fine);
+  const std::vector<std::size_t> measured = measured_channels(features);
   std::vector<OpenShapes> open;
   for (std::size_t r = 0; r < features.size(); ++r) {
     const auto size = static_cast<Index>(features[r].bins.size());
-    const auto channels = static_cast<Index>(diagnosis_channels().size());
-    OpenShapes run{Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOfStart) + channels),
+    const auto channels = std::ssize(measured);
+    OpenShapes run{Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOfStart) + 2 * channels),
                    Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOpen - kOfStart)), VectorXd::Zero(size)};
-    // one count more or less of a sensor lasts as long as the robot rolls on
-    for (std::size_t b = 0; b < features[r].bins.size(); ++b) {
-      const std::size_t channel = features[r].bins[b].channel;
-      run.local(static_cast<Index>(b), static_cast<Index>(2 * kOfStart + channel)) =
-          diagnosis_channels()[channel].resolution;
+    // one count more or less of a sensor lasts as long as the robot rolls on, and its clock's error as long as the log
+    const VectorXd late = shifts[2 * kOpen][r] - shifts.back()[r];
+    for (Index b = 0; b < size; ++b) {
+      const std::size_t channel = features[r].bins[static_cast<std::size_t>(b)].channel;
+      const Index place = 2 * static_cast<Index>(kOfStart) + (std::ranges::find(measured, channel) - measured.begin());
+      run.local(b, place) = diagnosis_channels()[channel].resolution;
+      run.local(b, place + channels) = late[b];
     }
     // odd and even part of what each variation shifts
     for (std::size_t i = 0; i < kOpen; ++i) {

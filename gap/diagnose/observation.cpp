@@ -9,6 +9,7 @@
 
 #include "gap/diagnose/channels.hpp"
 #include "gap/logs/copies.hpp"
+#include "gap/logs/held_samples.hpp"
 #include "gap/plausibility.hpp"
 #include "protocol/frames.hpp"
 #include "rollout/measured_motion.hpp"
@@ -79,9 +80,20 @@ void empty_column(runs::Run& run, const std::string& name) {
     if (run.columns[c] == name) std::ranges::fill(run.values[c], std::nan(""));
 }
 
-// Empties the columns of dead sensors. Throws where something is certainly wrong.
-void check(runs::Run& run, const std::string& file, const fs::path& folder, Observations& result) {
-  for (const Finding& finding : check_run(run, file, &result.robot)) {
+void empty_repeats(runs::Run& run, const std::string& name) {
+  const std::optional<HeldSamples> held = held_samples(run.column("t_s"), run.column(name));
+  if (!held) return;
+  const auto column = static_cast<std::size_t>(std::ranges::find(run.columns, name) - run.columns.begin());
+  for (const std::size_t row : held->repeats) run.values[column][row] = std::nan("");
+}
+
+// Empties the columns of dead sensors, and cells that only repeat a value. Throws where something is certainly wrong.
+void check(runs::Run& run, const std::string& file, const fs::path& folder, HeldInRuns& held, Observations& result) {
+  std::vector<Finding> found = check_run(run, file, &result.robot);
+  for (const Finding& finding : found)
+    if (finding.severity == Finding::Severity::held) empty_repeats(run, finding.column);
+  held.take_off(found);
+  for (const Finding& finding : found) {
     const std::string words = in_words(finding);
     if (finding.severity == Finding::Severity::refuse)
       throw runs::RunFileError(fmt::format("{}/{}", folder.string(), words));
@@ -158,6 +170,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
   std::map<std::string, std::size_t> worlds;
   KnownRuns known_runs;
   std::vector<Finding> copies;
+  HeldInRuns held;
   for (const runs::DatasetRun& entry : entries) {
     if (!entry.fault.empty()) {
       result.warnings.push_back(fmt::format("{}: its simulation went wrong; left out", entry.file));
@@ -169,7 +182,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
       copies.push_back(*copy);
       continue;
     }
-    check(observation.run, entry.file, folder, result);
+    check(observation.run, entry.file, folder, held, result);
     count_time_from_zero(observation.run);
     const std::string path = (folder / entry.file).string();
     observation.replay = rollout::replay_of(observation.run, path);
@@ -186,6 +199,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     prepare_replays(observation, path);
     result.runs.push_back(std::move(observation));
   }
+  for (const Finding& finding : held.findings()) result.warnings.push_back(in_words(finding) + " (repeats left out)");
   if (!copies.empty())
     result.warnings.push_back(
         in_words(copies.front()) +

@@ -112,7 +112,7 @@ VectorXd Predictor::values_of(std::size_t run, const Variation& variation, Passa
   if (stage.bins.empty()) return {};
   const runs::Run simulated = simulate_in(passage, run, variation);
   const FeatureMap& map = features_.maps[run];
-  return stage_values(passage, stage, map, map.of(simulated), simulated);
+  return stage_values(passage, stage, map, map.of(simulated, variation.samples_late), simulated);
 }
 
 // Bins at times that the other run does not have keep what the last one before them has: a run that lasts longer rests.

@@ -176,7 +176,10 @@ void RunChecks::check_scales() {
     const std::string command = "cmd_track_" + side + "_mps", speed = "track_" + side + "_mps",
                       travel = "track_" + side + "_m";
     const auto by_command = relate(rate(command), rate(speed)), by_travel = relate(adding(travel), rate(speed));
-    check_same_length(command, speed, by_command);
+    const auto may_be_dragged = [&](const std::optional<Relation>& asked) {
+      return asked && asked->first < kDragged * most_asked_m;
+    };
+    if (!may_be_dragged(by_command)) check_same_length(command, speed, by_command);
     check_same_length(travel, speed, by_travel);
     const std::string words = "a track that carries the robot forward is positive, on both sides";
     check_turned_sign(speed, command, by_command, enough_asked_m, kLeastMove_m,
@@ -184,7 +187,7 @@ void RunChecks::check_scales() {
     check_turned_sign(travel, speed, by_travel, kLeastMove_m, kLeastMove_m, words);
     if (!has(speed)) {
       const auto both = relate(rate(command), adding(travel));
-      check_same_length(command, travel, both);
+      if (!may_be_dragged(both)) check_same_length(command, travel, both);
       check_turned_sign(travel, command, both, kLeastMove_m, kLeastMove_m, words);
     }
   }

@@ -2,6 +2,7 @@
 #include <array>
 #include <numbers>
 
+#include "gap/logs/held_samples.hpp"
 #include "gap/logs/run_checks.hpp"
 
 namespace kenaf::gap {
@@ -129,6 +130,18 @@ void RunChecks::check_constants() {
        {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps", "acc_x_mps2", "acc_y_mps2", "acc_z_mps2"})
     if (constant(column(name)))
       add(Severity::dead, name, "never changes while the robot drives: the sensor is dead; leave the cells empty");
+}
+
+void RunChecks::check_held() {
+  for (const std::string& name : run_.columns) {
+    if (name == "t_s" || name.starts_with("cmd_") || found(name)) continue;
+    const std::optional<HeldSamples> held = held_samples(column("t_s"), column(name));
+    if (!held) continue;
+    add(Severity::held, name,
+        fmt::format("repeats each value for {:.2g} s, until the sensor's next one: rows are written more often than it "
+                    "measures; leave the cells empty where nothing new was measured",
+                    held->hold_s));
+  }
 }
 
 void RunChecks::check_pose() {

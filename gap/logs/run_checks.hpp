@@ -34,6 +34,7 @@ class RunChecks {
   void check_ranges();         // values that nothing has
   void check_commands();
   void check_constants();
+  void check_held();
   void check_pose();
 
   std::vector<Finding> take() { return std::move(findings_); }

@@ -107,6 +107,23 @@ TEST_CASE("Channels that are left out have no bins") {
   CHECK(map.measured() == FeatureMap(made_run(1, 0.1, {{"x_m", ramp}}), 0.5).measured());
 }
 
+TEST_CASE("Samples that are late are taken from the simulation as much earlier, in parts of their own interval") {
+  // x at 2 m/s each 0.05 s, a fifth of that as often the gyro; half an interval late they are 0.05 and 0.25 behind, but
+  // in the first span, whose first sample cannot be earlier than the run
+  const FeatureMap map(
+      made_run(
+          2, 0.05,
+          {{"x_m", ramp},
+           {"gyro_z_radps", [](double t_s) { return std::abs(std::remainder(t_s, 0.25)) < 1e-9 ? ramp(t_s) : kNaN; }}}),
+      0.5);
+  const runs::Run simulated = made_run(2, 0.01, {{"x_m", ramp}, {"gyro_z_radps", ramp}});
+  const Eigen::VectorXd behind = map.of(simulated) - map.of(simulated, 0.5);
+  for (std::size_t b = 0; b < map.bins().size(); ++b) {
+    const Bin& bin = map.bins()[b];
+    if (bin.span > 0) CHECK(behind[static_cast<Eigen::Index>(b)] == Approx(column_of(bin) == "x_m" ? 0.05 : 0.25));
+  }
+}
+
 TEST_CASE("A simulated run that ends early holds its last value") {
   const FeatureMap map(made_run(2, 0.1, {{"x_m", ramp}}), 0.5);
   const Eigen::VectorXd simulated = map.of(made_run(1, 0.1, {{"x_m", ramp}}));

@@ -112,6 +112,37 @@ TEST_CASE("A sensor that is dead in a run is taken for one that was not measured
              Catch::StartsWith("dead.csv: gyro_z_radps: never changes") && Catch::EndsWith("(left out)"));
 }
 
+TEST_CASE("Cells that only repeat a value are taken for not measured, and told") {
+  const test::TemporaryFolder folder;
+  const auto command = [](double t_s) { return t_s < 1 ? 0 : 0.2; };
+  const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
+  const auto yaw = [](double t_s) { return 0.05 * t_s * t_s * t_s / 3; };
+  // its rate, 0.05 t^2, as a new value each 0.2 s, where rows come each 10 ms
+  const auto held = [](double t_s) { return 0.002 * std::pow(std::floor(t_s / 0.2 + 1e-6), 2); };
+  runs::write_run(folder / "held.csv", test::made_run(4, 0.01,
+                                                      {{"cmd_track_left_mps", command},
+                                                       {"cmd_track_right_mps", command},
+                                                       {"x_m", x},
+                                                       {"y_m", zero},
+                                                       {"yaw_rad", yaw},
+                                                       {"gyro_z_radps", held}}));
+  test::write_file(folder / "dataset.toml",
+                   "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n"
+                   "[[run]]\nfile = \"held.csv\"\n");
+  const Observations seen = observe(folder.path(), "", "", 10);
+  REQUIRE(seen.runs.size() == 1);
+  const runs::Run& run = seen.runs[0].run;
+  const auto time = run.column("t_s"), gyro = run.column("gyro_z_radps");
+  for (std::size_t i = 0; i < gyro.size(); ++i) {
+    const bool is_new = std::abs(std::remainder(time[i], 0.2)) < 1e-6;
+    CAPTURE(time[i], gyro[i]);
+    CHECK(std::isnan(gyro[i]) != is_new);
+  }
+  REQUIRE(seen.warnings.size() == 1);
+  CHECK_THAT(seen.warnings[0], Catch::StartsWith("held.csv: gyro_z_radps: repeats each value for 0.2 s") &&
+                                   Catch::EndsWith("(repeats left out)"));
+}
+
 TEST_CASE("A run that was copied is no repeat: it is left out, and told once") {
   const test::TemporaryFolder folder;
   const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };

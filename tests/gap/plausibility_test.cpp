@@ -227,6 +227,21 @@ TEST_CASE("A track that is asked for less than a fifth of the other is no turned
   CHECK_THAT(dragged(0.09, 0.09), is_refused);
 }
 
+TEST_CASE("A track that is asked for next to nothing and dragged along is not in centimetres, both tracks may be") {
+  // as a skid-steered robot that is told to turn about its right track, and began in motion
+  const auto told = [](double left_mps, double right_mps, double measured_right_mps) {
+    const auto steady = [](double speed_mps) { return [=](double t_s) { return t_s < 0.5 ? 0 : speed_mps; }; };
+    return found(test::made_run(4, 0.01,
+                                {{"cmd_track_left_mps", steady(left_mps)},
+                                 {"cmd_track_right_mps", steady(right_mps)},
+                                 {"track_left_mps", steady(0.4)},
+                                 {"track_right_mps", steady(measured_right_mps)}}));
+  };
+  CHECK_THAT(told(0.4, 0.002, 0.2), !Catch::Contains("refused") && !Catch::Contains("looks like"));
+  CHECK_THAT(told(0.4, 0.004, 0.4), !Catch::Contains("looks like"));
+  CHECK_THAT(told(0.004, 0.004, 0.4), Catch::Contains("track_left_mps: looks like centimetres"));
+}
+
 TEST_CASE("A robot that slides down a ramp against its tracks is warned of, whatever its speed") {
   for (const double speed_mps : {-0.1, -0.2, -0.5}) {
     const auto findings = gap::check_run(carried(speed_mps, -0.5), "run.csv", &robot());
@@ -299,6 +314,38 @@ TEST_CASE("Dead encoders, frozen poses and commands that were not recorded") {
     for (std::size_t i = 401; i < 600; ++i) column(repeated, name)[i] = column(repeated, name)[400];
   CHECK_THAT(found(repeated),
              Catch::StartsWith("warning: run.csv:402: x_m: stands still to the last digit for 1.99 s"));
+}
+
+TEST_CASE(
+    "A column that repeats each value until the next one came is told with how long, and not whole counts of a live "
+    "sensor") {
+  const auto held = [](runs::Run run, const std::string& name, std::size_t rows) {
+    std::vector<double>& values = column(run, name);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = values[i - i % rows];
+    return run;
+  };
+  // rows come each 10 ms
+  CHECK_THAT(found(held(arc(), "track_left_mps", 25)),
+             Catch::StartsWith("warning: run.csv: track_left_mps: repeats each value for 0.25 s"));
+  CHECK_THAT(found(held(arc(), "yaw_rad", 2)),
+             Catch::StartsWith("warning: run.csv: yaw_rad: repeats each value for 0.02 s"));
+  // commands do hold
+  CHECK(found(held(arc(), "cmd_track_left_mps", 25)).empty());
+  // an encoder of 5 mm/s a count, a heading in degrees
+  const auto in_counts = [](const std::string& name, double count) {
+    return found(changed(arc(), {name}, [=](double value) { return count * std::round(value / count); }));
+  };
+  CHECK(in_counts("track_left_mps", 0.005).empty());
+  CHECK(in_counts("yaw_rad", 1 / kDegrees).empty());
+
+  // once for all runs
+  runs::Dataset dataset;
+  dataset.runs = {{"a.csv", "arc", ""}, {"b.csv", "arc", ""}, {"c.csv", "arc", ""}};
+  const runs::Run slow = held(arc(), "gyro_z_radps", 10);
+  const std::string told = words(gap::check_plausibility(dataset, std::vector{slow, arc(), slow}, &robot()));
+  CHECK_THAT(told, Catch::StartsWith("warning: a.csv: gyro_z_radps: repeats each value for 0.1 s") &&
+                       Catch::EndsWith("(as in 1 more)\n"));
+  CHECK(std::ranges::count(told, '\n') == 1);
 }
 
 TEST_CASE("A pose that jumps is warned of with its line, one that begins late too") {
