@@ -33,11 +33,17 @@ struct Candidate {
   // Another candidate's `effect` that changes a run in the same way, by a scale or an offset where this is the number
   // itself, or so nearly that no run tells them apart. Empty: there is none. Of two such, one is enough.
   std::string same_as;
+  // The `effect` of a candidate that multiplies this number and others by one factor: of the friction of the main belts that of
+  // all belts. Empty: there is none.
+  std::string part_of;
   // Keys of the robot's TOML file that set() changes: "effects.command_slew.slowness_s2pm", "track.left_center_m[1]".
   std::vector<std::string> keys;
   // Makes it `value`, once on a robot. The robot is the one that it was made for, on which other candidates may be set.
   std::function<void(physics::RobotDescription&, double value)> set;
 };
+
+// Whether `whole` changes this number too, and others with it (Candidate::part_of).
+bool is_part_of(const Candidate& part, const Candidate& whole);
 
 // Parameters of the catalogue's effects that this robot can show: no flippers', no lugs' and no sensor's that it does
 // not have, obstacles' only where the world has any; never command_loss, which is chance. Lengths, forces and

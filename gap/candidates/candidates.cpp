@@ -6,6 +6,10 @@
 
 namespace kenaf::gap {
 
+bool is_part_of(const Candidate& part, const Candidate& whole) {
+  return !part.part_of.empty() && part.part_of == whole.effect;
+}
+
 std::vector<Candidate> all_candidates(const physics::RobotDescription& robot, bool has_obstacles) {
   std::vector<Candidate> all = catalogue_candidates(robot, has_obstacles);
   std::ranges::move(description_candidates(robot), std::back_inserter(all));

@@ -201,9 +201,13 @@ std::string last_word(const std::string& key) {
   return key.substr(key.rfind('.') + 1);
 }
 
-// An effect does the same only if there is one, and it moves nothing else: those of friction move the flippers' too.
+// Effects of friction move the flippers' belts, too.
+bool does_more(std::string_view effect, const RobotDescription& robot) {
+  return effect.starts_with("friction_") && robot.has_flippers();
+}
+// An effect does the same only if there is one, and it moves nothing else.
 bool does_the_same(std::string_view effect, const RobotDescription& robot) {
-  if (effect.starts_with("friction_") && robot.has_flippers()) return false;
+  if (does_more(effect, robot)) return false;
   if (effect == "lug_height" && robot.track.lug_height_m == 0) return false;
   return effect.starts_with("track.") || physics::find_effect(effect) != nullptr;
 }
@@ -228,6 +232,7 @@ void add_candidate(std::vector<Candidate>& candidates, const DescribedNumber& de
   candidate.is_number_of_description = true;
   candidate.whole = value != 0 ? std::abs(value) : range.max - range.min;
   if (does_the_same(described.same_as, robot)) candidate.same_as = described.same_as;
+  if (does_more(described.same_as, robot)) candidate.part_of = described.same_as;
   candidate.keys = {number->written_as};
   candidate.set = number->set;
   candidates.push_back(std::move(candidate));

@@ -134,6 +134,32 @@ std::vector<ProposedManoeuvre> next_manoeuvres(const Diagnosis& d) {
   return propose_manoeuvres(d.observations.robot, rivals, options);
 }
 
+// What the other stages than `s` name, alone.
+std::vector<NamedElsewhere> named_elsewhere(const std::vector<StageDiagnosis>& stages, std::size_t s) {
+  std::vector<NamedElsewhere> named;
+  for (std::size_t other = 0; other < stages.size(); ++other)
+    for (const NamedEffect& effect : stages[other].decision.effects)
+      if (other != s && effect.doubts.empty() && effect.rivals.size() == 1)
+        named.push_back({effect.candidate, effect.value.value});
+  return named;
+}
+
+// A stage that leaves a choice is decided again where another stage has made it.
+void settle_by_other_stages(Diagnosis& d, const std::vector<PreparedStage>& prepared, Predictor& predictor,
+                            const StageOptions& options) {
+  for (std::size_t s = 0; s < d.stages.size(); ++s) {
+    const StageDecision& decision = d.stages[s].decision;
+    const std::vector<NamedElsewhere> elsewhere = named_elsewhere(d.stages, s);
+    for (std::size_t e = 0; e < decision.effects.size(); ++e) {
+      const NamedEffect& effect = decision.effects[e];
+      if (!effect.doubts.empty() || effect.rivals.size() < 2 || !effect.partners.empty()) continue;
+      if (!settled_elsewhere(decision, e, d.candidates, elsewhere)) continue;
+      d.stages[s] = diagnose_stage(prepared[s], predictor, options, elsewhere);
+      break;
+    }
+  }
+}
+
 // Simulates the baseline's runs and takes off what they differ by.
 void take_off(const Baseline& baseline, Diagnosis& d, const DiagnosisOptions& options) {
   const ComparedFeatures before = compared_features(baseline.observations, options.span_s);
@@ -192,15 +218,19 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
     progress.begin("simulating the nominal robot", 0, 0.02, 2 * runs, 0);
     if (baseline) take_off(*baseline, d, options);
     predictor.simulate_nominal();
+    std::vector<PreparedStage> prepared;
     for (const Passage passage : kPassages) {
       const auto number = static_cast<double>(passage);
       progress.begin(passage_name(passage), 0.02 + 0.32 * number, 0.34 + 0.32 * number, 100 * runs,
                      predictor.roll_outs());
-      StageDiagnosis stage = diagnose_stage({passage, &d.observations, &d.features.maps, &d.features.of(passage),
-                                             &d.repeats, &d.same_orders, stated_noise(d.observations.dataset)},
-                                            d.candidates, predictor, stage_options);
-      if (stage.is_measured()) d.stages.push_back(std::move(stage));
+      PreparedStage stage = prepare_stage({passage, &d.observations, &d.features.maps, &d.features.of(passage),
+                                           &d.repeats, &d.same_orders, stated_noise(d.observations.dataset)},
+                                          d.candidates, predictor);
+      if (stage.nominal.data.groups.empty()) continue;
+      d.stages.push_back(diagnose_stage(stage, predictor, stage_options));
+      prepared.push_back(std::move(stage));
     }
+    settle_by_other_stages(d, prepared, predictor, stage_options);
     conclude(d);
     progress.begin("looking for the next manoeuvre", 0.98, 1, 1, predictor.roll_outs());
     if (options.propose_next && options.ranks.rank == 0) d.next = next_manoeuvres(d);

@@ -123,6 +123,14 @@ EffectCurves empty_curves(const StageData& data, std::span<const Candidate> cand
   return curves;
 }
 
+void forget_all_but(EffectCurves& curves, std::span<const std::size_t> kept) {
+  for (EffectCurve& curve : curves.curves) {
+    if (std::ranges::count(kept, curve.candidate) > 0) continue;
+    std::erase_if(curve.points, [](const CurvePoint& point) { return point.column >= 0; });
+    curve.visible = 0;
+  }
+}
+
 void add_spread(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                 const Simulate& simulate) {
   add_points(curves, data, parts_of_ranges(curves, chosen, kSpread), Fidelity::coarse, simulate);
@@ -137,8 +145,11 @@ void add_first_look(EffectCurves& curves, const StageData& data, std::span<const
     const double end = end_of_range(candidate);
     points.push_back({c, candidate.present + kSpread[0] * (end - candidate.present)});
     if (candidate.whole > 0) points.push_back({c, ordinarily_off(candidate)});
-    // what begins from some value on (drives that stall) shows only farther out
-    if (!both_ways) points.push_back({c, end});
+    // what begins from some value on (drives that stall) shows only farther out, and hides what is on the other side
+    if (!both_ways)
+      points.push_back({c, end});
+    else if (candidate.whole == 0)
+      points.push_back({c, candidate.present + kSpread[0] * (candidate.min - candidate.present)});
   }
   add_points(curves, data, points, Fidelity::coarse, simulate);
 }

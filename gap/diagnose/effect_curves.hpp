@@ -51,7 +51,8 @@ double ordinarily_off(const Candidate& candidate);
 EffectCurves empty_curves(const StageData& data, std::span<const Candidate> candidates);
 
 // For a first look: one point near the present value of each of `chosen`; of an effect that goes one way alone also the end of
-// its range, of a number of the description also one as near as such numbers ordinarily are off.
+// its range, of one that goes both ways one to the other side; of a number of the description instead one as near as such
+// numbers ordinarily are off.
 void add_first_look(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                     const Simulate& simulate);
 // Simulates points spread over the range of each of `chosen`, denser near the present value, where there are none.
@@ -63,6 +64,9 @@ void add_spread(EffectCurves& curves, const StageData& data, std::span<const std
 // the one before.
 void follow_bends(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                   const Simulate& simulate);
+
+// Leaves the curves of others than `kept` their present points alone: no search finds them.
+void forget_all_but(EffectCurves& curves, std::span<const std::size_t> kept);
 
 // Whether a curve moves little up to one of its points and is longer than `length` at the next: what it does between them is
 // not known yet (commands below a dead band).

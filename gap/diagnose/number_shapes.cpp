@@ -28,9 +28,14 @@ const CurvePoint* nearest_to_present(const EffectCurve& curve, double present) {
 // Those of `possible` that are numbers of the description and that `settings` leave as they are.
 std::vector<std::size_t> numbers_but(std::span<const Candidate> candidates, std::span<const std::size_t> possible,
                                      const Settings& settings) {
+  const auto is_set = [&](std::size_t c) {
+    return std::ranges::any_of(settings, [&](const Setting& setting) {
+      return setting.candidate == c || is_part_of(candidates[c], candidates[setting.candidate]);
+    });
+  };
   std::vector<std::size_t> numbers;
   for (const std::size_t c : possible)
-    if (candidates[c].whole > 0 && std::ranges::count(settings, c, &Setting::candidate) == 0) numbers.push_back(c);
+    if (candidates[c].whole > 0 && !is_set(c)) numbers.push_back(c);
   return numbers;
 }
 

@@ -75,6 +75,31 @@ StandingModel without_effect(const StageData& data, const StandingModel& standin
   return {fit_model(data, standing.curves, others, {}, standing.model.likelihood.discrepancies), standing.curves};
 }
 
+// As it simulates at `settings`. `like`: another model of as many effects, with whose discrepancies the estimate
+// begins.
+Model simulated_model(const StageData& data, const EffectCurves& curves, const Simulate& simulate,
+                      const Settings& settings, const Model& like) {
+  Model model{{}, simulate(std::vector<Settings>{settings}, Fidelity::every_run).front(), true, {}};
+  for (const Setting& setting : settings)
+    model.places.push_back(at_value(curves.curves, setting.candidate, setting.value));
+  model.likelihood = likelihood_of(data, rest_of(data, model), like.likelihood.discrepancies);
+  return model;
+}
+
+// Without effects that gain too little where they stand, the weakest first.
+StandingModel without_weak_effects(const StageData& data, const EffectCurves& curves, const Simulate& simulate,
+                                   StandingModel best, const DecisionSettings& settings) {
+  while (best.model.places.size() > 1) {
+    std::vector<Model> without;
+    for (std::size_t i = 0; i < best.model.places.size(); ++i) without.push_back(without_effect(data, best, i).model);
+    const Model& weakest = *std::ranges::min_element(without, {}, [](const Model& model) { return model.deviance(); });
+    if (weakest.deviance() - best.model.deviance() >= settings.evidence) break;
+    best = fit_side_by_side(data, curves, simulate,
+                            simulated_model(data, curves, simulate, settings_of(weakest.places), weakest));
+  }
+  return best;
+}
+
 // The value at an end of the range, of an effect that would go on there.
 bool is_at_bound(const StageData& data, const StandingModel& standing, std::size_t place, double margin) {
   constexpr double kAtBound = 1e-3, kInside = 0.9;  // of the range, of the way from the present value
@@ -171,6 +196,22 @@ std::vector<Settings> rivals_of(const StageData& data, const EffectCurves& curve
   return rivals;
 }
 
+// Values, evidence and rivals of the best model's effects.
+void describe_effects(StageDecision& d, const EffectCurves& curves, const Simulate& simulate,
+                      const DecisionSettings& settings) {
+  d.effects.clear();
+  d.models_of_rivals.clear();
+  const std::vector<EffectValue> values = effect_values(d.data, d.best);
+  for (std::size_t i = 0; i < d.best.model.places.size(); ++i) {
+    const double evidence = without_effect(d.data, d.best, i).model.deviance() - d.best.model.deviance();
+    NamedEffect effect{d.best.model.places[i].curve, values[i], evidence, {}, {}, false, {}, {}};
+    effect.at_bound = is_at_bound(d.data, d.best, i, settings.rival_evidence);
+    d.models_of_rivals.push_back(rivals_of(d.data, curves, d.best, i, simulate, settings));
+    for (const Settings& model : d.models_of_rivals.back()) effect.rivals.push_back(model[i].candidate);
+    d.effects.push_back(std::move(effect));
+  }
+}
+
 }  // namespace
 
 std::string_view verdict_name(Verdict verdict) {
@@ -178,8 +219,28 @@ std::string_view verdict_name(Verdict verdict) {
   return kNames[static_cast<std::size_t>(verdict)];
 }
 
+std::optional<std::size_t> settled_elsewhere(const StageDecision& decision, std::size_t effect,
+                                             std::span<const Candidate> candidates,
+                                             std::span<const NamedElsewhere> elsewhere) {
+  const NamedEffect& chosen = decision.effects[effect];
+  const Interval& own = chosen.value.value;
+  const double change = std::abs(own.value - candidates[chosen.candidate].present);
+  for (std::size_t r = 0; r < decision.models_of_rivals[effect].size(); ++r)
+    for (const NamedElsewhere& other : elsewhere) {
+      const Setting& rival = decision.models_of_rivals[effect][r][effect];
+      if (rival.candidate != other.candidate) continue;
+      // a rival is known as well as the effect that it stands for, in parts of what it changes
+      const double half =
+          (own.to - own.from) / 2 / change * std::abs(rival.value - candidates[rival.candidate].present);
+      const double apart = std::abs(rival.value - other.value.value);
+      if (apart <= half + (other.value.to - other.value.from) / 2) return r;
+    }
+  return std::nullopt;
+}
+
 StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known, const Simulate& simulate,
-                           const Around& around, const GapTest& test, const DecisionSettings& settings) {
+                           const Around& around, const GapTest& test, const DecisionSettings& settings,
+                           std::span<const NamedElsewhere> elsewhere) {
   EffectCurves curves = known;
   StageDecision d;
   d.floor = nominal.floor;
@@ -221,37 +282,29 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
     }
   }
 
-  // effects as long as each gains evidence, fitted where they stand; those that no longer do are dropped
+  // effects as long as each gains evidence, fitted where they stand
   Model chosen = take_effects(d.data, curves, d.singles, simulate, settings);
   if (chosen.places.size() > 1 && look_around(chosen))
     chosen.likelihood = likelihood_of(d.data, rest_of(d.data, chosen), chosen.likelihood.discrepancies);
   d.nominal_deviance = nominal_model(d.data).deviance();
-  d.best = fit_side_by_side(d.data, curves, simulate, std::move(chosen));
-  for (;;) {
-    std::vector<double> evidence;
-    for (std::size_t i = 0; i < d.best.model.places.size(); ++i)
-      evidence.push_back(without_effect(d.data, d.best, i).model.deviance() - d.best.model.deviance());
-    const auto least = std::ranges::min_element(evidence);
-    if (evidence.size() > 1 && *least < settings.evidence) {
-      const auto place = static_cast<std::size_t>(least - evidence.begin());
-      d.best = fit_side_by_side(d.data, curves, simulate, [&] {
-        Model fewer = without_effect(d.data, d.best, place).model;
-        fewer.shift = simulate(std::vector<Settings>{settings_of(fewer.places)}, Fidelity::every_run).front();
-        fewer.exact = true;
-        fewer.likelihood = likelihood_of(d.data, rest_of(d.data, fewer), fewer.likelihood.discrepancies);
-        return fewer;
-      }());
-      continue;
-    }
-    const std::vector<EffectValue> values = effect_values(d.data, d.best);
-    for (std::size_t i = 0; i < evidence.size(); ++i) {
-      NamedEffect effect{d.best.model.places[i].curve, values[i], evidence[i], {}, {}, false, {}, {}};
-      effect.at_bound = is_at_bound(d.data, d.best, i, settings.rival_evidence);
-      d.models_of_rivals.push_back(rivals_of(d.data, curves, d.best, i, simulate, settings));
-      for (const Settings& model : d.models_of_rivals.back()) effect.rivals.push_back(model[i].candidate);
-      d.effects.push_back(std::move(effect));
-    }
+  d.best = without_weak_effects(d.data, curves, simulate, fit_side_by_side(d.data, curves, simulate, std::move(chosen)),
+                                settings);
+  describe_effects(d, curves, simulate, settings);
+
+  // of rivals, the one that another stage names
+  for (std::size_t i = 0; i < d.effects.size(); ++i) {
+    const std::optional<std::size_t> rival = settled_elsewhere(d, i, curves.candidates, elsewhere);
+    if (!rival || *rival == 0) continue;
+    const Settings settled = d.models_of_rivals[i][*rival];
+    d.best =
+        fit_side_by_side(d.data, curves, simulate, simulated_model(d.data, curves, simulate, settled, d.best.model));
+    describe_effects(d, curves, simulate, settings);
     break;
+  }
+  for (std::size_t i = 0; i < d.effects.size(); ++i) {
+    if (settled_elsewhere(d, i, curves.candidates, elsewhere) != 0) continue;
+    d.effects[i].rivals.resize(1);
+    d.models_of_rivals[i].resize(1);
   }
   d.p_left = cell_energy(d.data, rest_of(d.data, d.best.model), test.stretch_s).p_of_noise(test.inflation);
   d.complete = d.p_left > settings.surprise;

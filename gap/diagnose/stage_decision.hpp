@@ -5,6 +5,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -84,7 +86,21 @@ struct StageDecision {
   bool complete = false;            // what is left is within noise and spread
 };
 
+// An effect that another stage names, alone.
+struct NamedElsewhere {
+  std::size_t candidate;
+  Interval value;
+};
+
+// `elsewhere`: one of them that is among an effect's rivals, at a value that both intervals allow, is what both stages show: it takes
+// the effect's place, and has no rivals.
 StageDecision decide_stage(const StageAround& nominal, const EffectCurves& curves, const Simulate& simulate,
-                           const Around& around, const GapTest& test, const DecisionSettings& settings);
+                           const Around& around, const GapTest& test, const DecisionSettings& settings,
+                           std::span<const NamedElsewhere> elsewhere = {});
+
+// The first of an effect's rivals, itself among them, that another stage names at such a value; its place among them.
+std::optional<std::size_t> settled_elsewhere(const StageDecision& decision, std::size_t effect,
+                                             std::span<const Candidate> candidates,
+                                             std::span<const NamedElsewhere> elsewhere);
 
 }  // namespace kenaf::gap

@@ -7,6 +7,7 @@
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/number_shapes.hpp"
 #include "gap/diagnose/repeats.hpp"
+#include "gap/diagnose/same_parts.hpp"
 
 namespace kenaf::gap {
 namespace {
@@ -219,60 +220,95 @@ std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidat
   return result;
 }
 
-StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor,
-                              const StageOptions& options) {
+namespace {
+
+bool has_baseline(const std::vector<StageFeatures>& features) {
+  return std::ranges::any_of(features, [](const StageFeatures& run) { return run.baseline_runs.size() > 0; });
+}
+
+Variation varied(const PreparedStage& stage, const Predictor& predictor, const Settings& settings) {
+  Variation variation = predictor.unvaried();
+  variation.robot = with_settings(std::move(variation.robot), stage.candidates, settings);
+  return variation;
+}
+
+std::vector<OpenShapes> open_around(const PreparedStage& stage, Predictor& predictor, const Settings& settings) {
+  return open_shapes(*stage.input.features, predictor, stage.input.passage, varied(stage, predictor, settings),
+                     kOpenStart_m, kOpenStart_rad);
+}
+
+StageData data_in(const PreparedStage& stage, const NoiseFloor& floor) {
+  return stage_data(stage.input.passage, *stage.input.features, *stage.input.repeats, stage.residuals, floor);
+}
+
+// Both must outlive it.
+Simulate simulator_of(const PreparedStage& stage, Predictor& predictor) {
+  return [&stage, &predictor](std::span<const Settings> asked, Fidelity fidelity) {
+    std::vector<Variation> variations;
+    for (const Settings& settings : asked) variations.push_back(varied(stage, predictor, settings));
+    std::vector<GroupVectors> shifts;
+    for (const Shift& shift : predictor.shifts(variations, stage.input.passage, fidelity))
+      shifts.push_back(mean_of_groups(stage.nominal.data, shift));
+    return shifts;
+  };
+}
+
+}  // namespace
+
+PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor) {
   const std::vector<StageFeatures>& features = *input.features;
-  StageDiagnosis stage;
-  stage.passage = input.passage;
+  PreparedStage stage{input, candidates, {}, {}, {}, {}};
   for (std::size_t r = 0; r < features.size(); ++r)
     stage.residuals.push_back(features[r].measured - predictor.nominal(input.passage)[r]);
   if (std::ranges::all_of(features, [](const StageFeatures& run) { return run.bins.empty(); })) return stage;
-
-  // noise, and what the simulation leaves open around the nominal model
-  const auto varied = [&](const Settings& settings) {
-    Variation variation = predictor.unvaried();
-    variation.robot = with_settings(std::move(variation.robot), candidates, settings);
-    return variation;
-  };
-  const auto open_around = [&](const Settings& settings) {
-    return open_shapes(features, predictor, input.passage, varied(settings), kOpenStart_m, kOpenStart_rad);
-  };
-  stage.nominal_floor = noise_floor(features, stage.residuals, *input.same_orders, open_around({}), input.stated_noise);
-  const auto data_in = [&](const NoiseFloor& floor) {
-    return stage_data(input.passage, features, *input.repeats, stage.residuals, floor);
-  };
-  StageAround nominal{stage.nominal_floor, data_in(stage.nominal_floor)};
-  const Simulate simulate = [&](std::span<const Settings> asked, Fidelity fidelity) {
-    std::vector<Variation> variations;
-    for (const Settings& settings : asked) variations.push_back(varied(settings));
-    std::vector<GroupVectors> shifts;
-    for (const Shift& shift : predictor.shifts(variations, input.passage, fidelity))
-      shifts.push_back(mean_of_groups(nominal.data, shift));
-    return shifts;
-  };
   const bool drives_measured =
       std::ranges::all_of(input.observations->runs, [](const Observation& run) { return run.measured.has_value(); });
-  const std::vector<std::size_t> possible = candidates_of(input.passage, candidates, drives_measured);
-  const bool has_baseline =
-      std::ranges::any_of(features, [](const StageFeatures& run) { return run.baseline_runs.size() > 0; });
+  stage.possible = candidates_of(input.passage, candidates, drives_measured);
+
+  // noise, and what the simulation leaves open around the nominal model
+  NoiseFloor& floor = stage.nominal.floor;
+  floor =
+      noise_floor(features, stage.residuals, *input.same_orders, open_around(stage, predictor, {}), input.stated_noise);
+  stage.nominal.data = data_in(stage, floor);
+
+  // a first look at all; numbers that are a little off are so in a baseline, too
+  const Simulate simulate = simulator_of(stage, predictor);
+  stage.curves = first_look(stage.nominal.data, candidates, stage.possible, simulate);
+  if (!has_baseline(features)) floor.number_shapes = number_shapes(stage.nominal.data, stage.curves, stage.possible);
+  stage.nominal.data = data_in(stage, floor);
+
+  // whole curves of those that can matter
+  const std::vector<std::size_t> distinct =
+      without_same_parts(stage.nominal.data, candidates, stage.possible, simulate);
+  forget_all_but(stage.curves, distinct);
+  follow_those_that_matter(stage.curves, stage.nominal.data, distinct, simulate);
+  return stage;
+}
+
+StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
+                              std::span<const NamedElsewhere> elsewhere) {
+  const StageInput& input = prepared.input;
+  const std::span<const Candidate> candidates = prepared.candidates;
+  const std::vector<StageFeatures>& features = *input.features;
+  StageDiagnosis stage;
+  stage.passage = input.passage;
+  stage.residuals = prepared.residuals;
+  if (prepared.nominal.data.groups.empty()) return stage;
+  stage.nominal_floor = prepared.nominal.floor;
+
+  // the decision
+  const Simulate simulate = simulator_of(prepared, predictor);
   const Around around = [&](const Settings& settings) {
-    StageAround result{with_open_shapes(stage.nominal_floor, open_around(settings)), {}};
-    const auto shapes = has_baseline ? number_shapes_of_change : number_shapes_around;
-    result.floor.number_shapes = shapes(nominal.data, candidates, possible, settings, simulate);
-    result.data = data_in(result.floor);
+    StageAround result{with_open_shapes(stage.nominal_floor, open_around(prepared, predictor, settings)), {}};
+    const auto shapes = has_baseline(features) ? number_shapes_of_change : number_shapes_around;
+    result.floor.number_shapes = shapes(prepared.nominal.data, candidates, prepared.possible, settings, simulate);
+    result.data = data_in(prepared, result.floor);
     return result;
   };
-
-  // curves, then the decision
-  EffectCurves curves = first_look(nominal.data, candidates, possible, simulate);
-  // numbers that are a little off are so in a baseline, too
-  if (!has_baseline) stage.nominal_floor.number_shapes = number_shapes(nominal.data, curves, possible);
-  nominal = {stage.nominal_floor, data_in(stage.nominal_floor)};
-  follow_those_that_matter(curves, nominal.data, possible, simulate);
   const std::vector<VectorXd> deviations = deviations_from_repeats(features, stage.residuals, *input.same_orders);
   const GapTest test{inflation_from_repeats(features, stage.nominal_floor, deviations, options.stretch_s),
                      options.stretch_s};
-  stage.decision = decide_stage(nominal, curves, simulate, around, test, options.decision);
+  stage.decision = decide_stage(prepared.nominal, prepared.curves, simulate, around, test, options.decision, elsewhere);
   StageDecision& decision = stage.decision;
   const Model& best = decision.best.model;
 
@@ -280,7 +316,8 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
   const StageView view{&features, input.repeats, &stage.residuals, &decision.floor};
   const auto left_by = [&](const std::vector<std::vector<OnCurve>>& places) {
     std::vector<Variation> variations;
-    for (const std::vector<OnCurve>& of_run : places) variations.push_back(varied(settings_of(of_run)));
+    for (const std::vector<OnCurve>& of_run : places)
+      variations.push_back(varied(prepared, predictor, settings_of(of_run)));
     return less_shift(stage.residuals, predictor.shift_of_each(variations, input.passage));
   };
   const unsigned threads = options.decision.search.threads;
@@ -314,7 +351,8 @@ StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate
 
   // what is left, in words
   if (decision.verdict != Verdict::none && !decision.complete && input.passage != Passage::body_to_sensor)
-    stage.left_over = left_over_of(input, predictor, varied(settings_of(best.places)), decision.floor);
+    stage.left_over =
+        left_over_of(input, predictor, varied(prepared, predictor, settings_of(best.places)), decision.floor);
 
   // where it is, and what each effect does alone
   stage.before_si = rms_si(features, stage.residuals);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "gap/diagnose/isolability.hpp"
@@ -58,8 +59,20 @@ struct StageDiagnosis {
 // tracks, so that the body is seen in a replay of these.
 std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidate> candidates, bool drives_measured);
 
-StageDiagnosis diagnose_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor,
-                              const StageOptions& options);
+// A stage with what is simulated of it before anything is decided.
+struct PreparedStage {
+  StageInput input;
+  std::span<const Candidate> candidates;  // must outlive this
+  std::vector<std::size_t> possible;      // candidates_of()
+  std::vector<Eigen::VectorXd> residuals;
+  StageAround nominal;                    // no data where no run measures the stage
+  EffectCurves curves;                    // of those that can matter, over their range
+};
+PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor);
+
+// `elsewhere`: what other stages name (stage_decision.hpp).
+StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
+                              std::span<const NamedElsewhere> elsewhere = {});
 
 // Names, sets and doubts of the effects of a best model, by what they are worth on runs held out.
 void judge(StageDecision& decision, std::span<const Candidate> candidates, const HeldOutShares& shares,

@@ -183,6 +183,8 @@ TEST_CASE("A number of the description names the effect that does the same, wher
   CHECK(find_candidate(kenaf, "track.separation_m")->same_as == "");
   // friction_along is of all belts: Kenaf's flippers have some of their own
   CHECK(find_candidate(kenaf, "track.friction_along")->same_as == "");
+  CHECK(find_candidate(kenaf, "track.friction_along")->part_of == "friction_along");
+  CHECK(find_candidate(marmotte, "track.friction_along")->part_of == "");
   CHECK(find_candidate(marmotte, "track.friction_along")->same_as == "friction_along");
   // there are no lugs that an effect could multiply
   CHECK(find_candidate(kenaf, "track.lug_height_m")->same_as == "lug_height");

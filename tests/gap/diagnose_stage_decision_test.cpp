@@ -99,6 +99,27 @@ TEST_CASE("Two effects that do the same cannot be told apart") {
     }
 }
 
+TEST_CASE("Of two that cannot be told apart the one counts that another stage names at the same value") {
+  const std::vector<Whole> effects = with_look_alike(0);
+  const Whole gap = 0.5 * effects[2] + world().noise(1);
+  const auto decided = [&](std::vector<NamedElsewhere> elsewhere) {
+    const StageAround nominal{world().floor(), world().data(gap)};
+    return decide_stage(
+        nominal, world().curves(effects, nominal.data), world().simulate(LinearWorld::linear(effects)),
+        [&](const Settings&) { return nominal; }, {}, {}, elsewhere);
+  };
+  for (const std::size_t named : {2u, 5u}) {
+    const StageDecision decision = decided({{named, {0.5, 0.49, 0.51}}});
+    REQUIRE(candidates_of(decision) == std::vector<std::size_t>{named});
+    CHECK(decision.effects[0].rivals == std::vector<std::size_t>{named});
+    CHECK(decision.models_of_rivals[0].size() == 1);
+    CHECK(decision.effects[0].value.value.value == Approx(0.5).margin(4.0 / kLength));
+  }
+  // at another value it is not what both show, nor is what has nothing to do with it
+  CHECK(decided({{5, {0.8, 0.79, 0.81}}}).effects[0].rivals.size() == 2);
+  CHECK(decided({{7, {0.5, 0.49, 0.51}}}).effects[0].rivals.size() == 2);
+}
+
 TEST_CASE("At 45 degrees they are told apart") {
   for (const std::size_t truth : {2u, 5u}) {
     const std::vector<Whole> effects = with_look_alike(45);
