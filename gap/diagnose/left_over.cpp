@@ -135,7 +135,7 @@ void check_sizes(const LeftOverRun& run) {
 
 }  // namespace
 
-std::vector<Dependence> describe_left_over(std::span<const LeftOverRun> runs, bool only_drives) {
+std::vector<Dependence> describe_left_over(std::span<const LeftOverRun> runs, bool of_drives) {
   std::vector<std::size_t> groups;
   for (const LeftOverRun& run : runs) {
     check_sizes(run);
@@ -143,7 +143,7 @@ std::vector<Dependence> describe_left_over(std::span<const LeftOverRun> runs, bo
   }
   std::vector<Said> all;
   for (const QuantityInfo& quantity : left_over_quantities()) {
-    if (only_drives && !quantity.drive) continue;
+    if (quantity.drive != of_drives) continue;
     const LeftOverRows rows = rows_of(runs, quantity);
     if (rows.run.empty()) continue;
     const LeftOverFit fit = fit_left_over(rows, held_out_together(rows, groups));

@@ -43,11 +43,11 @@ struct Dependence {
 inline constexpr double kLeastTold = 0.1;
 
 // The terms of all channels, largest share of its channel first; at most three of each channel, and one more that says how
-// runs differ. Empty where nothing is left beyond noise, or it goes with nothing that was measured. `only_drives`: of
-// track speeds, currents and voltage alone, as for the way from command to drive.
+// runs differ. Empty where nothing is left beyond noise, or it goes with nothing that was measured. `of_drives`: of
+// track speeds, currents and voltage, as for the way from command to drive; else of pose and gyro, as for that to the body.
 //
 // `runs` may be empty. Vectors have as many numbers as features->bins(); throws std::invalid_argument where they have not.
 // Deterministic.
-std::vector<Dependence> describe_left_over(std::span<const LeftOverRun> runs, bool only_drives);
+std::vector<Dependence> describe_left_over(std::span<const LeftOverRun> runs, bool of_drives);
 
 }  // namespace kenaf::gap
