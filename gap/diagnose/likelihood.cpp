@@ -16,8 +16,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Chosen: sizes settle to a few per cent by then.
-constexpr int kRounds = 3;
+// Sizes are estimated in turns until none changes by more than this part of itself (chosen: as exact as each one is).
+constexpr double kSameSize = 0.03;
+constexpr int kMostTurns = 20;
 // A shape shorter than this, in standard deviations, leaves nothing open.
 constexpr double kNoShape = 1e-3;
 // How far numbers of a description are off: from what cannot be seen to what nobody would call a description of this
@@ -81,6 +82,15 @@ MatrixXd shared_shapes(const StageGroup& group, double numbers_off) {
   MatrixXd shapes(group.shared_shapes.rows(), group.shared_shapes.cols() + group.number_shapes.cols());
   shapes << group.shared_shapes, numbers_off * group.number_shapes;
   return shapes;
+}
+
+bool is_about(double a, double b) {
+  return std::abs(a - b) <= kSameSize * std::max(a, b);
+}
+bool has_settled(const Discrepancies& before, const Discrepancies& now) {
+  for (std::size_t k = 0; k < now.of_kind.size(); ++k)
+    if (!is_about(before.of_kind[k].sigma, now.of_kind[k].sigma)) return false;
+  return is_about(before.numbers_off, now.numbers_off);
 }
 
 // How far off the numbers of the description most likely are; `whole`: of numbers that are off by all of themselves.
@@ -213,7 +223,8 @@ Likelihood likelihood_with(const StageData& data, const GroupVectors& residual, 
 Likelihood likelihood_of(const StageData& data, const GroupVectors& residual, const Discrepancies& start) {
   const Index numbers = data.groups.empty() ? 0 : data.groups.front().number_shapes.cols();
   Discrepancies discrepancies = start;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kMostTurns; ++round) {
+    const Discrepancies before = discrepancies;
     // numbers first, which are the same in all groups
     discrepancies.numbers_off = 1;
     const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
@@ -228,6 +239,7 @@ Likelihood likelihood_of(const StageData& data, const GroupVectors& residual, co
       rest.push_back(without_local_shapes(data.groups[g], discrepancies,
                                           residual[g] - shared_shapes(data.groups[g], 1) * amounts));
     discrepancies.of_kind = estimated(data, rest);
+    if (has_settled(before, discrepancies)) break;
   }
   return likelihood_with(data, residual, discrepancies);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gap/diagnose/candidates_that_matter.hpp"
 #include "gap/diagnose/cells.hpp"
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/number_shapes.hpp"
@@ -13,11 +14,6 @@ namespace kenaf::gap {
 namespace {
 
 using Eigen::VectorXd;
-
-// Candidates that get whole curves after the first look, at most (chosen).
-constexpr std::size_t kMostCurves = 24;
-// Of the squared gap, by one linear step: less cannot matter, whatever the value (chosen).
-constexpr double kMatters = 0.01;
 
 std::vector<double> rms_si(const std::vector<StageFeatures>& features, const std::vector<VectorXd>& differences) {
   std::vector<double> squares(diagnosis_channels().size(), 0), bins(squares.size(), 0);
@@ -38,32 +34,6 @@ std::vector<VectorXd> less_shift(std::vector<VectorXd> a, const std::vector<Vect
   return a;
 }
 
-// The candidates that one linear step shows to matter most, beneath the discrepancies of the nominal model, and those
-// of which one step says nothing.
-std::vector<std::size_t> that_matter(const StageData& data, const EffectCurves& curves,
-                                     std::span<const std::size_t> looked_at, const Discrepancies& discrepancies) {
-  const Products products = products_of(whiteners_of(data, discrepancies), curves.shifts, residuals_of(data));
-  std::vector<std::pair<double, std::size_t>> explained;
-  for (const std::size_t c : looked_at) {
-    for (const CurvePoint& point : curves.curves[c].points) {
-      if (point.column < 0) continue;
-      const double squares = products.shift_shift(point.column, point.column);
-      const double along = products.shift_gap[point.column];
-      const double share = squares > 0 ? along * along / squares / products.gap_gap : 0;
-      if (share >= kMatters) explained.emplace_back(share, c);
-    }
-  }
-  std::ranges::stable_sort(explained, std::ranges::greater{}, [](const auto& pair) { return pair.first; });
-  std::vector<std::size_t> result;
-  for (const auto& [share, c] : explained)
-    if (result.size() < kMostCurves && std::ranges::count(result, c) == 0) result.push_back(c);
-  const double gap = length_in_noise(data, residuals_of(data));
-  for (const std::size_t c : looked_at)
-    if (std::ranges::count(result, c) == 0 && is_bent(curves, data, c, gap)) result.push_back(c);
-  std::ranges::sort(result);
-  return result;
-}
-
 // One point of each candidate that may act in the stage.
 EffectCurves first_look(const StageData& data, std::span<const Candidate> candidates,
                         std::span<const std::size_t> possible, const Simulate& simulate) {
@@ -76,7 +46,7 @@ EffectCurves first_look(const StageData& data, std::span<const Candidate> candid
 void follow_those_that_matter(EffectCurves& curves, const StageData& data, std::span<const std::size_t> possible,
                               const Simulate& simulate) {
   const std::vector<std::size_t> matter =
-      that_matter(data, curves, possible, nominal_model(data).likelihood.discrepancies);
+      candidates_that_matter(data, curves, possible, nominal_model(data).likelihood.discrepancies);
   add_spread(curves, data, matter, simulate);
   follow_bends(curves, data, matter, simulate);
 }
