@@ -68,11 +68,11 @@ Model take_effects(const StageData& data, const EffectCurves& curves, const std:
   return best;
 }
 
-StandingModel without_effect(const StageData& data, const StandingModel& standing, std::size_t place) {
+Model without_effect(const StageData& data, const StandingModel& standing, std::size_t place) {
   EffectSet others = effects_of(standing.model);
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(place));
-  if (others.empty()) return {nominal_model(data), standing.curves};
-  return {fit_model(data, standing.curves, others, {}, standing.model.likelihood.discrepancies), standing.curves};
+  if (others.empty()) return nominal_model(data);
+  return fit_model(data, standing.curves, others, {}, standing.model.likelihood.discrepancies);
 }
 
 // As it simulates at `settings`. `like`: another model of as many effects, with whose discrepancies the estimate
@@ -91,7 +91,7 @@ StandingModel without_weak_effects(const StageData& data, const EffectCurves& cu
                                    StandingModel best, const DecisionSettings& settings) {
   while (best.model.places.size() > 1) {
     std::vector<Model> without;
-    for (std::size_t i = 0; i < best.model.places.size(); ++i) without.push_back(without_effect(data, best, i).model);
+    for (std::size_t i = 0; i < best.model.places.size(); ++i) without.push_back(without_effect(data, best, i));
     const Model& weakest = *std::ranges::min_element(without, {}, [](const Model& model) { return model.deviance(); });
     if (weakest.deviance() - best.model.deviance() >= settings.evidence) break;
     best = fit_side_by_side(data, curves, simulate,
@@ -132,13 +132,14 @@ bool is_borne_out(const StageData& data, const Model& best, const Model& rival) 
   return sum > kBetter_sigma * std::sqrt(variance);
 }
 
-// Models with a rival in the place of one effect, the best model itself first.
+// Models with a rival in the place of one effect, the best model itself first. `without`: the best one without the
+// effect.
 std::vector<Settings> rivals_of(const StageData& data, const EffectCurves& curves, const StandingModel& standing,
-                                std::size_t place, const Simulate& simulate, const DecisionSettings& settings) {
+                                std::size_t place, const Model& without, const Simulate& simulate,
+                                const DecisionSettings& settings) {
   const Model& best = standing.model;
   const std::size_t chosen = best.places[place].curve;
-  const double accounted =
-      squared(data, rest_of(data, without_effect(data, standing, place).model)) - squared(data, rest_of(data, best));
+  const double accounted = squared(data, rest_of(data, without)) - squared(data, rest_of(data, best));
   const auto is_rival = [&](const Model& model) {
     if (model.deviance() - best.deviance() < settings.rival_evidence) return true;
     if (squared(data, rest_of(data, model)) - squared(data, rest_of(data, best)) < kAlike * accounted) return true;
@@ -203,10 +204,11 @@ void describe_effects(StageDecision& d, const EffectCurves& curves, const Simula
   d.models_of_rivals.clear();
   const std::vector<EffectValue> values = effect_values(d.data, d.best);
   for (std::size_t i = 0; i < d.best.model.places.size(); ++i) {
-    const double evidence = without_effect(d.data, d.best, i).model.deviance() - d.best.model.deviance();
+    const Model without = without_effect(d.data, d.best, i);
+    const double evidence = without.deviance() - d.best.model.deviance();
     NamedEffect effect{d.best.model.places[i].curve, values[i], evidence, {}, {}, false, {}, {}};
     effect.at_bound = is_at_bound(d.data, d.best, i, settings.rival_evidence);
-    d.models_of_rivals.push_back(rivals_of(d.data, curves, d.best, i, simulate, settings));
+    d.models_of_rivals.push_back(rivals_of(d.data, curves, d.best, i, without, simulate, settings));
     for (const Settings& model : d.models_of_rivals.back()) effect.rivals.push_back(model[i].candidate);
     d.effects.push_back(std::move(effect));
   }
