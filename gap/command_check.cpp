@@ -10,6 +10,7 @@
 
 #include "gap/commands.hpp"
 #include "gap/logs/copies.hpp"
+#include "gap/logs/lifted_robot.hpp"
 #include "gap/plausibility.hpp"
 
 namespace kenaf::gap {
@@ -28,6 +29,7 @@ void check(const std::filesystem::path& folder) {
   std::size_t refused = 0, warned = 0;
   KnownRuns known_runs;
   HeldInRuns held;
+  LiftedRobot lifted;
   const auto take = [&](const std::vector<Finding>& findings) {
     print(findings);
     for (const Finding& finding : findings) ++(finding.severity == Finding::Severity::refuse ? refused : warned);
@@ -40,8 +42,10 @@ void check(const std::filesystem::path& folder) {
     std::vector<Finding> found = check_run(run, entry.file, &robot);
     held.take_off(found);
     take(found);
+    lifted.look_at(run, robot.track_gauge_m());
   }
   take(held.findings());
+  if (const auto finding = lifted.finding()) take({*finding});
   take(check_noise(dataset, columns));
   const std::string counts =
       fmt::format("{} runs; findings: {} refused, {} warned of", dataset.runs.size(), refused, warned);

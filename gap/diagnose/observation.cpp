@@ -10,6 +10,7 @@
 #include "gap/diagnose/channels.hpp"
 #include "gap/logs/copies.hpp"
 #include "gap/logs/held_samples.hpp"
+#include "gap/logs/lifted_robot.hpp"
 #include "gap/plausibility.hpp"
 #include "protocol/frames.hpp"
 #include "rollout/measured_motion.hpp"
@@ -171,6 +172,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
   KnownRuns known_runs;
   std::vector<Finding> copies;
   HeldInRuns held;
+  LiftedRobot lifted;
   for (const runs::DatasetRun& entry : entries) {
     if (!entry.fault.empty()) {
       result.warnings.push_back(fmt::format("{}: its simulation went wrong; left out", entry.file));
@@ -197,7 +199,12 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     if (is_new) result.worlds.push_back(physics::load_world(name, result.warnings));
     observation.world = known->second;
     prepare_replays(observation, path);
+    lifted.look_at(observation.run, result.robot.track_gauge_m());
     result.runs.push_back(std::move(observation));
+  }
+  if (const auto finding = lifted.finding()) {
+    for (Observation& observation : result.runs) forget_body(observation.run);
+    result.warnings.push_back(in_words(*finding) + " (the drives alone are compared)");
   }
   for (const Finding& finding : held.findings()) result.warnings.push_back(in_words(finding) + " (repeats left out)");
   if (!copies.empty())

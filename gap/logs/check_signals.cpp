@@ -32,16 +32,6 @@ double total_change(const Course& course) {
   return sum;
 }
 
-double range(std::span<const double> column) {
-  double least = INFINITY, most = -INFINITY;
-  for (const double value : column) {
-    if (std::isnan(value)) continue;
-    least = std::min(least, value);
-    most = std::max(most, value);
-  }
-  return most >= least ? most - least : 0;
-}
-
 }  // namespace
 
 void RunChecks::check_commands() {

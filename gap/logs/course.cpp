@@ -48,6 +48,16 @@ double mean_rate(const Course& course, double t_s, double window_s) {
   return (value_at(course, t_s + 0.5 * window_s) - value_at(course, t_s - 0.5 * window_s)) / window_s;
 }
 
+double range(std::span<const double> column) {
+  double least = INFINITY, most = -INFINITY;
+  for (const double value : column) {
+    if (std::isnan(value)) continue;
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  return most >= least ? most - least : 0;
+}
+
 double median_step(std::span<const double> t_s, std::span<const double> value) {
   std::vector<double> steps;
   double last_s = kUnknown;

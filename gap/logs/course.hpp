@@ -24,6 +24,9 @@ double value_at(const Course& course, double t_s);
 // Over the window around `t_s`; NaN where an end of it is not known.
 double mean_rate(const Course& course, double t_s, double window_s);
 
+// From the least to the most of a column; empty cells (NaN) are left out. 0 where there is none.
+double range(std::span<const double> column);
+
 // Of the steps between the times that have a value; NaN with fewer than two.
 double median_step(std::span<const double> t_s, std::span<const double> value);
 

@@ -2,6 +2,7 @@
 #include "gap/diagnose/observation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -110,6 +111,55 @@ TEST_CASE("A sensor that is dead in a run is taken for one that was not measured
              Catch::StartsWith("dead.csv: track_left_a: never changes") && Catch::EndsWith("(left out)"));
   CHECK_THAT(seen.warnings[1],
              Catch::StartsWith("dead.csv: gyro_z_radps: never changes") && Catch::EndsWith("(left out)"));
+}
+
+TEST_CASE("Of a robot that is lifted off the ground the drives alone are compared, and that is told") {
+  const test::TemporaryFolder folder;
+  const auto sways = [](double t_s) { return 0.03 * std::sin(5 * t_s); };
+  const auto goes = [](double t_s) { return t_s < 1 ? 0 : 0.3 * (t_s - 1); };
+  const auto forward = [](double t_s) { return t_s < 1 ? 0 : 0.3; };
+  const auto backward = [](double t_s) { return t_s < 1 ? 0 : -0.3; };
+  const auto turns = [](double t_s) { return t_s < 1 ? 0 : 1.2 * (t_s - 1); };  // of 0.6 m/s at a gauge of 0.2 m 40 %
+  using Column = double (*)(double);
+  // tracks that go 0.6 m in two seconds, and what the body does
+  const auto is_lifted = [&](std::vector<std::array<Column, 4>> tracks_x_yaw) {
+    std::string dataset = "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n";
+    for (std::size_t i = 0; i < tracks_x_yaw.size(); ++i) {
+      const auto& [left, right, x, yaw] = tracks_x_yaw[i];
+      const std::string file = std::string(1, static_cast<char>('a' + i)) + ".csv";
+      runs::write_run(folder / file, test::made_run(3.05, 0.05,
+                                                    {{"cmd_track_left_mps", left},
+                                                     {"cmd_track_right_mps", right},
+                                                     {"track_left_mps", left},
+                                                     {"track_right_mps", right},
+                                                     {"x_m", x},
+                                                     {"y_m", zero},
+                                                     {"yaw_rad", yaw}}));
+      dataset += "[[run]]\nfile = \"" + file + "\"\n";
+    }
+    test::write_file(folder / "dataset.toml", dataset);
+    const Observations seen = observe(folder.path(), "", "", 10);
+    const bool told = std::ranges::any_of(seen.warnings, [](const std::string& warning) {
+      return warning.starts_with("dataset.toml: x_m: the body moves less than 0.065 m in all 3 runs") &&
+             warning.ends_with("(the drives alone are compared)");
+    });
+    for (const Observation& run : seen.runs) {
+      CHECK(runs::any_measured(run.run.column("x_m")) != told);
+      CHECK(runs::any_measured(run.run.column("yaw_rad")) != told);
+      CHECK(runs::any_measured(run.run.column("track_left_mps")));
+    }
+
+    return told;
+  };
+  const std::array<Column, 4> in_the_air{forward, forward, sways, zero},
+      back_in_the_air{backward, backward, sways, zero}, on_the_spot_in_the_air{backward, forward, sways, sways},
+      on_the_ground{forward, forward, goes, zero}, turning{backward, forward, sways, turns},
+      standing{zero, zero, sways, zero};
+  CHECK(is_lifted({in_the_air, on_the_spot_in_the_air, back_in_the_air}));
+  CHECK(is_lifted({in_the_air, on_the_spot_in_the_air, back_in_the_air, standing}));
+  CHECK_FALSE(is_lifted({in_the_air, on_the_spot_in_the_air, back_in_the_air, on_the_ground}));
+  CHECK_FALSE(is_lifted({in_the_air, on_the_spot_in_the_air, back_in_the_air, turning}));
+  CHECK_FALSE(is_lifted({in_the_air, back_in_the_air}));  // one that is stuck does that, too
 }
 
 TEST_CASE("Cells that only repeat a value are taken for not measured, and told") {

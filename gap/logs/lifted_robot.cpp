@@ -1,0 +1,82 @@
+#include "gap/logs/lifted_robot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "gap/logs/course.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+// Chosen.
+constexpr double kFar_m = 0.5, kStays = 0.15, kMostSway = 0.3;
+constexpr std::size_t kFewestRuns = 3;
+
+// Of an angle that may go round.
+double range_of_angle(std::span<const double> column) {
+  std::vector<double> angles;
+  for (const double angle : column) {
+    if (std::isnan(angle)) continue;
+    angles.push_back(angles.empty() ? angle
+                                    : angles.back() + std::remainder(angle - angles.back(), 2 * std::numbers::pi));
+  }
+  return range(angles);
+}
+
+// How far measured tracks go, the left one times `left` and the right one times `right`, from end to end.
+double reach_of_tracks(const runs::Run& run, double left, double right) {
+  for (const bool is_speed : {false, true}) {
+    const char* unit = is_speed ? "mps" : "m";
+    const auto a = run.column(fmt::format("track_left_{}", unit)), b = run.column(fmt::format("track_right_{}", unit));
+    if (a.empty() || b.empty()) continue;
+    std::vector<double> sum(a.size());
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = left * a[i] + right * b[i];
+    const auto t_s = run.column("t_s");
+    const double forever_s = std::numeric_limits<double>::infinity();
+    const Course course = is_speed ? course_of_rate(t_s, sum, forever_s) : course_of(t_s, sum, forever_s);
+    if (!course.value.empty()) return range(course.value);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void LiftedRobot::look_at(const runs::Run& run, double gauge_m) {
+  if (!runs::any_measured(run.column("x_m")) || !runs::any_measured(run.column("y_m"))) return;
+  const double belts_m = std::max(reach_of_tracks(run, 0.5, 0.5), reach_of_tracks(run, -0.5, 0.5));
+  if (belts_m < kFar_m) return;
+  const double turned_m = gauge_m / 2 * range_of_angle(run.column("yaw_rad"));
+  const double body_m = std::max(std::hypot(range(run.column("x_m")), range(run.column("y_m"))), turned_m);
+  if (body_m >= kMostSway * belts_m) goes_ = true;
+  ++runs_;
+  belts_m_ += belts_m;
+  body_m_ += body_m;
+  most_belts_m_ = std::max(most_belts_m_, belts_m);
+  most_body_m_ = std::max(most_body_m_, body_m);
+}
+
+std::optional<Finding> LiftedRobot::finding() const {
+  if (goes_ || runs_ < kFewestRuns || body_m_ >= kStays * belts_m_) return std::nullopt;
+  return Finding{
+      Finding::Severity::dead, "dataset.toml", 0, "x_m",
+      fmt::format("the body moves less than {:.2g} m in all {} runs in which the tracks go {:.2g} m and more, up "
+                  "to {:.2g} m: it is taken for lifted off the ground, and what pose and gyro say for no "
+                  "measurement; leave them out",
+                  most_body_m_ + 0.005, runs_, kFar_m, most_belts_m_)};
+}
+
+void forget_body(runs::Run& run) {
+  for (std::size_t c = 0; c < run.columns.size(); ++c) {
+    const std::string& name = run.columns[c];
+    const auto is_of = [&](std::string_view what) { return name.starts_with(what); };
+    if (name == "x_m" || name == "y_m" || name == "z_m" || name == "roll_rad" || name == "pitch_rad" ||
+        name == "yaw_rad" || is_of("posture_") || is_of("gyro_") || is_of("acc_"))
+      std::ranges::fill(run.values[c], std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+}  // namespace kenaf::gap
