@@ -10,6 +10,8 @@ namespace kenaf::physics {
 struct Pose {
   Eigen::Vector3d p{Eigen::Vector3d::Zero()};
   Eigen::Quaterniond q{Eigen::Quaterniond::Identity()};
+
+  bool operator==(const Pose& other) const { return p == other.p && q.coeffs() == other.q.coeffs(); }
 };
 
 // Intrinsic z-y-x angles (roll, pitch, yaw); pitch positive nose down; each in (-pi, pi].

@@ -25,6 +25,8 @@ struct BodyDescription {
   Eigen::Vector3d p_BBcm_m;        // centre of mass
   Eigen::Vector3d inertia_kgm2;    // about the centre of mass, along x, y, z
   double friction;                 // of the hull against ground of friction 1
+
+  bool operator==(const BodyDescription&) const = default;
 };
 
 // A track is a stadium: a rectangle with a half circle at each end, swept across its width.
@@ -37,6 +39,8 @@ struct TrackDescription {
   double friction_across;
   int pieces;                      // of the belly with contacts of their own; they spread the load along it
   double lug_height_m;             // what of the belt's profile catches behind an edge
+
+  bool operator==(const TrackDescription&) const = default;
 };
 
 struct TrackDriveDescription {
@@ -48,6 +52,8 @@ struct TrackDriveDescription {
   double encoder_counts_per_radian;// of the sprocket
   double amperes_per_newton;       // motor current for a belt force
   double idle_amperes;
+
+  bool operator==(const TrackDriveDescription&) const = default;
 };
 
 // An arm with a track of its own: a large drum at its pivot, a small one at its tip, a belt around both.
@@ -64,6 +70,8 @@ struct FlipperDescription {
   double max_angle_rad;
   double start_angle_rad;
   bool belt_driven;                // its belt runs with the main track of its side
+
+  bool operator==(const FlipperDescription&) const = default;
 };
 
 struct FlipperServoDescription {
@@ -71,12 +79,16 @@ struct FlipperServoDescription {
   double max_torque_nm;
   double amperes_per_nm;
   double resolution_rad = 0;       // of its encoder; 0: exact
+
+  bool operator==(const FlipperServoDescription&) const = default;
 };
 
 struct BatteryDescription {
   double open_circuit_v;
   double internal_resistance_ohm;
   double capacity_s;               // what USARSim reports as {Battery}: seconds left, counted down
+
+  bool operator==(const BatteryDescription&) const = default;
 };
 
 enum class SensorType {
@@ -97,14 +109,21 @@ struct SensorDescription {
   double bias_rad = 0, bias_radps = 0;
   // Ray sensors only.
   double min_range_m = 0, max_range_m = 0, field_of_view_rad = 0, resolution_rad = 0;
+
+  bool operator==(const SensorDescription&) const = default;
 };
 
 // A camera mount with links that turn, driven by MISPKG. Massless: it moves no body.
 struct MissionPackageDescription {
-  struct Link { double min_rad, max_rad, max_speed_radps; };
+  struct Link {
+    double min_rad, max_rad, max_speed_radps;
+    bool operator==(const Link&) const = default;
+  };
   std::string name;
   Pose X_BM;
   std::vector<Link> links;         // link 1 first
+
+  bool operator==(const MissionPackageDescription&) const = default;
 };
 
 // What takes pictures (camera/). Frame C: x along the optical axis, y left, z up.
@@ -118,6 +137,8 @@ struct CameraDescription {
   double rate_hz;                  // pictures a second
   double latency_s;                // from the moment that a picture shows until it can be sent
   int jpeg_quality;                // 1 to 100
+
+  bool operator==(const CameraDescription&) const = default;
 };
 
 // What an asymmetry multiplies on one side: half of it is more on the left, half of it is less on the right.
@@ -143,6 +164,8 @@ struct RobotDescription {
   double total_mass_kg() const;
   double track_gauge_m() const;    // between the tracks' centre planes
   double encoder_factor(Track side) const;  // what its encoder reports of a metre
+
+  bool operator==(const RobotDescription&) const = default;
 };
 
 // A shipped name ("kenaf") or a path of a TOML file. Throws DescriptionError.

@@ -26,6 +26,8 @@ struct PhysicsSettings {
   // Of one contact point: the give of rubber and ground, which shares a load between the points of a track.
   double contact_stiffness_npm = 2e5;
   double contact_damping_nspm = 1000;
+
+  bool operator==(const PhysicsSettings&) const = default;
 };
 
 // Never used twice in one World.

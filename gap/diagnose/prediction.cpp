@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <map>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -16,9 +17,10 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
-constexpr double kCoarse =
-    2;  // time steps: a shift, the difference of two simulations with the same step, hardly changes
-}
+// Time steps: a shift, the difference of two simulations with the same step, hardly changes.
+constexpr double kCoarse = 2;
+constexpr std::size_t kMostKnown_bytes = std::size_t{256} << 20;
+}  // namespace
 
 void check_goes_on(const std::atomic<bool>* stop) {
   if (stop != nullptr && *stop) throw Stopped();
@@ -45,6 +47,7 @@ Predictor::Predictor(const Observations& observations, const ComparedFeatures& f
       stop_(stop),
       ranks_(std::move(ranks)),
       progress_(std::move(progress)) {
+  for (std::size_t run = 0; run < observations_.runs.size(); ++run) all_runs_.push_back(run);
   for (const std::vector<std::size_t>& group : repeats_)
     representatives_.push_back(representative(observations_, group));
 }
@@ -70,9 +73,9 @@ std::vector<VectorXd> Predictor::all_of(std::size_t count, const std::function<V
 }
 
 void Predictor::simulate_nominal() {
+  const Variation nominal = unvaried();
   for (const Passage passage : kPassages)
-    nominal_[static_cast<std::size_t>(passage)] =
-        all_of(observations_.runs.size(), [&](std::size_t run) { return values_of(run, unvaried(), passage); });
+    nominal_[static_cast<std::size_t>(passage)] = values_of_all(all_runs_, {&nominal, 1}, passage);
 }
 
 const std::vector<VectorXd>& Predictor::nominal(Passage passage) const {
@@ -96,23 +99,82 @@ runs::Run Predictor::simulate(std::size_t run, const Variation& variation) const
   return simulate(observations_.runs[run].replay, run, variation);
 }
 
-runs::Run Predictor::simulate_in(Passage passage, std::size_t run, const Variation& variation) const {
+Replay Predictor::replay_of(Passage passage, std::size_t run) const {
+  const bool by_commands = passage == Passage::command_to_drive || !observations_.runs[run].measured;
+  return by_commands ? Replay::commands : Replay::belts;
+}
+
+runs::Run Predictor::simulate_in(Replay replay, std::size_t run, const Variation& variation) const {
   const Observation& observed = observations_.runs[run];
-  const bool by_commands = passage == Passage::command_to_drive || !observed.measured;
-  return simulate(by_commands ? observed.replay : *observed.measured, run, variation);
+  return simulate(replay == Replay::commands ? observed.replay : *observed.measured, run, variation);
 }
 
 std::vector<VectorXd> Predictor::features_of_each(std::span<const Variation> variations, Passage passage) {
-  return all_of(observations_.runs.size(),
-                [&](std::size_t run) { return features_.maps[run].of(simulate_in(passage, run, variations[run])); });
+  return all_of(observations_.runs.size(), [&](std::size_t run) {
+    return features_.maps[run].of(simulate_in(replay_of(passage, run), run, variations[run]));
+  });
 }
 
-VectorXd Predictor::values_of(std::size_t run, const Variation& variation, Passage passage) const {
-  const StageFeatures& stage = features_.of(passage)[run];
-  if (stage.bins.empty()) return {};
-  const runs::Run simulated = simulate_in(passage, run, variation);
+VectorXd Predictor::values_in(Replay replay, std::size_t run, const Variation& variation) const {
+  const runs::Run simulated = simulate_in(replay, run, variation);
   const FeatureMap& map = features_.maps[run];
-  return stage_values(passage, stage, map, map.of(simulated, variation.samples_late), simulated);
+  const VectorXd features = map.of(simulated, variation.samples_late);
+  VectorXd all;
+  for (const Passage passage : kPassages) {
+    const StageFeatures& stage = features_.of(passage)[run];
+    if (replay_of(passage, run) != replay || stage.bins.empty()) continue;
+    const VectorXd values = stage_values(passage, stage, map, features, simulated);
+    all.conservativeResize(all.size() + values.size());
+    all.tail(values.size()) = values;
+  }
+  return all;
+}
+
+StageValues Predictor::by_stage(Replay replay, std::size_t run, const VectorXd& values) const {
+  StageValues of_stage;
+  Index first = 0;
+  for (const Passage passage : kPassages) {
+    if (replay_of(passage, run) != replay) continue;
+    const Index count = std::ssize(features_.of(passage)[run].bins);
+    of_stage[static_cast<std::size_t>(passage)] = values.segment(first, count);
+    first += count;
+  }
+  return of_stage;
+}
+
+std::vector<VectorXd> Predictor::values_of(std::span<const Asked> asked, std::span<const Variation> variations,
+                                           Passage passage) {
+  if (known_.bytes() > kMostKnown_bytes) known_.forget();
+  std::vector<std::size_t> numbers;
+  for (const Variation& variation : variations) numbers.push_back(known_.number_of(variation));
+  const auto roll_out_of = [&](const Asked& one) {
+    return RollOut{replay_of(passage, one.run), one.run, numbers[one.variation]};
+  };
+  const auto is_measured = [&](std::size_t run) { return !features_.of(passage)[run].bins.empty(); };
+
+  // what is not known yet, each once
+  std::set<RollOut> unknown;
+  for (const Asked& one : asked)
+    if (is_measured(one.run) && known_.find(roll_out_of(one)) == nullptr) unknown.insert(roll_out_of(one));
+  const std::vector<RollOut> jobs(unknown.begin(), unknown.end());
+  const std::vector<VectorXd> simulated = all_of(jobs.size(), [&](std::size_t i) {
+    return values_in(jobs[i].replay, jobs[i].run, known_.variation(jobs[i].variation));
+  });
+  for (std::size_t i = 0; i < jobs.size(); ++i)
+    known_.add(jobs[i], by_stage(jobs[i].replay, jobs[i].run, simulated[i]));
+
+  std::vector<VectorXd> values(asked.size());
+  for (std::size_t i = 0; i < asked.size(); ++i)
+    if (is_measured(asked[i].run)) values[i] = (*known_.find(roll_out_of(asked[i])))[static_cast<std::size_t>(passage)];
+  return values;
+}
+
+std::vector<VectorXd> Predictor::values_of_all(std::span<const std::size_t> of_runs,
+                                               std::span<const Variation> variations, Passage passage) {
+  std::vector<Asked> asked;
+  for (std::size_t v = 0; v < variations.size(); ++v)
+    for (const std::size_t run : of_runs) asked.push_back({run, v});
+  return values_of(asked, variations, passage);
 }
 
 // Bins at times that the other run does not have keep what the last one before them has: a run that lasts longer rests.
@@ -135,27 +197,17 @@ std::vector<VectorXd> Predictor::simulate_groups(std::span<const Variation> vari
                                                  double time_steps) {
   std::vector<Variation> varied(variations.begin(), variations.end());
   for (Variation& variation : varied) variation.physics.time_step_s *= time_steps;
-  const std::size_t groups = representatives_.size();
-  return all_of(varied.size() * groups, [&](std::size_t job) {
-    return values_of(representatives_[job % groups], varied[job / groups], passage);
-  });
+  return values_of_all(representatives_, varied, passage);
 }
 
 std::vector<Shift> Predictor::shifts_of_groups(std::span<const Variation> variations, Passage passage,
                                                Fidelity fidelity) {
   // a shift is the difference of two simulations with the same time step
-  const auto stage = static_cast<std::size_t>(passage);
+  const double time_steps = fidelity == Fidelity::coarse ? kCoarse : 1;
+  const Variation unvaried_robot = unvaried();
+  const std::vector<VectorXd> nominal = simulate_groups({&unvaried_robot, 1}, passage, time_steps);
+  const std::vector<VectorXd> simulated = simulate_groups(variations, passage, time_steps);
   const std::size_t groups = representatives_.size();
-  std::vector<VectorXd> nominal;
-  if (fidelity == Fidelity::coarse && coarse_nominal_[stage].empty()) {
-    const Variation unvaried_robot = unvaried();
-    coarse_nominal_[stage] = simulate_groups({&unvaried_robot, 1}, passage, kCoarse);
-  }
-  for (std::size_t group = 0; group < groups; ++group)
-    nominal.push_back(fidelity == Fidelity::coarse ? coarse_nominal_[stage][group]
-                                                   : nominal_[stage][representatives_[group]]);
-  const std::vector<VectorXd> simulated =
-      simulate_groups(variations, passage, fidelity == Fidelity::coarse ? kCoarse : 1);
   std::vector<Shift> result(variations.size(), Shift(observations_.runs.size()));
   for (std::size_t job = 0; job < simulated.size(); ++job) {
     const std::size_t group = job % groups;
@@ -169,9 +221,7 @@ std::vector<Shift> Predictor::shifts_of_groups(std::span<const Variation> variat
 std::vector<Shift> Predictor::shifts(std::span<const Variation> variations, Passage passage, Fidelity fidelity) {
   if (fidelity != Fidelity::every_run) return shifts_of_groups(variations, passage, fidelity);
   const std::size_t runs = observations_.runs.size();
-  const std::vector<VectorXd> simulated = all_of(variations.size() * runs, [&](std::size_t job) {
-    return values_of(job % runs, variations[job / runs], passage);
-  });
+  const std::vector<VectorXd> simulated = values_of_all(all_runs_, variations, passage);
   std::vector<Shift> result(variations.size(), Shift(runs));
   for (std::size_t job = 0; job < simulated.size(); ++job)
     result[job / runs][job % runs] = simulated[job] - nominal(passage)[job % runs];
@@ -179,8 +229,9 @@ std::vector<Shift> Predictor::shifts(std::span<const Variation> variations, Pass
 }
 
 Shift Predictor::shift_of_each(std::span<const Variation> variations, Passage passage) {
-  Shift result =
-      all_of(observations_.runs.size(), [&](std::size_t run) { return values_of(run, variations[run], passage); });
+  std::vector<Asked> asked;
+  for (const std::size_t run : all_runs_) asked.push_back({run, run});
+  Shift result = values_of(asked, variations, passage);
   for (std::size_t run = 0; run < result.size(); ++run) result[run] -= nominal(passage)[run];
   return result;
 }

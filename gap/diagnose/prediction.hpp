@@ -11,21 +11,13 @@
 #include <vector>
 
 #include "gap/diagnose/features.hpp"
+#include "gap/diagnose/known_roll_outs.hpp"
 #include "gap/diagnose/observation.hpp"
 #include "gap/diagnose/stage_features.hpp"
+#include "gap/diagnose/variation.hpp"
 #include "gap/ranks.hpp"
-#include "physics/world.hpp"
 
 namespace kenaf::gap {
-
-// A robot and a simulator, how far from the observed start the robot is put down, and how much earlier than the log says its
-// samples were taken, in parts of the time since the one before (of the angles alone in the passage from body to sensor).
-struct Variation {
-  physics::RobotDescription robot;
-  physics::PhysicsSettings physics;
-  double start_x_m = 0, start_y_m = 0, start_yaw_rad = 0;
-  double samples_late = 0;
-};
 
 // Shifts of a stage's values, varied minus nominal, of every run.
 using Shift = std::vector<Eigen::VectorXd>;
@@ -77,8 +69,20 @@ class Predictor {
 
  private:
   runs::Run simulate(const rollout::Manoeuvre& replay, std::size_t run, const Variation& variation) const;
-  runs::Run simulate_in(Passage passage, std::size_t run, const Variation& variation) const;
-  Eigen::VectorXd values_of(std::size_t run, const Variation& variation, Passage passage) const;
+  Replay replay_of(Passage passage, std::size_t run) const;
+  runs::Run simulate_in(Replay replay, std::size_t run, const Variation& variation) const;
+  // Values of all stages that are compared in the replay, one after another.
+  Eigen::VectorXd values_in(Replay replay, std::size_t run, const Variation& variation) const;
+  StageValues by_stage(Replay replay, std::size_t run, const Eigen::VectorXd& values) const;
+  // A run with a variation, by its place among those that are given with it.
+  struct Asked {
+    std::size_t run, variation;
+  };
+  std::vector<Eigen::VectorXd> values_of(std::span<const Asked> asked, std::span<const Variation> variations,
+                                         Passage passage);
+  // Each run with each variation, the runs of a variation one after another.
+  std::vector<Eigen::VectorXd> values_of_all(std::span<const std::size_t> of_runs, std::span<const Variation> variations,
+                                             Passage passage);
   // job(0) ... job(count - 1), by all ranks and threads together.
   std::vector<Eigen::VectorXd> all_of(std::size_t count, const std::function<Eigen::VectorXd(std::size_t)>& job);
   std::vector<Shift> shifts_of_groups(std::span<const Variation> variations, Passage passage, Fidelity fidelity);
@@ -95,9 +99,9 @@ class Predictor {
   const std::atomic<bool>* stop_;
   Ranks ranks_;
   std::function<void(std::size_t)> progress_;
-  // of each stage
-  std::array<std::vector<Eigen::VectorXd>, kPassages.size()> nominal_;
-  std::array<std::vector<Eigen::VectorXd>, kPassages.size()> coarse_nominal_;  // of representatives, once asked for
+  std::array<std::vector<Eigen::VectorXd>, kPassages.size()> nominal_;  // of each stage
+  std::vector<std::size_t> all_runs_;
+  KnownRollOuts known_;
   std::size_t roll_outs_ = 0;
 };
 
