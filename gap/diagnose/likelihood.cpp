@@ -21,10 +21,15 @@ constexpr double kSameSize = 0.03;
 constexpr int kMostTurns = 20;
 // A shape shorter than this, in standard deviations, leaves nothing open.
 constexpr double kNoShape = 1e-3;
-// How far numbers of a description are off: from what cannot be seen to what nobody would call a description of this
-// robot (chosen). Golden section over the logarithm, to 3 %.
-constexpr double kLeastOff = 1e-4, kMostOff = 0.05;
+// How far numbers of a description are off: from what cannot be seen to as far as they are where somebody measured and
+// weighed the robot (chosen). Golden section over the logarithm, to 3 %.
+constexpr double kLeastOff = 1e-4, kMostOff = 0.025;
 constexpr int kSectionsOfOff = 11;
+// All numbers together, as the length of what each is off by: twelve that are as far off as numbers are reach beyond
+// this once in a thousand times.
+constexpr double kFarthestOff = 0.143;
+constexpr double kNoneOff = 1e-8;
+constexpr int kHalvingsOfOff = 20;
 
 std::vector<VectorXd> whitened(const std::vector<GroupWhitener>& whiteners, const GroupVectors& residual) {
   std::vector<VectorXd> white;
@@ -100,6 +105,21 @@ double most_likely_numbers_off(const SharedProducts& whole, Index numbers) {
   const auto [log_off, least] = golden_section(std::log(kLeastOff), std::log(kMostOff), kSectionsOfOff,
                                                [&](double at) { return deviance(std::exp(at)); });
   return least < deviance(0) ? std::exp(log_off) : 0;
+}
+
+// `off`, or as much less as it takes to have all numbers together no farther off than they ever are: a number that is
+// off by a half is none of many that are a little off.
+double within_reach(const SharedProducts& whole, Index numbers, double off) {
+  const auto reach = [&](double at) {
+    return at * amounts_of(with_numbers_off(whole, numbers, at)).most_likely.tail(numbers).norm();
+  };
+  if (off == 0 || reach(off) <= kFarthestOff) return off;
+  double within = std::log(kNoneOff), beyond = std::log(off);
+  for (int i = 0; i < kHalvingsOfOff; ++i) {
+    const double middle = (within + beyond) / 2;
+    (reach(std::exp(middle)) <= kFarthestOff ? within : beyond) = middle;
+  }
+  return std::exp(within);
 }
 
 // S S' by unit vectors and their squared lengths; directions along which nothing is open are left out.
@@ -229,7 +249,7 @@ Likelihood likelihood_of(const StageData& data, const GroupVectors& residual, co
     discrepancies.numbers_off = 1;
     const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
     const SharedProducts whole = shared_products(whiteners, whitened(whiteners, residual));
-    discrepancies.numbers_off = most_likely_numbers_off(whole, numbers);
+    discrepancies.numbers_off = within_reach(whole, numbers, most_likely_numbers_off(whole, numbers));
 
     // then open shapes at their most likely amounts, and the discrepancies that make the rest most likely
     VectorXd amounts = amounts_of(with_numbers_off(whole, numbers, discrepancies.numbers_off)).most_likely;

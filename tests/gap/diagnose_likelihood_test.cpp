@@ -210,22 +210,27 @@ TEST_CASE("An offset that the simulation leaves open is no discrepancy") {
   CHECK(likelihood_of(data, residuals_in(data), no_discrepancy()).discrepancies.of_kind[kind_of(kX)].sigma > 2);
 }
 
+// `gap`, and 12 numbers, each of which shifts the stage by 1000 in noise where it is off by all of itself.
+StageData with_numbers(const LinearWorld& world, const Whole& gap) {
+  StageData data = world.data(gap);
+  const std::size_t groups = data.groups.size();
+  for (std::size_t g = 0; g < groups; ++g) data.groups[g].number_shapes.resize(data.groups[g].residual.size(), 12);
+  for (Index i = 0; i < 12; ++i) {
+    const std::vector<VectorXd> shape = mean_of_groups(data, world.by_run(1000 * world.direction(i)));
+    for (std::size_t g = 0; g < groups; ++g) data.groups[g].number_shapes.col(i) = shape[g];
+  }
+  return data;
+}
+
 TEST_CASE("How far numbers are off is found, and takes what they do out of the discrepancy") {
-  // 12 numbers, each of which shifts the stage by 1000 in noise where it is off by all of itself: off by 2 %, by 20
+  // off by 2 %, by 20 in noise
   const LinearWorld world({4, 2, 20});
   const auto data_with = [&](double off) {
     std::mt19937_64 random(3);
     std::normal_distribution<double> normal;
     Whole gap = world.noise(1);
     for (Index i = 0; i < 12; ++i) gap += 1000 * off * normal(random) * world.direction(i);
-    StageData data = world.data(gap);
-    const std::size_t groups = data.groups.size();
-    for (std::size_t g = 0; g < groups; ++g) data.groups[g].number_shapes.resize(data.groups[g].residual.size(), 12);
-    for (Index i = 0; i < 12; ++i) {
-      const std::vector<VectorXd> shape = mean_of_groups(data, world.by_run(1000 * world.direction(i)));
-      for (std::size_t g = 0; g < groups; ++g) data.groups[g].number_shapes.col(i) = shape[g];
-    }
-    return data;
+    return with_numbers(world, gap);
   };
   const StageData off = data_with(0.02), exact = data_with(0);
   const Likelihood found = likelihood_of(off, residuals_in(off), no_discrepancy());
@@ -234,6 +239,28 @@ TEST_CASE("How far numbers are off is found, and takes what they do out of the d
   for (const Discrepancy& discrepancy : found.discrepancies.of_kind) CHECK(discrepancy.sigma < 0.3);
   // in noise a number that is right looks off by 1 in 1000
   CHECK(likelihood_of(exact, residuals_in(exact), no_discrepancy()).discrepancies.numbers_off < 0.002);
+}
+
+TEST_CASE("A number that is off by a half is none of many that are a little off: it is left to the discrepancy") {
+  // 500 in noise, all over 4 x 4 x 20 cells of 8 bins: 500 / sqrt(2560) = 10 in each bin. The numbers may take 14.3 %
+  // off by 50 %, so 7 are left. A number then shifts by S = 1000 / 7 sigma, and takes rho^2 S^2 / (1 + rho^2 S^2) of
+  // what it could, which is 14.3 / 50 where rho is 0.63 / S
+  const LinearWorld world({4, 2, 20});
+  const auto found_with = [&](double off) {
+    const StageData data = with_numbers(world, world.noise(1) + 1000 * off * world.direction(0));
+    return likelihood_of(data, residuals_in(data), no_discrepancy()).discrepancies;
+  };
+  const Discrepancies half = found_with(0.5);
+  CHECK(half.numbers_off == Approx(0.63 * 7 / 1000).epsilon(0.6));
+  for (const auto channel : {"track_left_mps", "battery_v", "x_m", "yaw_rad"}) {
+    std::size_t c = 0;
+    while (diagnosis_channels()[c].column != channel) ++c;
+    CHECK(half.of_kind[kind_of(c)].sigma == Approx(7).epsilon(0.5));
+  }
+  // by 8 % it is one of them: with eleven that are right, the rms of all is 2.3 %
+  const Discrepancies little = found_with(0.08);
+  CHECK(little.numbers_off == Approx(0.08 / std::sqrt(12.0)).epsilon(0.2));
+  for (const Discrepancy& discrepancy : little.of_kind) CHECK(discrepancy.sigma < 0.3);
 }
 
 TEST_CASE("A bin that no used run has changes nothing") {
