@@ -213,17 +213,21 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
     const auto rms = [&](const KindSquares& squares) { return std::sqrt(squares.sum[kind] / squares.bins[kind]); };
     return explained_share(rms(sums[0]), rms(sums[model]), 1);
   };
+  // others that leave more than there was, as they stand beside what is not there, explain nothing
+  const auto more = [](double with, double without) { return std::max(0.0, with) - std::max(0.0, without); };
   SharesWithout shares{of_stage(1), {}};
   for (std::size_t s = 0; s < left_out.size(); ++s) {
-    // without it the others may leave more than there was
-    const double taken_of_stage = std::min(1.0, shares.model - of_stage(2 + s));
-    HeldOutShares::OfEffect share{taken_of_stage, 0, 0, 0, std::numeric_limits<double>::infinity()};
+    HeldOutShares::OfEffect share{more(shares.model, of_stage(2 + s)), 0, 0, 0,
+                                  std::numeric_limits<double>::infinity()};
     for (const VectorXd& of_fold : shown)
       share.shown_by_others = std::min(share.shown_by_others, of_fold[static_cast<Index>(left_out[s].front())]);
+    bool is_first = true;
     for (std::size_t kind = 0; kind < weights.size(); ++kind) {
       if (sums[0].bins[kind] == 0 || weights[kind] == 0) continue;
-      const double taken = std::min(1.0, of_kind(1, kind) - of_kind(2 + s, kind));
-      if (taken > share.of_kind) share = {share.of_stage, taken, kind, of_kind(1, kind), share.shown_by_others};
+      const double taken = more(of_kind(1, kind), of_kind(2 + s, kind));
+      if (!is_first && taken <= share.of_kind) continue;
+      share = {share.of_stage, taken, kind, of_kind(1, kind), share.shown_by_others};
+      is_first = false;
     }
     shares.left_out.push_back(share);
   }

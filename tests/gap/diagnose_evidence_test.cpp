@@ -279,6 +279,38 @@ TEST_CASE("Each of two effects has the share that the model without it leaves, i
   CHECK(two.effects[1].of_kind == 1);
 }
 
+TEST_CASE("Beside an effect that explains nothing the whole model keeps its share") {
+  const std::vector<Whole> effects{60 * world().in_channel(test::WorldChannel::x, 1),
+                                   100 * world().in_channel(test::WorldChannel::battery, 1)};
+  const Whole gap = 0.5 * effects[0];
+  const Measured measured(world(), gap);
+  const StandingModel standing = world().fitted(effects, world().data(gap), {0, 1});
+  const HeldOutShares shares =
+      shares_held_out(measured.view, Passage::drive_to_body, standing, folds_by_repeat(world().repeats), 1);
+  CHECK(shares.effects[1].of_kind == 0);
+  CHECK(shares.effects[1].model_of_kind == 1);
+}
+
+TEST_CASE("An effect takes off no more than the whole model does, however much the others leave without it") {
+  // a moves x by 60; b moves x back by 60, and the voltage by 100; what is there is 10 in x, 50 in the voltage, and 40
+  // in x that neither explains. Both explain the voltage, and of 1700 in x 100. Without a, b explains the voltage and
+  // moves x by 30 from 10 to 40: 3200 are left of 1700
+  const Whole plain = world().in_channel(test::WorldChannel::x, 1);
+  Whole turned = plain;
+  turned.tail(world().bins_of_manoeuvre()) *= -1;
+  const Whole battery = world().in_channel(test::WorldChannel::battery, 1);
+  const std::vector<Whole> effects{60 * plain, 100 * battery - 60 * plain};
+  const Whole gap = 10 * plain + 50 * battery + 40 * turned;
+  const Measured measured(world(), gap);
+  const StandingModel standing = world().fitted(effects, world().data(gap), {0, 1});
+  const HeldOutShares shares =
+      shares_held_out(measured.view, Passage::drive_to_body, standing, folds_by_repeat(world().repeats), 1);
+  CHECK(kind_name(shares.effects[0].kind) == "position");
+  CHECK(shares.effects[0].model_of_kind == Approx(100.0 / (1700 - 48)));
+  CHECK(shares.effects[0].of_kind == shares.effects[0].model_of_kind);
+  CHECK(shares.effects[0].of_stage <= shares.model);
+}
+
 TEST_CASE("A value that is held out is fitted without the runs it is for") {
   // run 0 alone shows 0.8, all others 0.2: by repeats, run 0 is held out with run 2, and gets the value of 1 and 3
   const std::vector<Whole> effects{60 * world().direction(0)};
