@@ -13,6 +13,7 @@ namespace {
 // All chosen.
 constexpr std::size_t kMostCurves = 24, kMostOfKind = 3;
 constexpr double kMatters = 0.01, kMattersInKind = 0.2;  // of the squared gap
+constexpr double kLeastGain = 4;                         // of chi squared: two sigma
 
 struct Explained {
   double share;
@@ -80,7 +81,7 @@ std::vector<std::size_t> candidates_that_matter(const StageData& data, const Eff
   std::vector<std::size_t> matter;
   const Products products = products_of(whiteners_of(data, discrepancies), curves.shifts, residuals_of(data));
   add_best(
-      explained_by_points(curves, looked_at, kMatters,
+      explained_by_points(curves, looked_at, std::max(kMatters, kLeastGain / products.gap_gap),
                           [&](int column) {
                             return AlongGap{products.shift_shift(column, column), products.shift_gap[column]}.share_of(
                                 products.gap_gap);

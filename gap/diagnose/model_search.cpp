@@ -45,17 +45,21 @@ OnCurve in_whole(OnCurve place, const Selection& selection, std::span<const std:
   return place;
 }
 
+GroupVectors less(GroupVectors a, const GroupVectors& b) {
+  for (std::size_t g = 0; g < a.size(); ++g) a[g] -= b[g];
+  return a;
+}
+
 bool is_visible(const EffectCurve& curve) {
   return curve.visible > 1 && curve.points.size() > 1;
 }
 
-// Each of `sets`, fitted on the curves, in their order.
+// Each of `sets`, fitted on the curves and `beyond`, in their order.
 std::vector<Model> fit_all(const StageData& data, const EffectCurves& curves, std::span<const EffectSet> sets,
-                           const std::vector<GroupVectors>& beyond, const Discrepancies& start, unsigned threads) {
+                           const GroupVectors& beyond, const Discrepancies& start, unsigned threads) {
   std::vector<Model> models(sets.size());
-  for_each_job(sets.size(), threads, [&](std::size_t i) {
-    models[i] = fit_model(data, curves, sets[i], beyond.empty() ? GroupVectors{} : beyond[i], start);
-  });
+  for_each_job(sets.size(), threads,
+               [&](std::size_t i) { models[i] = fit_model(data, curves, sets[i], beyond, start); });
   return models;
 }
 
@@ -136,9 +140,7 @@ GroupVectors residuals_of(const StageData& data) {
 }
 
 GroupVectors rest_of(const StageData& data, const Model& model) {
-  GroupVectors rest = residuals_of(data);
-  for (std::size_t g = 0; g < rest.size(); ++g) rest[g] -= model.shift[g];
-  return rest;
+  return less(residuals_of(data), model.shift);
 }
 
 bool has_effect(const Model& model, std::size_t candidate) {
@@ -159,18 +161,13 @@ Model nominal_model(const StageData& data) {
 }
 
 GroupVectors beyond_curves(const EffectCurves& curves, const Model& model) {
-  GroupVectors beyond = model.shift;
-  const GroupVectors sum = shift_of(curves, model.places);
-  for (std::size_t g = 0; g < beyond.size(); ++g) beyond[g] -= sum[g];
-  return beyond;
+  return less(model.shift, shift_of(curves, model.places));
 }
 
 Model fit_model(const StageData& data, const EffectCurves& curves, std::span<const std::size_t> effects,
                 const GroupVectors& beyond, const Discrepancies& start) {
   const Selection selection = selected(curves, effects);
-  GroupVectors target = residuals_of(data);
-  if (!beyond.empty())
-    for (std::size_t g = 0; g < target.size(); ++g) target[g] -= beyond[g];
+  const GroupVectors target = beyond.empty() ? residuals_of(data) : less(residuals_of(data), beyond);
   EffectSet numbers;
   for (std::size_t e = 0; e < effects.size(); ++e) numbers.push_back(e);
 
@@ -200,9 +197,14 @@ std::vector<Model> search_singles(const StageData& data, EffectCurves& curves, c
   sort_by_deviance(models);
 
   // the first ones with points where they fit
+  const auto worth_it = [&](std::size_t most) {
+    std::size_t count = 0;
+    while (count < std::min(most, models.size()) && nominal - models[count].deviance() >= settings.worth) ++count;
+    return count;
+  };
   for (int round = 0; round < settings.rounds; ++round) {
     std::vector<Setting> points;
-    const std::size_t count = std::min(settings.contenders, models.size());
+    const std::size_t count = worth_it(settings.contenders);
     for (std::size_t i = 0; i < count; ++i)
       std::ranges::copy(points_around(curves, models[i].places.front(), kBracket, false), std::back_inserter(points));
     if (points.empty()) break;
@@ -214,7 +216,7 @@ std::vector<Model> search_singles(const StageData& data, EffectCurves& curves, c
   }
 
   // the best of them at the full rate
-  const std::size_t finalists = near_best(models, nominal, settings);
+  const std::size_t finalists = worth_it(near_best(models, nominal, settings));
   std::vector<Contender> contenders;
   for (std::size_t i = 0; i < finalists; ++i) contenders.push_back({effects_of(models[i]), models[i], {}});
   for (int round = 0; round < settings.exact_rounds; ++round) {
@@ -255,11 +257,15 @@ std::vector<EffectSet> with_one_more(const EffectCurves& curves, const EffectSet
   return sets;
 }
 
-std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves, const Discrepancies& start,
-                               const Simulate& simulate, const SearchSettings& settings, std::vector<EffectSet> sets,
-                               double to_beat) {
+std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves, const Model& than, double by,
+                               const Simulate& simulate, const SearchSettings& settings, std::vector<EffectSet> sets) {
+  const Discrepancies& start = than.likelihood.discrepancies;
+  const double to_beat = than.deviance() - by;
+  // effects that act on each other do so in a larger set, too
+  const GroupVectors beyond = beyond_curves(curves, than);
+
   // all sets by what they leave beneath the same discrepancies
-  const Products products = products_of(whiteners_of(data, start), curves.shifts, residuals_of(data));
+  const Products products = products_of(whiteners_of(data, start), curves.shifts, less(residuals_of(data), beyond));
   std::vector<double> left(sets.size());
   for_each_job(sets.size(), settings.threads,
                [&](std::size_t i) { left[i] = fit_together(products, curves.curves, sets[i]).left; });
@@ -272,7 +278,7 @@ std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves
   std::vector<EffectSet> first;
   for (const std::size_t i : order) first.push_back(std::move(sets[i]));
   std::vector<Contender> contenders;
-  for (Model& model : fit_all(data, curves, first, {}, start, settings.threads))
+  for (Model& model : fit_all(data, curves, first, beyond, start, settings.threads))
     if (model.deviance() < to_beat) contenders.push_back({effects_of(model), std::move(model), {}});
   const auto keep_best = [&](std::size_t count) {
     std::ranges::stable_sort(contenders, {}, [](const Contender& c) { return c.fitted.deviance(); });

@@ -29,6 +29,7 @@ struct SearchSettings {
   int rounds = 2;               // of refining, coarse
   int exact_rounds = 4;         // at most, of refining at the full rate
   double near = 0.1;            // share of what the best one's deviance gains by which a finalist may be worse
+  double worth = 12;            // deviance that a single effect must gain on its curve to be refined: near what a name asks for
   unsigned threads = 0;
 };
 
@@ -48,16 +49,16 @@ Model fit_model(const StageData& data, const EffectCurves& curves, std::span<con
 // What a simulated model shifts beyond the sum of its curves.
 GroupVectors beyond_curves(const EffectCurves& curves, const Model& model);
 
-// Best first; finalists exact, all others as their curves have them.
+// Best first; finalists that are worth it exact, all others as their curves have them.
 std::vector<Model> search_singles(const StageData& data, EffectCurves& curves, const Discrepancies& start,
                                   const Simulate& simulate, const SearchSettings& settings);
 
 // Sets of effects that these runs show.
 std::vector<EffectSet> all_pairs(const EffectCurves& curves);
 std::vector<EffectSet> with_one_more(const EffectCurves& curves, const EffectSet& set);
-// Best first; only sets that were simulated at the full rate. `start`: discrepancies of the model that they are to beat.
-std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves, const Discrepancies& start,
-                               const Simulate& simulate, const SearchSettings& settings, std::vector<EffectSet> sets,
-                               double to_beat);
+// Those whose deviance is less than that of `than` by `by`, best first; only sets that were simulated at the full rate. What `than`
+// shifts beyond the sum of its curves is taken to be so in the sets, too, until they are simulated.
+std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves, const Model& than, double by,
+                               const Simulate& simulate, const SearchSettings& settings, std::vector<EffectSet> sets);
 
 }  // namespace kenaf::gap

@@ -31,17 +31,34 @@ double squared(const StageData& data, const GroupVectors& rest) {
   return std::pow(length_in_noise(data, rest), 2);
 }
 
-// By the best single effect, with noise alone.
-double p_of_best_single(const StageData& data, const std::vector<Model>& singles, const EffectCurves& curves,
-                        double margin, double inflation, double& improvement) {
-  improvement = 0;
-  if (singles.empty()) return 1;
-  const double nominal = likelihood_with(data, residuals_of(data), no_discrepancy()).chi_squared;
-  const double left = likelihood_with(data, rest_of(data, singles.front()), no_discrepancy()).chi_squared;
-  improvement = nominal - left;
+// Whether what a model leaves is more than noise and spread of repeats leave.
+struct Chance {
+  double p_cells = 1;      // that noise leaves as much, in as many places
+  double p_effect = 1;     // that in noise some effect would explain as much as a given one does
+  double improvement = 0;  // what that one explains, in noise alone
+};
+
+// `with`: the model with one effect more, if there is one.
+Chance chance_of(const StageData& data, const Model& model, const Model* with, const EffectCurves& curves,
+                 const GapTest& test, const DecisionSettings& settings) {
+  Chance chance;
+  chance.p_cells = cell_energy(data, rest_of(data, model), test.stretch_s).p_of_noise(test.inflation);
+  if (with == nullptr) return chance;
+  const auto left_by = [&](const Model& of) {
+    return likelihood_with(data, rest_of(data, of), no_discrepancy()).chi_squared;
+  };
+  chance.improvement = left_by(model) - left_by(*with);
   const auto visible = static_cast<double>(
       std::ranges::count_if(curves.curves, [](const EffectCurve& curve) { return curve.visible > 1; }));
-  return p_of_largest_square((improvement - margin) / inflation, visible);
+  chance.p_effect = p_of_largest_square((chance.improvement - settings.rival_evidence) / test.inflation, visible);
+  return chance;
+}
+
+// In many places at once, or so large that somebody would see it.
+bool is_gap(const Chance& chance, const StageData& data, const DecisionSettings& settings) {
+  const double negligible = settings.negligible * settings.negligible * static_cast<double>(bin_count(data));
+  return chance.p_cells <= settings.false_alarm / 2 ||
+         (chance.p_effect <= settings.false_alarm / 2 && chance.improvement >= negligible);
 }
 
 // Fitted again, all of them, in other data.
@@ -54,15 +71,16 @@ void fit_again(std::vector<Model>& models, const StageData& data, const EffectCu
   std::ranges::stable_sort(models, {}, [](const Model& model) { return model.deviance(); });
 }
 
-// The best set of effects, each of which gains what evidence asks for.
+// The best set of effects, each of which gains what evidence asks for, as long as there is a gap.
 Model take_effects(const StageData& data, const EffectCurves& curves, const std::vector<Model>& singles,
-                   const Simulate& simulate, const DecisionSettings& settings) {
+                   const Simulate& simulate, const GapTest& test, const DecisionSettings& settings) {
   Model best = singles.front();
   while (best.places.size() < settings.most_effects) {
     std::vector<EffectSet> sets = best.places.size() == 1 ? all_pairs(curves) : with_one_more(curves, effects_of(best));
-    const std::vector<Model> more = search_sets(data, curves, best.likelihood.discrepancies, simulate, settings.search,
-                                                std::move(sets), best.deviance() - settings.evidence / 2);
+    const std::vector<Model> more =
+        search_sets(data, curves, best, settings.evidence / 2, simulate, settings.search, std::move(sets));
     if (more.empty() || best.deviance() - more.front().deviance() < settings.evidence) break;
+    if (!is_gap(chance_of(data, best, &more.front(), curves, test, settings), data, settings)) break;
     best = more.front();
   }
   return best;
@@ -253,17 +271,15 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
   d.singles = search_singles(d.data, curves, without.likelihood.discrepancies, simulate, settings.search);
   d.best.curves = curves;
 
-  // a gap is beyond chance, and either in many places at once or so large that somebody would see it
-  const auto is_gap = [&] {
-    double improvement = 0;
-    const double p_single =
-        p_of_best_single(d.data, d.singles, curves, settings.rival_evidence, test.inflation, improvement);
-    d.p_left = cell_energy(d.data, residuals_of(d.data), test.stretch_s).p_of_noise(test.inflation);
-    d.p_gap = std::min(1.0, 2 * std::min(p_single, d.p_left));
-    const double negligible = settings.negligible * settings.negligible * static_cast<double>(bin_count(d.data));
-    return d.p_gap <= settings.false_alarm && (d.p_left <= settings.false_alarm / 2 || improvement >= negligible);
+  // what is beyond chance
+  const auto has_gap = [&] {
+    const Chance chance = chance_of(d.data, nominal_model(d.data), d.singles.empty() ? nullptr : &d.singles.front(),
+                                    curves, test, settings);
+    d.p_left = chance.p_cells;
+    d.p_gap = std::min(1.0, 2 * std::min(chance.p_effect, chance.p_cells));
+    return is_gap(chance, d.data, settings);
   };
-  if (!is_gap()) return d;
+  if (!has_gap()) return d;
   d.verdict = Verdict::unknown;
   if (d.singles.empty() || d.nominal_deviance - d.singles.front().deviance() < settings.evidence) return d;
 
@@ -278,14 +294,14 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
   if (look_around(d.singles.front())) {
     fit_again(d.singles, d.data, curves, settings.search.threads);
     d.nominal_deviance = nominal_model(d.data).deviance();
-    if (!is_gap()) {
+    if (!has_gap()) {
       d.verdict = Verdict::none;
       return d;
     }
   }
 
   // effects as long as each gains evidence, fitted where they stand
-  Model chosen = take_effects(d.data, curves, d.singles, simulate, settings);
+  Model chosen = take_effects(d.data, curves, d.singles, simulate, test, settings);
   if (chosen.places.size() > 1 && look_around(chosen))
     chosen.likelihood = likelihood_of(d.data, rest_of(d.data, chosen), chosen.likelihood.discrepancies);
   d.nominal_deviance = nominal_model(d.data).deviance();

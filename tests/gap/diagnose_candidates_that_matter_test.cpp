@@ -38,6 +38,17 @@ TEST_CASE("What explains some of the gap matters, what acts where there is none 
   CHECK(that_matter(world, effects, effects[1] + world.noise(3)) == std::vector<std::size_t>{1});
 }
 
+TEST_CASE("What explains no more than chance does not matter, however much of a small gap that is") {
+  // noise without what it has along the effect, and so many sigma of the effect: they gain 3.2 and 6.2 of some 280, more
+  // than 1 %
+  const LinearWorld world({6, 1, 3});
+  const Whole direction = world.direction(0), noise = world.noise(3);
+  const Whole without = noise - noise.dot(direction) * direction;
+  const std::vector<Whole> effects{60 * direction};
+  CHECK(that_matter(world, effects, without + 1.8 * direction).empty());
+  CHECK(that_matter(world, effects, without + 2.5 * direction) == std::vector<std::size_t>{0});
+}
+
 TEST_CASE("A voltage that is off alike in all runs matters, however much the tracks' speeds differ") {
   // beneath a discrepancy of the voltage that lasts as long as a run, a constant is one number a run, of unit size; the
   // speeds' discrepancy has many

@@ -23,8 +23,7 @@ std::vector<Whole> six_effects() {
 std::vector<Model> pairs_found(const LinearWorld::Moved& moved, const Whole& gap) {
   const StageData data = world().data(gap);
   const EffectCurves curves = world().curves(moved, 6, data);
-  return search_sets(data, curves, no_discrepancy(), world().simulate(moved), {}, all_pairs(curves),
-                     nominal_model(data).deviance());
+  return search_sets(data, curves, nominal_model(data), 0, world().simulate(moved), {}, all_pairs(curves));
 }
 
 double value_of(const Model& model, std::size_t effect) {
@@ -71,6 +70,25 @@ TEST_CASE("Exact simulations correct what coarse ones said of an effect's size, 
     }
 }
 
+TEST_CASE("Single effects that gain next to nothing on their curves are not simulated again") {
+  const std::vector<Whole> effects = six_effects();
+  const Simulate counted = world().simulate(LinearWorld::linear(effects));
+  for (const auto& [length, is_worth_it] : {std::pair{3.0, false}, {4.5, true}}) {  // it gains the square of that
+    std::size_t simulated = 0;
+    const Simulate simulate = [&](std::span<const Settings> asked, Fidelity fidelity) {
+      simulated += asked.size();
+      return counted(asked, fidelity);
+    };
+    const StageData data = world().data(length / 60 * effects[3]);
+    EffectCurves curves = world().curves(effects, data);
+    const std::vector<Model> singles = search_singles(data, curves, no_discrepancy(), simulate, {});
+    CHECK(singles.size() == 6);
+    CHECK(singles[0].places.at(0).curve == 3);
+    CHECK(singles[0].exact == is_worth_it);
+    CHECK((simulated > 0) == is_worth_it);
+  }
+}
+
 TEST_CASE("Effects that these runs do not show are in no set") {
   std::vector<Whole> effects = six_effects();
   effects[1] *= 0.9 / 60;  // less than noise at the end of its range
@@ -110,4 +128,25 @@ TEST_CASE("Effects that change what the other one does are found together") {
   // where the sum of both alone would have it, 0.6, it is not
   CHECK(value_of(found[0], 1) == Approx(0.4).margin(0.1));
   CHECK(value_of(found[0], 4) == Approx(0.5).margin(0.1));
+}
+
+TEST_CASE("An effect is found beside others that act on each other, though their curves do not add up to them") {
+  // beside a half of effect 4, effect 1 moves what no curve does, and hides effect 2
+  const std::vector<Whole> effects = six_effects();
+  const auto moved = [&](const Settings& settings) {
+    double one = 0, four = 0;
+    for (const Setting& setting : settings) {
+      if (setting.candidate == 1) one = setting.value;
+      if (setting.candidate == 4) four = setting.value;
+    }
+    return Whole(LinearWorld::linear(effects)(settings) + 4 * one * four * (60 * world().direction(7) - effects[2]));
+  };
+  const StageData data = world().data(moved({{1, 0.5}, {4, 0.5}, {2, 0.3}}) + world().noise(2));
+  const EffectCurves curves = world().curves(moved, 6, data);
+  const Simulate simulate = world().simulate(moved);
+  const Model than = search_sets(data, curves, nominal_model(data), 0, simulate, {}, {{1, 4}}).at(0);
+  const std::vector<Model> found = search_sets(data, curves, than, 0, simulate, {}, with_one_more(curves, {1, 4}));
+  REQUIRE(!found.empty());
+  CHECK(effects_of(found[0]) == EffectSet{1, 4, 2});
+  CHECK(value_of(found[0], 2) == Approx(0.3).margin(0.1));
 }

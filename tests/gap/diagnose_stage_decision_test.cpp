@@ -241,6 +241,17 @@ TEST_CASE("Repeats that differ more than the floor says make a gap harder to see
   CHECK(verdict(9) == Verdict::none);
 }
 
+TEST_CASE("No effect is added where what is left is within what repeats differ by, whatever it gains") {
+  // beside one of 30 sigma another one of 6 gains 36 of deviance
+  const std::vector<Whole> effects = orthogonal_effects();
+  const Whole gap = effects[2] * 30 / kLength + effects[4] * 6 / kLength;
+  const auto found = [&](double inflation) {
+    return candidates_of(world().decide(LinearWorld::linear(effects), kEffects, gap, 1, {inflation, 1}));
+  };
+  CHECK_THAT(found(1), Catch::Matchers::UnorderedEquals(std::vector<std::size_t>{2, 4}));
+  CHECK(found(9) == std::vector<std::size_t>{2});
+}
+
 TEST_CASE("A floor that is wider around an effect excuses a gap only where that effect fits it") {
   const std::vector<Whole> effects = orthogonal_effects();
   const auto verdict_of = [&](const Whole& gap) {
