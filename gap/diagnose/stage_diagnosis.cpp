@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "gap/diagnose/candidates_that_matter.hpp"
 #include "gap/diagnose/cells.hpp"
@@ -57,6 +58,9 @@ VectorXd noise_of_difference(const StageFeatures& run) {
   return (1 + run.baseline_runs.array().inverse()).sqrt();
 }
 
+// Effects stand in for each other where together they take off more than so many times what each does alone (chosen).
+constexpr double kCommon = 2;
+
 constexpr HeldOutShares::OfEffect kNotHeldOut{GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, 0,
                                               GapMeasure::kNotMeasured, 0};
 
@@ -68,15 +72,16 @@ bool is_large_enough(const NamedEffect& effect, const Candidate& candidate, doub
   return std::abs(effect.value.value.value - candidate.present) >= agreement * effect.value.spread;
 }
 
-// Places of the effects that may lack a share by themselves: sets of others are of no interest.
-std::vector<std::size_t> small_alone(const HeldOutShares& shares, const HeldOutShares& shares_by_manoeuvre,
-                                     const DecisionSettings& settings) {
+// Places of the effects whose sets are of interest: all where some effect may lack a share by itself, else none.
+std::vector<std::size_t> places_of_sets(const HeldOutShares& shares, const HeldOutShares& shares_by_manoeuvre,
+                                        const DecisionSettings& settings) {
   const auto is_small = [&](const HeldOutShares::OfEffect& share) {
     return !(share.of_kind >= settings.effect_share) || !(share.of_stage >= settings.stage_share);
   };
-  std::vector<std::size_t> places;
-  for (std::size_t e = 0; e < shares.effects.size(); ++e)
-    if (is_small(shares.effects[e]) || is_small(shares_by_manoeuvre.effects[e])) places.push_back(e);
+  if (std::ranges::none_of(shares.effects, is_small) && std::ranges::none_of(shares_by_manoeuvre.effects, is_small))
+    return {};
+  std::vector<std::size_t> places(shares.effects.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
   return places;
 }
 
@@ -85,21 +90,32 @@ std::vector<std::size_t> small_alone(const HeldOutShares& shares, const HeldOutS
 void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutShares::OfSet>& sets,
                   const std::vector<HeldOutShares::OfSet>& sets_by_manoeuvre, const DecisionSettings& settings) {
   // how much is whose is not known, so manoeuvres may disagree on it
-  const auto lacks_share_alone = [&](std::size_t place) {
+  const auto lacks_share = [&](std::size_t place) {
     const std::vector<Doubt>& doubts = effects[place].doubts;
-    return effects[place].partners.empty() && std::ranges::any_of(doubts, is_lack_of_share) &&
-           std::ranges::all_of(doubts,
-                               [](Doubt doubt) { return is_lack_of_share(doubt) || doubt == Doubt::disagreement; });
+    return std::ranges::any_of(doubts, is_lack_of_share) && std::ranges::all_of(doubts, [](Doubt doubt) {
+             return is_lack_of_share(doubt) || doubt == Doubt::disagreement;
+           });
+  };
+  const auto is_named = [&](std::size_t place) { return effects[place].doubts.empty(); };
+  const auto may_join = [&](std::size_t place) {
+    return effects[place].partners.empty() && (lacks_share(place) || is_named(place));
+  };
+  const auto stand_in = [&](const std::vector<std::size_t>& places, const HeldOutShares::OfEffect& together) {
+    double alone = 0;
+    for (const std::size_t place : places) alone += std::max(0.0, effects[place].share.of_stage);
+    return together.of_stage > kCommon * alone;
   };
   for (std::size_t s = 0; s < sets.size(); ++s) {
     const std::vector<std::size_t>& places = sets[s].places;
-    if (!std::ranges::all_of(places, lacks_share_alone)) continue;
+    if (!std::ranges::all_of(places, may_join) || std::ranges::none_of(places, lacks_share)) continue;
     HeldOutShares::OfEffect share = sets[s].share;
     const HeldOutShares::OfEffect& by_manoeuvre = sets_by_manoeuvre[s].share;
     if (by_manoeuvre.shown_by_others >= settings.evidence && by_manoeuvre.of_kind < share.of_kind) share = by_manoeuvre;
     if (share.of_kind < settings.effect_share || share.of_stage < settings.stage_share ||
         share.model_of_kind < settings.model_share)
       continue;
+    // one that has a name by itself is in a set only with what it stands in for
+    if (std::ranges::any_of(places, is_named) && !stand_in(places, share)) continue;
     for (const std::size_t place : places) {
       NamedEffect& effect = effects[place];
       effect.doubts.clear();
@@ -308,9 +324,9 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   if (!decision.effects.empty()) {
     HeldOutShares of_repeats = shares_held_out(view, input.passage, decision.best, by_repeat, threads);
     HeldOutShares of_manoeuvres = shares_held_out(view, input.passage, decision.best, by_manoeuvre, threads);
-    const std::vector<std::size_t> small = small_alone(of_repeats, of_manoeuvres, options.decision);
-    of_repeats.sets = shares_of_sets_held_out(view, input.passage, decision.best, by_repeat, small, threads);
-    of_manoeuvres.sets = shares_of_sets_held_out(view, input.passage, decision.best, by_manoeuvre, small, threads);
+    const std::vector<std::size_t> places = places_of_sets(of_repeats, of_manoeuvres, options.decision);
+    of_repeats.sets = shares_of_sets_held_out(view, input.passage, decision.best, by_repeat, places, threads);
+    of_manoeuvres.sets = shares_of_sets_held_out(view, input.passage, decision.best, by_manoeuvre, places, threads);
     judge(decision, candidates, of_repeats, of_manoeuvres, options.decision);
   }
 

@@ -301,6 +301,15 @@ TEST_CASE("Two effects that take up what the other leaves are named as a set, a 
   CHECK(one.effects[0].doubts.empty());
   CHECK(one.effects[1].doubts == std::vector<Doubt>{Doubt::not_held_out});
   CHECK(judged(0.05, 0.04, 0.1).verdict == Verdict::unknown);
+
+  // one of them may have enough alone: together they take off 94 %, without one or the other 25 and 12 % are lost
+  const StageDecision stand_in = judged(0.25, 0.12, 0.94);
+  CHECK(stand_in.verdict == Verdict::ambiguous);
+  CHECK(stand_in.effects[0].rivals == std::vector<std::size_t>{0, 1});
+  CHECK(stand_in.effects[1].partners == std::vector<std::size_t>{0});
+  const StageDecision each_its_own = judged(0.3, 0.12, 0.5);
+  CHECK(each_its_own.verdict == Verdict::named);
+  CHECK(each_its_own.effects[1].doubts == std::vector<Doubt>{Doubt::not_held_out});
 }
 
 TEST_CASE("What one manoeuvre alone shows is judged by its repeats, as no other one foretells it") {
