@@ -102,13 +102,14 @@ void FlipperJoint::drive(const JointCommand& command, const FlipperDescription& 
 void FlipperJoint::prescribe(double angle_rad, double time_step_s) {
   constexpr double kAnyTorque_nm = 1e6;
   constexpr double kFastest_radps = 10;  // chosen: an arm that hung elsewhere at first gets there without a blow
-  target_radps_ = std::clamp(frames::wrap_angle(angle_rad - angle_rad_) / time_step_s, -kFastest_radps, kFastest_radps);
+  const double at = servo_rad();
+  target_radps_ = std::clamp(frames::wrap_angle(angle_rad - at) / time_step_s, -kFastest_radps, kFastest_radps);
   servo_most_nm_ = kAnyTorque_nm;
   max_impulse_ = kAnyTorque_nm * time_step_s;
   min_impulse_ = -max_impulse_;
-  softness_ = most_apart_rad_ = 0;
-  servo_rad_ = followed_rad_ = angle_rad_ + target_radps_ * time_step_s;
-  servo_radps_ = 0;
+  softness_ = 0;
+  followed_rad_ = at + target_radps_ * time_step_s;
+  if (!coupling_.rigid()) push_through(target_radps_, kAnyTorque_nm, time_step_s);
 }
 
 // Spring and damper, implicit as a contact's: torque = k (apart + h (servo - arm speed)) + d (servo - arm speed), at

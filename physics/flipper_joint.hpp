@@ -39,8 +39,8 @@ class FlipperJoint : public btTypedConstraint {
   // Sets the servo for the next step.
   void drive(const JointCommand& command, const FlipperDescription& flipper, const FlipperServoDescription& servo,
              double time_step_s);
-  // Instead of drive(): at the end of the next step the arm has this direction, rigidly, whatever the servo can do; it
-  // turns at most at 10 rad/s.
+  // Instead of drive(): at the end of the next step the servo has this direction, whatever it can do; it turns at most at
+  // 10 rad/s. Rigid, the arm is there, too; else it follows through play and compliance.
   void prescribe(double angle_rad, double time_step_s);
 
   double angle_rad() const { return angle_rad_; }

@@ -91,9 +91,9 @@ class World {
   // state of turning at these speeds, and what `command` differs by from them they still have to do. What holds of
   // it the next steps decide, by friction and mass. Not for a robot with a fault.
   void set_in_motion(RobotId id, const RobotMotion& motion, const RobotCommand& command);
-  // In the steps to come, until told otherwise, a belt has exactly the speed and a flipper exactly the angle that is
+  // In the steps to come, until told otherwise, a belt has exactly the speed and a flipper's servo exactly the angle that is
   // stated: no motor limit, no lag, no command has a part in it. Angles are directions: a flipper goes the short way, at
-  // most at 10 rad/s. A drive that is let go follows its command from the speed at that moment. Forces and currents
+  // most at 10 rad/s. Play and compliance are between servo and arm, where no encoder sees them: the arm has them still. A drive that is let go follows its command from the speed at that moment. Forces and currents
   // are those that the ground asks for. teleport() and reset() end it.
   void prescribe(RobotId id, const PrescribedMotion& motion);
   // Starts a sensor's integration anew: encoder counts, odometry, tachometer angle from 0; INS from its argument.

@@ -101,8 +101,12 @@ TimeSeries held_to_travel(const TimeSeries& speed, const TimeSeries& travel) {
   return out;
 }
 
+TimeSeries track_travel(const runs::Run& run, std::string_view track) {
+  return series_of(run, fmt::format("track_{}_m", track));
+}
+
 TimeSeries track_speed(const runs::Run& run, std::string_view track) {
-  const TimeSeries travel = series_of(run, fmt::format("track_{}_m", track));
+  const TimeSeries travel = track_travel(run, track);
   TimeSeries speed = series_of(run, fmt::format("track_{}_mps", track));
   if (speed.empty()) speed = mean_speeds(travel);
   return speed.empty() ? speed : held_to_travel(speed, travel);
@@ -206,18 +210,23 @@ bool MeasuredMotion::empty() const {
   return std::ranges::all_of(track_mps, &TimeSeries::empty) && std::ranges::all_of(flipper_rad, &TimeSeries::empty);
 }
 
-physics::PrescribedMotion MeasuredMotion::at(double time_s) const {
+physics::PrescribedMotion MeasuredMotion::at(double time_s, const ReportDelays& late) const {
   physics::PrescribedMotion motion;
-  for (std::size_t i = 0; i < track_mps.size(); ++i)
-    if (!track_mps[i].empty()) motion.track_mps[i] = track_mps[i].at(time_s);
+  for (std::size_t i = 0; i < track_mps.size(); ++i) {
+    const double track_late_s = is_held_to_travel[i] ? late.track_travel_s : late.track_speed_s;
+    if (!track_mps[i].empty()) motion.track_mps[i] = track_mps[i].at(time_s + track_late_s);
+  }
   for (std::size_t i = 0; i < flipper_rad.size(); ++i)
-    if (!flipper_rad[i].empty()) motion.flipper_rad[i] = flipper_rad[i].at(time_s);
+    if (!flipper_rad[i].empty()) motion.flipper_rad[i] = flipper_rad[i].at(time_s + late.flipper_s);
   return motion;
 }
 
 MeasuredMotion measured_motion(const runs::Run& run) {
   MeasuredMotion motion;
-  for (std::size_t i = 0; i < kTracks.size(); ++i) motion.track_mps[i] = track_speed(run, kTracks[i]);
+  for (std::size_t i = 0; i < kTracks.size(); ++i) {
+    motion.track_mps[i] = track_speed(run, kTracks[i]);
+    motion.is_held_to_travel[i] = !track_travel(run, kTracks[i]).empty();
+  }
   for (std::size_t i = 0; i < runs::kFlippers.size(); ++i)
     motion.flipper_rad[i] = without_full_turns(series_of(run, fmt::format("flipper_{}_rad", runs::kFlippers[i])));
   return motion;

@@ -20,13 +20,20 @@ struct TimeSeries {
   double at(double time_s) const;  // not of an empty one
 };
 
-// A series is empty where the run measured none of it.
+// How long after it happened a robot's sensors report it.
+struct ReportDelays {
+  double track_speed_s = 0, track_travel_s = 0, flipper_s = 0;
+};
+
+// A series is empty where the run measured none of it. Times are those of the reports.
 struct MeasuredMotion {
   std::array<TimeSeries, physics::kTrackCount> track_mps;
+  std::array<bool, physics::kTrackCount> is_held_to_travel{};
   std::array<TimeSeries, physics::kFlipperCount> flipper_rad;  // without jumps at full turns
 
   bool empty() const;
-  physics::PrescribedMotion at(double time_s) const;
+  // What happened at a time, by what was reported of it `late`. A track that is held to its travel is as late as that.
+  physics::PrescribedMotion at(double time_s, const ReportDelays& late = {}) const;
 };
 
 // Tracks: the measured speed, empty cells interpolated. Where travel is measured too, speed gives the shape and travel

@@ -93,6 +93,23 @@ bool apart(const Pose& X_WB, const Pose& other) {
   return (other.p - X_WB.p).norm() > kMisplaced_m || other.q.angularDistance(X_WB.q) > kMisplaced_rad;
 }
 
+ReportDelays report_delays(const RobotDescription& robot) {
+  const auto delay_s = [&](physics::SensorType type) {
+    const auto found = std::ranges::find(robot.sensors, type, &physics::SensorDescription::type);
+    return found == robot.sensors.end() ? 0 : found->delay_s;
+  };
+  return {delay_s(physics::SensorType::tachometer), delay_s(physics::SensorType::encoder),
+          delay_s(physics::SensorType::drives)};
+}
+
+// What tracks and flippers of this robot did if its sensors reported this of them.
+physics::PrescribedMotion actual_motion(const MeasuredMotion& measured, double time_s, const RobotDescription& robot) {
+  physics::PrescribedMotion motion = measured.at(time_s, report_delays(robot));
+  for (const physics::Track side : {physics::kLeft, physics::kRight})
+    if (std::optional<double>& speed = motion.track_mps[side]) *speed /= robot.encoder_factor(side);
+  return motion;
+}
+
 // At rest, joints included; where it has settled.
 Pose put_down(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, const FlipperAngles& flippers,
               const Pose& X_WB) {
@@ -102,7 +119,7 @@ Pose put_down(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, 
         std::clamp(flippers.front(), robot.flipper.front().min_angle_rad, robot.flipper.front().max_angle_rad);
   scene.robot = scene.world.add_robot(robot, "robot", X_WB);
   if (manoeuvre.measured) {
-    scene.held = manoeuvre.measured->at(0);
+    scene.held = actual_motion(*manoeuvre.measured, 0, robot);
     for (std::optional<double>& speed : scene.held.track_mps)
       if (speed) speed = 0;
   }
@@ -135,13 +152,6 @@ void put_at_start(Scene& scene, const RobotDescription& robot, const Manoeuvre& 
     lift_m = *manoeuvre.start->z_m - X_WB_settled.p.z();
   if (lift_m > 0) scene.world.teleport(scene.robot, {X_WB_settled.p + Eigen::Vector3d(0, 0, lift_m), X_WB_settled.q});
   for (std::size_t i = 0; i < robot.sensors.size(); ++i) scene.world.reset_sensor(scene.robot, i);
-}
-
-// What tracks did if encoders reported this of them.
-physics::PrescribedMotion without_encoder_scale(physics::PrescribedMotion motion, const RobotDescription& robot) {
-  for (const physics::Track side : {physics::kLeft, physics::kRight})
-    if (std::optional<double>& speed = motion.track_mps[side]) *speed /= robot.encoder_factor(side);
-  return motion;
 }
 
 // The settled robot moves from here on as the run did.
@@ -209,7 +219,7 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
     }
     if (manoeuvre.measured)
       scene.world.prescribe(scene.robot,
-                            without_encoder_scale(manoeuvre.measured->at(t_s + options.physics.time_step_s), measured));
+                            actual_motion(*manoeuvre.measured, t_s + options.physics.time_step_s, measured));
     scene.step();
   }
   out.run = recorder.take();

@@ -274,6 +274,35 @@ TEST_CASE("Encoders that report too much are no reason to drive too far") {
   CHECK(again.run.column("x_m").back() == Approx(real.run.column("x_m").back()).margin(2e-3));
 }
 
+TEST_CASE("Sensors that report late are no reason to drive late") {
+  const auto robot = physics::load_robot("kenaf");
+  auto late = robot;
+  for (physics::SensorDescription& sensor : late.sensors)
+    if (sensor.type == physics::SensorType::encoder || sensor.type == physics::SensorType::tachometer)
+      sensor.delay_s = 0.1;
+  const RollOut real = roll_out(late, flat(), drive({{0.3, 0.3}}, 2), exact());
+  const Manoeuvre measured = replay_measured_of(real.run, "run");
+  // by 0.1 s at 0.3 m/s
+  const auto behind_m = [&](const physics::RobotDescription& described) {
+    const RollOut again = roll_out(described, flat(), measured, exact());
+    const std::size_t row = real.run.row_count() / 2;
+    return real.run.column("x_m")[row] - again.run.column("x_m")[row];
+  };
+  CHECK(behind_m(robot) == Approx(0.03).margin(2e-3));
+  CHECK(behind_m(late) == Approx(0).margin(2e-3));
+}
+
+TEST_CASE("Of speed that is held to travel the delay of the travel counts") {
+  const auto at_one = [](const char* csv, const ReportDelays& late) {
+    return *measured_motion(runs::parse_run(csv, "run.csv")).at(1, late).track_mps[physics::kLeft];
+  };
+  const ReportDelays late{.track_speed_s = 1, .track_travel_s = 2, .flipper_s = 0};
+  // the speed grows by 0.1 m/s each second
+  CHECK(at_one("t_s,track_left_mps\n0,0\n4,0.4\n", late) == Approx(0.2));
+  CHECK(at_one("t_s,track_left_mps,track_left_m\n0,0,0\n1,0.1,0.05\n2,0.2,0.2\n3,0.3,0.45\n4,0.4,0.8\n", late) ==
+        Approx(0.3));
+}
+
 TEST_CASE("Encoders that report more on the left are no reason to turn, from rest or on the way") {
   auto robot = physics::load_robot("kenaf");
   robot.effects.encoder_scale = 1.1;
