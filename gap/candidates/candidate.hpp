@@ -27,8 +27,8 @@ struct Candidate {
   double present = 0;  // of the robot that it was made for, whose every bit set() leaves as it is at this value
   double min = 0, max = 0;  // where to search, for a robot of this size; min < max, neutral and present within
   bool is_number_of_description = false;
-  // By how much this is off where the number of the description is off by all of itself, or by its range where it is 0:
-  // of the number itself, and of an effect that leave_out() kept in its place. 0: there is no such number.
+  // By how much this is off where the number of the description is off by all of itself, or by its range where it is 0 (a
+  // sensor's delay by 0.2 s): of the number itself, and of an effect that leave_out() kept in its place. 0: there is no such number.
   double whole = 0;
   // Another candidate's `effect` that changes a run in the same way, by a scale or an offset where this is the number
   // itself, or so nearly that no run tells them apart. Empty: there is none. Of two such, one is enough.

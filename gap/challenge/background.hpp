@@ -11,7 +11,7 @@
 
 namespace kenaf::gap {
 
-// Of its value to either side; of a number whose value is 0, of the range in which it is searched for (chosen: as well as a
+// Of its value to either side; of a number whose value is 0, of Candidate::whole (chosen: as well as a
 // robot is known that was built from drawings and weighed).
 inline constexpr double kBackgroundOff = 0.03;
 

@@ -197,7 +197,8 @@ TEST_CASE("An effect that is kept in a number's place says by how much it is off
   const auto whole = [&](std::string_view name) { return find_candidate(kept, name)->whole; };
   CHECK(whole("mass") == 1);                                               // a ratio
   CHECK(whole("battery.open_circuit_v") == robot.battery.open_circuit_v);  // the number itself
-  CHECK(whole("gyro_delay") == 0.6);                                       // 0 s now, searched up to 0.6 s
+  CHECK(whole("gyro_delay") == 0.2);                                       // 0 s now
+  CHECK(whole("com_forward") > 0.1);                                       // 0 m now, searched that far
   CHECK(whole("command_slew") == 0);                                       // no number of the description
   CHECK(find_candidate(kept, "body.mass_kg") == nullptr);
 }
