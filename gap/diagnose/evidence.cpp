@@ -18,7 +18,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kMostFolds = 5, kResamplings = 400;
+constexpr std::size_t kResamplings = 400;
 constexpr double kTwoSided95 = 1.96;
 // Manoeuvres that differ no more than this probability allows are taken to agree.
 constexpr double kAgree = 0.05;
@@ -26,17 +26,6 @@ constexpr double kAgree = 0.05;
 double quantile(std::vector<double>& values, double share) {
   std::ranges::sort(values);
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
-}
-
-Folds dealt_out(const std::vector<std::vector<std::size_t>>& blocks, std::size_t count) {
-  Folds folds(count);
-  std::size_t next = 0;
-  for (const auto& block : blocks) {
-    folds[next % count].insert(folds[next % count].end(), block.begin(), block.end());
-    ++next;
-  }
-  std::erase_if(folds, [](const auto& fold) { return fold.empty(); });
-  return folds;
 }
 
 // How the model's shift changes with each value, of one group, by its curves.
@@ -116,10 +105,8 @@ RandomEffect random_effect(const std::vector<OwnValue>& own) {
   return result;
 }
 
-std::vector<bool> used_without(std::size_t runs, const std::vector<std::size_t>& fold) {
-  std::vector<bool> used(runs, true);
-  for (const std::size_t r : fold) used[r] = false;
-  return used;
+StageData data_of(const StageView& view, Passage passage, const UsedParts& used) {
+  return stage_data(passage, *view.features, *view.repeats, *view.residuals, *view.floor, used);
 }
 
 Model refit(const StageData& data, const StandingModel& standing, const GroupVectors& beyond) {
@@ -162,6 +149,29 @@ std::vector<Places> sets_small_first(std::span<const std::size_t> places) {
   return sets;
 }
 
+// What a model leaves: of the stage's kinds, by its effects alone, and with numbers that are a little off.
+struct Left {
+  KindSquares by_effects, with_numbers;
+};
+Left& operator+=(Left& sum, const Left& more) {
+  sum.by_effects += more.by_effects;
+  sum.with_numbers += more.with_numbers;
+  return sum;
+}
+
+// Of a model that was fitted to some data, in others. Numbers are off as far as they are with all effects: without one
+// they would be taken to be off far enough to do what it does.
+Left left_in(const StageData& tested, const StageData& fitted, const Model& model, double numbers_off) {
+  GroupVectors rest = rest_of(tested, model);
+  Left left{squares_of_groups(tested, rest), {}};
+  Discrepancies discrepancies = model.likelihood.discrepancies;
+  discrepancies.numbers_off = numbers_off;
+  const VectorXd numbers = most_likely_numbers(fitted, rest_of(fitted, model), discrepancies);
+  for (std::size_t g = 0; g < rest.size(); ++g) rest[g] -= tested.groups[g].number_shapes * numbers;
+  left.with_numbers = squares_of_groups(tested, rest);
+  return left;
+}
+
 // What the whole model takes off the stage, and what it does more than without each of `left_out`, in that order.
 struct SharesWithout {
   double model;
@@ -170,24 +180,19 @@ struct SharesWithout {
 
 SharesWithout shares_without(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
                              std::span<const Places> left_out, unsigned threads) {
-  const std::size_t effects = standing.model.places.size(), runs = view.features->size();
+  const std::size_t effects = standing.model.places.size();
   const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
-  // squares of each fold: of the nominal model, of the whole model, and of the model without each set of effects
-  std::vector<std::vector<KindSquares>> left(folds.size());
+  // of each fold: of the nominal model, of the whole model, and of the model without each set of effects
+  std::vector<std::vector<Left>> left(folds.size());
   std::vector<VectorXd> shown(folds.size());
   for_each_job(folds.size(), threads, [&](std::size_t f) {
-    const auto of = [&](const std::vector<bool>& used) {
-      return stage_data(passage, *view.features, *view.repeats, *view.residuals, *view.floor, used);
-    };
-    std::vector<bool> fitted = used_without(runs, folds[f]), tested = fitted;
-    tested.flip();
-    if (folds.size() < 2) fitted = tested;
-    const StageData fitted_data = of(fitted), tested_data = of(tested);
+    const StageData tested_data = data_of(view, passage, UsedParts::of(folds[f]));
+    const StageData fitted_data = folds.size() < 2 ? tested_data : data_of(view, passage, UsedParts::without(folds[f]));
     shown[f] = evidence_expected(fitted_data, standing);
-    left[f].push_back(squares_of_groups(tested_data, residuals_of(tested_data)));
     const auto add = [&](const Model& model) {
-      left[f].push_back(squares_of_groups(tested_data, rest_of(tested_data, model)));
+      left[f].push_back(left_in(tested_data, fitted_data, model, standing.model.likelihood.discrepancies.numbers_off));
     };
+    add(nominal_model(fitted_data));
     add(refit(fitted_data, standing, beyond));
     for (const Places& without : left_out) {
       EffectSet others;
@@ -199,34 +204,42 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
         add(fit_model(fitted_data, standing.curves, others, {}, standing.model.likelihood.discrepancies));
     }
   });
-  std::vector<KindSquares> sums = left.front();
+  std::vector<Left> sums = left.front();
   for (std::size_t f = 1; f < left.size(); ++f)
     for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += left[f][m];
 
   // of the stage each kind by its own gap; of a kind alone by its rms
+  const KindSquares& before = sums[0].by_effects;
   const KindSquares noise{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
-  const std::vector<double> weights = kind_weights(sums.front(), noise);
-  const auto of_stage = [&](std::size_t model) {
-    return explained_share(weighted_rms(sums[0], weights), weighted_rms(sums[model], weights), 1);
+  const std::vector<double> weights = kind_weights(before, noise);
+  const auto of_stage = [&](const KindSquares& squares) {
+    return explained_share(weighted_rms(before, weights), weighted_rms(squares, weights), 1);
   };
   const auto of_kind = [&](std::size_t model, std::size_t kind) {
     const auto rms = [&](const KindSquares& squares) { return std::sqrt(squares.sum[kind] / squares.bins[kind]); };
-    return explained_share(rms(sums[0]), rms(sums[model]), 1);
+    return explained_share(rms(before), rms(sums[model].with_numbers), 1);
   };
   // others that leave more than there was, as they stand beside what is not there, explain nothing
   const auto more = [](double with, double without) { return std::max(0.0, with) - std::max(0.0, without); };
-  SharesWithout shares{of_stage(1), {}};
+  SharesWithout shares{of_stage(sums[1].by_effects), {}};
   for (std::size_t s = 0; s < left_out.size(); ++s) {
-    HeldOutShares::OfEffect share{more(shares.model, of_stage(2 + s)), 0, 0, 0,
+    const Left& without = sums[2 + s];
+    HeldOutShares::OfEffect share{more(shares.model, of_stage(without.by_effects)),
+                                  more(of_stage(sums[1].with_numbers), of_stage(without.with_numbers)),
+                                  0,
+                                  0,
+                                  0,
                                   std::numeric_limits<double>::infinity()};
     for (const VectorXd& of_fold : shown)
       share.shown_by_others = std::min(share.shown_by_others, of_fold[static_cast<Index>(left_out[s].front())]);
     bool is_first = true;
     for (std::size_t kind = 0; kind < weights.size(); ++kind) {
-      if (sums[0].bins[kind] == 0 || weights[kind] == 0) continue;
+      if (before.bins[kind] == 0 || weights[kind] == 0) continue;
       const double taken = more(of_kind(1, kind), of_kind(2 + s, kind));
       if (!is_first && taken <= share.of_kind) continue;
-      share = {share.of_stage, taken, kind, of_kind(1, kind), share.shown_by_others};
+      share.of_kind = taken;
+      share.kind = kind;
+      share.model_of_kind = of_kind(1, kind);
       is_first = false;
     }
     shares.left_out.push_back(share);
@@ -272,26 +285,6 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
   return values;
 }
 
-Folds folds_by_repeat(const std::vector<std::vector<std::size_t>>& repeats) {
-  std::size_t most = 1;
-  for (const auto& group : repeats) most = std::max(most, group.size());
-  std::vector<std::vector<std::size_t>> single;
-  for (const auto& group : repeats)
-    for (const std::size_t run : group) single.push_back({run});
-  return dealt_out(single, std::min(kMostFolds, most > 1 ? most : repeats.size()));
-}
-
-Folds folds_by_manoeuvre(const Observations& observations) {
-  std::map<std::string, std::size_t> known;
-  std::vector<std::vector<std::size_t>> manoeuvres;
-  for (std::size_t r = 0; r < observations.runs.size(); ++r) {
-    const auto [place, is_new] = known.try_emplace(observations.runs[r].manoeuvre, manoeuvres.size());
-    if (is_new) manoeuvres.emplace_back();
-    manoeuvres[place->second].push_back(r);
-  }
-  return dealt_out(manoeuvres, std::min(kMostFolds, manoeuvres.size()));
-}
-
 GapMeasure measure_gap(const StageView& view, const std::vector<VectorXd>& after,
                        const std::vector<VectorXd>& deviations, std::uint64_t seed) {
   const std::vector<StageFeatures>& features = *view.features;
@@ -330,17 +323,50 @@ GapMeasure measure_gap(const StageView& view, const std::vector<VectorXd>& after
   return gap;
 }
 
-std::vector<std::vector<OnCurve>> places_held_out(const StageView& view, Passage passage, const StandingModel& standing,
-                                                  const Folds& folds, unsigned threads) {
-  std::vector<std::vector<OnCurve>> places(view.features->size(), standing.model.places);
-  if (folds.size() < 2) return places;
-  const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
-  for_each_job(folds.size(), threads, [&](std::size_t f) {
-    const StageData data = stage_data(passage, *view.features, *view.repeats, *view.residuals, *view.floor,
-                                      used_without(view.features->size(), folds[f]));
-    const Model model = refit(data, standing, beyond);
-    for (const std::size_t r : folds[f]) places[r] = model.places;
-  });
+std::vector<RunPart> halves_of_runs_alone(const StageView& view, Passage passage, const StandingModel& standing,
+                                          double evidence) {
+  std::vector<RunPart> halves;
+  const StageData data = data_of(view, passage, {});
+  for (std::size_t g = 0; g < data.groups.size(); ++g) {
+    const StageGroup& group = data.groups[g];
+    if (group.runs.size() > 1) continue;
+    const std::size_t run = group.runs.front();
+    if (evidence_expected(data_of(view, passage, UsedParts::without({run})), standing).minCoeff() >= evidence) continue;
+
+    // bins are channel by channel: what the model shifts by the time
+    std::map<double, double> squares;
+    double sum = 0, half = 0;
+    for (std::size_t b = 0; b < group.bins.size(); ++b) {
+      const auto i = static_cast<Index>(b);
+      const double square = standing.model.shift[g][i] * standing.model.shift[g][i] / group.variance[i];
+      squares[group.t_s[b]] += square;
+      sum += square;
+    }
+    for (const auto& [t_s, square] : squares) {
+      half += square;
+      if (half < sum / 2) continue;
+      halves.push_back({run, 0, t_s});
+      break;
+    }
+  }
+  return halves;
+}
+
+std::vector<std::vector<PlacesOfPart>> places_held_out(const StageView& view, Passage passage,
+                                                       const StandingModel& standing, const Folds& folds,
+                                                       unsigned threads) {
+  std::vector<std::vector<PlacesOfPart>> places(view.features->size());
+  std::vector<std::vector<OnCurve>> of_fold(folds.size(), standing.model.places);
+  if (folds.size() > 1) {
+    const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
+    for_each_job(folds.size(), threads, [&](std::size_t f) {
+      of_fold[f] = refit(data_of(view, passage, UsedParts::without(folds[f])), standing, beyond).places;
+    });
+  }
+  for (std::size_t f = 0; f < folds.size(); ++f)
+    for (const RunPart& part : folds[f]) places[part.run].push_back({part, of_fold[f]});
+  for (std::vector<PlacesOfPart>& of_run : places)
+    std::ranges::sort(of_run, {}, [](const PlacesOfPart& of_part) { return of_part.part.from_s; });
   return places;
 }
 

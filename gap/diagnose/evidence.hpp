@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "gap/diagnose/folds.hpp"
 #include "gap/diagnose/gap_size.hpp"
 #include "gap/diagnose/side_by_side.hpp"
 
@@ -27,15 +28,6 @@ struct EffectValue {
 };
 // Of each effect of a model that stands. Intervals hold the parameter's range.
 std::vector<EffectValue> effect_values(const StageData& data, const StandingModel& standing);
-
-// Runs that are held out together: each run once.
-using Folds = std::vector<std::vector<std::size_t>>;
-// Runs dealt out in turn, manoeuvre by manoeuvre, to as many folds as the most repeated one has runs, at most five:
-// repeats of a manoeuvre are in different folds. Where nothing is repeated, to as many folds as there are manoeuvres,
-// at most five.
-Folds folds_by_repeat(const std::vector<std::vector<std::size_t>>& repeats);
-// All repeats of a manoeuvre together, dealt out to at most five folds.
-Folds folds_by_manoeuvre(const Observations& observations);
 
 // What a stage is measured with.
 struct StageView {
@@ -57,17 +49,30 @@ struct GapMeasure {
 GapMeasure measure_gap(const StageView& view, const std::vector<Eigen::VectorXd>& after,
                        const std::vector<Eigen::VectorXd>& deviations, std::uint64_t seed);
 
-// The places of a model fitted without the runs of each fold, for every run those of its fold. A single fold holds
-// nothing out.
-std::vector<std::vector<OnCurve>> places_held_out(const StageView& view, Passage passage, const StandingModel& standing,
-                                                  const Folds& folds, unsigned threads);
+// Of each run that is the only one of its manoeuvre and without which the others do not show some effect, as that should gain
+// less than `evidence` there: its first half, up to where half of what the model shifts in it is over.
+std::vector<RunPart> halves_of_runs_alone(const StageView& view, Passage passage, const StandingModel& standing,
+                                          double evidence);
+
+// The places of a model fitted without the parts of each fold, for every run of each of its parts, in the order of time.
+// A single fold holds nothing out.
+struct PlacesOfPart {
+  RunPart part;
+  std::vector<OnCurve> places;
+};
+std::vector<std::vector<PlacesOfPart>> places_held_out(const StageView& view, Passage passage,
+                                                       const StandingModel& standing, const Folds& folds,
+                                                       unsigned threads);
 
 // Shares of the squared gap that a model takes off, each of its effects and sets of them: with them, less without them
 // and the others fitted again. By curves, on runs held out; at most 1.
+//
+// `beyond_numbers`, `of_kind` and `model_of_kind` have numbers of the description that are a little off in either model, as
+// the runs that are fitted to have them: what these explain as well is no share of an effect's.
 struct HeldOutShares {
-  // Of the kind of channels in which the effect takes off most, and of the stage.
+  // Of the stage, and of the kind of channels in which the effect takes off most.
   struct OfEffect {
-    double of_stage = 0, of_kind = 0;
+    double of_stage = 0, beyond_numbers = 0, of_kind = 0;
     std::size_t kind = 0;
     double model_of_kind = 0;  // what the whole model takes off there
     // Deviance that the effect should take off the runs that are fitted to, if the model is right; of the fold where it

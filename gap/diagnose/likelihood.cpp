@@ -273,6 +273,25 @@ std::vector<VectorXd> whitened_rest(const StageData& data, const GroupVectors& r
   return white;
 }
 
+GroupVectors without_shared_shapes(const StageData& data, const GroupVectors& residual,
+                                   const Discrepancies& discrepancies) {
+  const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
+  const VectorXd amounts = amounts_of(shared_products(whiteners, whitened(whiteners, residual))).most_likely;
+  GroupVectors rest = residual;
+  for (std::size_t g = 0; g < data.groups.size(); ++g)
+    rest[g] -= shared_shapes(data.groups[g], discrepancies.numbers_off) * amounts;
+  return rest;
+}
+
+VectorXd most_likely_numbers(const StageData& data, const GroupVectors& residual, const Discrepancies& discrepancies) {
+  const Index numbers = data.groups.front().number_shapes.cols();
+  if (discrepancies.numbers_off == 0) return VectorXd::Zero(numbers);
+  const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
+  const VectorXd sigmas =
+      amounts_of(shared_products(whiteners, whitened(whiteners, residual))).most_likely.tail(numbers);
+  return discrepancies.numbers_off * std::min(1.0, kFarthestOff / kMostOff / sigmas.norm()) * sigmas;
+}
+
 std::vector<double> deviance_of_groups(const StageData& data, const GroupVectors& residual,
                                        const Discrepancies& discrepancies) {
   const std::vector<VectorXd> white = whitened_rest(data, residual, discrepancies);

@@ -70,6 +70,15 @@ Likelihood likelihood_with(const StageData& data, const GroupVectors& residual, 
 std::vector<Eigen::VectorXd> whitened_rest(const StageData& data, const GroupVectors& residual,
                                            const Discrepancies& discrepancies);
 
+// A residual less what shared shapes most likely have in it, those of the description's numbers among them; of each group.
+GroupVectors without_shared_shapes(const StageData& data, const GroupVectors& residual,
+                                   const Discrepancies& discrepancies);
+
+// How far each direction of the description's numbers most likely is off, in the unit of StageGroup::number_shapes; all
+// together no farther than numbers ever are whose sigma is discrepancies.numbers_off.
+Eigen::VectorXd most_likely_numbers(const StageData& data, const GroupVectors& residual,
+                                    const Discrepancies& discrepancies);
+
 // Parts of the deviance by group, for tests between models (Vuong 1989): shared shapes at their most likely amounts.
 std::vector<double> deviance_of_groups(const StageData& data, const GroupVectors& residual,
                                        const Discrepancies& discrepancies);

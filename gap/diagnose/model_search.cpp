@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <set>
 
 #include "gap/parallel.hpp"
 
@@ -96,6 +97,28 @@ void keep_better(Model& best, const StageData& data, const Model& fitted, GroupV
   Model simulated{fitted.places, std::move(shift), true, {}};
   simulated.likelihood = likelihood_of(data, rest_of(data, simulated), fitted.likelihood.discrepancies);
   if (!best.exact || simulated.deviance() < best.deviance()) best = std::move(simulated);
+}
+
+// At the end of what is known of its curve, where its range goes on.
+bool ends_early(const EffectCurves& curves, const OnCurve& place) {
+  const Candidate& candidate = curves.candidates[place.curve];
+  const std::vector<CurvePoint>& points = curves.curves[place.curve].points;
+  return (place.value <= points.front().value && points.front().value > candidate.min) ||
+         (place.value >= points.back().value && points.back().value < candidate.max);
+}
+
+// Curves over the whole range for effects that fit best where theirs ends early: one that did not matter beneath the
+// nominal discrepancy may well matter beside another effect. Whether there were any.
+bool follow_early_ends(EffectCurves& curves, const StageData& data, std::span<const Model> fitted,
+                       const Simulate& simulate) {
+  std::set<std::size_t> early;
+  for (const Model& model : fitted)
+    for (const OnCurve& place : model.places)
+      if (ends_early(curves, place)) early.insert(place.curve);
+  const std::vector<std::size_t> chosen(early.begin(), early.end());
+  add_spread(curves, data, chosen, simulate);
+  follow_bends(curves, data, chosen, simulate);
+  return !chosen.empty();
 }
 
 // A set on its way through the search: fitted on curves, and the best of its simulations.
@@ -257,7 +280,7 @@ std::vector<EffectSet> with_one_more(const EffectCurves& curves, const EffectSet
   return sets;
 }
 
-std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves, const Model& than, double by,
+std::vector<Model> search_sets(const StageData& data, EffectCurves& curves, const Model& than, double by,
                                const Simulate& simulate, const SearchSettings& settings, std::vector<EffectSet> sets) {
   const Discrepancies& start = than.likelihood.discrepancies;
   const double to_beat = than.deviance() - by;
@@ -277,8 +300,11 @@ std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves
   // the first ones each with their own
   std::vector<EffectSet> first;
   for (const std::size_t i : order) first.push_back(std::move(sets[i]));
+  std::vector<Model> models = fit_all(data, curves, first, beyond, start, settings.threads);
+  if (follow_early_ends(curves, data, models, simulate))
+    models = fit_all(data, curves, first, beyond, start, settings.threads);
   std::vector<Contender> contenders;
-  for (Model& model : fit_all(data, curves, first, beyond, start, settings.threads))
+  for (Model& model : models)
     if (model.deviance() < to_beat) contenders.push_back({effects_of(model), std::move(model), {}});
   const auto keep_best = [&](std::size_t count) {
     std::ranges::stable_sort(contenders, {}, [](const Contender& c) { return c.fitted.deviance(); });
@@ -295,7 +321,7 @@ std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves
   keep_best(near_best(fitted, to_beat, settings));
   for (int round = 0; round < settings.rounds && !contenders.empty(); ++round)
     simulate_sets(contenders, data, curves, simulate, Fidelity::fine, settings.threads);
-  std::vector<Model> models;
+  models.clear();
   for (Contender& contender : contenders) models.push_back(std::move(contender.best));
   sort_by_deviance(models);
   return models;

@@ -58,7 +58,8 @@ std::vector<EffectSet> all_pairs(const EffectCurves& curves);
 std::vector<EffectSet> with_one_more(const EffectCurves& curves, const EffectSet& set);
 // Those whose deviance is less than that of `than` by `by`, best first; only sets that were simulated at the full rate. What `than`
 // shifts beyond the sum of its curves is taken to be so in the sets, too, until they are simulated.
-std::vector<Model> search_sets(const StageData& data, const EffectCurves& curves, const Model& than, double by,
+// Curves that end before an effect's range does where one of the first sets fits best are followed to its ends.
+std::vector<Model> search_sets(const StageData& data, EffectCurves& curves, const Model& than, double by,
                                const Simulate& simulate, const SearchSettings& settings, std::vector<EffectSet> sets);
 
 }  // namespace kenaf::gap

@@ -25,18 +25,34 @@ const CurvePoint* nearest_to_present(const EffectCurve& curve, double present) {
   return nearest;
 }
 
-// Those of `possible` that are numbers of the description and that `settings` leave as they are.
+// Those of `possible` that are numbers of the description, but for `valued` and what is a part of them.
 std::vector<std::size_t> numbers_but(std::span<const Candidate> candidates, std::span<const std::size_t> possible,
-                                     const Settings& settings) {
-  const auto is_set = [&](std::size_t c) {
-    return std::ranges::any_of(settings, [&](const Setting& setting) {
-      return setting.candidate == c || is_part_of(candidates[c], candidates[setting.candidate]);
-    });
+                                     std::span<const std::size_t> valued) {
+  const auto has_value = [&](std::size_t c) {
+    return std::ranges::any_of(
+        valued, [&](std::size_t other) { return other == c || is_part_of(candidates[c], candidates[other]); });
   };
   std::vector<std::size_t> numbers;
   for (const std::size_t c : possible)
-    if (candidates[c].whole > 0 && !is_set(c)) numbers.push_back(c);
+    if (candidates[c].whole > 0 && !has_value(c)) numbers.push_back(c);
   return numbers;
+}
+
+// `settings` with a number that is ordinarily off from what they have, and by how much it is.
+struct SlightlyOff {
+  Settings settings;
+  double by;
+};
+SlightlyOff slightly_off(const Candidate& candidate, std::size_t number, Settings settings) {
+  const double step = ordinarily_off(candidate) - candidate.present;
+  const auto set = std::ranges::find(settings, number, &Setting::candidate);
+  if (set == settings.end()) {
+    settings.push_back({number, candidate.present + step});
+    return {std::move(settings), step};
+  }
+  const bool fits = candidate.min <= set->value + step && set->value + step <= candidate.max;
+  set->value += fits ? step : -step;
+  return {std::move(settings), fits ? step : -step};
 }
 
 // Of each group, what each number shifts beside `settings`, off by all of itself.
@@ -44,19 +60,18 @@ std::vector<MatrixXd> shifts_beside(const StageData& data, std::span<const Candi
                                     std::span<const std::size_t> numbers, const Settings& settings,
                                     const Simulate& simulate) {
   std::vector<Settings> asked{settings};
+  std::vector<double> scales;
   for (const std::size_t c : numbers) {
-    asked.push_back(settings);
-    asked.back().push_back({c, ordinarily_off(candidates[c])});
+    SlightlyOff moved = slightly_off(candidates[c], c, settings);
+    asked.push_back(std::move(moved.settings));
+    scales.push_back(candidates[c].whole / moved.by);
   }
   const std::vector<GroupVectors> simulated = simulate(asked, Fidelity::coarse);
   std::vector<MatrixXd> shifts;
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
     shifts.emplace_back(std::ssize(data.groups[g].bins), std::ssize(numbers));
-    for (std::size_t n = 0; n < numbers.size(); ++n) {
-      const Candidate& candidate = candidates[numbers[n]];
-      shifts.back().col(static_cast<Index>(n)) =
-          candidate.whole / (ordinarily_off(candidate) - candidate.present) * (simulated[n + 1][g] - simulated[0][g]);
-    }
+    for (std::size_t n = 0; n < numbers.size(); ++n)
+      shifts.back().col(static_cast<Index>(n)) = scales[n] * (simulated[n + 1][g] - simulated[0][g]);
   }
   return shifts;
 }
@@ -106,17 +121,17 @@ std::vector<MatrixXd> number_shapes(const StageData& data, const EffectCurves& c
 
 std::vector<MatrixXd> number_shapes_around(const StageData& data, std::span<const Candidate> candidates,
                                            std::span<const std::size_t> possible, const Settings& settings,
-                                           const Simulate& simulate) {
-  return principal_directions(
-      data, shifts_beside(data, candidates, numbers_but(candidates, possible, settings), settings, simulate));
+                                           std::span<const std::size_t> valued, const Simulate& simulate) {
+  const std::vector<std::size_t> which = numbers_but(candidates, possible, valued);
+  return principal_directions(data, shifts_beside(data, candidates, which, settings, simulate));
 }
 
 std::vector<MatrixXd> number_shapes_of_change(const StageData& data, std::span<const Candidate> candidates,
                                               std::span<const std::size_t> possible, const Settings& settings,
-                                              const Simulate& simulate) {
-  const std::vector<std::size_t> numbers = numbers_but(candidates, possible, settings);
-  std::vector<MatrixXd> shifts = shifts_beside(data, candidates, numbers, settings, simulate);
-  const std::vector<MatrixXd> before = shifts_beside(data, candidates, numbers, {}, simulate);
+                                              std::span<const std::size_t> valued, const Simulate& simulate) {
+  const std::vector<std::size_t> which = numbers_but(candidates, possible, valued);
+  std::vector<MatrixXd> shifts = shifts_beside(data, candidates, which, settings, simulate);
+  const std::vector<MatrixXd> before = shifts_beside(data, candidates, which, {}, simulate);
   for (std::size_t g = 0; g < shifts.size(); ++g) shifts[g] -= before[g];
   return principal_directions(data, std::move(shifts));
 }

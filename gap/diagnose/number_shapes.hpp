@@ -23,14 +23,14 @@ namespace kenaf::gap {
 std::vector<Eigen::MatrixXd> number_shapes(const StageData& data, const EffectCurves& curves,
                                            std::span<const std::size_t> possible);
 
-// The same around a model: what the numbers shift beside its `settings`, but for those that it sets. A track that is wider
-// does nothing to a robot that is told its track speeds, and a lot to one whose turns are limited.
+// The same around a model: what the numbers shift beside its `settings`, but for those of `valued`, whose values are estimated. A
+// track that is wider does nothing to a robot that is told its track speeds, and a lot to one whose turns are limited.
 std::vector<Eigen::MatrixXd> number_shapes_around(const StageData& data, std::span<const Candidate> candidates,
                                                   std::span<const std::size_t> possible, const Settings& settings,
-                                                  const Simulate& simulate);
+                                                  std::span<const std::size_t> valued, const Simulate& simulate);
 // What of that is left against a baseline, in which the numbers are off as well: less what they shift without `settings`.
 std::vector<Eigen::MatrixXd> number_shapes_of_change(const StageData& data, std::span<const Candidate> candidates,
                                                      std::span<const std::size_t> possible, const Settings& settings,
-                                                     const Simulate& simulate);
+                                                     std::span<const std::size_t> valued, const Simulate& simulate);
 
 }  // namespace kenaf::gap

@@ -263,6 +263,10 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& 
         words.push_back(fmt::format("its value is at the end of its range ({} to {}{})", figure(candidate.min),
                                     figure(candidate.max), unit_suffix(candidate.unit)));
         break;
+      case Doubt::ordinary:
+        words.push_back(fmt::format("numbers of the description are off by as much (1 sigma: {}{})",
+                                    figure(effect.ordinarily_off), unit_suffix(candidate.unit)));
+        break;
       case Doubt::disagreement: {
         const double agreement = d.options.decision.agreement;
         const std::string part = agreement == 1 ? "" : fmt::format("{} of ", percent(1 / agreement));
@@ -281,8 +285,9 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& 
         break;
       }
       case Doubt::trifle:
-        words.push_back(fmt::format("it takes off only {} of the stage's gap",
-                                    percent(std::fmin(effect.share.of_stage, effect.share_by_manoeuvre.of_stage))));
+        words.push_back(
+            fmt::format("it takes off only {} of the stage's gap",
+                        percent(std::fmin(effect.share.beyond_numbers, effect.share_by_manoeuvre.beyond_numbers))));
         break;
       case Doubt::little_explained: {
         const bool by_manoeuvre = effect.share_by_manoeuvre.model_of_kind < effect.share.model_of_kind;

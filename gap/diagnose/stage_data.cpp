@@ -21,7 +21,7 @@ constexpr double kNumericsOfRun = 0.3;
 
 // The bins of all runs of a group, and where in them each run's own are.
 StageGroup bins_of_group(const std::vector<StageFeatures>& features, std::vector<std::size_t> runs,
-                         const std::vector<bool>& used) {
+                         const UsedParts& used) {
   StageGroup group{std::move(runs), {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   std::map<std::pair<std::size_t, std::size_t>, Index> place;
   for (const std::size_t r : group.runs)
@@ -42,24 +42,24 @@ StageGroup bins_of_group(const std::vector<StageFeatures>& features, std::vector
       const Index index = place[{bin.channel, bin.span}];
       group.bin_of.back().push_back(index);
       group.bins[static_cast<std::size_t>(index)].samples += bin.samples;
-      if (used.empty() || used[r]) ++group.count[index];
+      if (used.holds(r, group.t_s[static_cast<std::size_t>(index)])) ++group.count[index];
     }
   }
   return group;
 }
 
-// Columns of each run's matrix, averaged over the runs that have a bin; 0 where none has. `used` empty: all runs.
+// Columns of each run's matrix, averaged over the used runs that have a bin; 0 where none has.
 template <class MatrixOfRun>
-MatrixXd mean_over_runs(const StageGroup& group, Index columns, const std::vector<bool>& used,
-                        MatrixOfRun&& matrix_of) {
+MatrixXd mean_over_runs(const StageGroup& group, Index columns, const UsedParts& used, MatrixOfRun&& matrix_of) {
   MatrixXd sum = MatrixXd::Zero(std::ssize(group.bins), columns);
   VectorXd count = VectorXd::Zero(sum.rows());
   for (std::size_t i = 0; i < group.runs.size(); ++i) {
-    if (!used.empty() && !used[group.runs[i]]) continue;
     const auto& values = matrix_of(group.runs[i]);
     for (std::size_t b = 0; b < group.bin_of[i].size(); ++b) {
-      sum.row(group.bin_of[i][b]) += values.row(static_cast<Index>(b));
-      ++count[group.bin_of[i][b]];
+      const Index index = group.bin_of[i][b];
+      if (!used.holds(group.runs[i], group.t_s[static_cast<std::size_t>(index)])) continue;
+      sum.row(index) += values.row(static_cast<Index>(b));
+      ++count[index];
     }
   }
   return count.cwiseMax(1).cwiseInverse().asDiagonal() * sum;
@@ -69,7 +69,7 @@ MatrixXd mean_over_runs(const StageGroup& group, Index columns, const std::vecto
 
 StageData stage_data(Passage passage, const std::vector<StageFeatures>& features,
                      const std::vector<std::vector<std::size_t>>& repeats, const std::vector<VectorXd>& residuals,
-                     const NoiseFloor& floor, const std::vector<bool>& used) {
+                     const NoiseFloor& floor, const UsedParts& used) {
   StageData data{passage, {}};
   for (const std::vector<std::size_t>& repeated : repeats) {
     std::vector<std::size_t> runs;

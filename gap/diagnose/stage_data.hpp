@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "gap/diagnose/folds.hpp"
 #include "gap/diagnose/noise_floor.hpp"
 #include "gap/diagnose/stage_features.hpp"
 
@@ -40,13 +41,13 @@ struct StageData {
   std::vector<StageGroup> groups;  // none that has no bins
 };
 
-// `repeats`: runs of each group. `residuals`: measured minus nominal of each run. `used`: whether a run counts; empty: all do.
+// `repeats`: runs of each group. `residuals`: measured minus nominal of each run. `used`: what of them counts.
 // Groups and bins are the same whatever is used, so that what was simulated of them fits; a bin that no used run has is
 // as good as not measured.
 StageData stage_data(Passage passage, const std::vector<StageFeatures>& features,
                      const std::vector<std::vector<std::size_t>>& repeats,
                      const std::vector<Eigen::VectorXd>& residuals, const NoiseFloor& floor,
-                     const std::vector<bool>& used = {});
+                     const UsedParts& used = {});
 
 // Values of each run, as the groups have them: means over all of their runs.
 std::vector<Eigen::VectorXd> mean_of_groups(const StageData& data, const std::vector<Eigen::VectorXd>& of_runs);

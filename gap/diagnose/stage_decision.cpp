@@ -16,15 +16,16 @@ namespace {
 // At the angle below which two effects cannot be told apart, the one that is not there leaves this share of what the
 // other one accounts for.
 const double kAlike = std::pow(std::sin(kToldApart_deg / 180 * std::numbers::pi), 2);
-// Of what a gap has, so much must a model take off before the simulation's open shapes are taken around it (chosen):
-// around one that does not fit, the simulation may leave anything open.
+// Of what a gap has beyond numbers that are a little off, so much must a model take off before the simulation's open
+// shapes are taken around it (chosen): around one that does not fit, the simulation may leave anything open.
 constexpr double kFits = 0.5;
 // Vuong's test: standard errors by which the best model must be better than a rival over manoeuvres (one-sided 95 %),
 // from as many manoeuvres on.
 constexpr double kBetter_sigma = 1.64;
 constexpr std::size_t kFewestGroups = 4;
-// Rivals that are tried by simulation, for each effect.
+// Rivals that are tried by simulation, for each effect, and how often each.
 constexpr std::size_t kMostRivals = 4;
+constexpr int kRivalRounds = 2;
 
 // Squared length of what is left, in noise alone.
 double squared(const StageData& data, const GroupVectors& rest) {
@@ -72,7 +73,7 @@ void fit_again(std::vector<Model>& models, const StageData& data, const EffectCu
 }
 
 // The best set of effects, each of which gains what evidence asks for, as long as there is a gap.
-Model take_effects(const StageData& data, const EffectCurves& curves, const std::vector<Model>& singles,
+Model take_effects(const StageData& data, EffectCurves& curves, const std::vector<Model>& singles,
                    const Simulate& simulate, const GapTest& test, const DecisionSettings& settings) {
   Model best = singles.front();
   while (best.places.size() < settings.most_effects) {
@@ -150,67 +151,93 @@ bool is_borne_out(const StageData& data, const Model& best, const Model& rival) 
   return sum > kBetter_sigma * std::sqrt(variance);
 }
 
+// What rivals of one effect of the best model are measured by.
+struct Contest {
+  const StageData& data;
+  const Model& best;
+  std::size_t place;    // of the effect
+  double accounted;     // squares that it takes off
+  EffectCurves curves;  // of the others where they stand, of rivals as they are alone
+  GroupVectors
+      beyond;  // what the best model shifts beyond their sum: what effects do to each other they do with a rival
+  const DecisionSettings& settings;
+};
+
+Contest contest_of(const StageData& data, const EffectCurves& alone, const StandingModel& standing, std::size_t place,
+                   const Model& without, const DecisionSettings& settings) {
+  const Model& best = standing.model;
+  const double accounted = squared(data, rest_of(data, without)) - squared(data, rest_of(data, best));
+  Contest contest{data, best, place, accounted, alone, {}, settings};
+  for (std::size_t p = 0; p < best.places.size(); ++p)
+    if (const std::size_t c = best.places[p].curve; p != place) contest.curves.curves[c] = standing.curves.curves[c];
+  contest.curves.shifts = standing.curves.shifts;
+  Model on_curves = best;
+  for (OnCurve& at : on_curves.places) at = at_value(contest.curves.curves, at.curve, at.value);
+  contest.beyond = beyond_curves(contest.curves, on_curves);
+  return contest;
+}
+
+bool is_rival(const Contest& contest, const Model& model) {
+  const auto& [data, best, place, accounted, curves, beyond, settings] = contest;
+  if (model.deviance() - best.deviance() < settings.rival_evidence) return true;
+  if (squared(data, rest_of(data, model)) - squared(data, rest_of(data, best)) < kAlike * accounted) return true;
+  return !is_borne_out(data, best, model);
+}
+
+Model fitted_in(const Contest& contest, const EffectSet& set, const GroupVectors& beyond) {
+  return fit_model(contest.data, contest.curves, set, beyond, contest.best.likelihood.discrepancies);
+}
+
+// Models with a rival in the effect's place that may do as well, by curves; best first.
+std::vector<Model> rivals_on_curves(const Contest& contest) {
+  const auto& [data, best, place, accounted, curves, beyond, settings] = contest;
+  std::vector<EffectSet> sets;
+  for (std::size_t c = 0; c < curves.curves.size(); ++c) {
+    if (has_effect(best, c) || curves.curves[c].visible <= 1 || curves.curves[c].points.size() < 2) continue;
+    sets.push_back(effects_of(best));
+    sets.back()[place] = c;
+  }
+  std::vector<Model> models(sets.size());
+  for_each_job(sets.size(), settings.search.threads,
+               [&](std::size_t i) { models[i] = fitted_in(contest, sets[i], contest.beyond); });
+  std::erase_if(models, [&](const Model& model) {
+    return !is_rival(contest, model) &&
+           model.deviance() - contest.best.deviance() > 3 * contest.settings.rival_evidence;
+  });
+  std::ranges::stable_sort(models, {}, [](const Model& model) { return model.deviance(); });
+  if (models.size() > kMostRivals) models.resize(kMostRivals);
+  return models;
+}
+
+// Whether a rival takes the effect's place, so that without the effect all is as well, or beside it the effect gains
+// nothing; one that does otherwise explains something else.
+bool takes_its_place(const Contest& contest, const Model& rival) {
+  if (rival.deviance() - contest.best.deviance() < contest.settings.rival_evidence) return true;
+  EffectSet both = effects_of(rival);
+  both.push_back(contest.best.places[contest.place].curve);
+  return rival.deviance() - fitted_in(contest, both, contest.beyond).deviance() < contest.settings.evidence;
+}
+
 // Models with a rival in the place of one effect, the best model itself first. `without`: the best one without the
 // effect.
 std::vector<Settings> rivals_of(const StageData& data, const EffectCurves& curves, const StandingModel& standing,
                                 std::size_t place, const Model& without, const Simulate& simulate,
                                 const DecisionSettings& settings) {
-  const Model& best = standing.model;
-  const std::size_t chosen = best.places[place].curve;
-  const double accounted = squared(data, rest_of(data, without)) - squared(data, rest_of(data, best));
-  const auto is_rival = [&](const Model& model) {
-    if (model.deviance() - best.deviance() < settings.rival_evidence) return true;
-    if (squared(data, rest_of(data, model)) - squared(data, rest_of(data, best)) < kAlike * accounted) return true;
-    return !is_borne_out(data, best, model);
-  };
-
-  // by curves: the others where they stand, the rival as it does alone
-  EffectCurves mixed = curves;
-  for (const OnCurve& other : best.places)
-    if (other.curve != chosen) mixed.curves[other.curve] = standing.curves.curves[other.curve];
-  mixed.shifts = standing.curves.shifts;
-  std::vector<Model> models;
-  for (std::size_t c = 0; c < curves.curves.size(); ++c) {
-    if (has_effect(best, c) || curves.curves[c].visible <= 1 || curves.curves[c].points.size() < 2) continue;
-    EffectSet set = effects_of(best);
-    set[place] = c;
-    models.push_back({{}, {}, false, {}});
-    for (const std::size_t effect : set) models.back().places.push_back({effect, 0});
-  }
-  for_each_job(models.size(), settings.search.threads, [&](std::size_t i) {
-    models[i] = fit_model(data, mixed, effects_of(models[i]), {}, best.likelihood.discrepancies);
-  });
-  std::erase_if(models, [&](const Model& model) {
-    return !is_rival(model) && model.deviance() - best.deviance() > 3 * settings.rival_evidence;
-  });
-  std::ranges::stable_sort(models, {}, [](const Model& model) { return model.deviance(); });
-  if (models.size() > kMostRivals) models.resize(kMostRivals);
-
-  // a rival takes the effect's place, so that beside it the effect gains nothing; one that does otherwise explains
-  // something else
-  std::vector<char> replaces(models.size());
-  for_each_job(models.size(), settings.search.threads, [&](std::size_t m) {
-    EffectSet both = effects_of(models[m]);
-    both.push_back(chosen);
-    replaces[m] = models[m].deviance() - fit_model(data, mixed, both, {}, best.likelihood.discrepancies).deviance() <
-                  settings.evidence;
-  });
-
-  // by simulation
-  std::vector<Settings> rivals{settings_of(best.places)};
-  std::vector<Settings> asked;
-  std::vector<Model> in_place;
-  for (std::size_t m = 0; m < models.size(); ++m)
-    if (replaces[m]) in_place.push_back(models[m]);
-  models = std::move(in_place);
-  for (const Model& model : models) asked.push_back(settings_of(model.places));
-  if (asked.empty()) return rivals;
-  const std::vector<GroupVectors> shifts = simulate(asked, Fidelity::every_run);
-  for (std::size_t i = 0; i < models.size(); ++i) {
-    Model simulated = models[i];
-    simulated.shift = shifts[i];
-    simulated.likelihood = likelihood_of(data, rest_of(data, simulated), models[i].likelihood.discrepancies);
-    if (is_rival(simulated)) rivals.push_back(asked[i]);
+  const Contest contest = contest_of(data, curves, standing, place, without, settings);
+  std::vector<Settings> rivals{settings_of(contest.best.places)};
+  for (Model fitted : rivals_on_curves(contest)) {
+    if (!takes_its_place(contest, fitted)) continue;
+    // by simulation, and by another one where it fits with what the sum of curves lacked
+    for (int round = 0; round < kRivalRounds; ++round) {
+      const Settings asked = settings_of(fitted.places);
+      const Model simulated = simulated_model(data, contest.curves, simulate, asked, fitted);
+      if (is_rival(contest, simulated)) {
+        rivals.push_back(asked);
+        break;
+      }
+      fitted = fitted_in(contest, effects_of(fitted), beyond_curves(contest.curves, simulated));
+      if (!is_rival(contest, fitted)) break;
+    }
   }
   return rivals;
 }
@@ -225,11 +252,41 @@ void describe_effects(StageDecision& d, const EffectCurves& curves, const Simula
     const Model without = without_effect(d.data, d.best, i);
     const double evidence = without.deviance() - d.best.model.deviance();
     NamedEffect effect{d.best.model.places[i].curve, values[i], evidence, {}, {}, false, {}, {}};
+    effect.ordinarily_off =
+        curves.candidates[effect.candidate].whole * d.best.model.likelihood.discrepancies.numbers_off;
     effect.at_bound = is_at_bound(d.data, d.best, i, settings.rival_evidence);
     d.models_of_rivals.push_back(rivals_of(d.data, curves, d.best, i, without, simulate, settings));
     for (const Settings& model : d.models_of_rivals.back()) effect.rivals.push_back(model[i].candidate);
     d.effects.push_back(std::move(effect));
   }
+}
+
+// The best model's effects, of rivals the one that another stage names, and what is left.
+void describe(StageDecision& d, const EffectCurves& curves, const Simulate& simulate, const GapTest& test,
+              const DecisionSettings& settings, std::span<const NamedElsewhere> elsewhere) {
+  describe_effects(d, curves, simulate, settings);
+  for (std::size_t i = 0; i < d.effects.size(); ++i) {
+    const std::optional<std::size_t> rival = settled_elsewhere(d, i, curves.candidates, elsewhere);
+    if (!rival || *rival == 0) continue;
+    const Settings settled = d.models_of_rivals[i][*rival];
+    d.best =
+        fit_side_by_side(d.data, curves, simulate, simulated_model(d.data, curves, simulate, settled, d.best.model));
+    describe_effects(d, curves, simulate, settings);
+    break;
+  }
+  for (std::size_t i = 0; i < d.effects.size(); ++i) {
+    if (settled_elsewhere(d, i, curves.candidates, elsewhere) != 0) continue;
+    d.effects[i].rivals.resize(1);
+    d.models_of_rivals[i].resize(1);
+  }
+  d.p_left = cell_energy(d.data, rest_of(d.data, d.best.model), test.stretch_s).p_of_noise(test.inflation);
+  d.complete = d.p_left > settings.surprise;
+}
+
+void take(StageDecision& d, StageAround there) {
+  d.floor = std::move(there.floor);
+  d.data = std::move(there.data);
+  d.shapes_of_all_numbers = std::move(there.shapes_of_all_numbers);
 }
 
 }  // namespace
@@ -263,8 +320,7 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
                            std::span<const NamedElsewhere> elsewhere) {
   EffectCurves curves = known;
   StageDecision d;
-  d.floor = nominal.floor;
-  d.data = nominal.data;
+  take(d, nominal);
   const Model without = nominal_model(d.data);
   d.nominal_deviance = without.deviance();
   d.best = {without, curves};
@@ -284,11 +340,12 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
   if (d.singles.empty() || d.nominal_deviance - d.singles.front().deviance() < settings.evidence) return d;
 
   // what the simulation leaves open is taken around a model that fits, no longer around the nominal one
+  const auto left_by = [&](const Model& model) {
+    return squared(d.data, without_shared_shapes(d.data, rest_of(d.data, model), model.likelihood.discrepancies));
+  };
   const auto look_around = [&](const Model& model) {
-    if (squared(d.data, rest_of(d.data, model)) > (1 - kFits) * squared(d.data, residuals_of(d.data))) return false;
-    StageAround there = around(settings_of(model.places));
-    d.floor = std::move(there.floor);
-    d.data = std::move(there.data);
+    if (left_by(model) > (1 - kFits) * left_by(nominal_model(d.data))) return false;
+    take(d, around(settings_of(model.places), effects_of(model)));
     return true;
   };
   if (look_around(d.singles.front())) {
@@ -307,25 +364,25 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
   d.nominal_deviance = nominal_model(d.data).deviance();
   d.best = without_weak_effects(d.data, curves, simulate, fit_side_by_side(d.data, curves, simulate, std::move(chosen)),
                                 settings);
-  describe_effects(d, curves, simulate, settings);
+  describe(d, curves, simulate, test, settings, elsewhere);
+  return d;
+}
 
-  // of rivals, the one that another stage names
-  for (std::size_t i = 0; i < d.effects.size(); ++i) {
-    const std::optional<std::size_t> rival = settled_elsewhere(d, i, curves.candidates, elsewhere);
-    if (!rival || *rival == 0) continue;
-    const Settings settled = d.models_of_rivals[i][*rival];
-    d.best =
-        fit_side_by_side(d.data, curves, simulate, simulated_model(d.data, curves, simulate, settled, d.best.model));
-    describe_effects(d, curves, simulate, settings);
-    break;
+StageDecision with_effects_alone(StageDecision decided, std::span<const std::size_t> places, const EffectCurves& curves,
+                                 const Simulate& simulate, const Around& around, const GapTest& test,
+                                 const DecisionSettings& settings, std::span<const NamedElsewhere> elsewhere) {
+  StageDecision d = std::move(decided);
+  const Settings all = settings_of(d.best.model.places);
+  Settings kept;
+  std::vector<std::size_t> candidates;
+  for (const std::size_t place : places) {
+    kept.push_back(all[place]);
+    candidates.push_back(all[place].candidate);
   }
-  for (std::size_t i = 0; i < d.effects.size(); ++i) {
-    if (settled_elsewhere(d, i, curves.candidates, elsewhere) != 0) continue;
-    d.effects[i].rivals.resize(1);
-    d.models_of_rivals[i].resize(1);
-  }
-  d.p_left = cell_energy(d.data, rest_of(d.data, d.best.model), test.stretch_s).p_of_noise(test.inflation);
-  d.complete = d.p_left > settings.surprise;
+  take(d, around(all, candidates));
+  d.nominal_deviance = nominal_model(d.data).deviance();
+  d.best = fit_side_by_side(d.data, curves, simulate, simulated_model(d.data, curves, simulate, kept, d.best.model));
+  describe(d, curves, simulate, test, settings, elsewhere);
   return d;
 }
 

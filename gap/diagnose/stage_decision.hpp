@@ -22,6 +22,7 @@ std::string_view verdict_name(Verdict verdict);
 // Why an effect of the best model, or the model, gets no name.
 enum class Doubt {
   end_of_range,     // the value ends where the range does: it stands for something that the effect cannot do
+  ordinary,         // a number of the description that is off by no more than its other numbers are
   disagreement,     // manoeuvres want values that differ by more than a share of the effect
   not_held_out,     // on runs or manoeuvres held out it takes off too little
   trifle,           // of the stage's whole gap it takes off next to nothing
@@ -38,6 +39,7 @@ struct DecisionSettings {
   // and what the whole model must (chosen).
   double effect_share = 0.2, model_share = 0.5;
   double stage_share = 0.1;        // of the stage's whole squared gap, what the effect must take off (chosen)
+  double ordinary = 3;             // a number of the description is named beyond so many sigma of all of them
   double agreement = 1;            // an effect is at least as many times its spread between manoeuvres (chosen): then five in
                                    // six of them agree on its sign
   std::size_t most_effects = 6;
@@ -48,8 +50,11 @@ struct DecisionSettings {
 struct StageAround {
   NoiseFloor floor;
   StageData data;
+  // NoiseFloor::number_shapes, of those too that have a value (number_shapes.hpp).
+  std::vector<Eigen::MatrixXd> shapes_of_all_numbers{};
 };
-using Around = std::function<StageAround(const Settings&)>;
+// `valued`: candidates whose values are estimated, so that they are no numbers that are a little off.
+using Around = std::function<StageAround(const Settings& model, std::span<const std::size_t> valued)>;
 
 // What noise is held to be where there is no gap.
 struct GapTest {
@@ -71,6 +76,8 @@ struct NamedEffect {
   // their places, and what all of them take off. They are among the rivals.
   std::vector<std::size_t> partners{};
   HeldOutShares::OfEffect share_of_set{};
+  // How far numbers of the description are off, 1 sigma, in the unit of this one; 0: it is none of them.
+  double ordinarily_off = 0;
 };
 
 struct StageDecision {
@@ -81,6 +88,7 @@ struct StageDecision {
   std::vector<Model> singles;       // best first
   NoiseFloor floor;                 // around the best model
   StageData data;
+  std::vector<Eigen::MatrixXd> shapes_of_all_numbers;  // likewise, of StageAround
   double p_gap = 1, p_left = 1;
   double nominal_deviance = 0;
   bool complete = false;            // what is left is within noise and spread
@@ -97,6 +105,12 @@ struct NamedElsewhere {
 StageDecision decide_stage(const StageAround& nominal, const EffectCurves& curves, const Simulate& simulate,
                            const Around& around, const GapTest& test, const DecisionSettings& settings,
                            std::span<const NamedElsewhere> elsewhere = {});
+
+// `decided` with these of its best model's effects alone, fitted again where they stand: what has no name is no part of what is
+// said of the others. The single effects stay as they are.
+StageDecision with_effects_alone(StageDecision decided, std::span<const std::size_t> places, const EffectCurves& curves,
+                                 const Simulate& simulate, const Around& around, const GapTest& test,
+                                 const DecisionSettings& settings, std::span<const NamedElsewhere> elsewhere = {});
 
 // The first of an effect's rivals, itself among them, that another stage names at such a value; its place among them.
 std::optional<std::size_t> settled_elsewhere(const StageDecision& decision, std::size_t effect,

@@ -58,25 +58,33 @@ VectorXd noise_of_difference(const StageFeatures& run) {
   return (1 + run.baseline_runs.array().inverse()).sqrt();
 }
 
+// The bins of one part of a run, from `other`.
+void take_part(VectorXd& of_run, const VectorXd& other, const RunPart& part, const StageFeatures& run) {
+  for (std::size_t b = 0; b < run.bins.size(); ++b)
+    if (const auto i = static_cast<Eigen::Index>(b);
+        part.holds((static_cast<double>(run.bins[b].span) + 0.5) * run.span_s))
+      of_run[i] = other[i];
+}
+
 // Effects stand in for each other where together they take off more than so many times what each does alone (chosen).
 constexpr double kCommon = 2;
 
-constexpr HeldOutShares::OfEffect kNotHeldOut{GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, 0,
-                                              GapMeasure::kNotMeasured, 0};
+constexpr HeldOutShares::OfEffect kNotHeldOut{
+    GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, 0, GapMeasure::kNotMeasured, 0};
 
 bool is_lack_of_share(Doubt doubt) {
   return doubt == Doubt::not_held_out || doubt == Doubt::trifle;
 }
 
-bool is_large_enough(const NamedEffect& effect, const Candidate& candidate, double agreement) {
-  return std::abs(effect.value.value.value - candidate.present) >= agreement * effect.value.spread;
+double change_by(const NamedEffect& effect, const Candidate& candidate) {
+  return std::abs(effect.value.value.value - candidate.present);
 }
 
 // Places of the effects whose sets are of interest: all where some effect may lack a share by itself, else none.
 std::vector<std::size_t> places_of_sets(const HeldOutShares& shares, const HeldOutShares& shares_by_manoeuvre,
                                         const DecisionSettings& settings) {
   const auto is_small = [&](const HeldOutShares::OfEffect& share) {
-    return !(share.of_kind >= settings.effect_share) || !(share.of_stage >= settings.stage_share);
+    return !(share.of_kind >= settings.effect_share) || !(share.beyond_numbers >= settings.stage_share);
   };
   if (std::ranges::none_of(shares.effects, is_small) && std::ranges::none_of(shares_by_manoeuvre.effects, is_small))
     return {};
@@ -102,8 +110,8 @@ void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutSh
   };
   const auto stand_in = [&](const std::vector<std::size_t>& places, const HeldOutShares::OfEffect& together) {
     double alone = 0;
-    for (const std::size_t place : places) alone += std::max(0.0, effects[place].share.of_stage);
-    return together.of_stage > kCommon * alone;
+    for (const std::size_t place : places) alone += std::max(0.0, effects[place].share.beyond_numbers);
+    return together.beyond_numbers > kCommon * alone;
   };
   for (std::size_t s = 0; s < sets.size(); ++s) {
     const std::vector<std::size_t>& places = sets[s].places;
@@ -111,7 +119,7 @@ void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutSh
     HeldOutShares::OfEffect share = sets[s].share;
     const HeldOutShares::OfEffect& by_manoeuvre = sets_by_manoeuvre[s].share;
     if (by_manoeuvre.shown_by_others >= settings.evidence && by_manoeuvre.of_kind < share.of_kind) share = by_manoeuvre;
-    if (share.of_kind < settings.effect_share || share.of_stage < settings.stage_share ||
+    if (share.of_kind < settings.effect_share || share.beyond_numbers < settings.stage_share ||
         share.model_of_kind < settings.model_share)
       continue;
     // one that has a name by itself is in a set only with what it stands in for
@@ -142,11 +150,12 @@ void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOu
     if (effect.share_by_manoeuvre.shown_by_others < settings.evidence) effect.share_by_manoeuvre = kNotHeldOut;
     const auto least = [&](auto member) { return std::fmin(effect.share.*member, effect.share_by_manoeuvre.*member); };
     if (effect.at_bound) effect.doubts.push_back(Doubt::end_of_range);
-    if (!is_large_enough(effect, candidates[effect.candidate], settings.agreement))
-      effect.doubts.push_back(Doubt::disagreement);
+    const double change = change_by(effect, candidates[effect.candidate]);
+    if (change < settings.ordinary * effect.ordinarily_off) effect.doubts.push_back(Doubt::ordinary);
+    if (change < settings.agreement * effect.value.spread) effect.doubts.push_back(Doubt::disagreement);
     if (!(least(&Share::of_kind) >= settings.effect_share))
       effect.doubts.push_back(Doubt::not_held_out);
-    else if (!(least(&Share::of_stage) >= settings.stage_share))
+    else if (!(least(&Share::beyond_numbers) >= settings.stage_share))
       effect.doubts.push_back(Doubt::trifle);
     if (!(least(&Share::model_of_kind) >= settings.model_share)) effect.doubts.push_back(Doubt::little_explained);
   }
@@ -192,15 +201,32 @@ physics::RobotDescription with_settings(physics::RobotDescription robot, std::sp
   return robot;
 }
 
+namespace {
+// Whether drives report otherwise with it; the other sensors see the body.
+bool is_of_drives_sensors(const Candidate& candidate) {
+  return std::ranges::any_of(candidate.keys, [](const std::string& key) {
+    return key.starts_with("effects.encoder") || key.starts_with("sensor[");
+  });
+}
+
+// Whether it is of a drive, but where the drive's own encoder does not see it.
+bool is_behind_encoders(const Candidate& candidate) {
+  return std::ranges::any_of(candidate.keys, [](const std::string& key) {
+    return key.starts_with("effects.flipper_backlash") || key.starts_with("effects.flipper_compliance");
+  });
+}
+}  // namespace
+
 std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidate> candidates, bool drives_measured) {
   std::vector<std::size_t> result;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     const physics::Stage stage = candidates[c].stage;
     const bool of_drive = stage == physics::Stage::command || stage == physics::Stage::drive;
     const bool of_sensor = stage == physics::Stage::sensor;
-    const bool acts = passage == Passage::command_to_drive ? !of_sensor || candidates[c].name.starts_with("encoder")
-                      : passage == Passage::drive_to_body  ? !of_drive || !drives_measured
-                                                           : of_sensor;
+    const bool acts = passage == Passage::command_to_drive ? !of_sensor || is_of_drives_sensors(candidates[c])
+                      : passage == Passage::drive_to_body
+                          ? !of_drive || !drives_measured || is_behind_encoders(candidates[c])
+                          : of_sensor;
     if (acts) result.push_back(c);
   }
   return result;
@@ -261,6 +287,7 @@ PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> 
   const Simulate simulate = simulator_of(stage, predictor);
   stage.curves = first_look(stage.nominal.data, candidates, stage.possible, simulate);
   if (!has_baseline(features)) floor.number_shapes = number_shapes(stage.nominal.data, stage.curves, stage.possible);
+  stage.nominal.shapes_of_all_numbers = floor.number_shapes;
   stage.nominal.data = data_in(stage, floor);
 
   // whole curves of those that can matter
@@ -271,43 +298,43 @@ PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> 
   return stage;
 }
 
-StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
-                              std::span<const NamedElsewhere> elsewhere) {
-  const StageInput& input = prepared.input;
-  const std::span<const Candidate> candidates = prepared.candidates;
-  const std::vector<StageFeatures>& features = *input.features;
-  StageDiagnosis stage;
-  stage.passage = input.passage;
-  stage.residuals = prepared.residuals;
-  if (prepared.nominal.data.groups.empty()) return stage;
-  stage.nominal_floor = prepared.nominal.floor;
+namespace {
 
-  // the decision
-  const Simulate simulate = simulator_of(prepared, predictor);
-  const Around around = [&](const Settings& settings) {
-    StageAround result{with_open_shapes(stage.nominal_floor, open_around(prepared, predictor, settings)), {}};
-    const auto shapes = has_baseline(features) ? number_shapes_of_change : number_shapes_around;
-    result.floor.number_shapes = shapes(prepared.nominal.data, candidates, prepared.possible, settings, simulate);
-    result.data = data_in(prepared, result.floor);
-    return result;
-  };
-  const std::vector<VectorXd> deviations = deviations_from_repeats(features, stage.residuals, *input.same_orders);
-  const GapTest test{inflation_from_repeats(features, stage.nominal_floor, deviations, options.stretch_s),
-                     options.stretch_s};
-  stage.decision = decide_stage(prepared.nominal, prepared.curves, simulate, around, test, options.decision, elsewhere);
+// What the best model is worth, the runs of each fold simulated with the values of the others, and so which names it
+// gets.
+void weigh(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor, const StageOptions& options) {
+  const StageInput& input = prepared.input;
+  const std::vector<StageFeatures>& features = *input.features;
   StageDecision& decision = stage.decision;
   const Model& best = decision.best.model;
-
-  // what the best model is worth: the runs of each fold simulated with the values of the others
-  const StageView view{&features, input.repeats, &stage.residuals, &decision.floor};
-  const auto left_by = [&](const std::vector<std::vector<OnCurve>>& places) {
-    std::vector<Variation> variations;
-    for (const std::vector<OnCurve>& of_run : places)
-      variations.push_back(varied(prepared, predictor, settings_of(of_run)));
-    return less_shift(stage.residuals, predictor.shift_of_each(variations, input.passage));
+  NoiseFloor floor = decision.floor;
+  floor.number_shapes = decision.shapes_of_all_numbers;
+  const StageView view{&features, input.repeats, &stage.residuals, &floor};
+  const auto left_by = [&](const std::vector<std::vector<PlacesOfPart>>& places) {
+    const bool any_halves = std::ranges::any_of(places, [](const auto& of_run) { return of_run.size() > 1; });
+    std::vector<VectorXd> left(features.size());
+    for (const bool later_half : {false, true}) {
+      if (later_half && !any_halves) break;
+      std::vector<Variation> variations;
+      for (const std::vector<PlacesOfPart>& of_run : places)
+        variations.push_back(
+            varied(prepared, predictor, settings_of((later_half ? of_run.back() : of_run.front()).places)));
+      const std::vector<VectorXd> all = less_shift(stage.residuals, predictor.shift_of_each(variations, input.passage));
+      for (std::size_t r = 0; r < left.size(); ++r)
+        if (later_half)
+          take_part(left[r], all[r], places[r].back().part, features[r]);
+        else
+          left[r] = all[r];
+    }
+    return left;
   };
   const unsigned threads = options.decision.search.threads;
-  const Folds by_repeat = folds_by_repeat(*input.repeats), by_manoeuvre = folds_by_manoeuvre(*input.observations);
+  const Folds by_manoeuvre = folds_by_manoeuvre(*input.observations);
+  Folds by_repeat = folds_by_repeat(*input.repeats);
+  // what one run alone shows can be held out only half by half
+  if (!best.places.empty())
+    by_repeat = with_halves(std::move(by_repeat),
+                            halves_of_runs_alone(view, input.passage, decision.best, options.decision.evidence));
   stage.left = stage.residuals;
   if (!best.places.empty())
     stage.left = left_by(places_held_out(view, input.passage, decision.best, by_repeat, threads));
@@ -327,13 +354,61 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
     const std::vector<std::size_t> places = places_of_sets(of_repeats, of_manoeuvres, options.decision);
     of_repeats.sets = shares_of_sets_held_out(view, input.passage, decision.best, by_repeat, places, threads);
     of_manoeuvres.sets = shares_of_sets_held_out(view, input.passage, decision.best, by_manoeuvre, places, threads);
-    judge(decision, candidates, of_repeats, of_manoeuvres, options.decision);
+    judge(decision, prepared.candidates, of_repeats, of_manoeuvres, options.decision);
   }
+}
+
+std::vector<std::size_t> places_with_name(const StageDecision& decision) {
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < decision.effects.size(); ++i)
+    if (decision.effects[i].doubts.empty()) places.push_back(i);
+  return places;
+}
+
+}  // namespace
+
+StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
+                              std::span<const NamedElsewhere> elsewhere) {
+  const StageInput& input = prepared.input;
+  const std::span<const Candidate> candidates = prepared.candidates;
+  const std::vector<StageFeatures>& features = *input.features;
+  StageDiagnosis stage;
+  stage.passage = input.passage;
+  stage.residuals = prepared.residuals;
+  if (prepared.nominal.data.groups.empty()) return stage;
+  stage.nominal_floor = prepared.nominal.floor;
+
+  // the decision
+  const Simulate simulate = simulator_of(prepared, predictor);
+  const Around around = [&](const Settings& settings, std::span<const std::size_t> valued) {
+    StageAround result{with_open_shapes(stage.nominal_floor, open_around(prepared, predictor, settings)), {}, {}};
+    const auto shapes = has_baseline(features) ? number_shapes_of_change : number_shapes_around;
+    const auto shapes_but = [&](std::span<const std::size_t> these) {
+      return shapes(prepared.nominal.data, candidates, prepared.possible, settings, these, simulate);
+    };
+    result.floor.number_shapes = shapes_but(valued);
+    result.shapes_of_all_numbers = shapes_but({});
+    result.data = data_in(prepared, result.floor);
+    return result;
+  };
+  const std::vector<VectorXd> deviations = deviations_from_repeats(features, stage.residuals, *input.same_orders);
+  const GapTest test{inflation_from_repeats(features, stage.nominal_floor, deviations, options.stretch_s),
+                     options.stretch_s};
+  stage.decision = decide_stage(prepared.nominal, prepared.curves, simulate, around, test, options.decision, elsewhere);
+  weigh(stage, prepared, predictor, options);
+  const std::vector<std::size_t> named = places_with_name(stage.decision);
+  if (!named.empty() && named.size() < stage.decision.effects.size()) {
+    stage.decision = with_effects_alone(std::move(stage.decision), named, prepared.curves, simulate, around, test,
+                                        options.decision, elsewhere);
+    weigh(stage, prepared, predictor, options);
+  }
+  const StageDecision& decision = stage.decision;
+  const Model& best = decision.best.model;
 
   // what is beyond chance, but of a size that nobody would see, and has no name, is no gap
   const double seen = stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor;
   if (decision.verdict == Verdict::unknown && seen < options.decision.negligible * options.decision.negligible)
-    decision.verdict = Verdict::none;
+    stage.decision.verdict = Verdict::none;
 
   // what is left, in words
   if (decision.verdict != Verdict::none && !decision.complete && input.passage != Passage::body_to_sensor)

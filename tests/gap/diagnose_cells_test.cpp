@@ -41,7 +41,7 @@ TEST_CASE("What the simulation leaves open is no energy, and a bin that was not 
   CHECK(cell_energy(data, residuals_of(data), 1).sum == Approx(400));
   for (StageGroup& group : data.groups) group.shared_shapes = 10 * group.residual;
   CHECK(cell_energy(data, residuals_of(data), 1).sum < 1);
-  const StageData first = world().data(gap, {true, true, false, false});
+  const StageData first = world().data(gap, UsedParts::of({0, 1}));
   CHECK(cell_energy(first, residuals_of(first), 1).cells == 12);
 }
 

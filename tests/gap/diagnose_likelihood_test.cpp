@@ -281,8 +281,7 @@ TEST_CASE("A bin that no used run has changes nothing") {
   for (OpenShapes& open : floor.open) open.local = open.numerics = MatrixXd::Zero(64, 0);
   floor.open[0].local = floor.open[0].numerics = MatrixXd::Zero(48, 0);
 
-  const std::vector<bool> first_alone{true, false};
-  const StageData with = stage_data(Passage::drive_to_body, longer, {{0, 1}}, residuals, floor, first_alone);
+  const StageData with = stage_data(Passage::drive_to_body, longer, {{0, 1}}, residuals, floor, UsedParts::of({0}));
   const StageData without = stage_data(Passage::drive_to_body, longer, {{0}}, residuals, floor);
   REQUIRE(with.groups[0].bins.size() == 64);
   REQUIRE(without.groups[0].bins.size() == 48);

@@ -22,7 +22,7 @@ std::vector<Whole> six_effects() {
 
 std::vector<Model> pairs_found(const LinearWorld::Moved& moved, const Whole& gap) {
   const StageData data = world().data(gap);
-  const EffectCurves curves = world().curves(moved, 6, data);
+  EffectCurves curves = world().curves(moved, 6, data);
   return search_sets(data, curves, nominal_model(data), 0, world().simulate(moved), {}, all_pairs(curves));
 }
 
@@ -142,11 +142,25 @@ TEST_CASE("An effect is found beside others that act on each other, though their
     return Whole(LinearWorld::linear(effects)(settings) + 4 * one * four * (60 * world().direction(7) - effects[2]));
   };
   const StageData data = world().data(moved({{1, 0.5}, {4, 0.5}, {2, 0.3}}) + world().noise(2));
-  const EffectCurves curves = world().curves(moved, 6, data);
+  EffectCurves curves = world().curves(moved, 6, data);
   const Simulate simulate = world().simulate(moved);
   const Model than = search_sets(data, curves, nominal_model(data), 0, simulate, {}, {{1, 4}}).at(0);
   const std::vector<Model> found = search_sets(data, curves, than, 0, simulate, {}, with_one_more(curves, {1, 4}));
   REQUIRE(!found.empty());
   CHECK(effects_of(found[0]) == EffectSet{1, 4, 2});
   CHECK(value_of(found[0], 2) == Approx(0.3).margin(0.1));
+}
+
+TEST_CASE("An effect of which no more than a first look is known is found beyond that, beside another one") {
+  const std::vector<Whole> effects = six_effects();
+  const StageData data = world().data(0.9 * effects[1] + 0.8 * effects[4] + world().noise(2));
+  const Simulate simulate = world().simulate(LinearWorld::linear(effects));
+  EffectCurves curves = world().curves(effects, data);
+  const std::vector<std::size_t> whole{0, 1, 2, 3, 5};
+  forget_all_but(curves, whole);
+  add_points(curves, data, std::vector<Setting>{{4, -0.25}, {4, 0.25}}, Fidelity::coarse, simulate);
+  const std::vector<Model> found = search_sets(data, curves, nominal_model(data), 0, simulate, {}, all_pairs(curves));
+  REQUIRE(!found.empty());
+  REQUIRE(effects_of(found[0]) == EffectSet{1, 4});
+  CHECK(value_of(found[0], 4) == Approx(0.8).margin(0.1));
 }

@@ -112,11 +112,18 @@ TEST_CASE(
 
   // at a limit of 0.5 a metre shifts 3 + 20 * 0.5 = 13; tracks are 10 m apart, so all of them shift 130
   const Settings limited{{0, 0.5}};
-  is(number_shapes_around(data, candidates, possible, limited, simulate), 130 * world.direction(1),
+  const std::vector<std::size_t> mass{2}, no_numbers;
+  is(number_shapes_around(data, candidates, possible, limited, no_numbers, simulate), 130 * world.direction(1),
      7 * world.direction(2));
   // mass is one of the model's values, and no longer open
   const Settings limited_and_heavy{{0, 0.5}, {2, 1.2}};
-  is(number_shapes_around(data, candidates, possible, limited_and_heavy, simulate), 130 * world.direction(1), none);
+  is(number_shapes_around(data, candidates, possible, limited_and_heavy, mass, simulate), 130 * world.direction(1),
+     none);
+  // but where it is asked what numbers do in its place; also at the end of its range
+  for (const double kilograms : {1.2, 2.0})
+    is(number_shapes_around(data, candidates, possible, {{0, 0.5}, {2, kilograms}}, no_numbers, simulate),
+       130 * world.direction(1), 7 * world.direction(2));
   // what tracks shift without a limit, and mass, both datasets have
-  is(number_shapes_of_change(data, candidates, possible, limited, simulate), 100 * world.direction(1), none);
+  is(number_shapes_of_change(data, candidates, possible, limited, no_numbers, simulate), 100 * world.direction(1),
+     none);
 }

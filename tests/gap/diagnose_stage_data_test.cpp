@@ -64,9 +64,8 @@ TEST_CASE("A run that is not used is not in the mean, its bins stay where they a
   const std::vector<StageFeatures> features{in_spans({{"x_m", 0}, {"x_m", 1}}), in_spans({{"x_m", 0}}),
                                             in_spans({{"x_m", 0}, {"x_m", 1}, {"x_m", 2}})};
   const std::vector<VectorXd> residuals{numbers({1, 5}), numbers({2}), numbers({6, 7, -1})};
-  const std::vector<bool> without_last{true, true, false};
-  const StageData data =
-      stage_data(Passage::drive_to_body, features, {{0, 1, 2}}, residuals, floor_of_two(features), without_last);
+  const StageData data = stage_data(Passage::drive_to_body, features, {{0, 1, 2}}, residuals, floor_of_two(features),
+                                    UsedParts::without({2}));
   const StageGroup& group = data.groups[0];
   CHECK(group.bins.size() == 3);
   CHECK(group.count == numbers({2, 1, 0}));

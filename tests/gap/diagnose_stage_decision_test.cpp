@@ -106,7 +106,7 @@ TEST_CASE("Of two that cannot be told apart the one counts that another stage na
     const StageAround nominal{world().floor(), world().data(gap)};
     return decide_stage(
         nominal, world().curves(effects, nominal.data), world().simulate(LinearWorld::linear(effects)),
-        [&](const Settings&) { return nominal; }, {}, {}, elsewhere);
+        [&](const Settings&, std::span<const std::size_t>) { return nominal; }, {}, {}, elsewhere);
   };
   for (const std::size_t named : {2u, 5u}) {
     const StageDecision decision = decided({{named, {0.5, 0.49, 0.51}}});
@@ -183,6 +183,25 @@ TEST_CASE("An effect beyond the end of its range is not named for what it cannot
   CHECK(decision.effects[0].doubts.front() == Doubt::end_of_range);
 }
 
+TEST_CASE("A number of the description gets no name where it is off by no more than the others are") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  const Whole gap = 0.3 * effects[0] + world().noise(1);
+  StageDecision decision = world().decide(effects, gap);
+  REQUIRE(decision.verdict == Verdict::named);
+  const auto judged = [&](double ordinarily_off) {
+    StageDecision again = decision;
+    again.effects[0].ordinarily_off = ordinarily_off;
+    judge(again, world().candidates(kEffects), {{decision.effects[0].share}, {}, 1},
+          {{decision.effects[0].share}, {}, 1}, {});
+    return again;
+  };
+  // at three sigma it begins to be one of them
+  CHECK(judged(0.09).verdict == Verdict::named);
+  REQUIRE(judged(0.11).verdict == Verdict::unknown);
+  CHECK(judged(0.11).effects[0].doubts == std::vector{Doubt::ordinary});
+  CHECK(judged(0).verdict == Verdict::named);  // no number of the description
+}
+
 TEST_CASE("At the end of the range of an effect that does no more by then it is named all the same") {
   // up to 0.6 of its range nearly all comes; 1 % more until the end. Of the 102 % in the data, 1 % of 60 are left at
   // the end and 1.25 % at 0.9: squared, 0.4 and 0.6, which is no difference
@@ -252,12 +271,57 @@ TEST_CASE("No effect is added where what is left is within what repeats differ b
   CHECK(found(9) == std::vector<std::size_t>{2});
 }
 
+TEST_CASE("Of a decision some effects alone are fitted again without the others") {
+  const std::vector<Whole> effects = orthogonal_effects();
+  const StageAround nominal{world().floor(), world().data(0.5 * effects[1] - 0.4 * effects[6] + world().noise(1))};
+  const EffectCurves curves = world().curves(effects, nominal.data);
+  const Simulate simulate = world().simulate(LinearWorld::linear(effects));
+  const Around around = [&](const Settings&, std::span<const std::size_t>) { return nominal; };
+  const StageDecision both = decide_stage(nominal, curves, simulate, around, {}, {});
+  REQUIRE(both.effects.size() == 2);
+  REQUIRE(both.complete);
+  const std::vector<std::size_t> first{0};
+  const StageDecision one = with_effects_alone(both, first, curves, simulate, around, {}, {});
+  REQUIRE(candidates_of(one) == std::vector<std::size_t>{both.effects[0].candidate});
+  CHECK(one.effects[0].value.value.value == Approx(both.effects[0].value.value.value).margin(2 * 4.0 / kLength));
+  // what the other one explained is left, and makes this one less sure
+  CHECK_FALSE(one.complete);
+  CHECK(one.effects[0].evidence < both.effects[0].evidence);
+  CHECK(one.models_of_rivals.size() == 1);
+}
+
+TEST_CASE("Each stage looks for what can act in it") {
+  const physics::RobotDescription robot = physics::load_robot("kenaf");
+  const std::vector<Candidate> candidates = leave_out(all_candidates(robot, false), {});
+  const auto acts = [&](Passage passage, std::string_view name, bool drives_measured = true) {
+    return std::ranges::any_of(gap::candidates_of(passage, candidates, drives_measured),
+                               [&](std::size_t c) { return candidates[c].name == name; });
+  };
+  CHECK(acts(Passage::command_to_drive, "drive_lag"));
+  CHECK(acts(Passage::command_to_drive, "mass"));
+  // what drives report late, but nothing of what sees the body
+  for (const char* name :
+       {"encoder_scale", "sensor[Encoder].delay_s", "sensor[Tachometer].delay_s", "sensor[Drives].delay_s"})
+    CHECK(acts(Passage::command_to_drive, name));
+  for (const char* name : {"gyro_bias", "posture_delay", "clock_offset"})
+    CHECK_FALSE(acts(Passage::command_to_drive, name));
+  // belts and servos turn as they were measured; an arm gives way behind its encoder
+  CHECK_FALSE(acts(Passage::drive_to_body, "drive_lag"));
+  CHECK(acts(Passage::drive_to_body, "drive_lag", false));
+  CHECK_FALSE(acts(Passage::drive_to_body, "flipper_lag"));
+  for (const char* name :
+       {"flipper_compliance", "flipper_backlash", "sensor[Encoder].delay_s", "clock_offset", "track.separation_m"})
+    CHECK(acts(Passage::drive_to_body, name));
+  CHECK(acts(Passage::body_to_sensor, "gyro_bias"));
+  CHECK_FALSE(acts(Passage::body_to_sensor, "mass"));
+}
+
 TEST_CASE("A floor that is wider around an effect excuses a gap only where that effect fits it") {
   const std::vector<Whole> effects = orthogonal_effects();
   const auto verdict_of = [&](const Whole& gap) {
     const StageAround nominal{world().floor(), world().data(gap)};
     // around effect 4 nothing can be known to less than 20 sigma
-    const Around around = [&](const Settings& settings) {
+    const Around around = [&](const Settings& settings, std::span<const std::size_t>) {
       StageAround result = nominal;
       if (std::ranges::any_of(settings, [](const Setting& setting) { return setting.candidate == 4; }))
         for (StageGroup& group : result.data.groups) group.variance *= 400;
@@ -276,7 +340,9 @@ namespace {
 
 // Judged by these shares of the gap, on runs and on manoeuvres held out alike.
 StageDecision judged(double first, double second, double both, double shown_by_others = 1000) {
-  const auto share = [&](double taken) { return HeldOutShares::OfEffect{taken, taken, 0, 0.9, shown_by_others}; };
+  const auto share = [&](double taken) {
+    return HeldOutShares::OfEffect{taken, taken, taken, 0, 0.9, shown_by_others};
+  };
   const HeldOutShares shares{{share(first), share(second)}, {{{0, 1}, share(both)}}, 0.9};
   StageDecision decision;
   std::vector<Candidate> candidates(2);
@@ -313,11 +379,11 @@ TEST_CASE("Two effects that take up what the other leaves are named as a set, a 
 }
 
 TEST_CASE("What one manoeuvre alone shows is judged by its repeats, as no other one foretells it") {
-  const HeldOutShares by_repeat{{{0.9, 0.9, 0, 0.9, 500}}, {}, 0.9};
+  const HeldOutShares by_repeat{{{0.9, 0.9, 0.9, 0, 0.9, 500}}, {}, 0.9};
   const auto verdict = [&](double shown_by_others) {
     StageDecision decision;
     decision.effects.push_back({0, {{1, 0.9, 1.1}, 0, 1}, 100, {}, {}, false, {}, {0}, {}, {}});
-    judge(decision, std::vector<Candidate>(1), by_repeat, {{{0, 0, 0, 0, shown_by_others}}, {}, 0}, {});
+    judge(decision, std::vector<Candidate>(1), by_repeat, {{{0, 0, 0, 0, 0, shown_by_others}}, {}, 0}, {});
     return decision.verdict;
   };
   CHECK(verdict(1) == Verdict::named);      // the others hardly show it: nothing can be held out

@@ -159,7 +159,7 @@ TEST_CASE("What is not known is a dash, never a number") {
     constexpr double kUnknown = GapMeasure::kNotMeasured;
     stage.gap = stage.gap_by_manoeuvre = {};
     stage.decision.effects[0].value.value = {0.05, kUnknown, kUnknown};
-    stage.decision.effects[0].share = stage.decision.effects[0].share_by_manoeuvre = {kUnknown, kUnknown, 0, kUnknown};
+    stage.decision.effects[0].share = stage.decision.effects[0].share_by_manoeuvre = {kUnknown, kUnknown, kUnknown, 0, kUnknown};
     stage.decision.effects[0].evidence = kUnknown;
     stage.ranking[0].explains = kUnknown;
     stage.where.beyond_chance = 0;
@@ -212,6 +212,8 @@ TEST_CASE("Doubts are in words, with the numbers they go by") {
   const Candidate& com = d.candidates[com_forward];
   CHECK_THAT(doubt(Doubt::end_of_range),
              Contains("its value is at the end of its range (" + figure(com.min) + " to " + figure(com.max) + " m)"));
+  effect.ordinarily_off = 0.004;
+  CHECK_THAT(doubt(Doubt::ordinary), Contains("numbers of the description are off by as much (1 sigma: 0.004 m)"));
   effect.share.of_kind = 0.2;
   effect.share_by_manoeuvre.of_kind = 0.03;
   CHECK_THAT(doubt(Doubt::not_held_out), Contains("it takes off only 3 % of the gap in track speed on manoeuvres held out"));

@@ -130,8 +130,14 @@ class LinearWorld {
             std::vector<gap::OpenShapes>(runs(), {none, none, Eigen::VectorXd::Zero(bins_of_run())}),
             std::vector<Eigen::VectorXd>(runs(), sigma)};
   }
-  gap::StageData data(const Whole& gap, const std::vector<bool>& used = {}) const {
+  gap::StageData data(const Whole& gap, const gap::UsedParts& used = {}) const {
     return gap::stage_data(gap::Passage::drive_to_body, features, repeats, by_run(gap), floor(), used);
+  }
+
+  gap::Folds folds_by_manoeuvre() const {
+    gap::Folds folds;
+    for (const auto& group : repeats) folds.emplace_back(group.begin(), group.end());
+    return folds;
   }
 
   // The first ones of kCandidates, each from -1 to 1, neutral at 0.
@@ -181,14 +187,14 @@ class LinearWorld {
     const gap::StageAround nominal{floor(), data(gap)};
     gap::StageDecision decision =
         gap::decide_stage(nominal, curves(moved, count, nominal.data, rough), simulate(moved, rough),
-                          [&](const gap::Settings&) { return nominal; }, test, settings);
+                          [&](const gap::Settings&, std::span<const std::size_t>) { return nominal; }, test, settings);
     if (decision.effects.empty()) return decision;
     const std::vector<Eigen::VectorXd> residuals = by_run(gap);
     const gap::StageView view{&features, &repeats, &residuals, &decision.floor};
     const auto shares = [&](const gap::Folds& folds) {
       return gap::shares_held_out(view, gap::Passage::drive_to_body, decision.best, folds, 1);
     };
-    gap::judge(decision, candidates(count), shares(gap::folds_by_repeat(repeats)), shares(repeats), settings);
+    gap::judge(decision, candidates(count), shares(gap::folds_by_repeat(repeats)), shares(folds_by_manoeuvre()), settings);
     return decision;
   }
   gap::StageDecision decide(const std::vector<Whole>& per_value, const Whole& gap, double rough = 1) const {

@@ -36,7 +36,7 @@ inline runs::Run run_ahead_by(double ahead_m, double faster_mps = 0) {
 }
 
 inline gap::NamedEffect made_effect(std::size_t candidate, gap::Interval value, double share) {
-  return {candidate, {value, 0, 1}, 400, {share, share, 0, share}, {share - 0.01, share - 0.01, 0, share}, false, {}, {candidate}};
+  return {candidate, {value, 0, 1}, 400, {share, share, share, 0, share}, {share - 0.01, share - 0.01, share - 0.01, 0, share}, false, {}, {candidate}};
 }
 
 inline gap::Dependence made_dependence() {
