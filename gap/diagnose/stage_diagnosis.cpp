@@ -110,8 +110,8 @@ void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutSh
   };
   const auto stand_in = [&](const std::vector<std::size_t>& places, const HeldOutShares::OfEffect& together) {
     double alone = 0;
-    for (const std::size_t place : places) alone += std::max(0.0, effects[place].share.beyond_numbers);
-    return together.beyond_numbers > kCommon * alone;
+    for (const std::size_t place : places) alone += std::max(0.0, effects[place].share.of_stage);
+    return together.of_stage > kCommon * alone;
   };
   for (std::size_t s = 0; s < sets.size(); ++s) {
     const std::vector<std::size_t>& places = sets[s].places;
