@@ -28,6 +28,8 @@ constexpr int kSectionsOfOff = 11;
 // All numbers together, as the length of what each is off by: twelve that are as far off as numbers are reach beyond
 // this once in a thousand times.
 constexpr double kFarthestOff = 0.143;
+// What is beyond is no number that is a little off (DecisionSettings::ordinary).
+constexpr double kOrdinary_sigma = 3;
 constexpr double kNoneOff = 1e-8;
 constexpr int kHalvingsOfOff = 20;
 
@@ -289,7 +291,7 @@ VectorXd most_likely_numbers(const StageData& data, const GroupVectors& residual
   const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
   const VectorXd sigmas =
       amounts_of(shared_products(whiteners, whitened(whiteners, residual))).most_likely.tail(numbers);
-  return discrepancies.numbers_off * std::min(1.0, kFarthestOff / kMostOff / sigmas.norm()) * sigmas;
+  return discrepancies.numbers_off * sigmas.cwiseMax(-kOrdinary_sigma).cwiseMin(kOrdinary_sigma);
 }
 
 std::vector<double> deviance_of_groups(const StageData& data, const GroupVectors& residual,

@@ -292,7 +292,7 @@ TEST_CASE("What numbers that are a little off explain as well is no share of an 
     standing.model.likelihood.discrepancies.numbers_off = numbers_off;
     return shares_held_out(measured.view, Passage::drive_to_body, standing, folds_by_repeat(world().repeats), 1);
   };
-  // where numbers are off by 1e-4, all together reach 5.7e-4 of 2000, which is 1 of the 40
+  // where numbers are off by 1e-4, each reaches 3e-4 of 2000, which is 0.6 of the 40
   for (const HeldOutShares::OfEffect& share : shares_with(1e-4).effects)
     CHECK(share.beyond_numbers == Approx(0.5).margin(0.1));
   const HeldOutShares shares = shares_with(0.02);
