@@ -102,9 +102,10 @@ ReportDelays report_delays(const RobotDescription& robot) {
           delay_s(physics::SensorType::drives)};
 }
 
-// What tracks and flippers of this robot did if its sensors reported this of them.
-physics::PrescribedMotion actual_motion(const MeasuredMotion& measured, double time_s, const RobotDescription& robot) {
-  physics::PrescribedMotion motion = measured.at(time_s, report_delays(robot));
+// What tracks and flippers of this robot did if its sensors reported this of them, `late` by report_delays().
+physics::PrescribedMotion actual_motion(const MeasuredMotion& measured, double time_s, const RobotDescription& robot,
+                                        const ReportDelays& late) {
+  physics::PrescribedMotion motion = measured.at(time_s, late);
   for (const physics::Track side : {physics::kLeft, physics::kRight})
     if (std::optional<double>& speed = motion.track_mps[side]) *speed /= robot.encoder_factor(side);
   return motion;
@@ -119,7 +120,7 @@ Pose put_down(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, 
         std::clamp(flippers.front(), robot.flipper.front().min_angle_rad, robot.flipper.front().max_angle_rad);
   scene.robot = scene.world.add_robot(robot, "robot", X_WB);
   if (manoeuvre.measured) {
-    scene.held = actual_motion(*manoeuvre.measured, 0, robot);
+    scene.held = actual_motion(*manoeuvre.measured, 0, robot, report_delays(robot));
     for (std::optional<double>& speed : scene.held.track_mps)
       if (speed) speed = 0;
   }
@@ -186,6 +187,7 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
     throw std::invalid_argument(fmt::format("manoeuvre {}: has neither phases nor commands", manoeuvre.name));
   const std::uint64_t per_sample = steps_per_sample(options);
   const RobotDescription measured = instrumented(robot, options.noise_scale);
+  const ReportDelays late = report_delays(measured);
   const FlipperAngles flippers = flippers_at_start(manoeuvre, robot);
   Scene scene{World(physics::with_terrain_effects(world, robot.effects), options.physics, options.seed), per_sample};
   put_at_start(scene, measured, manoeuvre, flippers, start_pose(world, manoeuvre, options));
@@ -219,7 +221,7 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
     }
     if (manoeuvre.measured)
       scene.world.prescribe(scene.robot,
-                            actual_motion(*manoeuvre.measured, t_s + options.physics.time_step_s, measured));
+                            actual_motion(*manoeuvre.measured, t_s + options.physics.time_step_s, measured, late));
     scene.step();
   }
   out.run = recorder.take();

@@ -124,6 +124,12 @@ double within_reach(const SharedProducts& whole, Index numbers, double off) {
   return std::exp(within);
 }
 
+// Of all shared shapes, in their sigmas.
+VectorXd most_likely_amounts(const StageData& data, const GroupVectors& residual, const Discrepancies& discrepancies) {
+  const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
+  return amounts_of(shared_products(whiteners, whitened(whiteners, residual))).most_likely;
+}
+
 // S S' by unit vectors and their squared lengths; directions along which nothing is open are left out.
 std::pair<MatrixXd, VectorXd> directions_of(const MatrixXd& shapes) {
   if (shapes.cols() == 0) return {shapes, VectorXd()};
@@ -277,8 +283,7 @@ std::vector<VectorXd> whitened_rest(const StageData& data, const GroupVectors& r
 
 GroupVectors without_shared_shapes(const StageData& data, const GroupVectors& residual,
                                    const Discrepancies& discrepancies) {
-  const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
-  const VectorXd amounts = amounts_of(shared_products(whiteners, whitened(whiteners, residual))).most_likely;
+  const VectorXd amounts = most_likely_amounts(data, residual, discrepancies);
   GroupVectors rest = residual;
   for (std::size_t g = 0; g < data.groups.size(); ++g)
     rest[g] -= shared_shapes(data.groups[g], discrepancies.numbers_off) * amounts;
@@ -288,9 +293,7 @@ GroupVectors without_shared_shapes(const StageData& data, const GroupVectors& re
 VectorXd most_likely_numbers(const StageData& data, const GroupVectors& residual, const Discrepancies& discrepancies) {
   const Index numbers = data.groups.front().number_shapes.cols();
   if (discrepancies.numbers_off == 0) return VectorXd::Zero(numbers);
-  const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
-  const VectorXd sigmas =
-      amounts_of(shared_products(whiteners, whitened(whiteners, residual))).most_likely.tail(numbers);
+  const VectorXd sigmas = most_likely_amounts(data, residual, discrepancies).tail(numbers);
   return discrepancies.numbers_off * sigmas.cwiseMax(-kOrdinary_sigma).cwiseMin(kOrdinary_sigma);
 }
 

@@ -158,8 +158,8 @@ struct Contest {
   std::size_t place;    // of the effect
   double accounted;     // squares that it takes off
   EffectCurves curves;  // of the others where they stand, of rivals as they are alone
-  GroupVectors
-      beyond;  // what the best model shifts beyond their sum: what effects do to each other they do with a rival
+  // What the best model shifts beyond their sum: what effects do to each other they do with a rival, too.
+  GroupVectors beyond;
   const DecisionSettings& settings;
 };
 

@@ -232,6 +232,7 @@ TEST_CASE("V8: prescribed flippers follow, under load and beyond what a servo ca
     const RobotTruth truth = robot.world.truth(robot.id);
     if (i < 200) continue;  // the weak servos had let the arms down: at 10 rad/s they come back
     for (const double is : truth.flipper_rad) worst_rad = std::max(worst_rad, std::abs(is - angle));
+    CHECK(truth.servo_rad[kFrontLeft] == Approx(truth.flipper_rad[kFrontLeft]).margin(1e-3));
   }
   CHECK(worst_rad < 1e-4);  // what ten iterations leave in a joint that takes up the robot's weight
   CHECK(robot.world.truth(robot.id).X_WB.p.z() > 0.1);  // from 0.09
@@ -247,8 +248,8 @@ TEST_CASE("V8: of prescribed flippers the servo is where it is told, and the arm
     Robot robot = settled(description);
     PrescribedMotion motion;
     for (int i = 1; i <= 3000; ++i) {
-      motion.flipper_rad.fill(1 -
-                              std::min(1.6, 0.001 * i));  // down to -0.6: it lifts the robot, and stands so for 1.4 s
+      // down to -0.6: it lifts the robot, and stands so for 1.4 s
+      motion.flipper_rad.fill(1 - std::min(1.6, 0.001 * i));
       robot.world.prescribe(robot.id, motion);
       robot.world.step();
     }
