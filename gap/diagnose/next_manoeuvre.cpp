@@ -159,24 +159,24 @@ class Proposer {
                         rollout::replay_of(candidate.plain, candidate.manoeuvre.name),
                         std::vector<Eigen::VectorXd>(models_.size()), std::vector<char>(models_.size(), 0),
                         std::vector<double>(rivals_.size(), 0), std::vector<Risk>(rivals_.size())});
-    const std::size_t rivals = rivals_.size();
+    const std::size_t rivals = rivals_.size(), first_coarse = first_moved_.back();
     for_each_job(trials.size() * rivals, options_.threads,
-                 [&](std::size_t job) { replay(trials[job / rivals], job % rivals); });
-    // Rivals that are too close before either changes its values only come closer: that is known at a third of the
-    // cost.
+                 [&](std::size_t job) { replay(trials[job / rivals], first_coarse + job % rivals); });
+    // Rivals that are too close before either changes its values only come closer: that is known at a sixth of the
+    // cost, as a difference hardly changes with the time step.
     std::vector<Trial*> promising;
     for (Trial& trial : trials) {
       trial.score = least_separation(trial, false);
       if (trial.score >= options_.suffices_at) promising.push_back(&trial);
     }
-    const std::size_t of_each = models_.size();
+    const std::size_t of_each = rivals + first_coarse;
     for_each_job(promising.size() * of_each, options_.threads, [&](std::size_t job) {
       Trial& trial = *promising[job / of_each];
       const std::size_t which = job % of_each;
       if (which < rivals)
         drive_rival(trial, which);
       else
-        replay(trial, which);
+        replay(trial, which - rivals);
     });
     for (Trial* trial : promising) trial->score = least_separation(*trial, true);
     for (const Trial& trial : trials) add(trial);
@@ -215,7 +215,7 @@ class Proposer {
     proposed_.push_back(std::move(proposed));
   }
 
-  // `changing`: values may change, and what the time step leaves open is no difference.
+  // `changing`: values may change, and what the time step leaves open is no difference; else all is coarse.
   double least_separation(const Trial& trial, bool changing) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t a = 0; a < rivals_.size(); ++a)
@@ -226,10 +226,10 @@ class Proposer {
 
   double separation_of(std::size_t a, std::size_t b, const Trial& trial, bool changing) const {
     const auto count = static_cast<Eigen::Index>(trial.map.bins().size());
-    const Eigen::VectorXd difference = trial.features[a] - trial.features[b];
+    const std::size_t first_coarse = first_moved_.back(), first = changing ? 0 : first_coarse;
+    const Eigen::VectorXd difference = trial.features[first + a] - trial.features[first + b];
     Eigen::MatrixXd open = Eigen::MatrixXd::Zero(count, 2), free(count, 0);
     if (changing) {
-      const std::size_t first_coarse = first_moved_.back();
       open.col(0) = trial.features[first_coarse + a] - trial.features[a];
       open.col(1) = trial.features[first_coarse + b] - trial.features[b];
       free.resize(count, static_cast<Eigen::Index>(rivals_[a].moved.size() + rivals_[b].moved.size()));
