@@ -13,6 +13,7 @@
 #include "gap/candidates/own_effects.hpp"
 #include "gap/diagnose/baseline.hpp"
 #include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/other_stages.hpp"
 #include "gap/diagnose/repeats.hpp"
 
 namespace kenaf::gap {
@@ -134,32 +135,6 @@ std::vector<ProposedManoeuvre> next_manoeuvres(const Diagnosis& d) {
   return propose_manoeuvres(d.observations.robot, rivals, options);
 }
 
-// What the other stages than `s` name, alone.
-std::vector<NamedElsewhere> named_elsewhere(const std::vector<StageDiagnosis>& stages, std::size_t s) {
-  std::vector<NamedElsewhere> named;
-  for (std::size_t other = 0; other < stages.size(); ++other)
-    for (const NamedEffect& effect : stages[other].decision.effects)
-      if (other != s && effect.doubts.empty() && effect.rivals.size() == 1)
-        named.push_back({effect.candidate, effect.value.value});
-  return named;
-}
-
-// A stage that leaves a choice is decided again where another stage has made it.
-void settle_by_other_stages(Diagnosis& d, const std::vector<PreparedStage>& prepared, Predictor& predictor,
-                            const StageOptions& options) {
-  for (std::size_t s = 0; s < d.stages.size(); ++s) {
-    const StageDecision& decision = d.stages[s].decision;
-    const std::vector<NamedElsewhere> elsewhere = named_elsewhere(d.stages, s);
-    for (std::size_t e = 0; e < decision.effects.size(); ++e) {
-      const NamedEffect& effect = decision.effects[e];
-      if (!effect.doubts.empty() || effect.rivals.size() < 2 || !effect.partners.empty()) continue;
-      if (!settled_elsewhere(decision, e, d.candidates, elsewhere)) continue;
-      d.stages[s] = diagnose_stage(prepared[s], predictor, options, elsewhere);
-      break;
-    }
-  }
-}
-
 // Simulates the baseline's runs and takes off what they differ by.
 void take_off(const Baseline& baseline, Diagnosis& d, const DiagnosisOptions& options) {
   const ComparedFeatures before = compared_features(baseline.observations, options.span_s);
@@ -230,7 +205,7 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
       d.stages.push_back(diagnose_stage(stage, predictor, stage_options));
       prepared.push_back(std::move(stage));
     }
-    settle_by_other_stages(d, prepared, predictor, stage_options);
+    settle_by_other_stages(d.stages, prepared, predictor, stage_options);
     conclude(d);
     progress.begin("looking for the next manoeuvre", 0.98, 1, 1, predictor.roll_outs());
     if (options.propose_next && options.ranks.rank == 0) d.next = next_manoeuvres(d);

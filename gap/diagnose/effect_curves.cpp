@@ -104,11 +104,15 @@ double ordinarily_off(const Candidate& candidate) {
   return candidate.present + std::copysign(std::min(kOrdinarilyOff * candidate.whole, std::abs(to_end)), to_end);
 }
 
-double length_in_noise(const StageData& data, const GroupVectors& difference) {
+double squares_in_noise(const StageData& data, const GroupVectors& difference) {
   double squares = 0;
   for (std::size_t g = 0; g < data.groups.size(); ++g)
     squares += (difference[g].array().square() / data.groups[g].variance.array()).sum();
-  return std::sqrt(squares);
+  return squares;
+}
+
+double length_in_noise(const StageData& data, const GroupVectors& difference) {
+  return std::sqrt(squares_in_noise(data, difference));
 }
 
 bool is_bent(const EffectCurves& curves, const StageData& data, std::size_t c, double length) {

@@ -80,6 +80,7 @@ void insert_points(EffectCurves& curves, const StageData& data, std::span<const 
                    const std::vector<GroupVectors>& shifts, Fidelity fidelity);
 
 // Length of a difference in noise alone: the root of the sum over bins of its square over their variance.
+double squares_in_noise(const StageData& data, const GroupVectors& difference);
 double length_in_noise(const StageData& data, const GroupVectors& difference);
 
 }  // namespace kenaf::gap

@@ -183,6 +183,15 @@ Model nominal_model(const StageData& data) {
   return model;
 }
 
+Model simulated_model(const StageData& data, const EffectCurves& curves, const Simulate& simulate,
+                      const Settings& settings, const Model& like) {
+  Model model{{}, simulate(std::vector<Settings>{settings}, Fidelity::every_run).front(), true, {}};
+  for (const Setting& setting : settings)
+    model.places.push_back(at_value(curves.curves, setting.candidate, setting.value));
+  model.likelihood = likelihood_of(data, rest_of(data, model), like.likelihood.discrepancies);
+  return model;
+}
+
 GroupVectors beyond_curves(const EffectCurves& curves, const Model& model) {
   return less(model.shift, shift_of(curves, model.places));
 }

@@ -35,6 +35,9 @@ struct SearchSettings {
 
 Model nominal_model(const StageData& data);
 GroupVectors residuals_of(const StageData& data);
+// As it simulates at `settings`, every run. `like`: another model, with whose discrepancies the estimate begins.
+Model simulated_model(const StageData& data, const EffectCurves& curves, const Simulate& simulate, const Settings& settings,
+                      const Model& like);
 // What a model leaves of each group.
 GroupVectors rest_of(const StageData& data, const Model& model);
 bool has_effect(const Model& model, std::size_t candidate);

@@ -277,6 +277,14 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& 
         words.push_back(fmt::format("manoeuvres want values that differ by more than {}{}", part, of_it));
         break;
       }
+      case Doubt::trend:
+        words.push_back(fmt::format("later parts of the runs want {}{} {} than earlier ones",
+                                    figure(std::abs(effect.value.trend)), unit_suffix(candidate.unit),
+                                    effect.value.trend > 0 ? "more" : "less"));
+        break;
+      case Doubt::refuted:
+        words.push_back(fmt::format("with it, more would be left from {}", passage_name(*effect.refuted_by)));
+        break;
       case Doubt::not_held_out: {
         const bool by_manoeuvre = effect.share_by_manoeuvre.of_kind < effect.share.of_kind;
         const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;
@@ -284,11 +292,15 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& 
                                     kind_name(least.kind), by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
         break;
       }
-      case Doubt::trifle:
-        words.push_back(
-            fmt::format("it takes off only {} of the stage's gap",
-                        percent(std::fmin(effect.share.beyond_numbers, effect.share_by_manoeuvre.beyond_numbers))));
+      case Doubt::trifle: {
+        const auto least = [&](auto member) {
+          return std::fmin(effect.share.*member, effect.share_by_manoeuvre.*member);
+        };
+        using Share = HeldOutShares::OfEffect;
+        words.push_back(fmt::format("it takes off only {} of the stage's gap",
+                                    percent(std::min(least(&Share::of_stage), least(&Share::beyond_numbers)))));
         break;
+      }
       case Doubt::little_explained: {
         const bool by_manoeuvre = effect.share_by_manoeuvre.model_of_kind < effect.share.model_of_kind;
         const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;

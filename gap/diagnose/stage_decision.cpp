@@ -2,35 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "gap/diagnose/cells.hpp"
-#include "gap/diagnose/isolability.hpp"
+#include "gap/diagnose/rivals.hpp"
 #include "gap/diagnose/significance.hpp"
-#include "gap/parallel.hpp"
 
 namespace kenaf::gap {
 namespace {
 
-// At the angle below which two effects cannot be told apart, the one that is not there leaves this share of what the
-// other one accounts for.
-const double kAlike = std::pow(std::sin(kToldApart_deg / 180 * std::numbers::pi), 2);
 // Of what a gap has beyond numbers that are a little off, so much must a model take off before the simulation's open
 // shapes are taken around it (chosen): around one that does not fit, the simulation may leave anything open.
 constexpr double kFits = 0.5;
-// Vuong's test: standard errors by which the best model must be better than a rival over manoeuvres (one-sided 95 %),
-// from as many manoeuvres on.
-constexpr double kBetter_sigma = 1.64;
-constexpr std::size_t kFewestGroups = 4;
-// Rivals that are tried by simulation, for each effect, and how often each.
-constexpr std::size_t kMostRivals = 4;
-constexpr int kRivalRounds = 2;
-
-// Squared length of what is left, in noise alone.
-double squared(const StageData& data, const GroupVectors& rest) {
-  return std::pow(length_in_noise(data, rest), 2);
-}
 
 // Whether what a model leaves is more than noise and spread of repeats leave.
 struct Chance {
@@ -94,17 +77,6 @@ Model without_effect(const StageData& data, const StandingModel& standing, std::
   return fit_model(data, standing.curves, others, {}, standing.model.likelihood.discrepancies);
 }
 
-// As it simulates at `settings`. `like`: another model of as many effects, with whose discrepancies the estimate
-// begins.
-Model simulated_model(const StageData& data, const EffectCurves& curves, const Simulate& simulate,
-                      const Settings& settings, const Model& like) {
-  Model model{{}, simulate(std::vector<Settings>{settings}, Fidelity::every_run).front(), true, {}};
-  for (const Setting& setting : settings)
-    model.places.push_back(at_value(curves.curves, setting.candidate, setting.value));
-  model.likelihood = likelihood_of(data, rest_of(data, model), like.likelihood.discrepancies);
-  return model;
-}
-
 // Without effects that gain too little where they stand, the weakest first.
 StandingModel without_weak_effects(const StageData& data, const EffectCurves& curves, const Simulate& simulate,
                                    StandingModel best, const DecisionSettings& settings) {
@@ -139,109 +111,6 @@ bool is_at_bound(const StageData& data, const StandingModel& standing, std::size
          standing.model.deviance() + margin;
 }
 
-// Whether manoeuvres bear out that `best` is better than `rival` (Vuong 1989, over groups of repeats).
-bool is_borne_out(const StageData& data, const Model& best, const Model& rival) {
-  const std::vector<double> a = deviance_of_groups(data, rest_of(data, best), best.likelihood.discrepancies),
-                            b = deviance_of_groups(data, rest_of(data, rival), rival.likelihood.discrepancies);
-  if (a.size() < kFewestGroups) return true;
-  double sum = 0, squares = 0;
-  for (std::size_t g = 0; g < a.size(); ++g) sum += b[g] - a[g], squares += (b[g] - a[g]) * (b[g] - a[g]);
-  const auto count = static_cast<double>(a.size());
-  const double variance = std::max(0.0, squares - sum * sum / count) / (count - 1) * count;
-  return sum > kBetter_sigma * std::sqrt(variance);
-}
-
-// What rivals of one effect of the best model are measured by.
-struct Contest {
-  const StageData& data;
-  const Model& best;
-  std::size_t place;    // of the effect
-  double accounted;     // squares that it takes off
-  EffectCurves curves;  // of the others where they stand, of rivals as they are alone
-  // What the best model shifts beyond their sum: what effects do to each other they do with a rival, too.
-  GroupVectors beyond;
-  const DecisionSettings& settings;
-};
-
-Contest contest_of(const StageData& data, const EffectCurves& alone, const StandingModel& standing, std::size_t place,
-                   const Model& without, const DecisionSettings& settings) {
-  const Model& best = standing.model;
-  const double accounted = squared(data, rest_of(data, without)) - squared(data, rest_of(data, best));
-  Contest contest{data, best, place, accounted, alone, {}, settings};
-  for (std::size_t p = 0; p < best.places.size(); ++p)
-    if (const std::size_t c = best.places[p].curve; p != place) contest.curves.curves[c] = standing.curves.curves[c];
-  contest.curves.shifts = standing.curves.shifts;
-  Model on_curves = best;
-  for (OnCurve& at : on_curves.places) at = at_value(contest.curves.curves, at.curve, at.value);
-  contest.beyond = beyond_curves(contest.curves, on_curves);
-  return contest;
-}
-
-bool is_rival(const Contest& contest, const Model& model) {
-  const auto& [data, best, place, accounted, curves, beyond, settings] = contest;
-  if (model.deviance() - best.deviance() < settings.rival_evidence) return true;
-  if (squared(data, rest_of(data, model)) - squared(data, rest_of(data, best)) < kAlike * accounted) return true;
-  return !is_borne_out(data, best, model);
-}
-
-Model fitted_in(const Contest& contest, const EffectSet& set, const GroupVectors& beyond) {
-  return fit_model(contest.data, contest.curves, set, beyond, contest.best.likelihood.discrepancies);
-}
-
-// Models with a rival in the effect's place that may do as well, by curves; best first.
-std::vector<Model> rivals_on_curves(const Contest& contest) {
-  const auto& [data, best, place, accounted, curves, beyond, settings] = contest;
-  std::vector<EffectSet> sets;
-  for (std::size_t c = 0; c < curves.curves.size(); ++c) {
-    if (has_effect(best, c) || curves.curves[c].visible <= 1 || curves.curves[c].points.size() < 2) continue;
-    sets.push_back(effects_of(best));
-    sets.back()[place] = c;
-  }
-  std::vector<Model> models(sets.size());
-  for_each_job(sets.size(), settings.search.threads,
-               [&](std::size_t i) { models[i] = fitted_in(contest, sets[i], contest.beyond); });
-  std::erase_if(models, [&](const Model& model) {
-    return !is_rival(contest, model) &&
-           model.deviance() - contest.best.deviance() > 3 * contest.settings.rival_evidence;
-  });
-  std::ranges::stable_sort(models, {}, [](const Model& model) { return model.deviance(); });
-  if (models.size() > kMostRivals) models.resize(kMostRivals);
-  return models;
-}
-
-// Whether a rival takes the effect's place, so that without the effect all is as well, or beside it the effect gains
-// nothing; one that does otherwise explains something else.
-bool takes_its_place(const Contest& contest, const Model& rival) {
-  if (rival.deviance() - contest.best.deviance() < contest.settings.rival_evidence) return true;
-  EffectSet both = effects_of(rival);
-  both.push_back(contest.best.places[contest.place].curve);
-  return rival.deviance() - fitted_in(contest, both, contest.beyond).deviance() < contest.settings.evidence;
-}
-
-// Models with a rival in the place of one effect, the best model itself first. `without`: the best one without the
-// effect.
-std::vector<Settings> rivals_of(const StageData& data, const EffectCurves& curves, const StandingModel& standing,
-                                std::size_t place, const Model& without, const Simulate& simulate,
-                                const DecisionSettings& settings) {
-  const Contest contest = contest_of(data, curves, standing, place, without, settings);
-  std::vector<Settings> rivals{settings_of(contest.best.places)};
-  for (Model fitted : rivals_on_curves(contest)) {
-    if (!takes_its_place(contest, fitted)) continue;
-    // by simulation, and by another one where it fits with what the sum of curves lacked
-    for (int round = 0; round < kRivalRounds; ++round) {
-      const Settings asked = settings_of(fitted.places);
-      const Model simulated = simulated_model(data, contest.curves, simulate, asked, fitted);
-      if (is_rival(contest, simulated)) {
-        rivals.push_back(asked);
-        break;
-      }
-      fitted = fitted_in(contest, effects_of(fitted), beyond_curves(contest.curves, simulated));
-      if (!is_rival(contest, fitted)) break;
-    }
-  }
-  return rivals;
-}
-
 // Values, evidence and rivals of the best model's effects.
 void describe_effects(StageDecision& d, const EffectCurves& curves, const Simulate& simulate,
                       const DecisionSettings& settings) {
@@ -261,12 +130,35 @@ void describe_effects(StageDecision& d, const EffectCurves& curves, const Simula
   }
 }
 
-// The best model's effects, of rivals the one that another stage names, and what is left.
+// The rival of an effect that takes its place, as other stages have it: the first that one names, or that none refutes
+// where one refutes the effect.
+std::optional<std::size_t> rival_in_place(const StageDecision& d, std::size_t effect,
+                                          std::span<const Candidate> candidates, const Elsewhere& elsewhere) {
+  if (const auto named = settled_elsewhere(d, effect, candidates, elsewhere.named)) return named;
+  const std::vector<Settings>& models = d.models_of_rivals[effect];
+  for (std::size_t r = 0; r < models.size(); ++r)
+    if (!elsewhere.refutes(models[r][effect].candidate)) return r;
+  return std::nullopt;
+}
+
+// Rivals of an effect that another stage has settled, or refutes, are none.
+void strike_rivals(StageDecision& d, std::size_t effect, std::span<const Candidate> candidates,
+                   const Elsewhere& elsewhere) {
+  std::vector<Settings>& models = d.models_of_rivals[effect];
+  if (settled_elsewhere(d, effect, candidates, elsewhere.named) == 0) models.resize(1);
+  const auto is_refuted = [&](const Settings& model) { return elsewhere.refutes(model[effect].candidate).has_value(); };
+  models.erase(std::remove_if(models.begin() + 1, models.end(), is_refuted), models.end());
+  std::vector<std::size_t>& rivals = d.effects[effect].rivals;
+  rivals.clear();
+  for (const Settings& model : models) rivals.push_back(model[effect].candidate);
+}
+
+// The best model's effects, of rivals those that other stages allow, and what is left.
 void describe(StageDecision& d, const EffectCurves& curves, const Simulate& simulate, const GapTest& test,
-              const DecisionSettings& settings, std::span<const NamedElsewhere> elsewhere) {
+              const DecisionSettings& settings, const Elsewhere& elsewhere) {
   describe_effects(d, curves, simulate, settings);
   for (std::size_t i = 0; i < d.effects.size(); ++i) {
-    const std::optional<std::size_t> rival = settled_elsewhere(d, i, curves.candidates, elsewhere);
+    const std::optional<std::size_t> rival = rival_in_place(d, i, curves.candidates, elsewhere);
     if (!rival || *rival == 0) continue;
     const Settings settled = d.models_of_rivals[i][*rival];
     d.best =
@@ -275,9 +167,8 @@ void describe(StageDecision& d, const EffectCurves& curves, const Simulate& simu
     break;
   }
   for (std::size_t i = 0; i < d.effects.size(); ++i) {
-    if (settled_elsewhere(d, i, curves.candidates, elsewhere) != 0) continue;
-    d.effects[i].rivals.resize(1);
-    d.models_of_rivals[i].resize(1);
+    strike_rivals(d, i, curves.candidates, elsewhere);
+    d.effects[i].refuted_by = elsewhere.refutes(d.effects[i].candidate);
   }
   d.p_left = cell_energy(d.data, rest_of(d.data, d.best.model), test.stretch_s).p_of_noise(test.inflation);
   d.complete = d.p_left > settings.surprise;
@@ -317,7 +208,7 @@ std::optional<std::size_t> settled_elsewhere(const StageDecision& decision, std:
 
 StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known, const Simulate& simulate,
                            const Around& around, const GapTest& test, const DecisionSettings& settings,
-                           std::span<const NamedElsewhere> elsewhere) {
+                           const Elsewhere& elsewhere) {
   EffectCurves curves = known;
   StageDecision d;
   take(d, nominal);
@@ -341,7 +232,8 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
 
   // what the simulation leaves open is taken around a model that fits, no longer around the nominal one
   const auto left_by = [&](const Model& model) {
-    return squared(d.data, without_shared_shapes(d.data, rest_of(d.data, model), model.likelihood.discrepancies));
+    return squares_in_noise(d.data,
+                            without_shared_shapes(d.data, rest_of(d.data, model), model.likelihood.discrepancies));
   };
   const auto look_around = [&](const Model& model) {
     if (left_by(model) > (1 - kFits) * left_by(nominal_model(d.data))) return false;
@@ -368,20 +260,27 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
   return d;
 }
 
-StageDecision with_effects_alone(StageDecision decided, std::span<const std::size_t> places, const EffectCurves& curves,
-                                 const Simulate& simulate, const Around& around, const GapTest& test,
-                                 const DecisionSettings& settings, std::span<const NamedElsewhere> elsewhere) {
+OtherModel with_effects_alone(const StageDecision& decided, std::span<const std::size_t> places) {
+  OtherModel other{{}, settings_of(decided.best.model.places)};
+  for (const std::size_t place : places) other.model.push_back(other.around[place]);
+  return other;
+}
+
+OtherModel with_rival(const StageDecision& decided, std::size_t effect, std::size_t rival) {
+  const Settings& model = decided.models_of_rivals[effect][rival];
+  return {model, model};
+}
+
+StageDecision decide_again(StageDecision decided, const OtherModel& other, const EffectCurves& curves,
+                           const Simulate& simulate, const Around& around, const GapTest& test,
+                           const DecisionSettings& settings, const Elsewhere& elsewhere) {
   StageDecision d = std::move(decided);
-  const Settings all = settings_of(d.best.model.places);
-  Settings kept;
   std::vector<std::size_t> candidates;
-  for (const std::size_t place : places) {
-    kept.push_back(all[place]);
-    candidates.push_back(all[place].candidate);
-  }
-  take(d, around(all, candidates));
+  for (const Setting& setting : other.model) candidates.push_back(setting.candidate);
+  take(d, around(other.around, candidates));
   d.nominal_deviance = nominal_model(d.data).deviance();
-  d.best = fit_side_by_side(d.data, curves, simulate, simulated_model(d.data, curves, simulate, kept, d.best.model));
+  d.best =
+      fit_side_by_side(d.data, curves, simulate, simulated_model(d.data, curves, simulate, other.model, d.best.model));
   describe(d, curves, simulate, test, settings, elsewhere);
   return d;
 }

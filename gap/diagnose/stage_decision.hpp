@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "gap/diagnose/decision_settings.hpp"
+#include "gap/diagnose/elsewhere.hpp"
 #include "gap/diagnose/evidence.hpp"
 #include "gap/diagnose/model_search.hpp"
 #include "gap/diagnose/side_by_side.hpp"
@@ -24,26 +26,11 @@ enum class Doubt {
   end_of_range,     // the value ends where the range does: it stands for something that the effect cannot do
   ordinary,         // a number of the description that is off by no more than its other numbers are
   disagreement,     // manoeuvres want values that differ by more than a share of the effect
+  trend,            // so do earlier and later parts of runs
+  refuted,          // another stage would see it, and has more left with it
   not_held_out,     // on runs or manoeuvres held out it takes off too little
   trifle,           // of the stage's whole gap it takes off next to nothing
   little_explained, // in the channels where it acts, the whole model takes off too little on runs held out
-};
-
-struct DecisionSettings {
-  double false_alarm = 0.005;      // chance of a verdict other than none where there is no gap
-  double negligible = 0.25;        // of the noise's length: what explains less is no gap that anybody would see (chosen)
-  double surprise = 0.005;         // chance to call a complete explanation incomplete
-  double evidence = 16;            // deviance that an effect must gain: 4 sigma, for the best of some 70 candidates (chosen)
-  double rival_evidence = 9;       // deviance by which a rival must be worse: 3 sigma
-  // Of the squared gap of the kind of channels where an effect takes off most, on runs held out: what the effect must take off,
-  // and what the whole model must (chosen).
-  double effect_share = 0.2, model_share = 0.5;
-  double stage_share = 0.1;        // of the stage's whole squared gap, what the effect must take off (chosen)
-  double ordinary = 3;             // a number of the description is named beyond so many sigma of all of them
-  double agreement = 1;            // an effect is at least as many times its spread between manoeuvres (chosen): then five in
-                                   // six of them agree on its sign
-  std::size_t most_effects = 6;
-  SearchSettings search;
 };
 
 // The data of a stage around a model: noise as it is, and what the simulation leaves open with these effects.
@@ -78,6 +65,7 @@ struct NamedEffect {
   HeldOutShares::OfEffect share_of_set{};
   // How far numbers of the description are off, 1 sigma, in the unit of this one; 0: it is none of them.
   double ordinarily_off = 0;
+  std::optional<Passage> refuted_by{};  // the stage that has more left with it
 };
 
 struct StageDecision {
@@ -94,23 +82,26 @@ struct StageDecision {
   bool complete = false;            // what is left is within noise and spread
 };
 
-// An effect that another stage names, alone.
-struct NamedElsewhere {
-  std::size_t candidate;
-  Interval value;
-};
-
-// `elsewhere`: one of them that is among an effect's rivals, at a value that both intervals allow, is what both stages show: it takes
-// the effect's place, and has no rivals.
+// `elsewhere`: an effect that another stage names and that is among an effect's rivals, at a value that both intervals allow, is what
+// both stages show: it takes the effect's place, and has no rivals. Rivals that another stage refutes are none, and an effect that it
+// refutes gives way to a rival that it does not.
 StageDecision decide_stage(const StageAround& nominal, const EffectCurves& curves, const Simulate& simulate,
                            const Around& around, const GapTest& test, const DecisionSettings& settings,
-                           std::span<const NamedElsewhere> elsewhere = {});
+                           const Elsewhere& elsewhere = {});
 
-// `decided` with these of its best model's effects alone, fitted again where they stand: what has no name is no part of what is
-// said of the others. The single effects stay as they are.
-StageDecision with_effects_alone(StageDecision decided, std::span<const std::size_t> places, const EffectCurves& curves,
-                                 const Simulate& simulate, const Around& around, const GapTest& test,
-                                 const DecisionSettings& settings, std::span<const NamedElsewhere> elsewhere = {});
+// How a stage is decided again with another best model.
+struct OtherModel {
+  Settings model;       // fitted again where it stands
+  Settings around;      // the simulation's open shapes are those around this one
+};
+// `decided` with these of its best model's effects alone: what has no name is no part of what is said of the others.
+OtherModel with_effects_alone(const StageDecision& decided, std::span<const std::size_t> places);
+// `decided` with the model of a rival of one effect.
+OtherModel with_rival(const StageDecision& decided, std::size_t effect, std::size_t rival);
+// The single effects stay as they are.
+StageDecision decide_again(StageDecision decided, const OtherModel& other, const EffectCurves& curves, const Simulate& simulate,
+                           const Around& around, const GapTest& test, const DecisionSettings& settings,
+                           const Elsewhere& elsewhere = {});
 
 // The first of an effect's rivals, itself among them, that another stage names at such a value; its place among them.
 std::optional<std::size_t> settled_elsewhere(const StageDecision& decision, std::size_t effect,

@@ -1,12 +1,15 @@
 #include "gap/diagnose/stage_diagnosis.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numeric>
+#include <optional>
+#include <utility>
 
 #include "gap/diagnose/candidates_that_matter.hpp"
 #include "gap/diagnose/cells.hpp"
 #include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/judgement.hpp"
 #include "gap/diagnose/number_shapes.hpp"
 #include "gap/diagnose/repeats.hpp"
 #include "gap/diagnose/same_parts.hpp"
@@ -66,110 +69,6 @@ void take_part(VectorXd& of_run, const VectorXd& other, const RunPart& part, con
       of_run[i] = other[i];
 }
 
-// Effects stand in for each other where together they take off more than so many times what each does alone (chosen).
-constexpr double kCommon = 2;
-
-constexpr HeldOutShares::OfEffect kNotHeldOut{
-    GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, 0, GapMeasure::kNotMeasured, 0};
-
-bool is_lack_of_share(Doubt doubt) {
-  return doubt == Doubt::not_held_out || doubt == Doubt::trifle;
-}
-
-double change_by(const NamedEffect& effect, const Candidate& candidate) {
-  return std::abs(effect.value.value.value - candidate.present);
-}
-
-// Places of the effects whose sets are of interest: all where some effect may lack a share by itself, else none.
-std::vector<std::size_t> places_of_sets(const HeldOutShares& shares, const HeldOutShares& shares_by_manoeuvre,
-                                        const DecisionSettings& settings) {
-  const auto is_small = [&](const HeldOutShares::OfEffect& share) {
-    return !(share.of_kind >= settings.effect_share) || !(share.beyond_numbers >= settings.stage_share);
-  };
-  if (std::ranges::none_of(shares.effects, is_small) && std::ranges::none_of(shares_by_manoeuvre.effects, is_small))
-    return {};
-  std::vector<std::size_t> places(shares.effects.size());
-  std::iota(places.begin(), places.end(), std::size_t{0});
-  return places;
-}
-
-// Effects that stand in for each other, as a lag and a ramp do: without one the others take up most of it, without all
-// of them the gap is there. They are named as a set, the smallest that takes off enough.
-void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutShares::OfSet>& sets,
-                  const std::vector<HeldOutShares::OfSet>& sets_by_manoeuvre, const DecisionSettings& settings) {
-  // how much is whose is not known, so manoeuvres may disagree on it
-  const auto lacks_share = [&](std::size_t place) {
-    const std::vector<Doubt>& doubts = effects[place].doubts;
-    return std::ranges::any_of(doubts, is_lack_of_share) && std::ranges::all_of(doubts, [](Doubt doubt) {
-             return is_lack_of_share(doubt) || doubt == Doubt::disagreement;
-           });
-  };
-  const auto is_named = [&](std::size_t place) { return effects[place].doubts.empty(); };
-  const auto may_join = [&](std::size_t place) {
-    return effects[place].partners.empty() && (lacks_share(place) || is_named(place));
-  };
-  const auto stand_in = [&](const std::vector<std::size_t>& places, const HeldOutShares::OfEffect& together) {
-    double alone = 0;
-    for (const std::size_t place : places) alone += std::max(0.0, effects[place].share.of_stage);
-    return together.of_stage > kCommon * alone;
-  };
-  for (std::size_t s = 0; s < sets.size(); ++s) {
-    const std::vector<std::size_t>& places = sets[s].places;
-    if (!std::ranges::all_of(places, may_join) || std::ranges::none_of(places, lacks_share)) continue;
-    HeldOutShares::OfEffect share = sets[s].share;
-    const HeldOutShares::OfEffect& by_manoeuvre = sets_by_manoeuvre[s].share;
-    if (by_manoeuvre.shown_by_others >= settings.evidence && by_manoeuvre.of_kind < share.of_kind) share = by_manoeuvre;
-    if (share.of_kind < settings.effect_share || share.beyond_numbers < settings.stage_share ||
-        share.model_of_kind < settings.model_share)
-      continue;
-    // one that has a name by itself is in a set only with what it stands in for
-    if (std::ranges::any_of(places, is_named) && !stand_in(places, share)) continue;
-    for (const std::size_t place : places) {
-      NamedEffect& effect = effects[place];
-      effect.doubts.clear();
-      effect.share_of_set = share;
-      for (const std::size_t other : places) {
-        if (other == place) continue;
-        effect.partners.push_back(other);
-        effect.rivals.insert(effect.rivals.begin() + std::ssize(effect.partners), effects[other].candidate);
-      }
-    }
-  }
-}
-
-}  // namespace
-
-void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOutShares& shares,
-           const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings) {
-  using Share = HeldOutShares::OfEffect;
-  for (std::size_t i = 0; i < d.effects.size(); ++i) {
-    NamedEffect& effect = d.effects[i];
-    effect.share = shares.effects[i];
-    effect.share_by_manoeuvre = shares_by_manoeuvre.effects[i];
-    // an effect that one manoeuvre alone shows is held out by repeats alone
-    if (effect.share_by_manoeuvre.shown_by_others < settings.evidence) effect.share_by_manoeuvre = kNotHeldOut;
-    const auto least = [&](auto member) { return std::fmin(effect.share.*member, effect.share_by_manoeuvre.*member); };
-    if (effect.at_bound) effect.doubts.push_back(Doubt::end_of_range);
-    const double change = change_by(effect, candidates[effect.candidate]);
-    if (change < settings.ordinary * effect.ordinarily_off) effect.doubts.push_back(Doubt::ordinary);
-    if (change < settings.agreement * effect.value.spread) effect.doubts.push_back(Doubt::disagreement);
-    if (!(least(&Share::of_kind) >= settings.effect_share))
-      effect.doubts.push_back(Doubt::not_held_out);
-    else if (!(least(&Share::beyond_numbers) >= settings.stage_share))
-      effect.doubts.push_back(Doubt::trifle);
-    if (!(least(&Share::model_of_kind) >= settings.model_share)) effect.doubts.push_back(Doubt::little_explained);
-  }
-  name_in_sets(d.effects, shares.sets, shares_by_manoeuvre.sets, settings);
-  bool any_named = false, any_rival = false;
-  for (const NamedEffect& effect : d.effects) {
-    any_named |= effect.doubts.empty();
-    any_rival |= effect.doubts.empty() && effect.rivals.size() > 1;
-  }
-  d.verdict = any_rival ? Verdict::ambiguous : any_named ? Verdict::named : Verdict::unknown;
-}
-
-namespace {
-
 // What is left with the best model, regressed on what was measured.
 std::vector<Dependence> left_over_of(const StageInput& input, Predictor& predictor, const Variation& best,
                                      const NoiseFloor& floor) {
@@ -215,20 +114,26 @@ bool is_behind_encoders(const Candidate& candidate) {
     return key.starts_with("effects.flipper_backlash") || key.starts_with("effects.flipper_compliance");
   });
 }
+
+bool acts_in(Passage passage, const Candidate& candidate, bool drives_measured) {
+  const bool is_of_drive = candidate.stage == physics::Stage::command || candidate.stage == physics::Stage::drive;
+  const bool is_of_sensor = candidate.stage == physics::Stage::sensor;
+  switch (passage) {
+    case Passage::command_to_drive:
+      return !is_of_sensor || is_of_drives_sensors(candidate);
+    case Passage::drive_to_body:
+      return !is_of_drive || !drives_measured || is_behind_encoders(candidate);
+    case Passage::body_to_sensor:
+      return is_of_sensor;
+  }
+  return false;
+}
 }  // namespace
 
 std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidate> candidates, bool drives_measured) {
   std::vector<std::size_t> result;
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const physics::Stage stage = candidates[c].stage;
-    const bool of_drive = stage == physics::Stage::command || stage == physics::Stage::drive;
-    const bool of_sensor = stage == physics::Stage::sensor;
-    const bool acts = passage == Passage::command_to_drive ? !of_sensor || is_of_drives_sensors(candidates[c])
-                      : passage == Passage::drive_to_body
-                          ? !of_drive || !drives_measured || is_behind_encoders(candidates[c])
-                          : of_sensor;
-    if (acts) result.push_back(c);
-  }
+  for (std::size_t c = 0; c < candidates.size(); ++c)
+    if (acts_in(passage, candidates[c], drives_measured)) result.push_back(c);
   return result;
 }
 
@@ -253,7 +158,8 @@ StageData data_in(const PreparedStage& stage, const NoiseFloor& floor) {
   return stage_data(stage.input.passage, *stage.input.features, *stage.input.repeats, stage.residuals, floor);
 }
 
-// Both must outlive it.
+}  // namespace
+
 Simulate simulator_of(const PreparedStage& stage, Predictor& predictor) {
   return [&stage, &predictor](std::span<const Settings> asked, Fidelity fidelity) {
     std::vector<Variation> variations;
@@ -264,8 +170,6 @@ Simulate simulator_of(const PreparedStage& stage, Predictor& predictor) {
     return shifts;
   };
 }
-
-}  // namespace
 
 PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor) {
   const std::vector<StageFeatures>& features = *input.features;
@@ -358,6 +262,19 @@ void weigh(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& pred
   }
 }
 
+// Whether all that keeps an effect from a name is its value.
+bool has_doubtful_value(const NamedEffect& effect) {
+  constexpr std::array kOfValue{Doubt::end_of_range, Doubt::disagreement, Doubt::trend};
+  return !effect.doubts.empty() &&
+         std::ranges::all_of(effect.doubts, [&](Doubt doubt) { return std::ranges::count(kOfValue, doubt) > 0; });
+}
+
+bool has_name(const StageDecision& decision, std::size_t candidate) {
+  return std::ranges::any_of(decision.effects, [&](const NamedEffect& effect) {
+    return effect.candidate == candidate && effect.doubts.empty();
+  });
+}
+
 std::vector<std::size_t> places_with_name(const StageDecision& decision) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < decision.effects.size(); ++i)
@@ -368,7 +285,7 @@ std::vector<std::size_t> places_with_name(const StageDecision& decision) {
 }  // namespace
 
 StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
-                              std::span<const NamedElsewhere> elsewhere) {
+                              const Elsewhere& elsewhere) {
   const StageInput& input = prepared.input;
   const std::span<const Candidate> candidates = prepared.candidates;
   const std::vector<StageFeatures>& features = *input.features;
@@ -396,12 +313,31 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
                      options.stretch_s};
   stage.decision = decide_stage(prepared.nominal, prepared.curves, simulate, around, test, options.decision, elsewhere);
   weigh(stage, prepared, predictor, options);
+  const auto decided_again = [&](const OtherModel& other) {
+    StageDiagnosis again = stage;
+    again.decision =
+        decide_again(stage.decision, other, prepared.curves, simulate, around, test, options.decision, elsewhere);
+    weigh(again, prepared, predictor, options);
+    return again;
+  };
+
+  // of several that do as well, one whose value nothing speaks against
+  const auto rival_with_name = [&]() -> std::optional<StageDiagnosis> {
+    for (std::size_t e = 0; e < stage.decision.effects.size(); ++e) {
+      if (!has_doubtful_value(stage.decision.effects[e])) continue;
+      const std::vector<std::size_t>& rivals = stage.decision.effects[e].rivals;
+      for (std::size_t r = 1; r < rivals.size(); ++r)
+        if (StageDiagnosis again = decided_again(with_rival(stage.decision, e, r)); has_name(again.decision, rivals[r]))
+          return again;
+    }
+    return std::nullopt;
+  };
+  if (std::optional<StageDiagnosis> again = rival_with_name()) stage = std::move(*again);
+
+  // those alone that have a name
   const std::vector<std::size_t> named = places_with_name(stage.decision);
-  if (!named.empty() && named.size() < stage.decision.effects.size()) {
-    stage.decision = with_effects_alone(std::move(stage.decision), named, prepared.curves, simulate, around, test,
-                                        options.decision, elsewhere);
-    weigh(stage, prepared, predictor, options);
-  }
+  if (!named.empty() && named.size() < stage.decision.effects.size())
+    stage = decided_again(with_effects_alone(stage.decision, named));
   const StageDecision& decision = stage.decision;
   const Model& best = decision.best.model;
 
@@ -422,9 +358,9 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   stage.where = locate(*input.observations, features, stage.nominal_floor, *input.repeats, coherence, stage.residuals);
   stage.where_left = locate(*input.observations, features, decision.floor, *input.repeats, coherence, stage.left);
   stage.isolability = isolability(decision.data, decision.best.curves);
-  const double before = std::pow(length_in_noise(decision.data, residuals_of(decision.data)), 2);
+  const double before = squares_in_noise(decision.data, residuals_of(decision.data));
   for (const Model& single : decision.singles) {
-    const double after = std::pow(length_in_noise(decision.data, rest_of(decision.data, single)), 2);
+    const double after = squares_in_noise(decision.data, rest_of(decision.data, single));
     stage.ranking.push_back({single.places.front().curve, single.places.front().value,
                              decision.nominal_deviance - single.deviance(), before > 0 ? 1 - after / before : 0});
   }

@@ -68,15 +68,13 @@ struct PreparedStage {
   StageAround nominal;                    // no data where no run measures the stage
   EffectCurves curves;                    // of those that can matter, over their range
 };
+// Simulates settings in a stage. Both must outlive it.
+Simulate simulator_of(const PreparedStage& stage, Predictor& predictor);
 PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor);
 
-// `elsewhere`: what other stages name (stage_decision.hpp).
+// `elsewhere`: what other stages say (stage_decision.hpp).
 StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
-                              std::span<const NamedElsewhere> elsewhere = {});
-
-// Names, sets and doubts of the effects of a best model, by what they are worth on runs held out.
-void judge(StageDecision& decision, std::span<const Candidate> candidates, const HeldOutShares& shares,
-           const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings);
+                              const Elsewhere& elsewhere = {});
 
 // The nominal robot with candidates at these values.
 physics::RobotDescription with_settings(physics::RobotDescription robot, std::span<const Candidate> candidates,

@@ -104,9 +104,9 @@ TEST_CASE("Of two that cannot be told apart the one counts that another stage na
   const Whole gap = 0.5 * effects[2] + world().noise(1);
   const auto decided = [&](std::vector<NamedElsewhere> elsewhere) {
     const StageAround nominal{world().floor(), world().data(gap)};
-    return decide_stage(
-        nominal, world().curves(effects, nominal.data), world().simulate(LinearWorld::linear(effects)),
-        [&](const Settings&, std::span<const std::size_t>) { return nominal; }, {}, {}, elsewhere);
+    return decide_stage(nominal, world().curves(effects, nominal.data), world().simulate(LinearWorld::linear(effects)),
+                        [&](const Settings&, std::span<const std::size_t>) { return nominal; }, {}, {},
+                        {elsewhere, {}});
   };
   for (const std::size_t named : {2u, 5u}) {
     const StageDecision decision = decided({{named, {0.5, 0.49, 0.51}}});
@@ -118,6 +118,29 @@ TEST_CASE("Of two that cannot be told apart the one counts that another stage na
   // at another value it is not what both show, nor is what has nothing to do with it
   CHECK(decided({{5, {0.8, 0.79, 0.81}}}).effects[0].rivals.size() == 2);
   CHECK(decided({{7, {0.5, 0.49, 0.51}}}).effects[0].rivals.size() == 2);
+}
+
+TEST_CASE("What another stage refutes is no rival, and gives way to a rival that it does not refute") {
+  const std::vector<Whole> effects = with_look_alike(0);
+  const StageAround nominal{world().floor(), world().data(0.5 * effects[2] + world().noise(1))};
+  const auto decided = [&](std::vector<RefutedElsewhere> refuted) {
+    return decide_stage(nominal, world().curves(effects, nominal.data), world().simulate(LinearWorld::linear(effects)),
+                        [&](const Settings&, std::span<const std::size_t>) { return nominal; }, {}, {},
+                        {{}, std::move(refuted)});
+  };
+  for (const std::size_t refuted : {2u, 5u}) {
+    const StageDecision decision = decided({{refuted, Passage::command_to_drive}});
+    REQUIRE(candidates_of(decision) == std::vector<std::size_t>{refuted == 2 ? 5u : 2u});
+    CHECK(decision.effects[0].rivals.size() == 1);
+    CHECK_FALSE(decision.effects[0].refuted_by);
+  }
+  // with no other one left it stays, and the judge hears of it
+  StageDecision both = decided({{2, Passage::command_to_drive}, {5, Passage::command_to_drive}});
+  REQUIRE(both.effects.size() == 1);
+  CHECK(both.effects[0].refuted_by == Passage::command_to_drive);
+  const HeldOutShares shares{{{0.9, 0.9, 0.9, 0, 0.9, 1000}}, {}, 0.9};
+  judge(both, std::vector<Candidate>(8), shares, shares, {});
+  CHECK(both.effects[0].doubts == std::vector<Doubt>{Doubt::refuted});
 }
 
 TEST_CASE("At 45 degrees they are told apart") {
@@ -281,7 +304,7 @@ TEST_CASE("Of a decision some effects alone are fitted again without the others"
   REQUIRE(both.effects.size() == 2);
   REQUIRE(both.complete);
   const std::vector<std::size_t> first{0};
-  const StageDecision one = with_effects_alone(both, first, curves, simulate, around, {}, {});
+  const StageDecision one = decide_again(both, with_effects_alone(both, first), curves, simulate, around, {}, {});
   REQUIRE(candidates_of(one) == std::vector<std::size_t>{both.effects[0].candidate});
   CHECK(one.effects[0].value.value.value == Approx(both.effects[0].value.value.value).margin(2 * 4.0 / kLength));
   // what the other one explained is left, and makes this one less sure
@@ -376,6 +399,32 @@ TEST_CASE("Two effects that take up what the other leaves are named as a set, a 
   const StageDecision each_its_own = judged(0.3, 0.12, 0.5);
   CHECK(each_its_own.verdict == Verdict::named);
   CHECK(each_its_own.effects[1].doubts == std::vector<Doubt>{Doubt::not_held_out});
+}
+
+TEST_CASE("What explains half of what ordinary numbers leave is a trifle where they leave next to nothing") {
+  const auto verdict = [](double of_stage, double beyond_numbers) {
+    StageDecision decision;
+    decision.effects.push_back({0, {{1, 0.9, 1.1}, 0, 1}, 100, {}, {}, false, {}, {0}, {}, {}});
+    const HeldOutShares shares{{{of_stage, beyond_numbers, 0.7, 0, 0.9, 1000}}, {}, 0.9};
+    judge(decision, std::vector<Candidate>(1), shares, shares, {});
+    return decision.verdict;
+  };
+  CHECK(verdict(0.07, 0.5) == Verdict::unknown);
+  CHECK(verdict(0.5, 0.07) == Verdict::unknown);  // ordinary numbers do all of it as well
+  CHECK(verdict(0.5, 0.5) == Verdict::named);
+}
+
+TEST_CASE("An effect that grows from nothing in the course of a run is not the one that it looks like") {
+  const auto verdict = [](double trend) {
+    StageDecision decision;
+    decision.effects.push_back({0, {{-0.07, -0.08, -0.06}, 0, 1, trend}, 100, {}, {}, false, {}, {0}, {}, {}});
+    const HeldOutShares shares{{{0.9, 0.9, 0.9, 0, 0.9, 1000}}, {}, 0.9};
+    judge(decision, std::vector<Candidate>(1), shares, shares, {});
+    return decision.verdict;
+  };
+  // a gain that falls evenly from 1 is 0.93 in the mean: 0.965 in the first half, 0.895 in the second
+  CHECK(verdict(-0.07) == Verdict::unknown);
+  CHECK(verdict(-0.02) == Verdict::named);
 }
 
 TEST_CASE("What one manoeuvre alone shows is judged by its repeats, as no other one foretells it") {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/judgement.hpp"
 #include "gap/diagnose/stage_diagnosis.hpp"
 
 namespace kenaf::test {

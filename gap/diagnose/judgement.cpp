@@ -1,0 +1,119 @@
+#include "gap/diagnose/judgement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace kenaf::gap {
+namespace {
+
+// Effects stand in for each other where together they take off more than so many times what each does alone (chosen).
+constexpr double kCommon = 2;
+
+constexpr HeldOutShares::OfEffect kNotHeldOut{
+    GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, 0, GapMeasure::kNotMeasured, 0};
+
+bool is_lack_of_share(Doubt doubt) {
+  return doubt == Doubt::not_held_out || doubt == Doubt::trifle;
+}
+
+// Of the stage's whole gap, and of what numbers that are a little off leave of it.
+bool takes_off_enough(const HeldOutShares::OfEffect& share, const DecisionSettings& settings) {
+  return share.of_stage >= settings.stage_share && share.beyond_numbers >= settings.stage_share;
+}
+
+double change_by(const NamedEffect& effect, const Candidate& candidate) {
+  return std::abs(effect.value.value.value - candidate.present);
+}
+
+// Effects that stand in for each other, as a lag and a ramp do: without one the others take up most of it, without all
+// of them the gap is there. They are named as a set, the smallest that takes off enough.
+void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutShares::OfSet>& sets,
+                  const std::vector<HeldOutShares::OfSet>& sets_by_manoeuvre, const DecisionSettings& settings) {
+  // how much is whose is not known, so manoeuvres may disagree on it
+  const auto lacks_share = [&](std::size_t place) {
+    const std::vector<Doubt>& doubts = effects[place].doubts;
+    return std::ranges::any_of(doubts, is_lack_of_share) && std::ranges::all_of(doubts, [](Doubt doubt) {
+             return is_lack_of_share(doubt) || doubt == Doubt::disagreement;
+           });
+  };
+  const auto is_named = [&](std::size_t place) { return effects[place].doubts.empty(); };
+  const auto may_join = [&](std::size_t place) {
+    return effects[place].partners.empty() && (lacks_share(place) || is_named(place));
+  };
+  const auto stand_in = [&](const std::vector<std::size_t>& places, const HeldOutShares::OfEffect& together) {
+    double alone = 0;
+    for (const std::size_t place : places) alone += std::max(0.0, effects[place].share.of_stage);
+    return together.of_stage > kCommon * alone;
+  };
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    const std::vector<std::size_t>& places = sets[s].places;
+    if (!std::ranges::all_of(places, may_join) || std::ranges::none_of(places, lacks_share)) continue;
+    HeldOutShares::OfEffect share = sets[s].share;
+    const HeldOutShares::OfEffect& by_manoeuvre = sets_by_manoeuvre[s].share;
+    if (by_manoeuvre.shown_by_others >= settings.evidence && by_manoeuvre.of_kind < share.of_kind) share = by_manoeuvre;
+    if (share.of_kind < settings.effect_share || !takes_off_enough(share, settings) ||
+        share.model_of_kind < settings.model_share)
+      continue;
+    // one that has a name by itself is in a set only with what it stands in for
+    if (std::ranges::any_of(places, is_named) && !stand_in(places, share)) continue;
+    for (const std::size_t place : places) {
+      NamedEffect& effect = effects[place];
+      effect.doubts.clear();
+      effect.share_of_set = share;
+      for (const std::size_t other : places) {
+        if (other == place) continue;
+        effect.partners.push_back(other);
+        effect.rivals.insert(effect.rivals.begin() + std::ssize(effect.partners), effects[other].candidate);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::size_t> places_of_sets(const HeldOutShares& shares, const HeldOutShares& shares_by_manoeuvre,
+                                        const DecisionSettings& settings) {
+  const auto is_small = [&](const HeldOutShares::OfEffect& share) {
+    return !(share.of_kind >= settings.effect_share) || !takes_off_enough(share, settings);
+  };
+  if (std::ranges::none_of(shares.effects, is_small) && std::ranges::none_of(shares_by_manoeuvre.effects, is_small))
+    return {};
+  std::vector<std::size_t> places(shares.effects.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  return places;
+}
+
+void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOutShares& shares,
+           const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings) {
+  using Share = HeldOutShares::OfEffect;
+  for (std::size_t i = 0; i < d.effects.size(); ++i) {
+    NamedEffect& effect = d.effects[i];
+    effect.share = shares.effects[i];
+    effect.share_by_manoeuvre = shares_by_manoeuvre.effects[i];
+    // an effect that one manoeuvre alone shows is held out by repeats alone
+    if (effect.share_by_manoeuvre.shown_by_others < settings.evidence) effect.share_by_manoeuvre = kNotHeldOut;
+    const auto least = [&](auto member) { return std::fmin(effect.share.*member, effect.share_by_manoeuvre.*member); };
+    if (effect.at_bound) effect.doubts.push_back(Doubt::end_of_range);
+    const double change = change_by(effect, candidates[effect.candidate]);
+    if (change < settings.ordinary * effect.ordinarily_off) effect.doubts.push_back(Doubt::ordinary);
+    if (change < settings.agreement * effect.value.spread) effect.doubts.push_back(Doubt::disagreement);
+    if (change < settings.steady * std::abs(effect.value.trend)) effect.doubts.push_back(Doubt::trend);
+    if (effect.refuted_by) effect.doubts.push_back(Doubt::refuted);
+    if (!(least(&Share::of_kind) >= settings.effect_share))
+      effect.doubts.push_back(Doubt::not_held_out);
+    else if (!(least(&Share::of_stage) >= settings.stage_share) ||
+             !(least(&Share::beyond_numbers) >= settings.stage_share))
+      effect.doubts.push_back(Doubt::trifle);
+    if (!(least(&Share::model_of_kind) >= settings.model_share)) effect.doubts.push_back(Doubt::little_explained);
+  }
+  name_in_sets(d.effects, shares.sets, shares_by_manoeuvre.sets, settings);
+  bool any_named = false, any_rival = false;
+  for (const NamedEffect& effect : d.effects) {
+    any_named |= effect.doubts.empty();
+    any_rival |= effect.doubts.empty() && effect.rivals.size() > 1;
+  }
+  d.verdict = any_rival ? Verdict::ambiguous : any_named ? Verdict::named : Verdict::unknown;
+}
+
+}  // namespace kenaf::gap

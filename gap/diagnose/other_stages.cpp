@@ -1,0 +1,120 @@
+#include "gap/diagnose/other_stages.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace kenaf::gap {
+namespace {
+
+// A stage that names nothing new has heard the others.
+constexpr int kMostHearings = 2;
+
+// What a stage leaves of the gap.
+struct LeftThere {
+  double deviance, squares;
+};
+LeftThere left_by(const StageDecision& decision, const GroupVectors& shift) {
+  GroupVectors rest = residuals_of(decision.data);
+  for (std::size_t g = 0; g < rest.size(); ++g) rest[g] -= shift[g];
+  const Likelihood likelihood = likelihood_of(decision.data, rest, decision.best.model.likelihood.discrepancies);
+  return {likelihood.deviance,
+          squares_in_noise(decision.data, without_shared_shapes(decision.data, rest, likelihood.discrepancies))};
+}
+
+// Whether `decision` has more left with one effect, whichever of its values it has, beside its best model and alone.
+bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<const Setting> values,
+             const DecisionSettings& settings) {
+  for (const Settings& beside : {settings_of(decision.best.model.places), Settings{}}) {
+    std::vector<Settings> asked{beside};
+    for (const Setting& value : values) {
+      asked.push_back(beside);
+      asked.back().push_back(value);
+    }
+    const std::vector<GroupVectors> shifts = simulate(asked, Fidelity::fine);
+    const LeftThere without = left_by(decision, shifts.front());
+    const bool fits = std::any_of(shifts.begin() + 1, shifts.end(), [&](const GroupVectors& shift) {
+      const LeftThere with = left_by(decision, shift);
+      return with.deviance - without.deviance < settings.evidence ||
+             with.squares < (1 + settings.more_left) * without.squares;
+    });
+    if (fits) return false;
+  }
+  return true;
+}
+
+// The value that a stage gives an effect or its rival, and both ends of its interval: a rival is known as well as the
+// effect in whose place it is, in parts of what it changes.
+std::vector<Setting> values_of(const NamedEffect& effect, const Setting& setting,
+                               std::span<const Candidate> candidates) {
+  const Interval& own = effect.value.value;
+  const Candidate& candidate = candidates[setting.candidate];
+  const double change = std::abs(own.value - candidates[effect.candidate].present);
+  const double part = change > 0 ? (own.to - own.from) / 2 / change : 0;
+  const double half = part * std::abs(setting.value - candidate.present);
+  std::vector<Setting> values;
+  for (const double value : {setting.value, setting.value - half, setting.value + half})
+    values.push_back({setting.candidate, std::clamp(value, candidate.min, candidate.max)});
+  return values;
+}
+
+// What the other stages than `s` name, alone.
+std::vector<NamedElsewhere> named_elsewhere(const std::vector<StageDiagnosis>& stages, std::size_t s) {
+  std::vector<NamedElsewhere> named;
+  for (std::size_t other = 0; other < stages.size(); ++other)
+    for (const NamedEffect& effect : stages[other].decision.effects)
+      if (other != s && effect.doubts.empty() && effect.rivals.size() == 1)
+        named.push_back({effect.candidate, effect.value.value});
+  return named;
+}
+
+// Of what stage `s` names and of its rivals, those that another stage refutes.
+std::vector<RefutedElsewhere> refuted_elsewhere(const std::vector<StageDiagnosis>& stages, std::size_t s,
+                                                const std::vector<PreparedStage>& prepared, Predictor& predictor,
+                                                const DecisionSettings& settings) {
+  std::vector<RefutedElsewhere> refuted;
+  const StageDecision& decision = stages[s].decision;
+  for (std::size_t e = 0; e < decision.effects.size(); ++e) {
+    if (!decision.effects[e].doubts.empty()) continue;
+    for (const Settings& model : decision.models_of_rivals[e])
+      for (std::size_t other = 0; other < stages.size(); ++other) {
+        const Setting& setting = model[e];
+        const bool acts = std::ranges::count(prepared[other].possible, setting.candidate) > 0;
+        const bool is_there = has_effect(stages[other].decision.best.model, setting.candidate);
+        if (other == s || !acts || is_there) continue;
+        const std::vector<Setting> values = values_of(decision.effects[e], setting, prepared[other].candidates);
+        if (refutes(stages[other].decision, simulator_of(prepared[other], predictor), values, settings))
+          refuted.push_back({setting.candidate, stages[other].passage});
+      }
+  }
+  return refuted;
+}
+
+// Whether a stage would decide otherwise.
+bool concerns(const StageDecision& decision, std::span<const Candidate> candidates, const Elsewhere& elsewhere) {
+  for (std::size_t e = 0; e < decision.effects.size(); ++e) {
+    const NamedEffect& effect = decision.effects[e];
+    if (!effect.doubts.empty()) continue;
+    const auto is_refuted = [&](std::size_t candidate) { return elsewhere.refutes(candidate).has_value(); };
+    if (std::ranges::any_of(effect.rivals, is_refuted)) return true;
+    if (effect.rivals.size() > 1 && effect.partners.empty() &&
+        settled_elsewhere(decision, e, candidates, elsewhere.named))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void settle_by_other_stages(std::vector<StageDiagnosis>& stages, const std::vector<PreparedStage>& prepared,
+                            Predictor& predictor, const StageOptions& options) {
+  for (int round = 0; round < kMostHearings; ++round)
+    for (std::size_t s = 0; s < stages.size(); ++s) {
+      const Elsewhere elsewhere{named_elsewhere(stages, s),
+                                refuted_elsewhere(stages, s, prepared, predictor, options.decision)};
+      if (concerns(stages[s].decision, prepared[s].candidates, elsewhere))
+        stages[s] = diagnose_stage(prepared[s], predictor, options, elsewhere);
+    }
+}
+
+}  // namespace kenaf::gap
