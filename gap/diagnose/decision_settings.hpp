@@ -21,8 +21,8 @@ struct DecisionSettings {
   double ordinary = 3;             // a number of the description is named beyond so many sigma of all of them
   double agreement = 1;            // an effect is at least as many times its spread between manoeuvres (chosen): then five in
                                    // six of them agree on its sign
-  double steady = 2;               // and so many times what later parts of runs want more than earlier ones (chosen): what grows
-                                   // from nothing with the time differs by all of itself
+  double steady = 0.75;            // of an effect, by how much later parts of manoeuvres may want another value than earlier ones (chosen):
+                                   // what grows from nothing with the time differs by all of itself
   double more_left = 0.1;          // of the squares that another stage leaves, what it must leave more of with an effect to refute it
                                    // (chosen)
   std::size_t most_effects = 6;

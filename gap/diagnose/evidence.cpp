@@ -9,6 +9,7 @@
 
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/significance.hpp"
+#include "gap/diagnose/trend.hpp"
 #include "gap/parallel.hpp"
 
 namespace kenaf::gap {
@@ -22,8 +23,6 @@ constexpr std::size_t kResamplings = 400;
 constexpr double kTwoSided95 = 1.96;
 // Manoeuvres that differ no more than this probability allows are taken to agree.
 constexpr double kAgree = 0.05;
-// What earlier and later parts of runs differ by is more than chance from so many standard deviations on.
-constexpr double kTrend_sigma = 3;
 
 double quantile(std::vector<double>& values, double share) {
   std::ranges::sort(values);
@@ -74,49 +73,10 @@ VectorXd evidence_expected(const StageData& data, const StandingModel& standing)
   return expected;
 }
 
-// What one manoeuvre, or a part of all, says of one value, the others held.
+// What one manoeuvre says of one value, the others held.
 struct OwnValue {
   double offset, information;  // from the common value; 1 / variance
 };
-
-// Sums of what bins say of one value.
-struct ValueSums {
-  double product = 0, squares = 0;
-  ValueSums& operator+=(const ValueSums& more) {
-    product += more.product;
-    squares += more.squares;
-    return *this;
-  }
-  OwnValue own() const { return {squares > 0 ? product / squares : 0, squares}; }
-};
-
-// The first half of a manoeuvre, in what it says of one value, and the second one.
-struct ValueHalves {
-  ValueSums early, late;
-};
-
-// `column`, `rest`: whitened, of the group's bins.
-ValueHalves halves_of(const StageGroup& group, const Eigen::Ref<const VectorXd>& column, const VectorXd& rest) {
-  // bins are channel by channel: by the time
-  std::map<double, ValueSums> at;
-  for (std::size_t b = 0; b < group.bins.size(); ++b) {
-    const auto i = static_cast<Index>(b);
-    at[group.t_s[b]] += {column[i] * rest[i], column[i] * column[i]};
-  }
-  const double half = column.squaredNorm() / 2;
-  ValueHalves halves;
-  for (const auto& [t_s, said] : at)
-    (halves.early.squares + said.squares / 2 < half ? halves.early : halves.late) += said;
-  return halves;
-}
-
-// How much more the later halves want than the earlier ones, 0 within chance.
-double trend_of(const OwnValue& early, const OwnValue& late) {
-  if (early.information == 0 || late.information == 0) return 0;
-  const double trend = late.offset - early.offset;
-  const double sigma = std::sqrt(1 / early.information + 1 / late.information);
-  return std::abs(trend) > kTrend_sigma * sigma ? trend : 0;
-}
 
 // Spread between manoeuvres by the method of moments, and the variance of the mean with it.
 struct RandomEffect {
@@ -301,19 +261,17 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
 
   // what each manoeuvre says by itself of each value, with what all share at its most likely amounts
   std::vector<std::vector<OwnValue>> own(model.places.size());
-  std::vector<ValueHalves> halves(model.places.size());
   const std::vector<VectorXd> rest = whitened_rest(data, rest_of(data, model), model.likelihood.discrepancies);
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
     const MatrixXd white = whiteners[g](columns[g]);
     for (std::size_t e = 0; e < model.places.size(); ++e) {
       const auto column = white.col(static_cast<Index>(e));
-      own[e].push_back(ValueSums{column.dot(rest[g]), column.squaredNorm()}.own());
-      const ValueHalves of_group = halves_of(data.groups[g], column, rest[g]);
-      halves[e].early += of_group.early;
-      halves[e].late += of_group.late;
+      const double squares = column.squaredNorm();
+      own[e].push_back({squares > 0 ? column.dot(rest[g]) / squares : 0, squares});
     }
   }
 
+  const GroupVectors left = without_open_shapes(data, rest_of(data, model), model.likelihood.discrepancies);
   std::vector<EffectValue> values;
   for (std::size_t e = 0; e < model.places.size(); ++e) {
     const Candidate& candidate = standing.curves.candidates[model.places[e].curve];
@@ -325,7 +283,7 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
                        std::min(candidate.max, value + kTwoSided95 * sigma)},
                       random.spread,
                       random.p_agree,
-                      trend_of(halves[e].early.own(), halves[e].late.own())});
+                      trend(data, columns, i, value - candidate.present, left)});
   }
   return values;
 }

@@ -25,9 +25,7 @@ struct EffectValue {
   // Laird 1986); 0 where they agree.
   double spread = 0;
   double p_agree = 1;  // chance that manoeuvres that agree differ as much (Cochran's Q)
-  // What the later parts of runs want more than the earlier ones, each with half of what the effect shifts in them; 0 where
-  // chance explains it (3 sigma).
-  double trend = 0;
+  double trend = 0;  // by how much later parts of manoeuvres want another value than earlier ones (trend.hpp)
 };
 // Of each effect of a model that stands. Intervals hold the parameter's range.
 std::vector<EffectValue> effect_values(const StageData& data, const StandingModel& standing);

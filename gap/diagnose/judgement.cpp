@@ -98,7 +98,7 @@ void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOu
     const double change = change_by(effect, candidates[effect.candidate]);
     if (change < settings.ordinary * effect.ordinarily_off) effect.doubts.push_back(Doubt::ordinary);
     if (change < settings.agreement * effect.value.spread) effect.doubts.push_back(Doubt::disagreement);
-    if (change < settings.steady * std::abs(effect.value.trend)) effect.doubts.push_back(Doubt::trend);
+    if (effect.value.trend > settings.steady * change) effect.doubts.push_back(Doubt::trend);
     if (effect.refuted_by) effect.doubts.push_back(Doubt::refuted);
     if (!(least(&Share::of_kind) >= settings.effect_share))
       effect.doubts.push_back(Doubt::not_held_out);

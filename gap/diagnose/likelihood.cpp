@@ -290,6 +290,14 @@ GroupVectors without_shared_shapes(const StageData& data, const GroupVectors& re
   return rest;
 }
 
+GroupVectors without_open_shapes(const StageData& data, const GroupVectors& residual,
+                                 const Discrepancies& discrepancies) {
+  GroupVectors rest = without_shared_shapes(data, residual, discrepancies);
+  for (std::size_t g = 0; g < data.groups.size(); ++g)
+    rest[g] = without_local_shapes(data.groups[g], discrepancies, std::move(rest[g]));
+  return rest;
+}
+
 VectorXd most_likely_numbers(const StageData& data, const GroupVectors& residual, const Discrepancies& discrepancies) {
   const Index numbers = data.groups.front().number_shapes.cols();
   if (discrepancies.numbers_off == 0) return VectorXd::Zero(numbers);

@@ -74,6 +74,9 @@ std::vector<Eigen::VectorXd> whitened_rest(const StageData& data, const GroupVec
 GroupVectors without_shared_shapes(const StageData& data, const GroupVectors& residual,
                                    const Discrepancies& discrepancies);
 
+// The same less what the shapes that are open in each group by itself most likely have in it, too.
+GroupVectors without_open_shapes(const StageData& data, const GroupVectors& residual, const Discrepancies& discrepancies);
+
 // How far each direction of the description's numbers most likely is off, in the unit of StageGroup::number_shapes; none by
 // more than 3 sigma, discrepancies.numbers_off.
 Eigen::VectorXd most_likely_numbers(const StageData& data, const GroupVectors& residual,

@@ -278,9 +278,8 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& 
         break;
       }
       case Doubt::trend:
-        words.push_back(fmt::format("later parts of the runs want {}{} {} than earlier ones",
-                                    figure(std::abs(effect.value.trend)), unit_suffix(candidate.unit),
-                                    effect.value.trend > 0 ? "more" : "less"));
+        words.push_back(fmt::format("earlier and later parts of manoeuvres want values that differ by {}{}",
+                                    figure(effect.value.trend), unit_suffix(candidate.unit)));
         break;
       case Doubt::refuted:
         words.push_back(fmt::format("with it, more would be left from {}", passage_name(*effect.refuted_by)));

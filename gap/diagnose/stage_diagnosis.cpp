@@ -275,6 +275,18 @@ bool has_name(const StageDecision& decision, std::size_t candidate) {
   });
 }
 
+// What did as well as an effect in the place of which another one stands now does as well as that one.
+void add_rivals(StageDecision& decision, std::size_t effect, const StageDecision& before) {
+  std::vector<std::size_t>& rivals = decision.effects[effect].rivals;
+  for (const Settings& model : before.models_of_rivals[effect]) {
+    const std::size_t candidate = model[effect].candidate;
+    if (std::ranges::count(rivals, candidate) > 0) continue;
+    rivals.push_back(candidate);
+    decision.models_of_rivals[effect].push_back(model);
+  }
+  if (rivals.size() > 1) decision.verdict = Verdict::ambiguous;
+}
+
 std::vector<std::size_t> places_with_name(const StageDecision& decision) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < decision.effects.size(); ++i)
@@ -326,9 +338,12 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
     for (std::size_t e = 0; e < stage.decision.effects.size(); ++e) {
       if (!has_doubtful_value(stage.decision.effects[e])) continue;
       const std::vector<std::size_t>& rivals = stage.decision.effects[e].rivals;
-      for (std::size_t r = 1; r < rivals.size(); ++r)
-        if (StageDiagnosis again = decided_again(with_rival(stage.decision, e, r)); has_name(again.decision, rivals[r]))
-          return again;
+      for (std::size_t r = 1; r < rivals.size(); ++r) {
+        StageDiagnosis again = decided_again(with_rival(stage.decision, e, r));
+        if (!has_name(again.decision, rivals[r])) continue;
+        add_rivals(again.decision, e, stage.decision);
+        return again;
+      }
     }
     return std::nullopt;
   };

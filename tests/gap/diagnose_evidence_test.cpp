@@ -156,6 +156,24 @@ TEST_CASE("What a value differs by from manoeuvre to manoeuvre is found, and not
   CHECK(covered >= 50);
 }
 
+TEST_CASE("What grows from nothing in the course of manoeuvres is seen as a trend, and nothing where the value stays") {
+  // evenly from 0 to 0.8: in the first half 0.2 in the mean, in the second one 0.6
+  const LinearWorld world({8, 2, 4});
+  const Whole effect = world.in_channel(test::WorldChannel::x, 400);
+  Whole growing = effect;
+  for (Eigen::Index i = 0; i < growing.size(); ++i)
+    growing[i] *=
+        0.8 * (static_cast<double>(i % world.bins_of_channel()) + 0.5) / static_cast<double>(world.bins_of_channel());
+  int alarms = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const StageData grows = world.data(growing + world.noise(seed)),
+                    stays = world.data(0.4 * effect + world.noise(seed));
+    CHECK(effect_values(grows, world.fitted({effect}, grows, {0}))[0].trend == Approx(0.4).epsilon(0.2));
+    alarms += effect_values(stays, world.fitted({effect}, stays, {0}))[0].trend > 0;
+  }
+  CHECK(alarms <= 1);  // by chance one in a thousand
+}
+
 namespace {
 
 // What measures a gap of a world, `by` a whole.

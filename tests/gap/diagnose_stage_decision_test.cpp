@@ -423,8 +423,8 @@ TEST_CASE("An effect that grows from nothing in the course of a run is not the o
     return decision.verdict;
   };
   // a gain that falls evenly from 1 is 0.93 in the mean: 0.965 in the first half, 0.895 in the second
-  CHECK(verdict(-0.07) == Verdict::unknown);
-  CHECK(verdict(-0.02) == Verdict::named);
+  CHECK(verdict(0.07) == Verdict::unknown);
+  CHECK(verdict(0.02) == Verdict::named);
 }
 
 TEST_CASE("What one manoeuvre alone shows is judged by its repeats, as no other one foretells it") {

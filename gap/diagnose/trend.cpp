@@ -1,0 +1,99 @@
+#include "gap/diagnose/trend.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/significance.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+// What earlier and later halves of manoeuvres differ by is chance where that is more probable than this (chosen).
+constexpr double kNoTrend = 0.001;
+constexpr int kHalvingsOfTrend = 50;
+
+// Only where the effect takes off as much of the squared gap of a kind of channels is it held to explain that (chosen).
+constexpr double kExplained = 0.5;
+
+// What the bins of some time say of a value: sums of what is left along the effect, and of the effect itself.
+struct Along {
+  double left = 0, effect = 0;
+  Along& operator+=(const Along& more) {
+    left += more.left;
+    effect += more.effect;
+    return *this;
+  }
+};
+
+// What the later half of one manoeuvre wants more than the earlier one.
+struct Trend {
+  double difference, variance;
+};
+
+double rms_of(const std::vector<Trend>& trends) {
+  const auto squares_beside = [&](double variance) {
+    double sum = 0;
+    for (const Trend& trend : trends) sum += trend.difference * trend.difference / (trend.variance + variance);
+    return sum;
+  };
+  const auto count = static_cast<double>(trends.size());
+  if (trends.empty() || p_of_squares(squares_beside(0), count) > kNoTrend) return 0;
+  double below = 0, above = 0;
+  for (const Trend& trend : trends) above = std::max(above, trend.difference * trend.difference);
+  for (int i = 0; i < kHalvingsOfTrend; ++i) {
+    const double middle = (below + above) / 2;
+    (squares_beside(middle) > count ? below : above) = middle;
+  }
+  return std::sqrt(above);
+}
+
+// Of one series, in its group.
+std::optional<Trend> trend_in(const StageGroup& group, const Series& series, const Eigen::Ref<const VectorXd>& column,
+                              const VectorXd& left) {
+  const double all = (column.array().square() / group.variance.array()).segment(series.first, series.count).sum();
+  Along early, late;
+  for (Index i = series.first; i < series.first + series.count; ++i) {
+    const double along = column[i] / group.variance[i];
+    const Along here{along * left[i], along * column[i]};
+    (early.effect + here.effect / 2 < all / 2 ? early : late) += here;
+  }
+  if (!(early.effect > 0) || !(late.effect > 0)) return std::nullopt;
+  return Trend{late.left / late.effect - early.left / early.effect, 1 / late.effect + 1 / early.effect};
+}
+
+// What all series of one kind say.
+struct OfKind {
+  std::vector<Trend> trends;
+  double without = 0, with = 0;  // squares of what is left without the effect and with it, in noise
+};
+
+}  // namespace
+
+double trend(const StageData& data, const std::vector<Eigen::MatrixXd>& columns, Index effect, double away,
+             const GroupVectors& left) {
+  std::vector<OfKind> kinds(kind_count());
+  for (std::size_t g = 0; g < data.groups.size(); ++g) {
+    const StageGroup& group = data.groups[g];
+    const auto column = columns[g].col(effect);
+    for (const Series& series : group.series) {
+      OfKind& kind = kinds[series.kind];
+      const auto squares = [&](const VectorXd& rest) {
+        return (rest.array().square() / group.variance.array()).segment(series.first, series.count).sum();
+      };
+      kind.with += squares(left[g]);
+      kind.without += squares(left[g] + away * column);
+      if (const auto trend = trend_in(group, series, column, left[g])) kind.trends.push_back(*trend);
+    }
+  }
+  double largest = 0;
+  for (const OfKind& kind : kinds)
+    if (kind.with < (1 - kExplained) * kind.without) largest = std::max(largest, rms_of(kind.trends));
+  return largest;
+}
+
+}  // namespace kenaf::gap
