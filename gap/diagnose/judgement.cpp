@@ -30,11 +30,11 @@ double change_by(const NamedEffect& effect, const Candidate& candidate) {
 // of them the gap is there. They are named as a set, the smallest that takes off enough.
 void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutShares::OfSet>& sets,
                   const std::vector<HeldOutShares::OfSet>& sets_by_manoeuvre, const DecisionSettings& settings) {
-  // how much is whose is not known, so manoeuvres may disagree on it
+  // how much is whose is not known, so manoeuvres, and parts of them, may disagree on it
   const auto lacks_share = [&](std::size_t place) {
     const std::vector<Doubt>& doubts = effects[place].doubts;
     return std::ranges::any_of(doubts, is_lack_of_share) && std::ranges::all_of(doubts, [](Doubt doubt) {
-             return is_lack_of_share(doubt) || doubt == Doubt::disagreement;
+             return is_lack_of_share(doubt) || doubt == Doubt::disagreement || doubt == Doubt::trend;
            });
   };
   const auto is_named = [&](std::size_t place) { return effects[place].doubts.empty(); };

@@ -15,7 +15,6 @@ using Eigen::VectorXd;
 
 // What earlier and later halves of manoeuvres differ by is chance where that is more probable than this (chosen).
 constexpr double kNoTrend = 0.001;
-constexpr int kHalvingsOfTrend = 50;
 
 // Only where the effect takes off as much of the squared gap of a kind of channels is it held to explain that (chosen).
 constexpr double kExplained = 0.5;
@@ -33,23 +32,20 @@ struct Along {
 // What the later half of one manoeuvre wants more than the earlier one.
 struct Trend {
   double difference, variance;
+  double information;  // of the value: squares of what the effect shifts, in noise
 };
 
+// The rms of trends, less noise, each as much as its manoeuvre says of the value: 0 where chance explains them.
 double rms_of(const std::vector<Trend>& trends) {
-  const auto squares_beside = [&](double variance) {
-    double sum = 0;
-    for (const Trend& trend : trends) sum += trend.difference * trend.difference / (trend.variance + variance);
-    return sum;
-  };
-  const auto count = static_cast<double>(trends.size());
-  if (trends.empty() || p_of_squares(squares_beside(0), count) > kNoTrend) return 0;
-  double below = 0, above = 0;
-  for (const Trend& trend : trends) above = std::max(above, trend.difference * trend.difference);
-  for (int i = 0; i < kHalvingsOfTrend; ++i) {
-    const double middle = (below + above) / 2;
-    (squares_beside(middle) > count ? below : above) = middle;
+  double in_noise = 0, squares = 0, information = 0;
+  for (const Trend& trend : trends) {
+    const double square = trend.difference * trend.difference;
+    in_noise += square / trend.variance;
+    squares += trend.information * (square - trend.variance);
+    information += trend.information;
   }
-  return std::sqrt(above);
+  if (trends.empty() || p_of_squares(in_noise, static_cast<double>(trends.size())) > kNoTrend) return 0;
+  return std::sqrt(std::max(0.0, squares / information));
 }
 
 // Of one series, in its group.
@@ -63,7 +59,8 @@ std::optional<Trend> trend_in(const StageGroup& group, const Series& series, con
     (early.effect + here.effect / 2 < all / 2 ? early : late) += here;
   }
   if (!(early.effect > 0) || !(late.effect > 0)) return std::nullopt;
-  return Trend{late.left / late.effect - early.left / early.effect, 1 / late.effect + 1 / early.effect};
+  return Trend{late.left / late.effect - early.left / early.effect, 1 / late.effect + 1 / early.effect,
+               late.effect + early.effect};
 }
 
 // What all series of one kind say.

@@ -401,6 +401,17 @@ TEST_CASE("Two effects that take up what the other leaves are named as a set, a 
   CHECK(each_its_own.effects[1].doubts == std::vector<Doubt>{Doubt::not_held_out});
 }
 
+TEST_CASE("Of a lag and a ramp, which together are one step's course, neither is asked to be the same early and late") {
+  StageDecision decision;
+  for (const std::size_t c : {0u, 1u})
+    decision.effects.push_back({c, {{1, 0.9, 1.1}, 0, 1, 1.2}, 100, {}, {}, false, {}, {c}, {}, {}});
+  const auto share = [](double taken) { return HeldOutShares::OfEffect{taken, taken, taken, 0, 0.9, 1000}; };
+  const HeldOutShares shares{{share(0.05), share(0.13)}, {{{0, 1}, share(0.8)}}, 0.9};
+  judge(decision, std::vector<Candidate>(2), shares, shares, {});
+  CHECK(decision.verdict == Verdict::ambiguous);
+  CHECK(decision.effects[0].partners == std::vector<std::size_t>{1});
+}
+
 TEST_CASE("What explains half of what ordinary numbers leave is a trifle where they leave next to nothing") {
   const auto verdict = [](double of_stage, double beyond_numbers) {
     StageDecision decision;
