@@ -114,16 +114,28 @@ Model refit(const StageData& data, const StandingModel& standing, const GroupVec
   return fit_model(data, standing.curves, effects_of(standing.model), beyond, standing.model.likelihood.discrepancies);
 }
 
+// Of the mean of a group's used runs, as NoiseFloor::whiteners are of one run.
+std::vector<Whitener> whiteners_of_means(const StageData& data) {
+  std::vector<Whitener> whiteners;
+  for (const StageGroup& group : data.groups) {
+    MatrixXd open(group.local_shapes.rows(), group.local_shapes.cols() + group.shared_shapes.cols());
+    open << group.local_shapes, group.shared_shapes;
+    whiteners.emplace_back(group.variance.cwiseSqrt(), open);
+  }
+  return whiteners;
+}
+
 // Squares of what a model leaves of the used runs' means, by kind.
-KindSquares squares_of_groups(const StageData& data, const GroupVectors& rest) {
+KindSquares squares_of_groups(const StageData& data, const std::vector<Whitener>& whiteners, const GroupVectors& rest) {
   KindSquares squares{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
     const StageGroup& group = data.groups[g];
+    const VectorXd white = whiteners[g](rest[g]);
     for (std::size_t b = 0; b < group.bins.size(); ++b) {
       const auto i = static_cast<Index>(b);
       if (group.count[i] == 0) continue;
       const std::size_t kind = kind_of(group.bins[b].channel);
-      squares.sum[kind] += rest[g][i] * rest[g][i] / group.variance[i];
+      squares.sum[kind] += white[i] * white[i];
       ++squares.bins[kind];
     }
   }
@@ -162,14 +174,15 @@ Left& operator+=(Left& sum, const Left& more) {
 
 // Of a model that was fitted to some data, in others. Numbers are off as far as they are with all effects: without one
 // they would be taken to be off far enough to do what it does.
-Left left_in(const StageData& tested, const StageData& fitted, const Model& model, double numbers_off) {
+Left left_in(const StageData& tested, const std::vector<Whitener>& whiteners, const StageData& fitted,
+             const Model& model, double numbers_off) {
   GroupVectors rest = rest_of(tested, model);
-  Left left{squares_of_groups(tested, rest), {}};
+  Left left{squares_of_groups(tested, whiteners, rest), {}};
   Discrepancies discrepancies = model.likelihood.discrepancies;
   discrepancies.numbers_off = numbers_off;
   const VectorXd numbers = most_likely_numbers(fitted, rest_of(fitted, model), discrepancies);
   for (std::size_t g = 0; g < rest.size(); ++g) rest[g] -= tested.groups[g].number_shapes * numbers;
-  left.with_numbers = squares_of_groups(tested, rest);
+  left.with_numbers = squares_of_groups(tested, whiteners, rest);
   return left;
 }
 
@@ -190,8 +203,10 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
     const StageData tested_data = data_of(view, passage, UsedParts::of(folds[f]));
     const StageData fitted_data = folds.size() < 2 ? tested_data : data_of(view, passage, UsedParts::without(folds[f]));
     shown[f] = evidence_expected(fitted_data, standing);
+    const std::vector<Whitener> whiteners = whiteners_of_means(tested_data);
+    const double numbers_off = standing.model.likelihood.discrepancies.numbers_off;
     const auto add = [&](const Model& model) {
-      left[f].push_back(left_in(tested_data, fitted_data, model, standing.model.likelihood.discrepancies.numbers_off));
+      left[f].push_back(left_in(tested_data, whiteners, fitted_data, model, numbers_off));
     };
     add(nominal_model(fitted_data));
     add(refit(fitted_data, standing, beyond));
@@ -233,15 +248,17 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
                                   std::numeric_limits<double>::infinity()};
     for (const VectorXd& of_fold : shown)
       share.shown_by_others = std::min(share.shown_by_others, of_fold[static_cast<Index>(left_out[s].front())]);
-    bool is_first = true;
+    // most of all that is there, noise included: of a gap hardly larger than noise chance takes off all
+    double most = -std::numeric_limits<double>::infinity();
     for (std::size_t kind = 0; kind < weights.size(); ++kind) {
       if (before.bins[kind] == 0 || weights[kind] == 0) continue;
       const double taken = more(of_kind(1, kind), of_kind(2 + s, kind));
-      if (!is_first && taken <= share.of_kind) continue;
+      const double beyond_noise = 1 - before.bins[kind] / before.sum[kind];
+      if (taken * beyond_noise <= most) continue;
+      most = taken * beyond_noise;
       share.of_kind = taken;
       share.kind = kind;
       share.model_of_kind = of_kind(1, kind);
-      is_first = false;
     }
     shares.left_out.push_back(share);
   }

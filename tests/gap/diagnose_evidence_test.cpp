@@ -321,6 +321,38 @@ TEST_CASE("What numbers that are a little off explain as well is no share of an 
   CHECK(shares.effects[1].of_kind > 0.2);
 }
 
+TEST_CASE("What is open in each run by itself is no gap that an effect has to take off") {
+  // 30 in x, all of it the effect's; each run's yaw begins 5 sigma off, where it is open by 10
+  const std::vector<Whole> effects{60 * world().in_channel(test::WorldChannel::x, 1)};
+  const Whole yaw = world().in_channel(test::WorldChannel::yaw, 1);
+  const Whole in_each_bin = yaw / yaw.maxCoeff();
+  Whole starts = 5 * in_each_bin;
+  for (const std::size_t run : {1u, 2u}) starts.segment(run * world().bins_of_run(), world().bins_of_run()) *= -1;
+  const Whole gap = 0.5 * effects[0] + starts;
+  Measured measured(world(), gap);
+  for (std::size_t r = 0; r < world().runs(); ++r) measured.floor.open[r].local = world().by_run(10 * in_each_bin)[r];
+  const HeldOutShares shares =
+      shares_held_out(measured.view, Passage::drive_to_body, world().fitted(effects, world().data(gap), {0}),
+                      folds_by_repeat(world().repeats), 1);
+  // of 900 in x and, as if nothing were open, 25 in each of the 48 bins of yaw: 0.45
+  CHECK(shares.effects[0].of_stage == Approx(1));
+}
+
+TEST_CASE("An effect acts most where there is a gap, not where chance makes the noise smaller") {
+  // of 900 + 1024 in x it takes off 900; of 50 in the 48 bins of the voltage all: two more than noise has
+  const Whole plain = world().in_channel(test::WorldChannel::x, 1);
+  Whole turned = plain;
+  turned.tail(world().bins_of_manoeuvre()) *= -1;
+  const std::vector<Whole> effects{60 * plain + world().in_channel(test::WorldChannel::battery, 2 * std::sqrt(50.0))};
+  const Whole gap = 0.5 * effects[0] + 32 * turned;
+  const Measured measured(world(), gap);
+  const HeldOutShares shares =
+      shares_held_out(measured.view, Passage::drive_to_body, world().fitted(effects, world().data(gap), {0}),
+                      folds_by_repeat(world().repeats), 1);
+  CHECK(kind_name(shares.effects[0].kind) == "position");
+  CHECK(shares.effects[0].of_kind == Approx(900.0 / (1924 - 48)).epsilon(0.01));
+}
+
 TEST_CASE("Beside an effect that explains nothing the whole model keeps its share") {
   const std::vector<Whole> effects{60 * world().in_channel(test::WorldChannel::x, 1),
                                    100 * world().in_channel(test::WorldChannel::battery, 1)};
