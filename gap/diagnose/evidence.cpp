@@ -8,8 +8,6 @@
 #include <span>
 
 #include "gap/diagnose/channels.hpp"
-#include "gap/diagnose/significance.hpp"
-#include "gap/diagnose/trend.hpp"
 #include "gap/parallel.hpp"
 
 namespace kenaf::gap {
@@ -20,40 +18,16 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kResamplings = 400;
-constexpr double kTwoSided95 = 1.96;
-// Manoeuvres that differ no more than this probability allows are taken to agree.
-constexpr double kAgree = 0.05;
 
 double quantile(std::vector<double>& values, double share) {
   std::ranges::sort(values);
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
-// How the model's shift changes with each value, of one group, by its curves.
-MatrixXd slopes(const StandingModel& standing, std::size_t group) {
-  const MatrixXd& shifts = standing.curves.shifts[group];
-  MatrixXd result = MatrixXd::Zero(shifts.rows(), std::ssize(standing.model.places));
-  for (std::size_t i = 0; i < standing.model.places.size(); ++i) {
-    const OnCurve& place = standing.model.places[i];
-    auto slope = result.col(static_cast<Index>(i));
-    if (place.column[1] >= 0) slope += shifts.col(place.column[1]);
-    if (place.column[0] >= 0) slope -= shifts.col(place.column[0]);
-    slope /= place.segment;
-  }
-  return result;
-}
-
-// The same of every group.
-std::vector<MatrixXd> slopes(const StandingModel& standing, const StageData& data) {
-  std::vector<MatrixXd> result;
-  for (std::size_t g = 0; g < data.groups.size(); ++g) result.push_back(slopes(standing, g));
-  return result;
-}
-
 // By how much each effect should lessen the deviance of these data, the others fitted again, if the model is right.
 VectorXd evidence_expected(const StageData& data, const StandingModel& standing) {
   const MatrixXd information =
-      inner_products(whiteners_of(data, standing.model.likelihood.discrepancies), slopes(standing, data));
+      inner_products(whiteners_of(data, standing.model.likelihood.discrepancies), slopes(data, standing));
   VectorXd expected(information.rows());
   for (Index e = 0; e < expected.size(); ++e) {
     std::vector<Index> others;
@@ -71,39 +45,6 @@ VectorXd evidence_expected(const StageData& data, const StandingModel& standing)
     expected[e] = away * away * std::max(0.0, information(e, e) - taken_up);
   }
   return expected;
-}
-
-// What one manoeuvre says of one value, the others held.
-struct OwnValue {
-  double offset, information;  // from the common value; 1 / variance
-};
-
-// Spread between manoeuvres by the method of moments, and the variance of the mean with it.
-struct RandomEffect {
-  double spread = 0, p_agree = 1, variance_of_mean = 0, offset = 0;
-};
-
-RandomEffect random_effect(const std::vector<OwnValue>& own) {
-  double weights = 0, squares = 0, sum = 0;
-  for (const auto& [offset, information] : own) {
-    weights += information, squares += information * information, sum += information * offset;
-  }
-  RandomEffect result;
-  if (weights <= 0) return result;
-  const double mean = sum / weights;
-  double q = 0;
-  for (const auto& [offset, information] : own) q += information * (offset - mean) * (offset - mean);
-  // groups that say next to nothing are no degrees of freedom: their effective number
-  const double freedom = weights * weights / squares - 1;
-  result.p_agree = p_of_squares(q, freedom);
-  const double excess = weights - squares / weights;
-  const double variance = excess > 0 ? std::max(0.0, (q - freedom) / excess) : 0;
-  if (result.p_agree < kAgree) result.spread = std::sqrt(variance);
-  double with_spread = 0;
-  for (const auto& [offset, information] : own)
-    if (information > 0) with_spread += 1 / (1 / information + result.spread * result.spread);
-  result.variance_of_mean = 1 / with_spread;
-  return result;
 }
 
 StageData data_of(const StageView& view, Passage passage, const UsedParts& used) {
@@ -266,44 +207,6 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
 }
 
 }  // namespace
-
-std::vector<EffectValue> effect_values(const StageData& data, const StandingModel& standing) {
-  const Model& model = standing.model;
-  const std::vector<GroupWhitener> whiteners = whiteners_of(data, model.likelihood.discrepancies);
-
-  // generalised least squares: the covariance of all values together
-  const std::vector<MatrixXd> columns = slopes(standing, data);
-  const MatrixXd information = inner_products(whiteners, columns);
-  const MatrixXd covariance = information.completeOrthogonalDecomposition().pseudoInverse();
-
-  // what each manoeuvre says by itself of each value, with what all share at its most likely amounts
-  std::vector<std::vector<OwnValue>> own(model.places.size());
-  const std::vector<VectorXd> rest = whitened_rest(data, rest_of(data, model), model.likelihood.discrepancies);
-  for (std::size_t g = 0; g < data.groups.size(); ++g) {
-    const MatrixXd white = whiteners[g](columns[g]);
-    for (std::size_t e = 0; e < model.places.size(); ++e) {
-      const auto column = white.col(static_cast<Index>(e));
-      const double squares = column.squaredNorm();
-      own[e].push_back({squares > 0 ? column.dot(rest[g]) / squares : 0, squares});
-    }
-  }
-
-  const GroupVectors left = without_open_shapes(data, rest_of(data, model), model.likelihood.discrepancies);
-  std::vector<EffectValue> values;
-  for (std::size_t e = 0; e < model.places.size(); ++e) {
-    const Candidate& candidate = standing.curves.candidates[model.places[e].curve];
-    const RandomEffect random = random_effect(own[e]);
-    const auto i = static_cast<Index>(e);
-    const double sigma = std::sqrt(std::max(covariance(i, i), random.spread > 0 ? random.variance_of_mean : 0.0));
-    const double value = model.places[e].value;
-    values.push_back({{value, std::max(candidate.min, value - kTwoSided95 * sigma),
-                       std::min(candidate.max, value + kTwoSided95 * sigma)},
-                      random.spread,
-                      random.p_agree,
-                      trend(data, columns, i, value - candidate.present, left)});
-  }
-  return values;
-}
 
 GapMeasure measure_gap(const StageView& view, const std::vector<VectorXd>& after,
                        const std::vector<VectorXd>& deviations, std::uint64_t seed) {

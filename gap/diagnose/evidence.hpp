@@ -1,4 +1,4 @@
-// How sure the values of a model are, and what it is worth on runs that it was not fitted to.
+// What a model is worth on runs that it was not fitted to.
 // Thread safety: values and pure functions; deterministic for a seed.
 #pragma once
 
@@ -8,27 +8,12 @@
 #include <span>
 #include <vector>
 
+#include "gap/diagnose/effect_values.hpp"
 #include "gap/diagnose/folds.hpp"
 #include "gap/diagnose/gap_size.hpp"
 #include "gap/diagnose/side_by_side.hpp"
 
 namespace kenaf::gap {
-
-struct Interval {
-  double value = 0, from = 0, to = 0;  // 95 %
-};
-
-// The value of one effect: a mean, and how far it differs from manoeuvre to manoeuvre.
-struct EffectValue {
-  Interval value;
-  // Standard deviation between manoeuvres beyond what noise and discrepancy explain (a random effect, DerSimonian and
-  // Laird 1986); 0 where they agree.
-  double spread = 0;
-  double p_agree = 1;  // chance that manoeuvres that agree differ as much (Cochran's Q)
-  double trend = 0;  // by how much later parts of manoeuvres want another value than earlier ones (trend.hpp)
-};
-// Of each effect of a model that stands. Intervals hold the parameter's range.
-std::vector<EffectValue> effect_values(const StageData& data, const StandingModel& standing);
 
 // What a stage is measured with.
 struct StageView {

@@ -1,0 +1,139 @@
+#include "gap/diagnose/effect_values.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "gap/diagnose/significance.hpp"
+#include "gap/diagnose/trend.hpp"
+
+namespace kenaf::gap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kTwoSided95 = 1.96;
+// Manoeuvres that differ no more than this probability allows are taken to agree.
+constexpr double kAgree = 0.05;
+// Share of a curve's segment below which two places are one.
+constexpr double kSamePlace = 1e-6;
+
+MatrixXd slopes_of_group(const StandingModel& standing, std::size_t group) {
+  const MatrixXd& shifts = standing.curves.shifts[group];
+  MatrixXd result = MatrixXd::Zero(shifts.rows(), std::ssize(standing.model.places));
+  for (std::size_t i = 0; i < standing.model.places.size(); ++i) {
+    const OnCurve& place = standing.model.places[i];
+    auto slope = result.col(static_cast<Index>(i));
+    if (place.column[1] >= 0) slope += shifts.col(place.column[1]);
+    if (place.column[0] >= 0) slope -= shifts.col(place.column[0]);
+    slope /= place.segment;
+  }
+  return result;
+}
+
+// What one manoeuvre says of one value, the others held.
+struct OwnValue {
+  double offset, information;  // from the common value; 1 / variance
+};
+
+// Where on its curve one manoeuvre wants an effect, `rest` being what the model leaves of it, whitened. Not along the
+// slope: where an effect has done all it can, that leads far out of the range.
+OwnValue own_value(const EffectCurves& curves, const OnCurve& place, const MatrixXd& shifts,
+                   const GroupWhitener& whitener, const VectorXd& rest) {
+  // the points of this curve alone, whitened
+  EffectCurve curve{curves.curves[place.curve].candidate, {}};
+  MatrixXd white(shifts.rows(), std::ssize(curves.curves[place.curve].points));
+  for (const CurvePoint& point : curves.curves[place.curve].points) {
+    const auto column = static_cast<int>(std::ssize(curve.points));
+    white.col(column) = point.column < 0 ? VectorXd::Zero(shifts.rows()) : VectorXd(shifts.col(point.column));
+    curve.points.push_back({point.value, column, point.exact});
+  }
+  white = whitener(std::move(white));
+
+  // the best place, and what is known of it from how far it is to there
+  const std::vector<EffectCurve> alone{std::move(curve)};
+  const OnCurve common = at_value(alone, 0, place.value);
+  const VectorXd target = rest + shift_at(white, {&common, 1});
+  const Products products{target.squaredNorm(), white.transpose() * target, white.transpose() * white};
+  const OnCurve own = fit_one(products, alone, 0).places.front();
+  const double offset = own.value - place.value;
+  if (std::abs(offset) > kSamePlace * place.segment)
+    return {offset, (shift_at(white, {&own, 1}) - shift_at(white, {&common, 1})).squaredNorm() / (offset * offset)};
+  return {offset, (white.col(common.column[1]) - white.col(common.column[0])).squaredNorm() /
+                      (common.segment * common.segment)};
+}
+
+// Spread between manoeuvres by the method of moments, and the variance of the mean with it.
+struct RandomEffect {
+  double spread = 0, p_agree = 1, variance_of_mean = 0, offset = 0;
+};
+
+RandomEffect random_effect(const std::vector<OwnValue>& own) {
+  double weights = 0, squares = 0, sum = 0;
+  for (const auto& [offset, information] : own) {
+    weights += information, squares += information * information, sum += information * offset;
+  }
+  RandomEffect result;
+  if (weights <= 0) return result;
+  const double mean = sum / weights;
+  double q = 0;
+  for (const auto& [offset, information] : own) q += information * (offset - mean) * (offset - mean);
+  // groups that say next to nothing are no degrees of freedom: their effective number
+  const double freedom = weights * weights / squares - 1;
+  result.p_agree = p_of_squares(q, freedom);
+  const double excess = weights - squares / weights;
+  const double variance = excess > 0 ? std::max(0.0, (q - freedom) / excess) : 0;
+  if (result.p_agree < kAgree) result.spread = std::sqrt(variance);
+  double with_spread = 0;
+  for (const auto& [offset, information] : own)
+    if (information > 0) with_spread += 1 / (1 / information + result.spread * result.spread);
+  result.variance_of_mean = 1 / with_spread;
+  return result;
+}
+
+}  // namespace
+
+std::vector<MatrixXd> slopes(const StageData& data, const StandingModel& standing) {
+  std::vector<MatrixXd> result;
+  for (std::size_t g = 0; g < data.groups.size(); ++g) result.push_back(slopes_of_group(standing, g));
+  return result;
+}
+
+std::vector<EffectValue> effect_values(const StageData& data, const StandingModel& standing) {
+  const Model& model = standing.model;
+  const std::vector<GroupWhitener> whiteners = whiteners_of(data, model.likelihood.discrepancies);
+
+  // generalised least squares: the covariance of all values together
+  const std::vector<MatrixXd> columns = slopes(data, standing);
+  const MatrixXd information = inner_products(whiteners, columns);
+  const MatrixXd covariance = information.completeOrthogonalDecomposition().pseudoInverse();
+
+  // what each manoeuvre says by itself of each value, with what all share at its most likely amounts
+  std::vector<std::vector<OwnValue>> own(model.places.size());
+  const std::vector<VectorXd> rest = whitened_rest(data, rest_of(data, model), model.likelihood.discrepancies);
+  for (std::size_t g = 0; g < data.groups.size(); ++g) {
+    for (std::size_t e = 0; e < model.places.size(); ++e)
+      own[e].push_back(own_value(standing.curves, model.places[e], standing.curves.shifts[g], whiteners[g], rest[g]));
+  }
+
+  const GroupVectors left = without_open_shapes(data, rest_of(data, model), model.likelihood.discrepancies);
+  std::vector<EffectValue> values;
+  for (std::size_t e = 0; e < model.places.size(); ++e) {
+    const Candidate& candidate = standing.curves.candidates[model.places[e].curve];
+    const RandomEffect random = random_effect(own[e]);
+    const auto i = static_cast<Index>(e);
+    const double sigma = std::sqrt(std::max(covariance(i, i), random.spread > 0 ? random.variance_of_mean : 0.0));
+    const double value = model.places[e].value;
+    values.push_back({{value, std::max(candidate.min, value - kTwoSided95 * sigma),
+                       std::min(candidate.max, value + kTwoSided95 * sigma)},
+                      random.spread,
+                      random.p_agree,
+                      trend(data, columns, i, value - candidate.present, left)});
+  }
+  return values;
+}
+
+}  // namespace kenaf::gap
