@@ -296,8 +296,8 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& 
           return std::fmin(effect.share.*member, effect.share_by_manoeuvre.*member);
         };
         using Share = HeldOutShares::OfEffect;
-        words.push_back(fmt::format("it takes off only {} of the stage's gap",
-                                    percent(std::min(least(&Share::of_stage), least(&Share::beyond_numbers)))));
+        words.push_back(fmt::format("it takes off {} of the stage's gap",
+                                    only(std::min(least(&Share::of_stage), least(&Share::beyond_numbers)))));
         break;
       }
       case Doubt::little_explained: {

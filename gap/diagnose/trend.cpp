@@ -16,8 +16,9 @@ using Eigen::VectorXd;
 // What earlier and later halves of manoeuvres differ by is chance where that is more probable than this (chosen).
 constexpr double kNoTrend = 0.001;
 
-// Only where the effect takes off as much of the squared gap of a kind of channels is it held to explain that (chosen).
-constexpr double kExplained = 0.5;
+// An effect is held to explain a kind of channels where no more is left than it takes off, and to rest on it where it
+// takes off this share of what it does in the kind where it takes off most (chosen).
+constexpr double kRestsOn = 0.1;
 
 // What the bins of some time say of a value: sums of what is left along the effect, and of the effect itself.
 struct Along {
@@ -66,7 +67,7 @@ std::optional<Trend> trend_in(const StageGroup& group, const Series& series, con
 // What all series of one kind say.
 struct OfKind {
   std::vector<Trend> trends;
-  double without = 0, with = 0;  // squares of what is left without the effect and with it, in noise
+  double left = 0, taken_off = 0;  // squares of what is left, and of what the effect shifts, in noise
 };
 
 }  // namespace
@@ -79,17 +80,19 @@ double trend(const StageData& data, const std::vector<Eigen::MatrixXd>& columns,
     const auto column = columns[g].col(effect);
     for (const Series& series : group.series) {
       OfKind& kind = kinds[series.kind];
-      const auto squares = [&](const VectorXd& rest) {
-        return (rest.array().square() / group.variance.array()).segment(series.first, series.count).sum();
+      const auto squares = [&](const VectorXd& of_bins) {
+        return (of_bins.array().square() / group.variance.array()).segment(series.first, series.count).sum();
       };
-      kind.with += squares(left[g]);
-      kind.without += squares(left[g] + away * column);
+      kind.left += squares(left[g]);
+      kind.taken_off += squares(away * column);
       if (const auto trend = trend_in(group, series, column, left[g])) kind.trends.push_back(*trend);
     }
   }
+  const double most = std::ranges::max(kinds, {}, &OfKind::taken_off).taken_off;
   double largest = 0;
   for (const OfKind& kind : kinds)
-    if (kind.with < (1 - kExplained) * kind.without) largest = std::max(largest, rms_of(kind.trends));
+    if (kind.left < kind.taken_off && kind.taken_off > kRestsOn * most)
+      largest = std::max(largest, rms_of(kind.trends));
   return largest;
 }
 

@@ -10,8 +10,8 @@
 namespace kenaf::gap {
 
 // By how much the later part of a manoeuvre wants another value than the earlier one, each with half of what the effect shifts in
-// it: rms over manoeuvres beyond noise, each as much as it says of the value. Of the kinds of channels of which the effect explains
-// the gap, the one with the largest: a place that is reached late, as an obstacle is, tells only of the mean on the way there, and
+// it: rms over manoeuvres beyond noise, each as much as it says of the value. Of the kinds of channels that the effect explains and
+// rests on, the one with the largest: a place that is reached late, as an obstacle is, tells only of the mean on the way there, and
 // more than all the ways. 0 where noise explains all.
 //
 // `columns`: of each group, how all values shift it; the effect is column `effect`, `away` from its present value. `left`: what the

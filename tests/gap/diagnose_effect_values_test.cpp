@@ -152,6 +152,23 @@ struct Measured {
 
 }  // namespace
 
+TEST_CASE("A trend in channels that hardly bear on the value is none") {
+  // x moves by 400 for each unit and wants 0.4 from beginning to end; yaw, by 40, from 0 to 0.8
+  const LinearWorld world({8, 2, 4});
+  const Whole x = world.in_channel(test::WorldChannel::x, 400);
+  const auto measured = [&](double yaw_moves) {
+    Whole yaw = world.in_channel(test::WorldChannel::yaw, yaw_moves);
+    const std::vector<Whole> effects{x + yaw};
+    for (Eigen::Index i = 0; i < yaw.size(); ++i)
+      yaw[i] *=
+          0.8 * (static_cast<double>(i % world.bins_of_channel()) + 0.5) / static_cast<double>(world.bins_of_channel());
+    const StageData data = world.data(0.4 * x + yaw + world.noise(1));
+    return effect_values(data, world.fitted(effects, data, {0}))[0].trend;
+  };
+  CHECK(measured(40) == 0);
+  CHECK(measured(400) == Approx(0.4).epsilon(0.2));
+}
+
 TEST_CASE("Where an effect has done all it can, no manoeuvre wants a value out of the range") {
   // up to 0.4 it shifts by 100 for each unit, from there on by 1: at 0.8 the two manoeuvres say 2.5 sigma more and
   // less, along the slope 3.5 either way
