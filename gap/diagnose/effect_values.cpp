@@ -68,7 +68,7 @@ OwnValue own_value(const EffectCurves& curves, const OnCurve& place, const Matri
 
 // Spread between manoeuvres by the method of moments, and the variance of the mean with it.
 struct RandomEffect {
-  double spread = 0, p_agree = 1, variance_of_mean = 0, offset = 0;
+  double spread = 0, p_agree = 1, variance_of_mean = 0;
 };
 
 RandomEffect random_effect(const std::vector<OwnValue>& own) {
@@ -113,13 +113,13 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
 
   // what each manoeuvre says by itself of each value, with what all share at its most likely amounts
   std::vector<std::vector<OwnValue>> own(model.places.size());
-  const std::vector<VectorXd> rest = whitened_rest(data, rest_of(data, model), model.likelihood.discrepancies);
-  for (std::size_t g = 0; g < data.groups.size(); ++g) {
+  const GroupVectors residual = rest_of(data, model);
+  const std::vector<VectorXd> rest = whitened_rest(data, residual, model.likelihood.discrepancies);
+  for (std::size_t g = 0; g < data.groups.size(); ++g)
     for (std::size_t e = 0; e < model.places.size(); ++e)
       own[e].push_back(own_value(standing.curves, model.places[e], standing.curves.shifts[g], whiteners[g], rest[g]));
-  }
 
-  const GroupVectors left = without_open_shapes(data, rest_of(data, model), model.likelihood.discrepancies);
+  const GroupVectors left = without_open_shapes(data, residual, model.likelihood.discrepancies);
   std::vector<EffectValue> values;
   for (std::size_t e = 0; e < model.places.size(); ++e) {
     const Candidate& candidate = standing.curves.candidates[model.places[e].curve];

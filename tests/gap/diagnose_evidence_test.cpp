@@ -26,6 +26,16 @@ void check_whole(const Folds& folds, std::size_t runs) {
   CHECK(held == each);
 }
 
+// What measures a gap of a world, `by` a whole.
+struct Measured {
+  const LinearWorld& world;
+  NoiseFloor floor = world.floor();
+  std::vector<Eigen::VectorXd> residuals;
+  StageView view{&world.features, &world.repeats, &residuals, &floor};
+
+  Measured(const LinearWorld& of, const Whole& gap) : world(of), residuals(of.by_run(gap)) {}
+};
+
 }  // namespace
 
 TEST_CASE("Folds hold every run out once, repeats of one manoeuvre apart") {
@@ -54,7 +64,6 @@ TEST_CASE("By manoeuvre all repeats are held out together") {
   CHECK(folds_by_manoeuvre(observations) == Folds{{0, 2}, {1, 4}, {3}});
 }
 
-// 380 of 400 with a sigma of 4.4.
 TEST_CASE("How much of a gap is gone, by hand") {
   // in all bins 5, then 3; the noise is 1
   const Whole five = Whole::Constant(world().bins(), 5);
