@@ -46,6 +46,12 @@ template <class T, std::size_t kCapacity>
 class Mailbox {
  public:
   explicit Mailbox(Waker& taker) : taker_(taker) {}
+  // Lets go of what was put and never taken: Boost 1.74's queue of fixed capacity does not.
+  ~Mailbox() {
+    queue_.consume_all([](T&) {});
+  }
+  Mailbox(const Mailbox&) = delete;
+  Mailbox& operator=(const Mailbox&) = delete;
 
   // False where it is full: `item` was not taken.
   bool put(const T& item) {

@@ -1,0 +1,36 @@
+#include "relayd/mailbox.hpp"
+
+#include <catch2/catch.hpp>
+#include <memory>
+#include <vector>
+
+namespace kenaf::relayd {
+
+TEST_CASE("a mailbox hands over what was put, oldest first, and refuses what does not fit") {
+  Waker taker;
+  Mailbox<int, 2> mailbox(taker);
+  CHECK(mailbox.put(1));
+  CHECK(mailbox.put(2));
+  CHECK_FALSE(mailbox.put(3));
+
+  std::vector<int> taken;
+  mailbox.take_all([&](int item) { taken.push_back(item); });
+  CHECK(taken == std::vector<int>{1, 2});
+}
+
+TEST_CASE("a mailbox lets go of what it holds, taken or not: a connection in it is closed") {
+  Waker taker;
+  const auto taken = std::make_shared<int>(1);
+  const auto left = std::make_shared<int>(2);
+  {
+    Mailbox<std::shared_ptr<int>, 4> mailbox(taker);
+    mailbox.put(taken);
+    mailbox.take_all([](const std::shared_ptr<int>&) {});
+    mailbox.put(left);
+    CHECK(taken.use_count() == 1);
+    CHECK(left.use_count() == 2);
+  }
+  CHECK(left.use_count() == 1);
+}
+
+}  // namespace kenaf::relayd
