@@ -19,6 +19,7 @@ constexpr double kRoughReach = 2;
 constexpr double kBent = 2;
 constexpr int kHalvings = 4;
 constexpr double kInward = 0.25;  // of the way from neutral to the innermost point
+constexpr double kSeen = 1;       // length: as much as noise
 
 // A straight line between an exact point and a rough one near it would lead anywhere. But the ends of a curve stay:
 // without them no fit could go beyond the exact point.
@@ -92,6 +93,30 @@ std::vector<Setting> parts_of_ranges(const EffectCurves& curves, std::span<const
   return points;
 }
 
+// The end of the range on each side of the present value where nothing was seen so far.
+std::vector<Setting> ends_of_unseen_sides(const EffectCurves& curves, const StageData& data,
+                                          std::span<const std::size_t> chosen) {
+  std::vector<Setting> ends;
+  for (const std::size_t c : chosen) {
+    const Candidate& candidate = curves.candidates[c];
+    const std::vector<CurvePoint>& points = curves.curves[c].points;
+    const auto side_of = [&](double value) { return value > candidate.present ? 1 : 0; };
+    bool is_seen[2] = {false, false}, is_looked_at[2] = {false, false};
+    for (const CurvePoint& point : points) {
+      if (point.column < 0) continue;
+      is_looked_at[side_of(point.value)] = true;
+      if (length_of_column(curves, data, point.column) > kSeen) is_seen[side_of(point.value)] = true;
+    }
+    for (const double end : {candidate.min, candidate.max}) {
+      const int side = side_of(end);
+      const bool is_unknown = is_looked_at[side] ? !is_seen[side] : !is_seen[1 - side];
+      if (is_unknown && end != candidate.present && std::ranges::count(points, end, &CurvePoint::value) == 0)
+        ends.push_back({c, end});
+    }
+  }
+  return ends;
+}
+
 // The upper end of the range; the lower one where there is nothing above.
 double end_of_range(const Candidate& candidate) {
   return candidate.max > candidate.present ? candidate.max : candidate.min;
@@ -156,6 +181,7 @@ void add_first_look(EffectCurves& curves, const StageData& data, std::span<const
       points.push_back({c, candidate.present + kSpread[0] * (candidate.min - candidate.present)});
   }
   add_points(curves, data, points, Fidelity::coarse, simulate);
+  add_points(curves, data, ends_of_unseen_sides(curves, data, chosen), Fidelity::coarse, simulate);
 }
 
 void follow_bends(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,

@@ -52,7 +52,8 @@ EffectCurves empty_curves(const StageData& data, std::span<const Candidate> cand
 
 // For a first look: one point near the present value of each of `chosen`; of an effect that goes one way alone also the end of
 // its range, of one that goes both ways one to the other side; of a number of the description instead one as near as such
-// numbers ordinarily are off.
+// numbers ordinarily are off. On a side where nothing is seen there (a servo's torque suffices down to half of it) the end of
+// the range as well.
 void add_first_look(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                     const Simulate& simulate);
 // Simulates points spread over the range of each of `chosen`, denser near the present value, where there are none.

@@ -71,6 +71,33 @@ TEST_CASE(
   CHECK(effect.simulated == 2);
 }
 
+TEST_CASE(
+    "Where a first look sees nothing on a side it goes to the end there, on a side not looked at only if the other "
+    "shows nothing") {
+  // effects of -1 to 1: a servo's torque that suffices until it is down by a half; a number that shifts all runs, and
+  // one that begins below -0.5, of which one side alone is looked at first
+  std::vector<Candidate> candidates(3, world().candidates(1)[0]);
+  candidates[1].whole = candidates[2].whole = 1;
+  const auto suffices_to_half = [](double value) { return std::max(0.0, -value - 0.5) * 100; };
+  const std::function<double(double)> lengths[] = {suffices_to_half, [](double value) { return 100 * value; },
+                                                   suffices_to_half};
+  const Simulate simulate = [&](std::span<const Settings> asked, Fidelity) {
+    std::vector<GroupVectors> shifts;
+    for (const Settings& settings : asked)
+      shifts.push_back(world().by_group(lengths[settings[0].candidate](settings[0].value) * world().direction(0)));
+    return shifts;
+  };
+  const StageData data = world().data(Whole::Zero(world().bins()));
+  EffectCurves curves = empty_curves(data, candidates);
+  const std::vector<std::size_t> all{0, 1, 2};
+  add_first_look(curves, data, all, simulate);
+  CHECK(values_of(curves.curves[0]) == std::vector<double>{-1, -0.25, 0, 0.25, 1});
+  CHECK(values_of(curves.curves[1]) == std::vector<double>{0, 0.02, 0.25});
+  CHECK(values_of(curves.curves[2]) == std::vector<double>{-1, 0, 0.02, 0.25, 1});
+  CHECK(curves.curves[0].visible == Approx(50));
+  CHECK(is_bent(curves, data, 0, 10));
+}
+
 TEST_CASE("A difference's length in noise counts each bin by its own") {
   StageData data = world().data(Whole::Zero(world().bins()));
   CHECK(length_in_noise(data, world().by_group(7 * world().direction(3))) == Approx(7));
