@@ -90,7 +90,7 @@ class Stage {
 // In which nobody could overlook it.
 bool shows(const StageData& data) {
   const auto bins = static_cast<double>(bin_count(data));
-  return bins > 0 && length_in_noise(data, residuals_of(data)) >= DecisionSettings().negligible * std::sqrt(bins);
+  return bins > 0 && gap_in_noise(data) >= DecisionSettings().negligible * std::sqrt(bins);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ std::vector<std::size_t> candidates_that_matter(const StageData& data, const Eff
                                  [&](int column) { return in_noise(data, curves, kind, column).share_of(gap); }),
              kMostOfKind, matter);
   }
-  const double gap = length_in_noise(data, residuals_of(data));
+  const double gap = gap_in_noise(data);
   for (const std::size_t c : looked_at)
     if (is_bent(curves, data, c, gap)) matter.push_back(c);
   std::ranges::sort(matter);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 
 namespace kenaf::gap {
 namespace {
@@ -19,7 +20,6 @@ constexpr double kRoughReach = 2;
 constexpr double kBent = 2;
 constexpr int kHalvings = 4;
 constexpr double kInward = 0.25;  // of the way from neutral to the innermost point
-constexpr double kSeen = 1;       // length: as much as noise
 
 // A straight line between an exact point and a rough one near it would lead anywhere. But the ends of a curve stay:
 // without them no fit could go beyond the exact point.
@@ -93,24 +93,28 @@ std::vector<Setting> parts_of_ranges(const EffectCurves& curves, std::span<const
   return points;
 }
 
-// The end of the range on each side of the present value where nothing was seen so far.
-std::vector<Setting> ends_of_unseen_sides(const EffectCurves& curves, const StageData& data,
-                                          std::span<const std::size_t> chosen) {
+// The end of the range on each side of the present value where what was seen so far leads nowhere: straight on to the
+// end it stays shorter than the gap. A side that was not looked at goes by the other one.
+std::vector<Setting> ends_of_short_sides(const EffectCurves& curves, const StageData& data,
+                                         std::span<const std::size_t> chosen) {
+  const double gap = gap_in_noise(data);
   std::vector<Setting> ends;
   for (const std::size_t c : chosen) {
     const Candidate& candidate = curves.candidates[c];
     const std::vector<CurvePoint>& points = curves.curves[c].points;
     const auto side_of = [&](double value) { return value > candidate.present ? 1 : 0; };
-    bool is_seen[2] = {false, false}, is_looked_at[2] = {false, false};
+    std::optional<double> length_by_value[2];
     for (const CurvePoint& point : points) {
       if (point.column < 0) continue;
-      is_looked_at[side_of(point.value)] = true;
-      if (length_of_column(curves, data, point.column) > kSeen) is_seen[side_of(point.value)] = true;
+      const double by_value = length_of_column(curves, data, point.column) / std::abs(point.value - candidate.present);
+      std::optional<double>& longest = length_by_value[side_of(point.value)];
+      longest = std::max(longest.value_or(0), by_value);
     }
     for (const double end : {candidate.min, candidate.max}) {
-      const int side = side_of(end);
-      const bool is_unknown = is_looked_at[side] ? !is_seen[side] : !is_seen[1 - side];
-      if (is_unknown && end != candidate.present && std::ranges::count(points, end, &CurvePoint::value) == 0)
+      const std::optional<double> seen =
+          length_by_value[side_of(end)] ? length_by_value[side_of(end)] : length_by_value[1 - side_of(end)];
+      const double straight = seen.value_or(0) * std::abs(end - candidate.present);
+      if (straight < gap && end != candidate.present && std::ranges::count(points, end, &CurvePoint::value) == 0)
         ends.push_back({c, end});
     }
   }
@@ -138,6 +142,13 @@ double squares_in_noise(const StageData& data, const GroupVectors& difference) {
 
 double length_in_noise(const StageData& data, const GroupVectors& difference) {
   return std::sqrt(squares_in_noise(data, difference));
+}
+
+double gap_in_noise(const StageData& data) {
+  double squares = 0;
+  for (const StageGroup& group : data.groups)
+    squares += (group.residual.array().square() / group.variance.array()).sum();
+  return std::sqrt(squares);
 }
 
 bool is_bent(const EffectCurves& curves, const StageData& data, std::size_t c, double length) {
@@ -181,14 +192,12 @@ void add_first_look(EffectCurves& curves, const StageData& data, std::span<const
       points.push_back({c, candidate.present + kSpread[0] * (candidate.min - candidate.present)});
   }
   add_points(curves, data, points, Fidelity::coarse, simulate);
-  add_points(curves, data, ends_of_unseen_sides(curves, data, chosen), Fidelity::coarse, simulate);
+  add_points(curves, data, ends_of_short_sides(curves, data, chosen), Fidelity::coarse, simulate);
 }
 
 void follow_bends(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                   const Simulate& simulate) {
-  GroupVectors residual;
-  for (const StageGroup& group : data.groups) residual.push_back(group.residual);
-  const double gap = length_in_noise(data, residual);
+  const double gap = gap_in_noise(data);
   for (int i = 0; i < kHalvings; ++i) {
     std::vector<Setting> points;
     for (const std::size_t c : chosen) {

@@ -52,8 +52,8 @@ EffectCurves empty_curves(const StageData& data, std::span<const Candidate> cand
 
 // For a first look: one point near the present value of each of `chosen`; of an effect that goes one way alone also the end of
 // its range, of one that goes both ways one to the other side; of a number of the description instead one as near as such
-// numbers ordinarily are off. On a side where nothing is seen there (a servo's torque suffices down to half of it) the end of
-// the range as well.
+// numbers ordinarily are off. Where that leads nowhere, as straight on to an end of the range it stays shorter than the gap, the end
+// as well: a servo's torque suffices down to half of it.
 void add_first_look(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                     const Simulate& simulate);
 // Simulates points spread over the range of each of `chosen`, denser near the present value, where there are none.
@@ -83,5 +83,7 @@ void insert_points(EffectCurves& curves, const StageData& data, std::span<const 
 // Length of a difference in noise alone: the root of the sum over bins of its square over their variance.
 double squares_in_noise(const StageData& data, const GroupVectors& difference);
 double length_in_noise(const StageData& data, const GroupVectors& difference);
+// Likewise, of what the nominal robot leaves.
+double gap_in_noise(const StageData& data);
 
 }  // namespace kenaf::gap

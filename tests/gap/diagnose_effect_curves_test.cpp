@@ -71,9 +71,7 @@ TEST_CASE(
   CHECK(effect.simulated == 2);
 }
 
-TEST_CASE(
-    "Where a first look sees nothing on a side it goes to the end there, on a side not looked at only if the other "
-    "shows nothing") {
+TEST_CASE("Where a first look leads nowhere it goes to the ends: what lies straight ahead is shorter than the gap") {
   // effects of -1 to 1: a servo's torque that suffices until it is down by a half; a number that shifts all runs, and
   // one that begins below -0.5, of which one side alone is looked at first
   std::vector<Candidate> candidates(3, world().candidates(1)[0]);
@@ -87,7 +85,7 @@ TEST_CASE(
       shifts.push_back(world().by_group(lengths[settings[0].candidate](settings[0].value) * world().direction(0)));
     return shifts;
   };
-  const StageData data = world().data(Whole::Zero(world().bins()));
+  const StageData data = world().data(10 * world().direction(0));
   EffectCurves curves = empty_curves(data, candidates);
   const std::vector<std::size_t> all{0, 1, 2};
   add_first_look(curves, data, all, simulate);
