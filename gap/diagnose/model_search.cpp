@@ -204,19 +204,28 @@ Model fit_model(const StageData& data, const EffectCurves& curves, std::span<con
   for (std::size_t e = 0; e < effects.size(); ++e) numbers.push_back(e);
 
   // values by generalised least squares, then the discrepancies that suit what they leave
-  Model model;
-  model.likelihood.discrepancies = start;
-  for (int round = 0; round < kFitRounds; ++round) {
-    const Products products = products_of(whiteners_of(data, model.likelihood.discrepancies), selection.shifts, target);
-    model.places.clear();
-    for (const OnCurve& place : fit_together(products, selection.curves, numbers).places)
-      model.places.push_back(in_whole(place, selection, effects));
-    model.shift = shift_of(curves, model.places);
-    if (!beyond.empty())
-      for (std::size_t g = 0; g < target.size(); ++g) model.shift[g] += beyond[g];
-    model.likelihood = likelihood_of(data, rest_of(data, model), model.likelihood.discrepancies);
-  }
-  return model;
+  const auto fitted_from = [&](const Discrepancies& from) {
+    Model model;
+    model.likelihood.discrepancies = from;
+    for (int round = 0; round < kFitRounds; ++round) {
+      const Products products =
+          products_of(whiteners_of(data, model.likelihood.discrepancies), selection.shifts, target);
+      model.places.clear();
+      for (const OnCurve& place : fit_together(products, selection.curves, numbers).places)
+        model.places.push_back(in_whole(place, selection, effects));
+      model.shift = shift_of(curves, model.places);
+      if (!beyond.empty())
+        for (std::size_t g = 0; g < target.size(); ++g) model.shift[g] += beyond[g];
+      model.likelihood = likelihood_of(data, rest_of(data, model), model.likelihood.discrepancies);
+    }
+    return model;
+  };
+
+  // where discrepancies, or numbers that are a little off, already take up what an effect does, it is not there: noise
+  // alone leaves it to the effect
+  Model best = fitted_from(start);
+  Model plain = fitted_from(no_discrepancy());
+  return plain.deviance() < best.deviance() ? plain : best;
 }
 
 std::vector<Model> search_singles(const StageData& data, EffectCurves& curves, const Discrepancies& start,

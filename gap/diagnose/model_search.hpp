@@ -46,7 +46,7 @@ using EffectSet = std::vector<std::size_t>;  // numbers of candidates
 EffectSet effects_of(const Model& model);
 
 // Fitted on the curves; `beyond`: what the effects together shift beyond the sum of their curves, of each group; empty:
-// nothing. Discrepancies are estimated from `start` on.
+// nothing. Discrepancies are estimated from `start` on, and from none: the likelier fit of both.
 Model fit_model(const StageData& data, const EffectCurves& curves, std::span<const std::size_t> effects,
                 const GroupVectors& beyond, const Discrepancies& start);
 // What a simulated model shifts beyond the sum of its curves.

@@ -34,6 +34,19 @@ double value_of(const Model& model, std::size_t effect) {
 
 }  // namespace
 
+TEST_CASE("A fit does not hang on discrepancies that take up what the effect does") {
+  // an effect of 100 in the tracks and 3 in the battery; measured is half of it in the tracks, and in the battery 3 the
+  // other way. Beneath a discrepancy of the tracks that is as large as the gap the battery says that there is no effect
+  const Whole track = world().in_channel(test::WorldChannel::track, 100),
+              battery = world().in_channel(test::WorldChannel::battery, 3);
+  const StageData data = world().data(0.5 * track - battery + world().noise(1));
+  const EffectCurves curves = world().curves({track + battery}, data);
+  Discrepancies held = no_discrepancy();
+  held.of_kind[kind_of(data.groups[0].bins[0].channel)] = {50, 16};
+  const EffectSet effect{0};
+  CHECK(value_of(fit_model(data, curves, effect, {}, held), 0) == Approx(0.5).margin(0.03));
+}
+
 TEST_CASE("A model is fitted with the discrepancies that suit what it leaves") {
   const std::vector<Whole> effects = six_effects();
   const StageData data = world().data(0.4 * effects[2]);
