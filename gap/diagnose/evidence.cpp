@@ -18,6 +18,10 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kResamplings = 400;
+// Squared shift in noise, below which data say nothing of an effect: two sigma.
+constexpr double kHardlySeen = 4;
+
+using Places = std::vector<std::size_t>;
 
 double quantile(std::vector<double>& values, double share) {
   std::ranges::sort(values);
@@ -55,6 +59,37 @@ Model refit(const StageData& data, const StandingModel& standing, const GroupVec
   return fit_model(data, standing.curves, effects_of(standing.model), beyond, standing.model.likelihood.discrepancies);
 }
 
+// Of each effect, whether it is above the noise of these data at all.
+std::vector<bool> seen_in(const StageData& data, const StandingModel& standing) {
+  std::vector<bool> seen;
+  for (const OnCurve& place : standing.model.places)
+    seen.push_back(squares_in_noise(data, shift_of(standing.curves, {&place, 1})) >= kHardlySeen);
+  return seen;
+}
+
+// The model without some effects, fitted again. What these data do not see keeps its value: what chance makes of it is
+// no difference between a model with and one without another effect.
+Model refit_without(const StageData& data, const StandingModel& standing, const std::vector<bool>& seen,
+                    const Places& without, const GroupVectors& beyond) {
+  const std::vector<OnCurve>& places = standing.model.places;
+  EffectSet fitted;
+  std::vector<OnCurve> kept;
+  for (std::size_t e = 0; e < places.size(); ++e) {
+    if (std::ranges::count(without, e) > 0) continue;
+    if (seen[e])
+      fitted.push_back(places[e].curve);
+    else
+      kept.push_back(places[e]);
+  }
+  GroupVectors shift = shift_of(standing.curves, kept);
+  if (without.empty())
+    for (std::size_t g = 0; g < shift.size(); ++g) shift[g] += beyond[g];
+  if (!fitted.empty()) return fit_model(data, standing.curves, fitted, shift, standing.model.likelihood.discrepancies);
+  Model model{std::move(kept), std::move(shift), false, {}};
+  model.likelihood = likelihood_of(data, rest_of(data, model), standing.model.likelihood.discrepancies);
+  return model;
+}
+
 // Of the mean of a group's used runs, as NoiseFloor::whiteners are of one run.
 std::vector<Whitener> whiteners_of_means(const StageData& data) {
   std::vector<Whitener> whiteners;
@@ -87,8 +122,6 @@ KindSquares& operator+=(KindSquares& sum, const KindSquares& more) {
   for (std::size_t k = 0; k < sum.sum.size(); ++k) sum.sum[k] += more.sum[k], sum.bins[k] += more.bins[k];
   return sum;
 }
-
-using Places = std::vector<std::size_t>;
 
 // All of two places and more.
 std::vector<Places> sets_small_first(std::span<const std::size_t> places) {
@@ -135,31 +168,24 @@ struct SharesWithout {
 
 SharesWithout shares_without(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
                              std::span<const Places> left_out, unsigned threads) {
-  const std::size_t effects = standing.model.places.size();
   const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
   // of each fold: of the nominal model, of the whole model, and of the model without each set of effects
   std::vector<std::vector<Left>> left(folds.size());
   std::vector<VectorXd> shown(folds.size());
+  std::vector<std::vector<bool>> seen(folds.size());
   for_each_job(folds.size(), threads, [&](std::size_t f) {
     const StageData tested_data = data_of(view, passage, UsedParts::of(folds[f]));
     const StageData fitted_data = folds.size() < 2 ? tested_data : data_of(view, passage, UsedParts::without(folds[f]));
     shown[f] = evidence_expected(fitted_data, standing);
+    seen[f] = seen_in(fitted_data, standing);
     const std::vector<Whitener> whiteners = whiteners_of_means(tested_data);
     const double numbers_off = standing.model.likelihood.discrepancies.numbers_off;
     const auto add = [&](const Model& model) {
       left[f].push_back(left_in(tested_data, whiteners, fitted_data, model, numbers_off));
     };
     add(nominal_model(fitted_data));
-    add(refit(fitted_data, standing, beyond));
-    for (const Places& without : left_out) {
-      EffectSet others;
-      for (std::size_t e = 0; e < effects; ++e)
-        if (std::ranges::count(without, e) == 0) others.push_back(standing.model.places[e].curve);
-      if (others.empty())
-        left[f].push_back(left[f].front());
-      else
-        add(fit_model(fitted_data, standing.curves, others, {}, standing.model.likelihood.discrepancies));
-    }
+    add(refit_without(fitted_data, standing, seen[f], {}, beyond));
+    for (const Places& without : left_out) add(refit_without(fitted_data, standing, seen[f], without, beyond));
   });
   std::vector<Left> sums = left.front();
   for (std::size_t f = 1; f < left.size(); ++f)
@@ -201,6 +227,11 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
       share.kind = kind;
       share.model_of_kind = of_kind(1, kind);
     }
+    // a value that the others do not see, they do not foretell
+    const auto is_seen = [&](const std::vector<bool>& of_fold) {
+      return std::ranges::all_of(left_out[s], [&](std::size_t place) { return of_fold[place]; });
+    };
+    if (!std::ranges::all_of(seen, is_seen)) share.of_stage = share.beyond_numbers = share.of_kind = 0;
     shares.left_out.push_back(share);
   }
   return shares;
