@@ -8,7 +8,7 @@
 
 #include "gap/candidates/candidate.hpp"
 #include "gap/candidates/robot_numbers.hpp"
-#include "gap/challenge/random_numbers.hpp"
+#include "gap/random_numbers.hpp"
 
 namespace kenaf::gap {
 namespace {

@@ -8,10 +8,10 @@
 #include <span>
 
 #include "gap/challenge/foreign.hpp"
-#include "gap/challenge/random_numbers.hpp"
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/prediction.hpp"
 #include "gap/parallel.hpp"
+#include "gap/random_numbers.hpp"
 #include "rollout/roll_out.hpp"
 #include "runs/dataset.hpp"
 

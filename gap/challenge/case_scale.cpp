@@ -6,9 +6,9 @@
 #include "gap/challenge/case_runs.hpp"
 #include "gap/challenge/foreign.hpp"
 #include "gap/challenge/look_alike.hpp"
-#include "gap/challenge/random_numbers.hpp"
 #include "gap/challenge/stand_ins.hpp"
 #include "gap/parallel.hpp"
+#include "gap/random_numbers.hpp"
 #include "rollout/roll_out.hpp"
 
 namespace kenaf::gap {

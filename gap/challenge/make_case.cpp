@@ -9,10 +9,10 @@
 
 #include "gap/challenge/case_runs.hpp"
 #include "gap/challenge/case_scale.hpp"
-#include "gap/challenge/random_numbers.hpp"
 #include "gap/challenge/stand_ins.hpp"
 #include "gap/challenge/true_shares.hpp"
 #include "gap/diagnose/isolability.hpp"
+#include "gap/random_numbers.hpp"
 
 namespace kenaf::gap {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "gap/candidates/candidate.hpp"
 #include "gap/candidates/robot_numbers.hpp"
-#include "gap/challenge/random_numbers.hpp"
 #include "gap/challenge/stand_ins.hpp"
+#include "gap/random_numbers.hpp"
 
 namespace kenaf::gap {
 namespace {

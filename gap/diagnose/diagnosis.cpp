@@ -166,6 +166,19 @@ Verdict whole_verdict(const std::vector<StageDiagnosis>& stages) {
   return any(Verdict::unknown) || stages.empty() ? Verdict::unknown : Verdict::none;
 }
 
+namespace {
+// Sensors show little of a description's numbers: these are off by as much as the stages before say.
+void widen_intervals(std::vector<StageDiagnosis>& stages, const std::vector<PreparedStage>& prepared,
+                     Predictor& predictor, std::uint64_t seed) {
+  double numbers_off = 0;
+  for (std::size_t s = 0; s < stages.size(); ++s) {
+    const double own = stages[s].decision.best.model.likelihood.discrepancies.numbers_off;
+    numbers_off = stages[s].passage == Passage::body_to_sensor ? std::max(own, numbers_off) : own;
+    widen_intervals(stages[s], prepared[s], predictor, numbers_off, seed);
+  }
+}
+}  // namespace
+
 Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& options) {
   Diagnosis d;
   d.options = options;
@@ -206,6 +219,7 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
       prepared.push_back(std::move(stage));
     }
     settle_by_other_stages(d.stages, prepared, predictor, stage_options);
+    widen_intervals(d.stages, prepared, predictor, options.seed);
     conclude(d);
     progress.begin("looking for the next manoeuvre", 0.98, 1, 1, predictor.roll_outs());
     if (options.propose_next && options.ranks.rank == 0) d.next = next_manoeuvres(d);

@@ -15,7 +15,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kTwoSided95 = 1.96;
 // Manoeuvres that differ no more than this probability allows are taken to agree.
 constexpr double kAgree = 0.05;
 // Share of a curve's segment below which two places are one.
@@ -127,8 +126,8 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
     const auto i = static_cast<Index>(e);
     const double sigma = std::sqrt(std::max(covariance(i, i), random.spread > 0 ? random.variance_of_mean : 0.0));
     const double value = model.places[e].value;
-    values.push_back({{value, std::max(candidate.min, value - kTwoSided95 * sigma),
-                       std::min(candidate.max, value + kTwoSided95 * sigma)},
+    values.push_back({{value, std::max(candidate.min, value - kHalfWidth * sigma),
+                       std::min(candidate.max, value + kHalfWidth * sigma)},
                       random.spread,
                       random.p_agree,
                       trend(data, columns, i, value - candidate.present, left)});

@@ -12,6 +12,7 @@ namespace kenaf::gap {
 struct Interval {
   double value = 0, from = 0, to = 0;  // 95 %
 };
+inline constexpr double kHalfWidth = 1.96;  // half of an interval, in standard errors
 
 // The value of one effect: a mean, and how far it differs from manoeuvre to manoeuvre.
 struct EffectValue {

@@ -25,19 +25,6 @@ const CurvePoint* nearest_to_present(const EffectCurve& curve, double present) {
   return nearest;
 }
 
-// Those of `possible` that are numbers of the description, but for `valued` and what is a part of them.
-std::vector<std::size_t> numbers_but(std::span<const Candidate> candidates, std::span<const std::size_t> possible,
-                                     std::span<const std::size_t> valued) {
-  const auto has_value = [&](std::size_t c) {
-    return std::ranges::any_of(
-        valued, [&](std::size_t other) { return other == c || is_part_of(candidates[c], candidates[other]); });
-  };
-  std::vector<std::size_t> numbers;
-  for (const std::size_t c : possible)
-    if (candidates[c].whole > 0 && !has_value(c)) numbers.push_back(c);
-  return numbers;
-}
-
 // `settings` with a number that is ordinarily off from what they have, and by how much it is.
 struct SlightlyOff {
   Settings settings;
@@ -99,6 +86,18 @@ std::vector<MatrixXd> principal_directions(const StageData& data, std::vector<Ma
 }
 
 }  // namespace
+
+std::vector<std::size_t> numbers_but(std::span<const Candidate> candidates, std::span<const std::size_t> possible,
+                                     std::span<const std::size_t> valued) {
+  const auto has_value = [&](std::size_t c) {
+    return std::ranges::any_of(
+        valued, [&](std::size_t other) { return other == c || is_part_of(candidates[c], candidates[other]); });
+  };
+  std::vector<std::size_t> numbers;
+  for (const std::size_t c : possible)
+    if (candidates[c].whole > 0 && !has_value(c)) numbers.push_back(c);
+  return numbers;
+}
 
 std::vector<MatrixXd> number_shapes(const StageData& data, const EffectCurves& curves,
                                     std::span<const std::size_t> possible) {

@@ -17,6 +17,10 @@
 
 namespace kenaf::gap {
 
+// Those of `possible` that are numbers of the description, but for `valued` and what is a part of them.
+std::vector<std::size_t> numbers_but(std::span<const Candidate> candidates, std::span<const std::size_t> possible,
+                                     std::span<const std::size_t> valued);
+
 // Of each group, in columns: the directions in which the numbers among `possible` can be seen, longest first, at most 12
 // together; 1 sigma is every number off by its Candidate::whole. Linear, from the point of each curve that is nearest to
 // the present value.

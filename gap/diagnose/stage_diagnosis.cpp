@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include "gap/diagnose/candidates_that_matter.hpp"
 #include "gap/diagnose/cells.hpp"
 #include "gap/diagnose/channels.hpp"
+#include "gap/diagnose/errors_of_values.hpp"
 #include "gap/diagnose/judgement.hpp"
 #include "gap/diagnose/number_shapes.hpp"
 #include "gap/diagnose/repeats.hpp"
@@ -380,6 +382,25 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
                              decision.nominal_deviance - single.deviance(), before > 0 ? 1 - after / before : 0});
   }
   return stage;
+}
+
+void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor, double numbers_off,
+                     std::uint64_t seed) {
+  StageDecision& decision = stage.decision;
+  if (decision.effects.empty() || numbers_off == 0) return;
+  // the body turns a gyro though nobody blames it for what the gyro says of the posture
+  std::vector<std::size_t> of_all_stages(prepared.candidates.size());
+  std::iota(of_all_stages.begin(), of_all_stages.end(), std::size_t{0});
+  const EffectSet valued = effects_of(decision.best.model);
+  const NumbersOff numbers{numbers_but(prepared.candidates, of_all_stages, valued), numbers_off,
+                           has_baseline(*prepared.input.features)};
+  const VectorXd errors =
+      errors_of_values(decision.data, decision.best, numbers, simulator_of(prepared, predictor), seed);
+  for (std::size_t e = 0; e < decision.effects.size(); ++e) {
+    NamedEffect& effect = decision.effects[e];
+    effect.value.value =
+        widened(effect.value.value, errors[static_cast<Eigen::Index>(e)], prepared.candidates[effect.candidate]);
+  }
 }
 
 }  // namespace kenaf::gap

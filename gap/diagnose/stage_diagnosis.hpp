@@ -76,6 +76,10 @@ PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> 
 StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
                               const Elsewhere& elsewhere = {});
 
+// Intervals as wide as numbers of the description make them that are off, 1 sigma, by `numbers_off` (errors_of_values.hpp).
+void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor, double numbers_off,
+                     std::uint64_t seed);
+
 // The nominal robot with candidates at these values.
 physics::RobotDescription with_settings(physics::RobotDescription robot, std::span<const Candidate> candidates,
                                         const Settings& settings);
