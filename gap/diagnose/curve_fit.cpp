@@ -9,7 +9,10 @@ namespace {
 // Between two neighbouring points of a curve, from `a` (share 0) to `b` (share 1).
 struct Segment {
   CurvePoint a, b;
+  bool jumps() const { return b.jump; }
 };
+
+constexpr double kEnds[] = {0, 1};  // of a segment
 
 double gap_product(const Products& p, int column) {
   return column < 0 ? 0 : p.shift_gap[column];
@@ -32,6 +35,12 @@ struct Quadratic {
 // Of one term along a line, clamped to the segment.
 double best_share(double linear, double square) {
   return square > 0 ? std::clamp(linear / square, 0.0, 1.0) : 0;
+}
+
+// Of a segment that jumps, the end that suits better.
+double best_share_of(const Segment& segment, const Quadratic& q) {
+  if (segment.jumps()) return q.at(1, 0) < q.at(0, 0) ? 1 : 0;
+  return best_share(q.linear[0], q.square[0][0]);
 }
 
 OnCurve on_segment(std::size_t curve, const Segment& segment, double share) {
@@ -62,7 +71,19 @@ OnCurve at_value(const std::vector<EffectCurve>& curves, std::size_t curve, doub
   if (above == points.begin()) ++above;
   if (above == points.end()) --above;
   const Segment segment{*(above - 1), *above};
-  return on_segment(curve, segment, (value - segment.a.value) / (segment.b.value - segment.a.value));
+  const double share = (value - segment.a.value) / (segment.b.value - segment.a.value);
+  if (!segment.jumps()) return on_segment(curve, segment, share);
+
+  // the segment before or behind the jump
+  if (share < 0.5 && above - 1 != points.begin()) {
+    const Segment before{*(above - 2), *(above - 1)};
+    if (!before.jumps()) return on_segment(curve, before, 1);
+  } else if (share >= 0.5 && above + 1 != points.end()) {
+    const Segment behind{*above, *(above + 1)};
+    if (!behind.jumps()) return on_segment(curve, behind, 0);
+  }
+  const CurvePoint& end = share < 0.5 ? segment.a : segment.b;
+  return on_segment(curve, {end, end}, 0);
 }
 
 CurveFit fit_one(const Products& p, const std::vector<EffectCurve>& curves, std::size_t curve) {
@@ -75,8 +96,11 @@ CurveFit fit_one(const Products& p, const std::vector<EffectCurve>& curves, std:
     const Quadratic q{p.gap_gap - 2 * gap_product(p, a) + aa,
                       {gap_product(p, b) - gap_product(p, a) - ab + aa, 0},
                       {{aa - 2 * ab + bb, 0}, {0, 0}}};
-    const double share = best_share(q.linear[0], q.square[0][0]);
-    if (const double left = q.at(share, 0); left < best.left) best = {{on_segment(curve, segment, share)}, left};
+    const double share = best_share_of(segment, q);
+    if (const double left = q.at(share, 0); left < best.left) {
+      const OnCurve place = on_segment(curve, segment, share);
+      best = {{segment.jumps() ? at_value(curves, curve, place.value) : place}, left};
+    }
   }
   return best;
 }
@@ -100,9 +124,22 @@ CurveFit fit_two(const Products& p, const std::vector<EffectCurve>& curves, std:
                         {gap_product(p, b) - gap_product(p, a) - oe, gap_product(p, d) - gap_product(p, c) - of},
                         {{dots(b, a, b, a), ef}, {ef, dots(d, c, d, c)}}};
       const auto consider = [&](double share_s, double share_t) {
-        if (const double left = q.at(share_s, share_t); left < best.left)
-          best = {{on_segment(first, s, share_s), on_segment(second, t, share_t)}, left};
+        const double left = q.at(share_s, share_t);
+        if (left >= best.left) return;
+        best = {{on_segment(first, s, share_s), on_segment(second, t, share_t)}, left};
+        for (OnCurve& place : best.places)
+          if ((&place == &best.places.front() ? s : t).jumps()) place = at_value(curves, place.curve, place.value);
       };
+      if (s.jumps() || t.jumps()) {
+        for (const double end : kEnds)
+          if (s.jumps() && t.jumps())
+            for (const double other_end : kEnds) consider(end, other_end);
+          else if (s.jumps())
+            consider(end, best_share(q.linear[1] - ef * end, q.square[1][1]));
+          else
+            consider(best_share(q.linear[0] - ef * end, q.square[0][0]), end);
+        continue;
+      }
       const double determinant = q.square[0][0] * q.square[1][1] - ef * ef;
       if (determinant > 1e-12 * q.square[0][0] * q.square[1][1]) {
         const double inner_s = (q.linear[0] * q.square[1][1] - q.linear[1] * ef) / determinant;
@@ -112,7 +149,7 @@ CurveFit fit_two(const Products& p, const std::vector<EffectCurve>& curves, std:
           continue;
         }
       }
-      for (const double edge : {0.0, 1.0}) {
+      for (const double edge : kEnds) {
         consider(best_share(q.linear[0] - ef * edge, q.square[0][0]), edge);
         consider(edge, best_share(q.linear[1] - ef * edge, q.square[1][1]));
       }

@@ -32,12 +32,14 @@ struct OnCurve {
   std::array<double, 2> weight{0, 0};
   double segment = 1;  // by how much the value grows from the first column to the second
 };
+// Of a value where the curve jumps, the nearer end of the jump, with the slope beyond it (none between two jumps).
 OnCurve at_value(const std::vector<EffectCurve>& curves, std::size_t curve, double value);
 
 struct CurveFit {
   std::vector<OnCurve> places;  // one for each effect that is fitted, in the order asked
   double left = 0;              // squared length of what is not explained
 };
+// Of a curve that jumps the fits are at an end of the jump or elsewhere, never between.
 CurveFit fit_one(const Products& products, const std::vector<EffectCurve>& curves, std::size_t curve);
 CurveFit fit_two(const Products& products, const std::vector<EffectCurve>& curves, std::size_t first,
                  std::size_t second);

@@ -93,25 +93,33 @@ RivalModel rival_model(const Diagnosis& d, const Settings& settings) {
   return rival;
 }
 
-// Models that a stage leaves open: rivals of the effect that has most of them, each in its place; the best single
-// effects where nothing is named.
-std::vector<Settings> open_models(const StageDiagnosis& stage) {
+// A model that a stage leaves open, and the candidate by which it differs from the others.
+struct OpenModel {
+  Settings settings;
+  std::size_t candidate;
+};
+
+// Rivals of the effect that has most of them, each in its place; the best single effects where nothing is named.
+std::vector<OpenModel> open_models(const StageDiagnosis& stage) {
   constexpr std::size_t kMostRivals = 4;
-  std::vector<Settings> models;
+  std::vector<OpenModel> models;
   const StageDecision& decision = stage.decision;
   if (decision.verdict == Verdict::ambiguous) {
     const auto most = std::ranges::max_element(decision.effects, {}, [](const NamedEffect& effect) {
       return effect.doubts.empty() ? effect.rivals.size() : 0;
     });
-    models = decision.models_of_rivals[static_cast<std::size_t>(most - decision.effects.begin())];
+    const auto place = static_cast<std::size_t>(most - decision.effects.begin());
+    for (const Settings& settings : decision.models_of_rivals[place])
+      models.push_back({settings, settings[place].candidate});
   } else if (decision.verdict == Verdict::unknown) {
-    for (const Model& single : decision.singles) models.push_back(settings_of(single.places));
+    for (const Model& single : decision.singles)
+      models.push_back({settings_of(single.places), single.places.front().curve});
   }
   if (models.size() > kMostRivals) models.resize(kMostRivals);
   return models;
 }
 
-std::vector<ProposedManoeuvre> next_manoeuvres(const Diagnosis& d) {
+void propose_next(Diagnosis& d) {
   // the stage with the largest gap among those that leave a choice
   const StageDiagnosis* open = nullptr;
   for (const StageDiagnosis& stage : d.stages) {
@@ -119,10 +127,14 @@ std::vector<ProposedManoeuvre> next_manoeuvres(const Diagnosis& d) {
     if (verdict != Verdict::ambiguous && verdict != Verdict::unknown) continue;
     if (open == nullptr || squared_gap(stage) > squared_gap(*open)) open = &stage;
   }
-  if (open == nullptr) return {};
+  if (open == nullptr) return;
   std::vector<RivalModel> rivals;
-  for (const Settings& settings : open_models(*open)) rivals.push_back(rival_model(d, settings));
-  if (rivals.size() < 2) return {};
+  std::vector<std::size_t> candidates;
+  for (const OpenModel& model : open_models(*open)) {
+    rivals.push_back(rival_model(d, model.settings));
+    candidates.push_back(model.candidate);
+  }
+  if (rivals.size() < 2) return;
 
   // a bin of what is left counts as noise: the discrepancy of its kind on top of the noise of its channel
   ProposalOptions options{std::vector<double>(diagnosis_channels().size(), 0), d.options.span_s};
@@ -132,7 +144,8 @@ std::vector<ProposedManoeuvre> next_manoeuvres(const Diagnosis& d) {
         options.sigma_of_channel[c] = std::hypot(
             stage.nominal_floor.sigma[c], stage.decision.best.model.likelihood.discrepancies.of_kind[kind_of(c)].sigma);
   options.threads = d.options.jobs;
-  return propose_manoeuvres(d.observations.robot, rivals, options);
+  d.next = propose_manoeuvres(d.observations.robot, rivals, options);
+  d.told_apart = std::move(candidates);
 }
 
 // Simulates the baseline's runs and takes off what they differ by.
@@ -222,7 +235,7 @@ Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& 
     widen_intervals(d.stages, prepared, predictor, options.seed);
     conclude(d);
     progress.begin("looking for the next manoeuvre", 0.98, 1, 1, predictor.roll_outs());
-    if (options.propose_next && options.ranks.rank == 0) d.next = next_manoeuvres(d);
+    if (options.propose_next && options.ranks.rank == 0) propose_next(d);
     progress.begin("done", 1, 1, 1, predictor.roll_outs());
   } catch (const Stopped&) {
     d.interrupted = progress.doing();

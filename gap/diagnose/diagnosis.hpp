@@ -53,6 +53,7 @@ struct Diagnosis {
   bool complete = false;                  // of all stages
   std::optional<std::size_t> largest_stage;  // of `stages`: the one that holds most of the gap, where there is one
   std::vector<ProposedManoeuvre> next;    // where a stage leaves a choice between models; gentlest that suffices first
+  std::vector<std::size_t> told_apart;    // the candidates between which `next` is to decide
   std::size_t roll_outs = 0;
   std::string interrupted;                // what was under way when it was stopped; empty: it is complete
 };

@@ -19,6 +19,9 @@ struct CurvePoint {
   double value;     // of the candidate
   int column;       // of EffectCurves::shifts; -1: the present value, which shifts nothing
   bool exact;       // was simulated at the full rate, not with twice the time step
+  // The effect does at once, somewhere between the point before and this one, what the two differ by: a command that is
+  // faster than a dead band or not. What is between them is at neither place.
+  bool jump = false;
 };
 
 struct EffectCurve {

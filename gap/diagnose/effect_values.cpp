@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "gap/diagnose/significance.hpp"
@@ -28,7 +29,7 @@ MatrixXd slopes_of_group(const StandingModel& standing, std::size_t group) {
     auto slope = result.col(static_cast<Index>(i));
     if (place.column[1] >= 0) slope += shifts.col(place.column[1]);
     if (place.column[0] >= 0) slope -= shifts.col(place.column[0]);
-    slope /= place.segment;
+    if (place.segment != 0) slope /= place.segment;
   }
   return result;
 }
@@ -48,7 +49,7 @@ OwnValue own_value(const EffectCurves& curves, const OnCurve& place, const Matri
   for (const CurvePoint& point : curves.curves[place.curve].points) {
     const auto column = static_cast<int>(std::ssize(curve.points));
     white.col(column) = point.column < 0 ? VectorXd::Zero(shifts.rows()) : VectorXd(shifts.col(point.column));
-    curve.points.push_back({point.value, column, point.exact});
+    curve.points.push_back({point.value, column, point.exact, point.jump});
   }
   white = whitener(std::move(white));
 
@@ -61,8 +62,22 @@ OwnValue own_value(const EffectCurves& curves, const OnCurve& place, const Matri
   const double offset = own.value - place.value;
   if (std::abs(offset) > kSamePlace * place.segment)
     return {offset, (shift_at(white, {&own, 1}) - shift_at(white, {&common, 1})).squaredNorm() / (offset * offset)};
+  if (common.segment == 0) return {0, 0};
   return {offset, (white.col(common.column[1]) - white.col(common.column[0])).squaredNorm() /
                       (common.segment * common.segment)};
+}
+
+// By `sigma`, but not beyond a jump of the curve; beside one its whole segment, as the jump may be anywhere in it.
+Interval interval_of(const EffectCurve& curve, const Candidate& candidate, double value, double sigma) {
+  Interval interval{value, std::max(candidate.min, value - kHalfWidth * sigma),
+                    std::min(candidate.max, value + kHalfWidth * sigma)};
+  for (std::size_t i = 1; i < curve.points.size(); ++i) {
+    const double a = curve.points[i - 1].value, b = curve.points[i].value;
+    if (!curve.points[i].jump) continue;
+    if (b <= value) interval.from = b == value ? a : std::max(interval.from, a);
+    if (a >= value) interval.to = a == value ? b : std::min(interval.to, b);
+  }
+  return interval;
 }
 
 // Spread between manoeuvres by the method of moments, and the variance of the mean with it.
@@ -80,11 +95,12 @@ RandomEffect random_effect(const std::vector<OwnValue>& own) {
   const double mean = sum / weights;
   double q = 0;
   for (const auto& [offset, information] : own) q += information * (offset - mean) * (offset - mean);
-  // groups that say next to nothing are no degrees of freedom: their effective number
-  const double freedom = weights * weights / squares - 1;
+  // manoeuvres that say next to nothing are no degrees of freedom: their effective number; but beside one that says all
+  // they count as one together, or the least of a misfit in them would be a spread of the value
+  const double manoeuvres = std::max(2.0, weights * weights / squares);
+  const double freedom = manoeuvres - 1;
   result.p_agree = p_of_squares(q, freedom);
-  const double excess = weights - squares / weights;
-  const double variance = excess > 0 ? std::max(0.0, (q - freedom) / excess) : 0;
+  const double variance = std::max(0.0, (q - freedom) / (weights * (1 - 1 / manoeuvres)));
   if (result.p_agree < kAgree) result.spread = std::sqrt(variance);
   double with_spread = 0;
   for (const auto& [offset, information] : own)
@@ -124,13 +140,11 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
     const Candidate& candidate = standing.curves.candidates[model.places[e].curve];
     const RandomEffect random = random_effect(own[e]);
     const auto i = static_cast<Index>(e);
-    const double sigma = std::sqrt(std::max(covariance(i, i), random.spread > 0 ? random.variance_of_mean : 0.0));
+    const double variance = information(i, i) > 0 ? covariance(i, i) : std::numeric_limits<double>::infinity();
+    const double sigma = std::sqrt(std::max(variance, random.spread > 0 ? random.variance_of_mean : 0.0));
     const double value = model.places[e].value;
-    values.push_back({{value, std::max(candidate.min, value - kHalfWidth * sigma),
-                       std::min(candidate.max, value + kHalfWidth * sigma)},
-                      random.spread,
-                      random.p_agree,
-                      trend(data, columns, i, value - candidate.present, left)});
+    values.push_back({interval_of(standing.curves.curves[model.places[e].curve], candidate, value, sigma),
+                      random.spread, random.p_agree, trend(data, columns, i, value - candidate.present, left)});
   }
   return values;
 }

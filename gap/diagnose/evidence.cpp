@@ -67,26 +67,23 @@ std::vector<bool> seen_in(const StageData& data, const StandingModel& standing) 
   return seen;
 }
 
-// The model without some effects, fitted again. What these data do not see keeps its value: what chance makes of it is
-// no difference between a model with and one without another effect.
-Model refit_without(const StageData& data, const StandingModel& standing, const std::vector<bool>& seen,
-                    const Places& without, const GroupVectors& beyond) {
+// The model fitted to these data. What they do not see keeps its value: what chance makes of it foretells nothing.
+Model refit_seen(const StageData& data, const StandingModel& standing, const std::vector<bool>& seen,
+                 const GroupVectors& beyond) {
   const std::vector<OnCurve>& places = standing.model.places;
   EffectSet fitted;
   std::vector<OnCurve> kept;
-  for (std::size_t e = 0; e < places.size(); ++e) {
-    if (std::ranges::count(without, e) > 0) continue;
+  for (std::size_t e = 0; e < places.size(); ++e)
     if (seen[e])
       fitted.push_back(places[e].curve);
     else
       kept.push_back(places[e]);
-  }
   GroupVectors shift = shift_of(standing.curves, kept);
-  if (without.empty())
-    for (std::size_t g = 0; g < shift.size(); ++g) shift[g] += beyond[g];
-  if (!fitted.empty()) return fit_model(data, standing.curves, fitted, shift, standing.model.likelihood.discrepancies);
+  for (std::size_t g = 0; g < shift.size(); ++g) shift[g] += beyond[g];
+  const Discrepancies& discrepancies = standing.model.likelihood.discrepancies;
+  if (!fitted.empty()) return fit_values(data, standing.curves, fitted, shift, discrepancies);
   Model model{std::move(kept), std::move(shift), false, {}};
-  model.likelihood = likelihood_of(data, rest_of(data, model), standing.model.likelihood.discrepancies);
+  model.likelihood = likelihood_with(data, rest_of(data, model), discrepancies);
   return model;
 }
 
@@ -169,6 +166,14 @@ struct SharesWithout {
 SharesWithout shares_without(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
                              std::span<const Places> left_out, unsigned threads) {
   const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
+  // What a model without an effect can do at its best is fitted to all: of runs that show another effect little, it
+  // would take that one to be what it lacks, and lose both where it is tested. All have the whole model's
+  // discrepancies: estimated anew, these could do what another effect does, and that would be gone, too.
+  const StageData all_data = data_of(view, passage, {});
+  std::vector<Model> models_without(left_out.size());
+  for_each_job(left_out.size(), threads,
+               [&](std::size_t s) { models_without[s] = values_without(all_data, standing, left_out[s]); });
+
   // of each fold: of the nominal model, of the whole model, and of the model without each set of effects
   std::vector<std::vector<Left>> left(folds.size());
   std::vector<VectorXd> shown(folds.size());
@@ -184,8 +189,8 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
       left[f].push_back(left_in(tested_data, whiteners, fitted_data, model, numbers_off));
     };
     add(nominal_model(fitted_data));
-    add(refit_without(fitted_data, standing, seen[f], {}, beyond));
-    for (const Places& without : left_out) add(refit_without(fitted_data, standing, seen[f], without, beyond));
+    add(refit_seen(fitted_data, standing, seen[f], beyond));
+    for (const Model& without : models_without) add(without);
   });
   std::vector<Left> sums = left.front();
   for (std::size_t f = 1; f < left.size(); ++f)

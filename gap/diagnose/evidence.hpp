@@ -50,8 +50,8 @@ std::vector<std::vector<PlacesOfPart>> places_held_out(const StageView& view, Pa
                                                        const StandingModel& standing, const Folds& folds,
                                                        unsigned threads);
 
-// Shares of the squared gap that a model takes off, each of its effects and sets of them: with them, less without them
-// and the others fitted again. By curves, on runs held out; at most 1.
+// Shares of the squared gap that a model takes off, each of its effects and sets of them: with them, fitted to the runs
+// that are not held out, less without them, the others fitted to all runs. By curves, on runs held out; at most 1.
 //
 // `beyond_numbers`, `of_kind` and `model_of_kind` have numbers of the description that are a little off in either model, as
 // the runs that are fitted to have them: what these explain as well is no share of an effect's.

@@ -196,26 +196,56 @@ GroupVectors beyond_curves(const EffectCurves& curves, const Model& model) {
   return less(model.shift, shift_of(curves, model.places));
 }
 
+namespace {
+// The curves of some effects, and what is fitted to them.
+struct FittedCurves {
+  const EffectCurves& all;
+  std::span<const std::size_t> effects;
+  const GroupVectors& beyond;
+  Selection selection;
+  GroupVectors target;
+  EffectSet numbers;  // of the selection
+
+  FittedCurves(const StageData& data, const EffectCurves& curves, std::span<const std::size_t> of,
+               const GroupVectors& and_beyond)
+      : all(curves),
+        effects(of),
+        beyond(and_beyond),
+        selection(selected(curves, of)),
+        target(beyond.empty() ? residuals_of(data) : less(residuals_of(data), beyond)) {
+    for (std::size_t e = 0; e < effects.size(); ++e) numbers.push_back(e);
+  }
+};
+
+// By generalised least squares.
+void fit_places(const StageData& data, const FittedCurves& fitted, const Discrepancies& discrepancies, Model& model) {
+  const Products products = products_of(whiteners_of(data, discrepancies), fitted.selection.shifts, fitted.target);
+  model.places.clear();
+  for (const OnCurve& place : fit_together(products, fitted.selection.curves, fitted.numbers).places)
+    model.places.push_back(in_whole(place, fitted.selection, fitted.effects));
+  model.shift = shift_of(fitted.all, model.places);
+  if (fitted.beyond.empty()) return;
+  for (std::size_t g = 0; g < model.shift.size(); ++g) model.shift[g] += fitted.beyond[g];
+}
+}  // namespace
+
+Model fit_values(const StageData& data, const EffectCurves& curves, std::span<const std::size_t> effects,
+                 const GroupVectors& beyond, const Discrepancies& discrepancies) {
+  Model model;
+  fit_places(data, {data, curves, effects, beyond}, discrepancies, model);
+  model.likelihood = likelihood_with(data, rest_of(data, model), discrepancies);
+  return model;
+}
+
 Model fit_model(const StageData& data, const EffectCurves& curves, std::span<const std::size_t> effects,
                 const GroupVectors& beyond, const Discrepancies& start) {
-  const Selection selection = selected(curves, effects);
-  const GroupVectors target = beyond.empty() ? residuals_of(data) : less(residuals_of(data), beyond);
-  EffectSet numbers;
-  for (std::size_t e = 0; e < effects.size(); ++e) numbers.push_back(e);
-
-  // values by generalised least squares, then the discrepancies that suit what they leave
+  const FittedCurves fitted(data, curves, effects, beyond);
+  // values, then the discrepancies that suit what they leave
   const auto fitted_from = [&](const Discrepancies& from) {
     Model model;
     model.likelihood.discrepancies = from;
     for (int round = 0; round < kFitRounds; ++round) {
-      const Products products =
-          products_of(whiteners_of(data, model.likelihood.discrepancies), selection.shifts, target);
-      model.places.clear();
-      for (const OnCurve& place : fit_together(products, selection.curves, numbers).places)
-        model.places.push_back(in_whole(place, selection, effects));
-      model.shift = shift_of(curves, model.places);
-      if (!beyond.empty())
-        for (std::size_t g = 0; g < target.size(); ++g) model.shift[g] += beyond[g];
+      fit_places(data, fitted, model.likelihood.discrepancies, model);
       model.likelihood = likelihood_of(data, rest_of(data, model), model.likelihood.discrepancies);
     }
     return model;

@@ -49,6 +49,9 @@ EffectSet effects_of(const Model& model);
 // nothing. Discrepancies are estimated from `start` on, and from none: the likelier fit of both.
 Model fit_model(const StageData& data, const EffectCurves& curves, std::span<const std::size_t> effects,
                 const GroupVectors& beyond, const Discrepancies& start);
+// The same with given discrepancies, which stay as they are.
+Model fit_values(const StageData& data, const EffectCurves& curves, std::span<const std::size_t> effects,
+                 const GroupVectors& beyond, const Discrepancies& discrepancies);
 // What a simulated model shifts beyond the sum of its curves.
 GroupVectors beyond_curves(const EffectCurves& curves, const Model& model);
 

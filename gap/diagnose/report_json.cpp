@@ -227,7 +227,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   for (const ProposedManoeuvre& next : d.next)
     json["next_manoeuvres"].push_back({{"manoeuvre", next.manoeuvre},
                                        {"world", next.world},
-                                       {"separates", candidate_names(d, to_be_told_apart(d))},
+                                       {"separates", candidate_names(d, d.told_apart)},
                                        {"expected_score", number(next.expected_score)},
                                        {"suffices", next.suffices},
                                        {"duration_s", number(next.duration_s)},

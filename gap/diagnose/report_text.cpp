@@ -115,7 +115,7 @@ std::string diagnosis_text(const Diagnosis& d) {
     add_where(screen, d, d.stages[*main]);
   if (!d.next.empty()) {
     screen.add("");
-    screen.add(fmt::format("To tell {} apart: {}", enumeration(candidate_names(d, to_be_told_apart(d))),
+    screen.add(fmt::format("To tell {} apart: {}", enumeration(candidate_names(d, d.told_apart)),
                            advice_in_words(d.next)));
   }
   if (const RobotFile robot = robot_file(d); !robot.fault.empty())

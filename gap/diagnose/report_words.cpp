@@ -133,20 +133,6 @@ std::string names_in_words(const Diagnosis& d, const NamesFound& names) {
   return enumeration(parts);
 }
 
-std::vector<std::size_t> to_be_told_apart(const Diagnosis& d) {
-  std::vector<std::size_t> open;
-  for (const std::vector<std::size_t>& set : names_found(d).ambiguous_sets)
-    for (const std::size_t candidate : set) add_once(open, candidate);
-  if (!open.empty()) return open;
-  for (const StageDiagnosis& stage : d.stages)
-    for (const NamedEffect& effect : stage.decision.effects) {
-      if (effect.doubts.empty()) continue;
-      add_once(open, effect.candidate);
-      for (const std::size_t rival : effect.rivals) add_once(open, rival);
-    }
-  return open;
-}
-
 std::vector<std::size_t> stages_with_gap(const Diagnosis& d) {
   std::vector<std::size_t> stages;
   for (std::size_t s = 0; s < d.stages.size(); ++s)

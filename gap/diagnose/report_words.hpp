@@ -40,10 +40,6 @@ std::vector<std::string> partner_names(const Diagnosis& d, const StageDiagnosis&
 // "drive_lag and one of com_forward or ground_slope".
 std::string names_in_words(const Diagnosis& d, const NamesFound& names);
 
-// Candidates that the next manoeuvre is to tell apart: members of the ambiguous sets; where there are none, effects without a
-// name and their rivals.
-std::vector<std::size_t> to_be_told_apart(const Diagnosis& d);
-
 // Of Diagnosis::stages: those that have a gap, largest first.
 std::vector<std::size_t> stages_with_gap(const Diagnosis& d);
 // The one that holds most of the gap; without any gap the first one. Empty where no stage was diagnosed.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -14,6 +15,11 @@ constexpr double kNearest = 0.1, kFarthest = 0.5, kShifted_floors = 6;
 // A side that shifts by as many times more than that is round a bend: it is sought nearer.
 constexpr double kRoundABend = 2;
 constexpr int kTries = 4;
+// One that is so near after all tries, and still shifts by this part of all that the effect does, is beyond a jump.
+constexpr double kJump = 1.0 / 3;
+// Where it does no more, it shifts less than this; how near its next jump is found.
+constexpr double kSame_floors = 1;
+constexpr int kHalvingsToNext = 6;
 constexpr double kStraightTo = 0.5;  // of the way from neutral: a curve has to come back to what it is there
 constexpr int kMostRounds = 3;
 constexpr double kGained = 0.5;  // deviance that a round must gain to be followed by another one
@@ -38,6 +44,7 @@ struct Side {
   double share;
   double value = 0;
   GroupVectors shift{};  // of the model here
+  bool jumps = false;    // between here and the model, or the side that is nearer
 };
 
 double value_at(const EffectCurves& curves, const Model& model, const Side& side) {
@@ -51,6 +58,32 @@ GroupVectors difference(const GroupVectors& a, const GroupVectors& b) {
   GroupVectors result = a;
   for (std::size_t g = 0; g < a.size(); ++g) result[g] -= b[g];
   return result;
+}
+
+// Where a side shifts nothing: as far as that holds, by halves, and what is next there.
+void look_beyond_flat(const StageData& data, const EffectCurves& curves, const Simulate& simulate, const Model& model,
+                      double length, Side& flat, std::vector<Side>& more) {
+  const Candidate& candidate = curves.candidates[model.places[flat.place].curve];
+  const auto moved_by = [&](const Side& side) { return length_in_noise(data, difference(side.shift, model.shift)); };
+  if (flat.jumps || length < kShifted_floors || moved_by(flat) > kSame_floors) return;
+  const auto simulated_at = [&](double value) {
+    std::vector<Settings> asked{settings_of(model.places)};
+    asked.front()[flat.place].value = value;
+    return Side{flat.place, flat.outward, 0, value, simulate(asked, Fidelity::every_run).front()};
+  };
+  const double end = model.places[flat.place].value > candidate.present ? candidate.max : candidate.min;
+  Side next = simulated_at(flat.outward ? end : candidate.present);
+  if (moved_by(next) <= kSame_floors) {
+    if (flat.outward) flat = std::move(next);
+    return;
+  }
+  for (int i = 0; i < kHalvingsToNext; ++i) {
+    Side between = simulated_at((flat.value + next.value) / 2);
+    Side& replaced = moved_by(between) <= kSame_floors ? flat : next;
+    replaced = std::move(between);
+  }
+  next.jumps = moved_by(next) > kJump * length;
+  more.push_back(std::move(next));
 }
 
 // Both sides of each value, but for the outer one of a value at the end of its range.
@@ -76,17 +109,23 @@ std::vector<Side> to_either_side(const StageData& data, const EffectCurves& curv
     }
     std::vector<GroupVectors> simulated = simulate(asked, Fidelity::every_run);
     std::vector<std::size_t> bent;
+    const bool is_last = i + 1 == kTries;
     for (std::size_t a = 0; a < asked.size(); ++a) {
       Side& side = sides[to_seek[a]];
       side.shift = std::move(simulated[a]);
       const double moved = length_in_noise(data, difference(side.shift, model.shift));
       const double expected = std::max(kShifted_floors, side.share * lengths[side.place]);
       if (moved <= kRoundABend * expected) continue;
+      side.jumps = is_last && moved > kJump * lengths[side.place];
       side.share *= std::sqrt(expected / moved);
       bent.push_back(to_seek[a]);
     }
     to_seek = std::move(bent);
   }
+
+  std::vector<Side> next;
+  for (Side& side : sides) look_beyond_flat(data, curves, simulate, model, lengths[side.place], side, next);
+  std::ranges::move(next, std::back_inserter(sides));
   return sides;
 }
 
@@ -98,15 +137,30 @@ std::vector<Known> beside_others(const EffectCurves& curves, const Model& model,
   const double end = value > present ? candidate.max : candidate.min;
   const Known here{value, shift_of(curves, {&model.places[place], 1})};
   std::vector<Known> points{here};
-  for (const Side& side : sides) {
-    if (side.place != place) continue;
-    Known known{side.value, here.shift};
-    for (std::size_t g = 0; g < known.shift.size(); ++g) known.shift[g] += side.shift[g] - model.shift[g];
-    const double straight_to = side.outward ? end : present + kStraightTo * (value - present);
-    if (straight_to != side.value) points.push_back(on_line(here, known, straight_to));
-    points.push_back(std::move(known));
+  for (const bool outward : {false, true}) {
+    std::vector<Known> way{here};
+    bool jumps = false;               // the last one
+    for (const Side& side : sides) {  // of one direction, the nearer first
+      if (side.place != place || side.outward != outward) continue;
+      way.push_back({side.value, here.shift});
+      for (std::size_t g = 0; g < here.shift.size(); ++g) way.back().shift[g] += side.shift[g] - model.shift[g];
+      jumps = side.jumps;
+    }
+    if (way.size() < 2) continue;
+    const double straight_to = outward ? end : present + kStraightTo * (value - present);
+    const Known &last = way.back(), &before = way[way.size() - 2];
+    const double to_last = std::abs(last.value - value);
+    if (to_last < std::abs(straight_to - value))
+      way.push_back(jumps ? Known{straight_to, last.shift} : on_line(before, last, straight_to));
+    std::ranges::move(way.begin() + 1, way.end(), std::back_inserter(points));
   }
   return points;
+}
+
+// Between a point and the one next to it on the way to `from`.
+void mark_jump(EffectCurve& curve, double from, double value) {
+  const auto point = std::ranges::find(curve.points, value, &CurvePoint::value);
+  (value > from ? point : point + 1)->jump = true;
 }
 
 // Points of the curves where the model's effects stand, instead of those that they have alone on this side of neutral.
@@ -125,6 +179,9 @@ void stand(const StageData& data, EffectCurves& curves, const Simulate& simulate
                   [&](const CurvePoint& point) { return (point.value - present) * (place.value - present) > 0; });
   }
   insert_points(curves, data, points, shifts, Fidelity::every_run);
+  for (const Side& side : sides)
+    if (side.jumps)
+      mark_jump(curves.curves[model.places[side.place].curve], model.places[side.place].value, side.value);
   for (OnCurve& place : model.places) place = at_value(curves.curves, place.curve, place.value);
 }
 
@@ -147,6 +204,30 @@ StandingModel fit_side_by_side(const StageData& data, EffectCurves curves, const
     if (gained <= kGained) break;
   }
   return {std::move(model), std::move(curves)};
+}
+
+namespace {
+EffectSet others_than(const Model& model, std::span<const std::size_t> places) {
+  EffectSet others;
+  for (std::size_t i = 0; i < model.places.size(); ++i)
+    if (std::ranges::count(places, i) == 0) others.push_back(model.places[i].curve);
+  return others;
+}
+}  // namespace
+
+Model fit_without(const StageData& data, const StandingModel& standing, std::span<const std::size_t> places) {
+  const EffectSet others = others_than(standing.model, places);
+  if (others.empty()) return nominal_model(data);
+  return fit_model(data, standing.curves, others, {}, standing.model.likelihood.discrepancies);
+}
+
+Model values_without(const StageData& data, const StandingModel& standing, std::span<const std::size_t> places) {
+  const EffectSet others = others_than(standing.model, places);
+  const Discrepancies& discrepancies = standing.model.likelihood.discrepancies;
+  if (!others.empty()) return fit_values(data, standing.curves, others, {}, discrepancies);
+  Model nominal = nominal_model(data);
+  nominal.likelihood = likelihood_with(data, residuals_of(data), discrepancies);
+  return nominal;
 }
 
 }  // namespace kenaf::gap

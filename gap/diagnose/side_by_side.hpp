@@ -23,4 +23,9 @@ struct StandingModel {
 // effect at its present value stays as it is.
 StandingModel fit_side_by_side(const StageData& data, EffectCurves curves, const Simulate& simulate, Model model);
 
+// The model without the effects at `places`, the others fitted again to `data`, where they stand.
+Model fit_without(const StageData& data, const StandingModel& standing, std::span<const std::size_t> places);
+// With the whole model's discrepancies.
+Model values_without(const StageData& data, const StandingModel& standing, std::span<const std::size_t> places);
+
 }  // namespace kenaf::gap

@@ -70,19 +70,12 @@ Model take_effects(const StageData& data, EffectCurves& curves, const std::vecto
   return best;
 }
 
-Model without_effect(const StageData& data, const StandingModel& standing, std::size_t place) {
-  EffectSet others = effects_of(standing.model);
-  others.erase(others.begin() + static_cast<std::ptrdiff_t>(place));
-  if (others.empty()) return nominal_model(data);
-  return fit_model(data, standing.curves, others, {}, standing.model.likelihood.discrepancies);
-}
-
 // Without effects that gain too little where they stand, the weakest first.
 StandingModel without_weak_effects(const StageData& data, const EffectCurves& curves, const Simulate& simulate,
                                    StandingModel best, const DecisionSettings& settings) {
   while (best.model.places.size() > 1) {
     std::vector<Model> without;
-    for (std::size_t i = 0; i < best.model.places.size(); ++i) without.push_back(without_effect(data, best, i));
+    for (std::size_t i = 0; i < best.model.places.size(); ++i) without.push_back(fit_without(data, best, {{i}}));
     const Model& weakest = *std::ranges::min_element(without, {}, [](const Model& model) { return model.deviance(); });
     if (weakest.deviance() - best.model.deviance() >= settings.evidence) break;
     best = fit_side_by_side(data, curves, simulate,
@@ -118,7 +111,7 @@ void describe_effects(StageDecision& d, const EffectCurves& curves, const Simula
   d.models_of_rivals.clear();
   const std::vector<EffectValue> values = effect_values(d.data, d.best);
   for (std::size_t i = 0; i < d.best.model.places.size(); ++i) {
-    const Model without = without_effect(d.data, d.best, i);
+    const Model without = fit_without(d.data, d.best, {{i}});
     const double evidence = without.deviance() - d.best.model.deviance();
     NamedEffect effect{d.best.model.places[i].curve, values[i], evidence, {}, {}, false, {}, {}};
     effect.ordinarily_off =

@@ -351,10 +351,12 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   };
   if (std::optional<StageDiagnosis> again = rival_with_name()) stage = std::move(*again);
 
-  // those alone that have a name
+  // those alone that have a name, unless they need the others to stand out
   const std::vector<std::size_t> named = places_with_name(stage.decision);
-  if (!named.empty() && named.size() < stage.decision.effects.size())
-    stage = decided_again(with_effects_alone(stage.decision, named));
+  if (!named.empty() && named.size() < stage.decision.effects.size()) {
+    StageDiagnosis alone = decided_again(with_effects_alone(stage.decision, named));
+    if (places_with_name(alone.decision).size() == named.size()) stage = std::move(alone);
+  }
   const StageDecision& decision = stage.decision;
   const Model& best = decision.best.model;
 

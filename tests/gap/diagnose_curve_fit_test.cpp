@@ -105,6 +105,38 @@ TEST_CASE("A bent curve: the nearest place on it") {
   CHECK((shift_at(at.curves.shifts[0], {&place, 1}) - Eigen::Vector2d(2, 1)).norm() < 1e-12);
 }
 
+TEST_CASE("A curve that jumps is fitted at an end of the jump, by itself or beside another one") {
+  // nothing up to 1, all of it from 1.1 on, and a little more at 2
+  const std::vector<std::pair<double, Eigen::Vector2d>> points{{0, {0, 0}}, {1, {0, 0}}, {1.1, {10, 0}}, {2, {10, 1}}};
+  const auto fitted = [&](const Eigen::Vector2d& gap) {
+    Bent at(points, gap);
+    at.curves.curves[0].points[2].jump = true;
+    return fit_one(at.products, at.curves.curves, 0);
+  };
+  CHECK(fitted({6, -1}).places[0].value == Approx(1.1));
+  CHECK(fitted({6, -1}).left == Approx(17));  // 4^2 + 1^2
+  CHECK(fitted({4, 0}).places[0].value <= 1);
+  CHECK(fitted({4, 0}).left == Approx(16));
+  CHECK(fitted({6, 0.5}).places[0].value == Approx(1.55));
+  CHECK(fitted({6, 0.5}).left == Approx(16));
+
+  // the slope at an end of the jump is that of the other side of it
+  Bent at(points, {6, -1});
+  at.curves.curves[0].points[2].jump = true;
+  const OnCurve place = at_value(at.curves.curves, 0, 1.08);
+  CHECK(place.value == Approx(1.1));
+  CHECK(place.segment == Approx(0.9));
+
+  // the first effect jumps from 2.5 to 10, and 7 is asked: at 10 the other one makes up for 1 of 3, which is all it can
+  const Whole a = world().direction(0);
+  Fitting two({10 * a, a}, 7 * a + 0.5 * world().direction(1));
+  two.curves.curves[0].points.back().jump = true;
+  const CurveFit fit = fit_two(two.products, two.curves.curves, 0, 1);
+  CHECK(fit.places[0].value == Approx(1));
+  CHECK(fit.places[1].value == Approx(-1));
+  CHECK(fit.left == Approx(2 * 2 + 0.5 * 0.5));
+}
+
 TEST_CASE("Two effects at 60 degrees are told apart by both inner products") {
   const Whole a = world().direction(0), b = world().direction(0) / 2 + std::sqrt(0.75) * world().direction(1);
   const Fitting at({20 * a, 20 * b}, 6 * a - 8 * b + 2 * world().direction(2));

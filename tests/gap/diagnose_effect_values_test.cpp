@@ -129,6 +129,22 @@ TEST_CASE("What a value differs by from manoeuvre to manoeuvre is found, and not
   CHECK(covered >= 50);
 }
 
+// The first manoeuvre knows the value of 0.5 to 1 / 200; the second one, which it moves by a hundredth of that, has a
+// misfit of 4 sigma along it and would have it at the end of its range, 1.5 away.
+TEST_CASE("A manoeuvre that hardly shows an effect says little of how far manoeuvres differ on its value") {
+  const Eigen::Index first = world().bins_of_manoeuvre();
+  Whole strong = slow_motion(world(), 1), weak = strong;
+  strong.tail(first).setZero();
+  weak.head(first).setZero();
+  const Whole effect = 200 / strong.norm() * strong + 2 / weak.norm() * weak;
+  const StageData data = world().data(0.5 * effect - 4 / weak.norm() * weak);
+  const EffectValue value = effect_values(data, world().fitted({effect}, data, {0}))[0];
+  CHECK(value.value.value == Approx(0.5).margin(1e-3));
+  // q = 1.5^2 x 2^2 = 9 of one degree of freedom, over half of 200^2; some of it is taken for a discrepancy
+  CHECK(value.spread == Approx(std::sqrt(8 / 2e4)).epsilon(0.2));
+  CHECK(value.value.to - value.value.value < 0.06);
+}
+
 TEST_CASE("What grows from nothing in the course of manoeuvres is seen as a trend, and nothing where the value stays") {
   // evenly from 0 to 0.8: in the first half 0.2 in the mean, in the second one 0.6
   const LinearWorld world({8, 2, 4});

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 
+#include "gap/diagnose/effect_values.hpp"
 #include "tests/gap/linear_world.hpp"
 
 using namespace kenaf;
@@ -116,4 +117,33 @@ TEST_CASE("A side that is round a bend is sought nearer, so that the fit gets to
   const StandingModel standing = stood(stall, {{0, 0.6}}, {{0, 0.55}});
   CHECK(standing.model.places[0].value == Approx(0.6).margin(3e-3));
   CHECK(length_between(standing.curves, 0, 0.599, 0.6) == Approx(0.001 * 210).margin(0.02));
+}
+
+// A dead band: commands at 0.5 no longer move a track from there on, those at 0.8 from there on. Some other effect does
+// a tenth of it less.
+TEST_CASE("An effect that jumps stands on one side of the jump, and its interval reaches from jump to jump") {
+  const auto dead_band = [](double value) { return value > 0.8 ? 70 : value > 0.5 ? 40 : 0; };
+  for (const double from : {0.501, 0.6, 0.79}) {
+    CAPTURE(from);
+    const StageData data = world().data(0.9 * 40 * world().direction(0));
+    const LinearWorld::Moved by = alone(dead_band);
+    const EffectCurves curves = world().curves(by, 1, data);
+    const StandingModel standing =
+        fit_side_by_side(data, curves, world().simulate(by), simulated(data, curves, by, {{0, from}}));
+    const double value = standing.model.places[0].value;
+    CHECK(value > 0.5);
+    CHECK(value <= 0.8);
+    CHECK(length_in_noise(data, rest_of(data, standing.model)) == Approx(4).margin(1e-6));
+    // what a fit to other data takes from the curve is what the robot does at that value
+    const OnCurve fitted = fit_one(products_of(whiteners_of(data, no_discrepancy()), standing.curves.shifts,
+                                               world().by_group(34 * world().direction(0))),
+                                   standing.curves.curves, 0)
+                               .places.front();
+    CHECK(dead_band(fitted.value) == 40);
+    const Interval interval = effect_values(data, standing)[0].value;
+    CHECK(interval.from == Approx(0.5).margin(0.01));
+    CHECK(interval.from <= 0.5);
+    CHECK(interval.to == Approx(0.8).margin(0.01));
+    CHECK(interval.to >= 0.8);
+  }
 }

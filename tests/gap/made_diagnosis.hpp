@@ -167,6 +167,7 @@ inline gap::Diagnosis made_ambiguous() {
   turn.risk.largest_tilt_rad = 0.035;
   gap::ProposedManoeuvre straight{"straight", "flat", 6, 0.3, false, true, gap::Gentleness::flat_driving, {}};
   d.next = {turn, straight};
+  d.told_apart = {com_forward, ground_slope};
   return d;
 }
 

@@ -200,7 +200,7 @@ std::string what_next(const Diagnosis& d) {
   if (!robot.fault.empty())
     items = {fmt::format("No robot.toml was written, as the values together make no robot: {}.", escaped(robot.fault))};
   if (!d.next.empty())
-    items.push_back(fmt::format("To tell {} apart: {}.", escaped(enumeration(candidate_names(d, to_be_told_apart(d)))),
+    items.push_back(fmt::format("To tell {} apart: {}.", escaped(enumeration(candidate_names(d, d.told_apart))),
                                 escaped(advice_in_words(d.next))));
   else if (d.verdict == Verdict::ambiguous)
     items.emplace_back("Drive a manoeuvre in which they would differ, add its runs to the dataset and diagnose again.");

@@ -98,7 +98,7 @@ std::string next_section(const Diagnosis& d) {
                    ? "It was not worked out before the diagnosis ended."
                    : "These runs leave no choice between effects that a manoeuvre could decide. Any manoeuvre that "
                      "is not in this dataset is a test of the verdict.");
-  html += paragraph(fmt::format("It is to tell {} apart. {}.", enumeration(candidate_names(d, to_be_told_apart(d))),
+  html += paragraph(fmt::format("It is to tell {} apart. {}.", enumeration(candidate_names(d, d.told_apart)),
                                 with_capital(advice_in_words(d.next))));
   html += paragraph(
       "Score: by how many standard deviations the two that are hardest to tell apart would differ in one run. Risks "
