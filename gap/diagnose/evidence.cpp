@@ -81,9 +81,14 @@ Model refit_seen(const StageData& data, const StandingModel& standing, const std
   GroupVectors shift = shift_of(standing.curves, kept);
   for (std::size_t g = 0; g < shift.size(); ++g) shift[g] += beyond[g];
   const Discrepancies& discrepancies = standing.model.likelihood.discrepancies;
-  if (!fitted.empty()) return fit_values(data, standing.curves, fitted, shift, discrepancies);
-  Model model{std::move(kept), std::move(shift), false, {}};
-  model.likelihood = likelihood_with(data, rest_of(data, model), discrepancies);
+  Model model;
+  if (fitted.empty()) {
+    model.shift = std::move(shift);
+    model.likelihood = likelihood_with(data, rest_of(data, model), discrepancies);
+  } else {
+    model = fit_values(data, standing.curves, fitted, shift, discrepancies);
+  }
+  model.places.insert(model.places.end(), kept.begin(), kept.end());
   return model;
 }
 
@@ -157,14 +162,45 @@ Left left_in(const StageData& tested, const std::vector<Whitener>& whiteners, co
   return left;
 }
 
-// What the whole model takes off the stage, and what it does more than without each of `left_out`, in that order.
-struct SharesWithout {
-  double model;
-  std::vector<HeldOutShares::OfEffect> left_out;
+// The model without some effects, the others at its values.
+Model others_of(const StandingModel& standing, const Model& model, const Places& without) {
+  Model others;
+  for (std::size_t i = 0; i < model.places.size(); ++i)
+    if (std::ranges::none_of(
+            without, [&](std::size_t place) { return standing.model.places[place].curve == model.places[i].curve; }))
+      others.places.push_back(model.places[i]);
+  others.shift = shift_of(standing.curves, others.places);
+  others.likelihood.discrepancies = model.likelihood.discrepancies;
+  return others;
+}
+
+// What models leave of all that is held out.
+struct LeftOfFolds {
+  Left nominal, whole;
+  // Of each set of effects without which the model is asked for: the others fitted again, or at the whole model's
+  // values.
+  struct Without {
+    Left fitted, held;
+  };
+  std::vector<Without> without;
+  std::vector<VectorXd> shown;          // of each fold, evidence_expected() of the others
+  std::vector<std::vector<bool>> seen;  // likewise, seen_in()
+
+  LeftOfFolds& operator+=(const LeftOfFolds& more) {
+    nominal += more.nominal;
+    whole += more.whole;
+    for (std::size_t s = 0; s < without.size(); ++s) {
+      without[s].fitted += more.without[s].fitted;
+      without[s].held += more.without[s].held;
+    }
+    shown.insert(shown.end(), more.shown.begin(), more.shown.end());
+    seen.insert(seen.end(), more.seen.begin(), more.seen.end());
+    return *this;
+  }
 };
 
-SharesWithout shares_without(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
-                             std::span<const Places> left_out, unsigned threads) {
+LeftOfFolds left_of_folds(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
+                          std::span<const Places> left_out, unsigned threads) {
   const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
   // What a model without an effect can do at its best is fitted to all: of runs that show another effect little, it
   // would take that one to be what it lacks, and lose both where it is tested. All have the whole model's
@@ -174,69 +210,82 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
   for_each_job(left_out.size(), threads,
                [&](std::size_t s) { models_without[s] = values_without(all_data, standing, left_out[s]); });
 
-  // of each fold: of the nominal model, of the whole model, and of the model without each set of effects
-  std::vector<std::vector<Left>> left(folds.size());
-  std::vector<VectorXd> shown(folds.size());
-  std::vector<std::vector<bool>> seen(folds.size());
+  std::vector<LeftOfFolds> left(folds.size());
   for_each_job(folds.size(), threads, [&](std::size_t f) {
     const StageData tested_data = data_of(view, passage, UsedParts::of(folds[f]));
     const StageData fitted_data = folds.size() < 2 ? tested_data : data_of(view, passage, UsedParts::without(folds[f]));
-    shown[f] = evidence_expected(fitted_data, standing);
-    seen[f] = seen_in(fitted_data, standing);
     const std::vector<Whitener> whiteners = whiteners_of_means(tested_data);
     const double numbers_off = standing.model.likelihood.discrepancies.numbers_off;
-    const auto add = [&](const Model& model) {
-      left[f].push_back(left_in(tested_data, whiteners, fitted_data, model, numbers_off));
+    const auto left_by = [&](const Model& model) {
+      return left_in(tested_data, whiteners, fitted_data, model, numbers_off);
     };
-    add(nominal_model(fitted_data));
-    add(refit_seen(fitted_data, standing, seen[f], beyond));
-    for (const Model& without : models_without) add(without);
+    const std::vector<bool> seen = seen_in(fitted_data, standing);
+    const Model whole = refit_seen(fitted_data, standing, seen, beyond);
+    left[f] = {
+        left_by(nominal_model(fitted_data)), left_by(whole), {}, {evidence_expected(fitted_data, standing)}, {seen}};
+    for (std::size_t s = 0; s < left_out.size(); ++s)
+      left[f].without.push_back({left_by(models_without[s]), left_by(others_of(standing, whole, left_out[s]))});
   });
-  std::vector<Left> sums = left.front();
-  for (std::size_t f = 1; f < left.size(); ++f)
-    for (std::size_t m = 0; m < sums.size(); ++m) sums[m] += left[f][m];
+  LeftOfFolds sum = std::move(left.front());
+  for (std::size_t f = 1; f < left.size(); ++f) sum += left[f];
+  return sum;
+}
+
+// What the whole model takes off the stage, and what it does more than without each of `left_out`, in that order.
+struct SharesWithout {
+  double model;
+  std::vector<HeldOutShares::OfEffect> left_out;
+};
+
+SharesWithout shares_without(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
+                             std::span<const Places> left_out, unsigned threads) {
+  const LeftOfFolds left = left_of_folds(view, passage, standing, folds, left_out, threads);
 
   // of the stage each kind by its own gap; of a kind alone by its rms
-  const KindSquares& before = sums[0].by_effects;
+  const KindSquares& before = left.nominal.by_effects;
   const KindSquares noise{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
   const std::vector<double> weights = kind_weights(before, noise);
   const auto of_stage = [&](const KindSquares& squares) {
     return explained_share(weighted_rms(before, weights), weighted_rms(squares, weights), 1);
   };
-  const auto of_kind = [&](std::size_t model, std::size_t kind) {
+  const auto of_kind = [&](const Left& model, std::size_t kind) {
     const auto rms = [&](const KindSquares& squares) { return std::sqrt(squares.sum[kind] / squares.bins[kind]); };
-    return explained_share(rms(before), rms(sums[model].with_numbers), 1);
+    return explained_share(rms(before), rms(model.with_numbers), 1);
   };
-  // others that leave more than there was, as they stand beside what is not there, explain nothing
-  const auto more = [](double with, double without) { return std::max(0.0, with) - std::max(0.0, without); };
-  SharesWithout shares{of_stage(sums[1].by_effects), {}};
+
+  SharesWithout shares{of_stage(left.whole.by_effects), {}};
   for (std::size_t s = 0; s < left_out.size(); ++s) {
-    const Left& without = sums[2 + s];
-    HeldOutShares::OfEffect share{more(shares.model, of_stage(without.by_effects)),
-                                  more(of_stage(sums[1].with_numbers), of_stage(without.with_numbers)),
-                                  0,
-                                  0,
-                                  0,
-                                  std::numeric_limits<double>::infinity()};
-    for (const VectorXd& of_fold : shown)
+    // More than either model without it: others fitted to what they cannot do may lose what they did. Others that leave
+    // more than there was, as they stand beside what is not there, explain nothing.
+    const auto more_than_without = [&](const auto& explained) {
+      const LeftOfFolds::Without& without = left.without[s];
+      const double by_others = std::max({0.0, explained(without.fitted), explained(without.held)});
+      return std::max(0.0, explained(left.whole)) - by_others;
+    };
+    HeldOutShares::OfEffect share;
+    share.of_stage = more_than_without([&](const Left& by) { return of_stage(by.by_effects); });
+    share.beyond_numbers = more_than_without([&](const Left& by) { return of_stage(by.with_numbers); });
+    share.model_of_stage = shares.model;
+    share.shown_by_others = std::numeric_limits<double>::infinity();
+    for (const VectorXd& of_fold : left.shown)
       share.shown_by_others = std::min(share.shown_by_others, of_fold[static_cast<Index>(left_out[s].front())]);
     // most of all that is there, noise included: of a gap hardly larger than noise chance takes off all
     double most = -std::numeric_limits<double>::infinity();
     for (std::size_t kind = 0; kind < weights.size(); ++kind) {
       if (before.bins[kind] == 0 || weights[kind] == 0) continue;
-      const double taken = more(of_kind(1, kind), of_kind(2 + s, kind));
+      const double taken = more_than_without([&](const Left& by) { return of_kind(by, kind); });
       const double beyond_noise = 1 - before.bins[kind] / before.sum[kind];
       if (taken * beyond_noise <= most) continue;
       most = taken * beyond_noise;
       share.of_kind = taken;
       share.kind = kind;
-      share.model_of_kind = of_kind(1, kind);
+      share.model_of_kind = of_kind(left.whole, kind);
     }
     // a value that the others do not see, they do not foretell
     const auto is_seen = [&](const std::vector<bool>& of_fold) {
       return std::ranges::all_of(left_out[s], [&](std::size_t place) { return of_fold[place]; });
     };
-    if (!std::ranges::all_of(seen, is_seen)) share.of_stage = share.beyond_numbers = share.of_kind = 0;
+    if (!std::ranges::all_of(left.seen, is_seen)) share.of_stage = share.beyond_numbers = share.of_kind = 0;
     shares.left_out.push_back(share);
   }
   return shares;

@@ -51,7 +51,8 @@ std::vector<std::vector<PlacesOfPart>> places_held_out(const StageView& view, Pa
                                                        unsigned threads);
 
 // Shares of the squared gap that a model takes off, each of its effects and sets of them: with them, fitted to the runs
-// that are not held out, less without them, the others fitted to all runs. By curves, on runs held out; at most 1.
+// that are not held out, less without them, the others as they are or fitted again to all runs, whichever takes off more. By
+// curves, on runs held out; at most 1.
 //
 // `beyond_numbers`, `of_kind` and `model_of_kind` have numbers of the description that are a little off in either model, as
 // the runs that are fitted to have them: what these explain as well is no share of an effect's.
@@ -64,6 +65,7 @@ struct HeldOutShares {
     // Deviance that the effect should take off the runs that are fitted to, if the model is right; of the fold where it
     // is least. Little: only the runs held out show the effect, and no others can foretell it.
     double shown_by_others = 0;
+    double model_of_stage = 0;  // what the whole model takes off the stage, as of_stage is measured
   };
   std::vector<OfEffect> effects;  // in the order of the model's places
   // What several effects take off together, which none of them may do alone, as each takes up what the others leave.

@@ -11,7 +11,7 @@ namespace {
 constexpr double kCommon = 2;
 
 constexpr HeldOutShares::OfEffect kNotHeldOut{
-    GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, 0, GapMeasure::kNotMeasured, 0};
+    GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, 0, GapMeasure::kNotMeasured, 0, 0};
 
 bool is_lack_of_share(Doubt doubt) {
   return doubt == Doubt::not_held_out || doubt == Doubt::trifle;

@@ -80,7 +80,7 @@ Json effect_json(const Diagnosis& d, const StageDiagnosis& stage, const NamedEff
               {"spread", number(effect.value.spread)},
               {"unit", candidate.unit},
               {"nominal", number(candidate.present)}}}}},
-          {"explains", share_json(effect.share.of_stage)},
+          {"explains", share_json(explained_by(stage, effect))},
           {"explains_by_manoeuvre", share_json(effect.share_by_manoeuvre.of_stage)},
           {"acts_most_in",
            {{"channels", kind_name(effect.share.kind)},
@@ -94,7 +94,7 @@ Json effect_json(const Diagnosis& d, const StageDiagnosis& stage, const NamedEff
           {"rivals", candidate_names(d, effect.rivals)},
           {"partners", partner_names(d, stage, effect)},
           {"explains_with_partners",
-           effect.partners.empty() ? Json(nullptr) : share_json(effect.share_of_set.of_stage)},
+           effect.partners.empty() ? Json(nullptr) : share_json(explained_by_set(stage, effect))},
           {"doubts", doubts_in_words(d, effect)}};
 }
 

@@ -59,7 +59,7 @@ void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
       line += fmt::format("; takes off {}", percent(explained_by(stage, effect)));
     if (!effect.partners.empty())
       line += fmt::format("; with {} {}", enumeration(partner_names(d, stage, effect)),
-                          percent(effect.share_of_set.of_stage));
+                          percent(explained_by_set(stage, effect)));
     if (effect.doubts.empty() && effect.rivals.size() > 1)
       line += fmt::format("; as good: {}", enumeration(candidate_names(d, std::span(effect.rivals).subspan(1)), "or"));
     screen.add(line, "    ");
@@ -115,8 +115,8 @@ std::string diagnosis_text(const Diagnosis& d) {
     add_where(screen, d, d.stages[*main]);
   if (!d.next.empty()) {
     screen.add("");
-    screen.add(fmt::format("To tell {} apart: {}", enumeration(candidate_names(d, d.told_apart)),
-                           advice_in_words(d.next)));
+    screen.add(
+        fmt::format("To tell {} apart: {}", enumeration(candidate_names(d, d.told_apart)), advice_in_words(d.next)));
   }
   if (const RobotFile robot = robot_file(d); !robot.fault.empty())
     screen.add(fmt::format("No robot with what was found: {}", robot.fault));

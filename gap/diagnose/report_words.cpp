@@ -33,7 +33,7 @@ double explained_by_names(const StageDiagnosis& stage) {
   if (all_are_named(stage)) return explained(stage);
   double sum = 0;
   for (const NamedEffect& effect : stage.decision.effects)
-    if (effect.doubts.empty()) sum += std::max(0.0, effect.share.of_stage);
+    if (effect.doubts.empty()) sum += explained_by(stage, effect);
   return std::min(sum, explained(stage));
 }
 
@@ -174,10 +174,21 @@ Interval explained_interval(const StageDiagnosis& stage) {
   return {within(explains.value), within(explains.from), within(explains.to)};
 }
 
+namespace {
+// Effects take off parts of what the whole model does; that was simulated, the parts are by curves.
+double part_of_explained(const StageDiagnosis& stage, const HeldOutShares::OfEffect& share) {
+  if (std::isnan(share.of_stage)) return share.of_stage;
+  if (share.model_of_stage <= 0) return 0;
+  return explained(stage) * std::clamp(share.of_stage / share.model_of_stage, 0.0, 1.0);
+}
+}  // namespace
+
 double explained_by(const StageDiagnosis& stage, const NamedEffect& effect) {
-  if (stage.decision.effects.size() == 1) return explained(stage);
-  const double share = effect.share.of_stage;
-  return std::isnan(share) ? share : std::clamp(share, 0.0, 1.0);
+  return stage.decision.effects.size() == 1 ? explained(stage) : part_of_explained(stage, effect.share);
+}
+
+double explained_by_set(const StageDiagnosis& stage, const NamedEffect& effect) {
+  return part_of_explained(stage, effect.share_of_set);
 }
 
 std::string from_to(Passage passage) {

@@ -50,8 +50,10 @@ double share_of_gap(const Diagnosis& d, std::size_t stage);
 double explained(const StageDiagnosis& stage);
 // The same interval, from 0 to 1.
 Interval explained_interval(const StageDiagnosis& stage);
-// The share that one effect takes off. A single effect's is that of the model.
+// What one effect takes off, as its part of what the model does. A single effect's is that of the model.
 double explained_by(const StageDiagnosis& stage, const NamedEffect& effect);
+// By it and its partners.
+double explained_by_set(const StageDiagnosis& stage, const NamedEffect& effect);
 
 std::string from_to(Passage passage);  // "from command to drive"
 // On what gap and shrink were measured: "runs held out"; of a single run, "the run fitted to, as there is no other".

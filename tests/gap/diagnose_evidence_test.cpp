@@ -261,6 +261,29 @@ TEST_CASE("An effect takes off no more than the whole model does, however much t
   CHECK(shares.effects[0].of_stage <= shares.model);
 }
 
+// a moves x of the first manoeuvre by 600; b the voltage by 100, and that x by 30. Half of both is there. Without a, b
+// at its value takes off all of the voltage and 1 - (300 / 315)^2 of x. Fitted again it goes to the end of its range: 1
+// - (285 / 315)^2 of x, and nothing of the voltage, of which it makes as much too much.
+TEST_CASE("What others lose where they are fitted to what they cannot do is no share of an effect's") {
+  const Whole battery = world().in_channel(test::WorldChannel::battery, 1);
+  Whole x = world().in_channel(test::WorldChannel::x, 1);
+  x.tail(world().bins_of_manoeuvre()).setZero();
+  x.normalize();
+  const std::vector<Whole> effects{600 * x, 100 * battery + 30 * x};
+  const Whole gap = 0.5 * effects[0] + 0.5 * effects[1];
+  const Measured measured(world(), gap);
+  const StandingModel standing = world().fitted(effects, world().data(gap), {0, 1});
+  const HeldOutShares shares =
+      shares_held_out(measured.view, Passage::drive_to_body, standing, folds_by_repeat(world().repeats), 1);
+  const HeldOutShares::OfEffect &a = shares.effects[0], &b = shares.effects[1];
+  CHECK(kind_name(a.kind) == "position");
+  CHECK(a.of_kind == Approx(285.0 * 285 / (315.0 * 315)).margin(0.02));
+  CHECK(kind_name(b.kind) == "battery voltage");
+  CHECK(b.of_kind == Approx(1).margin(0.05));
+  CHECK(shares.model == Approx(1).margin(0.01));
+  CHECK(a.of_stage + b.of_stage <= 1);
+}
+
 TEST_CASE("A value that is held out is fitted without the runs it is for") {
   // run 0 alone shows 0.8, all others 0.2: by repeats, run 0 is held out with run 2, and gets the value of 1 and 3
   const std::vector<Whole> effects{60 * world().direction(0)};

@@ -63,7 +63,7 @@ TEST_CASE("A report has every stage with its verdict, values, gap and what is le
   CHECK(lag["parameters"]["lag_s"]["value"] == 0.0513);
   CHECK(lag["parameters"]["lag_s"]["ci95"] == json{0.0498, 0.0528});
   CHECK(lag["parameters"]["lag_s"]["spread"] == 0);
-  CHECK(lag["explains"] == 0.84);
+  CHECK(lag["explains"] == 0.85);
   CHECK(lag["heldout_shrink"] == 0.964);
   CHECK(lag["heldout_shrink_ci95"] == json{0.91, 0.99});
   CHECK(lag["at_bound"] == false);

@@ -35,8 +35,10 @@ inline runs::Run run_ahead_by(double ahead_m, double faster_mps = 0) {
   return run;
 }
 
+inline constexpr double kMadeModel = 0.85;  // what the model of drives takes off their stage
+
 inline gap::NamedEffect made_effect(std::size_t candidate, gap::Interval value, double share) {
-  return {candidate, {value, 0, 1}, 400, {share, share, share, 0, share}, {share - 0.01, share - 0.01, share - 0.01, 0, share}, false, {}, {candidate}};
+  return {candidate, {value, 0, 1}, 400, {share, share, share, 0, share, 0, kMadeModel}, {share - 0.01, share - 0.01, share - 0.01, 0, share, 0, kMadeModel}, false, {}, {candidate}};
 }
 
 inline gap::Dependence made_dependence() {

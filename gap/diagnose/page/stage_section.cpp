@@ -100,10 +100,10 @@ std::string value_figure(const Diagnosis& d, const NamedEffect& effect) {
 }
 
 std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
-  Table table{{"effect", "name", "value (95 % interval)", "nominal", "differs by (sd)", "takes off", "most, of",
-               "evidence"},
-              {},
-              {0, 1}};
+  Table table{
+      {"effect", "name", "value (95 % interval)", "nominal", "differs by (sd)", "takes off", "most, of", "evidence"},
+      {},
+      {0, 1}};
   for (const NamedEffect& effect : stage.decision.effects) {
     const Candidate& candidate = d.candidates[effect.candidate];
     std::string name = "yes";
@@ -111,12 +111,12 @@ std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
       name = fmt::format("no: {}", fmt::join(doubts_in_words(d, effect), "; "));
     else if (effect.rivals.size() > 1)
       name = fmt::format("one of {}", enumeration(candidate_names(d, effect.rivals), "or"));
-    table.rows.push_back({value_name(candidate), std::move(name), interval_text(effect.value.value, candidate.unit),
-                          figure(candidate.present), figure(effect.value.spread),
-                          fmt::format("{} ({})", percent(effect.share.of_stage),
-                                      percent(effect.share_by_manoeuvre.of_stage)),
-                          fmt::format("{} of {}", percent(effect.share.of_kind), kind_name(effect.share.kind)),
-                          figure(effect.evidence)});
+    table.rows.push_back(
+        {value_name(candidate), std::move(name), interval_text(effect.value.value, candidate.unit),
+         figure(candidate.present), figure(effect.value.spread),
+         fmt::format("{} ({})", percent(explained_by(stage, effect)), percent(effect.share_by_manoeuvre.of_stage)),
+         fmt::format("{} of {}", percent(effect.share.of_kind), kind_name(effect.share.kind)),
+         figure(effect.evidence)});
   }
   return to_html(table) +
          paragraph(
