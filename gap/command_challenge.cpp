@@ -31,6 +31,7 @@
 #include "gap/option_checks.hpp"
 #include "gap/parallel.hpp"
 #include "gap/progress_line.hpp"
+#include "rollout/engines/body_in_engine.hpp"
 #include "runs/whole_file.hpp"
 
 namespace kenaf::gap {
@@ -47,8 +48,18 @@ struct Options {
   std::optional<std::uint64_t> seed;
   unsigned jobs = 0;
   bool imperfect = false;
+  std::string engine;
 
-  ChallengeKind kind() const { return imperfect ? ChallengeKind::imperfect : ChallengeKind::exact; }
+  ChallengeKind kind() const {
+    if (!engine.empty()) return challenge_kind_of(engine);
+    return imperfect ? ChallengeKind::imperfect : ChallengeKind::exact;
+  }
+  // As on the command line.
+  std::string_view kind_option() const { return option_of(kind()); }
+  static std::string_view option_of(ChallengeKind kind) {
+    constexpr std::string_view kOptions[] = {"", " --imperfect", " --engine mujoco", " --engine ode"};
+    return kOptions[static_cast<std::size_t>(kind)];
+  }
 };
 
 std::uint64_t seed_from_system() {
@@ -150,8 +161,8 @@ void check_same_cases(const fs::path& folder, const Options& options, std::uint6
   }
   if (any)
     throw std::runtime_error(fmt::format(
-        "{}: holds cases of another --seed or --cases, or of the {} challenge; give those, or another folder",
-        folder.string(), kind_name(options.imperfect ? ChallengeKind::exact : ChallengeKind::imperfect)));
+        "{}: holds cases of another --seed, --cases, --imperfect or --engine; give those, or another folder",
+        folder.string()));
 }
 
 // Cases and commitment; those that are there already are kept, and of a sealed challenge the others are made from its
@@ -163,8 +174,8 @@ ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::pa
       throw std::runtime_error(
           fmt::format("{0}: is a challenge of {1} cases; give --cases {1}", folder.string(), key->cases.size()));
     if (key->kind != options.kind())
-      throw std::runtime_error(fmt::format("{}: is the {} challenge; it goes on {} --imperfect", folder.string(),
-                                           kind_name(key->kind), options.imperfect ? "without" : "with"));
+      throw std::runtime_error(fmt::format("{}: is the {} challenge; it goes on with `kenaf-gap challenge{}`",
+                                           folder.string(), kind_name(key->kind), Options::option_of(key->kind)));
     make_missing_data(folder, *key, options.jobs, &stop,
                       [&](std::size_t made, std::size_t missing) { teller.made_again(made, missing); });
     teller.all_were_made();
@@ -252,6 +263,17 @@ void add_challenge_command(CLI::App& program) {
       ->check(whole_number(std::numeric_limits<std::uint64_t>::max()));
   command->add_flag("--imperfect", options->imperfect,
                     "cases like reality: every number of the robot is a little off, runs are short and few");
+  const std::vector<std::string> engines = engines::engine_names();
+  const std::string built_with =
+      engines.empty() ? "none: built without MuJoCo and ODE" : fmt::format("{}", fmt::join(engines, " or "));
+  command
+      ->add_option("--engine", options->engine,
+                   fmt::format("like --imperfect, and another physics engine moves the robots ({})", built_with))
+      ->type_name("NAME")
+      ->check([engines, built_with](const std::string& name) {
+        return std::ranges::count(engines, name) > 0 ? std::string()
+                                                     : fmt::format("no engine \"{}\" ({})", name, built_with);
+      });
   command->add_option("--jobs", options->jobs, "cases at once; 0: one a core")
       ->check(whole_number(kMostJobs))
       ->capture_default_str();
@@ -264,8 +286,7 @@ void add_challenge_command(CLI::App& program) {
     // Told only where it ends early: without the seed nobody could go on.
     const auto goes_on = [&](const std::string& why) {
       return std::runtime_error(fmt::format("{}; `kenaf-gap challenge --out {} --cases {} --seed {}{}` goes on with it",
-                                            why, options->out, options->cases, seed,
-                                            options->imperfect ? " --imperfect" : ""));
+                                            why, options->out, options->cases, seed, options->kind_option()));
     };
     std::size_t diagnosed = 0;
     try {

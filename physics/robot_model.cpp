@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/body_effects.hpp"
 #include "physics/robot_shapes.hpp"
 
 namespace kenaf::physics {
@@ -36,18 +37,6 @@ std::unique_ptr<btRigidBody> make_body(double mass_kg, btCollisionShape& shape, 
       std::make_unique<btRigidBody>(btRigidBody::btRigidBodyConstructionInfo(mass_kg, nullptr, &shape, inertia));
   body->setActivationState(DISABLE_DEACTIVATION);  // a track at 3 mm/s must not fall asleep
   body->setUserPointer(&collider);
-  return body;
-}
-
-// The body as the effects have it. Moments that no rigid body has together are taken as they are: Bullet's equations of
-// motion have a solution for any three above zero.
-BodyDescription with_effects(BodyDescription body, const Effects& effects) {
-  body.mass_kg *= effects.mass_scale;
-  body.inertia_kgm2 *= effects.mass_scale;
-  body.inertia_kgm2.x() *= effects.roll_inertia_scale;
-  body.inertia_kgm2.y() *= effects.pitch_inertia_scale;
-  body.inertia_kgm2.z() *= effects.yaw_inertia_scale;
-  body.p_BBcm_m += Eigen::Vector3d(effects.com_forward_m, effects.com_left_m, effects.com_up_m);
   return body;
 }
 
@@ -109,7 +98,7 @@ void RobotModel::leave_dynamics() {
 }
 
 void RobotModel::make_hull(RobotId id) {
-  const BodyDescription body = with_effects(description.body, description.effects);
+  const BodyDescription body = with_body_effects(description.body, description.effects);
   const TrackDescription& track = description.track;
   X_BCom_ = btTransform(btQuaternion::getIdentity(), to_bullet(body.p_BBcm_m));
   hull_collider_.robot = static_cast<std::uint32_t>(id);

@@ -7,6 +7,8 @@ namespace kenaf::bench {
 namespace {
 
 using namespace physics;
+using engines::belly_height_m;
+using engines::on_plane;
 
 constexpr double kGravity = 9.80665;
 

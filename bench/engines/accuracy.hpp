@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "bench/engines/runner.hpp"
+#include "bench/engines/compared_engines.hpp"
 
 namespace kenaf::bench {
 

@@ -13,6 +13,7 @@
 #include "bench/engines/speed.hpp"
 
 using namespace kenaf::bench;
+using namespace kenaf::engines;
 
 namespace {
 

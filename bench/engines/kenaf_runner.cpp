@@ -1,4 +1,5 @@
-#include "bench/engines/runner.hpp"
+#include "bench/engines/compared_engines.hpp"
+
 #include "physics/world.hpp"
 
 namespace kenaf::bench {

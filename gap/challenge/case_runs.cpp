@@ -12,6 +12,7 @@
 #include "gap/diagnose/prediction.hpp"
 #include "gap/parallel.hpp"
 #include "gap/random_numbers.hpp"
+#include "rollout/engines/body_in_engine.hpp"
 #include "rollout/roll_out.hpp"
 #include "runs/dataset.hpp"
 
@@ -72,20 +73,26 @@ runs::Run make_run(const CasePlan& plan, const physics::RobotDescription& robot,
   options.start_scatter_m = rollout::kUsualScatter_m;
   options.start_scatter_rad = rollout::kUsualScatter_rad;
 
+  rollout::RollOutOptions exact = options;
+  exact.noise_scale = exact.mocap_noise_m = exact.mocap_noise_rad = 0;
+  const auto driven_as = [&](const rollout::Manoeuvre& driven) {
+    runs::Run run = rollout::roll_out(robot, world, driven, options).run;
+    if (plan.engine.empty()) return run;
+    return engines::with_body_of(plan.engine, robot, world, rollout::roll_out(robot, world, driven, exact).run, run);
+  };
+
   runs::Run run;
   if (is_of_commands(plan.foreign)) {
-    rollout::RollOutOptions exact = options;
-    exact.noise_scale = exact.mocap_noise_m = exact.mocap_noise_rad = 0;
     const runs::Run asked = rollout::roll_out(robot, world, manoeuvre, exact).run;
     rollout::Manoeuvre replay = rollout::replay_of(asked, name);
     obey_foreign(replay, plan.foreign, plan.foreign_amount);
-    run = rollout::roll_out(robot, world, replay, options).run;
+    run = driven_as(replay);
     for (std::size_t c = 0; c < run.columns.size(); ++c)
       if (run.columns[c].starts_with("cmd_"))
         for (std::size_t i = 0; i < run.row_count(); ++i)
           run.values[c][i] = asked.column(run.columns[c])[std::min(i, asked.row_count() - 1)];
   } else {
-    run = rollout::roll_out(robot, world, manoeuvre, options).run;
+    run = driven_as(manoeuvre);
   }
   record_foreign(run, plan.foreign, plan.foreign_amount);
   add_coloured_noise(run, plan, mixed(seed, 1));

@@ -22,17 +22,27 @@ const std::filesystem::path& written(const std::filesystem::path& folder, CasePl
   return folder;
 }
 
+CasePlan in_own_engine(CasePlan plan) {
+  plan.engine.clear();
+  return plan;
+}
+
 }  // namespace
 
 CaseScale::CaseScale(const CasePlan& plan, unsigned jobs, const std::atomic<bool>* stop)
     : jobs_(jobs),
       stop_(stop),
       robot_(with_background(physics::load_robot(kChallengedRobot), plan.background)),
-      runs_(written(folder_.path, plan, jobs, stop), jobs, stop) {
+      runs_(written(folder_.path, in_own_engine(plan), jobs, stop), jobs, stop) {
   floors_ = floors_around(runs_, runs_.predictor.unvaried());
   floor_rms_ = rms_of_repeats(runs_, floors_, runs_.residuals);
   background_ = shifts_of(runs_, robot_, Fidelity::coarse);
   background_floors_ = rms(floors_, background_) / floor_rms_;
+  if (plan.engine.empty()) return;
+  // the same runs with the same noise as the other engine has them: what these differ by is background, too
+  TemporaryFolder folder;
+  const ComparedRuns in_engine(written(folder.path, plan, jobs, stop), jobs, stop);
+  background_floors_ = rms(floors_, background_ - (runs_.residuals - in_engine.residuals)) / floor_rms_;
 }
 
 Size CaseScale::size_of(const Differences& shifts) const {

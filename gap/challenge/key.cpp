@@ -59,6 +59,7 @@ Json case_json(const SealedCase& sealed) {
   if (!plan.longest_s.empty()) json["longest_s"] = plan.longest_s;
   json["unseen"] = plan.unseen;
   json["repeats"] = plan.repeats;
+  if (!plan.engine.empty()) json["engine"] = plan.engine;
   json["physics"] = {{"time_step_s", plan.physics.time_step_s},
                      {"solver_iterations", plan.physics.solver_iterations},
                      {"contact_stiffness_npm", plan.physics.contact_stiffness_npm},
@@ -134,6 +135,7 @@ SealedCase case_of(const Json& json) {
   if (json.contains("longest_s")) json["longest_s"].get_to(plan.longest_s);
   json.at("unseen").get_to(plan.unseen);
   json.at("repeats").get_to(plan.repeats);
+  if (json.contains("engine")) json["engine"].get_to(plan.engine);
   const Json& physics = json.at("physics");
   physics.at("time_step_s").get_to(plan.physics.time_step_s);
   physics.at("solver_iterations").get_to(plan.physics.solver_iterations);

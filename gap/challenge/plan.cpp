@@ -12,12 +12,13 @@
 #include "gap/candidates/robot_numbers.hpp"
 #include "gap/challenge/stand_ins.hpp"
 #include "gap/random_numbers.hpp"
+#include "rollout/engines/body_in_engine.hpp"
 
 namespace kenaf::gap {
 namespace {
 
-constexpr std::string_view kKindNames[] = {"exact", "imperfect"};             // as ChallengeKind
-constexpr std::string_view kStratumNames[] = {"none",     "single",  "pair",  // as Stratum
+constexpr std::string_view kKindNames[] = {"exact", "imperfect", "mujoco", "ode"};  // as ChallengeKind
+constexpr std::string_view kStratumNames[] = {"none",     "single",  "pair",        // as Stratum
                                               "withheld", "foreign", "withheld-number",
                                               "baseline"};
 
@@ -54,12 +55,13 @@ struct Named {
 // Each parameter once in a turn, each turn in another order. Chance has no size that could be fitted.
 class Turns {
  public:
-  explicit Turns(Random& random) : random_(random) {}
+  Turns(Random& random, ChallengeKind kind) : random_(random), kind_(kind) {}
   Named next() {
     if (left_.empty()) {
       for (const physics::EffectInfo& effect : physics::effect_catalogue())
         for (const physics::EffectParameter& parameter : effect.parameters)
-          if (effect.name != "command_loss") left_.push_back({std::string(effect.name), std::string(parameter.name)});
+          if (effect.name != "command_loss" && (engine_of(kind_).empty() || engines::shows_in_engine(effect)))
+            left_.push_back({std::string(effect.name), std::string(parameter.name)});
       shuffle(left_, random_);
     }
     const Named named = left_.back();
@@ -69,6 +71,7 @@ class Turns {
 
  private:
   Random& random_;
+  ChallengeKind kind_;
   std::vector<Named> left_;
 };
 
@@ -109,14 +112,17 @@ const std::vector<std::vector<std::string>>& manoeuvre_sets() {
 constexpr std::string_view kShortRuns[] = {"speed-steps",       "random-speeds", "square",     "arc",
                                            "straight",          "turn-in-place", "ramp",       "step-100",
                                            "step-150-flippers", "tilted-box",    "trench-150", "flipper-sweep"};
+// Of these, what another engine does as belts do (rollout/engines/body_in_engine.hpp).
+constexpr std::string_view kRunsInEngine[] = {"speed-steps",       "straight",   "ramp",       "step-100",
+                                              "step-150-flippers", "tilted-box", "trench-150", "flipper-sweep"};
 constexpr std::size_t kFewestUnrepeated = 5, kMostUnrepeated = 8, kFewestRepeated = 3, kMostRepeated = 4;
 constexpr double kShortest_s = 3, kLongest_s = 7;
 constexpr std::size_t kOtherShortRuns = 4;  // to choose from, where an effect does not show
 
-CaseRuns short_runs(int repeats, Random& random) {
+CaseRuns short_runs(int repeats, std::span<const std::string_view> from, Random& random) {
   const std::size_t fewest = repeats == 1 ? kFewestUnrepeated : kFewestRepeated,
                     most = repeats == 1 ? kMostUnrepeated : kMostRepeated;
-  std::vector<std::string> names(std::begin(kShortRuns), std::end(kShortRuns));
+  std::vector<std::string> names(from.begin(), from.end());
   shuffle(names, random);
   names.resize(fewest + below(random, most - fewest + 1));
   CaseRuns runs{std::move(names), {}};
@@ -125,10 +131,14 @@ CaseRuns short_runs(int repeats, Random& random) {
   return runs;
 }
 
+std::span<const std::string_view> short_runs_of(std::string_view engine) {
+  return engine.empty() ? std::span<const std::string_view>(kShortRuns) : kRunsInEngine;
+}
+
 void choose_runs(CasePlan& plan, ChallengeKind kind, Random& random) {
-  if (kind == ChallengeKind::imperfect) {
+  if (is_imperfect(kind)) {
     plan.repeats = uniform(random, 0, 1) < 0.5 ? 1 : 2;
-    CaseRuns runs = short_runs(plan.repeats, random);
+    CaseRuns runs = short_runs(plan.repeats, short_runs_of(plan.engine), random);
     plan.manoeuvres = std::move(runs.manoeuvres);
     plan.longest_s = std::move(runs.longest_s);
   } else {
@@ -151,6 +161,14 @@ ChallengeKind challenge_kind_of(std::string_view name) {
   const auto* found = std::ranges::find(kKindNames, name);
   if (found == std::end(kKindNames)) throw std::invalid_argument(fmt::format("\"{}\" is no challenge", name));
   return static_cast<ChallengeKind>(found - kKindNames);
+}
+
+bool is_imperfect(ChallengeKind kind) {
+  return kind != ChallengeKind::exact;
+}
+
+std::string_view engine_of(ChallengeKind kind) {
+  return kind == ChallengeKind::mujoco || kind == ChallengeKind::ode ? kind_name(kind) : std::string_view();
 }
 
 std::string_view stratum_name(Stratum stratum) {
@@ -202,7 +220,8 @@ std::vector<CaseRuns> runs_to_choose_from(const CasePlan& plan) {
   std::vector<CaseRuns> choice{{plan.manoeuvres, plan.longest_s}};
   if (plan.is_imperfect()) {
     Random random(mixed(plan.seed, 4));
-    while (choice.size() <= kOtherShortRuns) choice.push_back(short_runs(plan.repeats, random));
+    while (choice.size() <= kOtherShortRuns)
+      choice.push_back(short_runs(plan.repeats, short_runs_of(plan.engine), random));
     return choice;
   }
   for (const std::vector<std::string>& set : manoeuvre_sets())
@@ -221,9 +240,9 @@ std::vector<ForeignEffect> foreign_effects() {
 }
 
 std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, ChallengeKind kind) {
-  const bool imperfect = kind == ChallengeKind::imperfect;
+  const bool imperfect = is_imperfect(kind);
   Random random(seed);
-  Turns turns(random), pairs(random), changes(random);
+  Turns turns(random, kind), pairs(random, kind), changes(random, kind);
   std::vector<std::string> numbers;
   const std::vector<ForeignEffect> foreign = foreign_effects();
   std::vector<CasePlan> plans;
@@ -231,6 +250,7 @@ std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, Chal
     CasePlan plan;
     plan.name = fmt::format("case-{:03}", plans.size());
     plan.stratum = stratum;
+    plan.engine = std::string(engine_of(kind));
     const auto hide = [&](Turns& from, double smallest_floors, double smallest_times) {
       const Named named = from.next();
       HiddenEffect hidden{named.effect, named.parameter};

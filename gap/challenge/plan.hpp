@@ -3,7 +3,7 @@
 //
 // There are two challenges. In the exact one the model with the hidden effects is right but for contacts and noise. In the
 // imperfect one it never is, as with a real robot: every number of the description is a little off, a background to
-// what is hidden.
+// what is hidden. In those of another engine that engine moves the body besides, so that contacts are others, too.
 // Thread safety: pure functions; deterministic for a seed.
 #pragma once
 
@@ -22,9 +22,12 @@ inline constexpr const char* kChallengedRobot = "kenaf";
 // In a case's folder, the dataset of the robot as it was before.
 inline constexpr const char* kBeforeFolder = "before";
 
-enum class ChallengeKind { exact, imperfect };
+enum class ChallengeKind { exact, imperfect, mujoco, ode };
 std::string_view kind_name(ChallengeKind kind);
 ChallengeKind challenge_kind_of(std::string_view name);  // throws std::invalid_argument
+bool is_imperfect(ChallengeKind kind);
+// Which other engine moves the "real" bodies (rollout/engines/body_in_engine.hpp); empty: none.
+std::string_view engine_of(ChallengeKind kind);
 
 enum class Stratum {
   none,      // nothing hidden but the background, where there is one
@@ -78,6 +81,7 @@ struct CasePlan {
   std::vector<double> longest_s;        // after which each of its runs is cut off; empty: none is
   std::string unseen;                   // another one, to try the diagnosis' robot.toml on
   int repeats = 2;
+  std::string engine;                   // that moves the "real" body; empty: Kenaf's own
   physics::PhysicsSettings physics;     // of the "real" side
   double noise_scale = 1, noise_memory_s = 0;  // of the pose; 0: white
   double count_scale = 0;               // columns are whole counts of so many times their resolution; 0: they are not

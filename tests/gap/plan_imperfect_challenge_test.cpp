@@ -9,9 +9,11 @@
 #include "gap/candidates/robot_numbers.hpp"
 #include "gap/challenge/background.hpp"
 #include "gap/challenge/case_runs.hpp"
+#include "gap/challenge/key.hpp"
 #include "gap/challenge/plan.hpp"
 #include "gap/challenge/stand_ins.hpp"
 #include "physics/effects.hpp"
+#include "rollout/engines/body_in_engine.hpp"
 
 using namespace kenaf;
 using namespace kenaf::gap;
@@ -224,4 +226,24 @@ TEST_CASE("Of 150 imperfect cases each effect of the catalogue is hidden alone o
     if (plan.stratum == Stratum::single || plan.stratum == Stratum::withheld)
       for (const HiddenEffect& effect : plan.effects) hidden.insert(effect.effect);
   CHECK(hidden.size() == physics::effect_catalogue().size() - 1);  // all but command_loss
+}
+
+TEST_CASE("Where another engine moves the bodies, nothing is hidden that it would not show, and no run turns") {
+  for (const CasePlan& plan : plan_challenge(300, 3, ChallengeKind::mujoco)) {
+    CHECK(plan.is_imperfect());
+    CHECK(plan.engine == "mujoco");
+    for (const HiddenEffect& hidden : plan.effects)
+      CHECK(engines::shows_in_engine(*physics::find_effect(hidden.effect)));
+    for (const CaseRuns& runs : runs_to_choose_from(plan))
+      for (const char* turning : {"turn-in-place", "square", "arc", "random-speeds"})
+        CHECK(std::ranges::count(runs.manoeuvres, turning) == 0);
+  }
+  for (const CasePlan& plan : imperfect(20, 3)) CHECK(plan.engine.empty());
+}
+
+TEST_CASE("A key says which engine moved the bodies of its cases") {
+  const CasePlan plan = plan_challenge(4, 3, ChallengeKind::ode).front();
+  const ChallengeKey key = read_key(key_text({3, {{plan, ""}}, ChallengeKind::ode}));
+  CHECK(key.kind == ChallengeKind::ode);
+  CHECK(key.cases.at(0).plan.engine == "ode");
 }

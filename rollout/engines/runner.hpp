@@ -1,4 +1,6 @@
-// One engine that simulates one scene, and the engines there are.
+// Another physics engine that simulates one scene, and the engines there are: those that this was built with. For a benchmark to
+// be compared with, and for a "reality" whose contacts are not those of the model.
+// Thread safety: none of a Runner; each has its own, and any number may be built and stepped at once.
 #pragma once
 
 #include <functional>
@@ -6,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "bench/engines/engine_scene.hpp"
+#include "rollout/engines/engine_scene.hpp"
 
-namespace kenaf::bench {
+namespace kenaf::engines {
 
 class Runner {
  public:
@@ -26,8 +28,10 @@ struct Engine {
   std::function<std::unique_ptr<Runner>(const EngineScene&)> build;
 };
 
-std::vector<Engine> kenaf_engines();   // without sensors, with
 std::vector<Engine> mujoco_engines();
 std::vector<Engine> ode_engines();
+// QuickStep takes constraints in an order by chance, from a generator that all worlds of a process share: this one begins it anew in
+// each step, one world at a time, so that a run has the same bits whatever else runs.
+Engine repeatable_ode_engine();
 
-}  // namespace kenaf::bench
+}  // namespace kenaf::engines

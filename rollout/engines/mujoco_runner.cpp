@@ -4,9 +4,9 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "bench/engines/runner.hpp"
+#include "rollout/engines/runner.hpp"
 
-namespace kenaf::bench {
+namespace kenaf::engines {
 namespace {
 
 using namespace physics;
@@ -141,7 +141,7 @@ class MujocoRunner : public Runner {
     if (!model_) throw std::runtime_error(fmt::format("MuJoCo: {}", error));
     data_.reset(mj_makeData(model_.get()));
     flippers_ = static_cast<std::size_t>(model_->nu);
-    for (std::size_t i = 0; i < flippers_; ++i) data_->qpos[7 + i] = scene.robot->flipper.front().start_angle_rad;
+    for (std::size_t i = 0; i < flippers_; ++i) data_->qpos[7 + i] = flipper_at_start(scene, i);
   }
 
   void step() override {
@@ -219,4 +219,4 @@ std::vector<Engine> mujoco_engines() {
           engine("Newton, pyramidal; meshes", {"Newton", "pyramidal", Shapes::hull})};
 }
 
-}  // namespace kenaf::bench
+}  // namespace kenaf::engines

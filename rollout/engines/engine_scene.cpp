@@ -1,4 +1,4 @@
-#include "bench/engines/engine_scene.hpp"
+#include "rollout/engines/engine_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,13 +6,14 @@
 
 #include "physics/robot_shapes.hpp"
 
-namespace kenaf::bench {
+namespace kenaf::engines {
 namespace {
 
 using namespace physics;
 
 constexpr double kDrive_mps = 0.2;
 constexpr double kServoGain_per_s = 30;  // as physics/flipper_joint.cpp
+constexpr double kFastest_radps = 10;    // of a flipper whose motion is prescribed, as World::prescribe has it
 
 EngineScene climb(const std::string& name, WorldDescription world, double x_m, double z_m, double front_rad,
                   double rear_rad, double duration_s) {
@@ -64,6 +65,11 @@ EngineScene on_plane(const RobotDescription& robot, double slope_rad) {
   scene.X_start = compose(X_WP, {{0, 0, belly_height_m(robot)}, Eigen::Quaterniond::Identity()});
   for (JointCommand& flipper : scene.command.flipper) flipper.value = 1;
   return scene;
+}
+
+double flipper_at_start(const EngineScene& scene, std::size_t flipper) {
+  return scene.prescribed.empty() ? scene.robot->flipper.front().start_angle_rad
+                                  : scene.prescribed.front().flipper_rad[flipper];
 }
 
 RobotParts parts_of(const RobotDescription& robot) {
@@ -126,15 +132,31 @@ std::vector<Cuboid> straight_part(const Belted& shape, int boxes) {
   return out;
 }
 
-Drives::Drives(const EngineScene& scene) : command_(scene.command) {
+Drives::Drives(const EngineScene& scene)
+    : command_(scene.command), prescribed_(scene.prescribed), time_step_s_(scene.time_step_s) {
   if (!scene.robot) return;
   const TrackDriveDescription& drive = scene.robot->drive;
   if (drive.time_constant_s > 0) share_ = -std::expm1(-scene.time_step_s / drive.time_constant_s);
   max_mps_ = drive.max_speed_mps;
-  max_radps_ = scene.robot->servo.max_speed_radps;
+  max_radps_ = prescribed_.empty() ? scene.robot->servo.max_speed_radps : kFastest_radps;
+}
+
+void Drives::advance_as_prescribed() {
+  time_s_ += time_step_s_;
+  while (next_ + 1 < prescribed_.size() && prescribed_[next_].t_s < time_s_) ++next_;
+  const DriveSample &before = prescribed_[next_ > 0 ? next_ - 1 : 0], &after = prescribed_[next_];
+  const double span_s = after.t_s - before.t_s;
+  const double share = span_s > 0 ? std::clamp((time_s_ - before.t_s) / span_s, 0.0, 1.0) : 1;
+  for (std::size_t i = 0; i < kTrackCount; ++i) belt_mps_[i] = std::lerp(before.belt_mps[i], after.belt_mps[i], share);
+  for (std::size_t i = 0; i < kFlipperCount; ++i)
+    command_.flipper[i].value = std::lerp(before.flipper_rad[i], after.flipper_rad[i], share);
 }
 
 void Drives::advance() {
+  if (!prescribed_.empty()) {
+    advance_as_prescribed();
+    return;
+  }
   for (std::size_t i = 0; i < kTrackCount; ++i)
     belt_mps_[i] += share_ * (std::clamp(command_.track_speed_mps[i], -max_mps_, max_mps_) - belt_mps_[i]);
 }
@@ -143,4 +165,4 @@ double Drives::flipper_radps(std::size_t flipper, double angle_rad) const {
   return std::clamp(kServoGain_per_s * (command_.flipper[flipper].value - angle_rad), -max_radps_, max_radps_);
 }
 
-}  // namespace kenaf::bench
+}  // namespace kenaf::engines

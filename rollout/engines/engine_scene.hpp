@@ -1,4 +1,4 @@
-// What every engine of the comparison is given: one robot or one loose block, on terrain of planes and boxes.
+// What every engine is given: one robot or one loose block, on terrain of planes and boxes.
 //
 // Made from the project's own descriptions, so that all engines simulate the same masses, shapes and friction.
 #pragma once
@@ -13,7 +13,14 @@
 #include "physics/robot_description.hpp"
 #include "physics/world_description.hpp"
 
-namespace kenaf::bench {
+namespace kenaf::engines {
+
+// What belts and flippers do at a time.
+struct DriveSample {
+  double t_s = 0;
+  std::array<double, physics::kTrackCount> belt_mps{};
+  std::array<double, physics::kFlipperCount> flipper_rad{};
+};
 
 struct EngineScene {
   std::string name;
@@ -22,6 +29,8 @@ struct EngineScene {
   std::optional<physics::Box> block;
   physics::Pose X_start;                            // of the robot's body frame
   physics::RobotCommand command;
+  // By time, the first at 0; where there are any, belts and flippers do this, straight between two of them, whatever is commanded.
+  std::vector<DriveSample> prescribed;
   double duration_s = 0;
   double time_step_s = 0.001;
 };
@@ -54,13 +63,16 @@ struct Arm {
   physics::Pose X_BArm;                             // at angle 0; a positive angle turns about -y of it
 };
 
+// The angle of an arm before the first step.
+double flipper_at_start(const EngineScene& scene, std::size_t flipper);
+
 struct RobotParts {
   std::array<Belted, physics::kTrackCount> tracks;  // in B
   std::vector<Arm> arms;                            // in the order of physics::Flipper
 };
 RobotParts parts_of(const physics::RobotDescription& robot);
 
-// The drives as Kenaf's are in physics/, but for the force: lag of a track's speed, position loop of a flipper.
+// The drives as Kenaf's are in physics/, but for the force: lag of a track's speed, position loop of a flipper. Or as prescribed.
 class Drives {
  public:
   explicit Drives(const EngineScene& scene);
@@ -70,9 +82,14 @@ class Drives {
   double flipper_radps(std::size_t flipper, double angle_rad) const;
 
  private:
+  void advance_as_prescribed();
+
   physics::RobotCommand command_;
+  std::vector<DriveSample> prescribed_;
+  std::size_t next_ = 0;                            // of prescribed_, the first that is not over
+  double time_step_s_ = 0, time_s_ = 0;
   double share_ = 1, max_mps_ = 0, max_radps_ = 0;
   std::array<double, physics::kTrackCount> belt_mps_{};
 };
 
-}  // namespace kenaf::bench
+}  // namespace kenaf::engines

@@ -3,11 +3,12 @@
 #include <array>
 #include <cmath>
 #include <cstdarg>
+#include <mutex>
 #include <stdexcept>
 
-#include "bench/engines/runner.hpp"
+#include "rollout/engines/runner.hpp"
 
-namespace kenaf::bench {
+namespace kenaf::engines {
 namespace {
 
 using namespace physics;
@@ -18,7 +19,13 @@ struct Options {
   Stepper stepper;
   int iterations;
   bool boxes;  // a row of boxes between the drums, else one
+  bool repeatable = false;
 };
+
+std::mutex& generator_in_use() {
+  static std::mutex mutex;
+  return mutex;
+}
 
 // The same give of a contact as Kenaf has (PhysicsSettings), in ODE's terms.
 constexpr double kStiffness_npm = 2e5, kDamping_nspm = 1000;
@@ -90,12 +97,12 @@ class OdeRunner : public Runner {
     drives_.advance();
     for (std::size_t i = 0; i < hinges_.size(); ++i)
       dJointSetHingeParam(hinges_[i], dParamVel,
-                          drives_.flipper_radps(i, start_rad_ + dJointGetHingeAngle(hinges_[i])));
+                          drives_.flipper_radps(i, start_rad_[i] + dJointGetHingeAngle(hinges_[i])));
     belt_axis_W_ = rotation(dBodyGetQuaternion(main_)) * Eigen::Vector3d::UnitY();
     contact_count_ = 0;
     dSpaceCollide2(reinterpret_cast<dGeomID>(moving_), reinterpret_cast<dGeomID>(terrain_), this, &near);
     if (options_.stepper == Stepper::quick)
-      dWorldQuickStep(world_, time_step_s_);
+      quick_step();
     else
       dWorldStep(world_, time_step_s_);
     dJointGroupEmpty(contacts_);
@@ -164,8 +171,8 @@ class OdeRunner : public Runner {
              {robot.body.friction, robot.body.friction, {}});
     for (const Belted& track : parts.tracks) add_belted(track, main_, p_com_m_);
     for (const Arm& arm : parts.arms) {
-      start_rad_ = robot.flipper.front().start_angle_rad;
-      const Eigen::Quaterniond tip_up(Eigen::AngleAxisd(start_rad_, -Eigen::Vector3d::UnitY()));
+      start_rad_.push_back(flipper_at_start(scene, start_rad_.size()));
+      const Eigen::Quaterniond tip_up(Eigen::AngleAxisd(start_rad_.back(), -Eigen::Vector3d::UnitY()));
       const Pose X_WArm = compose(scene.X_start, {arm.X_BArm.p, arm.X_BArm.q * tip_up});
       dBodyID body = add_body(arm.mass_kg, arm.inertia_kgm2, com_at(X_WArm, arm.p_com_m));
       add_belted(arm.shape, body, arm.p_com_m);
@@ -177,6 +184,15 @@ class OdeRunner : public Runner {
       dJointSetHingeParam(hinge, dParamFMax, robot.servo.max_torque_nm);
       hinges_.push_back(hinge);
     }
+  }
+
+  void quick_step() {
+    std::unique_lock lock(generator_in_use(), std::defer_lock);
+    if (options_.repeatable) {
+      lock.lock();
+      dRandSetSeed(1);
+    }
+    dWorldQuickStep(world_, time_step_s_);
   }
 
   static void near(void* self, dGeomID moving, dGeomID fixed) { static_cast<OdeRunner*>(self)->touch(moving, fixed); }
@@ -211,7 +227,8 @@ class OdeRunner : public Runner {
   }
 
   Options options_;
-  double time_step_s_, soft_erp_ = 0, soft_cfm_ = 0, friction_ = 1, start_rad_ = 0;
+  double time_step_s_, soft_erp_ = 0, soft_cfm_ = 0, friction_ = 1;
+  std::vector<double> start_rad_;  // of each flipper
   Drives drives_;
   dWorldID world_{};
   dSpaceID terrain_{}, moving_{};
@@ -225,13 +242,20 @@ class OdeRunner : public Runner {
 
 }  // namespace
 
+namespace {
+Engine engine(const char* setting, const Options& options) {
+  return {"ODE", KENAF_ODE_VERSION, setting, options.boxes,
+          [options](const EngineScene& scene) -> std::unique_ptr<Runner> {
+            return std::make_unique<OdeRunner>(scene, options);
+          }};
+}
+}  // namespace
+
+Engine repeatable_ode_engine() {
+  return engine("QuickStep, 50 iterations, repeatable", {Stepper::quick, 50, true, true});
+}
+
 std::vector<Engine> ode_engines() {
-  const auto engine = [](const char* setting, const Options& options) {
-    return Engine{"ODE", KENAF_ODE_VERSION, setting, options.boxes,
-                  [options](const EngineScene& scene) -> std::unique_ptr<Runner> {
-                    return std::make_unique<OdeRunner>(scene, options);
-                  }};
-  };
   return {engine("QuickStep, 10 iterations", {Stepper::quick, 10, true}),
           engine("QuickStep, 20 iterations", {Stepper::quick, 20, true}),
           engine("QuickStep, 50 iterations", {Stepper::quick, 50, true}),
@@ -242,4 +266,4 @@ std::vector<Engine> ode_engines() {
           engine("WorldStep; 1 box a belly", {Stepper::world, 0, false})};
 }
 
-}  // namespace kenaf::bench
+}  // namespace kenaf::engines

@@ -1,0 +1,187 @@
+#include "rollout/engines/body_in_engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <span>
+#include <stdexcept>
+
+#include "physics/body_effects.hpp"
+#include "physics/terrain_effects.hpp"
+#include "rollout/engines/runner.hpp"
+
+namespace kenaf::engines {
+namespace {
+
+using namespace physics;
+
+constexpr double kSettle_s = 0.5;  // before the first row: engines rest at different depths
+
+// In settings that have contacts all along a track and give the same bits each time.
+struct NamedEngine {
+  std::string name;
+  Engine engine;
+};
+std::vector<NamedEngine> engines_there() {
+  std::vector<NamedEngine> engines;
+#ifdef KENAF_WITH_ENGINES
+  engines.push_back({"mujoco", mujoco_engines().front()});
+  engines.push_back({"ode", repeatable_ode_engine()});
+#endif
+  return engines;
+}
+
+Engine engine_named(std::string_view name) {
+  std::string known;
+  for (NamedEngine& there : engines_there()) {
+    if (there.name == name) return std::move(there.engine);
+    known += (known.empty() ? "" : ", ") + there.name;
+  }
+  throw std::invalid_argument(fmt::format("no engine \"{}\"; this program was built with {}", name,
+                                          known.empty() ? "none: libmujoco-dev and libode-dev were not there" : known));
+}
+
+// Bodies and belts with their effects, for engines that know none.
+RobotDescription with_effects(RobotDescription robot) {
+  robot.body = with_body_effects(robot.body, robot.effects);
+  robot.track.friction_along *= robot.effects.friction_along_scale;
+  for (FlipperDescription& flipper : robot.flipper) flipper.friction_along *= robot.effects.friction_along_scale;
+  return robot;
+}
+
+std::span<const double> measured(const runs::Run& run, std::string_view column) {
+  const std::span<const double> values = run.column(column);
+  if (!runs::any_measured(values))
+    throw std::invalid_argument(fmt::format("{}: not in the run, so no other engine can move its body", column));
+  return values;
+}
+
+// A column whose empty cells have what the last one before them has.
+class Held {
+ public:
+  Held(const runs::Run& run, std::string_view column) : values_(measured(run, column)) {
+    last_ = *std::ranges::find_if(values_, [](double value) { return !std::isnan(value); });
+  }
+  double at(std::size_t row) {
+    if (!std::isnan(values_[row])) last_ = values_[row];
+    return last_;
+  }
+
+ private:
+  std::span<const double> values_;
+  double last_ = 0;
+};
+
+std::vector<DriveSample> drives_of(const runs::Run& run, const RobotDescription& robot) {
+  std::vector<Held> belts{{run, "track_left_mps"}, {run, "track_right_mps"}}, flippers;
+  if (robot.has_flippers())
+    for (const std::string_view which : runs::kFlippers)
+      flippers.emplace_back(run, fmt::format("flipper_{}_rad", which));
+  const std::span<const double> t_s = run.column("t_s");
+  std::vector<DriveSample> samples;
+  for (std::size_t row = 0; row < run.row_count(); ++row) {
+    DriveSample sample{kSettle_s + t_s[row] - t_s.front()};
+    for (std::size_t i = 0; i < belts.size(); ++i) sample.belt_mps[i] = belts[i].at(row);
+    for (std::size_t i = 0; i < flippers.size(); ++i) sample.flipper_rad[i] = flippers[i].at(row);
+    if (samples.empty()) samples.push_back({0, {}, sample.flipper_rad});
+    samples.push_back(sample);
+  }
+  return samples;
+}
+
+Pose start_of(const runs::Run& run) {
+  const auto first = [&](std::string_view column) { return Held(run, column).at(0); };
+  return {{first("x_m"), first("y_m"), first("z_m")},
+          rotation_from({first("roll_rad"), first("pitch_rad"), first("yaw_rad")})};
+}
+
+// What is measured of the body, in the order of kColumns.
+constexpr std::array kColumns{"x_m",     "y_m",          "z_m",          "roll_rad",    "pitch_rad",
+                              "yaw_rad", "gyro_x_radps", "gyro_y_radps", "gyro_z_radps"};
+constexpr std::size_t kYaw = 5;
+using Motion = std::array<double, kColumns.size()>;
+
+Motion motion_between(const Pose& before, const Pose& now, double span_s) {
+  const Eigen::Vector3d angles = roll_pitch_yaw(now.q);
+  const Eigen::AngleAxisd turned(before.q.conjugate() * now.q);
+  const double angle = std::remainder(turned.angle(), 2 * std::numbers::pi);
+  const Eigen::Vector3d rates =
+      span_s > 0 ? Eigen::Vector3d(turned.axis() * (angle / span_s)) : Eigen::Vector3d::Zero();
+  return {now.p.x(), now.p.y(), now.p.z(), angles.x(), angles.y(), angles.z(), rates.x(), rates.y(), rates.z()};
+}
+
+std::vector<Motion> motions_in(const Engine& engine, const EngineScene& scene, std::span<const double> t_s) {
+  const std::unique_ptr<Runner> runner = engine.build(scene);
+  std::vector<Motion> motions;
+  long steps = 0;
+  Pose before;
+  for (const double row_s : t_s) {
+    const long until = std::lround((kSettle_s + row_s - t_s.front()) / scene.time_step_s);
+    const double span_s = motions.empty() ? 0 : static_cast<double>(until - steps) * scene.time_step_s;
+    for (; steps < until; ++steps) runner->step();
+    const Pose now = runner->pose();
+    motions.push_back(motion_between(motions.empty() ? now : before, now, span_s));
+    before = now;
+  }
+  return motions;
+}
+
+}  // namespace
+
+std::vector<std::string> engine_names() {
+  std::vector<std::string> names;
+  for (const NamedEngine& there : engines_there()) names.push_back(there.name);
+  return names;
+}
+
+bool shows_in_engine(const EffectInfo& effect) {
+  // what lies between servo and arm no column tells; moments that no rigid body has MuJoCo refuses
+  constexpr std::string_view kNot[] = {"flipper_backlash", "flipper_compliance", "roll_inertia",  "pitch_inertia",
+                                       "yaw_inertia",      "ground_compliance",  "ground_damping"};
+  switch (effect.stage) {
+    case Stage::command:
+    case Stage::drive:
+    case Stage::body:
+    case Stage::terrain:
+      return std::ranges::count(kNot, effect.name) == 0;
+    case Stage::contact:
+      return effect.name == "friction_along";
+    case Stage::sensor:
+      return false;
+  }
+  return false;
+}
+
+runs::Run with_body_of(std::string_view engine, const RobotDescription& robot, const WorldDescription& world,
+                       const runs::Run& exact, const runs::Run& noisy) {
+  EngineScene scene;
+  scene.world = with_terrain_effects(world, robot.effects);
+  scene.robot = with_effects(robot);
+  scene.X_start = start_of(exact);
+  scene.prescribed = drives_of(exact, robot);
+  const std::vector<Motion> motions = motions_in(engine_named(engine), scene, exact.column("t_s"));
+
+  runs::Run run;
+  for (std::size_t c = 0; c < noisy.columns.size(); ++c) {
+    if (noisy.columns[c].starts_with("acc_")) continue;
+    run.columns.push_back(noisy.columns[c]);
+    run.values.push_back(noisy.values[c]);
+    const auto moved = std::ranges::find(kColumns, noisy.columns[c]);
+    if (moved == kColumns.end()) continue;
+    const auto which = static_cast<std::size_t>(moved - kColumns.begin());
+    const std::span<const double> without_noise = exact.column(noisy.columns[c]);
+    for (std::size_t row = 0; row < run.values.back().size(); ++row) {
+      double noise = noisy.values[c][row] - without_noise[std::min(row, without_noise.size() - 1)];
+      if (which == kYaw) noise = std::remainder(noise, 2 * std::numbers::pi);
+      run.values.back()[row] = motions[std::min(row, motions.size() - 1)][which] + noise;
+    }
+  }
+  return run;
+}
+
+}  // namespace kenaf::engines

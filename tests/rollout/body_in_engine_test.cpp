@@ -1,0 +1,111 @@
+// A run whose body another engine moves. Without the engines' libraries there is nothing to test but that it says so.
+#include "rollout/engines/body_in_engine.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "rollout/roll_out.hpp"
+
+using namespace kenaf;
+using Catch::Contains;
+
+namespace {
+
+struct Driven {
+  runs::Run exact, noisy, in_engine, without_noise;
+  double last(const runs::Run& run, const char* column) const { return run.column(column).back(); }
+};
+
+Driven driven(const std::string& engine, const std::string& manoeuvre_name, const physics::RobotDescription& robot) {
+  const rollout::Manoeuvre manoeuvre = rollout::load_manoeuvre(manoeuvre_name);
+  std::vector<std::string> unsupported;
+  const physics::WorldDescription world = physics::load_world(manoeuvre.world, unsupported);
+  rollout::RollOutOptions options;
+  Driven result;
+  result.noisy = rollout::roll_out(robot, world, manoeuvre, options).run;
+  options.noise_scale = options.mocap_noise_m = options.mocap_noise_rad = 0;
+  result.exact = rollout::roll_out(robot, world, manoeuvre, options).run;
+  result.in_engine = engines::with_body_of(engine, robot, world, result.exact, result.noisy);
+  result.without_noise = engines::with_body_of(engine, robot, world, result.exact, result.exact);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("Without engines, or with a name that none has, there is an error that says which there are") {
+  const physics::RobotDescription robot = physics::load_robot("kenaf");
+  const rollout::Manoeuvre manoeuvre = rollout::load_manoeuvre("straight");
+  std::vector<std::string> unsupported;
+  const physics::WorldDescription world = physics::load_world("flat", unsupported);
+  const runs::Run run = rollout::roll_out(robot, world, manoeuvre, {}).run;
+  CHECK_THROWS_WITH(engines::with_body_of("havok", robot, world, run, run), Contains("no engine \"havok\""));
+}
+
+TEST_CASE("What is of belts, drives and commands stays, and the body goes where another engine takes it") {
+  for (const std::string& engine : engines::engine_names()) {
+    CAPTURE(engine);
+    const Driven run = driven(engine, "straight", physics::load_robot("kenaf"));
+    for (const char* column : {"t_s", "cmd_track_left_mps", "track_left_mps", "track_right_m", "battery_v"})
+      CHECK(std::ranges::equal(run.in_engine.column(column), run.noisy.column(column),
+                               [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }));
+    CHECK(run.in_engine.column("acc_x_mps2").empty());
+    // rigid belts that hold on level ground carry the body as far as they run
+    const double way_m = run.last(run.exact, "track_left_m");
+    CHECK(run.last(run.in_engine, "x_m") - run.in_engine.column("x_m").front() == Approx(way_m).epsilon(0.02));
+    CHECK(run.last(run.in_engine, "y_m") == Approx(run.last(run.exact, "y_m")).margin(0.03));
+    CHECK(run.last(run.in_engine, "z_m") == Approx(run.last(run.exact, "z_m")).margin(0.01));
+    // another engine is another one, and its noise is the run's own
+    CHECK(run.last(run.in_engine, "x_m") != run.last(run.noisy, "x_m"));
+  }
+}
+
+TEST_CASE("Another engine climbs nose up, which is a negative pitch, and turns about y as the pitch says") {
+  for (const std::string& engine : engines::engine_names()) {
+    CAPTURE(engine);
+    const Driven run = driven(engine, "step-100", physics::load_robot("kenaf"));
+    const auto pitch = run.in_engine.column("pitch_rad"), rate = run.in_engine.column("gyro_y_radps");
+    const auto exact = run.exact.column("pitch_rad");
+    const auto steepest = [](std::span<const double> of) {
+      double least = 0;
+      for (const double angle : of)
+        if (angle < least) least = angle;
+      return least;
+    };
+    CHECK(steepest(pitch) == Approx(steepest(exact)).margin(0.1));
+    // the rate's integral is what the pitch changes by
+    double turned = 0;
+    const auto t_s = run.in_engine.column("t_s");
+    const double from = pitch.front();
+    for (std::size_t row = 1; row < t_s.size(); ++row)
+      if (!std::isnan(rate[row])) turned += rate[row] * (t_s[row] - t_s[row - 1]);
+    CHECK(turned == Approx(pitch.back() - from).margin(0.05));
+  }
+}
+
+TEST_CASE("Effects on the body are in the engine, too") {
+  for (const std::string& engine : engines::engine_names()) {
+    CAPTURE(engine);
+    physics::RobotDescription robot = physics::load_robot("kenaf");
+    robot.effects.com_left_m = 0.05;
+    const Driven run = driven(engine, "straight", robot);
+    // the left belt sinks in more: a roll to the left, which is negative
+    CHECK(run.last(run.without_noise, "roll_rad") < 0);
+    // the noise is the same on both
+    CHECK(run.last(run.in_engine, "roll_rad") - run.last(run.without_noise, "roll_rad") ==
+          Approx(run.last(run.noisy, "roll_rad") - run.last(run.exact, "roll_rad")).margin(1e-12));
+  }
+}
+
+TEST_CASE("Effects of sensors and of what engines lack do not show in them") {
+  const auto shows = [](const char* name) { return engines::shows_in_engine(*physics::find_effect(name)); };
+  CHECK(shows("command_delay"));
+  CHECK(shows("drive_lag"));
+  CHECK(shows("mass"));
+  CHECK(shows("ground_slope"));
+  CHECK(shows("friction_along"));
+  CHECK_FALSE(shows("friction_across"));
+  CHECK_FALSE(shows("flipper_backlash"));
+  CHECK_FALSE(shows("gyro_bias"));
+  CHECK_FALSE(shows("yaw_inertia"));
+}
