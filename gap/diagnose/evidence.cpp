@@ -199,8 +199,9 @@ struct LeftOfFolds {
   }
 };
 
+// `held`: of each of `left_out`, where it was simulated.
 LeftOfFolds left_of_folds(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
-                          std::span<const Places> left_out, unsigned threads) {
+                          std::span<const Places> left_out, const std::vector<Model>& held, unsigned threads) {
   const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
   // What a model without an effect can do at its best is fitted to all: of runs that show another effect little, it
   // would take that one to be what it lacks, and lose both where it is tested. All have the whole model's
@@ -224,7 +225,8 @@ LeftOfFolds left_of_folds(const StageView& view, Passage passage, const Standing
     left[f] = {
         left_by(nominal_model(fitted_data)), left_by(whole), {}, {evidence_expected(fitted_data, standing)}, {seen}};
     for (std::size_t s = 0; s < left_out.size(); ++s)
-      left[f].without.push_back({left_by(models_without[s]), left_by(others_of(standing, whole, left_out[s]))});
+      left[f].without.push_back(
+          {left_by(models_without[s]), left_by(held.empty() ? others_of(standing, whole, left_out[s]) : held[s])});
   });
   LeftOfFolds sum = std::move(left.front());
   for (std::size_t f = 1; f < left.size(); ++f) sum += left[f];
@@ -238,8 +240,8 @@ struct SharesWithout {
 };
 
 SharesWithout shares_without(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
-                             std::span<const Places> left_out, unsigned threads) {
-  const LeftOfFolds left = left_of_folds(view, passage, standing, folds, left_out, threads);
+                             std::span<const Places> left_out, const std::vector<Model>& held, unsigned threads) {
+  const LeftOfFolds left = left_of_folds(view, passage, standing, folds, left_out, held, threads);
 
   // of the stage each kind by its own gap; of a kind alone by its rms
   const KindSquares& before = left.nominal.by_effects;
@@ -378,11 +380,11 @@ std::vector<std::vector<PlacesOfPart>> places_held_out(const StageView& view, Pa
   return places;
 }
 
-HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
-                              unsigned threads) {
+HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing,
+                              const std::vector<Model>& without_each, const Folds& folds, unsigned threads) {
   std::vector<Places> singles;
   for (std::size_t e = 0; e < standing.model.places.size(); ++e) singles.push_back({e});
-  SharesWithout shares = shares_without(view, passage, standing, folds, singles, threads);
+  SharesWithout shares = shares_without(view, passage, standing, folds, singles, without_each, threads);
   return {std::move(shares.left_out), {}, shares.model};
 }
 
@@ -391,7 +393,7 @@ std::vector<HeldOutShares::OfSet> shares_of_sets_held_out(const StageView& view,
                                                           std::span<const std::size_t> places, unsigned threads) {
   const std::vector<Places> sets = sets_small_first(places);
   if (sets.empty()) return {};
-  const SharesWithout shares = shares_without(view, passage, standing, folds, sets, threads);
+  const SharesWithout shares = shares_without(view, passage, standing, folds, sets, {}, threads);
   std::vector<HeldOutShares::OfSet> result;
   for (std::size_t s = 0; s < sets.size(); ++s) result.push_back({sets[s], shares.left_out[s]});
   return result;

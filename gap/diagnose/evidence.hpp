@@ -76,8 +76,10 @@ struct HeldOutShares {
   std::vector<OfSet> sets;  // those of interest, small ones first; shares_of_sets_held_out()
   double model = 0;  // of the stage
 };
-HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
-                              unsigned threads);
+//
+// `without_each`: as simulated, of the model without each of its effects, the others at its values; empty: as the curves add up.
+HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing,
+                              const std::vector<Model>& without_each, const Folds& folds, unsigned threads);
 
 // Every set of two and more of these places: as many fits of each fold as there are sets.
 std::vector<HeldOutShares::OfSet> shares_of_sets_held_out(const StageView& view, Passage passage,

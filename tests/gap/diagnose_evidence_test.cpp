@@ -97,7 +97,7 @@ TEST_CASE("No share of a gap is above 1, however little is left") {
   const Measured noiseless(world(), 0.5 * effects[0]);
   const StandingModel standing = world().fitted(effects, world().data(0.5 * effects[0]), {0});
   const HeldOutShares shares =
-      shares_held_out(noiseless.view, Passage::drive_to_body, standing, folds_by_repeat(world().repeats), 1);
+      shares_held_out(noiseless.view, Passage::drive_to_body, standing, {}, folds_by_repeat(world().repeats), 1);
   CHECK(shares.model == 1);
   CHECK(shares.effects.at(0).of_stage == 1);
   CHECK(shares.effects.at(0).of_kind == 1);
@@ -124,7 +124,7 @@ TEST_CASE("The true effect takes a gap away on runs it was not fitted to, anothe
     const Folds folds = folds_by_repeat(world().repeats);
     const auto share = [&](std::size_t effect) {
       const StandingModel standing = world().fitted(effects, world().data(gap), {effect});
-      const HeldOutShares shares = shares_held_out(measured.view, Passage::drive_to_body, standing, folds, 1);
+      const HeldOutShares shares = shares_held_out(measured.view, Passage::drive_to_body, standing, {}, folds, 1);
       CHECK(shares.effects.at(0).of_stage == Approx(shares.model));  // alone it is the whole model
       return shares.model;
     };
@@ -144,7 +144,7 @@ TEST_CASE("Each of two effects has the share that the model without it leaves, i
     const Measured measured(world(), gap);
     const StandingModel standing = world().fitted(effects, world().data(gap), of);
     const Folds folds = folds_by_repeat(world().repeats);
-    HeldOutShares shares = shares_held_out(measured.view, Passage::drive_to_body, standing, folds, 1);
+    HeldOutShares shares = shares_held_out(measured.view, Passage::drive_to_body, standing, {}, folds, 1);
     std::vector<std::size_t> places(of.size());
     std::iota(places.begin(), places.end(), std::size_t{0});
     shares.sets = shares_of_sets_held_out(measured.view, Passage::drive_to_body, standing, folds, places, 1);
@@ -184,7 +184,7 @@ TEST_CASE("What numbers that are a little off explain as well is no share of an 
   StandingModel standing = world().fitted(effects, world().data(gap), {0, 1});
   const auto shares_with = [&](double numbers_off) {
     standing.model.likelihood.discrepancies.numbers_off = numbers_off;
-    return shares_held_out(measured.view, Passage::drive_to_body, standing, folds_by_repeat(world().repeats), 1);
+    return shares_held_out(measured.view, Passage::drive_to_body, standing, {}, folds_by_repeat(world().repeats), 1);
   };
   // where numbers are off by 1e-4, each reaches 3e-4 of 2000, which is 0.6 of the 40
   for (const HeldOutShares::OfEffect& share : shares_with(1e-4).effects)
@@ -208,7 +208,7 @@ TEST_CASE("What is open in each run by itself is no gap that an effect has to ta
   Measured measured(world(), gap);
   for (std::size_t r = 0; r < world().runs(); ++r) measured.floor.open[r].local = world().by_run(10 * in_each_bin)[r];
   const HeldOutShares shares =
-      shares_held_out(measured.view, Passage::drive_to_body, world().fitted(effects, world().data(gap), {0}),
+      shares_held_out(measured.view, Passage::drive_to_body, world().fitted(effects, world().data(gap), {0}), {},
                       folds_by_repeat(world().repeats), 1);
   // of 900 in x and, as if nothing were open, 25 in each of the 48 bins of yaw: 0.45
   CHECK(shares.effects[0].of_stage == Approx(1));
@@ -223,7 +223,7 @@ TEST_CASE("An effect acts most where there is a gap, not where chance makes the 
   const Whole gap = 0.5 * effects[0] + 32 * turned;
   const Measured measured(world(), gap);
   const HeldOutShares shares =
-      shares_held_out(measured.view, Passage::drive_to_body, world().fitted(effects, world().data(gap), {0}),
+      shares_held_out(measured.view, Passage::drive_to_body, world().fitted(effects, world().data(gap), {0}), {},
                       folds_by_repeat(world().repeats), 1);
   CHECK(kind_name(shares.effects[0].kind) == "position");
   CHECK(shares.effects[0].of_kind == Approx(900.0 / (1924 - 48)).epsilon(0.01));
@@ -236,7 +236,7 @@ TEST_CASE("Beside an effect that explains nothing the whole model keeps its shar
   const Measured measured(world(), gap);
   const StandingModel standing = world().fitted(effects, world().data(gap), {0, 1});
   const HeldOutShares shares =
-      shares_held_out(measured.view, Passage::drive_to_body, standing, folds_by_repeat(world().repeats), 1);
+      shares_held_out(measured.view, Passage::drive_to_body, standing, {}, folds_by_repeat(world().repeats), 1);
   CHECK(shares.effects[1].of_kind == 0);
   CHECK(shares.effects[1].model_of_kind == 1);
 }
@@ -254,7 +254,7 @@ TEST_CASE("An effect takes off no more than the whole model does, however much t
   const Measured measured(world(), gap);
   const StandingModel standing = world().fitted(effects, world().data(gap), {0, 1});
   const HeldOutShares shares =
-      shares_held_out(measured.view, Passage::drive_to_body, standing, folds_by_repeat(world().repeats), 1);
+      shares_held_out(measured.view, Passage::drive_to_body, standing, {}, folds_by_repeat(world().repeats), 1);
   CHECK(kind_name(shares.effects[0].kind) == "position");
   CHECK(shares.effects[0].model_of_kind == Approx(100.0 / (1700 - 48)));
   CHECK(shares.effects[0].of_kind == shares.effects[0].model_of_kind);
@@ -274,7 +274,7 @@ TEST_CASE("What others lose where they are fitted to what they cannot do is no s
   const Measured measured(world(), gap);
   const StandingModel standing = world().fitted(effects, world().data(gap), {0, 1});
   const HeldOutShares shares =
-      shares_held_out(measured.view, Passage::drive_to_body, standing, folds_by_repeat(world().repeats), 1);
+      shares_held_out(measured.view, Passage::drive_to_body, standing, {}, folds_by_repeat(world().repeats), 1);
   const HeldOutShares::OfEffect &a = shares.effects[0], &b = shares.effects[1];
   CHECK(kind_name(a.kind) == "position");
   CHECK(a.of_kind == Approx(285.0 * 285 / (315.0 * 315)).margin(0.02));
@@ -282,6 +282,24 @@ TEST_CASE("What others lose where they are fitted to what they cannot do is no s
   CHECK(b.of_kind == Approx(1).margin(0.05));
   CHECK(shares.model == Approx(1).margin(0.01));
   CHECK(a.of_stage + b.of_stage <= 1);
+}
+
+TEST_CASE("Where the model without an effect was simulated, that is what the others do at their values") {
+  // a moves x by 40, b the voltage by 100; half of both is there. Simulated alone, b moves x by 16 of 20 as well
+  const Whole x = world().in_channel(test::WorldChannel::x, 1),
+              battery = world().in_channel(test::WorldChannel::battery, 1);
+  const std::vector<Whole> effects{40 * x, 100 * battery};
+  const Whole gap = 0.5 * effects[0] + 0.5 * effects[1];
+  const Measured measured(world(), gap);
+  const StandingModel standing = world().fitted(effects, world().data(gap), {0, 1});
+  std::vector<Model> without_each{standing.model, standing.model};
+  without_each[0].shift = world().by_group(50 * battery + 16 * x);
+  without_each[1].shift = world().by_group(20 * x);
+  const HeldOutShares shares = shares_held_out(measured.view, Passage::drive_to_body, standing, without_each,
+                                               folds_by_repeat(world().repeats), 1);
+  // of 20^2 in x, less 48 of noise, 4^2 are left without a: nothing but noise
+  CHECK(shares.effects[0].of_kind == Approx(0).margin(0.05));
+  CHECK(shares.effects[1].of_kind == Approx(1).margin(0.05));
 }
 
 TEST_CASE("A value that is held out is fitted without the runs it is for") {
@@ -337,7 +355,7 @@ TEST_CASE("Of a run that alone shows an effect each half is held out in turn") {
   for (const double t_s : {3.4, 5.9}) CHECK((is_held_out(1, t_s) && !is_held_out(0, t_s)));
   // by whole runs nothing can foretell it; by halves each one does the other
   const auto taken_off = [&](const Folds& of) {
-    return shares_held_out(measured.view, Passage::drive_to_body, alone, of, 1).effects[0].of_kind;
+    return shares_held_out(measured.view, Passage::drive_to_body, alone, {}, of, 1).effects[0].of_kind;
   };
   CHECK(taken_off(folds_by_repeat(world.repeats)) < 0.05);
   CHECK(taken_off(folds) > 0.9);

@@ -193,7 +193,7 @@ class LinearWorld {
     const std::vector<Eigen::VectorXd> residuals = by_run(gap);
     const gap::StageView view{&features, &repeats, &residuals, &decision.floor};
     const auto shares = [&](const gap::Folds& folds) {
-      return gap::shares_held_out(view, gap::Passage::drive_to_body, decision.best, folds, 1);
+      return gap::shares_held_out(view, gap::Passage::drive_to_body, decision.best, {}, folds, 1);
     };
     gap::judge(decision, candidates(count), shares(gap::folds_by_repeat(repeats)), shares(folds_by_manoeuvre()), settings);
     return decision;
