@@ -125,19 +125,6 @@ KindSquares& operator+=(KindSquares& sum, const KindSquares& more) {
   return sum;
 }
 
-// All of two places and more.
-std::vector<Places> sets_small_first(std::span<const std::size_t> places) {
-  std::vector<Places> sets;
-  for (std::size_t bits = 1; bits < std::size_t{1} << places.size(); ++bits) {
-    Places set;
-    for (std::size_t i = 0; i < places.size(); ++i)
-      if (bits >> i & 1) set.push_back(places[i]);
-    if (set.size() > 1) sets.push_back(std::move(set));
-  }
-  std::ranges::stable_sort(sets, {}, &Places::size);
-  return sets;
-}
-
 // What a model leaves: of the stage's kinds, by its effects alone, and with numbers that are a little off.
 struct Left {
   KindSquares by_effects, with_numbers;
@@ -388,12 +375,24 @@ HeldOutShares shares_held_out(const StageView& view, Passage passage, const Stan
   return {std::move(shares.left_out), {}, shares.model};
 }
 
+std::vector<Places> sets_small_first(std::span<const std::size_t> places) {
+  std::vector<Places> sets;
+  for (std::size_t bits = 1; bits < std::size_t{1} << places.size(); ++bits) {
+    Places set;
+    for (std::size_t i = 0; i < places.size(); ++i)
+      if (bits >> i & 1) set.push_back(places[i]);
+    if (set.size() > 1) sets.push_back(std::move(set));
+  }
+  std::ranges::stable_sort(sets, {}, &Places::size);
+  return sets;
+}
+
 std::vector<HeldOutShares::OfSet> shares_of_sets_held_out(const StageView& view, Passage passage,
-                                                          const StandingModel& standing, const Folds& folds,
-                                                          std::span<const std::size_t> places, unsigned threads) {
-  const std::vector<Places> sets = sets_small_first(places);
+                                                          const StandingModel& standing, std::span<const Places> sets,
+                                                          const std::vector<Model>& without_sets, const Folds& folds,
+                                                          unsigned threads) {
   if (sets.empty()) return {};
-  const SharesWithout shares = shares_without(view, passage, standing, folds, sets, {}, threads);
+  const SharesWithout shares = shares_without(view, passage, standing, folds, sets, without_sets, threads);
   std::vector<HeldOutShares::OfSet> result;
   for (std::size_t s = 0; s < sets.size(); ++s) result.push_back({sets[s], shares.left_out[s]});
   return result;

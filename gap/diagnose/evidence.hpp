@@ -73,7 +73,7 @@ struct HeldOutShares {
     std::vector<std::size_t> places;  // two or more, ascending
     OfEffect share;
   };
-  std::vector<OfSet> sets;  // those of interest, small ones first; shares_of_sets_held_out()
+  std::vector<OfSet> sets{};  // those of interest, small ones first; shares_of_sets_held_out()
   double model = 0;  // of the stage
 };
 //
@@ -81,9 +81,13 @@ struct HeldOutShares {
 HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing,
                               const std::vector<Model>& without_each, const Folds& folds, unsigned threads);
 
-// Every set of two and more of these places: as many fits of each fold as there are sets.
+// Every set of two and more of these places, small ones first.
+std::vector<std::vector<std::size_t>> sets_small_first(std::span<const std::size_t> places);
+// `without_sets`: as without_each, of the model without each of the sets.
 std::vector<HeldOutShares::OfSet> shares_of_sets_held_out(const StageView& view, Passage passage,
-                                                          const StandingModel& standing, const Folds& folds,
-                                                          std::span<const std::size_t> places, unsigned threads);
+                                                          const StandingModel& standing,
+                                                          std::span<const std::vector<std::size_t>> sets,
+                                                          const std::vector<Model>& without_sets, const Folds& folds,
+                                                          unsigned threads);
 
 }  // namespace kenaf::gap

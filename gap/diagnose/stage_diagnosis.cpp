@@ -15,6 +15,7 @@
 #include "gap/diagnose/number_shapes.hpp"
 #include "gap/diagnose/repeats.hpp"
 #include "gap/diagnose/same_parts.hpp"
+#include "gap/diagnose/shares_of_effects.hpp"
 
 namespace kenaf::gap {
 namespace {
@@ -206,21 +207,6 @@ PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> 
 
 namespace {
 
-// The model without each of its effects, the others at its values.
-std::vector<Model> simulated_without_each(const PreparedStage& prepared, Predictor& predictor, const Model& model) {
-  std::vector<Model> without;
-  std::vector<Settings> asked;
-  for (std::size_t e = 0; e < model.places.size(); ++e) {
-    Model others = model;
-    others.places.erase(others.places.begin() + static_cast<std::ptrdiff_t>(e));
-    asked.push_back(settings_of(others.places));
-    without.push_back(std::move(others));
-  }
-  std::vector<GroupVectors> shifts = simulator_of(prepared, predictor)(asked, Fidelity::every_run);
-  for (std::size_t e = 0; e < without.size(); ++e) without[e].shift = std::move(shifts[e]);
-  return without;
-}
-
 // What the best model is worth, the runs of each fold simulated with the values of the others, and so which names it
 // gets.
 void weigh(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor, const StageOptions& options) {
@@ -270,14 +256,10 @@ void weigh(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& pred
         measure_gap(view, left_by(places_held_out(view, input.passage, decision.best, by_manoeuvre, threads)), spread,
                     options.seed);
   if (!decision.effects.empty()) {
-    const std::vector<Model> without_each = simulated_without_each(prepared, predictor, best);
-    HeldOutShares of_repeats = shares_held_out(view, input.passage, decision.best, without_each, by_repeat, threads);
-    HeldOutShares of_manoeuvres =
-        shares_held_out(view, input.passage, decision.best, without_each, by_manoeuvre, threads);
-    const std::vector<std::size_t> places = places_of_sets(of_repeats, of_manoeuvres, options.decision);
-    of_repeats.sets = shares_of_sets_held_out(view, input.passage, decision.best, by_repeat, places, threads);
-    of_manoeuvres.sets = shares_of_sets_held_out(view, input.passage, decision.best, by_manoeuvre, places, threads);
-    judge(decision, prepared.candidates, of_repeats, of_manoeuvres, options.decision);
+    const SharesOfEffects shares =
+        shares_of_effects(view, input.passage, decision.best, simulator_of(prepared, predictor), by_repeat,
+                          by_manoeuvre, options.decision);
+    judge(decision, prepared.candidates, shares.of_repeats, shares.of_manoeuvres, options.decision);
   }
 }
 

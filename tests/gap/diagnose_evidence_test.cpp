@@ -147,7 +147,8 @@ TEST_CASE("Each of two effects has the share that the model without it leaves, i
     HeldOutShares shares = shares_held_out(measured.view, Passage::drive_to_body, standing, {}, folds, 1);
     std::vector<std::size_t> places(of.size());
     std::iota(places.begin(), places.end(), std::size_t{0});
-    shares.sets = shares_of_sets_held_out(measured.view, Passage::drive_to_body, standing, folds, places, 1);
+    shares.sets = shares_of_sets_held_out(measured.view, Passage::drive_to_body, standing, sets_small_first(places), {},
+                                          folds, 1);
     return shares;
   };
   const HeldOutShares shares = shares_of(0.5 * effects[0] + 0.5 * effects[1], {0, 1});
