@@ -532,7 +532,7 @@ TEST_CASE("Cases that were being made are not thrown away for another seed or nu
   for (const char* slip : {"--cases 1 --seed 12", "--cases 2 --seed 11"}) {
     const test::Outcome outcome = test::kenaf_gap(folder, "challenge --out . " + std::string(slip));
     CHECK(outcome.status == 2);
-    CHECK_THAT(outcome.error, Catch::Contains("holds cases of another --seed or --cases"));
+    CHECK_THAT(outcome.error, Catch::Contains("holds cases of another --seed, --cases, --imperfect or --engine"));
   }
   CHECK(made_case(folder / "cases.part", "case-000", 11, 1));
 }
