@@ -141,7 +141,7 @@ std::vector<Known> beside_others(const EffectCurves& curves, const Model& model,
     std::vector<Known> way{here};
     bool jumps = false;               // the last one
     for (const Side& side : sides) {  // of one direction, the nearer first
-      if (side.place != place || side.outward != outward) continue;
+      if (side.place != place || side.outward != outward || side.value == present) continue;
       way.push_back({side.value, here.shift});
       for (std::size_t g = 0; g < here.shift.size(); ++g) way.back().shift[g] += side.shift[g] - model.shift[g];
       jumps = side.jumps;

@@ -105,6 +105,9 @@ TEST_CASE("An effect alone that does most at once has the slope that it has wher
   const auto play = alone([](double value) { return value > 0 ? 18 + 4 * value : 0; });
   // on the straight line from neutral to 22 floors at 1: 20 of them, where it stands, are at 0.91
   const StandingModel standing = stood(play, {{0, 0.5}}, {{0, 20.0 / 22}});
+  // neutral stays what it is
+  const std::vector<CurvePoint>& points = standing.curves.curves[0].points;
+  CHECK(std::ranges::find(points, 0, &CurvePoint::value)->column == -1);
   CHECK(standing.model.places[0].value == Approx(0.5).margin(0.02));
   CHECK(length_between(standing.curves, 0, 0.48, 0.5) == Approx(0.02 * 4).margin(0.01));
 }
