@@ -135,15 +135,13 @@ Left& operator+=(Left& sum, const Left& more) {
   return sum;
 }
 
-// Of a model that was fitted to some data, in others. Numbers are off as far as they are with all effects: without one
-// they would be taken to be off far enough to do what it does.
+// Of a model, with numbers as they most likely are in the data that are fitted. All models have the whole one's
+// discrepancies: without an effect numbers would be taken to be off far enough to do what it does.
 Left left_in(const StageData& tested, const std::vector<Whitener>& whiteners, const StageData& fitted,
-             const Model& model, double numbers_off) {
+             const Model& model) {
   GroupVectors rest = rest_of(tested, model);
   Left left{squares_of_groups(tested, whiteners, rest), {}};
-  Discrepancies discrepancies = model.likelihood.discrepancies;
-  discrepancies.numbers_off = numbers_off;
-  const VectorXd numbers = most_likely_numbers(fitted, rest_of(fitted, model), discrepancies);
+  const VectorXd numbers = most_likely_numbers(fitted, rest_of(fitted, model), model.likelihood.discrepancies);
   for (std::size_t g = 0; g < rest.size(); ++g) rest[g] -= tested.groups[g].number_shapes * numbers;
   left.with_numbers = squares_of_groups(tested, whiteners, rest);
   return left;
@@ -163,7 +161,8 @@ Model others_of(const StandingModel& standing, const Model& model, const Places&
 
 // What models leave of all that is held out.
 struct LeftOfFolds {
-  Left nominal, whole;
+  KindSquares nominal;
+  Left whole;
   // Of each set of effects without which the model is asked for: the others fitted again, or at the whole model's
   // values.
   struct Without {
@@ -203,14 +202,14 @@ LeftOfFolds left_of_folds(const StageView& view, Passage passage, const Standing
     const StageData tested_data = data_of(view, passage, UsedParts::of(folds[f]));
     const StageData fitted_data = folds.size() < 2 ? tested_data : data_of(view, passage, UsedParts::without(folds[f]));
     const std::vector<Whitener> whiteners = whiteners_of_means(tested_data);
-    const double numbers_off = standing.model.likelihood.discrepancies.numbers_off;
-    const auto left_by = [&](const Model& model) {
-      return left_in(tested_data, whiteners, fitted_data, model, numbers_off);
-    };
+    const auto left_by = [&](const Model& model) { return left_in(tested_data, whiteners, fitted_data, model); };
     const std::vector<bool> seen = seen_in(fitted_data, standing);
     const Model whole = refit_seen(fitted_data, standing, seen, beyond);
-    left[f] = {
-        left_by(nominal_model(fitted_data)), left_by(whole), {}, {evidence_expected(fitted_data, standing)}, {seen}};
+    left[f] = {squares_of_groups(tested_data, whiteners, residuals_of(tested_data)),
+               left_by(whole),
+               {},
+               {evidence_expected(fitted_data, standing)},
+               {seen}};
     for (std::size_t s = 0; s < left_out.size(); ++s)
       left[f].without.push_back(
           {left_by(models_without[s]), left_by(held.empty() ? others_of(standing, whole, left_out[s]) : held[s])});
@@ -231,7 +230,7 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
   const LeftOfFolds left = left_of_folds(view, passage, standing, folds, left_out, held, threads);
 
   // of the stage each kind by its own gap; of a kind alone by its rms
-  const KindSquares& before = left.nominal.by_effects;
+  const KindSquares& before = left.nominal;
   const KindSquares noise{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
   const std::vector<double> weights = kind_weights(before, noise);
   const auto of_stage = [&](const KindSquares& squares) {

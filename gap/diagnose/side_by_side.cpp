@@ -225,9 +225,7 @@ Model values_without(const StageData& data, const StandingModel& standing, std::
   const EffectSet others = others_than(standing.model, places);
   const Discrepancies& discrepancies = standing.model.likelihood.discrepancies;
   if (!others.empty()) return fit_values(data, standing.curves, others, {}, discrepancies);
-  Model nominal = nominal_model(data);
-  nominal.likelihood = likelihood_with(data, residuals_of(data), discrepancies);
-  return nominal;
+  return {{}, shift_of(standing.curves, {}), true, likelihood_with(data, residuals_of(data), discrepancies)};
 }
 
 }  // namespace kenaf::gap

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <optional>
 #include <span>
 #include <stdexcept>
 

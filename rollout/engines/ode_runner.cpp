@@ -240,9 +240,6 @@ class OdeRunner : public Runner {
   std::size_t contact_count_ = 0;
 };
 
-}  // namespace
-
-namespace {
 Engine engine(const char* setting, const Options& options) {
   return {"ODE", KENAF_ODE_VERSION, setting, options.boxes,
           [options](const EngineScene& scene) -> std::unique_ptr<Runner> {
