@@ -221,6 +221,23 @@ physics::PrescribedMotion MeasuredMotion::at(double time_s, const ReportDelays& 
   return motion;
 }
 
+ReportDelays report_delays(const physics::RobotDescription& robot) {
+  const auto delay_s = [&](physics::SensorType type) {
+    const auto found = std::ranges::find(robot.sensors, type, &physics::SensorDescription::type);
+    return found == robot.sensors.end() ? 0 : found->delay_s;
+  };
+  return {delay_s(physics::SensorType::tachometer), delay_s(physics::SensorType::encoder),
+          delay_s(physics::SensorType::drives)};
+}
+
+physics::PrescribedMotion actual_motion(const MeasuredMotion& measured, double time_s,
+                                        const physics::RobotDescription& robot, const ReportDelays& late) {
+  physics::PrescribedMotion motion = measured.at(time_s, late);
+  for (const physics::Track side : {physics::kLeft, physics::kRight})
+    if (std::optional<double>& speed = motion.track_mps[side]) *speed /= robot.encoder_factor(side);
+  return motion;
+}
+
 MeasuredMotion measured_motion(const runs::Run& run) {
   MeasuredMotion motion;
   for (std::size_t i = 0; i < kTracks.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "physics/robot_command.hpp"
+#include "physics/robot_description.hpp"
 #include "runs/run_file.hpp"
 
 namespace kenaf::rollout {
@@ -24,6 +25,7 @@ struct TimeSeries {
 struct ReportDelays {
   double track_speed_s = 0, track_travel_s = 0, flipper_s = 0;
 };
+ReportDelays report_delays(const physics::RobotDescription& robot);
 
 // A series is empty where the run measured none of it. Times are those of the reports.
 struct MeasuredMotion {
@@ -42,6 +44,11 @@ struct MeasuredMotion {
 // alone: the mean speeds of each 0.05 s, joined at their middles; so a run that drives off at once begins at that of
 // its first 0.05 s.
 MeasuredMotion measured_motion(const runs::Run& run);
+
+// What tracks and flippers of a robot did at a time, if its sensors reported this of them: report_delays() and the errors of
+// its encoders taken out.
+physics::PrescribedMotion actual_motion(const MeasuredMotion& measured, double time_s,
+                                        const physics::RobotDescription& robot, const ReportDelays& late);
 
 // How a robot on the ground moves when a run begins.
 struct StartMotion {

@@ -93,24 +93,6 @@ bool apart(const Pose& X_WB, const Pose& other) {
   return (other.p - X_WB.p).norm() > kMisplaced_m || other.q.angularDistance(X_WB.q) > kMisplaced_rad;
 }
 
-ReportDelays report_delays(const RobotDescription& robot) {
-  const auto delay_s = [&](physics::SensorType type) {
-    const auto found = std::ranges::find(robot.sensors, type, &physics::SensorDescription::type);
-    return found == robot.sensors.end() ? 0 : found->delay_s;
-  };
-  return {delay_s(physics::SensorType::tachometer), delay_s(physics::SensorType::encoder),
-          delay_s(physics::SensorType::drives)};
-}
-
-// What tracks and flippers of this robot did if its sensors reported this of them, `late` by report_delays().
-physics::PrescribedMotion actual_motion(const MeasuredMotion& measured, double time_s, const RobotDescription& robot,
-                                        const ReportDelays& late) {
-  physics::PrescribedMotion motion = measured.at(time_s, late);
-  for (const physics::Track side : {physics::kLeft, physics::kRight})
-    if (std::optional<double>& speed = motion.track_mps[side]) *speed /= robot.encoder_factor(side);
-  return motion;
-}
-
 // At rest, joints included; where it has settled.
 Pose put_down(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, const FlipperAngles& flippers,
               const Pose& X_WB) {

@@ -13,6 +13,7 @@
 #include "physics/body_effects.hpp"
 #include "physics/terrain_effects.hpp"
 #include "rollout/engines/runner.hpp"
+#include "rollout/measured_motion.hpp"
 
 namespace kenaf::engines {
 namespace {
@@ -60,33 +61,21 @@ std::span<const double> measured(const runs::Run& run, std::string_view column) 
   return values;
 }
 
-// A column whose empty cells have what the last one before them has.
-class Held {
- public:
-  Held(const runs::Run& run, std::string_view column) : values_(measured(run, column)) {
-    last_ = *std::ranges::find_if(values_, [](double value) { return !std::isnan(value); });
-  }
-  double at(std::size_t row) {
-    if (!std::isnan(values_[row])) last_ = values_[row];
-    return last_;
-  }
-
- private:
-  std::span<const double> values_;
-  double last_ = 0;
-};
-
 std::vector<DriveSample> drives_of(const runs::Run& run, const RobotDescription& robot) {
-  std::vector<Held> belts{{run, "track_left_mps"}, {run, "track_right_mps"}}, flippers;
+  for (const std::string_view belt : {"track_left_mps", "track_right_mps"}) measured(run, belt);
   if (robot.has_flippers())
-    for (const std::string_view which : runs::kFlippers)
-      flippers.emplace_back(run, fmt::format("flipper_{}_rad", which));
+    for (const std::string_view which : runs::kFlippers) measured(run, fmt::format("flipper_{}_rad", which));
+  const rollout::MeasuredMotion reported = rollout::measured_motion(run);
+  const rollout::ReportDelays late = rollout::report_delays(robot);
   const std::span<const double> t_s = run.column("t_s");
   std::vector<DriveSample> samples;
-  for (std::size_t row = 0; row < run.row_count(); ++row) {
-    DriveSample sample{kSettle_s + t_s[row] - t_s.front()};
-    for (std::size_t i = 0; i < belts.size(); ++i) sample.belt_mps[i] = belts[i].at(row);
-    for (std::size_t i = 0; i < flippers.size(); ++i) sample.flipper_rad[i] = flippers[i].at(row);
+  for (const double row_s : t_s) {
+    const double since_s = row_s - t_s.front();
+    const PrescribedMotion motion = rollout::actual_motion(reported, since_s, robot, late);
+    DriveSample sample{kSettle_s + since_s};
+    for (std::size_t i = 0; i < kTrackCount; ++i) sample.belt_mps[i] = motion.track_mps[i].value();
+    if (robot.has_flippers())
+      for (std::size_t i = 0; i < kFlipperCount; ++i) sample.flipper_rad[i] = motion.flipper_rad[i].value();
     if (samples.empty()) samples.push_back({0, {}, sample.flipper_rad});
     samples.push_back(sample);
   }
@@ -94,7 +83,10 @@ std::vector<DriveSample> drives_of(const runs::Run& run, const RobotDescription&
 }
 
 Pose start_of(const runs::Run& run) {
-  const auto first = [&](std::string_view column) { return Held(run, column).at(0); };
+  const auto first = [&](std::string_view column) {
+    const std::span<const double> values = measured(run, column);
+    return *std::ranges::find_if(values, [](double value) { return !std::isnan(value); });
+  };
   return {{first("x_m"), first("y_m"), first("z_m")},
           rotation_from({first("roll_rad"), first("pitch_rad"), first("yaw_rad")})};
 }

@@ -60,6 +60,24 @@ TEST_CASE("What is of belts, drives and commands stays, and the body goes where 
   }
 }
 
+TEST_CASE("The body goes with its belts, not with the late reports of them") {
+  const physics::RobotDescription robot = physics::load_robot("kenaf");
+  physics::RobotDescription late = robot;
+  for (physics::SensorDescription& sensor : late.sensors)
+    if (sensor.type == physics::SensorType::tachometer || sensor.type == physics::SensorType::encoder)
+      sensor.delay_s = 0.1;
+  for (const std::string& engine : engines::engine_names()) {
+    CAPTURE(engine);
+    const Driven at_once = driven(engine, "straight", robot), later = driven(engine, "straight", late);
+    const auto x_m = at_once.without_noise.column("x_m"), x_late_m = later.without_noise.column("x_m");
+    const std::size_t midway = x_m.size() / 2;
+    const double speed_mps = later.exact.column("track_left_mps")[midway];
+    REQUIRE(speed_mps > 0.1);
+    // by the reports the body would be 0.1 s of its way behind
+    CHECK(x_late_m[midway] == Approx(x_m[midway]).margin(0.1 * 0.1 * speed_mps));
+  }
+}
+
 TEST_CASE("Another engine climbs nose up, which is a negative pitch, and turns about y as the pitch says") {
   for (const std::string& engine : engines::engine_names()) {
     CAPTURE(engine);
