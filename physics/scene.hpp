@@ -68,7 +68,7 @@ class Scene {
   // How far below the surface of a mesh's solid a point is; 0: outside of it.
   double depth_in_mesh(const Eigen::Vector3d& p_W) const;
 
-  btDefaultCollisionConfiguration configuration_;
+  CollisionConfiguration configuration_;
   Dispatcher dispatcher_;
   HullPlaneContacts hull_plane_;
   HullSolidContacts hull_solid_;
