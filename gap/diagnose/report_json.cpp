@@ -29,8 +29,8 @@ Json share_json(double share) {
 void add_names(Json& json, const Diagnosis& d, const NamesFound& names) {
   json["named"] = candidate_names(d, names.named);
   json["ambiguous_sets"] = Json::array();
-  for (const std::vector<std::size_t>& set : names.ambiguous_sets)
-    json["ambiguous_sets"].push_back(candidate_names(d, set));
+  for (const AmbiguousSet& set : names.ambiguous_sets)
+    json["ambiguous_sets"].push_back(candidate_names(d, set.candidates));
 }
 
 Json places_json(const Diagnosis& d, const GapPlaces& places) {

@@ -46,9 +46,9 @@ std::string top_of_file(const Diagnosis& d, const Settings& corrections, bool is
                  "the gap, which may be something else:");
   for (const Setting& setting : corrections) text += as_comment(contained(d, setting));
   std::vector<std::string> lacks;
-  for (const std::vector<std::size_t>& set : names_found(d).ambiguous_sets)
-    lacks.push_back(fmt::format("- which of {} it is: these runs cannot tell, the best fit is in it",
-                                enumeration(candidate_names(d, set), "or")));
+  for (const AmbiguousSet& set : names_found(d).ambiguous_sets)
+    lacks.push_back(
+        fmt::format("- which of {} it is: these runs cannot tell, the best fit is in it", set_in_words(d, set)));
   if (!d.options.against.empty())
     lacks.push_back(fmt::format("- what {} differs from the simulation by: only the change since then was looked for",
                                 d.options.against.string()));

@@ -40,7 +40,8 @@ double explained_by_names(const StageDiagnosis& stage) {
 // "drive_lag explains 85 % of the gap from command to drive".
 std::string stage_in_words(const Diagnosis& d, const StageDiagnosis& stage) {
   const NamesFound names = names_found(stage);
-  const bool several = names.named.size() + names.ambiguous_sets.size() > 1;
+  const bool several = names.named.size() + names.ambiguous_sets.size() > 1 ||
+                       std::ranges::any_of(names.ambiguous_sets, &AmbiguousSet::may_be_several);
   std::string words = fmt::format("{} {} {} of the gap {}", names_in_words(d, names), several ? "explain" : "explains",
                                   percent(explained_by_names(stage)), from_to(stage.passage));
   const std::string together = percent(explained(stage));
@@ -95,7 +96,7 @@ NamesFound names_found(const StageDiagnosis& stage) {
     const std::size_t place = static_cast<std::size_t>(&effect - stage.decision.effects.data());
     if (!effect.partners.empty() && effect.partners.front() < place) continue;  // one set, which has all
     if (effect.rivals.size() > 1)
-      names.ambiguous_sets.push_back(effect.rivals);
+      names.ambiguous_sets.push_back({effect.rivals, !effect.partners.empty()});
     else
       names.named.push_back(effect.candidate);
   }
@@ -108,7 +109,7 @@ NamesFound names_found(const Diagnosis& d) {
   for (const StageDiagnosis& stage : d.stages) {
     const NamesFound of_stage = names_found(stage);
     for (const std::size_t candidate : of_stage.named) add_once(names.named, candidate);
-    for (const std::vector<std::size_t>& set : of_stage.ambiguous_sets) add_once(names.ambiguous_sets, set);
+    for (const AmbiguousSet& set : of_stage.ambiguous_sets) add_once(names.ambiguous_sets, set);
   }
   return names;
 }
@@ -126,10 +127,16 @@ std::vector<std::string> partner_names(const Diagnosis& d, const StageDiagnosis&
   return names;
 }
 
+std::string set_in_words(const Diagnosis& d, const AmbiguousSet& set) {
+  std::vector<std::string> members = candidate_names(d, set.candidates);
+  if (set.may_be_several) members.emplace_back(members.size() > 2 ? "several of them" : "both");
+  return enumeration(members, "or");
+}
+
 std::string names_in_words(const Diagnosis& d, const NamesFound& names) {
   std::vector<std::string> parts = candidate_names(d, names.named);
-  for (const std::vector<std::size_t>& set : names.ambiguous_sets)
-    parts.push_back("one of " + enumeration(candidate_names(d, set), "or"));
+  for (const AmbiguousSet& set : names.ambiguous_sets)
+    parts.push_back((set.may_be_several ? "" : "one of ") + set_in_words(d, set));
   return enumeration(parts);
 }
 

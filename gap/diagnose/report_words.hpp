@@ -25,10 +25,16 @@ std::string unit_suffix(std::string_view unit);
 // "0.0513 s (0.0498 to 0.0528)".
 std::string interval_text(const Interval& interval, std::string_view unit);
 
-// Numbers of candidates: effects with a name of their own, and sets of effects of which these runs cannot tell which one it is.
+// Effects, by their candidates, of which these runs cannot tell which one it is.
+struct AmbiguousSet {
+  std::vector<std::size_t> candidates;
+  bool may_be_several;  // the model has several of them, which take off enough only together
+  bool operator==(const AmbiguousSet&) const = default;
+};
+// Candidates of effects with a name of their own, and sets.
 struct NamesFound {
   std::vector<std::size_t> named;
-  std::vector<std::vector<std::size_t>> ambiguous_sets;
+  std::vector<AmbiguousSet> ambiguous_sets;
   bool empty() const { return named.empty() && ambiguous_sets.empty(); }
 };
 // None of an interrupted diagnosis.
@@ -37,6 +43,8 @@ NamesFound names_found(const Diagnosis& d);  // of all stages, each once
 std::vector<std::string> candidate_names(const Diagnosis& d, std::span<const std::size_t> candidates);
 // Of the effects that it takes off enough with only together.
 std::vector<std::string> partner_names(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect);
+// "com_forward or ground_slope"; of those that may be several "command_slew, drive_lag or both".
+std::string set_in_words(const Diagnosis& d, const AmbiguousSet& set);
 // "drive_lag and one of com_forward or ground_slope".
 std::string names_in_words(const Diagnosis& d, const NamesFound& names);
 

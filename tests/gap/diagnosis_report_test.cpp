@@ -6,6 +6,7 @@
 
 #include "description/data_files.hpp"
 #include "gap/diagnose/report.hpp"
+#include "gap/diagnose/report_words.hpp"
 #include "gap/playback/reported_places.hpp"
 #include "tests/gap/made_diagnosis.hpp"
 #include "tests/runs/temporary_folder.hpp"
@@ -14,6 +15,7 @@ using namespace kenaf;
 using namespace kenaf::gap;
 using namespace kenaf::test;
 using Catch::Contains;
+using Catch::StartsWith;
 using nlohmann::json;
 
 namespace {
@@ -101,6 +103,22 @@ TEST_CASE("What version 1 had stands at the top of a report: of the stage with m
   const ReportedPlaces places = parse_reported_places(report.dump());
   CHECK(places.named == std::vector<std::string>{"drive_lag"});
   CHECK(places.phases.size() == 2);
+}
+
+TEST_CASE("Effects that take off enough only together are a set of which several may act") {
+  Diagnosis d = made_ambiguous();
+  StageDecision& decision = d.stages[0].decision;
+  decision.effects = {made_effect(com_forward, {-0.02, -0.03, -0.01}, 0.1),
+                      made_effect(ground_slope, {0.1, 0, 0.2}, 0)};
+  decision.effects[0].rivals = {com_forward, ground_slope};
+  decision.effects[0].partners = {1};
+  decision.effects[1].rivals = {ground_slope, com_forward};
+  decision.effects[1].partners = {0};
+  CHECK(json_of(d)["ambiguous_sets"] == json::array({json::array({"com_forward", "ground_slope"})}));
+  CHECK_THAT(headline(d), StartsWith("com_forward, ground_slope or both explain 85 % of the gap from command to drive, "
+                                     "but these runs cannot tell which"));
+  decision.effects[0].rivals.push_back(track_separation);
+  CHECK_THAT(headline(d), StartsWith("com_forward, ground_slope, track.separation_m or several of them explain 85 %"));
 }
 
 TEST_CASE("Every verdict has its report and its first line") {
