@@ -9,7 +9,7 @@
 #include "gap/challenge/stand_ins.hpp"
 #include "gap/diagnose/curve_fit.hpp"
 #include "gap/diagnose/model_search.hpp"
-#include "gap/diagnose/stage_diagnosis.hpp"
+#include "gap/diagnose/stage_candidates.hpp"
 
 namespace kenaf::gap {
 namespace {

@@ -15,6 +15,7 @@
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/other_stages.hpp"
 #include "gap/diagnose/repeats.hpp"
+#include "gap/diagnose/stage_candidates.hpp"
 
 namespace kenaf::gap {
 namespace {

@@ -7,14 +7,12 @@
 #include <optional>
 #include <utility>
 
-#include "gap/diagnose/candidates_that_matter.hpp"
 #include "gap/diagnose/cells.hpp"
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/errors_of_values.hpp"
 #include "gap/diagnose/judgement.hpp"
 #include "gap/diagnose/number_shapes.hpp"
 #include "gap/diagnose/repeats.hpp"
-#include "gap/diagnose/same_parts.hpp"
 #include "gap/diagnose/shares_of_effects.hpp"
 
 namespace kenaf::gap {
@@ -39,23 +37,6 @@ std::vector<VectorXd> less_shift(std::vector<VectorXd> a, const std::vector<Vect
   for (std::size_t r = 0; r < a.size(); ++r)
     if (a[r].size() > 0) a[r] -= b[r];
   return a;
-}
-
-// One point of each candidate that may act in the stage.
-EffectCurves first_look(const StageData& data, std::span<const Candidate> candidates,
-                        std::span<const std::size_t> possible, const Simulate& simulate) {
-  EffectCurves curves = empty_curves(data, candidates);
-  add_first_look(curves, data, possible, simulate);
-  return curves;
-}
-
-// After the first look, whole curves of the candidates that can matter.
-void follow_those_that_matter(EffectCurves& curves, const StageData& data, std::span<const std::size_t> possible,
-                              const Simulate& simulate) {
-  const std::vector<std::size_t> matter =
-      candidates_that_matter(data, curves, possible, nominal_model(data).likelihood.discrepancies);
-  add_spread(curves, data, matter, simulate);
-  follow_bends(curves, data, matter, simulate);
 }
 
 // Of a run less the mean of its baseline's, over that of a run; of each bin.
@@ -94,118 +75,6 @@ std::vector<Dependence> left_over_of(const StageInput& input, Predictor& predict
     }
   return describe_left_over(runs, input.passage == Passage::command_to_drive);
 }
-
-}  // namespace
-
-physics::RobotDescription with_settings(physics::RobotDescription robot, std::span<const Candidate> candidates,
-                                        const Settings& settings) {
-  for (const Setting& setting : settings) candidates[setting.candidate].set(robot, setting.value);
-  return robot;
-}
-
-namespace {
-// Whether drives report otherwise with it; the other sensors see the body.
-bool is_of_drives_sensors(const Candidate& candidate) {
-  return std::ranges::any_of(candidate.keys, [](const std::string& key) {
-    return key.starts_with("effects.encoder") || key.starts_with("sensor[");
-  });
-}
-
-// Whether it is of a drive, but where the drive's own encoder does not see it.
-bool is_behind_encoders(const Candidate& candidate) {
-  return std::ranges::any_of(candidate.keys, [](const std::string& key) {
-    return key.starts_with("effects.flipper_backlash") || key.starts_with("effects.flipper_compliance");
-  });
-}
-
-bool acts_in(Passage passage, const Candidate& candidate, bool drives_measured) {
-  const bool is_of_drive = candidate.stage == physics::Stage::command || candidate.stage == physics::Stage::drive;
-  const bool is_of_sensor = candidate.stage == physics::Stage::sensor;
-  switch (passage) {
-    case Passage::command_to_drive:
-      return !is_of_sensor || is_of_drives_sensors(candidate);
-    case Passage::drive_to_body:
-      return !is_of_drive || !drives_measured || is_behind_encoders(candidate);
-    case Passage::body_to_sensor:
-      return is_of_sensor;
-  }
-  return false;
-}
-}  // namespace
-
-std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidate> candidates, bool drives_measured) {
-  std::vector<std::size_t> result;
-  for (std::size_t c = 0; c < candidates.size(); ++c)
-    if (acts_in(passage, candidates[c], drives_measured)) result.push_back(c);
-  return result;
-}
-
-namespace {
-
-bool has_baseline(const std::vector<StageFeatures>& features) {
-  return std::ranges::any_of(features, [](const StageFeatures& run) { return run.baseline_runs.size() > 0; });
-}
-
-Variation varied(const PreparedStage& stage, const Predictor& predictor, const Settings& settings) {
-  Variation variation = predictor.unvaried();
-  variation.robot = with_settings(std::move(variation.robot), stage.candidates, settings);
-  return variation;
-}
-
-std::vector<OpenShapes> open_around(const PreparedStage& stage, Predictor& predictor, const Settings& settings) {
-  return open_shapes(*stage.input.features, predictor, stage.input.passage, varied(stage, predictor, settings),
-                     kOpenStart_m, kOpenStart_rad);
-}
-
-StageData data_in(const PreparedStage& stage, const NoiseFloor& floor) {
-  return stage_data(stage.input.passage, *stage.input.features, *stage.input.repeats, stage.residuals, floor);
-}
-
-}  // namespace
-
-Simulate simulator_of(const PreparedStage& stage, Predictor& predictor) {
-  return [&stage, &predictor](std::span<const Settings> asked, Fidelity fidelity) {
-    std::vector<Variation> variations;
-    for (const Settings& settings : asked) variations.push_back(varied(stage, predictor, settings));
-    std::vector<GroupVectors> shifts;
-    for (const Shift& shift : predictor.shifts(variations, stage.input.passage, fidelity))
-      shifts.push_back(mean_of_groups(stage.nominal.data, shift));
-    return shifts;
-  };
-}
-
-PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor) {
-  const std::vector<StageFeatures>& features = *input.features;
-  PreparedStage stage{input, candidates, {}, {}, {}, {}};
-  for (std::size_t r = 0; r < features.size(); ++r)
-    stage.residuals.push_back(features[r].measured - predictor.nominal(input.passage)[r]);
-  if (std::ranges::all_of(features, [](const StageFeatures& run) { return run.bins.empty(); })) return stage;
-  const bool drives_measured =
-      std::ranges::all_of(input.observations->runs, [](const Observation& run) { return run.measured.has_value(); });
-  stage.possible = candidates_of(input.passage, candidates, drives_measured);
-
-  // noise, and what the simulation leaves open around the nominal model
-  NoiseFloor& floor = stage.nominal.floor;
-  floor =
-      noise_floor(features, stage.residuals, *input.same_orders, open_around(stage, predictor, {}), input.stated_noise);
-  stage.nominal.data = data_in(stage, floor);
-
-  // a first look at all; numbers that are a little off are so in a baseline, too
-  const Simulate simulate = simulator_of(stage, predictor);
-  stage.curves = first_look(stage.nominal.data, candidates, stage.possible, simulate);
-  if (!has_baseline(features)) floor.number_shapes = number_shapes(stage.nominal.data, stage.curves, stage.possible);
-  stage.nominal.shapes_of_all_numbers = floor.number_shapes;
-  stage.nominal.data = data_in(stage, floor);
-
-  // whole curves of those that can matter
-  const std::vector<std::size_t> distinct =
-      without_same_parts(stage.nominal.data, candidates, stage.possible, simulate);
-  forget_all_but(stage.curves, distinct);
-  follow_those_that_matter(stage.curves, stage.nominal.data, distinct, simulate);
-  return stage;
-}
-
-namespace {
 
 // What the best model is worth, the runs of each fold simulated with the values of the others, and so which names it
 // gets.

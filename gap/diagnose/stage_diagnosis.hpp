@@ -8,6 +8,7 @@
 
 #include "gap/diagnose/isolability.hpp"
 #include "gap/diagnose/left_over.hpp"
+#include "gap/diagnose/prepared_stage.hpp"
 #include "gap/diagnose/stage_decision.hpp"
 #include "gap/diagnose/where.hpp"
 
@@ -17,17 +18,6 @@ struct StageOptions {
   DecisionSettings decision;
   double stretch_s = 1;  // of a cell
   std::uint64_t seed = 1;
-};
-
-// What the diagnosis of a stage starts from.
-struct StageInput {
-  Passage passage;
-  const Observations* observations;
-  const std::vector<FeatureMap>* maps;
-  const std::vector<StageFeatures>* features;
-  const std::vector<std::vector<std::size_t>>* repeats;      // same commands
-  const std::vector<std::vector<std::size_t>>* same_orders;  // same_orders_of()
-  std::vector<double> stated_noise;                          // of diagnosis_channels(), 0: nobody stated one
 };
 
 // One effect alone.
@@ -55,23 +45,6 @@ struct StageDiagnosis {
   bool is_measured() const { return !decision.data.groups.empty(); }
 };
 
-// The candidates that can act in a stage; the others cannot, whatever their value. `drives_measured`: every run measured its
-// tracks, so that the body is seen in a replay of these.
-std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidate> candidates, bool drives_measured);
-
-// A stage with what is simulated of it before anything is decided.
-struct PreparedStage {
-  StageInput input;
-  std::span<const Candidate> candidates;  // must outlive this
-  std::vector<std::size_t> possible;      // candidates_of()
-  std::vector<Eigen::VectorXd> residuals;
-  StageAround nominal;                    // no data where no run measures the stage
-  EffectCurves curves;                    // of those that can matter, over their range
-};
-// Simulates settings in a stage. Both must outlive it.
-Simulate simulator_of(const PreparedStage& stage, Predictor& predictor);
-PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor);
-
 // `elsewhere`: what other stages say (stage_decision.hpp).
 StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
                               const Elsewhere& elsewhere = {});
@@ -79,9 +52,5 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
 // Intervals as wide as numbers of the description make them that are off, 1 sigma, by `numbers_off` (errors_of_values.hpp).
 void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor, double numbers_off,
                      std::uint64_t seed);
-
-// The nominal robot with candidates at these values.
-physics::RobotDescription with_settings(physics::RobotDescription robot, std::span<const Candidate> candidates,
-                                        const Settings& settings);
 
 }  // namespace kenaf::gap

@@ -1,6 +1,6 @@
 // Verdicts in a world whose effects are fixed vectors: tests/gap/linear_world.hpp.
 #include "gap/diagnose/stage_decision.hpp"
-#include "gap/diagnose/stage_diagnosis.hpp"
+#include "gap/diagnose/stage_candidates.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

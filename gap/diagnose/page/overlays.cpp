@@ -13,6 +13,7 @@
 #include "gap/diagnose/prediction.hpp"
 #include "gap/diagnose/repeats.hpp"
 #include "gap/diagnose/report_words.hpp"
+#include "gap/diagnose/stage_candidates.hpp"
 #include "gap/parallel.hpp"
 
 namespace kenaf::gap {

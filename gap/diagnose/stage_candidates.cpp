@@ -1,0 +1,51 @@
+#include "gap/diagnose/stage_candidates.hpp"
+
+#include <algorithm>
+
+namespace kenaf::gap {
+namespace {
+
+// Whether drives report otherwise with it; the other sensors see the body.
+bool is_of_drives_sensors(const Candidate& candidate) {
+  return std::ranges::any_of(candidate.keys, [](const std::string& key) {
+    return key.starts_with("effects.encoder") || key.starts_with("sensor[");
+  });
+}
+
+// Whether it is of a drive, but where the drive's own encoder does not see it.
+bool is_behind_encoders(const Candidate& candidate) {
+  return std::ranges::any_of(candidate.keys, [](const std::string& key) {
+    return key.starts_with("effects.flipper_backlash") || key.starts_with("effects.flipper_compliance");
+  });
+}
+
+bool acts_in(Passage passage, const Candidate& candidate, bool drives_measured) {
+  const bool is_of_drive = candidate.stage == physics::Stage::command || candidate.stage == physics::Stage::drive;
+  const bool is_of_sensor = candidate.stage == physics::Stage::sensor;
+  switch (passage) {
+    case Passage::command_to_drive:
+      return !is_of_sensor || is_of_drives_sensors(candidate);
+    case Passage::drive_to_body:
+      return !is_of_drive || !drives_measured || is_behind_encoders(candidate);
+    case Passage::body_to_sensor:
+      return is_of_sensor;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidate> candidates, bool drives_measured) {
+  std::vector<std::size_t> result;
+  for (std::size_t c = 0; c < candidates.size(); ++c)
+    if (acts_in(passage, candidates[c], drives_measured)) result.push_back(c);
+  return result;
+}
+
+physics::RobotDescription with_settings(physics::RobotDescription robot, std::span<const Candidate> candidates,
+                                        const Settings& settings) {
+  for (const Setting& setting : settings) candidates[setting.candidate].set(robot, setting.value);
+  return robot;
+}
+
+}  // namespace kenaf::gap
