@@ -97,9 +97,10 @@ constexpr std::array kColumns{"x_m",     "y_m",          "z_m",          "roll_r
 constexpr std::size_t kYaw = 5;
 using Motion = std::array<double, kColumns.size()>;
 
-Motion motion_between(const Pose& before, const Pose& now, double span_s) {
+// Rates are those of the turn from the row before to the row after, so that they are not late.
+Motion motion_of(const Pose& before, const Pose& now, const Pose& after, double span_s) {
   const Eigen::Vector3d angles = roll_pitch_yaw(now.q);
-  const Eigen::AngleAxisd turned(before.q.conjugate() * now.q);
+  const Eigen::AngleAxisd turned(before.q.conjugate() * after.q);
   const double angle = std::remainder(turned.angle(), 2 * std::numbers::pi);
   const Eigen::Vector3d rates =
       span_s > 0 ? Eigen::Vector3d(turned.axis() * (angle / span_s)) : Eigen::Vector3d::Zero();
@@ -108,16 +109,17 @@ Motion motion_between(const Pose& before, const Pose& now, double span_s) {
 
 std::vector<Motion> motions_in(const Engine& engine, const EngineScene& scene, std::span<const double> t_s) {
   const std::unique_ptr<Runner> runner = engine.build(scene);
-  std::vector<Motion> motions;
+  std::vector<Pose> poses;
   long steps = 0;
-  Pose before;
   for (const double row_s : t_s) {
     const long until = std::lround((kSettle_s + row_s - t_s.front()) / scene.time_step_s);
-    const double span_s = motions.empty() ? 0 : static_cast<double>(until - steps) * scene.time_step_s;
     for (; steps < until; ++steps) runner->step();
-    const Pose now = runner->pose();
-    motions.push_back(motion_between(motions.empty() ? now : before, now, span_s));
-    before = now;
+    poses.push_back(runner->pose());
+  }
+  std::vector<Motion> motions;
+  for (std::size_t row = 0; row < poses.size(); ++row) {
+    const std::size_t before = row > 0 ? row - 1 : 0, after = std::min(row + 1, poses.size() - 1);
+    motions.push_back(motion_of(poses[before], poses[row], poses[after], t_s[after] - t_s[before]));
   }
   return motions;
 }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "physics/robot_shapes.hpp"
+#include "protocol/frames.hpp"
 
 namespace kenaf::engines {
 namespace {
@@ -12,8 +13,10 @@ namespace {
 using namespace physics;
 
 constexpr double kDrive_mps = 0.2;
-constexpr double kServoGain_per_s = 30;  // as physics/flipper_joint.cpp
-constexpr double kFastest_radps = 10;    // of a flipper whose motion is prescribed, as World::prescribe has it
+// as physics/flipper_joint.cpp has them, the last two where the motion is prescribed
+constexpr double kServoGain_per_s = 30;
+constexpr double kFastest_radps = 10;
+constexpr double kAnyTorque_nm = 1e6;
 
 EngineScene climb(const std::string& name, WorldDescription world, double x_m, double z_m, double front_rad,
                   double rear_rad, double duration_s) {
@@ -70,6 +73,10 @@ EngineScene on_plane(const RobotDescription& robot, double slope_rad) {
 double flipper_at_start(const EngineScene& scene, std::size_t flipper) {
   return scene.prescribed.empty() ? scene.robot->flipper.front().start_angle_rad
                                   : scene.prescribed.front().flipper_rad[flipper];
+}
+
+double servo_torque_nm(const EngineScene& scene) {
+  return scene.prescribed.empty() ? scene.robot->servo.max_torque_nm : kAnyTorque_nm;
 }
 
 RobotParts parts_of(const RobotDescription& robot) {
@@ -139,6 +146,7 @@ Drives::Drives(const EngineScene& scene)
   if (drive.time_constant_s > 0) share_ = -std::expm1(-scene.time_step_s / drive.time_constant_s);
   max_mps_ = drive.max_speed_mps;
   max_radps_ = prescribed_.empty() ? scene.robot->servo.max_speed_radps : kFastest_radps;
+  servo_gain_per_s_ = prescribed_.empty() ? kServoGain_per_s : 1 / scene.time_step_s;
 }
 
 void Drives::advance_as_prescribed() {
@@ -162,7 +170,8 @@ void Drives::advance() {
 }
 
 double Drives::flipper_radps(std::size_t flipper, double angle_rad) const {
-  return std::clamp(kServoGain_per_s * (command_.flipper[flipper].value - angle_rad), -max_radps_, max_radps_);
+  const double apart_rad = frames::wrap_angle(command_.flipper[flipper].value - angle_rad);
+  return std::clamp(servo_gain_per_s_ * apart_rad, -max_radps_, max_radps_);
 }
 
 }  // namespace kenaf::engines

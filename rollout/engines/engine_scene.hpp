@@ -65,6 +65,8 @@ struct Arm {
 
 // The angle of an arm before the first step.
 double flipper_at_start(const EngineScene& scene, std::size_t flipper);
+// The most that a servo can do; to hold an arm to a prescribed angle, anything.
+double servo_torque_nm(const EngineScene& scene);
 
 struct RobotParts {
   std::array<Belted, physics::kTrackCount> tracks;  // in B
@@ -78,8 +80,9 @@ class Drives {
   explicit Drives(const EngineScene& scene);
   void advance();                                   // call before each step
   double belt_mps(physics::Track track) const { return belt_mps_[track]; }
-  // The speed that a flipper at `angle_rad` shall have.
+  // The speed that a flipper at `angle_rad` shall have; a prescribed one is there after the step.
   double flipper_radps(std::size_t flipper, double angle_rad) const;
+  double flipper_rad(std::size_t flipper) const { return command_.flipper[flipper].value; }  // where it shall be
 
  private:
   void advance_as_prescribed();
@@ -88,7 +91,7 @@ class Drives {
   std::vector<DriveSample> prescribed_;
   std::size_t next_ = 0;                            // of prescribed_, the first that is not over
   double time_step_s_ = 0, time_s_ = 0;
-  double share_ = 1, max_mps_ = 0, max_radps_ = 0;
+  double share_ = 1, max_mps_ = 0, max_radps_ = 0, servo_gain_per_s_ = 0;
   std::array<double, physics::kTrackCount> belt_mps_{};
 };
 

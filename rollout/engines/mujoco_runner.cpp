@@ -56,9 +56,9 @@ class ModelText {
     xml = fmt::format(
         "<mujoco><option timestep=\"{}\" gravity=\"{}\" solver=\"{}\" cone=\"{}\" iterations=\"{}\"/>"
         "<size nconmax=\"300\" njmax=\"1500\" nuser_geom=\"1\"/><asset>{}</asset>"
-        "<worldbody>{}{}</worldbody><actuator>{}</actuator></mujoco>",
+        "<worldbody>{}{}</worldbody><actuator>{}</actuator><equality>{}</equality></mujoco>",
         scene.time_step_s, text(scene.world.gravity_W_mps2), options.solver, options.cone, options.iterations, assets_,
-        terrain_, bodies_, actuators_);
+        terrain_, bodies_, actuators_, held_);
   }
   std::string xml;
 
@@ -85,6 +85,12 @@ class ModelText {
       bodies_ +=
           fmt::format("<body {}><joint name=\"{}\" type=\"hinge\" axis=\"0 -1 0\"/>{}{}</body>", placed(arm.X_BArm),
                       joint, inertial(arm.mass_kg, arm.p_com_m, arm.inertia_kgm2), belted(arm.shape));
+      // a prescribed arm gives way to no load, so that what the robot's columns say of it is where it is
+      if (!scene.prescribed.empty()) {
+        held_ += fmt::format("<joint joint1=\"{}\" solref=\"{} 1\" solimp=\"0.999 0.999 0.001\"/>", joint,
+                             2 * scene.time_step_s);
+        continue;
+      }
       actuators_ += fmt::format(
           "<general joint=\"{0}\" gainprm=\"{1}\" biastype=\"affine\" biasprm=\"0 0 -{1}\" forcelimited=\"true\" "
           "forcerange=\"-{2} {2}\"/>",
@@ -120,7 +126,7 @@ class ModelText {
   }
 
   Options options_;
-  std::string assets_, terrain_, bodies_, actuators_;
+  std::string assets_, terrain_, bodies_, actuators_, held_;
   double friction_ = 1;
   int joints_ = 0, meshes_ = 0;
 };
@@ -140,13 +146,15 @@ class MujocoRunner : public Runner {
     mj_deleteVFS(files.get());
     if (!model_) throw std::runtime_error(fmt::format("MuJoCo: {}", error));
     data_.reset(mj_makeData(model_.get()));
-    flippers_ = static_cast<std::size_t>(model_->nu);
-    for (std::size_t i = 0; i < flippers_; ++i) data_->qpos[7 + i] = flipper_at_start(scene, i);
+    servos_ = static_cast<std::size_t>(model_->nu);
+    held_ = static_cast<std::size_t>(model_->neq);
+    for (std::size_t i = 0; i < servos_ + held_; ++i) data_->qpos[7 + i] = flipper_at_start(scene, i);
   }
 
   void step() override {
     drives_.advance();
-    for (std::size_t i = 0; i < flippers_; ++i) data_->ctrl[i] = drives_.flipper_radps(i, data_->qpos[7 + i]);
+    for (std::size_t i = 0; i < servos_; ++i) data_->ctrl[i] = drives_.flipper_radps(i, data_->qpos[7 + i]);
+    for (std::size_t i = 0; i < held_; ++i) model_->eq_data[mjNEQDATA * i] = drives_.flipper_rad(i);
     mj_step1(model_.get(), data_.get());
     move_belts();
     mj_step2(model_.get(), data_.get());
@@ -196,7 +204,7 @@ class MujocoRunner : public Runner {
   bool pyramidal_;
   std::unique_ptr<mjModel, Free> model_;
   std::unique_ptr<mjData, Free> data_;
-  std::size_t flippers_ = 0;
+  std::size_t servos_ = 0, held_ = 0;  // of the flippers, which are all one or all the other
 };
 
 }  // namespace

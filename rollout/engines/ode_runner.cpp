@@ -181,7 +181,7 @@ class OdeRunner : public Runner {
       dJointSetHingeAnchor(hinge, X_WArm.p.x(), X_WArm.p.y(), X_WArm.p.z());
       const Eigen::Vector3d axis = X_WArm.q * -Eigen::Vector3d::UnitY();
       dJointSetHingeAxis(hinge, axis.x(), axis.y(), axis.z());
-      dJointSetHingeParam(hinge, dParamFMax, robot.servo.max_torque_nm);
+      dJointSetHingeParam(hinge, dParamFMax, servo_torque_nm(scene));
       hinges_.push_back(hinge);
     }
   }
