@@ -38,9 +38,9 @@ std::vector<Cost> measure(const std::string& world_name, int pictures) {
   const physics::RobotDescription robot = physics::load_robot("kenaf");
   physics::Pose X_WB = world.description().start_poses.front().X_WB;
   const physics::RobotId id = world.add_robot(robot, "R1", X_WB);
-  physics::RobotCommand command;
+  robot::Command command;
   command.track_speed_mps = {0.4, 0.4};
-  for (physics::JointCommand& flipper : command.flipper) flipper.value = 0.6;
+  for (robot::JointCommand& flipper : command.flipper) flipper.value = 0.6;
   world.set_command(id, command);
 
   camera::SnapshotTaker taker;

@@ -63,7 +63,7 @@ struct Part {
   Owned<RTCGeometry> instance;
   FaceId first_face = 0;
   physics::Pose X_WL;
-  std::array<double, physics::kTrackCount> track_m{};
+  std::array<double, robot::kTrackCount> track_m{};
   Vector3d centre_L;
   double radius_m = 0;  // around centre_L
 };
@@ -186,8 +186,8 @@ struct Scene::Implementation {
       PlacedRobot placed_robot{robot.id, robot.description, face_count, face_count};
       add_part(body_surface(*robot.description));
       if (robot.description->has_flippers())
-        for (std::size_t i = 0; i < physics::kFlipperCount; ++i)
-          add_part(flipper_surface(*robot.description, static_cast<physics::Flipper>(i)));
+        for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
+          add_part(flipper_surface(*robot.description, static_cast<robot::Flipper>(i)));
       placed_robot.end_face = face_count;
       robots.push_back(placed_robot);
     }
@@ -235,8 +235,8 @@ struct Scene::Implementation {
       const auto first = part;
       place(*part++, robot.X_WB);
       if (robot.description->has_flippers()) {
-        for (std::size_t i = 0; i < physics::kFlipperCount; ++i)
-          place(*part++, compose(robot.X_WB, flipper_pose(*robot.description, static_cast<physics::Flipper>(i),
+        for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
+          place(*part++, compose(robot.X_WB, flipper_pose(*robot.description, static_cast<robot::Flipper>(i),
                                                           robot.flipper_rad[i])));
       }
       for (auto own = first; own != part; ++own) own->track_m = robot.track_m;

@@ -19,8 +19,8 @@ struct RobotSnapshot {
   std::shared_ptr<const physics::RobotDescription> description;  // shared by all snapshots of this robot
   std::string name;
   physics::Pose X_WB;                                            // after a fault where it last was whole
-  std::array<double, physics::kFlipperCount> flipper_rad;
-  std::array<double, physics::kTrackCount> track_m;              // travel of the belts, so that they are seen to run
+  std::array<double, robot::kFlipperCount> flipper_rad;
+  std::array<double, robot::kTrackCount> track_m;              // travel of the belts, so that they are seen to run
   std::vector<std::vector<double>> mission_link_rad;             // of each mission package, link 1 first
 };
 

@@ -49,7 +49,7 @@ struct BeltLoop {
   Vector3d p_LBelt;
   double width_m;
   Material side;
-  physics::Track track;
+  robot::Track track;
   double s_sign;  // -1: driving forward moves the belt along the outline's order; +1: against it; 0: it does not move
   std::vector<Wheel> wheels;
 };
@@ -100,12 +100,12 @@ void add_belt(Surface& surface, const BeltLoop& belt) {
   for (const double left : {1.0, -1.0}) add_side(surface, belt, left);
 }
 
-bool is_front(physics::Flipper which) {
-  return which == physics::kFrontLeft || which == physics::kFrontRight;
+bool is_front(robot::Flipper which) {
+  return which == robot::kFrontLeft || which == robot::kFrontRight;
 }
 
-physics::Track side_of(physics::Flipper which) {
-  return which == physics::kFrontLeft || which == physics::kRearLeft ? physics::kLeft : physics::kRight;
+robot::Track side_of(robot::Flipper which) {
+  return which == robot::kFrontLeft || which == robot::kRearLeft ? robot::kLeft : robot::kRight;
 }
 
 }  // namespace
@@ -135,16 +135,16 @@ Surface body_surface(const physics::RobotDescription& robot) {
   add_box(surface, robot.body.size_m, {}, Material::hull);
   const physics::TrackDescription& track = robot.track;
   const double half_m = track.length_m / 2 - track.end_radius_m, radius_m = kWheelShare * track.end_radius_m;
-  for (const physics::Track side : {physics::kLeft, physics::kRight}) {
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     BeltLoop belt{physics::track_outline(track), track.p_BT_m, track.width_m, Material::track_side, side, 1, {}};
-    if (side == physics::kRight) belt.p_LBelt.y() *= -1;
+    if (side == robot::kRight) belt.p_LBelt.y() *= -1;
     for (const double x : {half_m, 0.0, -half_m}) belt.wheels.push_back({{x, 0}, x == 0 ? 0.7 * radius_m : radius_m});
     add_belt(surface, belt);
   }
   return surface;
 }
 
-Surface flipper_surface(const physics::RobotDescription& robot, physics::Flipper which) {
+Surface flipper_surface(const physics::RobotDescription& robot, robot::Flipper which) {
   const physics::FlipperDescription& flipper = robot.flipper.front();
   Surface surface;
   // the upper run goes forward on both ends of the robot: toward the tip in front, toward the pivot behind
@@ -160,10 +160,10 @@ Surface flipper_surface(const physics::RobotDescription& robot, physics::Flipper
   return surface;
 }
 
-physics::Pose flipper_pose(const physics::RobotDescription& robot, physics::Flipper which, double angle_rad) {
+physics::Pose flipper_pose(const physics::RobotDescription& robot, robot::Flipper which, double angle_rad) {
   Vector3d pivot_B = robot.flipper.front().p_BPivot_m;
   if (!is_front(which)) pivot_B.x() *= -1;
-  if (side_of(which) == physics::kRight) pivot_B.y() *= -1;
+  if (side_of(which) == robot::kRight) pivot_B.y() *= -1;
   const Eigen::Quaterniond tip_up(Eigen::AngleAxisd(-angle_rad, Vector3d::UnitY()));
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(is_front(which) ? 0 : pi, Vector3d::UnitZ()));
   return {pivot_B, turned * tip_up};

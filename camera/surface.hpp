@@ -32,7 +32,7 @@ struct Face {
   Material material;
   Eigen::Vector2d half{0, 0};      // of a box: |s| and |t| at its edges, which are drawn; 0: no edges
   double s_per_track_m = 0;        // how far s moves when the belt of `track` does
-  physics::Track track = physics::kLeft;
+  robot::Track track = robot::kLeft;
 };
 
 struct Surface {
@@ -50,9 +50,9 @@ void add_box(Surface& surface, const Eigen::Vector3d& size_m, const physics::Pos
 // track's travel has taken it, and wheels stand 2 mm out of the sides so that ends and middle can be told apart: both are
 // for the eye, no description has them.
 Surface body_surface(const physics::RobotDescription& robot);
-Surface flipper_surface(const physics::RobotDescription& robot, physics::Flipper which);
+Surface flipper_surface(const physics::RobotDescription& robot, robot::Flipper which);
 
 // Where the arm of a flipper is in B; 0: straight out along the body, positive: tip up.
-physics::Pose flipper_pose(const physics::RobotDescription& robot, physics::Flipper which, double angle_rad);
+physics::Pose flipper_pose(const physics::RobotDescription& robot, robot::Flipper which, double angle_rad);
 
 }  // namespace kenaf::camera

@@ -124,7 +124,7 @@ void read_flippers(TomlReader table, TomlReader joint, TomlReader servo, RobotBu
   if (table.has("homing")) kind.homing = read_homing(table.table("homing"));
   constexpr std::array kKeys = {"front_left", "front_right", "rear_left", "rear_right"};
   for (std::size_t i = 0; i < kKeys.size(); ++i) {
-    DriveOnBus& drive = bus.drives[relay::kTrackCount + i] = read_drive(table.table(kKeys[i]), kind);
+    DriveOnBus& drive = bus.drives[robot::kTrackCount + i] = read_drive(table.table(kKeys[i]), kind);
     check_numbers(table, drive);
   }
   table.finish();

@@ -15,16 +15,16 @@
 
 #include "canopen/drive.hpp"
 #include "canopen/nmt.hpp"
-#include "protocol/relay_datagram.hpp"
+#include "robot/parts.hpp"
 
 namespace kenaf::canbus {
 
-inline constexpr std::size_t kDriveCount = std::size_t{relay::kTrackCount} + relay::kFlipperCount;
+inline constexpr std::size_t kDriveCount = std::size_t{robot::kTrackCount} + robot::kFlipperCount;
 // Order of the drives everywhere: track left, track right, flippers front left, front right, rear left, rear right.
 inline constexpr std::array<std::string_view, kDriveCount> kDriveNames = {
     "track left",          "track right",       "flipper front left",
     "flipper front right", "flipper rear left", "flipper rear right"};
-constexpr bool is_track(std::size_t drive) { return drive < relay::kTrackCount; }
+constexpr bool is_track(std::size_t drive) { return drive < robot::kTrackCount; }
 
 // How a drive counts, and where it may go.
 struct DriveUnits {

@@ -40,7 +40,7 @@ Measured measure(const canbus::RobotBus& bus, std::size_t drive, const PlantStat
     motor.current_a = state.track_a[drive];
     return motor;
   }
-  const std::size_t flipper = drive - relay::kTrackCount;
+  const std::size_t flipper = drive - robot::kTrackCount;
   const double angle = state.flipper_rad[flipper];
   const bool at_min = angle <= on_bus.min_position + kSwitchBeforeEnd_rad;
   const bool at_max = angle >= on_bus.max_position - kSwitchBeforeEnd_rad;
@@ -58,7 +58,7 @@ void command(const canbus::RobotBus& bus, std::size_t drive, const Drive& from, 
   const canbus::DriveUnits& units = bus.drives[drive].units;
   const Demand& demand = from.demand();
   if (!canbus::is_track(drive)) {
-    to.flipper_rad[drive - relay::kTrackCount] = (demand.position - units.zero_counts) / units.counts_per_unit;
+    to.flipper_rad[drive - robot::kTrackCount] = (demand.position - units.zero_counts) / units.counts_per_unit;
     return;
   }
   double velocity = demand.velocity;

@@ -5,18 +5,18 @@
 #include <array>
 
 #include "canopen/frame.hpp"
-#include "protocol/relay_datagram.hpp"
+#include "robot/parts.hpp"
 
 namespace kenaf::candrives {
 
 struct PlantCommand {
-  std::array<double, relay::kTrackCount> track_mps{};
-  std::array<double, relay::kFlipperCount> flipper_rad{};
+  std::array<double, robot::kTrackCount> track_mps{};
+  std::array<double, robot::kFlipperCount> flipper_rad{};
 };
 
 struct PlantState {
-  std::array<double, relay::kTrackCount> track_m{}, track_mps{}, track_a{};
-  std::array<double, relay::kFlipperCount> flipper_rad{}, flipper_radps{}, flipper_a{};
+  std::array<double, robot::kTrackCount> track_m{}, track_mps{}, track_a{};
+  std::array<double, robot::kFlipperCount> flipper_rad{}, flipper_radps{}, flipper_a{};
   double battery_v = 0;
   double roll_rad = 0, pitch_rad = 0, yaw_rate_radps = 0;  // yaw rate in the body frame, as a gyro has it
 };

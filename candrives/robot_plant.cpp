@@ -33,7 +33,7 @@ RobotPlant::RobotPlant(const std::string& robot, const std::string& world, doubl
     : world_(world_description(world), physics::PhysicsSettings{.time_step_s = time_step_s}, 0) {
   physics::RobotDescription description = with_drive_sensor(physics::load_robot(robot));
   description.drive.time_constant_s = speed_loop_s;
-  encoder_factor_ = {description.encoder_factor(physics::kLeft), description.encoder_factor(physics::kRight)};
+  encoder_factor_ = {description.encoder_factor(robot::kLeft), description.encoder_factor(robot::kRight)};
   if (description.has_flippers()) {
     min_flipper_rad_ = description.flipper.front().min_angle_rad;
     max_flipper_rad_ = description.flipper.front().max_angle_rad;
@@ -44,12 +44,11 @@ RobotPlant::RobotPlant(const std::string& robot, const std::string& world, doubl
 }
 
 void RobotPlant::advance(canopen::Time step, const PlantCommand& command) {
-  physics::RobotCommand told;
+  robot::Command told;
   told.track_speed_mps = command.track_mps;
   // beyond its stop a joint would be told a direction, which may be reached the other way round
-  for (std::size_t i = 0; i < relay::kFlipperCount; ++i)
-    told.flipper[i] = {physics::JointMode::angle,
-                       std::clamp(command.flipper_rad[i], min_flipper_rad_, max_flipper_rad_)};
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
+    told.flipper[i] = {robot::JointMode::angle, std::clamp(command.flipper_rad[i], min_flipper_rad_, max_flipper_rad_)};
   world_.set_command(robot_, told);
   for (due_ += step; due_ >= step_; due_ -= step_) {
     world_.step();
@@ -64,7 +63,7 @@ void RobotPlant::observe() {
   const physics::RobotTruth truth = world_.truth(robot_);
   const Eigen::Vector3d angles_rad = physics::roll_pitch_yaw(truth.X_WB.q);
   const Eigen::Vector3d w_WB_B = truth.X_WB.q.conjugate() * truth.w_WB_radps;
-  for (std::size_t i = 0; i < relay::kTrackCount; ++i) {
+  for (std::size_t i = 0; i < robot::kTrackCount; ++i) {
     state_.track_m[i] = truth.track_m[i] * encoder_factor_[i];
     state_.track_mps[i] = truth.track_mps[i] * encoder_factor_[i];
   }

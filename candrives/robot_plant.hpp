@@ -32,7 +32,7 @@ class RobotPlant final : public Plant {
 
   physics::World world_;
   physics::RobotId robot_{};
-  std::array<double, relay::kTrackCount> encoder_factor_{};  // what the motors' encoders report of a metre
+  std::array<double, robot::kTrackCount> encoder_factor_{};  // what the motors' encoders report of a metre
   double min_flipper_rad_ = 0, max_flipper_rad_ = 0;
   canopen::Time step_, due_{};
   PlantState state_;

@@ -35,7 +35,7 @@ class WatchedPlant final : public Plant {
     plant_.advance(step, command);
     for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
       const bool track = canbus::is_track(i);
-      const std::size_t flipper = i - relay::kTrackCount;
+      const std::size_t flipper = i - robot::kTrackCount;
       const double moved =
           track ? state().track_m[i] - before.track_m[i] : state().flipper_rad[flipper] - before.flipper_rad[flipper];
       check(std::isfinite(moved));

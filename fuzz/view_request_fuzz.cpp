@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (const double speed : drive->command.track_speed_mps) {
         if (!std::isfinite(speed)) std::abort();
       }
-      for (const physics::JointCommand& joint : drive->command.flipper) {
+      for (const robot::JointCommand& joint : drive->command.flipper) {
         if (!std::isfinite(joint.value)) std::abort();
       }
     }

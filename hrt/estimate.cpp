@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 
 namespace kenaf::hrt {
 namespace {
@@ -42,24 +42,24 @@ const Estimate& Estimator::update(const relay::State& state) {
   now.has_encoders = (state.fields & relay::kHasEncoders) != 0;
   now.has_currents = (state.fields & relay::kHasCurrents) != 0;
   if (now.has_currents) {
-    now.max_track_a = std::max(std::abs(state.track_a[relay::kLeft]), std::abs(state.track_a[relay::kRight]));
+    now.max_track_a = std::max(std::abs(state.track_a[robot::kLeft]), std::abs(state.track_a[robot::kRight]));
   }
 
   // A track's travel since the cycle before; nothing where it was not measured.
-  std::array<double, relay::kTrackCount> moved_m{};
+  std::array<double, robot::kTrackCount> moved_m{};
   if (now.has_encoders) {
-    for (std::size_t i = 0; i < relay::kTrackCount; ++i) {
+    for (std::size_t i = 0; i < robot::kTrackCount; ++i) {
       moved_m[i] = has_travel_ ? state.track_m[i] - track_m_[i] : 0;
       track_m_[i] = state.track_m[i];
     }
     has_travel_ = true;
-    now.travel_m = 0.5 * (track_m_[relay::kLeft] + track_m_[relay::kRight]);
+    now.travel_m = 0.5 * (track_m_[robot::kLeft] + track_m_[robot::kRight]);
   }
 
   // Heading: the posture sensor's, unwrapped step by step and smoothed, else the encoders'.
   const double before_rad = now.heading_rad;
   const double turned_rad =
-      (moved_m[relay::kRight] - moved_m[relay::kLeft]) / settings_.track_gauge_m * settings_.turn_efficiency;
+      (moved_m[robot::kRight] - moved_m[robot::kLeft]) / settings_.track_gauge_m * settings_.turn_efficiency;
   if ((state.fields & relay::kHasPosture) != 0) {
     if (first) {
       raw_heading_rad_ = now.heading_rad = start_heading_rad_ = state.posture_rad[2];
@@ -69,7 +69,7 @@ const Estimate& Estimator::update(const relay::State& state) {
       posture_offset_rad_ = before_rad - state.posture_rad[2];
       raw_heading_rad_ = before_rad;
     } else {
-      raw_heading_rad_ += frames::wrap_angle(state.posture_rad[2] + posture_offset_rad_ - raw_heading_rad_);
+      raw_heading_rad_ += robot::wrap_angle(state.posture_rad[2] + posture_offset_rad_ - raw_heading_rad_);
       const double since_last_s = posture_gap_s_ + now.dt_s;
       now.heading_rad += (raw_heading_rad_ - now.heading_rad) * -std::expm1(-since_last_s / kHeadingSmoothing_s);
     }
@@ -88,13 +88,13 @@ const Estimate& Estimator::update(const relay::State& state) {
   const double yaw_rad = now.heading_rad - start_heading_rad_;
   const double mean_rad = first ? yaw_rad : 0.5 * (yaw_rad + now.odometry_yaw_rad);
   const double slope_rad = (state.fields & relay::kHasPosture) != 0 ? state.posture_rad[1] : 0;
-  const double advance_m = 0.5 * (moved_m[relay::kLeft] + moved_m[relay::kRight]) * std::cos(slope_rad);
+  const double advance_m = 0.5 * (moved_m[robot::kLeft] + moved_m[robot::kRight]) * std::cos(slope_rad);
   now.odometry_x_m += advance_m * std::cos(mean_rad);
   now.odometry_y_m += advance_m * std::sin(mean_rad);
   now.odometry_yaw_rad = yaw_rad;
 
-  const bool moved = std::abs(track_m_[relay::kLeft] - still_track_m_[relay::kLeft]) > kStillTravel_m ||
-                     std::abs(track_m_[relay::kRight] - still_track_m_[relay::kRight]) > kStillTravel_m;
+  const bool moved = std::abs(track_m_[robot::kLeft] - still_track_m_[robot::kLeft]) > kStillTravel_m ||
+                     std::abs(track_m_[robot::kRight] - still_track_m_[robot::kRight]) > kStillTravel_m;
   if (first || moved) {
     still_track_m_ = track_m_;
     now.still_s = 0;

@@ -42,8 +42,8 @@ class Estimator {
   bool has_travel_ = false;
   double raw_heading_rad_ = 0;  // unwrapped, not smoothed
   double start_heading_rad_ = 0;
-  std::array<double, relay::kTrackCount> track_m_{};
-  std::array<double, relay::kTrackCount> still_track_m_{};  // where the tracks were when still_s began
+  std::array<double, robot::kTrackCount> track_m_{};
+  std::array<double, robot::kTrackCount> still_track_m_{};  // where the tracks were when still_s began
 };
 
 }  // namespace kenaf::hrt

@@ -7,7 +7,7 @@
 
 #include "hrt/estimate.hpp"
 #include "kenaf/hrt.h"
-#include "protocol/relay_datagram.hpp"
+#include "robot/parts.hpp"
 
 namespace kenaf::hrt {
 
@@ -22,7 +22,7 @@ MotionLimits motion_limits_from(const hrt_config& config);
 
 // What a motion commands in a cycle, and whether it goes on.
 struct MotionStep {
-  std::array<double, relay::kTrackCount> track_speed_mps{};
+  std::array<double, robot::kTrackCount> track_speed_mps{};
   bool finished = false;
   int code = HRT_OK;  // once finished
   std::string text;   // why it failed

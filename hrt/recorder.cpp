@@ -53,7 +53,7 @@ RecordRow record_row(const relay::State& state, const DriveCommand& command, dou
 
   put(t_s);
   put_all(command.track_speed_mps, true);
-  for (std::size_t i = 0; i < kFlipperCount; ++i) {
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
     put_all(std::array{command.flipper_rad[i]}, (command.flipper_mask >> i & 1) != 0);
   }
   put_all(state.track_mps, has(relay::kHasEncoders));

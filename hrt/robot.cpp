@@ -92,7 +92,7 @@ void Robot::wait_flippers(double tolerance_rad, double timeout_s) {
   Call call{
       .kind = Kind::flippers, .step = [&]() -> std::optional<Verdict> {
         std::string late;
-        for (std::size_t i = 0; i < kFlipperCount; ++i) {
+        for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
           if (flipper_is_off(i, tolerance_rad)) late += std::string(late.empty() ? "" : ", ") + kFlipperNames[i];
         }
         if (late.empty()) return Verdict{HRT_OK, {}};
@@ -205,7 +205,7 @@ void Robot::note_setting() {
   program_acted_.notify_one();
 }
 
-void Robot::set_user_tracks(const std::array<double, kTrackCount>& mps) {
+void Robot::set_user_tracks(const std::array<double, robot::kTrackCount>& mps) {
   user_track_mps_ = mps;
   stopped_by_silence_ = false;
 }
@@ -219,9 +219,9 @@ void Robot::set_tracks(double left_mps, double right_mps) {
   note_setting();
 }
 
-void Robot::set_flippers(std::uint8_t mask, const std::array<double, kFlipperCount>& angle_rad) {
+void Robot::set_flippers(std::uint8_t mask, const std::array<double, robot::kFlipperCount>& angle_rad) {
   const std::unique_lock lock = lock_open();
-  for (std::size_t i = 0; i < kFlipperCount; ++i) {
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
     if ((mask >> i & 1) != 0) flipper_rad_[i] = angle_rad[i];
   }
   flipper_mask_ |= mask;
@@ -234,7 +234,7 @@ void Robot::stop() {
             "hrt_stop() ended this call");
   goal_heading_rad_.reset();
   set_user_tracks({});
-  for (std::size_t i = 0; i < kFlipperCount; ++i) {
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
     if (flipper_is_off(i, kFlipperArrived_rad)) flipper_rad_[i] = measured_.flipper_rad[i];
   }
   note_setting();
@@ -426,7 +426,7 @@ void Robot::look_at_due() {
 void Robot::compose_command() {
   if (!calls_.empty()) last_call_t_s_ = estimate_.t_s;
   const double silent_s = estimate_.t_s - last_call_t_s_ - kCycleRounding * connection_.period_s;
-  if (silent_s > config_.command_timeout_s && user_track_mps_ != std::array<double, kTrackCount>{}) {
+  if (silent_s > config_.command_timeout_s && user_track_mps_ != std::array<double, robot::kTrackCount>{}) {
     user_track_mps_ = {};
     stopped_by_silence_ = true;
   }

@@ -59,7 +59,7 @@ class Robot {
   void wait_beside(const std::function<bool()>& wait_a_little);
 
   void set_tracks(double left_mps, double right_mps);
-  void set_flippers(std::uint8_t mask, const std::array<double, kFlipperCount>& angle_rad);
+  void set_flippers(std::uint8_t mask, const std::array<double, robot::kFlipperCount>& angle_rad);
   void stop();
 
   void record_start(const std::string& path);
@@ -117,7 +117,7 @@ class Robot {
   double motion_heading() const;
   bool motion_active() const;
   void begin_motion();
-  void set_user_tracks(const std::array<double, kTrackCount>& mps);
+  void set_user_tracks(const std::array<double, robot::kTrackCount>& mps);
   bool flipper_is_off(std::size_t flipper, double tolerance_rad) const;
 
   const hrt_config config_;
@@ -137,11 +137,11 @@ class Robot {
   std::string warning_;
   DriveCommand command_;   // the newest answer, in force from the next cycle on
   DriveCommand in_force_;  // the answer before it: in force since measured_
-  std::array<double, kTrackCount> user_track_mps_{};
+  std::array<double, robot::kTrackCount> user_track_mps_{};
   bool stopped_by_silence_ = false;  // those speeds, and none has been asked for since
-  std::array<double, kTrackCount> motion_track_mps_{};
+  std::array<double, robot::kTrackCount> motion_track_mps_{};
   std::uint8_t flipper_mask_ = 0;  // what the program wants, as DriveCommand has it
-  std::array<double, kFlipperCount> flipper_rad_{};
+  std::array<double, robot::kFlipperCount> flipper_rad_{};
   std::optional<double> goal_heading_rad_;  // of the motion before, while nothing else has moved the robot
   double last_call_t_s_ = 0;
   std::vector<Call*> calls_;  // those that wait

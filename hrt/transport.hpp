@@ -13,14 +13,14 @@
 
 namespace kenaf::hrt {
 
-using relay::kFlipperCount;
-using relay::kTrackCount;
+using robot::kFlipperCount;
+using robot::kTrackCount;
 
 // What the robot shall do from the next cycle on. Complete and absolute.
 struct DriveCommand {
-  std::array<double, kTrackCount> track_speed_mps{};
+  std::array<double, robot::kTrackCount> track_speed_mps{};
   std::uint8_t flipper_mask = 0;  // bit i: flipper_rad[i] was ever commanded
-  std::array<double, kFlipperCount> flipper_rad{};
+  std::array<double, robot::kFlipperCount> flipper_rad{};
 };
 
 struct Connection {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/reachable_angle.hpp"
+#include "robot/angles.hpp"
 
 namespace kenaf::real {
 
@@ -22,24 +22,24 @@ void PositionRamp::step(double target, double max_speed, double acceleration, do
 }
 
 DriveTargets::DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image) : bus_(bus) {
-  for (std::size_t f = 0; f < relay::kFlipperCount; ++f) {
-    const std::size_t drive = relay::kTrackCount + f;
+  for (std::size_t f = 0; f < robot::kFlipperCount; ++f) {
+    const std::size_t drive = robot::kTrackCount + f;
     hold_rad_[f] = ramps_[f].position = position_from_drive(bus.drives[drive].units, image.drive(drive).position);
   }
 }
 
 DriveOrders DriveTargets::step(const hrt::DriveCommand& command, const ProcessImage& image, double period_s) {
   DriveOrders orders;
-  for (std::size_t t = 0; t < relay::kTrackCount; ++t) orders[t] = track(t, command.track_speed_mps[t], period_s);
-  for (std::size_t f = 0; f < relay::kFlipperCount; ++f) {
-    const std::size_t drive = relay::kTrackCount + f;
+  for (std::size_t t = 0; t < robot::kTrackCount; ++t) orders[t] = track(t, command.track_speed_mps[t], period_s);
+  for (std::size_t f = 0; f < robot::kFlipperCount; ++f) {
+    const std::size_t drive = robot::kTrackCount + f;
     const bool told = (command.flipper_mask >> f & 1) != 0;
     const DriveOnBus& on_bus = bus_.drives[drive];
     // one that was not told anything stays also where that is outside of its limits
     if (told)
-      hold_rad_[f] = frames::reachable_angle(command.flipper_rad[f],
-                                             position_from_drive(on_bus.units, image.drive(drive).position),
-                                             on_bus.min_position, on_bus.max_position);
+      hold_rad_[f] =
+          robot::reachable_angle(command.flipper_rad[f], position_from_drive(on_bus.units, image.drive(drive).position),
+                                 on_bus.min_position, on_bus.max_position);
     orders[drive] = flipper(drive, told, image.drive(drive), period_s);
   }
   return orders;
@@ -58,7 +58,7 @@ DriveOrder DriveTargets::track(std::size_t i, double speed_mps, double period_s)
 
 DriveOrder DriveTargets::flipper(std::size_t i, bool told, const DriveInput& input, double period_s) {
   const DriveOnBus& drive = bus_.drives[i];
-  const std::size_t f = i - relay::kTrackCount;
+  const std::size_t f = i - robot::kTrackCount;
   if (drive.mode == DriveMode::cyclic_position) {
     ramps_[f].step(hold_rad_[f], drive.max_speed, drive.acceleration, period_s);
     return {canopen::kControlEnable, position_to_drive(drive.units, ramps_[f].position)};

@@ -32,10 +32,10 @@ class DriveTargets {
   DriveOrder flipper(std::size_t drive, bool told, const DriveInput& input, double period_s);
 
   const canbus::RobotBus& bus_;
-  std::array<double, relay::kTrackCount> track_mps_{};
-  std::array<double, relay::kFlipperCount> hold_rad_{};
-  std::array<PositionRamp, relay::kFlipperCount> ramps_{};
-  std::array<canopen::SetPointHandshake, relay::kFlipperCount> handshakes_{};
+  std::array<double, robot::kTrackCount> track_mps_{};
+  std::array<double, robot::kFlipperCount> hold_rad_{};
+  std::array<PositionRamp, robot::kFlipperCount> ramps_{};
+  std::array<canopen::SetPointHandshake, robot::kFlipperCount> handshakes_{};
 };
 
 }  // namespace kenaf::real

@@ -44,7 +44,7 @@ relay::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
   const auto current_a = [&](std::size_t i) {
     return has_currents ? std::abs(image.drive(i).current_permil) * current_unit * facts_.rated_current_a[i] : 0;
   };
-  for (std::size_t t = 0; t < relay::kTrackCount; ++t) {
+  for (std::size_t t = 0; t < robot::kTrackCount; ++t) {
     const DriveInput& drive = image.drive(t);
     const DriveUnits& units = bus_.drives[t].units;
     travelled_counts_[t] += last_beat_ == 0 ? 0 : difference(drive.position, last_counts_[t]);
@@ -53,8 +53,8 @@ relay::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
     state.track_mps[t] = velocity_from_drive(units, drive.velocity);
     state.track_a[t] = current_a(t);
   }
-  for (std::size_t f = 0; f < relay::kFlipperCount; ++f) {
-    const std::size_t i = relay::kTrackCount + f;
+  for (std::size_t f = 0; f < robot::kFlipperCount; ++f) {
+    const std::size_t i = robot::kTrackCount + f;
     state.flipper_rad[f] = position_from_drive(bus_.drives[i].units, image.drive(i).position);
     state.flipper_a[f] = current_a(i);
   }
@@ -84,7 +84,7 @@ void MeasuredState::add_posture(const BusCycle& cycle, double elapsed_s, relay::
   state.posture_rad[1] = angle_from(bus_.inclinometer->pitch, image.slope(), facts_.slope_unit_rad);
   // what a slow turn makes the gyro say is no bias
   bool standing = true;
-  for (std::size_t t = 0; t < relay::kTrackCount; ++t) {
+  for (std::size_t t = 0; t < robot::kTrackCount; ++t) {
     standing = standing && std::abs(state.track_mps[t]) < kStanding_mps && cycle.sent()[t].target == 0;
   }
   elapsed_s += std::min(std::exchange(unseen_s_, 0), kLongestCatchUp_s);

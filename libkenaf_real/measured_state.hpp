@@ -30,8 +30,8 @@ class MeasuredState {
   const NodeFacts facts_;
   const double period_s_;
   std::uint32_t last_beat_ = 0;
-  std::array<std::int32_t, relay::kTrackCount> last_counts_{};
-  std::array<std::int64_t, relay::kTrackCount> travelled_counts_{};
+  std::array<std::int32_t, robot::kTrackCount> last_counts_{};
+  std::array<std::int64_t, robot::kTrackCount> travelled_counts_{};
   Heading heading_;
   double unseen_s_ = 0;  // without inclinometer or gyro, and not in the heading yet
   std::string warning_;

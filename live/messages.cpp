@@ -46,15 +46,15 @@ void write_camera_states(Writer& out, const RobotState& robot, std::span<const F
   out.close(']');
 }
 
-std::string_view mode_name(physics::JointMode mode) {
+std::string_view mode_name(robot::JointMode mode) {
   switch (mode) {
-    case physics::JointMode::angle:
+    case robot::JointMode::angle:
       return "angle";
-    case physics::JointMode::speed:
+    case robot::JointMode::speed:
       return "speed";
-    case physics::JointMode::torque:
+    case robot::JointMode::torque:
       return "torque";
-    case physics::JointMode::brake:
+    case robot::JointMode::brake:
       break;
   }
   return "brake";
@@ -64,7 +64,7 @@ void write_command(Writer& out, const RobotState& robot) {
   out.key("command").open('{').key("track").numbers(robot.command.track_speed_mps);
   if (robot.dimensions.has_flippers) {
     out.key("flipper").open('[');
-    for (const physics::JointCommand& joint : robot.command.flipper) {
+    for (const robot::JointCommand& joint : robot.command.flipper) {
       out.comma().open('[').text(mode_name(joint.mode)).comma().number(joint.value).close(']');
     }
     out.close(']');

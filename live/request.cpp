@@ -31,13 +31,13 @@ std::uint32_t robot(const json& object) {
 }
 
 // Four numbers, null for a flipper that stays where it is.
-void read_flippers(const json& object, const char* key, physics::JointMode mode, physics::RobotCommand& command) {
+void read_flippers(const json& object, const char* key, robot::JointMode mode, robot::Command& command) {
   const auto found = object.find(key);
   if (found == object.end()) return;
-  if (!found->is_array() || found->size() != physics::kFlipperCount) {
+  if (!found->is_array() || found->size() != robot::kFlipperCount) {
     throw std::runtime_error(std::string(key) + " is not a list of four");
   }
-  for (std::size_t i = 0; i < physics::kFlipperCount; ++i) {
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
     const json& value = (*found)[i];
     if (value.is_null()) continue;
     if (!value.is_number() || !std::isfinite(value.get<double>())) {
@@ -52,9 +52,9 @@ DriveRequest drive(const json& object) {
   DriveRequest request{robot(object), {}};
   request.command.track_speed_mps = {number(object, "left", -kFastest_mps, kFastest_mps),
                                      number(object, "right", -kFastest_mps, kFastest_mps)};
-  request.command.flipper.fill({physics::JointMode::brake, 0});
-  read_flippers(object, "flipper_angle", physics::JointMode::angle, request.command);
-  read_flippers(object, "flipper_speed", physics::JointMode::speed, request.command);
+  request.command.flipper.fill({robot::JointMode::brake, 0});
+  read_flippers(object, "flipper_angle", robot::JointMode::angle, request.command);
+  read_flippers(object, "flipper_speed", robot::JointMode::speed, request.command);
   return request;
 }
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <variant>
 
-#include "physics/robot_command.hpp"
 #include "physics/server/manual_drive.hpp"
+#include "robot/command.hpp"
 
 namespace kenaf::live {
 
@@ -19,7 +19,7 @@ struct PlaceRequest {};                             // places a robot and takes 
 struct TakeRequest { std::uint32_t robot; };
 struct LetGoRequest { std::uint32_t robot; };
 struct RemoveRequest { std::uint32_t robot; };
-struct DriveRequest { std::uint32_t robot; physics::RobotCommand command; };  // finite numbers
+struct DriveRequest { std::uint32_t robot; robot::Command command; };  // finite numbers
 struct LookRequest { std::uint32_t robot; std::string camera; server::CameraOrder order; };  // finite numbers
 struct PingRequest { double t; };                   // comes back as it is
 

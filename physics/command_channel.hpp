@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "physics/effects.hpp"
-#include "physics/robot_command.hpp"
 #include "physics/sensors/noise.hpp"
+#include "robot/command.hpp"
 
 namespace kenaf::physics {
 
@@ -33,20 +33,20 @@ class CommandChannel {
                  double time_step_s);
 
   // As if `command` had been sent for ever; the ramp stands at rest.
-  void restart(const RobotCommand& command);
+  void restart(const robot::Command& command);
   // As if `command` had been sent for so long that nothing else is under way, with the ramp at `track_mps`: a robot that
   // is on its way already.
-  void begin(const RobotCommand& command, const std::array<double, kTrackCount>& track_mps);
+  void begin(const robot::Command& command, const std::array<double, robot::kTrackCount>& track_mps);
   // The tracks stand, whatever was commanded: the ramp begins at 0 again. What is under way arrives.
   void stop_ramp() { ramp_mps_ = {}; }
   // From the commander. What is no number leaves what was sent before.
-  void send(const RobotCommand& command);
+  void send(const robot::Command& command);
   // What the drives are told; once before each time step.
-  const RobotCommand& step();
+  const robot::Command& step();
 
  private:
   void receive();
-  void move_ramp(const std::array<double, kTrackCount>& target_mps);
+  void move_ramp(const std::array<double, robot::kTrackCount>& target_mps);
 
   NoiseSource noise_;
   double loss_, gain_, gain_turn_, dead_band_mps_;
@@ -58,10 +58,10 @@ class CommandChannel {
   bool ramps_;
   std::size_t delay_steps_;
   double delay_rest_ = 0;          // of a step, below 1
-  RobotCommand sent_, received_, told_;
-  std::vector<RobotCommand> line_;  // what was received in the last steps, a ring
+  robot::Command sent_, received_, told_;
+  std::vector<robot::Command> line_;  // what was received in the last steps, a ring
   std::size_t newest_ = 0;
-  std::array<double, kTrackCount> ramp_mps_{};
+  std::array<double, robot::kTrackCount> ramp_mps_{};
 };
 
 }  // namespace kenaf::physics

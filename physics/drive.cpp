@@ -13,12 +13,12 @@ constexpr double kTurning_mps = 0.01;  // from here on the motor's own friction 
 
 }  // namespace
 
-TrackDrive::TrackDrive(Track side, const TrackDriveDescription& drive, const Effects& effects)
+TrackDrive::TrackDrive(robot::Track side, const TrackDriveDescription& drive, const Effects& effects)
     : drive_(drive),
       lag_s_(effects.drive_lag_s),
       droop_mpspn_(effects.drive_droop_mpspn),
       dry_friction_n_(effects.drive_coulomb_n +
-                      (side == kLeft ? effects.drive_coulomb_left_n : effects.drive_coulomb_right_n)),
+                      (side == robot::kLeft ? effects.drive_coulomb_left_n : effects.drive_coulomb_right_n)),
       viscous_nspm_(effects.drive_viscous_nspm) {
   drive_.max_force_n *= effects.drive_torque_scale;
 }

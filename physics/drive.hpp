@@ -14,7 +14,7 @@ namespace kenaf::physics {
 // voltage and winding allow is what force the line allows.
 class TrackDrive {
  public:
-  TrackDrive(Track side, const TrackDriveDescription& drive, const Effects& effects);
+  TrackDrive(robot::Track side, const TrackDriveDescription& drive, const Effects& effects);
 
   // As after turning at this speed for long, commanded so: it goes on from here.
   void turn_at(double speed_mps) { lagged_mps_ = reference_mps_ = speed_mps; }

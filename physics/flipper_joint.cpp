@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/frames.hpp"
-#include "protocol/reachable_angle.hpp"
+#include "robot/angles.hpp"
 
 namespace kenaf::physics {
 namespace {
@@ -32,7 +31,7 @@ double FlipperJoint::raw_angle_rad() const {
 }
 
 void FlipperJoint::after_step(double time_step_s) {
-  angle_rad_ += frames::wrap_angle(raw_angle_rad() - angle_rad_);
+  angle_rad_ += robot::wrap_angle(raw_angle_rad() - angle_rad_);
   if (!coupling_.rigid())
     servo_rad_ =
         std::clamp(servo_rad_ + time_step_s * servo_radps_, angle_rad_ - most_apart_rad_, angle_rad_ + most_apart_rad_);
@@ -52,15 +51,15 @@ double FlipperJoint::speed_radps() const {
   return axis_W().dot(m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity());
 }
 
-void FlipperJoint::drive(const JointCommand& command, const FlipperDescription& flipper,
+void FlipperJoint::drive(const robot::JointCommand& command, const FlipperDescription& flipper,
                          const FlipperServoDescription& servo, double time_step_s) {
   double torque = servo.max_torque_nm;
   double speed = 0;
   const double at = servo_rad();
-  if (command.mode != JointMode::angle) followed_rad_ = at;
+  if (command.mode != robot::JointMode::angle) followed_rad_ = at;
   switch (command.mode) {
-    case JointMode::angle: {
-      double target = frames::reachable_angle(command.value, at, flipper.min_angle_rad, flipper.max_angle_rad);
+    case robot::JointMode::angle: {
+      double target = robot::reachable_angle(command.value, at, flipper.min_angle_rad, flipper.max_angle_rad);
       if (coupling_.lag_s > 0) {
         followed_rad_ -= std::expm1(-time_step_s / coupling_.lag_s) * (target - followed_rad_);
         target = followed_rad_;
@@ -68,14 +67,14 @@ void FlipperJoint::drive(const JointCommand& command, const FlipperDescription& 
       speed = std::clamp(kServoGain_per_s * (target - at), -servo.max_speed_radps, servo.max_speed_radps);
       break;
     }
-    case JointMode::speed:
+    case robot::JointMode::speed:
       speed = std::clamp(command.value, -servo.max_speed_radps, servo.max_speed_radps);
       break;
-    case JointMode::torque:  // runs freely up to the servo's speed
+    case robot::JointMode::torque:  // runs freely up to the servo's speed
       torque = std::min(std::abs(command.value), servo.max_torque_nm);
       speed = std::copysign(servo.max_speed_radps, command.value);
       break;
-    case JointMode::brake:
+    case robot::JointMode::brake:
       break;
   }
   servo_most_nm_ = torque;
@@ -103,7 +102,7 @@ void FlipperJoint::prescribe(double angle_rad, double time_step_s) {
   constexpr double kAnyTorque_nm = 1e6;
   constexpr double kFastest_radps = 10;  // chosen: an arm that hung elsewhere at first gets there without a blow
   const double at = servo_rad();
-  target_radps_ = std::clamp(frames::wrap_angle(angle_rad - at) / time_step_s, -kFastest_radps, kFastest_radps);
+  target_radps_ = std::clamp(robot::wrap_angle(angle_rad - at) / time_step_s, -kFastest_radps, kFastest_radps);
   servo_most_nm_ = kAnyTorque_nm;
   max_impulse_ = kAnyTorque_nm * time_step_s;
   min_impulse_ = -max_impulse_;

@@ -5,8 +5,8 @@
 #include <array>
 
 #include "physics/bullet.hpp"
-#include "physics/robot_command.hpp"
 #include "physics/robot_description.hpp"
+#include "robot/command.hpp"
 
 namespace kenaf::physics {
 
@@ -37,7 +37,7 @@ class FlipperJoint : public btTypedConstraint {
   // At rest, as after a teleport. Who lifts a robot turns no servo: it and the arm stay as far apart as they are.
   void come_to_rest();
   // Sets the servo for the next step.
-  void drive(const JointCommand& command, const FlipperDescription& flipper, const FlipperServoDescription& servo,
+  void drive(const robot::JointCommand& command, const FlipperDescription& flipper, const FlipperServoDescription& servo,
              double time_step_s);
   // Instead of drive(): at the end of the next step the servo has this direction, whatever it can do; it turns at most at
   // 10 rad/s. Rigid, the arm is there, too; else it follows through play and compliance.

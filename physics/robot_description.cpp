@@ -234,14 +234,14 @@ std::string_view usarsim_type_name(SensorType type) {
 }
 
 double RobotDescription::total_mass_kg() const {
-  return body.mass_kg + (has_flippers() ? static_cast<double>(kFlipperCount) * flipper.front().mass_kg : 0.0);
+  return body.mass_kg + (has_flippers() ? static_cast<double>(robot::kFlipperCount) * flipper.front().mass_kg : 0.0);
 }
 
 double RobotDescription::track_gauge_m() const {
   return 2 * track.p_BT_m.y();
 }
 
-double RobotDescription::encoder_factor(Track side) const {
+double RobotDescription::encoder_factor(robot::Track side) const {
   return effects.encoder_scale * side_factor(side, effects.encoder_asymmetry);
 }
 

@@ -15,7 +15,7 @@
 #include "description/description_error.hpp"
 #include "physics/effects.hpp"
 #include "physics/pose.hpp"
-#include "physics/robot_command.hpp"
+#include "robot/parts.hpp"
 
 namespace kenaf::physics {
 
@@ -142,8 +142,8 @@ struct CameraDescription {
 };
 
 // What an asymmetry multiplies on one side: half of it is more on the left, half of it is less on the right.
-inline double side_factor(Track side, double asymmetry) {
-  return 1 + (side == kLeft ? 0.5 : -0.5) * asymmetry;
+inline double side_factor(robot::Track side, double asymmetry) {
+  return 1 + (side == robot::kLeft ? 0.5 : -0.5) * asymmetry;
 }
 
 struct RobotDescription {
@@ -163,7 +163,7 @@ struct RobotDescription {
   bool has_flippers() const { return !flipper.empty(); }
   double total_mass_kg() const;
   double track_gauge_m() const;    // between the tracks' centre planes
-  double encoder_factor(Track side) const;  // what its encoder reports of a metre
+  double encoder_factor(robot::Track side) const;  // what its encoder reports of a metre
 
   bool operator==(const RobotDescription&) const = default;
 };

@@ -11,14 +11,14 @@ namespace {
 
 constexpr int kFlipperPieces = 2;  // of its straight run, with contacts at the ends of each
 
-bool is_front(Flipper flipper) {
-  return flipper == kFrontLeft || flipper == kFrontRight;
+bool is_front(robot::Flipper flipper) {
+  return flipper == robot::kFrontLeft || flipper == robot::kFrontRight;
 }
-Track side_of(Flipper flipper) {
-  return flipper == kFrontLeft || flipper == kRearLeft ? kLeft : kRight;
+robot::Track side_of(robot::Flipper flipper) {
+  return flipper == robot::kFrontLeft || flipper == robot::kRearLeft ? robot::kLeft : robot::kRight;
 }
 
-Surface belt_surface(const RobotDescription& robot, Track side, double friction_along, double friction_across,
+Surface belt_surface(const RobotDescription& robot, robot::Track side, double friction_along, double friction_across,
                      Belt* belt, double axis_y) {
   const Effects& effects = robot.effects;
   const double grip = side_factor(side, effects.friction_asymmetry);
@@ -45,8 +45,8 @@ double stalled_a(const RobotDescription& robot) {
   const Effects& effects = robot.effects;
   const double track = robot.drive.amperes_per_newton * robot.drive.max_force_n * effects.drive_torque_scale;
   const double flipper = robot.servo.amperes_per_nm * robot.servo.max_torque_nm * effects.flipper_torque_scale;
-  return static_cast<double>(kTrackCount) * track +
-         (robot.has_flippers() ? static_cast<double>(kFlipperCount) * flipper : 0);
+  return static_cast<double>(robot::kTrackCount) * track +
+         (robot.has_flippers() ? static_cast<double>(robot::kFlipperCount) * flipper : 0);
 }
 
 }  // namespace
@@ -57,7 +57,8 @@ RobotModel::RobotModel(const RobotDescription& robot, const std::string& name, s
       world_(world),
       solver_(solver),
       channel_(robot.effects, world_seed, name, robot.track_gauge_m(), time_step_s),
-      drives_{TrackDrive(kLeft, robot.drive, robot.effects), TrackDrive(kRight, robot.drive, robot.effects)},
+      drives_{TrackDrive(robot::kLeft, robot.drive, robot.effects),
+              TrackDrive(robot::kRight, robot.drive, robot.effects)},
       battery_(robot.battery, robot.effects.battery_resistance_ohm, stalled_a(robot)) {
   for (Belt& belt : belts_) {
     belt.moving_mass_kg = description.drive.moving_mass_kg;
@@ -66,7 +67,8 @@ RobotModel::RobotModel(const RobotDescription& robot, const std::string& name, s
   }
   make_hull(id);
   if (description.has_flippers())
-    for (const Flipper which : {kFrontLeft, kFrontRight, kRearLeft, kRearRight}) make_flipper(which, id);
+    for (const robot::Flipper which : {robot::kFrontLeft, robot::kFrontRight, robot::kRearLeft, robot::kRearRight})
+      make_flipper(which, id);
   enter_dynamics();
 }
 
@@ -79,7 +81,7 @@ void RobotModel::enter_dynamics() {
   for (Belt& belt : belts_) solver_.add_belt(&belt, hull_.get());
   for (btRigidBody* body : body_list_) world_.addRigidBody(body);
   // the order in which they are solved
-  for (const Flipper which : {kRearLeft, kRearRight, kFrontLeft, kFrontRight})
+  for (const robot::Flipper which : {robot::kRearLeft, robot::kRearRight, robot::kFrontLeft, robot::kFrontRight})
     if (const auto& joint = flippers_[which].joint)
       world_.addConstraint(joint.get(), true);  // true: it does not collide with the hull
   in_dynamics_ = true;
@@ -108,9 +110,9 @@ void RobotModel::make_hull(RobotId id) {
     hull_pieces_.push_back(std::move(shape));
     hull_collider_.surfaces.push_back(surface);
   };
-  for (const Track side : {kLeft, kRight}) {
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     Eigen::Vector3d center = track.p_BT_m;
-    if (side == kRight) center.y() = -center.y();
+    if (side == robot::kRight) center.y() = -center.y();
     const Surface surface =
         belt_surface(description, side, track.friction_along, track.friction_across, &belts_[side], 1);
     const double straight_m = track.length_m - 2 * track.end_radius_m;
@@ -136,17 +138,17 @@ void RobotModel::make_hull(RobotId id) {
   body_list_.push_back(hull_.get());
 }
 
-void RobotModel::make_flipper(Flipper which, RobotId id) {
+void RobotModel::make_flipper(robot::Flipper which, RobotId id) {
   const FlipperDescription& f = description.flipper.front();
   FlipperBody& flipper = flippers_[which];
   const Outline outline = flipper_outline(f);
   const OutlineMoments m = moments(outline);
   const Eigen::Vector3d com(m.centroid.x(), 0, m.centroid.y());
-  const Track side = side_of(which);
+  const robot::Track side = side_of(which);
   // a rear flipper is a front one that is turned half round: x out along the arm, tip up about -y for all four
   const bool front = is_front(which);
   const Eigen::Vector3d pivot(front ? f.p_BPivot_m.x() : -f.p_BPivot_m.x(),
-                              side == kLeft ? f.p_BPivot_m.y() : -f.p_BPivot_m.y(), f.p_BPivot_m.z());
+                              side == robot::kLeft ? f.p_BPivot_m.y() : -f.p_BPivot_m.y(), f.p_BPivot_m.z());
   const btQuaternion turn = front ? btQuaternion::getIdentity() : btQuaternion(0, 0, 1, 0);
   flipper.X_BodyPivot = btTransform(turn, to_bullet(pivot));
   flipper.X_FlipperCom = btTransform(btQuaternion::getIdentity(), to_bullet(com));
@@ -204,7 +206,7 @@ void RobotModel::place(const Pose& X_WB, bool start_joints) {
     else
       flipper.joint->come_to_rest();
   }
-  for (const Track side : {kLeft, kRight}) {
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     belts_[side].speed_mps = 0;
     belts_[side].motor_impulse_ns = 0;
     drives_[side].turn_at(0);
@@ -212,14 +214,14 @@ void RobotModel::place(const Pose& X_WB, bool start_joints) {
   prescribed_ = {};
   channel_.stop_ramp();
   if (start_joints) {
-    RobotCommand rest;
-    for (JointCommand& joint : rest.flipper)
-      joint = {JointMode::angle, description.has_flippers() ? description.flipper.front().start_angle_rad : 0.0};
+    robot::Command rest;
+    for (robot::JointCommand& joint : rest.flipper)
+      joint = {robot::JointMode::angle, description.has_flippers() ? description.flipper.front().start_angle_rad : 0.0};
     channel_.restart(rest);
   }
 }
 
-void RobotModel::set_in_motion(const RobotMotion& motion, const RobotCommand& command) {
+void RobotModel::set_in_motion(const RobotMotion& motion, const robot::Command& command) {
   const btVector3 v = to_bullet(motion.v_WB_mps), w = to_bullet(motion.w_WB_radps);
   const btVector3 p_WB = (hull_->getWorldTransform() * X_BCom_.inverse()).getOrigin();
   for (btRigidBody* body : body_list_) {
@@ -229,8 +231,8 @@ void RobotModel::set_in_motion(const RobotMotion& motion, const RobotCommand& co
     body->setInterpolationLinearVelocity(v_com);
     body->setInterpolationAngularVelocity(w);
   }
-  std::array<double, kTrackCount> told_mps{};  // what the channel would have given for these speeds
-  for (const Track side : {kLeft, kRight}) {
+  std::array<double, robot::kTrackCount> told_mps{};  // what the channel would have given for these speeds
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     belts_[side].speed_mps = motion.track_mps[side];
     belts_[side].motor_impulse_ns = 0;
     drives_[side].turn_at(motion.track_mps[side]);
@@ -248,8 +250,8 @@ FlipperServoDescription RobotModel::servo_now() const {
 }
 
 void RobotModel::before_step(double time_step_s) {
-  const RobotCommand& command = channel_.step();
-  for (const Track side : {kLeft, kRight}) {
+  const robot::Command& command = channel_.step();
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     if (prescribed_.track_mps[side])
       drives_[side].prescribe(belts_[side], *prescribed_.track_mps[side]);
     else
@@ -258,7 +260,7 @@ void RobotModel::before_step(double time_step_s) {
   }
   if (!description.has_flippers()) return;
   const FlipperServoDescription servo = servo_now();
-  for (std::size_t i = 0; i < kFlipperCount; ++i) {
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
     if (prescribed_.flipper_rad[i])
       flippers_[i].joint->prescribe(*prescribed_.flipper_rad[i], time_step_s);
     else
@@ -267,17 +269,17 @@ void RobotModel::before_step(double time_step_s) {
 }
 
 void RobotModel::after_step(double time_step_s) {
-  for (const Track side : {kLeft, kRight}) drives_[side].after_step(belts_[side], time_step_s);
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) drives_[side].after_step(belts_[side], time_step_s);
   for (FlipperBody& flipper : flippers_)
     if (flipper.joint) flipper.joint->after_step(time_step_s);
   battery_.after_step(battery_current_a(time_step_s), time_step_s);
 }
 
-double RobotModel::track_current_a(Track track, double time_step_s) const {
+double RobotModel::track_current_a(robot::Track track, double time_step_s) const {
   return drives_[track].current_a(belts_[track], time_step_s);
 }
 
-double RobotModel::flipper_current_a(Flipper flipper, double time_step_s) const {
+double RobotModel::flipper_current_a(robot::Flipper flipper, double time_step_s) const {
   const auto& joint = flippers_[flipper].joint;
   return joint ? description.servo.amperes_per_nm * std::abs(joint->servo_nm(time_step_s)) : 0;
 }
@@ -285,10 +287,10 @@ double RobotModel::flipper_current_a(Flipper flipper, double time_step_s) const 
 double RobotModel::battery_current_a(double time_step_s) const {
   const double voltage = battery_.voltage_share();
   double current = 0;
-  for (const Track side : {kLeft, kRight})
+  for (const robot::Track side : {robot::kLeft, robot::kRight})
     current += drives_[side].battery_current_a(belts_[side], voltage, time_step_s);
   const double most_nm = description.servo.max_torque_nm * description.effects.flipper_torque_scale;
-  for (const Flipper which : {kFrontLeft, kFrontRight, kRearLeft, kRearRight}) {
+  for (const robot::Flipper which : {robot::kFrontLeft, robot::kFrontRight, robot::kRearLeft, robot::kRearRight}) {
     const auto& joint = flippers_[which].joint;
     if (!joint) continue;
     const double torque = joint->servo_nm(time_step_s), speed = joint->speed_radps();
@@ -306,12 +308,12 @@ RobotTruth RobotModel::truth(double time_step_s) const {
   truth.w_WB_radps = from_bullet(hull_->getAngularVelocity());
   truth.v_WB_mps =
       from_bullet(hull_->getVelocityInLocalPoint(X_WB.getOrigin() - hull_->getWorldTransform().getOrigin()));
-  for (const Track side : {kLeft, kRight}) {
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     truth.track_mps[side] = belts_[side].speed_mps;
     truth.track_m[side] = drives_[side].travel_m();
     truth.track_force_n[side] = belts_[side].motor_impulse_ns / time_step_s;
   }
-  for (std::size_t i = 0; i < kFlipperCount; ++i) {
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
     if (!flippers_[i].joint) continue;
     truth.flipper_rad[i] = flippers_[i].joint->angle_rad();
     truth.servo_rad[i] = flippers_[i].joint->servo_rad();

@@ -29,16 +29,16 @@ class RobotModel {
   // At rest, joints at their start angles when `start_joints`, else at their present ones.
   void place(const Pose& X_WB, bool start_joints);
 
-  void send(const RobotCommand& command) { channel_.send(command); }
+  void send(const robot::Command& command) { channel_.send(command); }
   // World's contracts.
-  void set_in_motion(const RobotMotion& motion, const RobotCommand& command);
+  void set_in_motion(const RobotMotion& motion, const robot::Command& command);
   void prescribe(const PrescribedMotion& motion) { prescribed_ = motion; }
   void before_step(double time_step_s);
   void after_step(double time_step_s);
 
   RobotTruth truth(double time_step_s) const;
-  double track_current_a(Track track, double time_step_s) const;
-  double flipper_current_a(Flipper flipper, double time_step_s) const;
+  double track_current_a(robot::Track track, double time_step_s) const;
+  double flipper_current_a(robot::Flipper flipper, double time_step_s) const;
 
   const std::vector<btRigidBody*>& bodies() const { return body_list_; }
 
@@ -61,26 +61,26 @@ class RobotModel {
 
   void enter_dynamics();
   void make_hull(RobotId id);
-  void make_flipper(Flipper which, RobotId id);
+  void make_flipper(robot::Flipper which, RobotId id);
   FlipperServoDescription servo_now() const;
   // What a track is told is multiplied by this.
-  double favour(Track side) const { return side_factor(side, description.effects.drive_asymmetry); }
+  double favour(robot::Track side) const { return side_factor(side, description.effects.drive_asymmetry); }
   double battery_current_a(double time_step_s) const;
 
   btDiscreteDynamicsWorld& world_;
   ContactSolver& solver_;
   std::vector<std::unique_ptr<btCollisionShape>> hull_pieces_;
-  std::array<BeltShape, kTrackCount> track_belts_;
-  std::array<ShapeTag, kTrackCount> track_tags_;
+  std::array<BeltShape, robot::kTrackCount> track_belts_;
+  std::array<ShapeTag, robot::kTrackCount> track_tags_;
   std::unique_ptr<btCompoundShape> hull_shape_;
   std::unique_ptr<btRigidBody> hull_;
   Collider hull_collider_;
   btTransform X_BCom_;
-  std::array<FlipperBody, kFlipperCount> flippers_;
-  std::array<Belt, kTrackCount> belts_;
+  std::array<FlipperBody, robot::kFlipperCount> flippers_;
+  std::array<Belt, robot::kTrackCount> belts_;
   CommandChannel channel_;
   PrescribedMotion prescribed_;
-  std::array<TrackDrive, kTrackCount> drives_;
+  std::array<TrackDrive, robot::kTrackCount> drives_;
   Battery battery_;
   std::vector<btRigidBody*> body_list_;
   bool in_dynamics_ = false;

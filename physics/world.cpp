@@ -124,9 +124,9 @@ struct World::Implementation {
       scene->touches(id, touches);
       for (Eigen::Vector3d& p : touches) p = X_BW.p + X_BW.q * p;
     }
-    entry.currents = {{model.track_current_a(kLeft, dt), model.track_current_a(kRight, dt)},
-                      {model.flipper_current_a(kFrontLeft, dt), model.flipper_current_a(kFrontRight, dt),
-                       model.flipper_current_a(kRearLeft, dt), model.flipper_current_a(kRearRight, dt)}};
+    entry.currents = {{model.track_current_a(robot::kLeft, dt), model.track_current_a(robot::kRight, dt)},
+                      {model.flipper_current_a(robot::kFrontLeft, dt), model.flipper_current_a(robot::kFrontRight, dt),
+                       model.flipper_current_a(robot::kRearLeft, dt), model.flipper_current_a(robot::kRearRight, dt)}};
     entry.sensors->record(truth, time_s(), entry.currents.track_a, entry.currents.flipper_a, touches);
   }
 
@@ -245,7 +245,7 @@ const std::string& World::robot_name(RobotId id) const {
   return impl_->robot(id).name;
 }
 
-void World::set_command(RobotId id, const RobotCommand& command) {
+void World::set_command(RobotId id, const robot::Command& command) {
   impl_->robot(id).model->send(command);
 }
 
@@ -271,10 +271,10 @@ void World::teleport(RobotId id, const Pose& X_WB) {
   impl_->record(id, entry);
 }
 
-void World::set_in_motion(RobotId id, const RobotMotion& motion, const RobotCommand& command) {
+void World::set_in_motion(RobotId id, const RobotMotion& motion, const robot::Command& command) {
   RobotEntry& entry = impl_->robot(id);
   const auto whole = [](double speed) { return std::isfinite(speed); };
-  const auto whole_joint = [](const JointCommand& joint) { return std::isfinite(joint.value); };
+  const auto whole_joint = [](const robot::JointCommand& joint) { return std::isfinite(joint.value); };
   if (!motion.v_WB_mps.allFinite() || !motion.w_WB_radps.allFinite() || !std::ranges::all_of(motion.track_mps, whole))
     throw std::invalid_argument("set_in_motion: a speed is not finite");
   if (!std::ranges::all_of(command.track_speed_mps, whole) || !std::ranges::all_of(command.flipper, whole_joint))

@@ -13,10 +13,11 @@
 #include <vector>
 
 #include "physics/pose.hpp"
+#include "physics/prescribed_motion.hpp"
 #include "physics/readings.hpp"
-#include "physics/robot_command.hpp"
 #include "physics/robot_description.hpp"
 #include "physics/world_description.hpp"
+#include "robot/command.hpp"
 
 namespace kenaf::physics {
 
@@ -38,23 +39,23 @@ enum class BoxId : std::uint32_t {};
 struct RobotTruth {
   Pose X_WB;
   Eigen::Vector3d v_WB_mps, w_WB_radps;            // of the body frame's origin, in W
-  std::array<double, kTrackCount> track_mps, track_m;
-  std::array<double, kTrackCount> track_force_n;   // motor's at the belt, + pushes the robot forward
-  std::array<double, kFlipperCount> flipper_rad, flipper_radps, flipper_nm;
-  std::array<double, kFlipperCount> servo_rad;     // on the servo's side of play and compliance, if there are any
+  std::array<double, robot::kTrackCount> track_mps, track_m;
+  std::array<double, robot::kTrackCount> track_force_n;   // motor's at the belt, + pushes the robot forward
+  std::array<double, robot::kFlipperCount> flipper_rad, flipper_radps, flipper_nm;
+  std::array<double, robot::kFlipperCount> servo_rad;     // on the servo's side of play and compliance, if there are any
   double battery_v, battery_left_s;
 };
 
 // How a robot moves, as a rigid body on belts that run.
 struct RobotMotion {
   Eigen::Vector3d v_WB_mps{0, 0, 0}, w_WB_radps{0, 0, 0};  // of the body frame's origin, in W; flippers move with it
-  std::array<double, kTrackCount> track_mps{};
+  std::array<double, robot::kTrackCount> track_mps{};
 };
 
 // What the motors take, as the drives' own measurement would say it without noise.
 struct DriveCurrents {
-  std::array<double, kTrackCount> track_a{};
-  std::array<double, kFlipperCount> flipper_a{};
+  std::array<double, robot::kTrackCount> track_a{};
+  std::array<double, robot::kFlipperCount> flipper_a{};
 };
 
 struct RayHit { double distance_m; Eigen::Vector3d normal_W; };
@@ -80,7 +81,7 @@ class World {
   const RobotDescription& robot_description(RobotId id) const;
   const std::string& robot_name(RobotId id) const;
 
-  void set_command(RobotId id, const RobotCommand& command);
+  void set_command(RobotId id, const robot::Command& command);
   // Turns a link (from 0) of a mission package; clamped to its limits, moves with its speed limit.
   void set_mission_link(RobotId id, std::size_t package, std::size_t link, double angle_rad);
   double mission_link_rad(RobotId id, std::size_t package, std::size_t link) const;
@@ -90,7 +91,7 @@ class World {
   // From here on the robot moves so, where it is, as if `command` had been sent for long: command and drives are in the
   // state of turning at these speeds, and what `command` differs by from them they still have to do. What holds of
   // it the next steps decide, by friction and mass. Not for a robot with a fault.
-  void set_in_motion(RobotId id, const RobotMotion& motion, const RobotCommand& command);
+  void set_in_motion(RobotId id, const RobotMotion& motion, const robot::Command& command);
   // In the steps to come, until told otherwise, a belt has exactly the speed and a flipper's servo exactly the angle that is
   // stated: no motor limit, no lag, no command has a part in it. Angles are directions: a flipper goes the short way, at
   // most at 10 rad/s. Play and compliance are between servo and arm, where no encoder sees them: the arm has them still. A drive that is let go follows its command from the speed at that moment. Forces and currents

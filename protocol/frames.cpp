@@ -1,4 +1,5 @@
 #include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 
 #include <cmath>
 #include <numbers>
@@ -7,8 +8,8 @@ namespace kenaf::frames {
 
 namespace {
 
-bool is_front(relay::Flipper flipper) {
-  return flipper == relay::kFrontLeft || flipper == relay::kFrontRight;
+bool is_front(robot::Flipper flipper) {
+  return flipper == robot::kFrontLeft || flipper == robot::kFrontRight;
 }
 
 // Half a turn about x, the map between the two frames. It is its own inverse.
@@ -17,7 +18,7 @@ Vector3 half_turn_about_x(const Vector3& v) {
 }
 
 Vector3 wrapped(const Vector3& angles) {
-  return {wrap_angle(angles[0]), wrap_angle(angles[1]), wrap_angle(angles[2])};
+  return {robot::wrap_angle(angles[0]), robot::wrap_angle(angles[1]), robot::wrap_angle(angles[2])};
 }
 
 }  // namespace
@@ -37,11 +38,11 @@ Vector3 rep103_angles_from_usarsim(const Vector3& roll_pitch_yaw) {
   return wrapped(half_turn_about_x(roll_pitch_yaw));
 }
 
-double usarsim_flipper_from_tip_up(relay::Flipper flipper, double tip_up_rad) {
+double usarsim_flipper_from_tip_up(robot::Flipper flipper, double tip_up_rad) {
   return is_front(flipper) ? -tip_up_rad : tip_up_rad;
 }
 
-double tip_up_from_usarsim_flipper(relay::Flipper flipper, double joint_rad) {
+double tip_up_from_usarsim_flipper(robot::Flipper flipper, double joint_rad) {
   return is_front(flipper) ? -joint_rad : joint_rad;
 }
 
@@ -53,17 +54,17 @@ double rep103_link_from_usarsim(double angle_rad) {
   return -angle_rad;
 }
 
-const char* usarsim_flipper_name(relay::Flipper flipper) {
+const char* usarsim_flipper_name(robot::Flipper flipper) {
   switch (flipper) {
-    case relay::kFrontLeft:
+    case robot::kFrontLeft:
       return "FLFlipper";
-    case relay::kFrontRight:
+    case robot::kFrontRight:
       return "FRFlipper";
-    case relay::kRearLeft:
+    case robot::kRearLeft:
       return "RLFlipper";
-    case relay::kRearRight:
+    case robot::kRearRight:
       return "RRFlipper";
-    case relay::kFlipperCount:
+    case robot::kFlipperCount:
       break;
   }
   return "";
@@ -74,11 +75,6 @@ double spin_from_surface_speed(double speed_mps, double sprocket_radius_m) {
 }
 double surface_speed_from_spin(double spin_radps, double sprocket_radius_m) {
   return spin_radps * sprocket_radius_m;
-}
-
-double wrap_angle(double angle_rad) {
-  const double wrapped_rad = std::remainder(angle_rad, 2 * std::numbers::pi);  // in [-pi, pi]
-  return wrapped_rad <= -std::numbers::pi ? std::numbers::pi : wrapped_rad;
 }
 
 }  // namespace kenaf::frames

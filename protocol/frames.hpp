@@ -9,7 +9,7 @@
 
 #include <array>
 
-#include "protocol/relay_datagram.hpp"
+#include "robot/parts.hpp"
 
 namespace kenaf::frames {
 
@@ -25,8 +25,8 @@ Vector3 rep103_angles_from_usarsim(const Vector3& roll_pitch_yaw);
 // USARSim turns all four flipper joints about the same body axis, positive nose down: a front flipper's tip goes up
 // with a negative angle, a rear flipper's with a positive one (the UT2004 server and its clients). Kenaf counts tip
 // up as positive for all four.
-double usarsim_flipper_from_tip_up(relay::Flipper flipper, double tip_up_rad);
-double tip_up_from_usarsim_flipper(relay::Flipper flipper, double joint_rad);
+double usarsim_flipper_from_tip_up(robot::Flipper flipper, double tip_up_rad);
+double tip_up_from_usarsim_flipper(robot::Flipper flipper, double joint_rad);
 
 // The links of a camera mount turn about axes of the frame: pan about z, tilt about y. So USARSim's pan is positive to the
 // right and its tilt positive up, and REP 103's to the left and down.
@@ -34,13 +34,10 @@ double usarsim_link_from_rep103(double angle_rad);
 double rep103_link_from_usarsim(double angle_rad);
 
 // The joint names of USARSim's Kenaf: "FLFlipper", "FRFlipper", "RLFlipper", "RRFlipper".
-const char* usarsim_flipper_name(relay::Flipper flipper);
+const char* usarsim_flipper_name(robot::Flipper flipper);
 
 // USARSim commands a track by the spin of its driven wheel.
 double spin_from_surface_speed(double speed_mps, double sprocket_radius_m);
 double surface_speed_from_spin(double spin_radps, double sprocket_radius_m);
-
-// An angle wrapped into (-pi, pi].
-double wrap_angle(double angle_rad);
 
 }  // namespace kenaf::frames

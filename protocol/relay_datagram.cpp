@@ -18,7 +18,7 @@ static_assert(std::numeric_limits<double>::is_iec559 && sizeof(double) == 8);
 constexpr std::size_t kHeaderBytes = 16;
 constexpr std::size_t kLengthOffset = 6;
 
-constexpr std::uint8_t kFlipperMaskBits = (1u << kFlipperCount) - 1;
+constexpr std::uint8_t kFlipperMaskBits = (1u << robot::kFlipperCount) - 1;
 constexpr std::uint32_t kEveryField = (kHasGroundTruth << 1) - 1;
 constexpr std::uint32_t kStateFieldBits = kEveryField | held(kEveryField);
 constexpr std::uint32_t kStateEventBits = (kWorldPaused << 1) - 1;

@@ -15,16 +15,14 @@
 #include <string_view>
 #include <variant>
 
+#include "robot/parts.hpp"
+
 namespace kenaf::relay {
 
 inline constexpr std::uint32_t kMagic = 0x46'41'4e'4b;  // the bytes "KNAF" on the wire
 inline constexpr std::uint8_t kVersion = 1;
 inline constexpr std::size_t kMaxDatagramBytes = 512;
 inline constexpr std::size_t kMaxReasonBytes = 200;
-
-// Flippers and tracks are always in this order.
-enum Flipper : std::size_t { kFrontLeft, kFrontRight, kRearLeft, kRearRight, kFlipperCount };
-enum Track : std::size_t { kLeft, kRight, kTrackCount };
 
 // Asks to become the commander of the robot. Answered by Welcome or Refused. Sent again until one of them arrives.
 struct Hello {
@@ -62,9 +60,9 @@ struct Command {
   std::uint64_t session;
   std::uint32_t sequence;      // starts at 1, one more for each new Command; a resent Command keeps its sequence
   std::uint32_t frame;         // the State this answers; 0 before the first
-  std::array<double, kTrackCount> track_speed_mps;
+  std::array<double, robot::kTrackCount> track_speed_mps;
   std::uint8_t flipper_mask;   // bit i: flipper_rad[i] is commanded; the others keep what they were told last
-  std::array<double, kFlipperCount> flipper_rad;
+  std::array<double, robot::kFlipperCount> flipper_rad;
 };
 
 // What a State holds that was measured. A value whose bit is missing is 0 and means nothing.
@@ -108,11 +106,11 @@ struct State {
   std::array<double, 3> posture_rad;           // roll, pitch, yaw
   std::array<double, 3> gyro_radps;            // body frame
   std::array<double, 3> acceleration_mps2;     // body frame, without gravity's reaction removed: at rest +g on z
-  std::array<double, kTrackCount> track_m;     // travel since the robot was placed
-  std::array<double, kTrackCount> track_mps;
-  std::array<double, kTrackCount> track_a;
-  std::array<double, kFlipperCount> flipper_rad;
-  std::array<double, kFlipperCount> flipper_a;
+  std::array<double, robot::kTrackCount> track_m;     // travel since the robot was placed
+  std::array<double, robot::kTrackCount> track_mps;
+  std::array<double, robot::kTrackCount> track_a;
+  std::array<double, robot::kFlipperCount> flipper_rad;
+  std::array<double, robot::kFlipperCount> flipper_a;
   double battery_v;
   std::array<double, 3> p_WB_m;
   std::array<double, 3> orientation_rad;       // roll, pitch, yaw

@@ -20,21 +20,21 @@ void write_command(std::string& out, const relay::Command& command, double wheel
   usarsim::MessageWriter writer(out);
   if (command.flipper_mask != 0) {
     writer.begin("MULTIDRIVE");
-    for (std::size_t i = 0; i < relay::kFlipperCount; ++i) {
+    for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
       if ((command.flipper_mask >> i & 1u) == 0) continue;
-      const auto flipper = static_cast<relay::Flipper>(i);
+      const auto flipper = static_cast<robot::Flipper>(i);
       writer.number(frames::usarsim_flipper_name(flipper),
                     frames::usarsim_flipper_from_tip_up(flipper, command.flipper_rad[i]), usarsim::kExactNumber);
     }
     if (world_frame) writer.integer("Frame", *world_frame);
     writer.end();
   }
-  const auto spin = [&](relay::Track track) {
+  const auto spin = [&](robot::Track track) {
     return frames::spin_from_surface_speed(command.track_speed_mps[track], wheel_radius_m);
   };
   writer.begin("DRIVE")
-      .number("Left", spin(relay::kLeft), usarsim::kExactNumber)
-      .number("Right", spin(relay::kRight), usarsim::kExactNumber);
+      .number("Left", spin(robot::kLeft), usarsim::kExactNumber)
+      .number("Right", spin(robot::kRight), usarsim::kExactNumber);
   if (world_frame) writer.integer("Frame", *world_frame);
   writer.end();
 }

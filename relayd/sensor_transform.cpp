@@ -90,11 +90,11 @@ void SensorTransform::take_sensor(const MessageView& message) {
     note(relay::kHasInertial);
   } else if (is_type(message, "Tachometer")) {
     // A robot with more wheels lists them in an order only it knows.
-    std::array<double, relay::kTrackCount> spin_radps;
+    std::array<double, robot::kTrackCount> spin_radps;
     if (read(message, "Vel", spin_radps)) spin_radps_ = spin_radps;
   } else if (is_type(message, "Drives")) {
-    std::array<double, relay::kTrackCount> track_a;
-    std::array<double, relay::kFlipperCount> flipper_a;
+    std::array<double, robot::kTrackCount> track_a;
+    std::array<double, robot::kFlipperCount> flipper_a;
     if (read(message, "TrackCurrent", track_a) && read(message, "FlipperCurrent", flipper_a)) {
       state.track_a = track_a;
       state.flipper_a = flipper_a;
@@ -130,7 +130,7 @@ void SensorTransform::take_ticks(const MessageView& message) {
 void SensorTransform::take_tick(std::string_view name, std::string_view ticks) {
   const auto count = usarsim::parse_number(ticks);
   if (!count || std::abs(*count) > kMostOfAnything) return;
-  for (const auto& [track, side] : {std::pair{relay::kLeft, "left"}, {relay::kRight, "right"}}) {
+  for (const auto& [track, side] : {std::pair{robot::kLeft, "left"}, {robot::kRight, "right"}}) {
     if (!contains_ignoring_case(name, side)) continue;
     ticks_[track] = count;
     has_new_ticks_ = true;
@@ -153,14 +153,14 @@ bool SensorTransform::take_status(const MessageView& message) {
   state.events = (is_true(message, "Silent") ? relay::kStoppedBySilence : 0u) |
                  (is_true(message, "Paused") ? relay::kWorldPaused : 0u);
 
-  std::array<double, relay::kFlipperCount> joint_rad;
+  std::array<double, robot::kFlipperCount> joint_rad;
   bool all_flippers = true;
-  for (std::size_t i = 0; i < relay::kFlipperCount; ++i) {
-    all_flippers &= read(message, frames::usarsim_flipper_name(static_cast<relay::Flipper>(i)), {&joint_rad[i], 1});
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+    all_flippers &= read(message, frames::usarsim_flipper_name(static_cast<robot::Flipper>(i)), {&joint_rad[i], 1});
   }
   if (all_flippers) {
-    for (std::size_t i = 0; i < relay::kFlipperCount; ++i) {
-      state.flipper_rad[i] = frames::tip_up_from_usarsim_flipper(static_cast<relay::Flipper>(i), joint_rad[i]);
+    for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+      state.flipper_rad[i] = frames::tip_up_from_usarsim_flipper(static_cast<robot::Flipper>(i), joint_rad[i]);
     }
     note(relay::kHasFlippers);
   }
@@ -174,11 +174,11 @@ bool SensorTransform::take_status(const MessageView& message) {
 void SensorTransform::finish_tracks() {
   ticks_interval_s_ += frame_.interval_s;
   const bool has_new_ticks = std::exchange(has_new_ticks_, false);
-  if (!ticks_[relay::kLeft] || !ticks_[relay::kRight]) return;
+  if (!ticks_[robot::kLeft] || !ticks_[robot::kRight]) return;
   relay::State& state = frame_.state;
   const bool first = (known_fields_ & relay::kHasEncoders) == 0;
   const double wheel_radius_m = wheel_radius_m_.value_or(kDefaultWheelRadius_m);
-  for (std::size_t i = 0; i < relay::kTrackCount; ++i) {
+  for (std::size_t i = 0; i < robot::kTrackCount; ++i) {
     state.track_m[i] = *ticks_[i] * resolution_rad_ * wheel_radius_m;
     if (spin_radps_) {
       state.track_mps[i] = frames::surface_speed_from_spin((*spin_radps_)[i], wheel_radius_m);

@@ -54,9 +54,9 @@ class SensorTransform {
   WorldFrame frame_;
   std::optional<double> wheel_radius_m_;
   double resolution_rad_ = kDefaultResolution_rad;
-  std::array<std::optional<double>, relay::kTrackCount> ticks_;
-  std::array<double, relay::kTrackCount> earlier_track_m_{};
-  std::optional<std::array<double, relay::kTrackCount>> spin_radps_;
+  std::array<std::optional<double>, robot::kTrackCount> ticks_;
+  std::array<double, robot::kTrackCount> earlier_track_m_{};
+  std::optional<std::array<double, robot::kTrackCount>> spin_radps_;
   bool has_ins_ = false;
   bool has_new_ticks_ = false;
   double ticks_interval_s_ = 0;                      // robot time since the STA that had new ones

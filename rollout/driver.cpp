@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 
 namespace kenaf::rollout {
 namespace {
@@ -15,10 +15,9 @@ bool holds(const GiveUp& give_up, const physics::Pose& X_WB) {
 
 }  // namespace
 
-Driver::Driver(const Manoeuvre& manoeuvre, const std::array<double, physics::kFlipperCount>& flipper_rad)
+Driver::Driver(const Manoeuvre& manoeuvre, const std::array<double, robot::kFlipperCount>& flipper_rad)
     : manoeuvre_(manoeuvre) {
-  for (std::size_t i = 0; i < flipper_rad.size(); ++i)
-    command_.flipper[i] = {physics::JointMode::angle, flipper_rad[i]};
+  for (std::size_t i = 0; i < flipper_rad.size(); ++i) command_.flipper[i] = {robot::JointMode::angle, flipper_rad[i]};
 }
 
 bool Driver::ended(const Phase& phase, double t_s, const physics::Pose& X_WB) const {
@@ -40,11 +39,11 @@ std::size_t Driver::next_phase(const physics::Pose& X_WB) {
   return last;
 }
 
-std::optional<physics::RobotCommand> Driver::command(double t_s, const physics::Pose& X_WB) {
+std::optional<robot::Command> Driver::command(double t_s, const physics::Pose& X_WB) {
   if (!manoeuvre_.timed.empty()) return timed_command(t_s);
 
   const double yaw_rad = physics::roll_pitch_yaw(X_WB.q).z();
-  if (last_yaw_rad_) turned_rad_ += frames::wrap_angle(yaw_rad - *last_yaw_rad_);
+  if (last_yaw_rad_) turned_rad_ += robot::wrap_angle(yaw_rad - *last_yaw_rad_);
   last_yaw_rad_ = yaw_rad;
   while (phase_ < manoeuvre_.phases.size() && ended(manoeuvre_.phases[phase_], t_s, X_WB)) {
     phase_ = next_phase(X_WB);
@@ -60,7 +59,7 @@ std::optional<physics::RobotCommand> Driver::command(double t_s, const physics::
   return command_;
 }
 
-std::optional<physics::RobotCommand> Driver::timed_command(double t_s) {
+std::optional<robot::Command> Driver::timed_command(double t_s) {
   const std::vector<TimedCommand>& timed = manoeuvre_.timed;
   while (next_timed_ < timed.size() && timed[next_timed_].t_s <= t_s + runs::kSameTime_s)
     command_ = timed[next_timed_++].command;

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "physics/pose.hpp"
-#include "physics/robot_command.hpp"
+#include "robot/command.hpp"
 #include "rollout/manoeuvre.hpp"
 
 namespace kenaf::rollout {
@@ -14,12 +14,12 @@ namespace kenaf::rollout {
 class Driver {
  public:
   // `manoeuvre` must outlive this. `flipper_rad`: where the flippers are at the start.
-  Driver(const Manoeuvre& manoeuvre, const std::array<double, physics::kFlipperCount>& flipper_rad);
+  Driver(const Manoeuvre& manoeuvre, const std::array<double, robot::kFlipperCount>& flipper_rad);
 
   // What to command from `t_s` on, which never goes back; empty: the manoeuvre is over, the command before holds. A
   // phase ends at the first call at which its end holds, and the next one begins with it, or the last one where
   // the next one is given up.
-  std::optional<physics::RobotCommand> command(double t_s, const physics::Pose& X_WB);
+  std::optional<robot::Command> command(double t_s, const physics::Pose& X_WB);
 
   // When a replay's next command is due; infinity otherwise: phases are as quick as they are asked.
   double next_due_s() const;
@@ -31,10 +31,10 @@ class Driver {
  private:
   bool ended(const Phase& phase, double t_s, const physics::Pose& X_WB) const;
   std::size_t next_phase(const physics::Pose& X_WB);
-  std::optional<physics::RobotCommand> timed_command(double t_s);
+  std::optional<robot::Command> timed_command(double t_s);
 
   const Manoeuvre& manoeuvre_;
-  physics::RobotCommand command_;
+  robot::Command command_;
   std::size_t phase_ = 0, next_timed_ = 0;
   bool gave_up_ = false;
   double phase_began_s_ = 0, turned_rad_ = 0;

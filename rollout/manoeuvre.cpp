@@ -44,9 +44,9 @@ GiveUp read_give_up(TomlReader& phase) {
 Phase read_phase(TomlReader& table) {
   Phase phase;
   phase.name = optional_text(table, "name");
-  std::ranges::copy(table.numbers("track_mps", physics::kTrackCount, kTrackSpeed), phase.track_mps.begin());
+  std::ranges::copy(table.numbers("track_mps", robot::kTrackCount, kTrackSpeed), phase.track_mps.begin());
   if (table.has("flipper_rad"))
-    std::ranges::copy(table.numbers("flipper_rad", physics::kFlipperCount, kFlipperAngle),
+    std::ranges::copy(table.numbers("flipper_rad", robot::kFlipperCount, kFlipperAngle),
                       phase.flipper_rad.emplace().begin());
   phase.at_most_s = table.number("at_most_s", {.min = 0, .max = kLongestManoeuvre_s, .open_min = true});
   phase.end = {.pitch_above_rad = optional_number(table, "pitch_above_rad", kPitch),

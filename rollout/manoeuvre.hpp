@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "physics/pose.hpp"
-#include "physics/robot_command.hpp"
+#include "robot/command.hpp"
 #include "rollout/measured_motion.hpp"
 #include "runs/run_file.hpp"
 
@@ -36,8 +36,8 @@ struct GiveUp {
 
 struct Phase {
   std::string name;  // may be empty
-  std::array<double, physics::kTrackCount> track_mps{};
-  std::optional<std::array<double, physics::kFlipperCount>> flipper_rad;  // empty: as before
+  std::array<double, robot::kTrackCount> track_mps{};
+  std::optional<std::array<double, robot::kFlipperCount>> flipper_rad;  // empty: as before
   double at_most_s = 0;
   PhaseEnd end;
   // Where this holds when the phase's turn comes, the operator gives up: the last phase follows instead. Not of the
@@ -53,14 +53,14 @@ struct Success {
 
 struct TimedCommand {
   double t_s;
-  physics::RobotCommand command;
+  robot::Command command;
 };
 
 // A start that is not the world's: that of a recorded run, where the robot is once it has settled.
 struct Start {
   double x_m, y_m, yaw_rad;
   std::optional<double> z_m;  // empty: on the ground
-  std::optional<std::array<double, physics::kFlipperCount>> flipper_rad;  // empty: as the robot's description says
+  std::optional<std::array<double, robot::kFlipperCount>> flipper_rad;  // empty: as the robot's description says
   std::optional<StartMotion> motion{};    // empty: it stands
 };
 

@@ -8,12 +8,12 @@
 #include <limits>
 #include <string_view>
 
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
+#include "robot/parts.hpp"
 
 namespace kenaf::rollout {
 namespace {
 
-constexpr std::array<std::string_view, physics::kTrackCount> kTracks{"left", "right"};
 constexpr double kTravelCounts_s = 0.1;  // over so long a speed is held to its travel
 constexpr double kMeanSpeed_s = 0.05;    // of travel alone
 constexpr double kShare_m = 0.05;
@@ -34,7 +34,7 @@ TimeSeries series_of(const runs::Run& run, std::string_view column) {
 
 TimeSeries without_full_turns(TimeSeries angle) {
   for (std::size_t i = 1; i < angle.value.size(); ++i)
-    angle.value[i] = angle.value[i - 1] + frames::wrap_angle(angle.value[i] - angle.value[i - 1]);
+    angle.value[i] = angle.value[i - 1] + robot::wrap_angle(angle.value[i] - angle.value[i - 1]);
   return angle;
 }
 
@@ -127,7 +127,7 @@ Poses first_poses(const runs::Run& run, double time_s) {
     poses.x_m.push_back(x[row]);
     poses.y_m.push_back(y[row]);
     const double before = poses.yaw_rad.empty() ? yaw[row] : poses.yaw_rad.back();
-    poses.yaw_rad.push_back(before + frames::wrap_angle(yaw[row] - before));
+    poses.yaw_rad.push_back(before + robot::wrap_angle(yaw[row] - before));
   }
   return poses;
 }
@@ -143,13 +143,13 @@ std::optional<double> slope(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, 
 // From tracks to body: yaw goes with what the right track went more than the left one, and position with the mean of
 // their ways along the measured yaw.
 StartMotion motion_of_tracks(const MeasuredMotion& measured, const Poses& poses,
-                             const std::array<double, physics::kTrackCount>& track_mps) {
-  using physics::kLeft;
-  using physics::kRight;
+                             const std::array<double, robot::kTrackCount>& track_mps) {
+  using robot::kLeft;
+  using robot::kRight;
   StartMotion motion{.track_mps = track_mps, .forward_mps = {}, .yaw_radps = {}};
   const auto n = static_cast<Eigen::Index>(poses.t_s.size());
   if (n < 2) return motion;
-  const Integral left(measured.track_mps[kLeft]), right(measured.track_mps[kRight]);
+  const Integral left(measured.track_mps[robot::kLeft]), right(measured.track_mps[robot::kRight]);
   Eigen::MatrixXd apart_m(n, 1), yaw_rad(n, 1), way_m(n, 2), p_m(n, 2);
   double s_before_m = 0, yaw_before_rad = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -167,9 +167,9 @@ StartMotion motion_of_tracks(const MeasuredMotion& measured, const Poses& poses,
     yaw_before_rad = poses.yaw_rad[k];
   }
   if (const auto radpm = slope(apart_m, yaw_rad, kShare_m))
-    motion.yaw_radps = *radpm * (track_mps[kRight] - track_mps[kLeft]);
+    motion.yaw_radps = *radpm * (track_mps[robot::kRight] - track_mps[robot::kLeft]);
   if (const auto share = slope(way_m, p_m, kShare_m))
-    motion.forward_mps = std::clamp(*share, 0.0, 1.0) * (track_mps[kLeft] + track_mps[kRight]) / 2;
+    motion.forward_mps = std::clamp(*share, 0.0, 1.0) * (track_mps[robot::kLeft] + track_mps[robot::kRight]) / 2;
   return motion;
 }
 
@@ -233,26 +233,26 @@ ReportDelays report_delays(const physics::RobotDescription& robot) {
 physics::PrescribedMotion actual_motion(const MeasuredMotion& measured, double time_s,
                                         const physics::RobotDescription& robot, const ReportDelays& late) {
   physics::PrescribedMotion motion = measured.at(time_s, late);
-  for (const physics::Track side : {physics::kLeft, physics::kRight})
+  for (const robot::Track side : {robot::kLeft, robot::kRight})
     if (std::optional<double>& speed = motion.track_mps[side]) *speed /= robot.encoder_factor(side);
   return motion;
 }
 
 MeasuredMotion measured_motion(const runs::Run& run) {
   MeasuredMotion motion;
-  for (std::size_t i = 0; i < kTracks.size(); ++i) {
-    motion.track_mps[i] = track_speed(run, kTracks[i]);
-    motion.is_held_to_travel[i] = !track_travel(run, kTracks[i]).empty();
+  for (std::size_t i = 0; i < robot::kTrackNames.size(); ++i) {
+    motion.track_mps[i] = track_speed(run, robot::kTrackNames[i]);
+    motion.is_held_to_travel[i] = !track_travel(run, robot::kTrackNames[i]).empty();
   }
-  for (std::size_t i = 0; i < runs::kFlippers.size(); ++i)
-    motion.flipper_rad[i] = without_full_turns(series_of(run, fmt::format("flipper_{}_rad", runs::kFlippers[i])));
+  for (std::size_t i = 0; i < robot::kFlipperNames.size(); ++i)
+    motion.flipper_rad[i] = without_full_turns(series_of(run, fmt::format("flipper_{}_rad", robot::kFlipperNames[i])));
   return motion;
 }
 
 std::optional<StartMotion> motion_at_start(const runs::Run& run) {
   const MeasuredMotion measured = measured_motion(run);
   if (std::ranges::any_of(measured.track_mps, &TimeSeries::empty)) return motion_of_poses(first_poses(run, kCubic_s));
-  std::array<double, physics::kTrackCount> track_mps{};
+  std::array<double, robot::kTrackCount> track_mps{};
   for (std::size_t i = 0; i < track_mps.size(); ++i) track_mps[i] = measured.track_mps[i].at(0);
   if (std::ranges::all_of(track_mps, [](double speed) { return std::abs(speed) < kStands_mps; })) return std::nullopt;
   return motion_of_tracks(measured, first_poses(run, std::numeric_limits<double>::infinity()), track_mps);

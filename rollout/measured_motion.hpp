@@ -6,8 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "physics/robot_command.hpp"
+#include "physics/prescribed_motion.hpp"
 #include "physics/robot_description.hpp"
+#include "robot/parts.hpp"
 #include "runs/run_file.hpp"
 
 namespace kenaf::rollout {
@@ -29,9 +30,9 @@ ReportDelays report_delays(const physics::RobotDescription& robot);
 
 // A series is empty where the run measured none of it. Times are those of the reports.
 struct MeasuredMotion {
-  std::array<TimeSeries, physics::kTrackCount> track_mps;
-  std::array<bool, physics::kTrackCount> is_held_to_travel{};
-  std::array<TimeSeries, physics::kFlipperCount> flipper_rad;  // without jumps at full turns
+  std::array<TimeSeries, robot::kTrackCount> track_mps;
+  std::array<bool, robot::kTrackCount> is_held_to_travel{};
+  std::array<TimeSeries, robot::kFlipperCount> flipper_rad;  // without jumps at full turns
 
   bool empty() const;
   // What happened at a time, by what was reported of it `late`. A track that is held to its travel is as late as that.
@@ -52,7 +53,7 @@ physics::PrescribedMotion actual_motion(const MeasuredMotion& measured, double t
 
 // How a robot on the ground moves when a run begins.
 struct StartMotion {
-  std::optional<std::array<double, physics::kTrackCount>> track_mps;  // empty: what gives the body's motion without slip
+  std::optional<std::array<double, robot::kTrackCount>> track_mps;  // empty: what gives the body's motion without slip
   std::optional<double> forward_mps, yaw_radps;  // of the body; empty: what the tracks give without slip
 };
 

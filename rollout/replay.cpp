@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "robot/parts.hpp"
 #include "rollout/manoeuvre.hpp"
 
 namespace kenaf::rollout {
@@ -23,11 +24,11 @@ double at_start(const runs::Run& run, std::string_view name, const std::string& 
 }
 
 // Of all flippers or of none.
-std::optional<std::array<double, physics::kFlipperCount>> flippers_at_start(const runs::Run& run) {
-  std::array<double, physics::kFlipperCount> angles{};
-  for (std::size_t i = 0; i < runs::kFlippers.size(); ++i) {
-    auto angle = first_measured(run.column(fmt::format("flipper_{}_rad", runs::kFlippers[i])));
-    if (!angle) angle = first_measured(run.column(fmt::format("cmd_flipper_{}_rad", runs::kFlippers[i])));
+std::optional<std::array<double, robot::kFlipperCount>> flippers_at_start(const runs::Run& run) {
+  std::array<double, robot::kFlipperCount> angles{};
+  for (std::size_t i = 0; i < robot::kFlipperNames.size(); ++i) {
+    auto angle = first_measured(run.column(fmt::format("flipper_{}_rad", robot::kFlipperNames[i])));
+    if (!angle) angle = first_measured(run.column(fmt::format("cmd_flipper_{}_rad", robot::kFlipperNames[i])));
     if (!angle) return std::nullopt;
     angles[i] = *angle;
   }
@@ -38,8 +39,8 @@ Manoeuvre replay(const runs::Run& run, const std::string& file) {
   const Column time = run.column("t_s");
   if (!(time.back() - time.front() <= kLongestManoeuvre_s))
     throw runs::RunFileError(fmt::format("{}: lasts more than {} s", file, kLongestManoeuvre_s));
-  const std::array<Column, physics::kTrackCount> tracks{run.column("cmd_track_left_mps"),
-                                                        run.column("cmd_track_right_mps")};
+  const std::array<Column, robot::kTrackCount> tracks{run.column("cmd_track_left_mps"),
+                                                      run.column("cmd_track_right_mps")};
   Manoeuvre replay;
   replay.name = file;
   replay.start = {.x_m = at_start(run, "x_m", file),
@@ -49,10 +50,10 @@ Manoeuvre replay(const runs::Run& run, const std::string& file) {
                   .flipper_rad = flippers_at_start(run),
                   .motion = motion_at_start(run)};
 
-  std::array<Column, physics::kFlipperCount> flippers;
-  physics::RobotCommand command;  // stands until the first one
+  std::array<Column, robot::kFlipperCount> flippers;
+  robot::Command command;  // stands until the first one
   for (std::size_t i = 0; i < flippers.size(); ++i) {
-    flippers[i] = run.column(fmt::format("cmd_flipper_{}_rad", runs::kFlippers[i]));
+    flippers[i] = run.column(fmt::format("cmd_flipper_{}_rad", robot::kFlipperNames[i]));
     if (replay.start->flipper_rad) command.flipper[i].value = (*replay.start->flipper_rad)[i];
   }
   for (std::size_t row = 0; row < time.size(); ++row) {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "physics/terrain_effects.hpp"
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 #include "rollout/driver.hpp"
 #include "rollout/run_recorder.hpp"
 
@@ -15,11 +15,11 @@ namespace kenaf::rollout {
 namespace {
 
 using physics::Pose;
-using physics::RobotCommand;
 using physics::RobotDescription;
 using physics::RobotId;
 using physics::World;
-using FlipperAngles = std::array<double, physics::kFlipperCount>;
+using robot::Command;
+using FlipperAngles = std::array<double, robot::kFlipperCount>;
 
 constexpr double kSettle_s = 0.5;  // a robot that is put down stands still after that
 constexpr double kFold_s = 5;      // flippers get from anywhere to anywhere in that
@@ -68,7 +68,7 @@ struct Scene {
     contacts += world.contact_count();
   }
   // A command at every sample, as in the run: one alone might get lost.
-  void hold(const RobotCommand& command, double time_s) {
+  void hold(const robot::Command& command, double time_s) {
     for (const double end_s = world.time_s() + time_s; world.time_s() < end_s;) {
       world.set_command(robot, command);
       world.prescribe(robot, held);  // a teleport ended it
@@ -86,7 +86,7 @@ Pose aimed_off(const Pose& X_WB, const Pose& X_WB_settled) {
   const auto yaw = [](const Pose& X) { return physics::roll_pitch_yaw(X.q).z(); };
   const Eigen::Vector3d miss = X_WB.p - X_WB_settled.p;
   return {X_WB.p + Eigen::Vector3d(miss.x(), miss.y(), 0),
-          physics::rotation_from({0, 0, yaw(X_WB) + frames::wrap_angle(yaw(X_WB) - yaw(X_WB_settled))})};
+          physics::rotation_from({0, 0, yaw(X_WB) + robot::wrap_angle(yaw(X_WB) - yaw(X_WB_settled))})};
 }
 
 bool apart(const Pose& X_WB, const Pose& other) {
@@ -106,8 +106,8 @@ Pose put_down(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, 
     for (std::optional<double>& speed : scene.held.track_mps)
       if (speed) speed = 0;
   }
-  RobotCommand rest;
-  for (std::size_t i = 0; i < flippers.size(); ++i) rest.flipper[i] = {physics::JointMode::angle, flippers[i]};
+  robot::Command rest;
+  for (std::size_t i = 0; i < flippers.size(); ++i) rest.flipper[i] = {robot::JointMode::angle, flippers[i]};
   if (robot.has_flippers() && !alike) {
     do scene.hold(rest, kSettle_s);
     while (scene.flippers_move() && scene.world.time_s() < kFold_s);
@@ -139,12 +139,12 @@ void put_at_start(Scene& scene, const RobotDescription& robot, const Manoeuvre& 
 
 // The settled robot moves from here on as the run did.
 void set_in_motion(Scene& scene, const RobotDescription& robot, const StartMotion& motion,
-                   const RobotCommand& command) {
+                   const robot::Command& command) {
   const double gauge_m = robot.track_gauge_m();
   physics::RobotMotion start;
   double forward_mps = motion.forward_mps.value_or(0), yaw_radps = motion.yaw_radps.value_or(0);
   if (motion.track_mps) {
-    for (const physics::Track side : {physics::kLeft, physics::kRight})
+    for (const robot::Track side : {robot::kLeft, robot::kRight})
       start.track_mps[side] = (*motion.track_mps)[side] / robot.encoder_factor(side);
     const auto [left, right] = start.track_mps;
     if (!motion.forward_mps) forward_mps = (left + right) / 2;
@@ -177,7 +177,7 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
   RollOut out;
   RunRecorder recorder(measured, options);
   Driver driver(manoeuvre, flippers);
-  RobotCommand command;
+  robot::Command command;
   if (manoeuvre.start && manoeuvre.start->motion)
     set_in_motion(scene, robot, *manoeuvre.start->motion,
                   manoeuvre.timed.empty() ? command : manoeuvre.timed.front().command);

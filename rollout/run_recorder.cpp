@@ -5,20 +5,21 @@
 #include <limits>
 #include <set>
 
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
+#include "robot/parts.hpp"
 
 namespace kenaf::rollout {
 namespace {
 
-using physics::kFrontLeft;
-using physics::kFrontRight;
-using physics::kLeft;
-using physics::kRearLeft;
-using physics::kRearRight;
-using physics::kRight;
 using physics::RobotDescription;
 using physics::SensorDescription;
 using physics::SensorType;
+using robot::kFrontLeft;
+using robot::kFrontRight;
+using robot::kLeft;
+using robot::kRearLeft;
+using robot::kRearRight;
+using robot::kRight;
 
 const SensorDescription* sensor_of(const RobotDescription& robot, SensorType type) {
   const auto found = std::ranges::find(robot.sensors, type, &SensorDescription::type);
@@ -40,7 +41,7 @@ double metres_per_count(const physics::TrackDriveDescription& drive) {
 
 std::vector<std::string> flipper_names(std::string_view prefix, std::string_view suffix) {
   std::vector<std::string> names;
-  for (const std::string_view flipper : runs::kFlippers)
+  for (const std::string_view flipper : robot::kFlipperNames)
     names.push_back(std::string(prefix).append(flipper).append(suffix));
   return names;
 }
@@ -141,31 +142,32 @@ void RunRecorder::put_reading(const physics::ImuReading& reading) {
 
 void RunRecorder::put_reading(const physics::EncoderReading& reading) {
   const double metres = metres_per_count(robot_.drive);
-  put(track_travel_,
-      {static_cast<double>(reading.counts[kLeft]) * metres, static_cast<double>(reading.counts[kRight]) * metres});
+  put(track_travel_, {static_cast<double>(reading.counts[robot::kLeft]) * metres,
+                      static_cast<double>(reading.counts[robot::kRight]) * metres});
 }
 
 void RunRecorder::put_reading(const physics::TachometerReading& reading) {
   const double radius_m = robot_.drive.sprocket_radius_m;
-  put(track_speed_, {reading.spin_radps[kLeft] * radius_m, reading.spin_radps[kRight] * radius_m});
+  put(track_speed_, {reading.spin_radps[robot::kLeft] * radius_m, reading.spin_radps[robot::kRight] * radius_m});
 }
 
 void RunRecorder::put_reading(const physics::DrivesReading& reading) {
   const auto &a = reading.flipper_a, &angle = reading.flipper_rad;
-  put(track_current_, {reading.track_a[kLeft], reading.track_a[kRight]});
-  put(flipper_current_, {a[kFrontLeft], a[kFrontRight], a[kRearLeft], a[kRearRight]});
-  put(flipper_, {angle[kFrontLeft], angle[kFrontRight], angle[kRearLeft], angle[kRearRight]});
+  put(track_current_, {reading.track_a[robot::kLeft], reading.track_a[robot::kRight]});
+  put(flipper_current_, {a[robot::kFrontLeft], a[robot::kFrontRight], a[robot::kRearLeft], a[robot::kRearRight]});
+  put(flipper_,
+      {angle[robot::kFrontLeft], angle[robot::kFrontRight], angle[robot::kRearLeft], angle[robot::kRearRight]});
   put(battery_, {reading.battery_v});
 }
 
-void RunRecorder::add(double t_s, const physics::RobotCommand& command, const physics::RobotTruth& truth,
+void RunRecorder::add(double t_s, const robot::Command& command, const physics::RobotTruth& truth,
                       std::span<const physics::SensorSample> samples) {
   for (auto& column : run_.values) column.push_back(std::numeric_limits<double>::quiet_NaN());
   put(time_, {t_s});
-  put(cmd_track_, {command.track_speed_mps[kLeft], command.track_speed_mps[kRight]});
+  put(cmd_track_, {command.track_speed_mps[robot::kLeft], command.track_speed_mps[robot::kRight]});
   const auto& flipper = command.flipper;
-  put(cmd_flipper_,
-      {flipper[kFrontLeft].value, flipper[kFrontRight].value, flipper[kRearLeft].value, flipper[kRearRight].value});
+  put(cmd_flipper_, {flipper[robot::kFrontLeft].value, flipper[robot::kFrontRight].value,
+                     flipper[robot::kRearLeft].value, flipper[robot::kRearRight].value});
   const TrackedPose tracked = tracking_.report(t_s, {truth.X_WB.p, physics::roll_pitch_yaw(truth.X_WB.q).z()});
   put(position_, {tracked.p_WB_m.x(), tracked.p_WB_m.y(), tracked.p_WB_m.z()});
   put(yaw_, {tracked.yaw_rad});
@@ -190,7 +192,7 @@ void RunRecorder::add_mocap_noise() {
   for (std::size_t row = 0; row < pose_noise_.size(); ++row) {
     for (std::size_t i = 0; i < position_.count; ++i)
       run_.values[position_.first + i][row] += pose_noise_[row].p_m[static_cast<Eigen::Index>(i)];
-    yaw[row] = frames::wrap_angle(yaw[row] + pose_noise_[row].yaw_rad);
+    yaw[row] = robot::wrap_angle(yaw[row] + pose_noise_[row].yaw_rad);
   }
 }
 

@@ -19,7 +19,7 @@ class RunRecorder {
   // `robot` as instrumented() makes it; must outlive this.
   RunRecorder(const physics::RobotDescription& robot, const RollOutOptions& options);
 
-  void add(double t_s, const physics::RobotCommand& command, const physics::RobotTruth& truth,
+  void add(double t_s, const robot::Command& command, const physics::RobotTruth& truth,
            std::span<const physics::SensorSample> samples);
   // What was added; the recorder is empty then.
   runs::Run take();

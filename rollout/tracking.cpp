@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 
 namespace kenaf::rollout {
 namespace {
@@ -50,7 +50,7 @@ TrackedPose Tracking::pose_at(double t_s) {
   const Sample& after = past_[1];  // there is one: the newest sample is later than t_s
   const double share = (t_s - before.t_s) / (after.t_s - before.t_s);
   return {before.pose.p_WB_m + share * (after.pose.p_WB_m - before.pose.p_WB_m),
-          before.pose.yaw_rad + share * frames::wrap_angle(after.pose.yaw_rad - before.pose.yaw_rad)};
+          before.pose.yaw_rad + share * robot::wrap_angle(after.pose.yaw_rad - before.pose.yaw_rad)};
 }
 
 std::vector<double> delayed(std::span<const double> t_s, std::span<const double> values, double late_s, bool angles) {
@@ -64,7 +64,7 @@ std::vector<double> delayed(std::span<const double> t_s, std::span<const double>
     }
     const double share = (t - late_s - t_s[next - 1]) / (t_s[next] - t_s[next - 1]);
     const double step = values[next] - values[next - 1];
-    out.push_back(values[next - 1] + share * (angles ? frames::wrap_angle(step) : step));
+    out.push_back(values[next - 1] + share * (angles ? robot::wrap_angle(step) : step));
   }
   return out;
 }

@@ -16,8 +16,6 @@
 
 namespace kenaf::runs {
 
-// As in the columns' names: flipper_fl_rad, ...
-inline constexpr std::array<std::string_view, 4> kFlippers{"fl", "fr", "rl", "rr"};
 inline constexpr double kSameTime_s = 1e-9;  // apart: sample times are multiples of a step that is no binary fraction
 
 // What is wrong with a file, with file, line and column (both from 1) in its text.

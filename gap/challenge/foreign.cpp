@@ -33,7 +33,7 @@ constexpr double kCutOutEvery_s = 1.3, kCutOut_s = 0.2;
 void cut_out(rollout::Manoeuvre& replay, double share) {
   for (rollout::TimedCommand& timed : replay.timed)
     if (std::fmod(timed.t_s, kCutOutEvery_s) >= kCutOutEvery_s - kCutOut_s)
-      timed.command.track_speed_mps[physics::kRight] *= 1 - share;
+      timed.command.track_speed_mps[robot::kRight] *= 1 - share;
 }
 
 constexpr double kHunt_s = 1.1;      // a period, which is no multiple of anything a manoeuvre does
@@ -56,14 +56,12 @@ bool is_of_commands(std::string_view foreign) {
 void obey_foreign(rollout::Manoeuvre& replay, std::string_view foreign, double amount) {
   if (foreign == "left_drive_lag")
     follow_late(replay, 0.3 * amount, 0,
-                [](physics::RobotCommand& command) -> double& { return command.track_speed_mps[physics::kLeft]; });
+                [](robot::Command& command) -> double& { return command.track_speed_mps[robot::kLeft]; });
   if (foreign == "right_flipper_lag" && !replay.timed.empty()) {
-    const auto angle_of = [](physics::RobotCommand& command) -> double& {
-      return command.flipper[physics::kFrontRight].value;
-    };
+    const auto angle_of = [](robot::Command& command) -> double& { return command.flipper[robot::kFrontRight].value; };
     const bool known = replay.start && replay.start->flipper_rad;
     follow_late(replay, 0.5 * amount,
-                known ? (*replay.start->flipper_rad)[physics::kFrontRight] : angle_of(replay.timed.front().command),
+                known ? (*replay.start->flipper_rad)[robot::kFrontRight] : angle_of(replay.timed.front().command),
                 angle_of);
   }
   if (foreign == "right_drive_cuts_out") cut_out(replay, amount);

@@ -1,4 +1,5 @@
 #include "gap/diagnose/manoeuvre_risk.hpp"
+#include "robot/parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -67,7 +68,7 @@ double current_share_of(const runs::Run& run, const physics::RobotDescription& n
       if (stalled_a > 0 && current_a > share * stalled_a) share = current_a / stalled_a;
   };
   for (const char* column : {"track_left_a", "track_right_a"}) add(column, track_a);
-  for (const std::string_view flipper : runs::kFlippers)
+  for (const std::string_view flipper : robot::kFlipperNames)
     add(std::string("flipper_").append(flipper).append("_a"), flipper_a);
   return share;
 }

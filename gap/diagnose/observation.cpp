@@ -12,7 +12,7 @@
 #include "gap/logs/held_samples.hpp"
 #include "gap/logs/lifted_robot.hpp"
 #include "gap/plausibility.hpp"
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 #include "rollout/measured_motion.hpp"
 #include "rollout/roll_out.hpp"
 
@@ -58,7 +58,7 @@ void start_at_mean(const Observation& observation, rollout::Manoeuvre& replay) {
   const std::size_t rows = observation.resting_rows;
   start.x_m = mean_of_first(observation.run.column("x_m"), rows, start.x_m, as_it_is);
   start.y_m = mean_of_first(observation.run.column("y_m"), rows, start.y_m, as_it_is);
-  start.yaw_rad = mean_of_first(observation.run.column("yaw_rad"), rows, start.yaw_rad, frames::wrap_angle);
+  start.yaw_rad = mean_of_first(observation.run.column("yaw_rad"), rows, start.yaw_rad, robot::wrap_angle);
 }
 
 void count_time_from_zero(runs::Run& run) {

@@ -1,4 +1,5 @@
 #include "gap/diagnose/phases.hpp"
+#include "robot/parts.hpp"
 
 #include <fmt/format.h>
 
@@ -76,7 +77,7 @@ Signals signals_of(const Observation& observation, std::size_t count) {
       last_change = i;
     s.changed[i] = last_change < count && static_cast<double>(i - last_change) * kStep_s <= kSettling_s;
   }
-  for (const std::string_view flipper : runs::kFlippers) {
+  for (const std::string_view flipper : robot::kFlipperNames) {
     const auto asked = grid(fmt::format("cmd_flipper_{}_rad", flipper));
     const auto is = grid(fmt::format("flipper_{}_rad", flipper));
     for (std::size_t i = 0; i < count; ++i)

@@ -34,7 +34,7 @@ void widen(Largest& largest, const Timed& commands) {
   }
 }
 
-bool alike(const physics::RobotCommand& a, const physics::RobotCommand& b, const Largest& largest) {
+bool alike(const robot::Command& a, const robot::Command& b, const Largest& largest) {
   for (std::size_t t = 0; t < a.track_speed_mps.size(); ++t)
     if (std::abs(a.track_speed_mps[t] - b.track_speed_mps[t]) > kRounded * largest.track_mps) return false;
   for (std::size_t f = 0; f < a.flipper.size(); ++f)
@@ -66,7 +66,7 @@ Largest largest_of(const Observation& a, const Observation& b) {
 }
 
 // Both tracks, or where they were not measured the body's speed twice.
-std::array<double, physics::kTrackCount> speeds_at_start(const Observation& observation) {
+std::array<double, robot::kTrackCount> speeds_at_start(const Observation& observation) {
   const auto& start = observation.replay.start;
   if (!start || !start->motion) return {};
   if (start->motion->track_mps) return *start->motion->track_mps;
@@ -90,8 +90,8 @@ bool same_commands(const Observation& a, const Observation& b) {
 }
 
 // Each order once, whatever its duration.
-std::vector<physics::RobotCommand> orders_of(const Timed& commands, const Largest& largest) {
-  std::vector<physics::RobotCommand> orders;
+std::vector<robot::Command> orders_of(const Timed& commands, const Largest& largest) {
+  std::vector<robot::Command> orders;
   for (const rollout::TimedCommand& timed : commands)
     if (orders.empty() || !alike(orders.back(), timed.command, largest)) orders.push_back(timed.command);
   return orders;
@@ -99,8 +99,7 @@ std::vector<physics::RobotCommand> orders_of(const Timed& commands, const Larges
 
 bool same_orders(const Observation& a, const Observation& b) {
   const Largest largest = largest_of(a, b);
-  std::vector<physics::RobotCommand> fewer = orders_of(a.replay.timed, largest),
-                                     more = orders_of(b.replay.timed, largest);
+  std::vector<robot::Command> fewer = orders_of(a.replay.timed, largest), more = orders_of(b.replay.timed, largest);
   if (fewer.size() > more.size()) std::swap(fewer, more);
   std::size_t found = 0;
   for (std::size_t i = 0; i < more.size() && found < fewer.size(); ++i) found += alike(fewer[found], more[i], largest);

@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "gap/logs/run_checks.hpp"
+#include "robot/parts.hpp"
 
 namespace kenaf::gap {
 namespace {
@@ -199,7 +200,7 @@ void RunChecks::check_scales() {
   if (crossed("left", "right") && crossed("right", "left") && !found("track_left_mps"))
     add(Severity::refuse, "track_left_mps",
         "follows cmd_track_right_mps, and track_right_mps the left one: left and right are exchanged");
-  for (const std::string_view flipper : runs::kFlippers) {
+  for (const std::string_view flipper : robot::kFlipperNames) {
     const std::string angle = fmt::format("flipper_{}_rad", flipper), command = "cmd_" + angle;
     const auto relation = relate_values(command, angle);
     check_same_angle(command, angle, relation, kLeastTurn_rad);
@@ -249,13 +250,13 @@ void RunChecks::check_ranges() {
     refuse_above(name, 60, "rad/s at most, ten turns a second: it looks like degrees a second");
   refuse_above("battery_v", 1000, "V: it looks like millivolts");
   for (const std::string side : kSides) refuse_above("track_" + side + "_a", 1000, "A: it looks like milliamperes");
-  for (const std::string_view flipper : runs::kFlippers)
+  for (const std::string_view flipper : robot::kFlipperNames)
     refuse_above(fmt::format("flipper_{}_a", flipper), 1000, "A: it looks like milliamperes");
 
   if (robot_ != nullptr && robot_->has_flippers()) {
     const physics::FlipperDescription& limits = robot_->flipper.front();
     const double limit = std::max(std::abs(limits.min_angle_rad), std::abs(limits.max_angle_rad));
-    for (const std::string_view flipper : runs::kFlippers)
+    for (const std::string_view flipper : robot::kFlipperNames)
       for (const std::string& name :
            {fmt::format("cmd_flipper_{}_rad", flipper), fmt::format("flipper_{}_rad", flipper)}) {
         refuse_above(name, 3 * limit, fmt::format("where {:.3g} rad is its limit: it looks like degrees", limit));

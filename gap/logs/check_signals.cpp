@@ -4,6 +4,7 @@
 
 #include "gap/logs/held_samples.hpp"
 #include "gap/logs/run_checks.hpp"
+#include "robot/parts.hpp"
 
 namespace kenaf::gap {
 namespace {
@@ -45,7 +46,7 @@ void RunChecks::check_commands() {
     return std::ranges::any_of(column(name), [](double value) { return std::abs(value) > 0; });
   };
   if (ever("cmd_track_left_mps") || ever("cmd_track_right_mps")) return;
-  const bool flippers_commanded = std::ranges::any_of(runs::kFlippers, [this](std::string_view flipper) {
+  const bool flippers_commanded = std::ranges::any_of(robot::kFlipperNames, [this](std::string_view flipper) {
     return range(column(fmt::format("cmd_flipper_{}_rad", flipper))) > 0;
   });
   const double travelled_m = std::max(total_change(belts(1, 0)), total_change(belts(0, 1)));
@@ -94,7 +95,7 @@ void RunChecks::check_constants() {
       add(Severity::dead, name,
           "never changes while the track is driven; leave the cells empty where it is not measured");
   }
-  for (const std::string_view flipper : runs::kFlippers) {
+  for (const std::string_view flipper : robot::kFlipperNames) {
     const std::string angle = fmt::format("flipper_{}_rad", flipper);
     if (const double commanded = range(column("cmd_" + angle)); commanded > kTurns_rad && constant(column(angle)))
       add(Severity::warn, angle,

@@ -47,7 +47,7 @@ std::vector<double> travel_of(const runs::Run& run, std::string_view track) {
 std::optional<ReckonedPath> reckon(const runs::Run& run, const physics::RobotDescription& robot) {
   if (!has_travel(run, "left") || !has_travel(run, "right")) return std::nullopt;
   const auto time = run.column("t_s"), yaw = run.column("yaw_rad");
-  const std::array<std::vector<double>, relay::kTrackCount> travel{travel_of(run, "left"), travel_of(run, "right")};
+  const std::array<std::vector<double>, robot::kTrackCount> travel{travel_of(run, "left"), travel_of(run, "right")};
   const auto first_yaw = std::ranges::find_if(yaw, [](double value) { return !std::isnan(value); });
   const double start_rad = first_yaw == yaw.end() ? 0 : *first_yaw;
   std::vector<double> since_start_s;

@@ -12,6 +12,7 @@
 #include "gap/parallel.hpp"
 #include "gap/playback/columns_in_time.hpp"
 #include "gap/playback/dead_reckoning.hpp"
+#include "robot/parts.hpp"
 
 namespace kenaf::gap {
 namespace {
@@ -60,9 +61,9 @@ PlayedBody body_of(std::string_view kind, const runs::Run& run, std::span<const 
     body.p_WB_m[i] = column_at(run, kPosition[i], times_s);
     body.angles_rad[i] = column_at(run, kAngles[i], times_s);
   }
-  for (std::size_t i = 0; i < runs::kFlippers.size(); ++i) {
-    auto angle = column_at(run, fmt::format("flipper_{}_rad", runs::kFlippers[i]), times_s);
-    if (angle.empty()) angle = column_at(run, fmt::format("cmd_flipper_{}_rad", runs::kFlippers[i]), times_s);
+  for (std::size_t i = 0; i < robot::kFlipperNames.size(); ++i) {
+    auto angle = column_at(run, fmt::format("flipper_{}_rad", robot::kFlipperNames[i]), times_s);
+    if (angle.empty()) angle = column_at(run, fmt::format("cmd_flipper_{}_rad", robot::kFlipperNames[i]), times_s);
     body.flipper_rad[i] = held(std::move(angle), count, 0);
   }
   runs::Run travel{{"t_s", "left", "right"}, {}};

@@ -18,7 +18,7 @@ struct SensorState {
   NoiseSource noise;
   Eigen::Vector3d bias_rad{0, 0, 0}, bias_radps{0, 0, 0};
   // where its integration started
-  std::array<double, kTrackCount> start_track_m{};
+  std::array<double, robot::kTrackCount> start_track_m{};
   Eigen::Vector3d start_odometry{0, 0, 0};
   Pose X_given_true;  // INS: turns the true pose into the one it was told to have
 };
@@ -75,8 +75,8 @@ OdometryReading measure_odometry(const SensorState& state, const MotionSample& n
 TachometerReading measure_tachometer(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
                                      const TrackDriveDescription& drive);
 // Advances odometry by a step from the encoders' whole counts.
-Eigen::Vector3d advance_odometry(const Eigen::Vector3d& odometry, const std::array<double, kTrackCount>& old_track_m,
-                                 const std::array<double, kTrackCount>& new_track_m, const RobotDescription& robot);
+Eigen::Vector3d advance_odometry(const Eigen::Vector3d& odometry, const std::array<double, robot::kTrackCount>& old_track_m,
+                                 const std::array<double, robot::kTrackCount>& new_track_m, const RobotDescription& robot);
 
 // The distance to the first surface along a ray from a point in W, if one is nearer than `max_m`.
 using RayCaster = std::function<std::optional<double>(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W,

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "physics/pose.hpp"
-#include "physics/robot_command.hpp"
+#include "robot/parts.hpp"
 
 namespace kenaf::physics {
 
@@ -15,9 +15,9 @@ struct MotionSample {
   double t_s = 0;
   Pose X_WB;
   Eigen::Vector3d v_WB_mps{0, 0, 0}, w_WB_radps{0, 0, 0};
-  std::array<double, kTrackCount> track_mps{}, track_m{};  // as the encoders have it
-  std::array<double, kTrackCount> track_a{};
-  std::array<double, kFlipperCount> flipper_a{}, servo_rad{};
+  std::array<double, robot::kTrackCount> track_mps{}, track_m{};  // as the encoders have it
+  std::array<double, robot::kTrackCount> track_a{};
+  std::array<double, robot::kFlipperCount> flipper_a{}, servo_rad{};
   double battery_v = 0;
   Eigen::Vector3d odometry{0, 0, 0};  // x, y, yaw from the encoders since add_robot
   std::uint64_t touched = 0;          // bit i: sensor i is touched

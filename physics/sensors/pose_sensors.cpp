@@ -2,13 +2,13 @@
 #include <cmath>
 
 #include "physics/sensors/measure.hpp"
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 
 namespace kenaf::physics {
 namespace {
 
 Eigen::Vector3d wrapped(const Eigen::Vector3d& angles) {
-  return {frames::wrap_angle(angles.x()), frames::wrap_angle(angles.y()), frames::wrap_angle(angles.z())};
+  return {robot::wrap_angle(angles.x()), robot::wrap_angle(angles.y()), robot::wrap_angle(angles.z())};
 }
 
 }  // namespace

@@ -56,10 +56,11 @@ SensorSet::SensorSet(const RobotDescription& robot, const std::string& robot_nam
   }
 }
 
-void SensorSet::record(const RobotTruth& truth, double t_s, const std::array<double, kTrackCount>& track_a,
-                       const std::array<double, kFlipperCount>& flipper_a, std::span<const Eigen::Vector3d> touches_B) {
-  std::array<double, kTrackCount> track_m = truth.track_m, track_mps = truth.track_mps;
-  for (const Track side : {kLeft, kRight}) {
+void SensorSet::record(const RobotTruth& truth, double t_s, const std::array<double, robot::kTrackCount>& track_a,
+                       const std::array<double, robot::kFlipperCount>& flipper_a,
+                       std::span<const Eigen::Vector3d> touches_B) {
+  std::array<double, robot::kTrackCount> track_m = truth.track_m, track_mps = truth.track_mps;
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     track_m[side] *= robot_.encoder_factor(side);
     track_mps[side] *= robot_.encoder_factor(side);
   }

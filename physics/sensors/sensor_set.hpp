@@ -17,8 +17,8 @@ class SensorSet {
             const Eigen::Vector3d& gravity_W_mps2);
 
   // Once after placement and after each step. `touches_B`: where the robot is touched, in B.
-  void record(const RobotTruth& truth, double t_s, const std::array<double, kTrackCount>& track_a,
-              const std::array<double, kFlipperCount>& flipper_a, std::span<const Eigen::Vector3d> touches_B);
+  void record(const RobotTruth& truth, double t_s, const std::array<double, robot::kTrackCount>& track_a,
+              const std::array<double, robot::kFlipperCount>& flipper_a, std::span<const Eigen::Vector3d> touches_B);
   // After a teleport: what was before is no motion.
   void forget_motion() { history_.clear(); }
 
@@ -46,7 +46,7 @@ class SensorSet {
   MotionHistory history_;
   bool has_touch_ = false, has_odometry_ = false;
   Eigen::Vector3d odometry_{0, 0, 0};
-  std::array<double, kTrackCount> track_m_{};
+  std::array<double, robot::kTrackCount> track_m_{};
 };
 
 }  // namespace kenaf::physics

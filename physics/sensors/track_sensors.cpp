@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "physics/sensors/measure.hpp"
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 
 namespace kenaf::physics {
 namespace {
@@ -15,7 +15,7 @@ std::int64_t counts_of(double track_m, const TrackDriveDescription& drive) {
 EncoderReading measure_encoder(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
                                const TrackDriveDescription& drive) {
   EncoderReading reading{};
-  for (const Track side : {kLeft, kRight}) {
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     const double jitter_m = state.noise.normal(sensor.noise_rad) * drive.sprocket_radius_m;
     reading.counts[side] = counts_of(now.track_m[side] + jitter_m, drive) - counts_of(state.start_track_m[side], drive);
   }
@@ -38,27 +38,29 @@ OdometryReading measure_odometry(const SensorState& state, const MotionSample& n
   const Eigen::Vector3d& start = state.start_odometry;
   const double dx = now.odometry.x() - start.x(), dy = now.odometry.y() - start.y();
   const double c = std::cos(start.z()), s = std::sin(start.z());
-  return {c * dx + s * dy, -s * dx + c * dy, frames::wrap_angle(now.odometry.z() - start.z())};
+  return {c * dx + s * dy, -s * dx + c * dy, robot::wrap_angle(now.odometry.z() - start.z())};
 }
 
 TachometerReading measure_tachometer(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
                                      const TrackDriveDescription& drive) {
   TachometerReading reading{};
-  for (const Track side : {kLeft, kRight}) {
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     reading.spin_radps[side] = now.track_mps[side] / drive.sprocket_radius_m + state.noise.normal(sensor.noise_radps);
     reading.angle_rad[side] = (now.track_m[side] - state.start_track_m[side]) / drive.sprocket_radius_m;
   }
   return reading;
 }
 
-Eigen::Vector3d advance_odometry(const Eigen::Vector3d& odometry, const std::array<double, kTrackCount>& old_track_m,
-                                 const std::array<double, kTrackCount>& new_track_m, const RobotDescription& robot) {
+Eigen::Vector3d advance_odometry(const Eigen::Vector3d& odometry,
+                                 const std::array<double, robot::kTrackCount>& old_track_m,
+                                 const std::array<double, robot::kTrackCount>& new_track_m,
+                                 const RobotDescription& robot) {
   const double metres = robot.drive.sprocket_radius_m / robot.drive.encoder_counts_per_radian;
-  const auto moved = [&](Track side) {
+  const auto moved = [&](robot::Track side) {
     return static_cast<double>(counts_of(new_track_m[side], robot.drive) - counts_of(old_track_m[side], robot.drive)) *
            metres;
   };
-  const double left = moved(kLeft), right = moved(kRight);
+  const double left = moved(robot::kLeft), right = moved(robot::kRight);
   const double turn = (right - left) / robot.track_gauge_m();  // as if nothing slipped
   const double ahead = (left + right) / 2, heading = odometry.z() + turn / 2;
   return {odometry.x() + ahead * std::cos(heading), odometry.y() + ahead * std::sin(heading), odometry.z() + turn};

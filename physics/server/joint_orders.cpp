@@ -34,28 +34,29 @@ std::optional<JointOrder> parse_joint_order(std::string_view text) {
   return found->second;
 }
 
-std::optional<physics::Flipper> find_flipper(std::string_view name) {
-  for (std::size_t i = 0; i < physics::kFlipperCount; ++i) {
-    const auto flipper = static_cast<physics::Flipper>(i);
+std::optional<robot::Flipper> find_flipper(std::string_view name) {
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+    const auto flipper = static_cast<robot::Flipper>(i);
     if (usarsim::equal_ignoring_case(name, frames::usarsim_flipper_name(flipper))) return flipper;
   }
   return std::nullopt;
 }
 
-physics::JointCommand joint_command(const physics::RobotDescription& description, const physics::RobotTruth& truth,
-                                    physics::Flipper flipper, JointOrder order, double value) {
-  using physics::JointMode;
+robot::JointCommand joint_command(const physics::RobotDescription& description, const physics::RobotTruth& truth,
+                                  robot::Flipper flipper, JointOrder order, double value) {
+  using robot::JointMode;
   const physics::FlipperDescription& joint = description.flipper.front();
   const physics::FlipperServoDescription& servo = description.servo;
   const double tip_up = frames::tip_up_from_usarsim_flipper(flipper, value);
   const auto angle = [&](double rad) {
-    return physics::JointCommand{JointMode::angle, std::clamp(rad, joint.min_angle_rad, joint.max_angle_rad)};
+    return robot::JointCommand{robot::JointMode::angle, std::clamp(rad, joint.min_angle_rad, joint.max_angle_rad)};
   };
   const auto speed = [&](double radps) {
-    return physics::JointCommand{JointMode::speed, std::clamp(radps, -servo.max_speed_radps, servo.max_speed_radps)};
+    return robot::JointCommand{robot::JointMode::speed,
+                               std::clamp(radps, -servo.max_speed_radps, servo.max_speed_radps)};
   };
   const auto torque = [&](double nm) {
-    return physics::JointCommand{JointMode::torque, std::clamp(nm, -servo.max_torque_nm, servo.max_torque_nm)};
+    return robot::JointCommand{robot::JointMode::torque, std::clamp(nm, -servo.max_torque_nm, servo.max_torque_nm)};
   };
   switch (order) {
     case JointOrder::angle:
@@ -73,7 +74,7 @@ physics::JointCommand joint_command(const physics::RobotDescription& description
     case JointOrder::brake:
       break;
   }
-  return {JointMode::brake, 0};
+  return {robot::JointMode::brake, 0};
 }
 
 }  // namespace kenaf::server

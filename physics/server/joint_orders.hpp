@@ -24,15 +24,15 @@ enum class JointOrder {
 std::optional<JointOrder> parse_joint_order(std::string_view text);
 
 // The order in which UT2004 lists the joints in STA, and {Name AllJoints} {Params a,b,c,d} is read.
-inline constexpr std::array kUsarsimJoints = {relay::kFrontRight, relay::kFrontLeft, relay::kRearRight,
-                                              relay::kRearLeft};
+inline constexpr std::array kUsarsimJoints = {robot::kFrontRight, robot::kFrontLeft, robot::kRearRight,
+                                              robot::kRearLeft};
 
 // "FRFlipper" and so on, without case.
-std::optional<physics::Flipper> find_flipper(std::string_view name);
+std::optional<robot::Flipper> find_flipper(std::string_view name);
 
 // The joint command for `value` (USARSim's sign), within what the robot can do; `truth` is what relative orders start
 // from.
-physics::JointCommand joint_command(const physics::RobotDescription& description, const physics::RobotTruth& truth,
-                                    physics::Flipper flipper, JointOrder order, double value);
+robot::JointCommand joint_command(const physics::RobotDescription& description, const physics::RobotTruth& truth,
+                                    robot::Flipper flipper, JointOrder order, double value);
 
 }  // namespace kenaf::server

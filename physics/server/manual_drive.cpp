@@ -30,17 +30,17 @@ void release(Simulation& simulation, Session& session) {
   spdlog::info("robot {} is no longer driven by hand", session.robot->name);
 }
 
-physics::RobotCommand within_limits(const physics::RobotDescription& robot, physics::RobotCommand command) {
-  using physics::JointMode;
+robot::Command within_limits(const physics::RobotDescription& robot, robot::Command command) {
+  using robot::JointMode;
   for (double& speed : command.track_speed_mps) {
     speed = std::clamp(speed, -robot.drive.max_speed_mps, robot.drive.max_speed_mps);
   }
-  for (physics::JointCommand& joint : command.flipper) {
+  for (robot::JointCommand& joint : command.flipper) {
     if (!robot.has_flippers()) {
-      joint = {JointMode::brake, 0};
-    } else if (joint.mode == JointMode::angle) {
+      joint = {robot::JointMode::brake, 0};
+    } else if (joint.mode == robot::JointMode::angle) {
       joint.value = std::clamp(joint.value, robot.flipper.front().min_angle_rad, robot.flipper.front().max_angle_rad);
-    } else if (joint.mode == JointMode::speed) {
+    } else if (joint.mode == robot::JointMode::speed) {
       joint.value = std::clamp(joint.value, -robot.servo.max_speed_radps, robot.servo.max_speed_radps);
     }
   }
@@ -49,9 +49,9 @@ physics::RobotCommand within_limits(const physics::RobotDescription& robot, phys
 
 }  // namespace
 
-physics::RobotCommand standing_command() {
-  physics::RobotCommand command;
-  command.flipper.fill({physics::JointMode::brake, 0});
+robot::Command standing_command() {
+  robot::Command command;
+  command.flipper.fill({robot::JointMode::brake, 0});
   return command;
 }
 
@@ -82,7 +82,7 @@ std::string_view place_robot_by_hand(Simulation& simulation, OperatorId who, std
 }
 
 std::string_view drive_by_hand(Simulation& simulation, std::uint32_t id, OperatorId who,
-                               const physics::RobotCommand& command) {
+                               const robot::Command& command) {
   Session* session = session_with_robot(simulation, id);
   if (session == nullptr) return kNoRobot;
   if (!held_by(*session, who)) return kNotHeld;

@@ -21,7 +21,7 @@ namespace kenaf::server {
 inline constexpr double kOperatorSilence_s = 0.5;
 inline constexpr std::size_t kMostPlacedRobots = 8;
 
-physics::RobotCommand standing_command();
+robot::Command standing_command();
 
 // Takes the robot of that session. Who holds it already may take it again.
 std::string_view take_robot(Simulation& simulation, std::uint32_t session, OperatorId who);
@@ -29,7 +29,7 @@ std::string_view take_robot(Simulation& simulation, std::uint32_t session, Opera
 std::string_view place_robot_by_hand(Simulation& simulation, OperatorId who, std::uint32_t& session);
 // `command` is limited to what the robot can do. Numbers must be finite.
 std::string_view drive_by_hand(Simulation& simulation, std::uint32_t session, OperatorId who,
-                               const physics::RobotCommand& command);
+                               const robot::Command& command);
 // Where a camera shall look; what is empty stays. Positive pan to the left, positive tilt down. Numbers must be finite.
 struct CameraOrder { std::optional<double> pan_rad, tilt_rad, field_of_view_rad; };
 // Limited to what the camera can do; its mount turns there at its own speed, and goes on to when the holder is silent.

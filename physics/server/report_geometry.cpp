@@ -170,16 +170,16 @@ bool write_flippers(MessageWriter& writer, const Session& session, const Request
   const physics::FlipperDescription& flipper = robot.flipper.front();
   const usarsim::NumberFormat format = session.formats.value;
   bool found = false;
-  for (std::size_t i = 0; i < physics::kFlipperCount; ++i) {
-    const auto which = static_cast<physics::Flipper>(i);
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+    const auto which = static_cast<robot::Flipper>(i);
     const char* name = frames::usarsim_flipper_name(which);
     if (!request.name.empty() && !usarsim::equal_ignoring_case(name, request.name)) continue;
     if (!found) writer.begin(request.geometry ? "GEO" : "CONF").text("Type", request.type);
     found = true;
     writer.text("Name", name);
     if (request.geometry) {
-      const bool rear = which == relay::kRearLeft || which == relay::kRearRight;
-      const bool right = which == relay::kFrontRight || which == relay::kRearRight;
+      const bool rear = which == robot::kRearLeft || which == robot::kRearRight;
+      const bool right = which == robot::kFrontRight || which == robot::kRearRight;
       const Eigen::Vector3d mirror(rear ? -1 : 1, right ? -1 : 1, 1);
       writer.numbers("Location", wire_vector(flipper.p_BPivot_m.cwiseProduct(mirror)), format)
           .number("Length", flipper.length_m, format);

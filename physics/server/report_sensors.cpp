@@ -65,7 +65,7 @@ void write(const Report& report, const physics::ImuReading& reading) {
 }
 
 void write(const Report& report, const physics::EncoderReading& reading) {
-  constexpr std::array<const char*, physics::kTrackCount> kNames = {"ECLeft", "ECRight"};
+  constexpr std::array<const char*, robot::kTrackCount> kNames = {"ECLeft", "ECRight"};
   if (report.dialect == Dialect::ut2004) {
     report.begin(false);
     for (std::size_t i = 0; i < kNames.size(); ++i) {

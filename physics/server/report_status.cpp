@@ -12,7 +12,7 @@ namespace {
 void write_joints(usarsim::MessageWriter& writer, const SessionRobot& robot, const physics::RobotTruth& truth,
                   usarsim::NumberFormat format) {
   if (!robot.description->has_flippers()) return;
-  for (const physics::Flipper flipper : kUsarsimJoints) {
+  for (const robot::Flipper flipper : kUsarsimJoints) {
     writer.number(frames::usarsim_flipper_name(flipper),
                   frames::usarsim_flipper_from_tip_up(flipper, truth.flipper_rad[flipper]), format);
   }

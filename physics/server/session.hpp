@@ -21,7 +21,7 @@ struct SessionRobot {
   physics::RobotId id;
   std::string name;
   const physics::RobotDescription* description;
-  physics::RobotCommand command;  // the client's; in force unless an operator holds the robot
+  robot::Command command;  // the client's; in force unless an operator holds the robot
   bool normalized = false;        // the client's speeds are per cent of the fastest; sticky
   bool light = false;
   bool fault_told = false;        // that its simulation went wrong
@@ -59,7 +59,7 @@ enum class OperatorId : std::uint32_t {};
 // While an operator holds a robot; physics/server/manual_drive.hpp has the rules.
 struct ManualHold {
   OperatorId holder;
-  physics::RobotCommand command;  // in force, in place of the client's
+  robot::Command command;  // in force, in place of the client's
   double last_word_wall_s;
   bool silent = false;            // the command is to stand, until he says something
   SilenceStop stop{};

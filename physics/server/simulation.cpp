@@ -180,8 +180,8 @@ void Simulation::watch_silence(Session& session) {
   robot.command.track_speed_mps = {};
   forget_curve(robot);
   // A flipper that was told a speed or a torque would go on; one that was told an angle holds it.
-  for (physics::JointCommand& joint : robot.command.flipper) {
-    if (joint.mode != physics::JointMode::angle) joint = {physics::JointMode::brake, 0};
+  for (robot::JointCommand& joint : robot.command.flipper) {
+    if (joint.mode != robot::JointMode::angle) joint = {robot::JointMode::brake, 0};
   }
   apply_command(session);
 }
@@ -345,10 +345,10 @@ const physics::RobotDescription* Simulation::description_for_class(std::string_v
   return &found->second;
 }
 
-physics::RobotCommand Simulation::resting_command(const physics::RobotDescription& description) {
-  physics::RobotCommand command;
+robot::Command Simulation::resting_command(const physics::RobotDescription& description) {
+  robot::Command command;
   if (description.has_flippers()) {
-    command.flipper.fill({physics::JointMode::angle, description.flipper.front().start_angle_rad});
+    command.flipper.fill({robot::JointMode::angle, description.flipper.front().start_angle_rad});
   }
   return command;
 }

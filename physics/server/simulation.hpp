@@ -54,7 +54,7 @@ struct Simulation {
   // The description that a class name stands for; nullptr: there is none (said in the log).
   const physics::RobotDescription* description_for_class(std::string_view class_name);
   // The command that a robot of this description has when it is placed: at rest, flippers where they start.
-  static physics::RobotCommand resting_command(const physics::RobotDescription& description);
+  static robot::Command resting_command(const physics::RobotDescription& description);
   // The angles of view that its cameras have then.
   static std::vector<double> unzoomed(const physics::RobotDescription& description);
   std::size_t robot_count() const;

@@ -35,17 +35,17 @@ void set_body_velocity(SessionRobot& robot, double linear_mps, double clockwise_
   const double faster_side_mps = std::abs(linear_mps) + std::abs(turn_mps);
   const double most_mps = robot.description->drive.max_speed_mps;
   const double share = faster_side_mps > most_mps ? most_mps / faster_side_mps : 1;
-  robot.command.track_speed_mps[physics::kLeft] = clamped_speed(robot, share * (linear_mps + turn_mps));
-  robot.command.track_speed_mps[physics::kRight] = clamped_speed(robot, share * (linear_mps - turn_mps));
+  robot.command.track_speed_mps[robot::kLeft] = clamped_speed(robot, share * (linear_mps + turn_mps));
+  robot.command.track_speed_mps[robot::kRight] = clamped_speed(robot, share * (linear_mps - turn_mps));
 }
 
 void drive_skid(SessionRobot& robot, const MessageView& message) {
   // A side that is not named keeps its speed.
   if (const auto left = number_of(message, "Left")) {
-    robot.command.track_speed_mps[physics::kLeft] = surface_speed(robot, *left);
+    robot.command.track_speed_mps[robot::kLeft] = surface_speed(robot, *left);
   }
   if (const auto right = number_of(message, "Right")) {
-    robot.command.track_speed_mps[physics::kRight] = surface_speed(robot, *right);
+    robot.command.track_speed_mps[robot::kRight] = surface_speed(robot, *right);
   }
 }
 
@@ -77,7 +77,7 @@ void drive_body_velocity(SessionRobot& robot, const MessageView& message) {
 void drive_joints(Simulation& simulation, SessionRobot& robot, const MessageView& message) {
   if (!robot.description->has_flippers()) return;
   const physics::RobotTruth truth = simulation.world.truth(robot.id);
-  std::optional<physics::Flipper> flipper;
+  std::optional<robot::Flipper> flipper;
   auto order = std::optional(JointOrder::angle);
   double value = 0;
   const auto finish = [&] {

@@ -15,13 +15,13 @@ Reason set_joint(Simulation& simulation, Session& session, const MessageView& me
   if (!robot.description->has_flippers()) return "this robot has no joints";
   const auto order = parse_joint_order(text_of(message, "Opcode"));
   if (!order) return "unknown Opcode";
-  std::array<double, physics::kFlipperCount> params{};
+  std::array<double, robot::kFlipperCount> params{};
   const auto count = usarsim::parse_number_list(text_of(message, "Params"), params);
   if (*order != JointOrder::brake && (!count || *count == 0)) return "Params is no number";
 
   const std::string_view name = text_of(message, "Name");
   const physics::RobotTruth truth = simulation.world.truth(robot.id);
-  const auto command = [&](physics::Flipper flipper, double value) {
+  const auto command = [&](robot::Flipper flipper, double value) {
     robot.command.flipper[flipper] = joint_command(*robot.description, truth, flipper, *order, value);
   };
   if (is_any_of(name, {"AllJoints", "AllAngles"})) {

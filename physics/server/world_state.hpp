@@ -31,10 +31,10 @@ struct RobotState {
   physics::RobotDimensions dimensions;
   physics::Pose X_WB;
   Eigen::Vector3d v_WB_mps{0, 0, 0};
-  std::array<double, physics::kTrackCount> track_mps{}, track_m{}, track_a{};
-  std::array<double, physics::kFlipperCount> flipper_rad{}, flipper_a{};
+  std::array<double, robot::kTrackCount> track_mps{}, track_m{}, track_a{};
+  std::array<double, robot::kFlipperCount> flipper_rad{}, flipper_a{};
   double battery_v = 0, battery_left_s = 0;
-  physics::RobotCommand command;               // in force
+  robot::Command command;               // in force
   bool has_client = false;                     // false: an operator placed it
   bool client_silent = false;                  // its CommandTimeout has passed
   double client_silent_s = 0;                  // robot time since its last command

@@ -12,6 +12,7 @@
 
 #include "physics/body_effects.hpp"
 #include "physics/terrain_effects.hpp"
+#include "robot/parts.hpp"
 #include "rollout/engines/runner.hpp"
 #include "rollout/measured_motion.hpp"
 
@@ -64,7 +65,7 @@ std::span<const double> measured(const runs::Run& run, std::string_view column) 
 std::vector<DriveSample> drives_of(const runs::Run& run, const RobotDescription& robot) {
   for (const std::string_view belt : {"track_left_mps", "track_right_mps"}) measured(run, belt);
   if (robot.has_flippers())
-    for (const std::string_view which : runs::kFlippers) measured(run, fmt::format("flipper_{}_rad", which));
+    for (const std::string_view which : robot::kFlipperNames) measured(run, fmt::format("flipper_{}_rad", which));
   const rollout::MeasuredMotion reported = rollout::measured_motion(run);
   const rollout::ReportDelays late = rollout::report_delays(robot);
   const std::span<const double> t_s = run.column("t_s");
@@ -73,9 +74,9 @@ std::vector<DriveSample> drives_of(const runs::Run& run, const RobotDescription&
     const double since_s = row_s - t_s.front();
     const PrescribedMotion motion = rollout::actual_motion(reported, since_s, robot, late);
     DriveSample sample{kSettle_s + since_s};
-    for (std::size_t i = 0; i < kTrackCount; ++i) sample.belt_mps[i] = motion.track_mps[i].value();
+    for (std::size_t i = 0; i < robot::kTrackCount; ++i) sample.belt_mps[i] = motion.track_mps[i].value();
     if (robot.has_flippers())
-      for (std::size_t i = 0; i < kFlipperCount; ++i) sample.flipper_rad[i] = motion.flipper_rad[i].value();
+      for (std::size_t i = 0; i < robot::kFlipperCount; ++i) sample.flipper_rad[i] = motion.flipper_rad[i].value();
     if (samples.empty()) samples.push_back({0, {}, sample.flipper_rad});
     samples.push_back(sample);
   }

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "physics/robot_shapes.hpp"
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 
 namespace kenaf::engines {
 namespace {
@@ -26,8 +26,8 @@ EngineScene climb(const std::string& name, WorldDescription world, double x_m, d
   scene.robot = load_robot("kenaf");
   scene.X_start.p = {x_m, 0, z_m};
   scene.command.track_speed_mps = {kDrive_mps, kDrive_mps};
-  for (const Flipper f : {kFrontLeft, kFrontRight}) scene.command.flipper[f].value = front_rad;
-  for (const Flipper f : {kRearLeft, kRearRight}) scene.command.flipper[f].value = rear_rad;
+  for (const robot::Flipper f : {robot::kFrontLeft, robot::kFrontRight}) scene.command.flipper[f].value = front_rad;
+  for (const robot::Flipper f : {robot::kRearLeft, robot::kRearRight}) scene.command.flipper[f].value = rear_rad;
   scene.duration_s = duration_s;
   return scene;
 }
@@ -66,7 +66,7 @@ EngineScene on_plane(const RobotDescription& robot, double slope_rad) {
   scene.world.planes.push_back({X_WP, 1});
   scene.robot = robot;
   scene.X_start = compose(X_WP, {{0, 0, belly_height_m(robot)}, Eigen::Quaterniond::Identity()});
-  for (JointCommand& flipper : scene.command.flipper) flipper.value = 1;
+  for (robot::JointCommand& flipper : scene.command.flipper) flipper.value = 1;
   return scene;
 }
 
@@ -85,9 +85,9 @@ RobotParts parts_of(const RobotDescription& robot) {
   // On a plane Kenaf touches with two points at each end of its pieces; the other engines with four of each box and two
   // of each drum.
   const int boxes = std::max(1, (2 * (track.pieces + 1) - 4 + 3) / 4);
-  for (const Track side : {kLeft, kRight}) {
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     Eigen::Vector3d center = track.p_BT_m;
-    if (side == kRight) center.y() = -center.y();
+    if (side == robot::kRight) center.y() = -center.y();
     const Eigen::Vector3d to_drum(track.length_m / 2 - track.end_radius_m, 0, 0);
     parts.tracks[side] = {center - to_drum,
                           center + to_drum,
@@ -105,11 +105,11 @@ RobotParts parts_of(const RobotDescription& robot) {
   const Outline outline = flipper_outline(f);
   const OutlineMoments m = moments(outline);
   const double xx = m.Ixx / m.area, zz = m.Izz / m.area, yy = f.width_m * f.width_m / 12;
-  for (const Flipper which : {kFrontLeft, kFrontRight, kRearLeft, kRearRight}) {
-    const bool front = which == kFrontLeft || which == kFrontRight;
-    const Track side = which == kFrontLeft || which == kRearLeft ? kLeft : kRight;
+  for (const robot::Flipper which : {robot::kFrontLeft, robot::kFrontRight, robot::kRearLeft, robot::kRearRight}) {
+    const bool front = which == robot::kFrontLeft || which == robot::kFrontRight;
+    const robot::Track side = which == robot::kFrontLeft || which == robot::kRearLeft ? robot::kLeft : robot::kRight;
     const Eigen::Vector3d pivot(front ? f.p_BPivot_m.x() : -f.p_BPivot_m.x(),
-                                side == kLeft ? f.p_BPivot_m.y() : -f.p_BPivot_m.y(), f.p_BPivot_m.z());
+                                side == robot::kLeft ? f.p_BPivot_m.y() : -f.p_BPivot_m.y(), f.p_BPivot_m.z());
     // a rear flipper is a front one that is turned half round
     const Eigen::Quaterniond turn = front ? Eigen::Quaterniond::Identity() : Eigen::Quaterniond(0, 0, 0, 1);
     parts.arms.push_back({{Eigen::Vector3d::Zero(),
@@ -155,8 +155,9 @@ void Drives::advance_as_prescribed() {
   const DriveSample &before = prescribed_[next_ > 0 ? next_ - 1 : 0], &after = prescribed_[next_];
   const double span_s = after.t_s - before.t_s;
   const double share = span_s > 0 ? std::clamp((time_s_ - before.t_s) / span_s, 0.0, 1.0) : 1;
-  for (std::size_t i = 0; i < kTrackCount; ++i) belt_mps_[i] = std::lerp(before.belt_mps[i], after.belt_mps[i], share);
-  for (std::size_t i = 0; i < kFlipperCount; ++i)
+  for (std::size_t i = 0; i < robot::kTrackCount; ++i)
+    belt_mps_[i] = std::lerp(before.belt_mps[i], after.belt_mps[i], share);
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
     command_.flipper[i].value = std::lerp(before.flipper_rad[i], after.flipper_rad[i], share);
 }
 
@@ -165,12 +166,12 @@ void Drives::advance() {
     advance_as_prescribed();
     return;
   }
-  for (std::size_t i = 0; i < kTrackCount; ++i)
+  for (std::size_t i = 0; i < robot::kTrackCount; ++i)
     belt_mps_[i] += share_ * (std::clamp(command_.track_speed_mps[i], -max_mps_, max_mps_) - belt_mps_[i]);
 }
 
 double Drives::flipper_radps(std::size_t flipper, double angle_rad) const {
-  const double apart_rad = frames::wrap_angle(command_.flipper[flipper].value - angle_rad);
+  const double apart_rad = robot::wrap_angle(command_.flipper[flipper].value - angle_rad);
   return std::clamp(servo_gain_per_s_ * apart_rad, -max_radps_, max_radps_);
 }
 

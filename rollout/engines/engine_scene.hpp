@@ -9,17 +9,17 @@
 #include <string>
 #include <vector>
 
-#include "physics/robot_command.hpp"
 #include "physics/robot_description.hpp"
 #include "physics/world_description.hpp"
+#include "robot/command.hpp"
 
 namespace kenaf::engines {
 
 // What belts and flippers do at a time.
 struct DriveSample {
   double t_s = 0;
-  std::array<double, physics::kTrackCount> belt_mps{};
-  std::array<double, physics::kFlipperCount> flipper_rad{};
+  std::array<double, robot::kTrackCount> belt_mps{};
+  std::array<double, robot::kFlipperCount> flipper_rad{};
 };
 
 struct EngineScene {
@@ -28,7 +28,7 @@ struct EngineScene {
   std::optional<physics::RobotDescription> robot;   // else the block
   std::optional<physics::Box> block;
   physics::Pose X_start;                            // of the robot's body frame
-  physics::RobotCommand command;
+  robot::Command command;
   // By time, the first at 0; where there are any, belts and flippers do this, straight between two of them, whatever is commanded.
   std::vector<DriveSample> prescribed;
   double duration_s = 0;
@@ -47,7 +47,7 @@ struct Belted {
   Eigen::Vector3d p_rear_m, p_front_m;              // drum centres, of the flipper: pivot and tip
   double rear_radius_m, front_radius_m, width_m;
   double friction_along, friction_across;
-  std::optional<physics::Track> belt;               // whose speed it runs with
+  std::optional<robot::Track> belt;               // whose speed it runs with
   int boxes;                                        // of the straight part, for about as many contacts as Kenaf has
   std::vector<Eigen::Vector3d> hull_m;              // corners of the convex hull of both drums
 };
@@ -69,7 +69,7 @@ double flipper_at_start(const EngineScene& scene, std::size_t flipper);
 double servo_torque_nm(const EngineScene& scene);
 
 struct RobotParts {
-  std::array<Belted, physics::kTrackCount> tracks;  // in B
+  std::array<Belted, robot::kTrackCount> tracks;  // in B
   std::vector<Arm> arms;                            // in the order of physics::Flipper
 };
 RobotParts parts_of(const physics::RobotDescription& robot);
@@ -79,7 +79,7 @@ class Drives {
  public:
   explicit Drives(const EngineScene& scene);
   void advance();                                   // call before each step
-  double belt_mps(physics::Track track) const { return belt_mps_[track]; }
+  double belt_mps(robot::Track track) const { return belt_mps_[track]; }
   // The speed that a flipper at `angle_rad` shall have; a prescribed one is there after the step.
   double flipper_radps(std::size_t flipper, double angle_rad) const;
   double flipper_rad(std::size_t flipper) const { return command_.flipper[flipper].value; }  // where it shall be
@@ -87,12 +87,12 @@ class Drives {
  private:
   void advance_as_prescribed();
 
-  physics::RobotCommand command_;
+  robot::Command command_;
   std::vector<DriveSample> prescribed_;
   std::size_t next_ = 0;                            // of prescribed_, the first that is not over
   double time_step_s_ = 0, time_s_ = 0;
   double share_ = 1, max_mps_ = 0, max_radps_ = 0, servo_gain_per_s_ = 0;
-  std::array<double, physics::kTrackCount> belt_mps_{};
+  std::array<double, robot::kTrackCount> belt_mps_{};
 };
 
 }  // namespace kenaf::engines

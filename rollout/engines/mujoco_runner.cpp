@@ -178,7 +178,7 @@ class MujocoRunner : public Runner {
       const int belt1 = static_cast<int>(m.geom_user[c.geom1]), belt2 = static_cast<int>(m.geom_user[c.geom2]);
       if (!belt1 && !belt2) continue;
       const Eigen::Map<const Eigen::Vector3d> normal(c.frame);  // from geom 1 to geom 2
-      const double speed = drives_.belt_mps(static_cast<Track>((belt1 ? belt1 : belt2) - 1));
+      const double speed = drives_.belt_mps(static_cast<robot::Track>((belt1 ? belt1 : belt2) - 1));
       // the surface moves with -speed * (outward normal x axis); on geom 1 outward is the normal and the sign of the
       // slip (2 relative to 1) is -, on geom 2 both turn round
       const Eigen::Vector3d slip_W = speed * normal.cross(belt_axis_W);

@@ -32,7 +32,7 @@ constexpr double kStiffness_npm = 2e5, kDamping_nspm = 1000;
 
 struct Surface {
   double friction_along = 1, friction_across = 1;
-  std::optional<Track> belt;
+  std::optional<robot::Track> belt;
 };
 
 void quaternion(const Eigen::Quaterniond& q, dQuaternion out) {

@@ -3,6 +3,7 @@
 
 #include "tests/camera/scenes.hpp"
 
+using namespace kenaf;
 using namespace kenaf::camera;
 namespace physics = kenaf::physics;
 
@@ -12,7 +13,7 @@ TEST_CASE("N1: robots, belts, arms, camera mounts and boxes are where the world 
   description.boxes.push_back({"parcel", {0.2, 0.2, 0.2}, pose(2, 1, 0.1), 1, 1});
   physics::World world(description, {}, 1);
   const physics::RobotId id = world.add_robot(physics::load_robot("kenaf"), "R1", pose(0, 0, 0.1));
-  physics::RobotCommand command;
+  robot::Command command;
   command.track_speed_mps = {0.2, 0.2};
   world.set_command(id, command);
   world.set_mission_link(id, 0, 0, 0.5);

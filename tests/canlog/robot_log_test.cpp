@@ -41,10 +41,10 @@ void drive(real::RobotOnBus& robot) {
   robot.open();
   robot.run(50, real::drive_at(0.3, 0.3));
   hrt::DriveCommand command = real::drive_at(-0.2, 0.2);
-  command.flipper_mask = 1u << relay::kFrontLeft;
-  command.flipper_rad[relay::kFrontLeft] = 0.4;
+  command.flipper_mask = 1u << robot::kFrontLeft;
+  command.flipper_rad[robot::kFrontLeft] = 0.4;
   robot.run(60, command);
-  command.flipper_rad[relay::kFrontLeft] = 0;
+  command.flipper_rad[robot::kFrontLeft] = 0;
   robot.run(60, command);
   robot.run(10, {});
   robot.transport.close();

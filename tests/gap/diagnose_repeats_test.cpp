@@ -18,7 +18,7 @@ Observation told(const std::string& manoeuvre, double speed_mps, double from_s =
   Observation observation{};
   observation.manoeuvre = manoeuvre;
   for (int i = 0; i <= static_cast<int>(duration_s / 0.1 + 0.5); ++i) {
-    physics::RobotCommand command;
+    robot::Command command;
     if (i * 0.1 >= from_s) command.track_speed_mps = {speed_mps, speed_mps};
     observation.replay.timed.push_back({i * 0.1, command});
   }

@@ -18,14 +18,14 @@ rollout::Manoeuvre drive() {
   rollout::Manoeuvre replay;
   replay.start = rollout::Start{
       .x_m = 0, .y_m = 0, .yaw_rad = 0, .z_m = {}, .flipper_rad = std::array{0.0, 0.0, 0.0, 0.0}, .motion = {}};
-  physics::RobotCommand command;
+  robot::Command command;
   command.track_speed_mps = {0.3, 0.3};
-  for (auto& flipper : command.flipper) flipper = {physics::JointMode::angle, 1};
+  for (auto& flipper : command.flipper) flipper = {robot::JointMode::angle, 1};
   for (int i = 0; i <= 300; ++i) replay.timed.push_back({i * 0.01, command});
   return replay;
 }
 
-const physics::RobotCommand& at(const rollout::Manoeuvre& replay, double t_s) {
+const robot::Command& at(const rollout::Manoeuvre& replay, double t_s) {
   return replay.timed[static_cast<std::size_t>(std::lround(t_s / 0.01))].command;
 }
 
@@ -41,7 +41,7 @@ TEST_CASE("A foreign deviation is none of the catalogue's, changes nothing at 0,
     const auto same = [](const rollout::Manoeuvre& a, const rollout::Manoeuvre& b) {
       for (std::size_t i = 0; i < a.timed.size(); ++i) {
         if (a.timed[i].command.track_speed_mps != b.timed[i].command.track_speed_mps) return false;
-        for (std::size_t f = 0; f < physics::kFlipperCount; ++f)
+        for (std::size_t f = 0; f < robot::kFlipperCount; ++f)
           if (a.timed[i].command.flipper[f].value != b.timed[i].command.flipper[f].value) return false;
       }
       return true;
@@ -60,7 +60,7 @@ TEST_CASE("Drives that hunt swing by a fifth in 1.1 s, drives that fade have los
   rollout::Manoeuvre hunts = drive(), fades = drive();
   obey_foreign(hunts, "speed_hunts", 1);
   obey_foreign(fades, "drives_fade", 1);
-  for (const std::size_t side : {physics::kLeft, physics::kRight}) {
+  for (const std::size_t side : {robot::kLeft, robot::kRight}) {
     CHECK(at(hunts, 0).track_speed_mps[side] == 0.3);
     CHECK(at(hunts, 0.55).track_speed_mps[side] == Approx(0.3));                        // half a period
     CHECK(at(hunts, 1.1 + 0.275).track_speed_mps[side] == Approx(0.36).epsilon(1e-3));  // a quarter of one
@@ -80,21 +80,21 @@ TEST_CASE("A gyro that saturates tells half of 1 rad/s, and two thirds of half")
 TEST_CASE("One flipper that lags by half a second is 1 - 1/e of its way after that, the others are there") {
   rollout::Manoeuvre replay = drive();
   obey_foreign(replay, "right_flipper_lag", 1);
-  const physics::RobotCommand& command = at(replay, 0.5);
-  CHECK(command.flipper[physics::kFrontRight].value == Approx(1 - std::exp(-1)));
-  for (const std::size_t other : {physics::kFrontLeft, physics::kRearLeft, physics::kRearRight})
+  const robot::Command& command = at(replay, 0.5);
+  CHECK(command.flipper[robot::kFrontRight].value == Approx(1 - std::exp(-1)));
+  for (const std::size_t other : {robot::kFrontLeft, robot::kRearLeft, robot::kRearRight})
     CHECK(command.flipper[other].value == 1);
-  CHECK(command.track_speed_mps[physics::kRight] == 0.3);
+  CHECK(command.track_speed_mps[robot::kRight] == 0.3);
 }
 
 TEST_CASE("A loose contact stops the right track for the last 0.2 s of each 1.3 s, half of it halves the speed then") {
   rollout::Manoeuvre replay = drive(), half = drive();
   obey_foreign(replay, "right_drive_cuts_out", 1);
   obey_foreign(half, "right_drive_cuts_out", 0.5);
-  for (const double t_s : {0.0, 1.05, 1.35, 2.35, 2.7}) CHECK(at(replay, t_s).track_speed_mps[physics::kRight] == 0.3);
+  for (const double t_s : {0.0, 1.05, 1.35, 2.35, 2.7}) CHECK(at(replay, t_s).track_speed_mps[robot::kRight] == 0.3);
   for (const double t_s : {1.15, 1.25, 2.45}) {
-    CHECK(at(replay, t_s).track_speed_mps[physics::kRight] == 0);
-    CHECK(at(half, t_s).track_speed_mps[physics::kRight] == Approx(0.15));
-    CHECK(at(replay, t_s).track_speed_mps[physics::kLeft] == 0.3);
+    CHECK(at(replay, t_s).track_speed_mps[robot::kRight] == 0);
+    CHECK(at(half, t_s).track_speed_mps[robot::kRight] == Approx(0.15));
+    CHECK(at(replay, t_s).track_speed_mps[robot::kLeft] == 0.3);
   }
 }

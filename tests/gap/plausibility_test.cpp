@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-const physics::RobotDescription& robot() {
+const physics::RobotDescription& nominal() {
   static const physics::RobotDescription kenaf = physics::load_robot("kenaf");
   return kenaf;
 }
@@ -32,7 +32,7 @@ runs::Run driven(const std::string& name, double noise_scale = 1) {
   options.noise_scale = noise_scale;
   options.start_scatter_m = 0.005;
   options.start_scatter_rad = 0.01;
-  return rollout::roll_out(robot(), physics::load_world(manoeuvre.world, warnings), manoeuvre, options).run;
+  return rollout::roll_out(nominal(), physics::load_world(manoeuvre.world, warnings), manoeuvre, options).run;
 }
 
 // Curves both ways, of 12 s; driven once.
@@ -68,7 +68,7 @@ std::string words(const std::vector<gap::Finding>& findings) {
 }
 
 std::string found(const runs::Run& run) {
-  return words(gap::check_run(run, "run.csv", &robot()));
+  return words(gap::check_run(run, "run.csv", &nominal()));
 }
 
 const std::vector<std::string> kPlace = {"x_m", "y_m", "z_m"}, kAngles = {"roll_rad", "pitch_rad", "yaw_rad"},
@@ -155,7 +155,7 @@ TEST_CASE("Millimetres and centimetres where metres belong are refused by name")
                            {kTravels, 100, "track_left_m: looks like centimetres"},
                            {{"track_right_m"}, 1000, "track_right_m: looks like millimetres"},
                            {{"battery_v"}, 1000, "battery_v: is 2.59e+04 V: it looks like millivolts"}}) {
-    const auto findings = gap::check_run(scaled(arc(), each.columns, each.factor), "run.csv", &robot());
+    const auto findings = gap::check_run(scaled(arc(), each.columns, each.factor), "run.csv", &nominal());
     INFO(words(findings));
     CHECK(gap::any_refused(findings));
     CHECK_THAT(words(findings), Catch::Contains(each.words));
@@ -179,7 +179,7 @@ TEST_CASE("Degrees where radians belong are refused by name, g where m/s2 belong
                            {step(), kFlippers, kDegrees, "looks like degrees"},
                            {arc(), kAcceleration, 1 / 9.80665, "acc_x_mps2: looks like multiples of g"},
                            {arc(), kAcceleration, 1000, "acc_x_mps2: looks like millimetres"}}) {
-    const auto findings = gap::check_run(scaled(each.run, each.columns, each.factor), "run.csv", &robot());
+    const auto findings = gap::check_run(scaled(each.run, each.columns, each.factor), "run.csv", &nominal());
     INFO(words(findings));
     CHECK(gap::any_refused(findings));
     CHECK_THAT(words(findings), Catch::Contains(each.words));
@@ -244,7 +244,7 @@ TEST_CASE("A track that is asked for next to nothing and dragged along is not in
 
 TEST_CASE("A robot that slides down a ramp against its tracks is warned of, whatever its speed") {
   for (const double speed_mps : {-0.1, -0.2, -0.5}) {
-    const auto findings = gap::check_run(carried(speed_mps, -0.5), "run.csv", &robot());
+    const auto findings = gap::check_run(carried(speed_mps, -0.5), "run.csv", &nominal());
     INFO(words(findings));
     CHECK_FALSE(gap::any_refused(findings));
     CHECK_THAT(words(findings), Catch::StartsWith("warning: run.csv: x_m: goes against the tracks"));
@@ -342,7 +342,7 @@ TEST_CASE(
   runs::Dataset dataset;
   dataset.runs = {{"a.csv", "arc", ""}, {"b.csv", "arc", ""}, {"c.csv", "arc", ""}};
   const runs::Run slow = held(arc(), "gyro_z_radps", 10);
-  const std::string told = words(gap::check_plausibility(dataset, std::vector{slow, arc(), slow}, &robot()));
+  const std::string told = words(gap::check_plausibility(dataset, std::vector{slow, arc(), slow}, &nominal()));
   CHECK_THAT(told, Catch::StartsWith("warning: a.csv: gyro_z_radps: repeats each value for 0.1 s") &&
                        Catch::EndsWith("(as in 1 more)\n"));
   CHECK(std::ranges::count(told, '\n') == 1);
@@ -371,7 +371,7 @@ TEST_CASE("A run of a few rows tells nothing, a noise that no column has is warn
   runs::Dataset dataset;
   dataset.noise = {{"x_m", 0.001}, {"x_mm", 1}};
   dataset.runs = {{"run.csv", "arc", ""}};
-  CHECK(words(gap::check_plausibility(dataset, std::vector{arc()}, &robot())) ==
+  CHECK(words(gap::check_plausibility(dataset, std::vector{arc()}, &nominal())) ==
         "warning: dataset.toml: x_mm: has a [noise], but no run has such a column; is its name right?\n");
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "hrt/estimate.hpp"
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 
 using namespace kenaf;
 using hrt::Estimate;
@@ -46,7 +46,7 @@ TEST_CASE("posture's yaw is unwrapped, and odometry begins at 0 whatever the yaw
     relay::State state = state_at(1 + i, 0, 0);
     state.fields |= relay::kHasPosture;
     // 3 rad, then two and a half turns to the right at 0.9 degrees a cycle.
-    state.posture_rad[2] = frames::wrap_angle(3 - std::min(5 * std::numbers::pi, i * 0.0157));
+    state.posture_rad[2] = robot::wrap_angle(3 - std::min(5 * std::numbers::pi, i * 0.0157));
     last = estimator.update(state);
   }
   CHECK(last.heading_rad == Approx(3 - 5 * std::numbers::pi).margin(1e-6));

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "hrt/transport.hpp"
-#include "protocol/frames.hpp"
 #include "protocol/relay_datagram.hpp"
+#include "robot/angles.hpp"
 
 namespace kenaf::hrt::test {
 
@@ -85,7 +85,7 @@ class Plant {
     state.robot_time_s = state.frame * settings.period_s;
     state.posture_rad = {};
     if (settings.has_posture) {
-      state.posture_rad[2] = frames::wrap_angle(yaw_rad + noise_(generator_) * settings.yaw_noise_rad);
+      state.posture_rad[2] = robot::wrap_angle(yaw_rad + noise_(generator_) * settings.yaw_noise_rad);
     }
     state.acceleration_mps2 = {0, 0, 9.80665};
     state.track_m = track_m;
@@ -94,7 +94,7 @@ class Plant {
     state.flipper_rad = flipper_rad;
     state.battery_v = 25.9;
     state.p_WB_m = {x_m, y_m, 0.09};
-    state.orientation_rad = {0, 0, frames::wrap_angle(yaw_rad)};
+    state.orientation_rad = {0, 0, robot::wrap_angle(yaw_rad)};
     pushing = false;
   }
 

@@ -38,14 +38,14 @@ TEST_CASE("a drive is complete: what it does not name stands") {
   auto drive = request<DriveRequest>(R"({"type":"drive","robot":3,"left":0.2,"right":-0.1})");
   CHECK(drive.robot == 3);
   CHECK(drive.command.track_speed_mps == std::array{0.2, -0.1});
-  for (const physics::JointCommand& joint : drive.command.flipper) CHECK(joint.mode == physics::JointMode::brake);
+  for (const robot::JointCommand& joint : drive.command.flipper) CHECK(joint.mode == robot::JointMode::brake);
   drive = request<DriveRequest>(
       R"({"type":"drive","robot":3,"left":0,"right":0,"flipper_angle":[1,null,null,-1],"flipper_speed":[null,0.5,null,null]})");
-  CHECK(drive.command.flipper[0].mode == physics::JointMode::angle);
+  CHECK(drive.command.flipper[0].mode == robot::JointMode::angle);
   CHECK(drive.command.flipper[0].value == 1);
-  CHECK(drive.command.flipper[1].mode == physics::JointMode::speed);
+  CHECK(drive.command.flipper[1].mode == robot::JointMode::speed);
   CHECK(drive.command.flipper[1].value == 0.5);
-  CHECK(drive.command.flipper[2].mode == physics::JointMode::brake);
+  CHECK(drive.command.flipper[2].mode == robot::JointMode::brake);
   CHECK(drive.command.flipper[3].value == -1);
 }
 

@@ -8,6 +8,7 @@
 #include "tests/physics/scenes.hpp"
 #include "tests/support/heap_calls.hpp"
 
+using namespace kenaf;
 using namespace kenaf::physics;
 using kenaf::test::heap_calls;
 
@@ -41,7 +42,7 @@ namespace {
 struct Drive {
   const char* world;
   double start_x_m;  // beyond the world's own start
-  RobotCommand command;
+  robot::Command command;
   double time_s;
   double reached_x_m;  // so far it comes: it met what the world is about
 };

@@ -4,6 +4,7 @@
 #include "physics/command_channel.hpp"
 #include "tests/physics/scenes.hpp"
 
+using namespace kenaf;
 using namespace kenaf::physics;
 
 namespace {
@@ -17,7 +18,7 @@ CommandChannel channel_with(const Effects& effects, std::uint64_t seed = 1, cons
 }
 
 double left(CommandChannel& channel) {
-  return channel.step().track_speed_mps[kLeft];
+  return channel.step().track_speed_mps[robot::kLeft];
 }
 
 }  // namespace
@@ -54,13 +55,13 @@ TEST_CASE("Command delay: whole steps, and between two steps in proportion") {
 
 TEST_CASE("Command delay: between two modes of a joint there is nothing") {
   CommandChannel channel = channel_with({.command_delay_s = 1.5 * kStep_s});
-  RobotCommand command;
-  command.flipper[kFrontLeft] = {JointMode::speed, 0.8};
+  robot::Command command;
+  command.flipper[robot::kFrontLeft] = {robot::JointMode::speed, 0.8};
   channel.send(command);
-  CHECK(channel.step().flipper[kFrontLeft].mode == JointMode::angle);
-  CHECK(channel.step().flipper[kFrontLeft].mode == JointMode::angle);
-  CHECK(channel.step().flipper[kFrontLeft].mode == JointMode::speed);
-  CHECK(channel.step().flipper[kFrontLeft].value == 0.8);
+  CHECK(channel.step().flipper[robot::kFrontLeft].mode == robot::JointMode::angle);
+  CHECK(channel.step().flipper[robot::kFrontLeft].mode == robot::JointMode::angle);
+  CHECK(channel.step().flipper[robot::kFrontLeft].mode == robot::JointMode::speed);
+  CHECK(channel.step().flipper[robot::kFrontLeft].value == 0.8);
 }
 
 TEST_CASE("Command loss: of a share that is lost the rest arrives, and the command before holds meanwhile") {
@@ -97,7 +98,7 @@ TEST_CASE("Command gain: the tracks run by that much faster, the flippers go whe
   world.set_command(id, drive(0.2, 0.2, 0.6, 0.6));
   run(world, 1);
   CHECK(world.truth(id).v_WB_mps.x() == Approx(0.24).epsilon(1e-3));
-  CHECK(world.truth(id).flipper_rad[kFrontLeft] == Approx(0.6).margin(1e-3));
+  CHECK(world.truth(id).flipper_rad[robot::kFrontLeft] == Approx(0.6).margin(1e-3));
 }
 
 TEST_CASE("Command gain of the turn, and limits: forward speed and turn rate, each by itself") {
@@ -114,8 +115,8 @@ TEST_CASE("Command gain of the turn, and limits: forward speed and turn rate, ea
     CHECK(w == Approx(w_radps));
   };
   check({.command_gain_turn = 0.8}, 0.2, 1.2);
-  check({.command_limit_forward_spm = 10}, 0.1, 1.5);   // 1 / (10 s/m)
-  check({.command_limit_turn_sprad = 2}, 0.2, 0.5);     // 1 / (2 s/rad)
+  check({.command_limit_forward_spm = 10}, 0.1, 1.5);                                  // 1 / (10 s/m)
+  check({.command_limit_turn_sprad = 2}, 0.2, 0.5);                                    // 1 / (2 s/rad)
   check({.command_limit_forward_spm = 4, .command_limit_turn_sprad = 0.5}, 0.2, 1.5);  // 0.25 m/s and 2 rad/s: beyond
   // the limit is of what the gains make of it: 1.2 * 1.5 rad/s, and 0.24 m/s
   check({.command_gain = 1.2, .command_limit_forward_spm = 4.5, .command_limit_turn_sprad = 0.6}, 1 / 4.5, 1 / 0.6);
@@ -129,12 +130,12 @@ TEST_CASE("Command slew: speed = time / slowness, up and down") {
   world.set_command(id, drive(0.4, 0.4));
   run(world, 1);
   // 0.2 m/s^2; the speed loop's lag of 0.05 s leaves it 0.01 m/s behind the ramp
-  CHECK(world.truth(id).track_mps[kLeft] == Approx(0.19).epsilon(0.01));
+  CHECK(world.truth(id).track_mps[robot::kLeft] == Approx(0.19).epsilon(0.01));
   run(world, 2);
-  CHECK(world.truth(id).track_mps[kLeft] == Approx(0.4).epsilon(1e-3));
+  CHECK(world.truth(id).track_mps[robot::kLeft] == Approx(0.4).epsilon(1e-3));
   world.set_command(id, drive(0, 0));
   run(world, 1);
-  CHECK(world.truth(id).track_mps[kLeft] == Approx(0.21).epsilon(0.01));
+  CHECK(world.truth(id).track_mps[robot::kLeft] == Approx(0.21).epsilon(0.01));
 }
 
 TEST_CASE("Command slew, forward and turn: each has its own limit, and the other one is there at once") {
@@ -236,5 +237,5 @@ TEST_CASE("Command stage: after a teleport the ramp begins at rest") {
   run(world, 3);
   world.teleport(id, {});
   run(world, 0.1);
-  CHECK(world.truth(id).track_mps[kLeft] < 0.025);
+  CHECK(world.truth(id).track_mps[robot::kLeft] < 0.025);
 }

@@ -4,6 +4,7 @@
 #include "physics/terrain_effects.hpp"
 #include "tests/physics/scenes.hpp"
 
+using namespace kenaf;
 using namespace kenaf::physics;
 
 namespace {
@@ -73,8 +74,8 @@ TEST_CASE("Friction asymmetry, along: belts that spin push with what their own s
   world.set_command(id, drive(0.4, 0.4));
   run(world, 0.1);
   const double each_n = 0.1 * 15 * kGravity / 2;
-  CHECK(world.truth(id).track_force_n[kLeft] == Approx(1.3 * each_n).epsilon(0.02));
-  CHECK(world.truth(id).track_force_n[kRight] == Approx(0.7 * each_n).epsilon(0.02));
+  CHECK(world.truth(id).track_force_n[robot::kLeft] == Approx(1.3 * each_n).epsilon(0.02));
+  CHECK(world.truth(id).track_force_n[robot::kRight] == Approx(0.7 * each_n).epsilon(0.02));
   CHECK(world.truth(id).w_WB_radps.z() < 0);  // the left side pushes more
 }
 
@@ -95,7 +96,7 @@ TEST_CASE("Friction asymmetry, across: a robot that lies on one side more slides
 TEST_CASE("Slip with speed: a belt at u carries the robot with u (1 - slip |u|), either way, and reports u") {
   for (const double u : {0.1, 0.2, 0.4, -0.4}) {
     const RobotTruth truth = driven(tracks_with({.slip_with_speed_spm = 0.5}), u);
-    CHECK(truth.track_mps[kLeft] == Approx(u).epsilon(1e-3));
+    CHECK(truth.track_mps[robot::kLeft] == Approx(u).epsilon(1e-3));
     CHECK(truth.v_WB_mps.x() == Approx(u * (1 - 0.5 * std::abs(u))).epsilon(2e-3));
   }
 }
@@ -103,7 +104,7 @@ TEST_CASE("Slip with speed: a belt at u carries the robot with u (1 - slip |u|),
 TEST_CASE("Rolling resistance: a motor gives that share of the weight, and none for a belt in the air") {
   RobotDescription robot = tracks_with({.rolling_resistance = 0.1});
   // 15 kg on two tracks
-  CHECK(driven(robot, 0.2).track_force_n[kLeft] + driven(robot, 0.2).track_force_n[kRight] ==
+  CHECK(driven(robot, 0.2).track_force_n[robot::kLeft] + driven(robot, 0.2).track_force_n[robot::kRight] ==
         Approx(0.1 * 15 * kGravity).epsilon(0.01));
   WorldDescription empty;
   empty.gravity_W_mps2.setZero();
@@ -111,7 +112,7 @@ TEST_CASE("Rolling resistance: a motor gives that share of the weight, and none 
   const RobotId id = world.add_robot(robot, "a", {});
   world.set_command(id, drive(0.2, 0.2));
   run(world, 1);
-  CHECK(std::abs(world.truth(id).track_force_n[kLeft]) < 0.01);
+  CHECK(std::abs(world.truth(id).track_force_n[robot::kLeft]) < 0.01);
 }
 
 TEST_CASE("Rolling resistance: with motors without force a robot rolls where the slope is steeper than it") {

@@ -9,6 +9,7 @@
 
 #include "tests/physics/scenes.hpp"
 
+using namespace kenaf;
 using namespace kenaf::physics;
 
 namespace {
@@ -86,9 +87,10 @@ TEST_CASE("D2: worlds on two threads do not meet") {
 namespace {
 
 // 2 s of one robot that comes before or after `others` further ones, 10 m apart, each with `their` command.
-std::uint64_t hash_in_company(const RobotCommand& own, int others, const RobotCommand& their = {}, bool first = true) {
+std::uint64_t hash_in_company(const robot::Command& own, int others, const robot::Command& their = {},
+                              bool first = true) {
   World world(ground(), {}, 1);
-  const auto add = [&](const std::string& name, double x_m, const RobotCommand& command) {
+  const auto add = [&](const std::string& name, double x_m, const robot::Command& command) {
     const RobotId id = world.add_robot(load_robot("kenaf"), name, {{x_m, 0, 0}, Eigen::Quaterniond::Identity()});
     world.set_command(id, command);
     return id;
@@ -108,10 +110,10 @@ std::uint64_t hash_in_company(const RobotCommand& own, int others, const RobotCo
 }  // namespace
 
 TEST_CASE("D3: on a plane another robot far away changes no bit, whatever it does") {
-  const RobotCommand stand{}, straight = drive(0.3, 0.3), curve = drive(0.3, 0.1), spin = drive(0.3, -0.3);
-  for (const RobotCommand& own : {straight, curve}) {
+  const robot::Command stand{}, straight = drive(0.3, 0.3), curve = drive(0.3, 0.1), spin = drive(0.3, -0.3);
+  for (const robot::Command& own : {straight, curve}) {
     const std::uint64_t alone = hash_in_company(own, 0);
-    for (const RobotCommand& their : {stand, straight, spin}) {
+    for (const robot::Command& their : {stand, straight, spin}) {
       CHECK(hash_in_company(own, 1, their, true) == alone);
       CHECK(hash_in_company(own, 1, their, false) == alone);
     }
@@ -140,7 +142,7 @@ namespace {
 struct GoldenScene {
   std::string_view world;
   double start_x_m;  // beyond the world's own start
-  RobotCommand command;
+  robot::Command command;
   std::uint64_t hash;  // of 3 s
 };
 

@@ -3,6 +3,7 @@
 
 #include "tests/physics/scenes.hpp"
 
+using namespace kenaf;
 using namespace kenaf::physics;
 
 namespace {
@@ -42,14 +43,14 @@ TEST_CASE("Drive lag: two lags in a row") {
   const RobotTruth truth = driven(kenaf_with({.drive_lag_s = 0.2}), 0.3, 0.4);
   // lags of a and b answer a step with 1 - (a exp(-t/a) - b exp(-t/b)) / (a - b)
   const double a = 0.2, b = 0.05, t = 0.4;
-  CHECK(truth.track_mps[kLeft] ==
+  CHECK(truth.track_mps[robot::kLeft] ==
         Approx(0.3 * (1 - (a * std::exp(-t / a) - b * std::exp(-t / b)) / (a - b))).epsilon(0.01));
 }
 
 TEST_CASE("Drive asymmetry: half of it on each side") {
   const RobotTruth truth = driven(kenaf_with({.drive_asymmetry = 0.1}), 0.2, 1);
-  CHECK(truth.track_mps[kLeft] == Approx(0.21).epsilon(2e-3));
-  CHECK(truth.track_mps[kRight] == Approx(0.19).epsilon(2e-3));
+  CHECK(truth.track_mps[robot::kLeft] == Approx(0.21).epsilon(2e-3));
+  CHECK(truth.track_mps[robot::kRight] == Approx(0.19).epsilon(2e-3));
   CHECK(truth.w_WB_radps.z() < 0);  // to the right
 }
 
@@ -64,7 +65,7 @@ TEST_CASE("Drive torque limit: up a slope as fast as what is left of the motors'
   world.set_command(id, drive(0.3, 0.3));
   run(world, 3);
   const double needed_n = 15 * kGravity * std::sin(20 * std::numbers::pi / 180) / 2;
-  CHECK(world.truth(id).track_mps[kLeft] == Approx(0.5 * (1 - needed_n / 30)).epsilon(0.01));
+  CHECK(world.truth(id).track_mps[robot::kLeft] == Approx(0.5 * (1 - needed_n / 30)).epsilon(0.01));
 }
 
 TEST_CASE("Droop: a track is slower by droop times the force that it needs, and a brake lets it run as much faster") {
@@ -77,8 +78,8 @@ TEST_CASE("Droop: a track is slower by droop times the force that it needs, and 
     level.set_command(id, drive(0.2, 0.2));
     run(level, 1);
     const double u = (0.2 - d * 25) / (1 + d * 100);
-    CHECK(level.truth(id).track_mps[kLeft] == Approx(u).epsilon(1e-3));
-    CHECK(level.truth(id).track_force_n[kLeft] == Approx(25 + 100 * u).epsilon(0.01));
+    CHECK(level.truth(id).track_mps[robot::kLeft] == Approx(u).epsilon(1e-3));
+    CHECK(level.truth(id).track_force_n[robot::kLeft] == Approx(25 + 100 * u).epsilon(0.01));
   }
   // 15 kg down 10 degrees: 12.8 N for each track, held back
   World down = slope(10 * std::numbers::pi / 180);
@@ -88,15 +89,15 @@ TEST_CASE("Droop: a track is slower by droop times the force that it needs, and 
   down.set_command(id, drive(0.2, 0.2));
   run(down, 2);
   const double brake_n = 15 * kGravity * std::sin(10 * std::numbers::pi / 180) / 2;
-  CHECK(down.truth(id).track_mps[kLeft] == Approx(0.2 + 0.005 * brake_n).epsilon(2e-3));
+  CHECK(down.truth(id).track_mps[robot::kLeft] == Approx(0.2 + 0.005 * brake_n).epsilon(2e-3));
 }
 
 TEST_CASE("Droop: a motor at the end of its force gives no more than that") {
   RobotDescription robot = kenaf_with({.drive_droop_mpspn = 0.001, .drive_coulomb_n = 25});
   robot.drive.max_force_n = 20;
   const RobotTruth truth = driven(robot, 0.2, 1);  // 0.2 / 0.001 would be 200 N
-  CHECK(std::abs(truth.track_m[kLeft]) < 1e-6);
-  CHECK(truth.track_force_n[kLeft] == Approx(20).epsilon(0.01));
+  CHECK(std::abs(truth.track_m[robot::kLeft]) < 1e-6);
+  CHECK(truth.track_force_n[robot::kLeft] == Approx(20).epsilon(0.01));
 }
 
 TEST_CASE("Coulomb friction: below it the belt stands still, above it the motor has that much less") {
@@ -104,12 +105,12 @@ TEST_CASE("Coulomb friction: below it the belt stands still, above it the motor 
   robot.battery.internal_resistance_ohm = 0;
   robot.drive.max_force_n = 20;
   const RobotTruth stalled = driven(robot, 0.2, 1);
-  CHECK(std::abs(stalled.track_m[kLeft]) < 1e-6);
-  CHECK(stalled.track_force_n[kLeft] == Approx(20).epsilon(1e-3));
+  CHECK(std::abs(stalled.track_m[robot::kLeft]) < 1e-6);
+  CHECK(stalled.track_force_n[robot::kLeft] == Approx(20).epsilon(1e-3));
   robot.drive.max_force_n = 300;
   const RobotTruth running = driven(robot, 0.2, 1);
-  CHECK(running.track_mps[kLeft] == Approx(0.2).epsilon(1e-3));
-  CHECK(running.track_force_n[kLeft] == Approx(25).epsilon(0.01));
+  CHECK(running.track_mps[robot::kLeft] == Approx(0.2).epsilon(1e-3));
+  CHECK(running.track_force_n[robot::kLeft] == Approx(25).epsilon(0.01));
 }
 
 TEST_CASE("Coulomb friction of one side: its motor has to give it beside that of both, the other one has not") {
@@ -124,8 +125,8 @@ TEST_CASE("Coulomb friction of one side: its motor has to give it beside that of
     const RobotId id = world.add_robot(robot, "a", {});
     world.set_command(id, drive(0.2, 0.2));
     run(world, 1);
-    CHECK(world.truth(id).track_force_n[of_left ? kLeft : kRight] == Approx(25).epsilon(0.01));
-    CHECK(world.truth(id).track_force_n[of_left ? kRight : kLeft] == Approx(10).epsilon(0.01));
+    CHECK(world.truth(id).track_force_n[of_left ? robot::kLeft : robot::kRight] == Approx(25).epsilon(0.01));
+    CHECK(world.truth(id).track_force_n[of_left ? robot::kRight : robot::kLeft] == Approx(10).epsilon(0.01));
   }
 }
 
@@ -145,8 +146,8 @@ TEST_CASE("Coulomb friction: holds a robot on a slope whose motors are too weak 
 
 TEST_CASE("Viscous friction: force = damping times speed") {
   const RobotTruth truth = driven(kenaf_with({.drive_viscous_nspm = 100}), 0.2, 1);
-  CHECK(truth.track_mps[kLeft] == Approx(0.2).epsilon(1e-3));
-  CHECK(truth.track_force_n[kLeft] == Approx(20).epsilon(0.01));
+  CHECK(truth.track_mps[robot::kLeft] == Approx(0.2).epsilon(1e-3));
+  CHECK(truth.track_force_n[robot::kLeft] == Approx(20).epsilon(0.01));
 }
 
 TEST_CASE("Friction of the running gear: in the air as on the ground, and at 5 ms as at 1 ms") {
@@ -159,8 +160,8 @@ TEST_CASE("Friction of the running gear: in the air as on the ground, and at 5 m
     const RobotId id = world.add_robot(robot, "a", {});
     world.set_command(id, drive(0.2, 0.2));
     run(world, 1);
-    CHECK(world.truth(id).track_mps[kLeft] == Approx(0.2).epsilon(1e-3));
-    CHECK(world.truth(id).track_force_n[kLeft] == Approx(45).epsilon(0.01));
+    CHECK(world.truth(id).track_mps[robot::kLeft] == Approx(0.2).epsilon(1e-3));
+    CHECK(world.truth(id).track_force_n[robot::kLeft] == Approx(45).epsilon(0.01));
   }
 }
 
@@ -174,7 +175,7 @@ TEST_CASE("Battery: two stalled motors and the battery's resistance share the vo
     // each motor is a resistance of 25.9 V / 12 A
     const double motors_ohm = 25.9 / 12 / 2, voltage = 25.9 * motors_ohm / (motors_ohm + 0.1 + added_ohm);
     CHECK(truth.battery_v == Approx(voltage).epsilon(1e-6));
-    CHECK(truth.track_force_n[kLeft] == Approx(80 * voltage / 25.9).epsilon(1e-6));
+    CHECK(truth.track_force_n[robot::kLeft] == Approx(80 * voltage / 25.9).epsilon(1e-6));
   }
 }
 
@@ -188,7 +189,7 @@ TEST_CASE("Battery: a sagging battery lowers the speed without load too") {
   robot.effects = {.drive_viscous_nspm = 100, .battery_resistance_ohm = 0.9};
   const RobotTruth truth = driven(robot, 0.5, 3);
   const double u = 30 / (100 + 30 / 0.5 + 30 * 2 * 0.4 * 100 / 25.9);
-  CHECK(truth.track_mps[kLeft] == Approx(u).epsilon(2e-3));
+  CHECK(truth.track_mps[robot::kLeft] == Approx(u).epsilon(2e-3));
   CHECK(truth.battery_v == Approx(25.9 - 2 * 0.4 * 100 * u).epsilon(2e-3));
 }
 
@@ -200,7 +201,7 @@ TEST_CASE("Battery: motors that brake a robot downhill neither charge nor drain 
   const RobotId id = world.add_robot(robot, "a", {});
   world.set_command(id, drive(0.2, 0.2));
   run(world, 1);
-  CHECK(world.truth(id).track_mps[kLeft] == Approx(0.2).epsilon(1e-3));
+  CHECK(world.truth(id).track_mps[robot::kLeft] == Approx(0.2).epsilon(1e-3));
   // 15 kg on 15 degrees: 19 N for each, 6 % of the voltage; the turning makes 40 % of it the other way
   const auto [left_n, right_n] = world.truth(id).track_force_n;
   CHECK(left_n + right_n == Approx(-15 * kGravity * std::sin(15 * std::numbers::pi / 180)).epsilon(0.02));
@@ -214,7 +215,7 @@ TEST_CASE("Flipper lag: the arm follows an angle that comes up to the command") 
   run(world, 0.5);
   // the lag of 1 s and the position loop's of 1/30 s
   const double a = 1, b = 1.0 / 30, t = 0.5;
-  CHECK(world.truth(id).flipper_rad[kRearLeft] ==
+  CHECK(world.truth(id).flipper_rad[robot::kRearLeft] ==
         Approx(1 + 0.3 * (1 - (a * std::exp(-t / a) - b * std::exp(-t / b)) / (a - b))).margin(2e-3));
 }
 
@@ -226,11 +227,11 @@ TEST_CASE("Flipper backlash: the arm hangs at the end of its play, on the side t
     world.set_command(id, drive(0, 0, 0.4, 2.6));
     run(world, 3);
     const RobotTruth truth = world.truth(id);
-    CHECK(truth.flipper_rad[kFrontLeft] == Approx(0.3).margin(1e-3));
-    CHECK(truth.flipper_rad[kRearLeft] == Approx(2.7).margin(1e-3));
-    CHECK(truth.servo_rad[kFrontLeft] == Approx(0.4).margin(1e-3));
-    CHECK(truth.servo_rad[kRearLeft] == Approx(2.6).margin(1e-3));
-    CHECK(std::abs(truth.flipper_radps[kFrontLeft]) < 1e-3);
+    CHECK(truth.flipper_rad[robot::kFrontLeft] == Approx(0.3).margin(1e-3));
+    CHECK(truth.flipper_rad[robot::kRearLeft] == Approx(2.7).margin(1e-3));
+    CHECK(truth.servo_rad[robot::kFrontLeft] == Approx(0.4).margin(1e-3));
+    CHECK(truth.servo_rad[robot::kRearLeft] == Approx(2.6).margin(1e-3));
+    CHECK(std::abs(truth.flipper_radps[robot::kFrontLeft]) < 1e-3);
   }
 }
 
@@ -241,9 +242,9 @@ TEST_CASE("Who lifts a robot turns no servo: with play the arms stay as far from
   run(world, 3);
   world.teleport(id, {{0, 0, 0.3}, Eigen::Quaterniond::Identity()});
   const RobotTruth lifted = world.truth(id);
-  CHECK(lifted.flipper_rad[kFrontLeft] == Approx(0.3).margin(1e-3));  // half of the play below its servo
-  CHECK(lifted.servo_rad[kFrontLeft] == Approx(0.4).margin(1e-3));
-  CHECK(lifted.flipper_radps[kFrontLeft] == 0);
+  CHECK(lifted.flipper_rad[robot::kFrontLeft] == Approx(0.3).margin(1e-3));  // half of the play below its servo
+  CHECK(lifted.servo_rad[robot::kFrontLeft] == Approx(0.4).margin(1e-3));
+  CHECK(lifted.flipper_radps[robot::kFrontLeft] == 0);
 }
 
 TEST_CASE("Flipper compliance: the arm gives way by torque times compliance") {
@@ -255,7 +256,7 @@ TEST_CASE("Flipper compliance: the arm gives way by torque times compliance") {
     world.set_command(id, drive(0, 0, 0.4, 2.6));
     run(world, 3);
     const RobotTruth truth = world.truth(id);
-    for (const auto& [flipper, wanted] : {std::pair{kFrontLeft, 0.4}, {kRearRight, 2.6}}) {
+    for (const auto& [flipper, wanted] : {std::pair{robot::kFrontLeft, 0.4}, {robot::kRearRight, 2.6}}) {
       const double arm = truth.flipper_rad[flipper];
       const double weight_nm = 1.25 * kGravity * 0.145 / 2 * std::cos(arm);
       CHECK(truth.flipper_nm[flipper] == Approx(weight_nm).epsilon(0.01));
@@ -279,7 +280,7 @@ TEST_CASE("Flipper compliance: a servo that is too weak gives way itself") {
     const RobotTruth truth = world.truth(id);
     CHECK(std::abs(roll_pitch_yaw(truth.X_WB.q).y()) < 0.03);
     // the servo leads by what 2 N m bend, no further
-    CHECK(truth.flipper_rad[kFrontLeft] - truth.servo_rad[kFrontLeft] == Approx(0.04).epsilon(0.03));
+    CHECK(truth.flipper_rad[robot::kFrontLeft] - truth.servo_rad[robot::kFrontLeft] == Approx(0.04).epsilon(0.03));
   }
 }
 
@@ -288,19 +289,19 @@ TEST_CASE("Flipper play and compliance: torque, speed and brake, and the end of 
   RobotDescription robot = kenaf_with({.flipper_backlash_rad = 0.1, .flipper_compliance_radpnm = 0.01});
   robot.flipper.front().max_angle_rad = 2;
   const RobotId id = world.add_robot(robot, "a", {});
-  RobotCommand command = drive(0, 0);
-  for (JointCommand& joint : command.flipper) joint = {JointMode::speed, 0.5};
+  robot::Command command = drive(0, 0);
+  for (robot::JointCommand& joint : command.flipper) joint = {robot::JointMode::speed, 0.5};
   world.set_command(id, command);
   run(world, 1);
-  CHECK(world.truth(id).servo_rad[kFrontLeft] == Approx(1.5).margin(0.01));
+  CHECK(world.truth(id).servo_rad[robot::kFrontLeft] == Approx(1.5).margin(0.01));
   run(world, 3);
-  CHECK(world.truth(id).servo_rad[kFrontLeft] == Approx(2).margin(0.01));
-  CHECK(world.truth(id).flipper_rad[kFrontLeft] < 2.01);
-  for (JointCommand& joint : command.flipper) joint = {JointMode::torque, -20};
+  CHECK(world.truth(id).servo_rad[robot::kFrontLeft] == Approx(2).margin(0.01));
+  CHECK(world.truth(id).flipper_rad[robot::kFrontLeft] < 2.01);
+  for (robot::JointCommand& joint : command.flipper) joint = {robot::JointMode::torque, -20};
   world.set_command(id, command);
   run(world, 3);  // all arms press the ground with all they have
   for (const double angle : world.truth(id).flipper_rad) CHECK(angle < 0);
-  for (JointCommand& joint : command.flipper) joint = {JointMode::brake, 0};
+  for (robot::JointCommand& joint : command.flipper) joint = {robot::JointMode::brake, 0};
   world.set_command(id, command);
   run(world, 0.5);
   const double z = world.truth(id).X_WB.p.z();

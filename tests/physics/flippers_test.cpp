@@ -3,6 +3,7 @@
 
 #include "tests/physics/scenes.hpp"
 
+using namespace kenaf;
 using namespace kenaf::physics;
 
 TEST_CASE("F1: a flipper turns to its angle at its speed limit and stays") {
@@ -62,24 +63,24 @@ TEST_CASE("F3: the torque limit holds, and a servo too weak lifts nothing") {
 TEST_CASE("F4: speed, torque and brake modes") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
-  RobotCommand command = drive(0, 0);
-  command.flipper[kFrontLeft] = {JointMode::speed, 0.5};
+  robot::Command command = drive(0, 0);
+  command.flipper[robot::kFrontLeft] = {robot::JointMode::speed, 0.5};
   world.set_command(id, command);
   run(world, 1);
-  CHECK(world.truth(id).flipper_rad[kFrontLeft] == Approx(1.5).margin(0.01));
-  command.flipper[kFrontLeft] = {JointMode::brake, 0};
+  CHECK(world.truth(id).flipper_rad[robot::kFrontLeft] == Approx(1.5).margin(0.01));
+  command.flipper[robot::kFrontLeft] = {robot::JointMode::brake, 0};
   world.set_command(id, command);
   run(world, 1);
-  CHECK(world.truth(id).flipper_rad[kFrontLeft] == Approx(1.5).margin(0.01));
+  CHECK(world.truth(id).flipper_rad[robot::kFrontLeft] == Approx(1.5).margin(0.01));
   // without torque it falls to the ground
-  command.flipper[kFrontLeft] = {JointMode::torque, 0};
+  command.flipper[robot::kFrontLeft] = {robot::JointMode::torque, 0};
   world.set_command(id, command);
   run(world, 2);
-  CHECK(world.truth(id).flipper_rad[kFrontLeft] < 0);
-  command.flipper[kFrontLeft] = {JointMode::torque, 5};
+  CHECK(world.truth(id).flipper_rad[robot::kFrontLeft] < 0);
+  command.flipper[robot::kFrontLeft] = {robot::JointMode::torque, 5};
   world.set_command(id, command);
   run(world, 0.5);
-  CHECK(world.truth(id).flipper_radps[kFrontLeft] == Approx(1.5).epsilon(0.01));
+  CHECK(world.truth(id).flipper_radps[robot::kFrontLeft] == Approx(1.5).epsilon(0.01));
 }
 
 TEST_CASE("F5: a flipper goes through the whole of its travel and stops at its end") {
@@ -87,8 +88,8 @@ TEST_CASE("F5: a flipper goes through the whole of its travel and stops at its e
   RobotDescription robot = load_robot("kenaf");
   robot.flipper.front().max_angle_rad = 2.8;
   const RobotId id = world.add_robot(robot, "a", {});
-  RobotCommand command = drive(0, 0);
-  for (JointCommand& joint : command.flipper) joint = {JointMode::speed, 1.0};
+  robot::Command command = drive(0, 0);
+  for (robot::JointCommand& joint : command.flipper) joint = {robot::JointMode::speed, 1.0};
   world.set_command(id, command);
   run(world, 4);
   for (const double angle : world.truth(id).flipper_rad) CHECK(angle == Approx(2.8).margin(0.01));

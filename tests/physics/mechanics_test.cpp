@@ -5,6 +5,7 @@
 
 #include "tests/physics/scenes.hpp"
 
+using namespace kenaf;
 using namespace kenaf::physics;
 
 namespace {
@@ -178,7 +179,7 @@ TEST_CASE("M7: belts whose motors give nothing move no robot") {
   run(world, 5);
   // friction of 300 N holds against 2e-9 N; 0.1 mm is what it may creep
   CHECK((world.truth(id).X_WB.p - before.p).norm() < 1e-4);
-  CHECK(std::abs(world.truth(id).track_mps[kLeft]) < 1e-4);
+  CHECK(std::abs(world.truth(id).track_mps[robot::kLeft]) < 1e-4);
 }
 
 TEST_CASE("M8: it is friction that moves a robot: without it the belts run and the robot stays") {
@@ -188,7 +189,7 @@ TEST_CASE("M8: it is friction that moves a robot: without it the belts run and t
   const Pose before = world.truth(id).X_WB;
   world.set_command(id, drive(0.4, 0.4));
   run(world, 2);
-  CHECK(world.truth(id).track_mps[kLeft] == Approx(0.4).epsilon(1e-3));
+  CHECK(world.truth(id).track_mps[robot::kLeft] == Approx(0.4).epsilon(1e-3));
   // the least friction coefficient is 1e-6: 1e-5 m/s^2 for 2 s are 0.02 mm
   CHECK((world.truth(id).X_WB.p - before.p).norm() < 1e-4);
 }

@@ -7,6 +7,7 @@
 
 #include "tests/physics/scenes.hpp"
 
+using namespace kenaf;
 using namespace kenaf::physics;
 
 namespace {
@@ -49,13 +50,13 @@ TEST_CASE("V1: a robot that is set in motion goes on at that speed from the firs
   const double start_m = x_of(robot);
   robot.world.set_in_motion(robot.id, ahead(0.3), drive(0.3, 0.3));
   CHECK(robot.world.truth(robot.id).v_WB_mps.x() == 0.3);
-  CHECK(robot.world.truth(robot.id).track_mps[kLeft] == 0.3);
+  CHECK(robot.world.truth(robot.id).track_mps[robot::kLeft] == 0.3);
   double least = 1, most = 0;
   for (int i = 0; i < 1000; ++i) {
     robot.world.step();
     const RobotTruth truth = robot.world.truth(robot.id);
-    least = std::min({least, truth.v_WB_mps.x(), truth.track_mps[kLeft], truth.track_mps[kRight]});
-    most = std::max({most, truth.v_WB_mps.x(), truth.track_mps[kLeft], truth.track_mps[kRight]});
+    least = std::min({least, truth.v_WB_mps.x(), truth.track_mps[robot::kLeft], truth.track_mps[robot::kRight]});
+    most = std::max({most, truth.v_WB_mps.x(), truth.track_mps[robot::kLeft], truth.track_mps[robot::kRight]});
   }
   // nothing brakes it: what is left is how the load moves between the contact points as belts begin to run
   CHECK(least > 0.299);
@@ -82,7 +83,7 @@ TEST_CASE("V2: a command that is late, is scaled or ramps was on its way already
   description.drive.time_constant_s = 0;
   Robot robot = settled(description);
   robot.world.set_in_motion(robot.id, ahead(0.24), drive(0.3, 0.3));  // 0.8 of 0.3
-  const auto speed = [&robot] { return robot.world.truth(robot.id).track_mps[kLeft]; };
+  const auto speed = [&robot] { return robot.world.truth(robot.id).track_mps[robot::kLeft]; };
   robot.world.set_command(robot.id, drive(0, 0));
   run(robot.world, 0.099);
   CHECK(speed() == Approx(0.24).margin(1e-3));
@@ -95,7 +96,7 @@ TEST_CASE("V2: what a command asks for beyond the present speed, the drive still
   robot.world.set_in_motion(robot.id, ahead(0.1), drive(0.4, 0.4));
   run(robot.world, 0.05);
   // a lag of 0.05 s from 0.1 to 0.4 m/s; the motor is far from its limit
-  CHECK(robot.world.truth(robot.id).track_mps[kRight] == Approx(0.4 - 0.3 * std::exp(-1)).margin(3e-3));
+  CHECK(robot.world.truth(robot.id).track_mps[robot::kRight] == Approx(0.4 - 0.3 * std::exp(-1)).margin(3e-3));
 }
 
 TEST_CASE("V3: sensors see a robot that moves, and no blow") {
@@ -112,7 +113,7 @@ TEST_CASE("V3: sensors see a robot that moves, and no blow") {
   int seen = 0;
   for (const SensorSample& sample : samples) {
     if (const auto* tachometer = std::get_if<TachometerReading>(&sample.reading))
-      CHECK(tachometer->spin_radps[kLeft] * description.drive.sprocket_radius_m == Approx(0.4).epsilon(5e-3));
+      CHECK(tachometer->spin_radps[robot::kLeft] * description.drive.sprocket_radius_m == Approx(0.4).epsilon(5e-3));
     if (const auto* imu = std::get_if<ImuReading>(&sample.reading)) {
       CHECK(std::abs(imu->acceleration_mps2.x()) < 0.2);  // 0.4 m/s within a period of 0.01 s would be 40
       ++seen;
@@ -142,7 +143,7 @@ TEST_CASE("V4: a robot on belts of speed v that moves so already comes v t far")
     robot.world.prescribe(robot.id, belts(speed_mps, speed_mps));
     run(robot.world, 2);
     CHECK(x_of(robot) - start_m == Approx(2 * speed_mps).margin(5e-4));
-    CHECK(robot.world.truth(robot.id).track_m[kLeft] == Approx(2 * speed_mps).margin(1e-9));
+    CHECK(robot.world.truth(robot.id).track_m[robot::kLeft] == Approx(2 * speed_mps).margin(1e-9));
     CHECK(std::abs(yaw_of(robot.world.truth(robot.id).X_WB)) < 1e-4);
   }
 }
@@ -201,7 +202,7 @@ TEST_CASE("V7: a prescribed belt says what force the ground asks of it") {
   for (int i = 0; i < 1000; ++i) {
     robot.world.step();
     const RobotTruth truth = robot.world.truth(robot.id);
-    sum_n += truth.track_force_n[kLeft] + truth.track_force_n[kRight];
+    sum_n += truth.track_force_n[robot::kLeft] + truth.track_force_n[robot::kRight];
   }
   const double weight_n = plain_tracks(1).total_mass_kg() * kGravity;
   CHECK(sum_n / 1000 == Approx(weight_n * std::sin(slope)).epsilon(0.01));
@@ -214,7 +215,7 @@ TEST_CASE("V7: a drive that is let go follows its command from the speed at that
   run(robot.world, 1);
   robot.world.prescribe(robot.id, {});
   run(robot.world, 0.05);
-  CHECK(robot.world.truth(robot.id).track_mps[kLeft] == Approx(0.3 * std::exp(-1)).margin(3e-3));
+  CHECK(robot.world.truth(robot.id).track_mps[robot::kLeft] == Approx(0.3 * std::exp(-1)).margin(3e-3));
 }
 
 TEST_CASE("V8: prescribed flippers follow, under load and beyond what a servo can do") {
@@ -232,7 +233,7 @@ TEST_CASE("V8: prescribed flippers follow, under load and beyond what a servo ca
     const RobotTruth truth = robot.world.truth(robot.id);
     if (i < 200) continue;  // the weak servos had let the arms down: at 10 rad/s they come back
     for (const double is : truth.flipper_rad) worst_rad = std::max(worst_rad, std::abs(is - angle));
-    CHECK(truth.servo_rad[kFrontLeft] == Approx(truth.flipper_rad[kFrontLeft]).margin(1e-3));
+    CHECK(truth.servo_rad[robot::kFrontLeft] == Approx(truth.flipper_rad[robot::kFrontLeft]).margin(1e-3));
   }
   CHECK(worst_rad < 1e-4);  // what ten iterations leave in a joint that takes up the robot's weight
   CHECK(robot.world.truth(robot.id).X_WB.p.z() > 0.1);  // from 0.09
@@ -256,7 +257,7 @@ TEST_CASE("V8: of prescribed flippers the servo is where it is told, and the arm
     const RobotTruth truth = robot.world.truth(robot.id);
     const DriveCurrents currents = robot.world.drive_currents(robot.id);
     INFO("play " << play_rad);
-    for (std::size_t i = 0; i < kFlipperCount; ++i) {
+    for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
       const double torque_nm = currents.flipper_a[i] / description.servo.amperes_per_nm;
       CHECK(torque_nm > 1);  // a part of the robot's weight
       CHECK(truth.servo_rad[i] == Approx(-0.6).margin(1e-9));
@@ -267,7 +268,7 @@ TEST_CASE("V8: of prescribed flippers the servo is where it is told, and the arm
 }
 
 TEST_CASE("V9: with belts and flippers prescribed, command and drives change no bit of what the body does", "[long]") {
-  const auto path = [](const RobotDescription& description, const RobotCommand& command) {
+  const auto path = [](const RobotDescription& description, const robot::Command& command) {
     World world(ground(), {}, 1);
     const RobotId id = world.add_robot(description, "a", {});
     Robot robot{std::move(world), id};
@@ -310,6 +311,6 @@ TEST_CASE("V10: what is no speed is refused, a teleport ends what was prescribed
   run(robot.world, 0.1);
   robot.world.teleport(robot.id, {{1, 0, 0.1}, Eigen::Quaterniond::Identity()});
   run(robot.world, 1);
-  CHECK(robot.world.truth(robot.id).track_mps[kLeft] == Approx(0).margin(1e-6));
+  CHECK(robot.world.truth(robot.id).track_mps[robot::kLeft] == Approx(0).margin(1e-6));
   CHECK(x_of(robot) == Approx(1).margin(1e-3));
 }

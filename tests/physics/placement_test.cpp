@@ -5,6 +5,7 @@
 
 #include "tests/physics/scenes.hpp"
 
+using namespace kenaf;
 using namespace kenaf::physics;
 
 TEST_CASE("P1: a robot in the ground is lifted until it is free") {
@@ -90,7 +91,7 @@ TEST_CASE("P2: a teleported robot is at rest at its new place") {
   run(world, 1);
   world.teleport(id, {{5, 5, 0}, rotation_from({0, 0, 1})});
   CHECK(world.truth(id).v_WB_mps.norm() == 0);
-  CHECK(world.truth(id).track_mps[kLeft] == 0);
+  CHECK(world.truth(id).track_mps[robot::kLeft] == 0);
   CHECK(world.truth(id).X_WB.p.x() == 5);
   world.set_command(id, drive(0, 0));
   run(world, 1);

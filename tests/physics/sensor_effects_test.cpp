@@ -4,6 +4,7 @@
 #include "physics/terrain_effects.hpp"
 #include "tests/physics/scenes.hpp"
 
+using namespace kenaf;
 using namespace kenaf::physics;
 
 namespace {
@@ -51,13 +52,13 @@ TEST_CASE("Encoder scale: travel, speed and odometry, but not the robot") {
   const RobotTruth truth = world.truth(id);
   CHECK(truth.X_WB.p.x() == Approx(0.39).margin(2e-3));
   const auto samples = read(world, id);
-  const double turned_rad = 1.1 * truth.track_m[kLeft] / 0.065;
-  CHECK(static_cast<double>(std::get<EncoderReading>(samples[0].reading).counts[kLeft]) ==
+  const double turned_rad = 1.1 * truth.track_m[robot::kLeft] / 0.065;
+  CHECK(static_cast<double>(std::get<EncoderReading>(samples[0].reading).counts[robot::kLeft]) ==
         Approx(turned_rad * 2000 / (2 * std::numbers::pi)).margin(1));
-  CHECK(std::get<OdometryReading>(samples[1].reading).x_m == Approx(1.1 * truth.track_m[kLeft]).margin(3e-4));
+  CHECK(std::get<OdometryReading>(samples[1].reading).x_m == Approx(1.1 * truth.track_m[robot::kLeft]).margin(3e-4));
   const auto tachometer = std::get<TachometerReading>(samples[2].reading);
-  CHECK(tachometer.spin_radps[kLeft] == Approx(1.1 * truth.track_mps[kLeft] / 0.065));
-  CHECK(tachometer.angle_rad[kLeft] == Approx(turned_rad));
+  CHECK(tachometer.spin_radps[robot::kLeft] == Approx(1.1 * truth.track_mps[robot::kLeft] / 0.065));
+  CHECK(tachometer.angle_rad[robot::kLeft] == Approx(turned_rad));
 }
 
 TEST_CASE("Encoder asymmetry: of a way straight ahead, half of it more on the left and less on the right") {
@@ -71,7 +72,7 @@ TEST_CASE("Encoder asymmetry: of a way straight ahead, half of it more on the le
   const auto samples = read(world, id);
   const auto& counts = std::get<EncoderReading>(samples[0].reading).counts;
   const auto& tachometer = std::get<TachometerReading>(samples[2].reading);
-  for (const auto& [side, factor] : {std::pair{kLeft, 1.1 * 1.05}, std::pair{kRight, 1.1 * 0.95}}) {
+  for (const auto& [side, factor] : {std::pair{robot::kLeft, 1.1 * 1.05}, std::pair{robot::kRight, 1.1 * 0.95}}) {
     const double turned_rad = factor * truth.track_m[side] / 0.065;
     CHECK(static_cast<double>(counts[side]) == Approx(turned_rad * 2000 / (2 * std::numbers::pi)).margin(1));
     CHECK(tachometer.spin_radps[side] == Approx(factor * truth.track_mps[side] / 0.065));
@@ -79,7 +80,7 @@ TEST_CASE("Encoder asymmetry: of a way straight ahead, half of it more on the le
   }
   // the odometry thinks that the robot has turned to the right
   CHECK(std::get<OdometryReading>(samples[1].reading).yaw_rad ==
-        Approx(-1.1 * 0.1 * truth.track_m[kLeft] / 0.2).margin(5e-3));
+        Approx(-1.1 * 0.1 * truth.track_m[robot::kLeft] / 0.2).margin(5e-3));
   CHECK(std::abs(yaw_of(truth.X_WB)) < 1e-3);
 }
 
@@ -213,8 +214,8 @@ TEST_CASE("Drives report the servos' angles, in steps of their encoder") {
     world.set_command(id, drive(0, 0, 0.5, 0.5));
     run(world, 2);
     // the servo is where it was told to be; the arm hangs in its play. 7 x 0.07 = 0.49
-    CHECK(world.truth(id).flipper_rad[kFrontLeft] == Approx(0.4).margin(2e-3));
-    CHECK(std::get<DrivesReading>(read(world, id)[0].reading).flipper_rad[kFrontLeft] ==
+    CHECK(world.truth(id).flipper_rad[robot::kFrontLeft] == Approx(0.4).margin(2e-3));
+    CHECK(std::get<DrivesReading>(read(world, id)[0].reading).flipper_rad[robot::kFrontLeft] ==
           Approx(resolution_rad > 0 ? 0.49 : 0.5).margin(1e-3));
   }
 }
@@ -234,8 +235,9 @@ TEST_CASE("Drives and encoders have noise of their own, where the description sa
     world.step();
     const auto samples = read(world, id);
     const auto& drives = std::get<DrivesReading>(samples[0].reading);
-    const double counts = static_cast<double>(std::get<EncoderReading>(samples[1].reading).counts[kRight]);
-    const std::array<double, 4> now{drives.track_a[kLeft], drives.battery_v, drives.flipper_rad[kRearRight], counts};
+    const double counts = static_cast<double>(std::get<EncoderReading>(samples[1].reading).counts[robot::kRight]);
+    const std::array<double, 4> now{drives.track_a[robot::kLeft], drives.battery_v,
+                                    drives.flipper_rad[robot::kRearRight], counts};
     for (std::size_t k = 0; k < 4; ++k) {
       sum[k] += now[k];
       squares[k] += now[k] * now[k];

@@ -4,6 +4,7 @@
 #include "physics/sensors/noise.hpp"
 #include "tests/physics/scenes.hpp"
 
+using namespace kenaf;
 using namespace kenaf::physics;
 
 namespace {
@@ -120,16 +121,16 @@ TEST_CASE("S4: encoders count the sprocket's turning, odometry and tachometer fo
   run(world, 2);
   std::vector<SensorSample> samples;
   world.read_sensors(id, samples);
-  const double travel = world.truth(id).track_m[kLeft];
+  const double travel = world.truth(id).track_m[robot::kLeft];
   CHECK(travel == Approx(0.39).margin(1e-3));
   const auto counts = std::get<EncoderReading>(samples[0].reading).counts;
-  CHECK(static_cast<double>(counts[kLeft]) == Approx(travel / 0.065 * 2000 / (2 * std::numbers::pi)).margin(1));
+  CHECK(static_cast<double>(counts[robot::kLeft]) == Approx(travel / 0.065 * 2000 / (2 * std::numbers::pi)).margin(1));
   const auto odometry = std::get<OdometryReading>(samples[1].reading);
   CHECK(odometry.x_m == Approx(travel).margin(3e-4));
   CHECK(std::abs(odometry.yaw_rad) < 2e-3);
   const auto tachometer = std::get<TachometerReading>(samples[2].reading);
-  CHECK(tachometer.spin_radps[kRight] == Approx(0.2 / 0.065).epsilon(1e-3));
-  CHECK(tachometer.angle_rad[kLeft] == Approx(travel / 0.065));
+  CHECK(tachometer.spin_radps[robot::kRight] == Approx(0.2 / 0.065).epsilon(1e-3));
+  CHECK(tachometer.angle_rad[robot::kLeft] == Approx(travel / 0.065));
 }
 
 TEST_CASE("S5: an inertial sensor feels gravity's reaction, acceleration and turning") {
@@ -204,7 +205,7 @@ TEST_CASE("S8: a touch sensor feels an obstacle at its mount, and not the ground
   sensor.X_BS.p = {0.29, 0, 0};
   World world(description, {}, 1);
   const RobotId id = world.add_robot(with_sensor(sensor), "a", {});
-  RobotCommand command = drive(0, 0, 1.8, 1.8);
+  robot::Command command = drive(0, 0, 1.8, 1.8);
   world.set_command(id, command);
   run(world, 1);
   CHECK_FALSE(read_one<TouchReading>(world, id).touched);
@@ -231,18 +232,18 @@ TEST_CASE("S9: currents follow force, the battery sags with them and runs down")
   const RobotId id = world.add_robot(robot, "a", {});
   run(world, 1);
   const auto idle = read_one<DrivesReading>(world, id);
-  CHECK(idle.track_a[kLeft] < 0.05);
+  CHECK(idle.track_a[robot::kLeft] < 0.05);
   world.set_command(id, drive(-0.3, 0.3));
   run(world, 1);
   const auto turning = read_one<DrivesReading>(world, id);
   const RobotTruth truth = world.truth(id);
-  CHECK(turning.track_a[kLeft] == Approx(0.04 * std::abs(truth.track_force_n[kLeft]) + 0.3));
-  CHECK(turning.track_a[kLeft] > 1);
+  CHECK(turning.track_a[robot::kLeft] == Approx(0.04 * std::abs(truth.track_force_n[robot::kLeft]) + 0.3));
+  CHECK(turning.track_a[robot::kLeft] > 1);
   // The battery gives a motor's current for the share of time in which the bridge is on: force over 300 N plus speed
   // over 0.5 m/s, of the voltage there is. The arms stand still and hold their weight against 20 N m.
   const double voltage_share = turning.battery_v / 25.9;
   double total = 0;
-  for (const Track side : {kLeft, kRight}) {
+  for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     const double force_n = std::abs(truth.track_force_n[side]), speed_share = std::abs(truth.track_mps[side]) / 0.5;
     total += (0.04 * force_n * (force_n / 300 + speed_share) + 0.3 * speed_share) / voltage_share;
   }
@@ -253,14 +254,14 @@ TEST_CASE("S9: currents follow force, the battery sags with them and runs down")
 }
 
 TEST_CASE("S9: an arm that rests on its mechanical stop carries the robot without current") {
-  // arms that can go no higher than 0.6 rad below the belts, servos limp: the ground presses those that it rests on against
-  // their stops
+  // arms that can go no higher than 0.6 rad below the belts, servos limp: the ground presses those that it rests on
+  // against their stops
   RobotDescription robot = with_sensor(sensor_of(SensorType::drives));
   robot.flipper.front().max_angle_rad = -0.6;
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(robot, "a", {});
-  RobotCommand command = drive(0, 0);
-  for (JointCommand& joint : command.flipper) joint = {JointMode::torque, 0};
+  robot::Command command = drive(0, 0);
+  for (robot::JointCommand& joint : command.flipper) joint = {robot::JointMode::torque, 0};
   world.set_command(id, command);
   run(world, 3);
   const RobotTruth truth = world.truth(id);
@@ -283,7 +284,7 @@ TEST_CASE("S10: a reset sensor starts from zero, an INS from the pose it is told
   run(world, 1);
   std::vector<SensorSample> samples;
   world.read_sensors(id, samples);
-  CHECK(static_cast<double>(std::get<EncoderReading>(samples[0].reading).counts[kLeft]) ==
+  CHECK(static_cast<double>(std::get<EncoderReading>(samples[0].reading).counts[robot::kLeft]) ==
         Approx(0.2 / 0.065 * 2000 / (2 * std::numbers::pi)).margin(2));
   CHECK(std::get<OdometryReading>(samples[1].reading).x_m == Approx(0.2).margin(1e-3));
   // it believes to look along +y, so 0.2 m ahead are 0.2 m in y

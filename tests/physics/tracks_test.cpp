@@ -4,6 +4,7 @@
 
 #include "tests/physics/scenes.hpp"
 
+using namespace kenaf;
 using namespace kenaf::physics;
 
 TEST_CASE("T1: robot and belt reach the commanded speed within 0.1 %") {
@@ -11,7 +12,7 @@ TEST_CASE("T1: robot and belt reach the commanded speed within 0.1 %") {
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   world.set_command(id, drive(0.2, 0.2));
   run(world, 3);
-  CHECK(world.truth(id).track_mps[kLeft] == Approx(0.2).epsilon(1e-3));
+  CHECK(world.truth(id).track_mps[robot::kLeft] == Approx(0.2).epsilon(1e-3));
   CHECK(world.truth(id).v_WB_mps.x() == Approx(0.2).epsilon(1e-3));
   // the speed loop is a lag of 0.05 s: 0.2 (3 - 0.05) m
   CHECK(world.truth(id).X_WB.p.x() == Approx(0.59).margin(2e-3));
@@ -25,8 +26,8 @@ TEST_CASE("T1: tracks that drive alike do not pull against each other") {
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   world.set_command(id, drive(0.2, 0.2));
   run(world, 3);
-  CHECK(std::abs(world.truth(id).track_force_n[kLeft]) < 0.5);
-  CHECK(std::abs(world.truth(id).track_force_n[kRight]) < 0.5);
+  CHECK(std::abs(world.truth(id).track_force_n[robot::kLeft]) < 0.5);
+  CHECK(std::abs(world.truth(id).track_force_n[robot::kRight]) < 0.5);
 }
 
 TEST_CASE("T2: a stopped belt is plain friction") {
@@ -195,7 +196,7 @@ TEST_CASE("T7: a slow turn is a turn") {
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   world.set_command(id, drive(-0.006, 0.006));
   run(world, 2);
-  CHECK(world.truth(id).track_mps[kRight] == Approx(0.006).epsilon(0.01));
+  CHECK(world.truth(id).track_mps[robot::kRight] == Approx(0.006).epsilon(0.01));
   CHECK(world.truth(id).w_WB_radps.z() > 0.015);  // 0.06 rad/s if nothing slipped
 }
 
@@ -273,8 +274,8 @@ TEST_CASE("T9: no more traction than the motor or the ground can give") {
     return world.truth(id);
   };
   const RobotTruth stalled = wall_force(10, 0.5);
-  CHECK(stalled.track_force_n[kLeft] == Approx(10).epsilon(0.01));
-  CHECK(stalled.track_mps[kLeft] == Approx(0).margin(1e-3));
+  CHECK(stalled.track_force_n[robot::kLeft] == Approx(10).epsilon(0.01));
+  CHECK(stalled.track_mps[robot::kLeft] == Approx(0).margin(1e-3));
 }
 
 TEST_CASE("T9: an incline that needs more than the motors have is not climbed") {

@@ -8,16 +8,16 @@
 //   F5 angles come back in (-pi, pi], from UT2004's 0..2pi too
 //   F6 tip up is negative for USARSim's front flippers, positive for its rear ones
 //   F7 spin times radius is surface speed
-//   F8 a joint with limits turns to the same direction within them, the nearest one, or to the nearer limit
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "protocol/frames.hpp"
-#include "protocol/reachable_angle.hpp"
+#include "robot/parts.hpp"
 
+using namespace kenaf;
 using namespace kenaf::frames;
-using kenaf::relay::Flipper;
+using robot::Flipper;
 using std::numbers::pi;
 
 namespace {
@@ -65,13 +65,7 @@ TEST_CASE("F4 a USARSim robot that looks down a slope to its right") {
   CHECK(nose[1] < 0);  // to the right
 }
 
-TEST_CASE("F5 angles are wrapped to more than -pi and at most pi") {
-  CHECK(wrap_angle(0) == 0);
-  CHECK(wrap_angle(pi) == pi);
-  CHECK(wrap_angle(-pi) == pi);
-  CHECK(wrap_angle(3 * pi) == Approx(pi));
-  CHECK(wrap_angle(-0.5 - 4 * pi) == Approx(-0.5));
-  CHECK(wrap_angle(3.2) == Approx(3.2 - 2 * pi));
+TEST_CASE("F5 angles come back wrapped to more than -pi and at most pi") {
   // A recorded UT2004 line has {Orientation 0.00,6.28,6.28}: level, 0.0032 short of the whole turn.
   const Vector3 level = rep103_angles_from_usarsim({0, 6.28, 6.28});
   CHECK(level[1] == Approx(2 * pi - 6.28));
@@ -82,14 +76,14 @@ TEST_CASE("F5 angles are wrapped to more than -pi and at most pi") {
 TEST_CASE("F6 raising all four flippers is front negative, rear positive") {
   // UsarCommander's "front up": MULTIDRIVE {FRFlipper -0.5*h} {FLFlipper -0.5*h} {RRFlipper +0.5*h} {RLFlipper +0.5*h}.
   struct Case {
-    Flipper flipper;
+    robot::Flipper flipper;
     const char* name;
     double joint_rad;
   };
-  for (const Case& c : {Case{kenaf::relay::kFrontLeft, "FLFlipper", -0.5},
-                        {kenaf::relay::kFrontRight, "FRFlipper", -0.5},
-                        {kenaf::relay::kRearLeft, "RLFlipper", 0.5},
-                        {kenaf::relay::kRearRight, "RRFlipper", 0.5}}) {
+  for (const Case& c : {Case{robot::kFrontLeft, "FLFlipper", -0.5},
+                        {robot::kFrontRight, "FRFlipper", -0.5},
+                        {robot::kRearLeft, "RLFlipper", 0.5},
+                        {robot::kRearRight, "RRFlipper", 0.5}}) {
     CHECK(std::string(usarsim_flipper_name(c.flipper)) == c.name);
     CHECK(usarsim_flipper_from_tip_up(c.flipper, 0.5) == c.joint_rad);
     CHECK(tip_up_from_usarsim_flipper(c.flipper, c.joint_rad) == 0.5);
@@ -100,13 +94,4 @@ TEST_CASE("F7 a sprocket of 0.05 m that spins with 2 rad/s moves its belt with 0
   CHECK(surface_speed_from_spin(2, 0.05) == Approx(0.1));
   CHECK(spin_from_surface_speed(0.1, 0.05) == Approx(2));
   CHECK(spin_from_surface_speed(-0.1, 0.05) == Approx(-2));
-}
-
-TEST_CASE("F8 a joint with limits turns to the same direction within them, the nearest one, or to the nearer limit") {
-  CHECK(reachable_angle(0.5, 0, -2, 2) == Approx(0.5));
-  CHECK(reachable_angle(0.5 + 2 * pi, 0, -2, 2) == Approx(0.5));
-  CHECK(reachable_angle(3, 0, -2, 2) == Approx(2));
-  CHECK(reachable_angle(-3, 0, -2, 2) == Approx(-2));
-  CHECK(reachable_angle(1, 6, -2 * pi, 2 * pi) == Approx(1));
-  CHECK(reachable_angle(1, -4, -2 * pi, 2 * pi) == Approx(1 - 2 * pi));
 }

@@ -87,7 +87,7 @@ TEST_CASE("a flipper that stands outside of its limits stays there until it is t
     DriveTargets targets(bus, image);
     for (int k = 0; k < 10; ++k) {
       const DriveOrders orders = targets.step({}, image, 0.01);
-      for (std::size_t i = relay::kTrackCount; i < canbus::kDriveCount; ++i) {
+      for (std::size_t i = robot::kTrackCount; i < canbus::kDriveCount; ++i) {
         CHECK(orders[i].controlword == kControlEnable);
         CHECK(orders[i].target == outside);
       }

@@ -37,7 +37,7 @@ TEST_CASE("both tracks forward are forward, and as far as their ramp lets them")
   // The command reaches the drives with the SYNC after it, and what that SYNC latches is from before: 1.00 s at 0.2
   // m/s, less 0.2 m/s / 5 m/s^2 * 0.2 m/s / 2 for the ramp, plus or minus the 1 ms of the drives' own step.
   const double way_m = 0.2 * 1.0 - 0.2 * 0.2 / (2 * 5);
-  for (const std::size_t t : {relay::kLeft, relay::kRight}) {
+  for (const std::size_t t : {robot::kLeft, robot::kRight}) {
     CHECK(after.track_m[t] - before.track_m[t] == Approx(way_m).margin(0.0003));
     CHECK(after.track_mps[t] == Approx(0.2).margin(1e-4));
     CHECK(robot.plant.state().track_m[t] > 0);
@@ -51,23 +51,23 @@ TEST_CASE("a flipper goes to its angle in the time of its trapezoid, the others 
   RobotOnBus robot;
   robot.open();
   hrt::DriveCommand command;
-  command.flipper_mask = 1u << relay::kRearLeft;
-  command.flipper_rad[relay::kRearLeft] = 1.0;
+  command.flipper_mask = 1u << robot::kRearLeft;
+  command.flipper_rad[robot::kRearLeft] = 1.0;
   // 1 rad at 1.5 rad/s and 15 rad/s^2: 0.85 / 1.5 + 2 * 0.1 = 0.767 s; the command takes three cycles until the drive
   // has it
   relay::State state = robot.run(60, command);
-  CHECK(state.flipper_rad[relay::kRearLeft] < 0.95);
+  CHECK(state.flipper_rad[robot::kRearLeft] < 0.95);
   state = robot.run(25, command);
-  CHECK(state.flipper_rad[relay::kRearLeft] == Approx(1.0).margin(1e-3));
-  CHECK(robot.plant.state().flipper_rad[relay::kRearLeft] == Approx(1.0).margin(1e-3));
-  for (const std::size_t f : {relay::kFrontLeft, relay::kFrontRight, relay::kRearRight})
+  CHECK(state.flipper_rad[robot::kRearLeft] == Approx(1.0).margin(1e-3));
+  CHECK(robot.plant.state().flipper_rad[robot::kRearLeft] == Approx(1.0).margin(1e-3));
+  for (const std::size_t f : {robot::kFrontLeft, robot::kFrontRight, robot::kRearRight})
     CHECK(state.flipper_rad[f] == 0);
   // a newer target replaces one under way
-  command.flipper_rad[relay::kRearLeft] = -1.0;
+  command.flipper_rad[robot::kRearLeft] = -1.0;
   robot.run(20, command);
-  command.flipper_rad[relay::kRearLeft] = 0.5;
+  command.flipper_rad[robot::kRearLeft] = 0.5;
   state = robot.run(150, command);
-  CHECK(state.flipper_rad[relay::kRearLeft] == Approx(0.5).margin(1e-3));
+  CHECK(state.flipper_rad[robot::kRearLeft] == Approx(0.5).margin(1e-3));
 }
 
 TEST_CASE("roll, pitch and yaw have the robot's signs") {
@@ -162,15 +162,15 @@ TEST_CASE("a robot with cyclic modes drives the same way, on the master's ramps"
   robot.open();
   const relay::State before = robot.run(1, {});
   hrt::DriveCommand command = drive_at(0.2, 0.2);
-  command.flipper_mask = 1u << relay::kFrontRight;
-  command.flipper_rad[relay::kFrontRight] = -0.8;
+  command.flipper_mask = 1u << robot::kFrontRight;
+  command.flipper_rad[robot::kFrontRight] = -0.8;
   const relay::State after = robot.run(101, command);
   // The ramp goes in steps of 0.05 m/s a cycle: 0.05, 0.10, 0.15, 0.2 m/s. In 1.00 s: 0.2 - (0.15 + 0.10 + 0.05) * 0.01
   // = 0.197 m
   CHECK(after.track_m[0] - before.track_m[0] == Approx(0.197).margin(0.0025));
   CHECK(after.track_m[0] == Approx(after.track_m[1]));
-  CHECK(after.flipper_rad[relay::kFrontRight] == Approx(-0.8).margin(2e-3));
-  CHECK(after.flipper_rad[relay::kFrontLeft] == 0);
+  CHECK(after.flipper_rad[robot::kFrontRight] == Approx(-0.8).margin(2e-3));
+  CHECK(after.flipper_rad[robot::kFrontLeft] == 0);
 }
 
 TEST_CASE("flippers without absolute encoders are homed where they stand, or at their switch") {
@@ -183,7 +183,7 @@ TEST_CASE("flippers without absolute encoders are homed where they stand, or at 
   hrt::DriveCommand command;
   command.flipper_mask = 15;
   command.flipper_rad.fill(0.2);
-  CHECK(robot.run(150, command).flipper_rad[relay::kFrontLeft] == Approx(0.2).margin(1e-3));
+  CHECK(robot.run(150, command).flipper_rad[robot::kFrontLeft] == Approx(0.2).margin(1e-3));
 }
 
 TEST_CASE("a program that answers too late is told so, cycle by cycle") {

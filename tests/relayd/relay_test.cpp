@@ -18,7 +18,7 @@ namespace {
 
 // Drives to x = 0.5 m by what it measures, so that each lost or stale State would show in all later ones.
 void approach(const relay::State& state, relay::Command& command) {
-  const double speed_mps = 2 * (0.5 - state.track_m[relay::kLeft]) + 0.01 * std::sin(state.frame);
+  const double speed_mps = 2 * (0.5 - state.track_m[robot::kLeft]) + 0.01 * std::sin(state.frame);
   command.track_speed_mps = {speed_mps, speed_mps};
   command.flipper_mask = 0b0101;
   command.flipper_rad = {0.1 * speed_mps, 0, -0.1 * speed_mps, 0};
@@ -56,7 +56,7 @@ TEST_CASE("the relay places a robot, opens a session in lock step and carries co
     CHECK(states[i].acknowledged == i);
     CHECK(states[i].late_commands == 0);
   }
-  CHECK(states[49].track_m[relay::kLeft] == Approx(49 * 0.002).margin(1e-9));
+  CHECK(states[49].track_m[robot::kLeft] == Approx(49 * 0.002).margin(1e-9));
   CHECK(states[49].p_WB_m[2] == Approx(0.1));  // z down on the wire
   CHECK(states[49].posture_rad[1] == Approx(-0.2));
 }
@@ -196,7 +196,7 @@ TEST_CASE("reset_robot enters the world anew, in lock step from the first frame"
   CHECK(world.connections() == before + 1);
   CHECK(states[0].frame == 1);
   CHECK(states[0].robot_time_s == 0);
-  CHECK(states[0].track_m[relay::kLeft] == 0);
+  CHECK(states[0].track_m[robot::kLeft] == 0);
 }
 
 TEST_CASE("without a commander there is no lock step and the robot stands") {
@@ -326,7 +326,7 @@ TEST_CASE("hostile lines from the world server: a log line, nothing dead, nothin
     command.track_speed_mps = {0.2, 0.2};
   });
   CHECK(world.x_m() == Approx(10 * 0.002).margin(1e-9));
-  CHECK(states[9].track_m[relay::kLeft] == Approx(9 * 0.002).margin(1e-9));
+  CHECK(states[9].track_m[robot::kLeft] == Approx(9 * 0.002).margin(1e-9));
   CHECK(relay.log().count("the world server sent") >= 1);
 }
 

@@ -66,8 +66,8 @@ TEST_CASE("encoders: ticks x resolution x wheel radius, in both dialects") {
                              "CONF {Type Encoder} {Name ECLeft} {Resolution 0.002} {Name ECRight} {Resolution 0.002}",
                              "SEN {Type Encoder} {Name ECLeft Tick 1000} {Name ECRight Tick -500}"});
   CHECK(ut2004.fields == relay::kHasEncoders);
-  CHECK(ut2004.track_m[relay::kLeft] == Approx(0.1));
-  CHECK(ut2004.track_m[relay::kRight] == Approx(-0.05));
+  CHECK(ut2004.track_m[robot::kLeft] == Approx(0.1));
+  CHECK(ut2004.track_m[robot::kRight] == Approx(-0.05));
   const auto udk = after({"SEN {Time 1} {Type Encoder} {Name ECLeft} {Tick 1000}",
                           "SEN {Time 1} {Type Encoder} {Name ECRight} {Tick -500}", "GEO {WheelRadius 0.05}",
                           "CONF {Type Encoder} {Resolution 0.002}"});  // late is early enough

@@ -36,7 +36,7 @@ TEST_CASE("A phase lasts its time, at multiples of a period that is no binary fr
     INFO(sample);
     const auto command = driver.command(sample * 0.01, at(0));
     REQUIRE(command);
-    CHECK(command->track_speed_mps[physics::kLeft] == (sample < 30 ? 0.1 : 0.2));
+    CHECK(command->track_speed_mps[robot::kLeft] == (sample < 30 ? 0.1 : 0.2));
   }
   CHECK_FALSE(driver.command(0.7, at(0)));
   CHECK(driver.phase() == 2);
@@ -88,7 +88,7 @@ TEST_CASE("A turn counts from where its phase began, through half a turn and eit
 TEST_CASE("What holds already is passed over at once, as an operator would") {
   const Manoeuvre manoeuvre = of({lasting(5, 0.1, {.x_above_m = 1}), lasting(5, 0.2, {.x_above_m = 2})});
   Driver driver(manoeuvre, kFolded);
-  CHECK(driver.command(0, at(1.5))->track_speed_mps[physics::kRight] == 0.2);
+  CHECK(driver.command(0, at(1.5))->track_speed_mps[robot::kRight] == 0.2);
   CHECK(driver.phase() == 1);
 }
 
@@ -96,9 +96,9 @@ TEST_CASE("A phase that is given up: the last one follows instead") {
   Manoeuvre manoeuvre = of({lasting(1, 0.1), lasting(1, 0.2), lasting(1, 0.3), lasting(1, 0)});
   manoeuvre.phases[1].give_up = GiveUp{.x_below_m = 0.5, .pitch_below_rad = -0.3};
   Driver driver(manoeuvre, kFolded);
-  CHECK(driver.command(0, at(0.4, 0, -0.4))->track_speed_mps[physics::kLeft] == 0.1);  // not its turn yet
+  CHECK(driver.command(0, at(0.4, 0, -0.4))->track_speed_mps[robot::kLeft] == 0.1);  // not its turn yet
   SECTION("where all that is stated holds") {
-    CHECK(driver.command(1, at(0.49, 0, -0.31))->track_speed_mps[physics::kLeft] == 0);
+    CHECK(driver.command(1, at(0.49, 0, -0.31))->track_speed_mps[robot::kLeft] == 0);
     CHECK(driver.phase() == 3);
     CHECK(driver.gave_up());
     CHECK(driver.command(1.99, at(0.6)));  // the last phase has its time; nothing is taken up again
@@ -108,9 +108,9 @@ TEST_CASE("A phase that is given up: the last one follows instead") {
   }
   SECTION("not where one does not, at its value or beyond") {
     const Pose goes_on = GENERATE(at(0.5, 0, -0.4), at(0.4, 0, -0.29));
-    CHECK(driver.command(1, goes_on)->track_speed_mps[physics::kLeft] == 0.2);
-    CHECK(driver.command(1.5, at(0.4, 0, -0.4))->track_speed_mps[physics::kLeft] == 0.2);  // begun is begun
-    CHECK(driver.command(2, at(0.4, 0, -0.4))->track_speed_mps[physics::kLeft] == 0.3);
+    CHECK(driver.command(1, goes_on)->track_speed_mps[robot::kLeft] == 0.2);
+    CHECK(driver.command(1.5, at(0.4, 0, -0.4))->track_speed_mps[robot::kLeft] == 0.2);  // begun is begun
+    CHECK(driver.command(2, at(0.4, 0, -0.4))->track_speed_mps[robot::kLeft] == 0.3);
     CHECK_FALSE(driver.gave_up());
   }
 }
@@ -122,7 +122,7 @@ TEST_CASE("Whether to give a phase up is asked before whether it is passed over"
   const double x_m = GENERATE(0.4, 0.6);
   Driver driver(manoeuvre, kFolded);
   driver.command(0, at(x_m));
-  CHECK(driver.command(1, at(x_m, 0, 0.2))->track_speed_mps[physics::kLeft] == (x_m > 0.5 ? 0.3 : 0));
+  CHECK(driver.command(1, at(x_m, 0, 0.2))->track_speed_mps[robot::kLeft] == (x_m > 0.5 ? 0.3 : 0));
   CHECK(driver.gave_up() == (x_m < 0.5));
 }
 
@@ -130,24 +130,24 @@ TEST_CASE("Flippers stay as they were where a phase says nothing") {
   Manoeuvre manoeuvre = of({lasting(1), lasting(1), lasting(1)});
   manoeuvre.phases[1].flipper_rad = {{0.1, 0.2, 0.3, 0.4}};
   Driver driver(manoeuvre, kFolded);
-  CHECK(driver.command(0, at(0))->flipper[physics::kRearLeft].value == 1);
-  CHECK(driver.command(1, at(0))->flipper[physics::kRearLeft].value == 0.3);
-  CHECK(driver.command(2, at(0))->flipper[physics::kRearLeft].value == 0.3);
+  CHECK(driver.command(0, at(0))->flipper[robot::kRearLeft].value == 1);
+  CHECK(driver.command(1, at(0))->flipper[robot::kRearLeft].value == 0.3);
+  CHECK(driver.command(2, at(0))->flipper[robot::kRearLeft].value == 0.3);
 }
 
 TEST_CASE("A replay holds each command until the next one is due, and ends with the last") {
   Manoeuvre replay;
   for (const double t : {0.0, 0.033, 0.1}) {
-    physics::RobotCommand command;
+    robot::Command command;
     command.track_speed_mps = {t, -t};
     replay.timed.push_back({t, command});
   }
   Driver driver(replay, kFolded);
   CHECK(driver.next_due_s() <= 0);
-  CHECK(driver.command(0, at(0))->track_speed_mps[physics::kLeft] == 0);
+  CHECK(driver.command(0, at(0))->track_speed_mps[robot::kLeft] == 0);
   CHECK(driver.next_due_s() == Approx(0.033));
-  CHECK(driver.command(0.0329, at(0))->track_speed_mps[physics::kLeft] == 0);
-  CHECK(driver.command(0.033, at(0))->track_speed_mps[physics::kRight] == -0.033);
+  CHECK(driver.command(0.0329, at(0))->track_speed_mps[robot::kLeft] == 0);
+  CHECK(driver.command(0.033, at(0))->track_speed_mps[robot::kRight] == -0.033);
   CHECK(driver.command(0.099, at(0)));
   CHECK_FALSE(driver.command(0.1, at(0)));
 }

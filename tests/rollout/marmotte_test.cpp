@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 #include "rollout/roll_out.hpp"
 #include "runs/dataset.hpp"
 #include "tests/rollout/exact_runs.hpp"
@@ -27,14 +27,14 @@ double residual(const runs::Run& real, const runs::Run& simulated, const char* c
   for (std::size_t i = 0; i < sim.size(); ++i) {
     series.t_s.push_back(simulated.column("t_s")[i]);
     const double before = series.value.empty() ? sim[i] : series.value.back();
-    series.value.push_back(angle ? before + frames::wrap_angle(sim[i] - before) : sim[i]);
+    series.value.push_back(angle ? before + robot::wrap_angle(sim[i] - before) : sim[i]);
   }
   double sum = 0;
   int count = 0;
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (std::isnan(measured[i]) || time[i] - time[0] > until_s) continue;
     const double off = series.at(time[i] - time[0]) - measured[i];
-    sum += std::pow(angle ? frames::wrap_angle(off) : off, 2);
+    sum += std::pow(angle ? robot::wrap_angle(off) : off, 2);
     ++count;
   }
   return std::sqrt(sum / count);
@@ -62,8 +62,8 @@ TEST_CASE("Marmotte stands, drives and turns without flippers") {
   CHECK(straight.run.column("x_m").back() == Approx(1.9).margin(0.02));
 }
 
-// The recorded robot turns about 0.96 of what tracks 0.592723 m apart would turn it without slip (docs/gap-marmotte.md);
-// the tracks' length of the description was chosen by that.
+// The recorded robot turns about 0.96 of what tracks 0.592723 m apart would turn it without slip
+// (docs/gap-marmotte.md); the tracks' length of the description was chosen by that.
 TEST_CASE("Marmotte turns as far as the recorded robot, on the spot and while it drives") {
   constexpr double kEffectiveWidth_m = 0.592723, kRecorded = 0.96;
   const auto robot = physics::load_robot("marmotte");
@@ -76,7 +76,7 @@ TEST_CASE("Marmotte turns as far as the recorded robot, on the spot and while it
     const auto left = run.column("track_left_m"), right = run.column("track_right_m");
     const auto from = static_cast<std::size_t>(std::ranges::lower_bound(time, 1.0) - time.begin());
     double turned = 0;
-    for (std::size_t i = from + 1; i < time.size(); ++i) turned += frames::wrap_angle(yaw[i] - yaw[i - 1]);
+    for (std::size_t i = from + 1; i < time.size(); ++i) turned += robot::wrap_angle(yaw[i] - yaw[i - 1]);
     const double without_slip = (right.back() - right[from] - left.back() + left[from]) / kEffectiveWidth_m;
     CHECK(turned / without_slip == Approx(kRecorded).margin(0.01));
   }

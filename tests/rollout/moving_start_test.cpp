@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 #include "rollout/roll_out.hpp"
 #include "tests/rollout/exact_runs.hpp"
 
@@ -54,7 +54,7 @@ Apart apart(const runs::Run& whole, std::size_t from_row, const runs::Run& conti
       return continued.column(column)[row] - whole.column(column)[from_row + row];
     };
     most.m = std::max(most.m, std::hypot(off("x_m"), off("y_m")));
-    most.rad = std::max(most.rad, std::abs(frames::wrap_angle(off("yaw_rad"))));
+    most.rad = std::max(most.rad, std::abs(robot::wrap_angle(off("yaw_rad"))));
   }
   return most;
 }
@@ -147,8 +147,8 @@ TEST_CASE("How the body moves at first: the tracks' motion, times the share that
   for (const double share : {0.9, 0.6, 1.4, -0.3}) {
     const auto motion = with(share);
     REQUIRE(motion);
-    CHECK((*motion->track_mps)[physics::kLeft] == 0.2);
-    CHECK((*motion->track_mps)[physics::kRight] == 0.6);
+    CHECK((*motion->track_mps)[robot::kLeft] == 0.2);
+    CHECK((*motion->track_mps)[robot::kRight] == 0.6);
     CHECK(*motion->forward_mps ==
           Approx(std::clamp(share, 0.0, 1.0) * 0.4).epsilon(1e-3));  // chords of an arc of 0.05 rad: 1e-4
     CHECK(*motion->yaw_radps == Approx(0.5).epsilon(1e-9));
@@ -181,19 +181,19 @@ TEST_CASE("Without poses to tell, a body moves as its tracks do") {
 TEST_CASE("Measured speed: cells between are interpolated, what is before and after is constant") {
   const MeasuredMotion motion = measured_motion(
       runs::parse_run("t_s,track_left_mps,flipper_rl_rad\n3,,\n4,0.2,3\n5,,\n6,0.4,-3\n7,,\n", "run.csv"));
-  REQUIRE(motion.track_mps[physics::kRight].empty());
-  const TimeSeries& left = motion.track_mps[physics::kLeft];
+  REQUIRE(motion.track_mps[robot::kRight].empty());
+  const TimeSeries& left = motion.track_mps[robot::kLeft];
   CHECK(left.at(0) == 0.2);
   CHECK(left.at(1) == 0.2);
   CHECK(left.at(2) == Approx(0.3));
   CHECK(left.at(3) == 0.4);
   CHECK(left.at(9) == 0.4);
   // 3 to -3 rad is the short way over pi
-  CHECK(motion.flipper_rad[physics::kRearLeft].at(2) == Approx(std::numbers::pi));
+  CHECK(motion.flipper_rad[robot::kRearLeft].at(2) == Approx(std::numbers::pi));
   const physics::PrescribedMotion at = motion.at(2);
-  CHECK_FALSE(at.track_mps[physics::kRight]);
-  CHECK(at.flipper_rad[physics::kRearLeft]);
-  CHECK_FALSE(at.flipper_rad[physics::kFrontLeft]);
+  CHECK_FALSE(at.track_mps[robot::kRight]);
+  CHECK(at.flipper_rad[robot::kRearLeft]);
+  CHECK_FALSE(at.flipper_rad[robot::kFrontLeft]);
 }
 
 TEST_CASE("Where travel is measured too, speed keeps its shape and comes as far as the travel") {
@@ -204,7 +204,7 @@ TEST_CASE("Where travel is measured too, speed keeps its shape and comes as far 
     const double t_s = 0.01 * static_cast<double>(i);
     return fmt::format("{},{},{}", t_s, shape(t_s) + 0.05, way(t_s));
   });
-  const TimeSeries speed = measured_motion(run).track_mps[physics::kLeft];
+  const TimeSeries speed = measured_motion(run).track_mps[robot::kLeft];
   double come_m = 0;
   for (int i = 0; i < 2000; ++i) {
     const double t_s = 0.001 * (i + 0.5);
@@ -220,7 +220,7 @@ TEST_CASE("Travel alone gives the speed, with its counts smoothed") {
     const double t_s = 0.01 * static_cast<double>(i);
     return fmt::format("{},{}", t_s, std::floor(0.123 * t_s / 0.0002) * 0.0002);
   });
-  const TimeSeries speed = measured_motion(run).track_mps[physics::kRight];
+  const TimeSeries speed = measured_motion(run).track_mps[robot::kRight];
   double come_m = 0;
   for (int i = 0; i < 3000; ++i) {
     const double is = speed.at(0.001 * (i + 0.5));
@@ -294,7 +294,7 @@ TEST_CASE("Sensors that report late are no reason to drive late") {
 
 TEST_CASE("Of speed that is held to travel the delay of the travel counts") {
   const auto at_one = [](const char* csv, const ReportDelays& late) {
-    return *measured_motion(runs::parse_run(csv, "run.csv")).at(1, late).track_mps[physics::kLeft];
+    return *measured_motion(runs::parse_run(csv, "run.csv")).at(1, late).track_mps[robot::kLeft];
   };
   const ReportDelays late{.track_speed_s = 1, .track_travel_s = 2, .flipper_s = 0};
   // the speed grows by 0.1 m/s each second

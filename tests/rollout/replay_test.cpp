@@ -34,9 +34,9 @@ TEST_CASE("A run's commands, at its times from its first row on, an empty cell h
   CHECK(manoeuvre.timed[1].t_s == 0.5);
   CHECK(manoeuvre.timed[1].command.track_speed_mps == std::array{0.1, 0.3});
   CHECK(manoeuvre.timed[2].command.track_speed_mps == std::array{0.4, 0.3});
-  CHECK(manoeuvre.timed[0].command.flipper[physics::kFrontLeft].value == 0.5);  // not commanded yet: as it stands
-  CHECK(manoeuvre.timed[2].command.flipper[physics::kFrontLeft].value == 0.9);
-  CHECK(manoeuvre.timed[2].command.flipper[physics::kRearRight].value == 0.8);
+  CHECK(manoeuvre.timed[0].command.flipper[robot::kFrontLeft].value == 0.5);  // not commanded yet: as it stands
+  CHECK(manoeuvre.timed[2].command.flipper[robot::kFrontLeft].value == 0.9);
+  CHECK(manoeuvre.timed[2].command.flipper[robot::kRearRight].value == 0.8);
   CHECK(manoeuvre.at_most_s() == 0.75);
 }
 
@@ -73,9 +73,9 @@ TEST_CASE("The replay of a rollout drives the same path") {
   }
 }
 
-// Put down with its rear flippers 20 degrees down, Kenaf comes to rest 4 mm ahead of where it was put down, and 9 mm where they
-// bend. A replay that began by coming down there once more would meet the step as much too early; one that was moved as it stood would
-// keep the bend and stand 1 mrad steeper.
+// Put down with its rear flippers 20 degrees down, Kenaf comes to rest 4 mm ahead of where it was put down, and 9 mm
+// where they bend. A replay that began by coming down there once more would meet the step as much too early; one that
+// was moved as it stood would keep the bend and stand 1 mrad steeper.
 TEST_CASE("The replay of a climb stands where the run stood, and meets the step when it did") {
   auto robot = physics::load_robot("kenaf");
   const bool bends = GENERATE(false, true);

@@ -22,7 +22,7 @@ runs::Run driven(const physics::Effects& effects, double left_mps, double right_
   world.start_poses.push_back({"start", {}});
   Manoeuvre manoeuvre;
   manoeuvre.start = start;
-  physics::RobotCommand command;
+  robot::Command command;
   command.track_speed_mps = {left_mps, right_mps};
   manoeuvre.timed = {{0, command}, {2, command}};
   RollOutOptions options;

@@ -57,7 +57,7 @@ TEST_CASE("an operator's silence on a lossy link: being woken in a pause changes
     talk.send(kPlace);
     talk.simulation.wall_s = talk.wall_s;
     REQUIRE(take_robot(talk.simulation, talk.session->id, OperatorId{1}).empty());
-    physics::RobotCommand command = standing_command();
+    robot::Command command = standing_command();
     for (int i = 0; i < 20; ++i) {
       command.track_speed_mps = {0.1 * (i % 5), 0.4};
       talk.simulation.wall_s = talk.wall_s;

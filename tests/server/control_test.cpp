@@ -44,11 +44,11 @@ TEST_CASE("a reset forgets what earlier commands a later one would build on") {
   talk.send("DRIVE {Speed 50} {FrontSteer 0} {Normalized True}\r\n");
   talk.send("DRIVE {LinearVelocity 0.4} {RotationalVelocity 0}\r\nCONTROL {Type Reset}\r\n");
   talk.send("DRIVE {FrontSteer 0.1}\r\n");
-  CHECK(talk.command().track_speed_mps[physics::kLeft] == 0);
+  CHECK(talk.command().track_speed_mps[robot::kLeft] == 0);
   talk.send("DRIVE {RotationalVelocity 0}\r\n");
-  CHECK(talk.command().track_speed_mps[physics::kLeft] == 0);
+  CHECK(talk.command().track_speed_mps[robot::kLeft] == 0);
   talk.send("DRIVE {Left 2}\r\n");  // rad/s again, no per cent
-  CHECK(talk.command().track_speed_mps[physics::kLeft] ==
+  CHECK(talk.command().track_speed_mps[robot::kLeft] ==
         Approx(2 * talk.session->robot->description->drive.sprocket_radius_m));
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "physics/server/simulation.hpp"
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 #include "tests/support/usarsim_client.hpp"
 
 namespace kenaf::server {
@@ -79,12 +79,12 @@ struct Conversation {
   }
 
   physics::RobotTruth truth() { return simulation.world.truth(session->robot->id); }
-  physics::RobotCommand command() { return session->robot->command; }
+  robot::Command command() { return session->robot->command; }
 };
 
 // An angle as the UT2004 server writes it, from 0 to 2 pi, back to signed.
 inline double angle_in(std::string_view line, std::string_view key, std::size_t index) {
-  return frames::wrap_angle(number_in(line, key, index));
+  return robot::wrap_angle(number_in(line, key, index));
 }
 
 }  // namespace kenaf::server

@@ -4,15 +4,15 @@ namespace kenaf::server {
 
 namespace {
 
-using physics::JointMode;
+using robot::JointMode;
 
 struct Kenaf : Conversation {
   explicit Kenaf(const char* class_name = "USARBot.Kenaf") {
     send("INIT {ClassName " + std::string(class_name) + "} {Name R1} {Location 0,0,0}\r\n");
     REQUIRE(session->robot);
   }
-  double left_mps() { return command().track_speed_mps[physics::kLeft]; }
-  double right_mps() { return command().track_speed_mps[physics::kRight]; }
+  double left_mps() { return command().track_speed_mps[robot::kLeft]; }
+  double right_mps() { return command().track_speed_mps[robot::kRight]; }
   const physics::RobotDescription& description() { return *session->robot->description; }
   double radius_m() { return description().drive.sprocket_radius_m; }
   double fastest_mps() { return description().drive.max_speed_mps; }
@@ -128,17 +128,17 @@ TEST_CASE("MULTIDRIVE lifts front flippers with negative angles and rear ones wi
   Kenaf kenaf;  // UsarCommander's front up; MRL writes the type so, and two blanks
   kenaf.send("MultiDrive {FRFlipper -0.5} {FLFlipper -0.5} {RRFlipper 0.5} {RLFlipper  0.25} {Normalized False}\r\n");
   const auto flippers = kenaf.command().flipper;
-  for (const auto flipper : {relay::kFrontLeft, relay::kFrontRight, relay::kRearRight}) {
+  for (const auto flipper : {robot::kFrontLeft, robot::kFrontRight, robot::kRearRight}) {
     CHECK(flippers[flipper].mode == JointMode::angle);
     CHECK(flippers[flipper].value == 0.5);
   }
-  CHECK(flippers[relay::kRearLeft].value == 0.25);
+  CHECK(flippers[robot::kRearLeft].value == 0.25);
 }
 
 TEST_CASE("MULTIDRIVE of one flipper leaves the others, and STA tells angles with the sign of the command") {
   Kenaf kenaf;
   kenaf.send("MULTIDRIVE {FRFlipper 0} {FLFlipper 0} {RRFlipper 0} {RLFlipper 0}\r\nMULTIDRIVE {RRFlipper 0.3}\r\n");
-  CHECK(kenaf.command().flipper[relay::kRearLeft].value == 0);
+  CHECK(kenaf.command().flipper[robot::kRearLeft].value == 0);
   REQUIRE(kenaf.run(2));
   const std::string status = kenaf.last("STA");
   CHECK(number_in(status, "RRFlipper") == Approx(0.3).margin(0.05));
@@ -146,13 +146,13 @@ TEST_CASE("MULTIDRIVE of one flipper leaves the others, and STA tells angles wit
   kenaf.send("MULTIDRIVE {FLFlipper -0.4}\r\n");
   REQUIRE(kenaf.run(2));
   CHECK(number_in(kenaf.last("STA"), "FLFlipper") == Approx(-0.4).margin(0.05));
-  CHECK(kenaf.truth().flipper_rad[relay::kFrontLeft] == Approx(0.4).margin(0.05));
+  CHECK(kenaf.truth().flipper_rad[robot::kFrontLeft] == Approx(0.4).margin(0.05));
 }
 
 TEST_CASE("a flipper angle beyond its range is the end of the range") {
   Kenaf kenaf;
   kenaf.send("MULTIDRIVE {RRFlipper 99}\r\n");
-  CHECK(kenaf.command().flipper[relay::kRearRight].value == kenaf.description().flipper.front().max_angle_rad);
+  CHECK(kenaf.command().flipper[robot::kRearRight].value == kenaf.description().flipper.front().max_angle_rad);
 }
 
 TEST_CASE("DRIVE orders joints by number, several in one line") {
@@ -162,31 +162,31 @@ TEST_CASE("DRIVE orders joints by number, several in one line") {
       "DRIVE {Name FRFlipper} {Steer 0} {Order 0} {Value -0.2} {Name RRFlipper} {Order 1} {Value 0.5} "
       "{Name FLFlipper} {Order 2} {Value -3} {Name RLFlipper} {Order 3}\r\n");
   const auto flippers = kenaf.command().flipper;
-  CHECK(flippers[relay::kFrontRight].mode == JointMode::angle);
-  CHECK(flippers[relay::kFrontRight].value == 0.2);
-  CHECK(flippers[relay::kRearRight].mode == JointMode::speed);
-  CHECK(flippers[relay::kRearRight].value == 0.5);
-  CHECK(flippers[relay::kFrontLeft].mode == JointMode::torque);
-  CHECK(flippers[relay::kFrontLeft].value == 3);
-  CHECK(flippers[relay::kRearLeft].mode == JointMode::brake);
+  CHECK(flippers[robot::kFrontRight].mode == JointMode::angle);
+  CHECK(flippers[robot::kFrontRight].value == 0.2);
+  CHECK(flippers[robot::kRearRight].mode == JointMode::speed);
+  CHECK(flippers[robot::kRearRight].value == 0.5);
+  CHECK(flippers[robot::kFrontLeft].mode == JointMode::torque);
+  CHECK(flippers[robot::kFrontLeft].value == 3);
+  CHECK(flippers[robot::kRearLeft].mode == JointMode::brake);
   kenaf.send("DRIVE {Name RRFlipper} {Order 1} {Value 1000}\r\n");
-  CHECK(kenaf.command().flipper[relay::kRearRight].value == most_radps);
+  CHECK(kenaf.command().flipper[robot::kRearRight].value == most_radps);
 }
 
 TEST_CASE("relative orders start from what the joint does now, what is missing is 0") {
   Kenaf kenaf;
-  const double start_rad = kenaf.truth().flipper_rad[relay::kRearLeft];
+  const double start_rad = kenaf.truth().flipper_rad[robot::kRearLeft];
   kenaf.send("DRIVE {Name RLFlipper} {Order 10} {Value 0.25}\r\n");
-  CHECK(kenaf.command().flipper[relay::kRearLeft].value == Approx(start_rad + 0.25));
+  CHECK(kenaf.command().flipper[robot::kRearLeft].value == Approx(start_rad + 0.25));
   kenaf.send("DRIVE {Name FLFlipper} {Order 10} {Value 0.25}\r\n");  // front: + lowers the tip
-  CHECK(kenaf.command().flipper[relay::kFrontLeft].value == Approx(start_rad - 0.25));
+  CHECK(kenaf.command().flipper[robot::kFrontLeft].value == Approx(start_rad - 0.25));
   kenaf.send("DRIVE {Name RLFlipper} {Order 11} {Value 0.1}\r\n");
-  CHECK(kenaf.command().flipper[relay::kRearLeft].mode == JointMode::speed);
+  CHECK(kenaf.command().flipper[robot::kRearLeft].mode == JointMode::speed);
   kenaf.send("DRIVE {Name RLFlipper} {Order 12} {Value 0.1}\r\n");
-  CHECK(kenaf.command().flipper[relay::kRearLeft].mode == JointMode::torque);
+  CHECK(kenaf.command().flipper[robot::kRearLeft].mode == JointMode::torque);
   kenaf.send("DRIVE {Name RLFlipper}\r\n");
-  CHECK(kenaf.command().flipper[relay::kRearLeft].mode == JointMode::angle);
-  CHECK(kenaf.command().flipper[relay::kRearLeft].value == 0);
+  CHECK(kenaf.command().flipper[robot::kRearLeft].mode == JointMode::angle);
+  CHECK(kenaf.command().flipper[robot::kRearLeft].value == 0);
 }
 
 TEST_CASE("joints and orders that do not exist change nothing") {

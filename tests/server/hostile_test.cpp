@@ -40,7 +40,7 @@ TEST_CASE("lines that are no messages are survived, and a client of nothing but 
   }
   CHECK(talk.session->bad_lines > 5);
   talk.send("DRIVE {Left 1} {Right 1}\r\n");
-  CHECK(talk.command().track_speed_mps[physics::kLeft] > 0);
+  CHECK(talk.command().track_speed_mps[robot::kLeft] > 0);
   for (int i = 0; i < 1100; ++i) talk.send("{\r\n");
   CHECK(talk.session->close);
 }
@@ -68,7 +68,7 @@ TEST_CASE("a line without end is dropped, bounded in memory, and what follows it
   const std::string much(100000, 'x');
   for (int i = 0; i < 50; ++i) talk.send(much);
   talk.send("\r\nDRIVE {Left 1} {Right 1}\r\n");
-  CHECK(talk.command().track_speed_mps[physics::kLeft] > 0);
+  CHECK(talk.command().track_speed_mps[robot::kLeft] > 0);
   CHECK(talk.session->bad_lines == 1);
 }
 

@@ -123,7 +123,7 @@ TEST_CASE("commands back to back, without waiting for the robot, are obeyed in t
   REQUIRE(talk.session->robot);
   CHECK(talk.lines("NFO {StartPoses").size() == 1);
   const double radius_m = talk.session->robot->description->drive.sprocket_radius_m;
-  CHECK(talk.command().track_speed_mps[physics::kLeft] == Approx(radius_m));
+  CHECK(talk.command().track_speed_mps[robot::kLeft] == Approx(radius_m));
 }
 
 TEST_CASE("a line that comes in pieces is one line") {

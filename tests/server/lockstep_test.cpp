@@ -12,7 +12,7 @@ struct Framed : Conversation {
     send(std::string(kPlace) + "CONTROL {Type Session} " + settings + "\r\n");
     REQUIRE(session->robot);
   }
-  double left_mps() { return command().track_speed_mps[physics::kLeft]; }
+  double left_mps() { return command().track_speed_mps[robot::kLeft]; }
   double radius_m() { return session->robot->description->drive.sprocket_radius_m; }
 };
 
@@ -88,10 +88,10 @@ TEST_CASE("flippers and SET keep to their frame too, and are answered when they 
       "MULTIDRIVE {RRFlipper 0.5} {Frame 1}\r\nSET {Type Joint} {Name RLFlipper} {Opcode Angle} {Params 0.5} "
       "{Frame 1}\r\n");
   CHECK(talk.lines("RES").empty());
-  CHECK(talk.command().flipper[relay::kRearRight].value != 0.5);
+  CHECK(talk.command().flipper[robot::kRearRight].value != 0.5);
   REQUIRE(talk.run(0.009));
-  CHECK(talk.command().flipper[relay::kRearRight].value == 0.5);
-  CHECK(talk.command().flipper[relay::kRearLeft].value == 0.5);
+  CHECK(talk.command().flipper[robot::kRearRight].value == 0.5);
+  CHECK(talk.command().flipper[robot::kRearLeft].value == 0.5);
   CHECK(talk.last("RES") == "RES {Time 0.0100} {Type Joint} {Name RLFlipper} {Status OK}");
 }
 
@@ -202,15 +202,15 @@ TEST_CASE("a silent commander's robot stops, flippers hold their angle, and STA 
   REQUIRE(talk.run(0.01));
   CHECK(talk.last("STA").find("{Silent True}") != std::string::npos);
   CHECK(talk.left_mps() == 0);
-  CHECK(talk.command().flipper[relay::kRearRight].value == 0.5);
-  CHECK(talk.command().flipper[relay::kRearLeft].mode == physics::JointMode::brake);
+  CHECK(talk.command().flipper[robot::kRearRight].value == 0.5);
+  CHECK(talk.command().flipper[robot::kRearLeft].mode == robot::JointMode::brake);
   REQUIRE(talk.run(0.2));  // 0.5 s after the last command it stands
   CHECK(std::abs(talk.truth().v_WB_mps.x()) < 0.02);
   talk.send("DRIVE {Left 3}\r\n");
   REQUIRE(talk.run(0.01));
   CHECK(talk.last("STA").find("Silent") == std::string::npos);
   CHECK(talk.left_mps() > 0);
-  CHECK(talk.command().track_speed_mps[physics::kRight] == 0);
+  CHECK(talk.command().track_speed_mps[robot::kRight] == 0);
 }
 
 TEST_CASE("a part of a curve does not bring back the speed that silence took") {
@@ -232,13 +232,13 @@ TEST_CASE("whoever keeps commanding is not stopped, and a plain client never is"
   Conversation plain;
   plain.send(std::string(kPlace) + "DRIVE {Left 3} {Right 3}\r\n");
   REQUIRE(plain.run(5));
-  CHECK(plain.command().track_speed_mps[physics::kLeft] > 0);
+  CHECK(plain.command().track_speed_mps[robot::kLeft] > 0);
 }
 
 TEST_CASE("a frame without a Session's period is no frame") {
   Conversation talk;
   talk.send(std::string(kPlace) + "DRIVE {Left 1} {Right 1} {Frame 5}\r\n");
-  CHECK(talk.command().track_speed_mps[physics::kLeft] > 0);
+  CHECK(talk.command().track_speed_mps[robot::kLeft] > 0);
 }
 
 }  // namespace kenaf::server

@@ -10,8 +10,8 @@ namespace {
 
 constexpr OperatorId kAnna{1}, kBen{2};
 
-physics::RobotCommand tracks(double left_mps, double right_mps) {
-  physics::RobotCommand command = standing_command();
+robot::Command tracks(double left_mps, double right_mps) {
+  robot::Command command = standing_command();
   command.track_speed_mps = {left_mps, right_mps};
   return command;
 }
@@ -23,7 +23,7 @@ struct Desk : Conversation {
     send("INIT {ClassName USARBot.Kenaf} {Name R1} {Location 0,0,0}\r\n");
     robot = session->id;
   }
-  std::string_view say(OperatorId who, const physics::RobotCommand& command) {
+  std::string_view say(OperatorId who, const robot::Command& command) {
     simulation.wall_s = wall_s;
     return drive_by_hand(simulation, robot, who, command);
   }
@@ -32,7 +32,7 @@ struct Desk : Conversation {
     return take_robot(simulation, robot, who);
   }
   // Lets both times pass together, the operator repeating his word ten times a second.
-  void drive(OperatorId who, const physics::RobotCommand& command, double time_s) {
+  void drive(OperatorId who, const robot::Command& command, double time_s) {
     for (double t = 0; t < time_s; t += 0.1) {
       REQUIRE(say(who, command).empty());
       REQUIRE(run(0.1));
@@ -52,7 +52,7 @@ TEST_CASE("rule 1: while an operator holds a robot, his commands count and its c
   desk.drive(kAnna, tracks(0.3, 0.3), 1);
   // 0.3 m/s for 1 s, less what the motors need to get there: some 0.1 s
   CHECK(desk.x() == Approx(0.3).margin(0.05));
-  const double flipper = desk.truth().flipper_rad[physics::kFrontRight];
+  const double flipper = desk.truth().flipper_rad[robot::kFrontRight];
   for (int i = 0; i < 5; ++i) {  // all verbs that command, after each word of the operator
     REQUIRE(desk.say(kAnna, tracks(0.3, 0.3)).empty());
     desk.send(
@@ -62,7 +62,7 @@ TEST_CASE("rule 1: while an operator holds a robot, his commands count and its c
     desk.wall_s += 0.1;
   }
   CHECK(desk.x() == Approx(0.45).margin(0.05));
-  CHECK(desk.truth().flipper_rad[physics::kFrontRight] == Approx(flipper).margin(0.01));
+  CHECK(desk.truth().flipper_rad[robot::kFrontRight] == Approx(flipper).margin(0.01));
 }
 
 TEST_CASE("rule 1: who drives too fast in the moment of taking over stands, and drives by his own word alone") {
@@ -137,15 +137,15 @@ TEST_CASE("rule 2: an operator who says nothing for half a second of wall-clock 
 TEST_CASE("rule 2: a flipper that was turning stays where it is when its operator falls silent") {
   Desk desk;
   REQUIRE(desk.take(kAnna).empty());
-  physics::RobotCommand turn = standing_command();
-  turn.flipper[physics::kFrontLeft] = {physics::JointMode::speed, 1.0};
+  robot::Command turn = standing_command();
+  turn.flipper[robot::kFrontLeft] = {robot::JointMode::speed, 1.0};
   REQUIRE(desk.say(kAnna, turn).empty());
   REQUIRE(desk.run(0.3));
-  const double before = desk.truth().flipper_rad[physics::kFrontLeft];
+  const double before = desk.truth().flipper_rad[robot::kFrontLeft];
   CHECK(before == Approx(1.0 + 0.3).margin(0.05));  // from its start angle, at 1 rad/s
   desk.wall_s += 1;
   REQUIRE(desk.run(1));
-  CHECK(desk.truth().flipper_rad[physics::kFrontLeft] == Approx(before).margin(0.02));
+  CHECK(desk.truth().flipper_rad[robot::kFrontLeft] == Approx(before).margin(0.02));
 }
 
 TEST_CASE("rule 3: let go of, the robot stands until its client says something new") {
@@ -160,8 +160,8 @@ TEST_CASE("rule 3: let go of, the robot stands until its client says something n
   const double before = desk.x();
   desk.send("DRIVE {Left 5}\r\n");  // the other side was told to stand
   REQUIRE(desk.run(0.5));
-  CHECK(desk.truth().track_mps[physics::kLeft] > 0.3);
-  CHECK(std::abs(desk.truth().track_mps[physics::kRight]) < 0.05);
+  CHECK(desk.truth().track_mps[robot::kLeft] > 0.3);
+  CHECK(std::abs(desk.truth().track_mps[robot::kRight]) < 0.05);
   desk.send("DRIVE {Right 5}\r\n");
   REQUIRE(desk.run(0.5));
   CHECK(desk.x() > before);
@@ -177,7 +177,7 @@ TEST_CASE("rule 3: a curve's parts from before are not completed by a part after
   CHECK(desk.command().track_speed_mps == tracks(0, 0).track_speed_mps);
   // 0.1 rad/s clockwise on the spot
   desk.send("DRIVE {RotationalVelocity 0.1}\r\n");
-  CHECK(desk.command().track_speed_mps[physics::kLeft] == -desk.command().track_speed_mps[physics::kRight]);
+  CHECK(desk.command().track_speed_mps[robot::kLeft] == -desk.command().track_speed_mps[robot::kRight]);
 }
 
 TEST_CASE("rule 3: an operator whose connection ends lets go of all that he held") {
@@ -226,15 +226,15 @@ TEST_CASE("a client's robot cannot be removed, and one that left cannot be drive
 TEST_CASE("commands are limited to what the robot can do") {
   Desk desk;
   REQUIRE(desk.take(kAnna).empty());
-  physics::RobotCommand wild = tracks(1e9, -1e9);
-  wild.flipper[physics::kRearLeft] = {physics::JointMode::angle, 1e9};
-  wild.flipper[physics::kRearRight] = {physics::JointMode::speed, -1e9};
+  robot::Command wild = tracks(1e9, -1e9);
+  wild.flipper[robot::kRearLeft] = {robot::JointMode::angle, 1e9};
+  wild.flipper[robot::kRearRight] = {robot::JointMode::speed, -1e9};
   REQUIRE(desk.say(kAnna, wild).empty());
-  const physics::RobotCommand& held = desk.session->hold->command;
-  CHECK(held.track_speed_mps[physics::kLeft] == 0.5);  // robots/kenaf.toml
-  CHECK(held.track_speed_mps[physics::kRight] == -0.5);
-  CHECK(held.flipper[physics::kRearLeft].value == Approx(3.14159265));
-  CHECK(held.flipper[physics::kRearRight].value == -1.5);
+  const robot::Command& held = desk.session->hold->command;
+  CHECK(held.track_speed_mps[robot::kLeft] == 0.5);  // robots/kenaf.toml
+  CHECK(held.track_speed_mps[robot::kRight] == -0.5);
+  CHECK(held.flipper[robot::kRearLeft].value == Approx(3.14159265));
+  CHECK(held.flipper[robot::kRearRight].value == -1.5);
 }
 
 TEST_CASE("eight robots can be placed by hand, not more") {

@@ -16,26 +16,26 @@ TEST_CASE("SET of a joint takes the opcode by name or number, and UT2004 answers
   Conversation talk = with_robot();
   CHECK(talk.answer_to("SET {Type Joint} {Name FRFlipper} {Opcode Angle} {Params -0.4}\r\n") ==
         "RES {Time 0.0000} {Type Joint} {Name FRFlipper} {Status OK}");
-  CHECK(talk.command().flipper[relay::kFrontRight].value == 0.4);
+  CHECK(talk.command().flipper[robot::kFrontRight].value == 0.4);
   talk.send("SET {Type Joint} {Name rrflipper} {Opcode 1} {Params 0.5,0}\r\n");  // the second number is a steer
-  CHECK(talk.command().flipper[relay::kRearRight].mode == physics::JointMode::speed);
-  CHECK(talk.command().flipper[relay::kRearRight].value == 0.5);
+  CHECK(talk.command().flipper[robot::kRearRight].mode == robot::JointMode::speed);
+  CHECK(talk.command().flipper[robot::kRearRight].value == 0.5);
   talk.send("SET {Type Joint} {Name RRFlipper} {Opcode Torque} {Params 2}\r\n");
-  CHECK(talk.command().flipper[relay::kRearRight].mode == physics::JointMode::torque);
+  CHECK(talk.command().flipper[robot::kRearRight].mode == robot::JointMode::torque);
   talk.send("SET {Type Joint} {Name RRFlipper} {Opcode RelAngle} {Params 0.1}\r\n");
-  CHECK(talk.command().flipper[relay::kRearRight].value == Approx(talk.truth().flipper_rad[relay::kRearRight] + 0.1));
+  CHECK(talk.command().flipper[robot::kRearRight].value == Approx(talk.truth().flipper_rad[robot::kRearRight] + 0.1));
 }
 
 TEST_CASE("SET of all joints takes one angle for all, or one for each in the order of STA") {
   Conversation talk = with_robot();
   talk.send("SET {Type Joint} {Name AllJoints} {Opcode Angle} {Params 0.1}\r\n");
-  CHECK(talk.command().flipper[relay::kFrontLeft].value == -0.1);
-  CHECK(talk.command().flipper[relay::kRearLeft].value == 0.1);
+  CHECK(talk.command().flipper[robot::kFrontLeft].value == -0.1);
+  CHECK(talk.command().flipper[robot::kRearLeft].value == 0.1);
   talk.send("SET {Type Joint} {Name AllJoints} {Opcode Angle} {Params -0.1,-0.2,0.3,0.4}\r\n");
-  CHECK(talk.command().flipper[relay::kFrontRight].value == 0.1);
-  CHECK(talk.command().flipper[relay::kFrontLeft].value == 0.2);
-  CHECK(talk.command().flipper[relay::kRearRight].value == 0.3);
-  CHECK(talk.command().flipper[relay::kRearLeft].value == 0.4);
+  CHECK(talk.command().flipper[robot::kFrontRight].value == 0.1);
+  CHECK(talk.command().flipper[robot::kFrontLeft].value == 0.2);
+  CHECK(talk.command().flipper[robot::kRearRight].value == 0.3);
+  CHECK(talk.command().flipper[robot::kRearLeft].value == 0.4);
 }
 
 TEST_CASE("what cannot be set fails with a reason") {
@@ -56,7 +56,7 @@ TEST_CASE("what cannot be set fails with a reason") {
 TEST_CASE("UDK answers no SET") {
   Conversation talk = with_robot(true);
   CHECK(talk.answer_to("SET {Type Joint} {Name FRFlipper} {Opcode Target} {Params -0.4}\r\n").empty());
-  CHECK(talk.command().flipper[relay::kFrontRight].value == 0.4);
+  CHECK(talk.command().flipper[robot::kFrontRight].value == 0.4);
   CHECK(talk.answer_to("SET {Type Nothing}\r\n").empty());
 }
 
@@ -107,8 +107,8 @@ TEST_CASE("cameras keep their zoom, within what they can, until a reset") {
   CHECK(angle_of("Camera") == 1.05);
 }
 
-// In a frame of x forward, y right, z down a turn about z leads from x to y, and one about y from z to x: a pan is positive to the
-// right, a tilt positive up. Inside (REP 103) left and down are positive.
+// In a frame of x forward, y right, z down a turn about z leads from x to y, and one about y from z to x: a pan is
+// positive to the right, a tilt positive up. Inside (REP 103) left and down are positive.
 TEST_CASE("a camera mount turns by MISPKG and by ACT, and MISSTA tells how far") {
   Conversation talk = with_robot();
   const auto inside = [&](std::size_t link) {

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
-#include "protocol/frames.hpp"
+#include "robot/angles.hpp"
 #include "tests/support/usarsim_client.hpp"
 
 namespace kenaf::server {
@@ -56,7 +56,7 @@ std::vector<std::string> drive_by_frames(std::uint16_t port, int frames) {
     REQUIRE(number_in(line, "Frame") == frame);
     REQUIRE(number_in(line, "Late") == 0);
     // closed loop: the right side follows where the robot looks
-    const double yaw = frames::wrap_angle(number_in(path.back(), "Orientation", 2));
+    const double yaw = robot::wrap_angle(number_in(path.back(), "Orientation", 2));
     client.send("DRIVE {Left 3} {Right " + std::to_string(2 + yaw) + "} {Frame " + std::to_string(frame) + "}\r\n");
   }
   return path;

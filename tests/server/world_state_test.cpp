@@ -28,13 +28,13 @@ TEST_CASE("a state holds the clock, and each robot with its posture, its command
   CHECK(robot.name == "R1");
   CHECK(robot.class_name == "USARBot.Kenaf");
   const double speed_mps = 3 * 0.065;  // rad/s of a sprocket of that radius
-  CHECK(robot.command.track_speed_mps[physics::kLeft] == Approx(speed_mps));
-  CHECK(robot.track_mps[physics::kLeft] == Approx(speed_mps).epsilon(0.02));
+  CHECK(robot.command.track_speed_mps[robot::kLeft] == Approx(speed_mps));
+  CHECK(robot.track_mps[robot::kLeft] == Approx(speed_mps).epsilon(0.02));
   // robots/kenaf.toml: 0.3 A idle
-  CHECK(robot.track_a[physics::kLeft] >= 0.3);
+  CHECK(robot.track_a[robot::kLeft] >= 0.3);
   CHECK(robot.X_WB.p.y() == Approx(2).margin(0.01));  // USARSim's y is to the right
   CHECK(robot.X_WB.p.x() > 1.1);
-  CHECK(robot.flipper_rad[physics::kFrontLeft] == Approx(1.0).margin(0.02));
+  CHECK(robot.flipper_rad[robot::kFrontLeft] == Approx(1.0).margin(0.02));
   CHECK(robot.client_silent_s == Approx(1));
   CHECK(robot.has_client);
   CHECK(robot.holder == OperatorId{0});
@@ -43,7 +43,7 @@ TEST_CASE("a state holds the clock, and each robot with its posture, its command
   REQUIRE(take_robot(talk.simulation, robot.id, OperatorId{9}).empty());
   read_state(talk.simulation, state);
   CHECK(state.robots.front().holder == OperatorId{9});
-  CHECK(state.robots.front().command.track_speed_mps[physics::kLeft] == 0);
+  CHECK(state.robots.front().command.track_speed_mps[robot::kLeft] == 0);
 }
 
 TEST_CASE("a state shows the boxes that may move: loose ones of the world, and those that clients made") {

@@ -46,9 +46,9 @@ physics::World driven_world(const Options& options) {
   physics::World world(physics::load_world(options.world, unsupported), {}, 1);
   const physics::Pose X_WB{{options.at[0], options.at[1], 0.1}, physics::rotation_from({0, 0, options.at[2]})};
   const physics::RobotId robot = world.add_robot(physics::load_robot(options.robot), "R1", X_WB);
-  physics::RobotCommand command;
+  robot::Command command;
   command.track_speed_mps.fill(options.track_mps);
-  for (physics::JointCommand& flipper : command.flipper) flipper.value = options.flippers_rad;
+  for (robot::JointCommand& flipper : command.flipper) flipper.value = options.flippers_rad;
   world.set_command(robot, command);
   const auto& packages = world.robot_description(robot).mission_packages;
   const std::size_t links = packages.empty() ? 0 : packages.front().links.size();

@@ -15,7 +15,7 @@ namespace kenaf::draw {
 struct Posture {
   double time_s;
   physics::Pose X_WB;
-  std::array<double, physics::kFlipperCount> flipper_rad;  // tip up positive
+  std::array<double, robot::kFlipperCount> flipper_rad;  // tip up positive
 };
 
 struct DrivenPath {

@@ -46,9 +46,9 @@ std::vector<Belt> belts_of(const physics::RobotDescription& robot, const Posture
   }
   if (!robot.has_flippers()) return belts;
   const physics::FlipperDescription& flipper = robot.flipper.front();
-  for (std::size_t i = 0; i < physics::kFlipperCount; ++i) {
-    const double front = i == relay::kFrontLeft || i == relay::kFrontRight ? 1 : -1;
-    const double left = i == relay::kFrontLeft || i == relay::kRearLeft ? 1 : -1;
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+    const double front = i == robot::kFrontLeft || i == robot::kFrontRight ? 1 : -1;
+    const double left = i == robot::kFrontLeft || i == robot::kRearLeft ? 1 : -1;
     const Vector3d pivot_B = mirrored(flipper.p_BPivot_m, front, left);
     const double angle_rad = posture.flipper_rad[i];
     const Vector3d along_B(front * std::cos(angle_rad), 0, std::sin(angle_rad));

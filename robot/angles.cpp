@@ -1,0 +1,34 @@
+#include "robot/angles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace kenaf::robot {
+
+double wrap_angle(double angle_rad) {
+  const double wrapped_rad = std::remainder(angle_rad, 2 * std::numbers::pi);  // in [-pi, pi]
+  return wrapped_rad <= -std::numbers::pi ? std::numbers::pi : wrapped_rad;
+}
+
+double reachable_angle(double wanted_rad, double present_rad, double min_rad, double max_rad) {
+  constexpr double kTurn_rad = 2 * std::numbers::pi, kRounding_rad = 1e-9;
+  const double wanted = wrap_angle(wanted_rad);
+
+  // of the equal angles within the limits the nearest
+  double best = 0, best_distance = std::numeric_limits<double>::infinity();
+  const double first = wanted + kTurn_rad * std::ceil((min_rad - wanted) / kTurn_rad - kRounding_rad);
+  for (double angle = first; angle <= max_rad + kRounding_rad; angle += kTurn_rad) {
+    if (std::abs(angle - present_rad) < best_distance) {
+      best = std::clamp(angle, min_rad, max_rad);
+      best_distance = std::abs(angle - present_rad);
+    }
+  }
+  if (std::isfinite(best_distance)) return best;
+
+  const double to_min = std::abs(wrap_angle(wanted - min_rad)), to_max = std::abs(wrap_angle(wanted - max_rad));
+  return to_min < to_max ? min_rad : max_rad;
+}
+
+}  // namespace kenaf::robot
