@@ -127,7 +127,7 @@ int main(int argc, char** argv) {
       std::atomic<bool> done{false};
       std::thread listener([&] {
         while (!done) {
-          frame = client.wait_for<kenaf::relay::State>([&](const auto&) { return true; }).frame;
+          frame = client.wait_for<kenaf::relay::State>([&](const auto&) { return true; }).robot.frame;
         }
       });
       const double cpu_before = relay.cpu_s();

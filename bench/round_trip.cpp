@@ -183,14 +183,15 @@ Samples cycles_by_relay(const std::string& bin, int count) {
   Process relay = servers.start_relay();
   RelayClient client(wait_for_port(servers.folder.path() / "relay", relay));
   client.greet(true);
-  std::uint32_t frame = client.wait_for<kenaf::relay::State>([](const auto&) { return true; }).frame;
+  std::uint32_t frame = client.wait_for<kenaf::relay::State>([](const auto&) { return true; }).robot.frame;
   kenaf::relay::Command command{};
   command.session = RelayClient::kSession;
   return timed(count, [&](int i) {
     command.sequence = static_cast<std::uint32_t>(i + 1);
     command.frame = frame;
     client.send(command);
-    frame = client.wait_for<kenaf::relay::State>([&](const auto& state) { return state.frame > frame; }).frame;
+    frame =
+        client.wait_for<kenaf::relay::State>([&](const auto& state) { return state.robot.frame > frame; }).robot.frame;
   });
 }
 

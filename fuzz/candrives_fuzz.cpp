@@ -22,7 +22,7 @@ void check(bool fine) {
   if (!fine) __builtin_trap();
 }
 
-const canbus::RobotBus& robot() {
+const canbus::RobotBus& bus_of_kenaf() {
   static const canbus::RobotBus bus = canbus::load_robot_bus("kenaf");
   return bus;
 }
@@ -58,7 +58,7 @@ class WatchedPlant final : public Plant {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size > 2048) return 0;
   WatchedPlant plant;
-  RobotSlaves slaves(robot(), plant, canopen::Time::zero());
+  RobotSlaves slaves(bus_of_kenaf(), plant, canopen::Time::zero());
   plant.slaves = &slaves;
   canopen::Time now{};
   fuzz::CanInput bytes{{data, size}};

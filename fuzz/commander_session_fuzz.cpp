@@ -97,7 +97,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         session.on_world_ready({0, 0.01, true}, now);
         break;
       case 5: {
-        WorldFrame frame{{}, bytes.next(), (what & 16) != 0, 0.01};
+        WorldFrame frame{{}, false, bytes.next(), (what & 16) != 0, 0.01};
         frame.state.robot_time_s = 0.1 * bytes.next();
         port.newest_frame = std::max(port.newest_frame, frame.number);
         session.on_frame(frame, now);

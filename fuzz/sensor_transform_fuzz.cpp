@@ -18,8 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   while (const auto line = lines.next()) {
     if (usarsim::parse_message(*line, message) != usarsim::ParseError::none) continue;
     if (!transform.take(message)) continue;
-    relay::State state = transform.frame().state;
-    state.session = 1;
+    const relay::State state{1, 0, false, false, transform.frame().state};
     std::array<std::byte, relay::kMaxDatagramBytes> bytes;
     relay::Datagram again;
     if (relay::decode({bytes.data(), relay::encode(state, bytes)}, again) != relay::DecodeError::none) std::abort();

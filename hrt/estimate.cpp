@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "robot/angles.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::hrt {
 namespace {
@@ -25,7 +26,7 @@ constexpr double kStillTravel_m = 0.00025;
 
 }  // namespace
 
-const Estimate& Estimator::update(const relay::State& state) {
+const Estimate& Estimator::update(const robot::State& state) {
   Estimate& now = estimate_;
   const bool first = !started_;
   now.frame = state.frame;
@@ -39,8 +40,8 @@ const Estimate& Estimator::update(const relay::State& state) {
   passed_ns_ += std::min(dt_ns, std::numeric_limits<std::int64_t>::max() - passed_ns_);
   now.dt_s = static_cast<double>(dt_ns) * 1e-9;
   now.t_s = static_cast<double>(passed_ns_) * 1e-9;
-  now.has_encoders = (state.fields & relay::kHasEncoders) != 0;
-  now.has_currents = (state.fields & relay::kHasCurrents) != 0;
+  now.has_encoders = (state.fields & robot::kHasEncoders) != 0;
+  now.has_currents = (state.fields & robot::kHasCurrents) != 0;
   if (now.has_currents) {
     now.max_track_a = std::max(std::abs(state.track_a[robot::kLeft]), std::abs(state.track_a[robot::kRight]));
   }
@@ -60,7 +61,7 @@ const Estimate& Estimator::update(const relay::State& state) {
   const double before_rad = now.heading_rad;
   const double turned_rad =
       (moved_m[robot::kRight] - moved_m[robot::kLeft]) / settings_.track_gauge_m * settings_.turn_efficiency;
-  if ((state.fields & relay::kHasPosture) != 0) {
+  if ((state.fields & robot::kHasPosture) != 0) {
     if (first) {
       raw_heading_rad_ = now.heading_rad = start_heading_rad_ = state.posture_rad[2];
     } else if (!has_posture_ || posture_gap_s_ > kPostureLost_s) {
@@ -87,7 +88,7 @@ const Estimate& Estimator::update(const relay::State& state) {
   // Odometry along the mean heading of the step and, with a posture sensor, up and down the slope.
   const double yaw_rad = now.heading_rad - start_heading_rad_;
   const double mean_rad = first ? yaw_rad : 0.5 * (yaw_rad + now.odometry_yaw_rad);
-  const double slope_rad = (state.fields & relay::kHasPosture) != 0 ? state.posture_rad[1] : 0;
+  const double slope_rad = (state.fields & robot::kHasPosture) != 0 ? state.posture_rad[1] : 0;
   const double advance_m = 0.5 * (moved_m[robot::kLeft] + moved_m[robot::kRight]) * std::cos(slope_rad);
   now.odometry_x_m += advance_m * std::cos(mean_rad);
   now.odometry_y_m += advance_m * std::sin(mean_rad);

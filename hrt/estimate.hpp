@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "protocol/relay_datagram.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::hrt {
 
@@ -29,7 +29,7 @@ struct EstimatorSettings {
 class Estimator {
  public:
   explicit Estimator(const EstimatorSettings& settings) : settings_(settings) {}
-  const Estimate& update(const relay::State& state);
+  const Estimate& update(const robot::State& state);
 
  private:
   EstimatorSettings settings_;

@@ -1,4 +1,5 @@
 #include "hrt/presentation.hpp"
+#include "robot/state.hpp"
 
 #include <fmt/format.h>
 
@@ -7,13 +8,13 @@
 namespace kenaf::hrt {
 namespace {
 
-static_assert(static_cast<int>(HRT_HAS_POSTURE) == static_cast<int>(relay::kHasPosture) &&
-              static_cast<int>(HRT_HAS_ENCODERS) == static_cast<int>(relay::kHasEncoders) &&
-              static_cast<int>(HRT_HAS_FLIPPERS) == static_cast<int>(relay::kHasFlippers) &&
-              static_cast<int>(HRT_HAS_CURRENTS) == static_cast<int>(relay::kHasCurrents) &&
-              static_cast<int>(HRT_HAS_BATTERY) == static_cast<int>(relay::kHasBattery) &&
-              static_cast<int>(HRT_HAS_INERTIAL) == static_cast<int>(relay::kHasInertial) &&
-              static_cast<int>(HRT_HAS_POSE) == static_cast<int>(relay::kHasGroundTruth));
+static_assert(static_cast<int>(HRT_HAS_POSTURE) == static_cast<int>(robot::kHasPosture) &&
+              static_cast<int>(HRT_HAS_ENCODERS) == static_cast<int>(robot::kHasEncoders) &&
+              static_cast<int>(HRT_HAS_FLIPPERS) == static_cast<int>(robot::kHasFlippers) &&
+              static_cast<int>(HRT_HAS_CURRENTS) == static_cast<int>(robot::kHasCurrents) &&
+              static_cast<int>(HRT_HAS_BATTERY) == static_cast<int>(robot::kHasBattery) &&
+              static_cast<int>(HRT_HAS_INERTIAL) == static_cast<int>(robot::kHasInertial) &&
+              static_cast<int>(HRT_HAS_POSE) == static_cast<int>(robot::kHasGroundTruth));
 constexpr std::uint32_t kValidBits = 0x7f;
 
 template <typename From, typename To>
@@ -24,16 +25,15 @@ void scale(const From& from, double factor, To& to) {
 }  // namespace
 
 hrt_state state_from(const Snapshot& snapshot) {
-  const relay::State& measured = snapshot.measured;
+  const robot::State& measured = snapshot.measured;
   hrt_state state{};
   state.size = sizeof state;
   state.valid = measured.fields & kValidBits;
   const auto flag = [](bool on, std::uint32_t bit) { return on ? bit : 0u; };
-  state.activity =
-      flag(snapshot.motion_active, HRT_MOTION_ACTIVE) | flag(snapshot.paused, HRT_PAUSED) |
-      flag(snapshot.stopped_by_silence || (measured.events & relay::kStoppedBySilence) != 0, HRT_STOPPED_BY_SILENCE) |
-      flag(snapshot.recording, HRT_RECORDING) | flag(snapshot.lockstep, HRT_IN_LOCKSTEP) |
-      flag(!snapshot.warning.empty(), HRT_DEGRADED);
+  state.activity = flag(snapshot.motion_active, HRT_MOTION_ACTIVE) | flag(snapshot.paused, HRT_PAUSED) |
+                   flag(snapshot.stopped_by_silence || measured.stopped_by_silence, HRT_STOPPED_BY_SILENCE) |
+                   flag(snapshot.recording, HRT_RECORDING) | flag(snapshot.lockstep, HRT_IN_LOCKSTEP) |
+                   flag(!snapshot.warning.empty(), HRT_DEGRADED);
   state.flippers_commanded = snapshot.commanded.flipper_mask;
   state.cycle = measured.frame;
   state.time_s = measured.robot_time_s;

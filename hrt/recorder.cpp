@@ -9,6 +9,7 @@
 
 #include "hrt/error.hpp"
 #include "hrt/quiet_thread.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::hrt {
 namespace {
@@ -42,31 +43,31 @@ const std::vector<std::string>& record_columns() {
   return columns;
 }
 
-RecordRow record_row(const relay::State& state, const DriveCommand& command, double t_s) {
+RecordRow record_row(const robot::State& state, const DriveCommand& command, double t_s) {
   RecordRow row;
   std::size_t next = 0;
   const auto put = [&](double value) { row[next++] = value; };
   const auto put_all = [&](const auto& values, bool measured) {
     for (const double value : values) put(measured ? value : std::numeric_limits<double>::quiet_NaN());
   };
-  const auto has = [&](relay::StateField field) { return relay::is_new(state.fields, field); };
+  const auto has = [&](robot::StateField field) { return robot::is_new(state.fields, field); };
 
   put(t_s);
   put_all(command.track_speed_mps, true);
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
     put_all(std::array{command.flipper_rad[i]}, (command.flipper_mask >> i & 1) != 0);
   }
-  put_all(state.track_mps, has(relay::kHasEncoders));
-  put_all(state.track_m, has(relay::kHasEncoders));
-  put_all(state.flipper_rad, has(relay::kHasFlippers));
-  put_all(state.track_a, has(relay::kHasCurrents));
-  put_all(state.flipper_a, has(relay::kHasCurrents));
-  put_all(std::array{state.battery_v}, has(relay::kHasBattery));
-  put_all(state.p_WB_m, has(relay::kHasGroundTruth));
-  put_all(state.orientation_rad, has(relay::kHasGroundTruth));
-  put_all(state.gyro_radps, has(relay::kHasInertial));
-  put_all(state.acceleration_mps2, has(relay::kHasInertial));
-  put_all(state.posture_rad, has(relay::kHasPosture));
+  put_all(state.track_mps, has(robot::kHasEncoders));
+  put_all(state.track_m, has(robot::kHasEncoders));
+  put_all(state.flipper_rad, has(robot::kHasFlippers));
+  put_all(state.track_a, has(robot::kHasCurrents));
+  put_all(state.flipper_a, has(robot::kHasCurrents));
+  put_all(std::array{state.battery_v}, has(robot::kHasBattery));
+  put_all(state.p_WB_m, has(robot::kHasGroundTruth));
+  put_all(state.orientation_rad, has(robot::kHasGroundTruth));
+  put_all(state.gyro_radps, has(robot::kHasInertial));
+  put_all(state.acceleration_mps2, has(robot::kHasInertial));
+  put_all(state.posture_rad, has(robot::kHasPosture));
   put(state.robot_time_s);
   put(state.frame);
   put(state.late_commands);
@@ -88,7 +89,7 @@ Recorder::~Recorder() {
   }
 }
 
-void Recorder::add(const relay::State& state, const DriveCommand& command, double t_s) {
+void Recorder::add(const robot::State& state, const DriveCommand& command, double t_s) {
   std::unique_lock lock(mutex_);
   if (!started_) {
     started_ = true;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hrt/transport.hpp"
+#include "robot/state.hpp"
 #include "runs/run_file.hpp"
 
 namespace kenaf::hrt {
@@ -20,7 +21,7 @@ using RecordRow = std::array<double, kRecordColumns>;
 const std::vector<std::string>& record_columns();
 
 // One row: `state` with the command that is in force from its time on. NaN where nothing was measured since the state before.
-RecordRow record_row(const relay::State& state, const DriveCommand& command, double t_s);
+RecordRow record_row(const robot::State& state, const DriveCommand& command, double t_s);
 
 // Thread safety: add() belongs to one thread at a time; finish() comes after the last add().
 class Recorder {
@@ -35,7 +36,7 @@ class Recorder {
 
   // `t_s`: an Estimate's, because the clock of `state` may be put back. Time in the file counts from the first state added. A
   // state no later than the one before is left out.
-  void add(const relay::State& state, const DriveCommand& command, double t_s);
+  void add(const robot::State& state, const DriveCommand& command, double t_s);
 
   // Writes what is queued and closes the file. Throws Error(HRT_E_RECORD): not whole, with the reason; what there is stays in
   // the part file.

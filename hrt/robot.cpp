@@ -9,6 +9,7 @@
 #include "hrt/motion_forward.hpp"
 #include "hrt/motion_turn.hpp"
 #include "hrt/quiet_thread.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::hrt {
 namespace {
@@ -37,7 +38,7 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
       estimator_({limits_.track_gauge_m, config.turn_efficiency}) {
   try {
     connection_ = transport_->open(config_);
-    const std::optional<relay::State> first = transport_->wait_state();
+    const std::optional<robot::State> first = transport_->wait_state();
     if (!first) throw Error(HRT_E_INTERNAL, "the transport was interrupted while it was being opened");
     // The first cycle is known before the caller goes on.
     measured_ = *first;
@@ -85,7 +86,7 @@ void Robot::turn(double angle_rad) {
 
 void Robot::wait_flippers(double tolerance_rad, double timeout_s) {
   std::unique_lock lock = lock_open();
-  if ((measured_.fields & relay::kHasFlippers) == 0) {
+  if ((measured_.fields & robot::kHasFlippers) == 0) {
     throw Error(HRT_E_DEVICE, "hrt_wait_flippers: this robot does not measure its flippers");
   }
   const double deadline_s = estimate_.t_s + timeout_s;
@@ -241,7 +242,7 @@ void Robot::stop() {
 }
 
 bool Robot::flipper_is_off(std::size_t flipper, double tolerance_rad) const {
-  const bool known = (flipper_mask_ >> flipper & 1) != 0 && (measured_.fields & relay::kHasFlippers) != 0;
+  const bool known = (flipper_mask_ >> flipper & 1) != 0 && (measured_.fields & robot::kHasFlippers) != 0;
   return known && std::abs(measured_.flipper_rad[flipper] - flipper_rad_[flipper]) > tolerance_rad;
 }
 
@@ -340,9 +341,9 @@ void Robot::close() {
 
 // ---- The cycle thread ----
 
-void Robot::run(relay::State state) {
+void Robot::run(robot::State state) {
   try {
-    for (std::optional<relay::State> next = state; next; next = transport_->wait_state()) {
+    for (std::optional<robot::State> next = state; next; next = transport_->wait_state()) {
       const std::optional<DriveCommand> command = answer(*next);
       if (!command) return;
       transport_->send(*command);
@@ -362,7 +363,7 @@ void Robot::fail(int code, const std::string& text) {
   end_calls([](const Call&) { return true; }, code, text);
 }
 
-std::optional<DriveCommand> Robot::answer(const relay::State& state) {
+std::optional<DriveCommand> Robot::answer(const robot::State& state) {
   std::unique_lock lock(mutex_);
   if (closing_) return std::nullopt;     // this state was faster than the interrupt
   if (state.frame != estimate_.frame) {  // the first one was taken by the constructor

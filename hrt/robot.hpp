@@ -25,12 +25,13 @@
 #include "hrt/thread_watch.hpp"
 #include "hrt/transport.hpp"
 #include "kenaf/hrt.h"
+#include "robot/state.hpp"
 
 namespace kenaf::hrt {
 
 // Everything that is known, as of one cycle.
 struct Snapshot {
-  relay::State measured{};
+  robot::State measured{};
   Estimate estimate;
   DriveCommand commanded;
   std::uint64_t lost_cycles = 0;
@@ -104,8 +105,8 @@ class Robot {
   void run_call(Call& call, std::unique_lock<std::mutex>& lock);
   void end_calls(const std::function<bool(const Call&)>& which, int code, const std::string& text);
 
-  void run(relay::State state);
-  std::optional<DriveCommand> answer(const relay::State& state);  // nullopt: closed before
+  void run(robot::State state);
+  std::optional<DriveCommand> answer(const robot::State& state);  // nullopt: closed before
   void step_calls();
   void hold(std::unique_lock<std::mutex>& lock);
   void look_at_due();
@@ -129,7 +130,7 @@ class Robot {
   std::condition_variable call_ended_, program_acted_;
   std::optional<Error> failure_;  // link lost or closed: set once
   bool closing_ = false;
-  relay::State measured_{};
+  robot::State measured_{};
   std::chrono::steady_clock::time_point measured_at_;  // when it was taken
   Estimator estimator_;
   Estimate estimate_;

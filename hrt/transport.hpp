@@ -1,5 +1,5 @@
 // What lies between the shared behaviour and a robot: one transport in libkenaf_sim (UDP to the relay), one in
-// libkenaf_real (SocketCAN). SI units and the frames of protocol/relay_datagram.hpp.
+// libkenaf_real (SocketCAN). SI units and the frames of robot/state.hpp.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "kenaf/hrt.h"
-#include "protocol/relay_datagram.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::hrt {
 
@@ -39,7 +39,7 @@ class Transport {
 
   // Waits for the next cycle's state, whose frame is greater than all before; nullopt after interrupt(). Throws
   // Error(HRT_E_LINK) once the link is known to be lost, Error(HRT_E_DEVICE) where a device failed.
-  virtual std::optional<relay::State> wait_state() = 0;
+  virtual std::optional<robot::State> wait_state() = 0;
 
   // Answers the state that wait_state returned last. Delivers it even where packets get lost.
   virtual void send(const DriveCommand& command) = 0;

@@ -15,6 +15,7 @@
 #include "libkenaf_real/drive_targets.hpp"
 #include "libkenaf_real/measured_state.hpp"
 #include "libkenaf_real/power.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::real {
 namespace {
@@ -98,8 +99,8 @@ hrt::Connection CanTransport::open(const hrt_config& config) try {
   throw Error(HRT_E_LINK, error.what());
 }
 
-std::optional<relay::State> CanTransport::wait_state() {
-  std::optional<relay::State> state = measure();
+std::optional<robot::State> CanTransport::wait_state() {
+  std::optional<robot::State> state = measure();
   if (!state) return state;
   Session& s = *session_;
   if (s.before == 0) {  // the opening took beats of its own
@@ -111,7 +112,7 @@ std::optional<relay::State> CanTransport::wait_state() {
   return state;
 }
 
-std::optional<relay::State> CanTransport::measure() try {
+std::optional<robot::State> CanTransport::measure() try {
   Session& s = *session_;
   const std::optional<Beat> beat = s.cycle.wait();
   if (!beat) return std::nullopt;

@@ -11,6 +11,7 @@
 
 #include "canopen/bus.hpp"
 #include "hrt/transport.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::real {
 
@@ -25,7 +26,7 @@ class CanTransport final : public hrt::Transport {
   CanTransport& operator=(const CanTransport&) = delete;
 
   hrt::Connection open(const hrt_config& config) override;
-  std::optional<relay::State> wait_state() override;
+  std::optional<robot::State> wait_state() override;
   void send(const hrt::DriveCommand& command) override;
   void interrupt() override;
   void close() override;
@@ -35,7 +36,7 @@ class CanTransport final : public hrt::Transport {
 
  private:
   struct Session;  // an open robot
-  std::optional<relay::State> measure();  // as wait_state, in the beats and the late orders since SYNC began
+  std::optional<robot::State> measure();  // as wait_state, in the beats and the late orders since SYNC began
   void let_go();  // the robot is lost, and told to stop
 
   OpenBus open_bus_;

@@ -1,4 +1,5 @@
 #include "libkenaf_real/measured_state.hpp"
+#include "robot/state.hpp"
 
 #include <fmt/format.h>
 
@@ -31,14 +32,14 @@ std::int32_t difference(std::int32_t now, std::int32_t before) {
 MeasuredState::MeasuredState(const canbus::RobotBus& bus, const NodeFacts& facts, double period_s)
     : bus_(bus), facts_(facts), period_s_(period_s) {}
 
-relay::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
-  relay::State state{};
+robot::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
+  robot::State state{};
   state.frame = beat.number;
   state.robot_time_s = beat.number * period_s_;
   state.late_commands = cycle.late_orders();
-  state.fields = relay::kHasEncoders | relay::kHasFlippers;
+  state.fields = robot::kHasEncoders | robot::kHasFlippers;
   const bool has_currents = bus_.has_currents && facts_.has_currents;
-  if (has_currents) state.fields |= relay::kHasCurrents;
+  if (has_currents) state.fields |= robot::kHasCurrents;
   const ProcessImage& image = cycle.image();
   const double current_unit = 1e-3;  // CiA 402, 0x6078: thousandths of the rated current
   const auto current_a = [&](std::size_t i) {
@@ -60,7 +61,7 @@ relay::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
   }
   if (const std::optional<double> battery_v = image.battery_v()) {
     state.battery_v = *battery_v;
-    state.fields |= relay::kHasBattery;
+    state.fields |= robot::kHasBattery;
   }
   const std::uint32_t beats = last_beat_ == 0 ? 1 : beat.number - last_beat_;
   add_posture(cycle, beats * period_s_, state);
@@ -68,7 +69,7 @@ relay::State MeasuredState::update(const BusCycle& cycle, const Beat& beat) {
   return state;
 }
 
-void MeasuredState::add_posture(const BusCycle& cycle, double elapsed_s, relay::State& state) {
+void MeasuredState::add_posture(const BusCycle& cycle, double elapsed_s, robot::State& state) {
   warning_.clear();
   if (!bus_.inclinometer || !bus_.gyro) return;
   if (cycle.slope_is_silent() || cycle.gyro_is_silent()) {
@@ -91,7 +92,7 @@ void MeasuredState::add_posture(const BusCycle& cycle, double elapsed_s, relay::
   heading_.update(image.gyro().rate / bus_.gyro->units_per_radps, state.posture_rad[0], state.posture_rad[1], standing,
                   elapsed_s);
   state.posture_rad[2] = heading_.yaw_rad();
-  state.fields |= relay::kHasPosture;
+  state.fields |= robot::kHasPosture;
 }
 
 }  // namespace kenaf::real

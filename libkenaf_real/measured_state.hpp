@@ -10,7 +10,7 @@
 #include "libkenaf_real/bus_cycle.hpp"
 #include "libkenaf_real/commissioning.hpp"
 #include "libkenaf_real/heading.hpp"
-#include "protocol/relay_datagram.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::real {
 
@@ -20,11 +20,11 @@ class MeasuredState {
 
   // For one beat. Without posture (kHasPosture) while inclinometer or gyro are silent or there is none of them; warning()
   // says so. The heading catches up on a short silence with the rate that it finds after it.
-  relay::State update(const BusCycle& cycle, const Beat& beat);
+  robot::State update(const BusCycle& cycle, const Beat& beat);
   const std::string& warning() const { return warning_; }
 
  private:
-  void add_posture(const BusCycle& cycle, double elapsed_s, relay::State& state);
+  void add_posture(const BusCycle& cycle, double elapsed_s, robot::State& state);
 
   const canbus::RobotBus& bus_;
   const NodeFacts facts_;

@@ -135,10 +135,10 @@ hrt::Connection RelayTransport::greet(const relay::Hello& hello) {
                                          no_world ? "; start kenaf-world" : ""));
 }
 
-std::optional<relay::State> RelayTransport::wait_state() {
+std::optional<robot::State> RelayTransport::wait_state() {
   for (;;) {
     while (const std::optional<relay::Datagram> datagram = receive()) {
-      if (std::optional<relay::State> state = take(*datagram)) return state;
+      if (std::optional<robot::State> state = take(*datagram)) return state;
     }
     const Clock::time_point now = Clock::now();
     check_life(now);
@@ -147,7 +147,7 @@ std::optional<relay::State> RelayTransport::wait_state() {
   }
 }
 
-std::optional<relay::State> RelayTransport::take(const relay::Datagram& datagram) {
+std::optional<robot::State> RelayTransport::take(const relay::Datagram& datagram) {
   const Clock::time_point now = Clock::now();
   if (const auto* pong = std::get_if<relay::Pong>(&datagram)) {
     if (pong->session == session_ && pong->id == ping_id_) {
@@ -163,18 +163,18 @@ std::optional<relay::State> RelayTransport::take(const relay::Datagram& datagram
   }
   const auto* state = std::get_if<relay::State>(&datagram);
   if (state == nullptr || state->session != session_) return std::nullopt;
-  if ((state->events & relay::kWorldServerLost) != 0) {
+  if (state->world_server_lost) {
     throw Error(HRT_E_LINK, fmt::format("the relay at {} lost its world server; once it is back, hrt_close() and "
                                         "hrt_kenaf_init() again",
                                         relay_));
   }
-  is_paused_ = (state->events & relay::kWorldPaused) != 0;
+  is_paused_ = state->world_paused;
   if (is_paused_) state_at_ = life_at_ = now;
-  if (state->frame <= frame_) return std::nullopt;
-  frame_ = state->frame;
+  if (state->robot.frame <= frame_) return std::nullopt;
+  frame_ = state->robot.frame;
   state_at_ = life_at_ = now;
   alive_at_ = now + kAliveEvery;
-  return *state;
+  return state->robot;
 }
 
 void RelayTransport::check_life(Clock::time_point now) {

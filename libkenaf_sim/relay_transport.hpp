@@ -24,7 +24,7 @@ class RelayTransport final : public hrt::Transport {
   RelayTransport& operator=(const RelayTransport&) = delete;
 
   hrt::Connection open(const hrt_config& config) override;
-  std::optional<relay::State> wait_state() override;
+  std::optional<robot::State> wait_state() override;
   void send(const hrt::DriveCommand& command) override;
   void keep_alive() override;
   void interrupt() override;
@@ -40,7 +40,7 @@ class RelayTransport final : public hrt::Transport {
   // The next well-formed datagram that waits in the socket.
   std::optional<relay::Datagram> receive();
   // A state that begins a new cycle. Throws where the datagram ends the session.
-  std::optional<relay::State> take(const relay::Datagram& datagram);
+  std::optional<robot::State> take(const relay::Datagram& datagram);
   void transmit(const relay::Datagram& datagram);
   void send_what_is_due(Clock::time_point now);
   void ping(Clock::time_point now);

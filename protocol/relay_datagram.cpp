@@ -19,9 +19,12 @@ constexpr std::size_t kHeaderBytes = 16;
 constexpr std::size_t kLengthOffset = 6;
 
 constexpr std::uint8_t kFlipperMaskBits = (1u << robot::kFlipperCount) - 1;
-constexpr std::uint32_t kEveryField = (kHasGroundTruth << 1) - 1;
-constexpr std::uint32_t kStateFieldBits = kEveryField | held(kEveryField);
-constexpr std::uint32_t kStateEventBits = (kWorldPaused << 1) - 1;
+constexpr std::uint32_t kEveryField = (robot::kHasGroundTruth << 1) - 1;
+constexpr std::uint32_t kStateFieldBits = kEveryField | robot::held(kEveryField);
+
+// What happened, beside what was measured: bits on the wire.
+constexpr std::uint32_t kWorldServerLost = 1u << 0, kStoppedBySilence = 1u << 1, kWorldPaused = 1u << 2;
+constexpr std::uint32_t kStateEventBits = kWorldServerLost | kStoppedBySilence | kWorldPaused;
 
 // Each overload lists the payload of one kind in its order on the wire. The Writer and the Reader walk the same list,
 // so they cannot disagree. The session is part of the header.
@@ -52,23 +55,28 @@ void walk(auto& io, Command& m) {
 }
 
 void walk(auto& io, State& m) {
-  io.integer(m.frame);
+  io.integer(m.robot.frame);
   io.integer(m.acknowledged);
-  io.integer(m.late_commands);
-  io.bits(m.fields, kStateFieldBits);
-  io.bits(m.events, kStateEventBits);
-  io.number(m.robot_time_s);
-  io.numbers(m.posture_rad);
-  io.numbers(m.gyro_radps);
-  io.numbers(m.acceleration_mps2);
-  io.numbers(m.track_m);
-  io.numbers(m.track_mps);
-  io.numbers(m.track_a);
-  io.numbers(m.flipper_rad);
-  io.numbers(m.flipper_a);
-  io.number(m.battery_v);
-  io.numbers(m.p_WB_m);
-  io.numbers(m.orientation_rad);
+  io.integer(m.robot.late_commands);
+  io.bits(m.robot.fields, kStateFieldBits);
+  std::uint32_t events = (m.world_server_lost ? kWorldServerLost : 0) |
+                         (m.robot.stopped_by_silence ? kStoppedBySilence : 0) | (m.world_paused ? kWorldPaused : 0);
+  io.bits(events, kStateEventBits);
+  m.world_server_lost = (events & kWorldServerLost) != 0;
+  m.robot.stopped_by_silence = (events & kStoppedBySilence) != 0;
+  m.world_paused = (events & kWorldPaused) != 0;
+  io.number(m.robot.robot_time_s);
+  io.numbers(m.robot.posture_rad);
+  io.numbers(m.robot.gyro_radps);
+  io.numbers(m.robot.acceleration_mps2);
+  io.numbers(m.robot.track_m);
+  io.numbers(m.robot.track_mps);
+  io.numbers(m.robot.track_a);
+  io.numbers(m.robot.flipper_rad);
+  io.numbers(m.robot.flipper_a);
+  io.number(m.robot.battery_v);
+  io.numbers(m.robot.p_WB_m);
+  io.numbers(m.robot.orientation_rad);
 }
 
 void walk(auto&, Bye&) {}

@@ -2,8 +2,7 @@
 // turn them into bytes and back. docs/relay-protocol.md is the page for people; this header is its contract in code.
 //
 // Frames and units: SI and radians; world W and body B are x forward, y left, z up (REP 103). Angles of a pose are the
-// intrinsic z-y-x angles roll, pitch, yaw; pitch is positive nose down. A flipper angle is 0 straight out along the
-// body and positive with its tip up, for all four flippers.
+// intrinsic z-y-x angles roll, pitch, yaw; pitch is positive nose down. Flippers: robot/parts.hpp.
 //
 // Thread safety: everything here is a value or a pure function. Nothing allocates.
 #pragma once
@@ -16,6 +15,7 @@
 #include <variant>
 
 #include "robot/parts.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::relay {
 
@@ -65,55 +65,13 @@ struct Command {
   std::array<double, robot::kFlipperCount> flipper_rad;
 };
 
-// What a State holds that was measured. A value whose bit is missing is 0 and means nothing.
-enum StateField : std::uint32_t {
-  kHasPosture = 1u << 0,       // posture_rad: the robot's own posture sensor
-  kHasEncoders = 1u << 1,      // track_m, track_mps
-  kHasFlippers = 1u << 2,      // flipper_rad
-  kHasCurrents = 1u << 3,      // track_a, flipper_a
-  kHasBattery = 1u << 4,       // battery_v
-  kHasInertial = 1u << 5,      // gyro_radps, acceleration_mps2
-  kHasGroundTruth = 1u << 6,   // p_WB_m, orientation_rad: only a simulator knows it
-};
-
-// A StateField so many places further up: its sensor said nothing since the State before, and the value is the last one.
-inline constexpr int kHeldShift = 16;
-
-constexpr std::uint32_t held(std::uint32_t fields) {
-  return fields << kHeldShift;
-}
-
-// Known, and not only held.
-constexpr bool is_new(std::uint32_t fields, StateField field) {
-  return (fields & field) != 0 && (fields & held(field)) == 0;
-}
-
-// What happened, beside what was measured.
-enum StateEvent : std::uint32_t {
-  kWorldServerLost = 1u << 0,  // the connection to the world server broke; the session is over
-  kStoppedBySilence = 1u << 1, // the robot was stopped because no Command came within command_timeout_s
-  kWorldPaused = 1u << 2,      // robot time stands still on request of somebody else
-};
-
+// What was measured, and how the session is. stopped_by_silence: no Command came within command_timeout_s.
 struct State {
   std::uint64_t session;
-  std::uint32_t frame;             // starts at 1, one more for each State of the session: a gap is a lost State
   std::uint32_t acknowledged;      // sequence of the newest Command handed to the world server, 0 = none
-  std::uint32_t late_commands;     // Commands of this session that arrived after the frame they were meant for
-  std::uint32_t fields;            // StateField bits, and held() ones
-  std::uint32_t events;            // StateEvent bits
-  double robot_time_s;
-  std::array<double, 3> posture_rad;           // roll, pitch, yaw
-  std::array<double, 3> gyro_radps;            // body frame
-  std::array<double, 3> acceleration_mps2;     // body frame, without gravity's reaction removed: at rest +g on z
-  std::array<double, robot::kTrackCount> track_m;     // travel since the robot was placed
-  std::array<double, robot::kTrackCount> track_mps;
-  std::array<double, robot::kTrackCount> track_a;
-  std::array<double, robot::kFlipperCount> flipper_rad;
-  std::array<double, robot::kFlipperCount> flipper_a;
-  double battery_v;
-  std::array<double, 3> p_WB_m;
-  std::array<double, 3> orientation_rad;       // roll, pitch, yaw
+  bool world_server_lost;          // the connection to the world server broke; the session is over
+  bool world_paused;               // robot time stands still on request of somebody else
+  robot::State robot;
 };
 
 // Ends the session: the robot stops and the relay is free for the next commander. Not answered; sent three times.

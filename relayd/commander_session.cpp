@@ -83,31 +83,29 @@ void CommanderSession::on_world_ready(const WorldReady& ready, TimePoint now) {
 
 void CommanderSession::on_frame(const WorldFrame& frame, TimePoint now) {
   if (phase_ != Phase::active) return;
-  const bool first = state_.frame == 0;
+  const bool first = state_.robot.frame == 0;
   if (first) {
     late_before_ = frame.state.late_commands;
     commanded_s_ = frame.state.robot_time_s;
   }
   // The first frame is 1; should the world count anew, States go on counting. A number that comes again is no new
   // frame: the world tells that it was paused or goes on.
-  if (first || frame.number + frame_offset_ < state_.frame) frame_offset_ = state_.frame + 1 - frame.number;
+  if (first || frame.number + frame_offset_ < state_.robot.frame) frame_offset_ = state_.robot.frame + 1 - frame.number;
 
-  const std::uint32_t acknowledged = state_.acknowledged;
-  state_ = frame.state;
-  state_.session = hello_.session;
-  state_.frame = static_cast<std::uint32_t>(frame.number + frame_offset_);
-  state_.acknowledged = acknowledged;
+  state_.robot = frame.state;
+  state_.world_paused = frame.paused;
+  state_.robot.frame = static_cast<std::uint32_t>(frame.number + frame_offset_);
   world_counts_late_ = frame.numbered;
-  state_.late_commands = late_counted_here_ + (frame.numbered ? frame.state.late_commands - late_before_ : 0);
+  state_.robot.late_commands = late_counted_here_ + (frame.numbered ? frame.state.late_commands - late_before_ : 0);
 
-  commanded_s_ = std::min(commanded_s_, state_.robot_time_s);  // a reset takes robot time back
-  if (!stopped_by_silence_ && state_.robot_time_s - commanded_s_ > hello_.command_timeout_s) {
+  commanded_s_ = std::min(commanded_s_, state_.robot.robot_time_s);  // a reset takes robot time back
+  if (!stopped_by_silence_ && state_.robot.robot_time_s - commanded_s_ > hello_.command_timeout_s) {
     stopped_by_silence_ = true;
     port_.stop_robot();
     spdlog::warn("no command from {} for {} s of robot time: robot stopped", to_text(commander_),
                  hello_.command_timeout_s);
   }
-  if (stopped_by_silence_) state_.events |= relay::kStoppedBySilence;
+  if (stopped_by_silence_) state_.robot.stopped_by_silence = true;
   send_state(now);
 }
 
@@ -133,7 +131,7 @@ void CommanderSession::take(const relay::Command& command, const Address& from, 
     refuse(command.session, from, relay::RefusedReason::bad_request, wrong);
     return;
   }
-  if (command.frame > state_.frame) {
+  if (command.frame > state_.robot.frame) {
     if (const auto held_back = log_future_.allow(now)) {
       spdlog::warn("command {} of {} answers frame {}, which is yet to come: ignored ({} more before)",
                    command.sequence, to_text(from), command.frame, *held_back);
@@ -144,9 +142,9 @@ void CommanderSession::take(const relay::Command& command, const Address& from, 
 }
 
 void CommanderSession::accept(const relay::Command& command) {
-  if (!world_counts_late_ && command.frame < state_.frame) ++late_counted_here_;
+  if (!world_counts_late_ && command.frame < state_.robot.frame) ++late_counted_here_;
   state_.acknowledged = command.sequence;
-  commanded_s_ = state_.robot_time_s;
+  commanded_s_ = state_.robot.robot_time_s;
   stopped_by_silence_ = false;
   port_.drive(command, command.frame == 0 ? std::nullopt : std::optional(command.frame - frame_offset_));
 }
@@ -177,7 +175,7 @@ void CommanderSession::on_world_lost(std::string_view why, TimePoint now) {
   } else if (phase_ == Phase::active) {
     end("lost the world server", now);
     phase_ = Phase::lost;
-    state_.events |= relay::kWorldServerLost;
+    state_.world_server_lost = true;
     send_state(now);
   }
 }
@@ -240,7 +238,7 @@ void CommanderSession::send_welcome() {
 
 void CommanderSession::send_state(TimePoint now) {
   sent_ = now;
-  if (state_.frame != 0 || phase_ == Phase::lost) port_.send(commander_, state_);
+  if (state_.robot.frame != 0 || phase_ == Phase::lost) port_.send(commander_, state_);
 }
 
 }  // namespace kenaf::relayd

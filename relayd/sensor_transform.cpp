@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "protocol/frames.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::relayd {
 
@@ -63,31 +64,31 @@ bool SensorTransform::take(const MessageView& message) {
   return false;
 }
 
-void SensorTransform::note(relay::StateField field) {
+void SensorTransform::note(robot::StateField field) {
   known_fields_ |= field;
   new_fields_ |= field;
 }
 
 void SensorTransform::take_sensor(const MessageView& message) {
-  relay::State& state = frame_.state;
+  robot::State& state = frame_.state;
   Vector3 v;
   if (is_type(message, "Encoder")) {
     take_ticks(message);
   } else if (is_type(message, "INS")) {
     if (!read(message, "Orientation", v)) return;
     state.posture_rad = frames::rep103_angles_from_usarsim(v);
-    note(relay::kHasPosture);
+    note(robot::kHasPosture);
     has_ins_ = true;
   } else if (is_type(message, "IMU")) {
     if (!has_ins_ && read(message, "Rotation", v)) {
       state.posture_rad = frames::rep103_angles_from_usarsim(v);
-      note(relay::kHasPosture);
+      note(robot::kHasPosture);
     }
     Vector3 acceleration;
     if (!read(message, "AngularVel", v) || !read(message, "XYZAcceleration", acceleration)) return;
     state.gyro_radps = frames::rep103_vector_from_usarsim(v);
     state.acceleration_mps2 = frames::rep103_vector_from_usarsim(acceleration);
-    note(relay::kHasInertial);
+    note(robot::kHasInertial);
   } else if (is_type(message, "Tachometer")) {
     // A robot with more wheels lists them in an order only it knows.
     std::array<double, robot::kTrackCount> spin_radps;
@@ -98,18 +99,18 @@ void SensorTransform::take_sensor(const MessageView& message) {
     if (read(message, "TrackCurrent", track_a) && read(message, "FlipperCurrent", flipper_a)) {
       state.track_a = track_a;
       state.flipper_a = flipper_a;
-      note(relay::kHasCurrents);
+      note(robot::kHasCurrents);
     }
     if (const auto voltage = read(message, "BatteryVoltage")) {
       state.battery_v = *voltage;
-      note(relay::kHasBattery);
+      note(robot::kHasBattery);
     }
   } else if (is_type(message, "GroundTruth")) {
     Vector3 angles;
     if (!read(message, "Location", v) || !read(message, "Orientation", angles)) return;
     state.p_WB_m = frames::rep103_vector_from_usarsim(v);
     state.orientation_rad = frames::rep103_angles_from_usarsim(angles);
-    note(relay::kHasGroundTruth);
+    note(robot::kHasGroundTruth);
   }
 }
 
@@ -140,18 +141,18 @@ void SensorTransform::take_tick(std::string_view name, std::string_view ticks) {
 bool SensorTransform::take_status(const MessageView& message) {
   const auto time = read(message, "Time");
   if (!time) return false;
-  relay::State& state = frame_.state;
+  robot::State& state = frame_.state;
   frame_.interval_s = frame_.number == 0 ? 0 : *time - state.robot_time_s;
   state.robot_time_s = *time;
   const auto number = read(message, "Frame");
   // The world tells that it was paused, or goes on, by another STA of the same frame: what was new in that still is.
   if (number && std::llround(*number) == frame_.number)
-    new_fields_ |= known_fields_ & ~(state.fields >> relay::kHeldShift);
+    new_fields_ |= known_fields_ & ~(state.fields >> robot::kHeldShift);
   frame_.numbered = number.has_value();
   frame_.number = number ? std::llround(*number) : frame_.number + 1;
   state.late_commands = static_cast<std::uint32_t>(std::clamp(read(message, "Late").value_or(0), 0.0, 4e9));
-  state.events = (is_true(message, "Silent") ? relay::kStoppedBySilence : 0u) |
-                 (is_true(message, "Paused") ? relay::kWorldPaused : 0u);
+  state.stopped_by_silence = is_true(message, "Silent");
+  frame_.paused = is_true(message, "Paused");
 
   std::array<double, robot::kFlipperCount> joint_rad;
   bool all_flippers = true;
@@ -162,10 +163,10 @@ bool SensorTransform::take_status(const MessageView& message) {
     for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
       state.flipper_rad[i] = frames::tip_up_from_usarsim_flipper(static_cast<robot::Flipper>(i), joint_rad[i]);
     }
-    note(relay::kHasFlippers);
+    note(robot::kHasFlippers);
   }
   finish_tracks();
-  state.fields = known_fields_ | relay::held(known_fields_ & ~new_fields_);
+  state.fields = known_fields_ | robot::held(known_fields_ & ~new_fields_);
   new_fields_ = 0;
   return true;
 }
@@ -175,8 +176,8 @@ void SensorTransform::finish_tracks() {
   ticks_interval_s_ += frame_.interval_s;
   const bool has_new_ticks = std::exchange(has_new_ticks_, false);
   if (!ticks_[robot::kLeft] || !ticks_[robot::kRight]) return;
-  relay::State& state = frame_.state;
-  const bool first = (known_fields_ & relay::kHasEncoders) == 0;
+  robot::State& state = frame_.state;
+  const bool first = (known_fields_ & robot::kHasEncoders) == 0;
   const double wheel_radius_m = wheel_radius_m_.value_or(kDefaultWheelRadius_m);
   for (std::size_t i = 0; i < robot::kTrackCount; ++i) {
     state.track_m[i] = *ticks_[i] * resolution_rad_ * wheel_radius_m;
@@ -189,7 +190,7 @@ void SensorTransform::finish_tracks() {
   if (!has_new_ticks) return;
   earlier_track_m_ = state.track_m;
   ticks_interval_s_ = 0;
-  note(relay::kHasEncoders);
+  note(robot::kHasEncoders);
 }
 
 }  // namespace kenaf::relayd

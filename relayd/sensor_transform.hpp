@@ -17,14 +17,15 @@
 #include <optional>
 #include <string_view>
 
-#include "protocol/relay_datagram.hpp"
 #include "protocol/usarsim_message.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::relayd {
 
 // Everything the world told with one STA and before it.
 struct WorldFrame {
-  relay::State state{};     // session, frame and acknowledged are left 0
+  robot::State state{};     // its frame is left 0
+  bool paused = false;      // robot time stands still on request of somebody else
   std::int64_t number = 0;  // STA {Frame n}; from a plain server the count of STAs
   bool numbered = false;    // by the server
   double interval_s = 0;    // robot time since the STA before, 0 at the first
@@ -44,7 +45,7 @@ class SensorTransform {
   std::optional<double> wheel_radius_m() const { return wheel_radius_m_; }
 
  private:
-  void note(relay::StateField field);
+  void note(robot::StateField field);
   void take_sensor(const usarsim::MessageView& message);
   void take_ticks(const usarsim::MessageView& message);
   void take_tick(std::string_view name, std::string_view ticks);

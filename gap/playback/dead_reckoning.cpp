@@ -7,6 +7,7 @@
 
 #include "gap/playback/columns_in_time.hpp"
 #include "hrt/estimate.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::gap {
 namespace {
@@ -57,16 +58,16 @@ std::optional<ReckonedPath> reckon(const runs::Run& run, const physics::RobotDes
   hrt::Estimator estimator({robot.track_gauge_m(), 1});
   ReckonedPath path;
   for (std::size_t i = 0; i < time.size(); ++i) {
-    relay::State state{};
+    robot::State state{};
     state.frame = static_cast<std::uint32_t>(i + 1);
     state.robot_time_s = since_start_s[i];
-    state.fields = relay::kHasEncoders;
+    state.fields = robot::kHasEncoders;
     state.track_m = {travel[0][i], travel[1][i]};
     if (const auto& heading_rad = angle_rad[2]; !heading_rad.empty() && !std::isnan(heading_rad[i])) {
       const auto or_level = [i](std::span<const double> angle) {
         return angle.empty() || std::isnan(angle[i]) ? 0 : angle[i];
       };
-      state.fields |= relay::kHasPosture;
+      state.fields |= robot::kHasPosture;
       state.posture_rad = {or_level(angle_rad[0]), or_level(angle_rad[1]), heading_rad[i]};
     }
     const hrt::Estimate& now = estimator.update(state);

@@ -6,6 +6,7 @@
 
 #include "hrt/estimate.hpp"
 #include "robot/angles.hpp"
+#include "robot/state.hpp"
 
 using namespace kenaf;
 using hrt::Estimate;
@@ -13,11 +14,11 @@ using hrt::Estimator;
 
 namespace {
 
-relay::State state_at(std::uint32_t frame, double left_m, double right_m) {
-  relay::State state{};
+robot::State state_at(std::uint32_t frame, double left_m, double right_m) {
+  robot::State state{};
   state.frame = frame;
   state.robot_time_s = 0.01 * frame;
-  state.fields = relay::kHasEncoders;
+  state.fields = robot::kHasEncoders;
   state.track_m = {left_m, right_m};
   return state;
 }
@@ -43,8 +44,8 @@ TEST_CASE("posture's yaw is unwrapped, and odometry begins at 0 whatever the yaw
   Estimator estimator({0.2, 1});
   Estimate last;
   for (std::uint32_t i = 0; i <= 2000; ++i) {
-    relay::State state = state_at(1 + i, 0, 0);
-    state.fields |= relay::kHasPosture;
+    robot::State state = state_at(1 + i, 0, 0);
+    state.fields |= robot::kHasPosture;
     // 3 rad, then two and a half turns to the right at 0.9 degrees a cycle.
     state.posture_rad[2] = robot::wrap_angle(3 - std::min(5 * std::numbers::pi, i * 0.0157));
     last = estimator.update(state);
@@ -57,8 +58,8 @@ TEST_CASE("up a slope the odometry counts the ground plan") {
   Estimator estimator({0.2, 1});
   Estimate last;
   for (std::uint32_t i = 0; i <= 100; ++i) {
-    relay::State state = state_at(1 + i, 0.01 * i, 0.01 * i);
-    state.fields |= relay::kHasPosture;
+    robot::State state = state_at(1 + i, 0.01 * i, 0.01 * i);
+    state.fields |= robot::kHasPosture;
     state.posture_rad[1] = -std::numbers::pi / 3;  // nose up by 60 degrees
     last = estimator.update(state);
   }
@@ -67,12 +68,12 @@ TEST_CASE("up a slope the odometry counts the ground plan") {
 
 TEST_CASE("a sensor that begins late or pauses makes nothing jump") {
   Estimator estimator({0.2, 1});
-  relay::State nothing{};
+  robot::State nothing{};
   nothing.frame = 1;
   nothing.robot_time_s = 0.01;
   (void)estimator.update(nothing);
-  relay::State late = state_at(2, 5, 5);
-  late.fields |= relay::kHasPosture;
+  robot::State late = state_at(2, 5, 5);
+  late.fields |= robot::kHasPosture;
   late.posture_rad[2] = 1;
   Estimate now = estimator.update(late);
   CHECK(now.odometry_x_m == 0);
@@ -83,7 +84,7 @@ TEST_CASE("a sensor that begins late or pauses makes nothing jump") {
   CHECK(now.heading_rad == 0);
   for (std::uint32_t i = 0; i < 100; ++i) {
     late = state_at(4 + i, 5.1, 5.3);
-    late.fields |= relay::kHasPosture;
+    late.fields |= robot::kHasPosture;
     late.posture_rad[2] = 1.2;
     now = estimator.update(late);
   }
@@ -92,8 +93,8 @@ TEST_CASE("a sensor that begins late or pauses makes nothing jump") {
 
 TEST_CASE("a posture sensor slower than the cycle is followed as fast as one that is not") {
   Estimator estimator({0.2, 1});
-  relay::State state = state_at(1, 0, 0);
-  state.fields |= relay::kHasPosture;
+  robot::State state = state_at(1, 0, 0);
+  state.fields |= robot::kHasPosture;
   (void)estimator.update(state);
   for (std::uint32_t i = 2; i <= 10; ++i) (void)estimator.update(state_at(i, 0, 0));
   state.frame = 11;
@@ -107,8 +108,8 @@ TEST_CASE(
     "a posture sensor that is lost leaves the heading to the encoders, and one that comes back makes it not jump") {
   Estimator estimator({0.2, 1});
   const auto state = [](std::uint32_t cycle, double right_m, std::optional<double> yaw_rad) {
-    relay::State out = state_at(cycle, 0, right_m);
-    if (yaw_rad) out.fields |= relay::kHasPosture;
+    robot::State out = state_at(cycle, 0, right_m);
+    if (yaw_rad) out.fields |= robot::kHasPosture;
     out.posture_rad[2] = yaw_rad.value_or(0);
     return out;
   };
@@ -135,7 +136,7 @@ TEST_CASE("time goes on where the robot's clock is put back, and the same to the
     now = estimator.update(state_at(i, 0, 0));
     REQUIRE(now.t_s == static_cast<double>(10'000'000 * (i - 1)) * 1e-9);
   }
-  relay::State state = state_at(101, 0, 0);
+  robot::State state = state_at(101, 0, 0);
   state.robot_time_s = 0;  // a world's Reset: how long this cycle lasted is not known
   now = estimator.update(state);
   CHECK(now.dt_s == 0);

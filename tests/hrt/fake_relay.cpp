@@ -103,6 +103,14 @@ void FakeRelay::run() {
   }
 }
 
+relay::State FakeRelay::state() const {
+  return {.session = session_,
+          .acknowledged = acknowledged_,
+          .world_server_lost = false,
+          .world_paused = false,
+          .robot = plant_.state};
+}
+
 std::vector<relay::Datagram> FakeRelay::answers_to(const relay::Datagram& datagram) {
   const auto refused = [&](std::uint64_t session, relay::RefusedReason reason) {
     relay::Refused answer{};
@@ -116,10 +124,9 @@ std::vector<relay::Datagram> FakeRelay::answers_to(const relay::Datagram& datagr
     hello_ = *hello;
     if (behaviour_.refuse && behaviour_.refuse_times-- > 0) return {refused(hello->session, *behaviour_.refuse)};
     session_ = hello->session;
-    plant_.state.session = session_;
     const relay::Welcome welcome{session_, plant_.state.robot_time_s, behaviour_.plant.period_s, true};
     if (behaviour_.first_state_lost || behaviour_.no_state) return {welcome};
-    return {welcome, plant_.state};
+    return {welcome, state()};
   }
   if (const auto* ping = std::get_if<relay::Ping>(&datagram)) {
     ++pings_;
@@ -132,25 +139,25 @@ std::vector<relay::Datagram> FakeRelay::answers_to(const relay::Datagram& datagr
   }
   const auto* command = std::get_if<relay::Command>(&datagram);
   if (command == nullptr || command->session != session_) return {};
-  if (command->sequence == plant_.state.acknowledged) ++repeats_;
+  if (command->sequence == acknowledged_) ++repeats_;
   const std::uint32_t next = plant_.state.frame + 1;
   const auto happens_at = [&](std::uint32_t frame) { return frame != 0 && next >= frame; };
   if (happens_at(behaviour_.silent_from_frame) || behaviour_.no_state) return {};
-  if (command->frame != plant_.state.frame || happens_at(behaviour_.frozen_from_frame)) return {plant_.state};
+  if (command->frame != plant_.state.frame || happens_at(behaviour_.frozen_from_frame)) return {state()};
   if (happens_at(behaviour_.forgets_at_frame)) return {refused(session_, relay::RefusedReason::unknown_session)};
-  relay::State event = plant_.state;
+  relay::State event = state();
   if (happens_at(behaviour_.world_lost_at_frame)) {
-    event.events = relay::kWorldServerLost;
+    event.world_server_lost = true;
     return {event};
   }
   if (happens_at(behaviour_.pause_at_frame) && behaviour_.pause_states-- > 0) {
-    event.events = relay::kWorldPaused;
+    event.world_paused = true;
     return {event};
   }
   commands_.push_back(*command);
   plant_.advance({command->track_speed_mps, command->flipper_mask, command->flipper_rad});
-  plant_.state.acknowledged = command->sequence;
-  return {plant_.state};
+  acknowledged_ = command->sequence;
+  return {state()};
 }
 
 BadNetwork::BadNetwork(std::uint16_t relay_port, const Quality& quality) : quality_(quality) {

@@ -46,6 +46,7 @@ class FakeRelay {
 
  private:
   void run();
+  relay::State state() const;
   std::vector<relay::Datagram> answers_to(const relay::Datagram& datagram);
 
   Behaviour behaviour_;
@@ -54,6 +55,7 @@ class FakeRelay {
   mutable std::mutex mutex_;
   Plant plant_;
   std::uint64_t session_ = 0;
+  std::uint32_t acknowledged_ = 0;
   std::vector<relay::Command> commands_;
   std::optional<relay::Hello> hello_;
   std::atomic<int> byes_ = 0, hellos_ = 0, pings_ = 0, repeats_ = 0;

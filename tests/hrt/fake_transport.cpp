@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "hrt/error.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::hrt {
 namespace {
@@ -47,7 +48,7 @@ Connection FakeTransport::open(const hrt_config&) {
   return {robot_->plant.settings.period_s, robot_->lockstep};
 }
 
-std::optional<relay::State> FakeTransport::wait_state() {
+std::optional<robot::State> FakeTransport::wait_state() {
   std::unique_lock lock(robot_->mutex);
   if (!first_ && !answered_) {
     const auto may_go_on = [&] { return robot_->interrupted || answered_; };

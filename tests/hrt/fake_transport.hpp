@@ -12,6 +12,7 @@
 
 #include "hrt/camera.hpp"
 #include "hrt/transport.hpp"
+#include "robot/state.hpp"
 #include "tests/hrt/plant.hpp"
 
 namespace kenaf::hrt::test {
@@ -38,7 +39,7 @@ class FakeTransport final : public Transport {
  public:
   explicit FakeTransport(std::shared_ptr<FakeRobot> robot) : robot_(std::move(robot)) {}
   Connection open(const hrt_config& config) override;
-  std::optional<relay::State> wait_state() override;
+  std::optional<robot::State> wait_state() override;
   void send(const DriveCommand& command) override;
   void interrupt() override;
   void close() override;

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "hrt/transport.hpp"
-#include "protocol/relay_datagram.hpp"
 #include "robot/angles.hpp"
+#include "robot/state.hpp"
 
 namespace kenaf::hrt::test {
 
@@ -39,7 +39,7 @@ class Plant {
 
   // The state of the first cycle is there at once; each call computes the next one. The answer to a cycle takes effect
   // when the next one begins, as docs/world-server-protocol.md has it.
-  const relay::State& advance(const DriveCommand& answer) {
+  const robot::State& advance(const DriveCommand& answer) {
     const DriveCommand command = std::exchange(in_force_, answer);
     const double dt = settings.period_s;
     std::array<double, 2> ground_mps{};
@@ -75,12 +75,12 @@ class Plant {
   std::array<double, 2> track_m{}, track_mps{};
   std::array<double, 4> flipper_rad{};
   bool pushing = false;
-  relay::State state{};
+  robot::State state{};
 
  private:
   void observe() {
-    state.fields = relay::kHasEncoders | relay::kHasFlippers | relay::kHasCurrents | relay::kHasBattery |
-                   relay::kHasInertial | relay::kHasGroundTruth | (settings.has_posture ? relay::kHasPosture : 0u);
+    state.fields = robot::kHasEncoders | robot::kHasFlippers | robot::kHasCurrents | robot::kHasBattery |
+                   robot::kHasInertial | robot::kHasGroundTruth | (settings.has_posture ? robot::kHasPosture : 0u);
     state.frame = std::max(state.frame, 1u);
     state.robot_time_s = state.frame * settings.period_s;
     state.posture_rad = {};

@@ -20,6 +20,7 @@
 
 #include "hrt/error.hpp"
 #include "kenaf/hrt.h"
+#include "robot/state.hpp"
 #include "runs/run_file.hpp"
 #include "tests/hrt/fake_transport.hpp"
 #include "tests/support/process.hpp"
@@ -73,8 +74,8 @@ class StalledDisk {
   std::string bytes_;
 };
 
-relay::State state_of(std::uint32_t frame) {
-  relay::State state{};
+robot::State state_of(std::uint32_t frame) {
+  robot::State state{};
   state.frame = frame;
   state.robot_time_s = 0.01 * frame;
   return state;
@@ -246,10 +247,10 @@ TEST_CASE("R3 a recording that gets no row leaves the file of its name as it is"
 }
 
 TEST_CASE("R5 a value that is only held is not recorded as measured") {
-  relay::State state = state_of(7);
+  robot::State state = state_of(7);
   state.posture_rad = {0.1, 0.2, 0.3};
   state.battery_v = 24;
-  state.fields = relay::kHasPosture | relay::kHasBattery | relay::held(relay::kHasPosture);
+  state.fields = robot::kHasPosture | robot::kHasBattery | robot::held(robot::kHasPosture);
   const hrt::RecordRow row = hrt::record_row(state, DriveCommand{}, 0);
   const auto cell = [&](const char* name) {
     const auto& columns = hrt::record_columns();

@@ -71,23 +71,24 @@ TEST_CASE("Command is 73 bytes") {
 TEST_CASE("State is 284 bytes") {
   State state{};
   state.session = kSessionValue;
-  state.frame = 1;
+  state.robot.frame = 1;
   state.acknowledged = 2;
-  state.late_commands = 3;
-  state.fields = kHasPosture | kHasGroundTruth | held(kHasPosture);
-  state.events = kWorldPaused;
-  state.robot_time_s = 1;
-  state.posture_rad = {2, 0, 0};
-  state.gyro_radps = {0, 2, 0};
-  state.acceleration_mps2 = {0, 0, 2};
-  state.track_m = {1, 2};
-  state.track_mps = {2, 1};
-  state.track_a = {0.5, 1};
-  state.flipper_rad = {1, 2, -1, 0.5};
-  state.flipper_a = {0.5, -1, 2, 1};
-  state.battery_v = 2;
-  state.p_WB_m = {1, -1, 0.5};
-  state.orientation_rad = {0.5, 1, -1};
+  state.robot.late_commands = 3;
+  state.robot.fields =
+      kenaf::robot::kHasPosture | kenaf::robot::kHasGroundTruth | kenaf::robot::held(kenaf::robot::kHasPosture);
+  state.world_paused = true;
+  state.robot.robot_time_s = 1;
+  state.robot.posture_rad = {2, 0, 0};
+  state.robot.gyro_radps = {0, 2, 0};
+  state.robot.acceleration_mps2 = {0, 0, 2};
+  state.robot.track_m = {1, 2};
+  state.robot.track_mps = {2, 1};
+  state.robot.track_a = {0.5, 1};
+  state.robot.flipper_rad = {1, 2, -1, 0.5};
+  state.robot.flipper_a = {0.5, -1, 2, 1};
+  state.robot.battery_v = 2;
+  state.robot.p_WB_m = {1, -1, 0.5};
+  state.robot.orientation_rad = {0.5, 1, -1};
   check_bytes(state, "4b 4e 41 46 01 05 1c 01 " + kSession +
                          "01 00 00 00 02 00 00 00 03 00 00 00 41 00 01 00 04 00 00 00 " + kOne + kTwo + kZero + kZero +
                          kZero + kTwo + kZero + kZero + kZero + kTwo + kOne + kTwo + kTwo + kOne + kHalf + kOne + kOne +

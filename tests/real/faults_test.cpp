@@ -7,6 +7,7 @@
 
 #include "hrt/error.hpp"
 #include "hrt/estimate.hpp"
+#include "robot/state.hpp"
 #include "tests/real/robot_on_bus.hpp"
 
 using namespace kenaf;
@@ -141,15 +142,15 @@ TEST_CASE("an inclinometer or a gyro that falls silent takes the posture away, s
     robot.open();
     robot.run(10, drive_at(0.2, 0.2));
     robot.wire.inject({FaultKind::silent, node});
-    relay::State state = robot.run(5, drive_at(0.2, 0.2));
-    CHECK((state.fields & relay::kHasPosture) != 0);  // 0.1 s
+    robot::State state = robot.run(5, drive_at(0.2, 0.2));
+    CHECK((state.fields & robot::kHasPosture) != 0);  // 0.1 s
     state = robot.run(10, drive_at(0.2, 0.2));
-    CHECK((state.fields & relay::kHasPosture) == 0);
+    CHECK((state.fields & robot::kHasPosture) == 0);
     CHECK_THAT(robot.transport.warning(), Catch::StartsWith(name + " is silent"));
     CHECK(state.track_mps[0] == Approx(0.2).margin(1e-3));
     robot.wire.inject({FaultKind::healed, node});
     state = robot.run(5, drive_at(0.2, 0.2));
-    CHECK((state.fields & relay::kHasPosture) != 0);
+    CHECK((state.fields & robot::kHasPosture) != 0);
     CHECK(robot.transport.warning().empty());
   }
 }
@@ -168,7 +169,7 @@ TEST_CASE("a turn that is made while a sensor of the posture is silent counts, a
       hrt::Estimator estimator({0.2, 1});
       hrt::Estimate now;
       const auto turn = [&](int cycles) {
-        relay::State state{};
+        robot::State state{};
         for (int i = 0; i < cycles; ++i) {
           state = robot.run(1, drive_at(-0.05, 0.05));  // 0.5 rad/s at a gauge of 0.2 m
           now = estimator.update(state);
@@ -179,9 +180,9 @@ TEST_CASE("a turn that is made while a sensor of the posture is silent counts, a
       turn(100);
       const double before_rad = now.heading_rad;
       robot.wire.inject({FaultKind::silent, node});
-      CHECK((turn(one.silent_cycles).fields & relay::kHasPosture) == 0);
+      CHECK((turn(one.silent_cycles).fields & robot::kHasPosture) == 0);
       robot.wire.inject({FaultKind::healed, node});
-      CHECK((turn(150 - one.silent_cycles).fields & relay::kHasPosture) != 0);
+      CHECK((turn(150 - one.silent_cycles).fields & robot::kHasPosture) != 0);
       CAPTURE(one.silent_cycles, node);
       CHECK(now.heading_rad - before_rad == Approx(0.5 * 1.5).margin(one.margin_rad));
     }

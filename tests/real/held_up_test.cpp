@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "hrt/error.hpp"
+#include "robot/state.hpp"
 #include "tests/real/changed_robot.hpp"
 #include "tests/real/robot_on_bus.hpp"
 
@@ -86,12 +87,12 @@ TEST_CASE("what was missed in a short hold-up is not made up for in one period")
     hrt::DriveCommand command = drive_at(0.05, 0.05);
     command.flipper_mask = 1;
     command.flipper_rad[0] = 1;
-    const relay::State before = robot.run(30, command);  // full speed after 10: 1.5 rad/s / 15 rad/s^2 = 0.1 s
+    const robot::State before = robot.run(30, command);  // full speed after 10: 1.5 rad/s / 15 rad/s^2 = 0.1 s
     command.track_speed_mps = {0.4, 0.4};
     if (has_state) (void)robot.transport.wait_state();
     robot.wire.hold_up_until(robot.wire.now() + milliseconds(60));
     if (has_state) robot.transport.send(command);
-    const relay::State after = robot.run(10, command);
+    const robot::State after = robot.run(10, command);
     // Full speed of the flipper is 0.015 rad a period, and the tracks' 5 m/s^2 are 0.05 m/s. An answer that was late
     // and the one after it may be in one period.
     const canbus::DriveUnits &flipper = robot.description.drives[2].units, &track = robot.description.drives[0].units;

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "hrt/error.hpp"
+#include "robot/state.hpp"
 #include "tests/real/changed_robot.hpp"
 #include "tests/real/robot_on_bus.hpp"
 
@@ -32,14 +33,14 @@ TEST_CASE("a robot whose drives do not measure voltage or current opens, and say
     std::string keys;
     std::uint32_t lacks;
   };
-  for (const Case& one : {Case{"battery = false", relay::kHasBattery}, Case{"currents = false", relay::kHasCurrents},
-                          Case{"battery = false\ncurrents = false", relay::kHasBattery | relay::kHasCurrents}}) {
+  for (const Case& one : {Case{"battery = false", robot::kHasBattery}, Case{"currents = false", robot::kHasCurrents},
+                          Case{"battery = false\ncurrents = false", robot::kHasBattery | robot::kHasCurrents}}) {
     const ChangedRobot changed = robot_with(one.keys);
     RobotOnBus robot(changed.path());  // its simulated drives lack the objects, too
     robot.open();
-    const relay::State state = robot.run(50, drive_at(0.2, 0.2));
+    const robot::State state = robot.run(50, drive_at(0.2, 0.2));
     const std::uint32_t all =
-        relay::kHasPosture | relay::kHasEncoders | relay::kHasFlippers | relay::kHasCurrents | relay::kHasBattery;
+        robot::kHasPosture | robot::kHasEncoders | robot::kHasFlippers | robot::kHasCurrents | robot::kHasBattery;
     CAPTURE(one.keys);
     CHECK((state.fields & all) == (all & ~one.lacks));
     CHECK(state.track_mps[0] == Approx(0.2).margin(1e-3));
@@ -69,5 +70,5 @@ TEST_CASE("currents without the unit that they are in are none") {
     return true;
   };
   robot.open();
-  CHECK((robot.run(1, {}).fields & relay::kHasCurrents) == 0);
+  CHECK((robot.run(1, {}).fields & robot::kHasCurrents) == 0);
 }

@@ -8,6 +8,7 @@
 #include "canopen/drive.hpp"
 #include "hrt/config.hpp"
 #include "libkenaf_real/can_transport.hpp"
+#include "robot/state.hpp"
 #include "tests/support/simulated_bus.hpp"
 
 namespace kenaf::real {
@@ -66,8 +67,8 @@ struct RobotOnBus {
 
   void open() { transport.open(config); }
   // Cycles with `command` in force; the newest state.
-  relay::State run(int cycles, const hrt::DriveCommand& command) {
-    relay::State state{};
+  robot::State run(int cycles, const hrt::DriveCommand& command) {
+    robot::State state{};
     for (int i = 0; i < cycles; ++i) {
       state = transport.wait_state().value();
       transport.send(command);

@@ -1,6 +1,7 @@
 // The robot on its bus, from hrt's side: boot, motion, posture, end. Time is the bus's; drives and plant are the
 // simulated ones.
 #include "tests/real/robot_on_bus.hpp"
+#include "robot/state.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -20,11 +21,11 @@ TEST_CASE("opening enables all drives and moves nothing") {
   CHECK(robot.all_are(PowerState::operation_enabled));
   CHECK(robot.plant.state().track_m == std::array<double, 2>{});
   CHECK(robot.plant.state().flipper_rad == std::array<double, 4>{});
-  const relay::State state = robot.run(1, {});
+  const robot::State state = robot.run(1, {});
   CHECK(state.frame == 1);  // those of power-up are not the program's
   CHECK((state.fields &
-         (relay::kHasPosture | relay::kHasEncoders | relay::kHasFlippers | relay::kHasCurrents | relay::kHasBattery)) ==
-        (relay::kHasPosture | relay::kHasEncoders | relay::kHasFlippers | relay::kHasCurrents | relay::kHasBattery));
+         (robot::kHasPosture | robot::kHasEncoders | robot::kHasFlippers | robot::kHasCurrents | robot::kHasBattery)) ==
+        (robot::kHasPosture | robot::kHasEncoders | robot::kHasFlippers | robot::kHasCurrents | robot::kHasBattery));
   CHECK(state.battery_v == Approx(25.9));
   CHECK(robot.transport.warning().empty());
 }
@@ -32,8 +33,8 @@ TEST_CASE("opening enables all drives and moves nothing") {
 TEST_CASE("both tracks forward are forward, and as far as their ramp lets them") {
   RobotOnBus robot;
   robot.open();
-  const relay::State before = robot.run(1, drive_at(0.2, 0.2));
-  const relay::State after = robot.run(101, drive_at(0.2, 0.2));
+  const robot::State before = robot.run(1, drive_at(0.2, 0.2));
+  const robot::State after = robot.run(101, drive_at(0.2, 0.2));
   // The command reaches the drives with the SYNC after it, and what that SYNC latches is from before: 1.00 s at 0.2
   // m/s, less 0.2 m/s / 5 m/s^2 * 0.2 m/s / 2 for the ramp, plus or minus the 1 ms of the drives' own step.
   const double way_m = 0.2 * 1.0 - 0.2 * 0.2 / (2 * 5);
@@ -55,7 +56,7 @@ TEST_CASE("a flipper goes to its angle in the time of its trapezoid, the others 
   command.flipper_rad[robot::kRearLeft] = 1.0;
   // 1 rad at 1.5 rad/s and 15 rad/s^2: 0.85 / 1.5 + 2 * 0.1 = 0.767 s; the command takes three cycles until the drive
   // has it
-  relay::State state = robot.run(60, command);
+  robot::State state = robot.run(60, command);
   CHECK(state.flipper_rad[robot::kRearLeft] < 0.95);
   state = robot.run(25, command);
   CHECK(state.flipper_rad[robot::kRearLeft] == Approx(1.0).margin(1e-3));
@@ -75,7 +76,7 @@ TEST_CASE("roll, pitch and yaw have the robot's signs") {
   robot.open();
   robot.plant.roll_rad = 0.1;    // left side up
   robot.plant.pitch_rad = -0.2;  // nose up
-  relay::State state = robot.run(2, {});
+  robot::State state = robot.run(2, {});
   CHECK(state.posture_rad[0] == Approx(0.1).margin(1e-4));  // 0.01 degrees of resolution
   CHECK(state.posture_rad[1] == Approx(-0.2).margin(1e-4));
   robot.plant.roll_rad = robot.plant.pitch_rad = 0;
@@ -93,7 +94,7 @@ TEST_CASE("a turn that is too slow for the encoders to be seen as one is no bias
   robot.run(2, slowly);
   robot.plant.yaw_rate_radps = 0.01;
   const double before_rad = robot.run(2, slowly).posture_rad[2];
-  const relay::State state = robot.run(1000, slowly);
+  const robot::State state = robot.run(1000, slowly);
   CHECK(std::abs(state.track_mps[0]) < 0.002);
   CHECK(state.posture_rad[2] - before_rad == Approx(0.1).margin(0.004));  // a unit of the gyro in 10 s: 0.003 rad
 }
@@ -112,7 +113,7 @@ TEST_CASE("travel goes on where a drive's counter wraps") {
   shifted = true;
   robot.open();
   robot.run(1, drive_at(0.2, 0.2));
-  const relay::State state = robot.run(200, drive_at(0.2, 0.2));
+  const robot::State state = robot.run(200, drive_at(0.2, 0.2));
   CHECK(state.track_m[0] == Approx(state.track_m[1]).margin(1e-4));
   CHECK(state.track_m[0] == Approx(0.2 * 1.98 - 0.004).margin(0.003));
 }
@@ -160,11 +161,11 @@ TEST_CASE("a robot with cyclic modes drives the same way, on the master's ramps"
   const ChangedRobot cyclic({{"profile velocity", "cyclic velocity"}, {"profile position", "cyclic position"}});
   RobotOnBus robot(cyclic.path());
   robot.open();
-  const relay::State before = robot.run(1, {});
+  const robot::State before = robot.run(1, {});
   hrt::DriveCommand command = drive_at(0.2, 0.2);
   command.flipper_mask = 1u << robot::kFrontRight;
   command.flipper_rad[robot::kFrontRight] = -0.8;
-  const relay::State after = robot.run(101, command);
+  const robot::State after = robot.run(101, command);
   // The ramp goes in steps of 0.05 m/s a cycle: 0.05, 0.10, 0.15, 0.2 m/s. In 1.00 s: 0.2 - (0.15 + 0.10 + 0.05) * 0.01
   // = 0.197 m
   CHECK(after.track_m[0] - before.track_m[0] == Approx(0.197).margin(0.0025));
@@ -178,7 +179,7 @@ TEST_CASE("flippers without absolute encoders are homed where they stand, or at 
   RobotOnBus robot(here.path());
   robot.open();
   // the arm stood at what the description calls 0.7 rad, wherever the encoder began
-  const relay::State state = robot.run(2, {});
+  const robot::State state = robot.run(2, {});
   for (const double angle_rad : state.flipper_rad) CHECK(angle_rad == Approx(0.7).margin(1e-3));
   hrt::DriveCommand command;
   command.flipper_mask = 15;
@@ -193,7 +194,7 @@ TEST_CASE("a program that answers too late is told so, cycle by cycle") {
   (void)robot.transport.wait_state();
   robot.wire.run_until(robot.wire.now() + std::chrono::milliseconds(25));  // two SYNCs went by
   robot.transport.send({});
-  const relay::State state = robot.run(2, {});
+  const robot::State state = robot.run(2, {});
   CHECK(state.late_commands == 1);
 }
 

@@ -42,7 +42,7 @@ struct Fixture {
     session.on_world_ready({1.0, 0.01, true}, now);
   }
   void frame(std::int64_t number, double time_s, std::uint32_t late = 0) {
-    WorldFrame world{{}, number, true, 0.01};
+    WorldFrame world{{}, false, number, true, 0.01};
     world.state.robot_time_s = time_s;
     world.state.late_commands = late;
     session.on_frame(world, now);
@@ -139,16 +139,16 @@ TEST_CASE_METHOD(Fixture, "a Hello out of range is refused in words") {
 TEST_CASE_METHOD(Fixture, "States count from 1, whatever the world counts from, and commands are counted back") {
   open();
   frame(31, 1.0, 5);
-  CHECK(newest<relay::State>()->frame == 1);
-  CHECK(newest<relay::State>()->late_commands == 0);
+  CHECK(newest<relay::State>()->robot.frame == 1);
+  CHECK(newest<relay::State>()->robot.late_commands == 0);
   frame(32, 1.01, 6);
-  CHECK(newest<relay::State>()->frame == 2);
-  CHECK(newest<relay::State>()->late_commands == 1);
+  CHECK(newest<relay::State>()->robot.frame == 2);
+  CHECK(newest<relay::State>()->robot.late_commands == 1);
   command(1, 2);
   CHECK(port.driven.back() == std::pair<std::uint32_t, std::optional<std::int64_t>>{1, 32});
   // The world counts anew; States go on.
   frame(1, 0.0);
-  CHECK(newest<relay::State>()->frame == 3);
+  CHECK(newest<relay::State>()->robot.frame == 3);
   CHECK(newest<relay::State>()->acknowledged == 1);
 }
 
@@ -157,10 +157,11 @@ TEST_CASE_METHOD(Fixture, "a frame that is told again is no new one: the world p
   frame(1, 1.0);
   WorldFrame again{{}, 1, true, 0};
   again.state.robot_time_s = 1.0;
-  again.state.events = relay::kWorldPaused;
+  again.paused = true;
   session.on_frame(again, now);
-  CHECK(newest<relay::State>()->frame == 1);
-  CHECK(newest<relay::State>()->events == relay::kWorldPaused);
+  CHECK(newest<relay::State>()->robot.frame == 1);
+  CHECK(newest<relay::State>()->world_paused);
+  CHECK_FALSE(newest<relay::State>()->robot.stopped_by_silence);
 }
 
 TEST_CASE_METHOD(Fixture, "only a new Command reaches the world, a repeated one brings the newest State again") {
@@ -173,7 +174,7 @@ TEST_CASE_METHOD(Fixture, "only a new Command reaches the world, a repeated one 
   command(1, 1);
   CHECK(port.driven.size() == 1);
   REQUIRE(newest<relay::State>() != nullptr);
-  CHECK(newest<relay::State>()->frame == 2);
+  CHECK(newest<relay::State>()->robot.frame == 2);
   CHECK(newest<relay::State>()->acknowledged == 1);
 
   command(3, 2);
@@ -211,12 +212,12 @@ TEST_CASE_METHOD(Fixture, "without Commands for the time-out of robot time the r
   frame(3, 1.51);
   frame(4, 1.52);
   CHECK(port.stopped == 1);
-  CHECK(newest<relay::State>()->events == relay::kStoppedBySilence);
+  CHECK(newest<relay::State>()->robot.stopped_by_silence);
   command(1, 1);  // a copy of an old one does not start it again
-  CHECK(newest<relay::State>()->events == relay::kStoppedBySilence);
+  CHECK(newest<relay::State>()->robot.stopped_by_silence);
   command(2, 4);
   frame(5, 1.53);
-  CHECK(newest<relay::State>()->events == 0);
+  CHECK_FALSE(newest<relay::State>()->robot.stopped_by_silence);
   CHECK(port.driven.size() == 2);
 }
 
@@ -268,7 +269,7 @@ TEST_CASE_METHOD(Fixture, "a lost world server is told until the commander leave
   open();
   frame(1, 1.0);
   session.on_world_lost("gone", now);
-  CHECK(newest<relay::State>()->events == relay::kWorldServerLost);
+  CHECK(newest<relay::State>()->world_server_lost);
   CHECK(session.session() == 0);
   port.sent.clear();
   pass(50ms);

@@ -67,7 +67,7 @@ std::optional<relay::State> FakeCommander::next_state(std::uint32_t after, const
     const auto datagram = receive(kResend_ms);
     if (!datagram) send(again);
     const auto* state = datagram ? std::get_if<relay::State>(&*datagram) : nullptr;
-    if (state != nullptr && state->session == session_ && state->frame > after) return *state;
+    if (state != nullptr && state->session == session_ && state->robot.frame > after) return *state;
   }
   return std::nullopt;
 }
@@ -90,9 +90,9 @@ std::vector<relay::State> FakeCommander::drive(
   for (std::uint32_t i = 1; i <= frames; ++i) {
     const auto state = next_state(after, again);
     if (!state) throw std::runtime_error("no State any more");
-    after = state->frame;
+    after = state->robot.frame;
     states.push_back(*state);
-    relay::Command next = command(i, state->frame, 0, 0);
+    relay::Command next = command(i, state->robot.frame, 0, 0);
     control(*state, next);
     again = next;
     send(again);

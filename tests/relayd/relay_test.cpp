@@ -18,7 +18,7 @@ namespace {
 
 // Drives to x = 0.5 m by what it measures, so that each lost or stale State would show in all later ones.
 void approach(const relay::State& state, relay::Command& command) {
-  const double speed_mps = 2 * (0.5 - state.track_m[robot::kLeft]) + 0.01 * std::sin(state.frame);
+  const double speed_mps = 2 * (0.5 - state.robot.track_m[robot::kLeft]) + 0.01 * std::sin(state.robot.frame);
   command.track_speed_mps = {speed_mps, speed_mps};
   command.flipper_mask = 0b0101;
   command.flipper_rad = {0.1 * speed_mps, 0, -0.1 * speed_mps, 0};
@@ -52,13 +52,13 @@ TEST_CASE("the relay places a robot, opens a session in lock step and carries co
   CHECK(world.x_m() == Approx(0.1).margin(1e-9));
   CHECK(world.last("DRIVE") == "DRIVE {Left 4.000000000000} {Right 4.000000000000} {Frame 50}");
   for (std::size_t i = 0; i < states.size(); ++i) {
-    CHECK(states[i].frame == i + 1);
+    CHECK(states[i].robot.frame == i + 1);
     CHECK(states[i].acknowledged == i);
-    CHECK(states[i].late_commands == 0);
+    CHECK(states[i].robot.late_commands == 0);
   }
-  CHECK(states[49].track_m[robot::kLeft] == Approx(49 * 0.002).margin(1e-9));
-  CHECK(states[49].p_WB_m[2] == Approx(0.1));  // z down on the wire
-  CHECK(states[49].posture_rad[1] == Approx(-0.2));
+  CHECK(states[49].robot.track_m[robot::kLeft] == Approx(49 * 0.002).margin(1e-9));
+  CHECK(states[49].robot.p_WB_m[2] == Approx(0.1));  // z down on the wire
+  CHECK(states[49].robot.posture_rad[1] == Approx(-0.2));
 }
 
 TEST_CASE("loss, reordering and duplicates change nothing but latency") {
@@ -83,9 +83,9 @@ TEST_CASE("loss, reordering and duplicates change nothing but latency") {
     CHECK(commands_only(world) == clean);  // to the last digit
     REQUIRE(states.size() == clean_states.size());
     for (std::size_t i = 0; i < states.size(); ++i) {
-      CHECK(states[i].frame == clean_states[i].frame);
-      CHECK(states[i].robot_time_s == clean_states[i].robot_time_s);
-      CHECK(states[i].track_m == clean_states[i].track_m);
+      CHECK(states[i].robot.frame == clean_states[i].robot.frame);
+      CHECK(states[i].robot.robot_time_s == clean_states[i].robot.robot_time_s);
+      CHECK(states[i].robot.track_m == clean_states[i].robot.track_m);
     }
   }
 }
@@ -118,15 +118,16 @@ TEST_CASE("a silent commander's robot is stopped by robot time, and the commande
   REQUIRE(is_welcome(commander.hello(false, false, 0.01, 0.5)));
   const auto first = commander.next_state(0, relay::Ping{9, 1});
   REQUIRE(first);
-  commander.send(commander.command(1, first->frame, 0.3, 0.3));
+  commander.send(commander.command(1, first->robot.frame, 0.3, 0.3));
   REQUIRE(eventually([&] { return world.speed_mps() > 0.29; }));
-  const auto stopped = commander.wait_for([](const auto& s) { return (s.events & relay::kStoppedBySilence) != 0; });
+  const auto stopped = commander.wait_for([](const auto& s) { return s.robot.stopped_by_silence; });
   REQUIRE(stopped);
   CHECK(stopped->acknowledged == 1);
   REQUIRE(eventually([&] { return world.speed_mps() == 0; }));
 
-  commander.send(commander.command(2, stopped->frame, 0.1, 0.1));
-  const auto going = commander.wait_for([](const auto& s) { return s.acknowledged == 2 && s.events == 0; });
+  commander.send(commander.command(2, stopped->robot.frame, 0.1, 0.1));
+  const auto going =
+      commander.wait_for([](const auto& s) { return s.acknowledged == 2 && !s.robot.stopped_by_silence; });
   CHECK(going);
   CHECK(eventually([&] { return world.speed_mps() > 0.09; }));
 }
@@ -141,10 +142,10 @@ TEST_CASE("the world server is lost and comes back") {
 
   const auto killed = std::chrono::steady_clock::now();
   world.reset();
-  REQUIRE(commander.wait_for([](const auto& s) { return (s.events & relay::kWorldServerLost) != 0; }));
+  REQUIRE(commander.wait_for([](const auto& s) { return s.world_server_lost; }));
   CHECK(std::chrono::steady_clock::now() - killed < 5s);
   // Again, in case it was lost.
-  REQUIRE(commander.wait_for([](const auto& s) { return (s.events & relay::kWorldServerLost) != 0; }));
+  REQUIRE(commander.wait_for([](const auto& s) { return s.world_server_lost; }));
 
   FakeCommander next(relay.port(), 6);
   const auto none = refusal(next.hello(true));
@@ -173,7 +174,7 @@ TEST_CASE("a world server that hangs is left") {
     const auto datagram = commander.receive(50);
     if (!datagram || !std::holds_alternative<relay::State>(*datagram)) return false;
     lost = std::get<relay::State>(*datagram);
-    return (lost.events & relay::kWorldServerLost) != 0;
+    return lost.world_server_lost;
   }));
   world.mute(false);
   FakeCommander next(relay.port(), 6);
@@ -194,9 +195,9 @@ TEST_CASE("reset_robot enters the world anew, in lock step from the first frame"
   REQUIRE(is_welcome(second.hello(true, true)));
   const auto states = second.drive(3, approach);
   CHECK(world.connections() == before + 1);
-  CHECK(states[0].frame == 1);
-  CHECK(states[0].robot_time_s == 0);
-  CHECK(states[0].track_m[robot::kLeft] == 0);
+  CHECK(states[0].robot.frame == 1);
+  CHECK(states[0].robot.robot_time_s == 0);
+  CHECK(states[0].robot.track_m[robot::kLeft] == 0);
 }
 
 TEST_CASE("without a commander there is no lock step and the robot stands") {
@@ -241,14 +242,15 @@ TEST_CASE("a plain USARSim server works without the extensions") {
 
   const auto first = commander.next_state(0, relay::Ping{4, 1});
   REQUIRE(first);
-  relay::Command command = commander.command(1, first->frame, 0.1, -0.2);
+  relay::Command command = commander.command(1, first->robot.frame, 0.1, -0.2);
   command.flipper_mask = 0b1111;
   command.flipper_rad = {0.5, 0.5, 0.25, 0.25};
   commander.send(command);
-  const auto later = commander.wait_for([](const auto& s) { return s.acknowledged == 1 && s.flipper_rad[0] != 0; });
+  const auto later =
+      commander.wait_for([](const auto& s) { return s.acknowledged == 1 && s.robot.flipper_rad[0] != 0; });
   REQUIRE(later);
-  CHECK(later->frame > first->frame);
-  CHECK(later->flipper_rad == command.flipper_rad);
+  CHECK(later->robot.frame > first->robot.frame);
+  CHECK(later->robot.flipper_rad == command.flipper_rad);
   CHECK(world.last("DRIVE") == "DRIVE {Left 2.000000000000} {Right -4.000000000000}");
   CHECK(world.last("MULTIDRIVE") ==
         "MULTIDRIVE {FLFlipper -0.500000000000} {FRFlipper -0.500000000000} {RLFlipper 0.250000000000} "
@@ -294,7 +296,7 @@ TEST_CASE("hostile datagrams: a log line, nothing dead, nothing lost") {
   };
   std::uint32_t frames = 0;
   const auto states = commander.drive(40, [&](const relay::State& state, relay::Command& command) {
-    if (state.frame % 4 == 0) attack();
+    if (state.robot.frame % 4 == 0) attack();
     command.track_speed_mps = {0.2, 0.2};
     ++frames;
   });
@@ -326,7 +328,7 @@ TEST_CASE("hostile lines from the world server: a log line, nothing dead, nothin
     command.track_speed_mps = {0.2, 0.2};
   });
   CHECK(world.x_m() == Approx(10 * 0.002).margin(1e-9));
-  CHECK(states[9].track_m[robot::kLeft] == Approx(9 * 0.002).margin(1e-9));
+  CHECK(states[9].robot.track_m[robot::kLeft] == Approx(9 * 0.002).margin(1e-9));
   CHECK(relay.log().count("the world server sent") >= 1);
 }
 
@@ -338,7 +340,7 @@ TEST_CASE("lines that arrive in pieces are put together") {
   FakeCommander commander(relay.port(), 4);
   REQUIRE(is_welcome(commander.hello(true)));
   const auto states = commander.drive(10, approach);
-  CHECK(states[9].frame == 10);
+  CHECK(states[9].robot.frame == 10);
 }
 
 TEST_CASE("the relay ends cleanly: the commander is told and the robot stands") {
@@ -379,8 +381,8 @@ TEST_CASE("the steady path allocates nothing") {
   commander.drive(600, [&](const relay::State& state, relay::Command& command) {
     approach(state, command);
     commander.send(relay::Ping{4, 1});
-    if (state.frame == 200) before = allocations();
-    if (state.frame == 600) after = allocations();
+    if (state.robot.frame == 200) before = allocations();
+    if (state.robot.frame == 600) after = allocations();
   });
   CHECK(before > 0);  // the counter works
   CHECK(after == before);

@@ -1,6 +1,7 @@
 // From USARSim's lines to a State. Signs by hand: USARSim's y points right and its z down, so y and z, pitch and yaw
 // change sign; x and roll stay.
 #include "relayd/sensor_transform.hpp"
+#include "robot/state.hpp"
 
 #include <catch2/catch.hpp>
 #include <initializer_list>
@@ -17,7 +18,7 @@ bool take(SensorTransform& transform, std::string_view line) {
   return transform.take(message);
 }
 
-relay::State after(std::initializer_list<std::string_view> lines) {
+robot::State after(std::initializer_list<std::string_view> lines) {
   SensorTransform transform;
   for (const std::string_view line : lines) CHECK_FALSE(take(transform, line));
   CHECK(take(transform, "STA {Type GroundVehicle} {Time 1.5}"));
@@ -29,7 +30,7 @@ relay::State after(std::initializer_list<std::string_view> lines) {
 TEST_CASE("ground truth: a robot 0.1 m above the ground, 2 m to the left, turned left, nose down, right side down") {
   const auto state =
       after({"SEN {Time 1} {Type GroundTruth} {Name G} {Location 1,-2,-0.1} {Orientation 0.1,-0.2,-0.3}"});
-  CHECK(state.fields == relay::kHasGroundTruth);
+  CHECK(state.fields == robot::kHasGroundTruth);
   CHECK(state.p_WB_m == std::array<double, 3>{1, 2, 0.1});
   CHECK(state.orientation_rad[0] == Approx(0.1));
   CHECK(state.orientation_rad[1] == Approx(0.2));
@@ -40,7 +41,7 @@ TEST_CASE("ground truth: a robot 0.1 m above the ground, 2 m to the left, turned
 TEST_CASE("UT2004 angles from 0 to 2 pi come out from -pi to pi") {
   // 6.1831853 = 2 pi - 0.1: 0.1 to the left.
   const auto state = after({"SEN {Type INS} {Name INS} {Location 0,0,0} {Orientation 0,0.2,6.183185307}"});
-  CHECK(state.fields == relay::kHasPosture);
+  CHECK(state.fields == robot::kHasPosture);
   CHECK(state.posture_rad[1] == Approx(-0.2));
   CHECK(state.posture_rad[2] == Approx(0.1));
 }
@@ -50,7 +51,7 @@ TEST_CASE("the posture is the INS's where there is one, else the IMU's") {
       "SEN {Time 1} {Type IMU} {Name I} {XYZAcceleration 0.5,-1,-9.8} {AngularVel 0.1,0.2,-0.3} {AngularAccel 0,0,0} "
       "{Rotation 0.01,0.02,0.03}";
   const auto alone = after({imu});
-  CHECK(alone.fields == (relay::kHasPosture | relay::kHasInertial));
+  CHECK(alone.fields == (robot::kHasPosture | robot::kHasInertial));
   CHECK(alone.posture_rad == std::array<double, 3>{0.01, -0.02, -0.03});
   CHECK(alone.acceleration_mps2 == std::array<double, 3>{0.5, 1, 9.8});  // at rest +g on z
   CHECK(alone.gyro_radps == std::array<double, 3>{0.1, -0.2, 0.3});      // turning left is positive
@@ -65,7 +66,7 @@ TEST_CASE("encoders: ticks x resolution x wheel radius, in both dialects") {
   const auto ut2004 = after({"GEO {Type GroundVehicle} {Name Kenaf} {WheelRadius 0.05}",
                              "CONF {Type Encoder} {Name ECLeft} {Resolution 0.002} {Name ECRight} {Resolution 0.002}",
                              "SEN {Type Encoder} {Name ECLeft Tick 1000} {Name ECRight Tick -500}"});
-  CHECK(ut2004.fields == relay::kHasEncoders);
+  CHECK(ut2004.fields == robot::kHasEncoders);
   CHECK(ut2004.track_m[robot::kLeft] == Approx(0.1));
   CHECK(ut2004.track_m[robot::kRight] == Approx(-0.05));
   const auto udk = after({"SEN {Time 1} {Type Encoder} {Name ECLeft} {Tick 1000}",
@@ -100,7 +101,7 @@ TEST_CASE("track speed: the tachometer's, else the change of travel by robot tim
 TEST_CASE("flippers: as STA reports them, tip up positive for all four") {
   SensorTransform transform;
   take(transform, "STA {Time 1} {FRFlipper -0.2} {FLFlipper -0.1} {RRFlipper 0.4} {RLFlipper 0.3}");
-  CHECK(transform.frame().state.fields == relay::kHasFlippers);
+  CHECK(transform.frame().state.fields == robot::kHasFlippers);
   CHECK(transform.frame().state.flipper_rad == std::array<double, 4>{0.1, 0.2, 0.3, 0.4});
   SensorTransform three;
   take(three, "STA {Time 1} {FRFlipper -0.2} {FLFlipper -0.1} {RRFlipper 0.4}");
@@ -110,7 +111,7 @@ TEST_CASE("flippers: as STA reports them, tip up positive for all four") {
 TEST_CASE("currents and battery") {
   const auto state = after(
       {"SEN {Time 1} {Type Drives} {Name Drives} {TrackCurrent 1,2} {FlipperCurrent 3,4,5,6} {BatteryVoltage 24.5}"});
-  CHECK(state.fields == (relay::kHasCurrents | relay::kHasBattery));
+  CHECK(state.fields == (robot::kHasCurrents | robot::kHasBattery));
   CHECK(state.track_a == std::array<double, 2>{1, 2});
   CHECK(state.flipper_a == std::array<double, 4>{3, 4, 5, 6});
   CHECK(state.battery_v == 24.5);
@@ -122,11 +123,13 @@ TEST_CASE("STA counts frames, without a number the relay counts") {
   CHECK(transform.frame().number == 41);
   CHECK(transform.frame().numbered);
   CHECK(transform.frame().state.late_commands == 3);
-  CHECK(transform.frame().state.events == (relay::kStoppedBySilence | relay::kWorldPaused));
+  CHECK(transform.frame().state.stopped_by_silence);
+  CHECK(transform.frame().paused);
   take(transform, "STA {Time 2.2}");
   CHECK(transform.frame().number == 42);
   CHECK_FALSE(transform.frame().numbered);
-  CHECK(transform.frame().state.events == 0);
+  CHECK_FALSE(transform.frame().state.stopped_by_silence);
+  CHECK_FALSE(transform.frame().paused);
 }
 
 TEST_CASE("what was not measured since the STA before holds, and is marked as held") {
@@ -137,16 +140,16 @@ TEST_CASE("what was not measured since the STA before holds, and is marked as he
   };
   const std::string_view ins = "SEN {Type INS} {Orientation 0,0,-0.3}",
                          drives = "SEN {Type Drives} {BatteryVoltage 24}";
-  CHECK(fields_after({ins, drives, "STA {Time 1.0} {Frame 1}"}) == (relay::kHasPosture | relay::kHasBattery));
+  CHECK(fields_after({ins, drives, "STA {Time 1.0} {Frame 1}"}) == (robot::kHasPosture | robot::kHasBattery));
   CHECK(fields_after({ins, "STA {Time 1.01} {Frame 2}"}) ==
-        (relay::kHasPosture | relay::kHasBattery | relay::held(relay::kHasBattery)));
+        (robot::kHasPosture | robot::kHasBattery | robot::held(robot::kHasBattery)));
   // the same frame again, as the world was paused: its posture is as new as it was
   CHECK(fields_after({"STA {Time 1.01} {Frame 2} {Paused True}"}) ==
-        (relay::kHasPosture | relay::kHasBattery | relay::held(relay::kHasBattery)));
+        (robot::kHasPosture | robot::kHasBattery | robot::held(robot::kHasBattery)));
   CHECK(fields_after({"STA {Time 1.02} {Frame 3}"}) ==
-        (relay::kHasPosture | relay::kHasBattery | relay::held(relay::kHasPosture | relay::kHasBattery)));
+        (robot::kHasPosture | robot::kHasBattery | robot::held(robot::kHasPosture | robot::kHasBattery)));
   CHECK(transform.frame().state.posture_rad[2] == Approx(0.3));
-  CHECK(fields_after({ins, drives, "STA {Time 1.03} {Frame 4}"}) == (relay::kHasPosture | relay::kHasBattery));
+  CHECK(fields_after({ins, drives, "STA {Time 1.03} {Frame 4}"}) == (robot::kHasPosture | robot::kHasBattery));
 }
 
 TEST_CASE("encoders slower than STA: the speed is the change of travel by the time between two of their words") {
@@ -156,10 +159,10 @@ TEST_CASE("encoders slower than STA: the speed is the change of travel by the ti
   take(transform, "SEN {Type Encoder} {Name ECLeft Tick 0} {Name ECRight Tick 0}");
   take(transform, "STA {Time 1.0}");
   take(transform, "STA {Time 1.1}");
-  CHECK(transform.frame().state.fields == (relay::kHasEncoders | relay::held(relay::kHasEncoders)));
+  CHECK(transform.frame().state.fields == (robot::kHasEncoders | robot::held(robot::kHasEncoders)));
   take(transform, "SEN {Type Encoder} {Name ECLeft Tick 400} {Name ECRight Tick -200}");
   take(transform, "STA {Time 1.2}");
-  CHECK(transform.frame().state.fields == relay::kHasEncoders);
+  CHECK(transform.frame().state.fields == robot::kHasEncoders);
   // 400 x 0.001 x 0.05 m in 0.2 s = 0.1 m/s
   CHECK(transform.frame().state.track_mps[0] == Approx(0.1));
   CHECK(transform.frame().state.track_mps[1] == Approx(-0.05));
