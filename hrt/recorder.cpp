@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "hrt/error.hpp"
 #include "hrt/quiet_thread.hpp"
@@ -15,6 +16,14 @@ namespace kenaf::hrt {
 namespace {
 
 constexpr auto kLongestWait = std::chrono::milliseconds(100);
+
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+// Where a quantity's columns begin in a row.
+constexpr std::ptrdiff_t place_of(robot::Quantity quantity) {
+  return std::count_if(robot::columns().data(), robot::columns_of(quantity).data(),
+                       [](const robot::Column& column) { return column.by_robot; });
+}
 
 // A recording begins anywhere: without the rounding of its difference the same run has the same file.
 double whole_nanoseconds(double t_s) {
@@ -31,46 +40,57 @@ std::unique_ptr<runs::RunWriter> open_writer(const std::string& path) {
 
 }  // namespace
 
-const std::vector<std::string>& record_columns() {
-  static const std::vector<std::string> columns = {
-      "t_s", "cmd_track_left_mps", "cmd_track_right_mps", "cmd_flipper_fl_rad", "cmd_flipper_fr_rad",
-      "cmd_flipper_rl_rad", "cmd_flipper_rr_rad", "track_left_mps", "track_right_mps", "track_left_m", "track_right_m",
-      "flipper_fl_rad", "flipper_fr_rad", "flipper_rl_rad", "flipper_rr_rad", "track_left_a", "track_right_a",
-      "flipper_fl_a", "flipper_fr_a", "flipper_rl_a", "flipper_rr_a", "battery_v", "x_m", "y_m", "z_m", "roll_rad",
-      "pitch_rad", "yaw_rad", "gyro_x_radps", "gyro_y_radps", "gyro_z_radps", "acc_x_mps2", "acc_y_mps2", "acc_z_mps2",
-      // Beyond the format: what the robot's own posture sensor says, and how the cycle went.
-      "posture_roll_rad", "posture_pitch_rad", "posture_yaw_rad", "robot_time_s", "frame", "late_commands"};
-  return columns;
+std::vector<std::string> record_columns() {
+  std::vector<std::string> names;
+  for (const robot::Column& column : robot::columns())
+    if (column.by_robot) names.emplace_back(column.name);
+  return names;
 }
 
 RecordRow record_row(const robot::State& state, const DriveCommand& command, double t_s) {
+  using enum robot::Quantity;
   RecordRow row;
-  std::size_t next = 0;
-  const auto put = [&](double value) { row[next++] = value; };
-  const auto put_all = [&](const auto& values, bool measured) {
-    for (const double value : values) put(measured ? value : std::numeric_limits<double>::quiet_NaN());
+  row.fill(kNotMeasured);
+  const auto put = [&row](robot::Quantity quantity, std::span<const double> values) {
+    std::ranges::copy(values, row.begin() + place_of(quantity));
   };
+  const auto put_one = [&put](robot::Quantity quantity, double value) { put(quantity, {&value, 1}); };
   const auto has = [&](robot::StateField field) { return robot::is_new(state.fields, field); };
 
-  put(t_s);
-  put_all(command.track_speed_mps, true);
-  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
-    put_all(std::array{command.flipper_rad[i]}, (command.flipper_mask >> i & 1) != 0);
+  // what was asked
+  put_one(time, t_s);
+  put(track_command, command.track_speed_mps);
+  std::array<double, robot::kFlipperCount> flipper_rad = command.flipper_rad;
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
+    if ((command.flipper_mask >> i & 1) == 0) flipper_rad[i] = kNotMeasured;
+  put(flipper_command, flipper_rad);
+
+  // what was measured
+  if (has(robot::kHasEncoders)) {
+    put(track_speed, state.track_mps);
+    put(track_travel, state.track_m);
   }
-  put_all(state.track_mps, has(robot::kHasEncoders));
-  put_all(state.track_m, has(robot::kHasEncoders));
-  put_all(state.flipper_rad, has(robot::kHasFlippers));
-  put_all(state.track_a, has(robot::kHasCurrents));
-  put_all(state.flipper_a, has(robot::kHasCurrents));
-  put_all(std::array{state.battery_v}, has(robot::kHasBattery));
-  put_all(state.p_WB_m, has(robot::kHasGroundTruth));
-  put_all(state.orientation_rad, has(robot::kHasGroundTruth));
-  put_all(state.gyro_radps, has(robot::kHasInertial));
-  put_all(state.acceleration_mps2, has(robot::kHasInertial));
-  put_all(state.posture_rad, has(robot::kHasPosture));
-  put(state.robot_time_s);
-  put(state.frame);
-  put(state.late_commands);
+  if (has(robot::kHasFlippers)) put(flipper_angle, state.flipper_rad);
+  if (has(robot::kHasCurrents)) {
+    put(track_current, state.track_a);
+    put(flipper_current, state.flipper_a);
+  }
+  if (has(robot::kHasBattery)) put_one(battery_voltage, state.battery_v);
+  if (has(robot::kHasGroundTruth)) {
+    put(position, state.p_WB_m);
+    put(tilt, std::span(state.orientation_rad).first(2));
+    put_one(yaw, state.orientation_rad[2]);
+  }
+  if (has(robot::kHasInertial)) {
+    put(turn_rate, state.gyro_radps);
+    put(acceleration, state.acceleration_mps2);
+  }
+  if (has(robot::kHasPosture)) put(posture, state.posture_rad);
+
+  // how the cycle went
+  put_one(robot_time, state.robot_time_s);
+  put_one(frame, state.frame);
+  put_one(late_commands, state.late_commands);
   return row;
 }
 

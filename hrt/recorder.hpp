@@ -1,6 +1,7 @@
 // Records cycles into a kenaf-runs/1 CSV file. A thread of its own writes, so that no cycle waits for the disk.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <condition_variable>
 #include <cstddef>
@@ -11,14 +12,17 @@
 #include <vector>
 
 #include "hrt/transport.hpp"
+#include "robot/columns.hpp"
 #include "robot/state.hpp"
 #include "runs/run_file.hpp"
 
 namespace kenaf::hrt {
 
-inline constexpr std::size_t kRecordColumns = 40;
+// A value for each column that the robot records, in the order of robot::columns().
+inline constexpr std::size_t kRecordColumns =
+    static_cast<std::size_t>(std::ranges::count_if(robot::columns(), &robot::Column::by_robot));
 using RecordRow = std::array<double, kRecordColumns>;
-const std::vector<std::string>& record_columns();
+std::vector<std::string> record_columns();
 
 // One row: `state` with the command that is in force from its time on. NaN where nothing was measured since the state before.
 RecordRow record_row(const robot::State& state, const DriveCommand& command, double t_s);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "robot/angles.hpp"
+#include "robot/columns.hpp"
 #include "robot/parts.hpp"
 
 namespace kenaf::rollout {
@@ -39,13 +40,6 @@ double metres_per_count(const physics::TrackDriveDescription& drive) {
   return drive.sprocket_radius_m / drive.encoder_counts_per_radian;
 }
 
-std::vector<std::string> flipper_names(std::string_view prefix, std::string_view suffix) {
-  std::vector<std::string> names;
-  for (const std::string_view flipper : robot::kFlipperNames)
-    names.push_back(std::string(prefix).append(flipper).append(suffix));
-  return names;
-}
-
 }  // namespace
 
 RobotDescription instrumented(RobotDescription robot, double noise_scale) {
@@ -61,29 +55,30 @@ RobotDescription instrumented(RobotDescription robot, double noise_scale) {
 
 std::map<std::string, double> column_noise(const RobotDescription& nominal, const RollOutOptions& options) {
   const RobotDescription robot = instrumented(nominal, options.noise_scale);
+  using enum robot::Quantity;
   std::map<std::string, double> noise;
-  const auto add = [&noise](double sigma, const std::vector<std::string>& columns) {
-    for (const std::string& column : columns)
-      if (sigma > 0) noise[column] = sigma;
+  const auto add = [&noise](double sigma, robot::Quantity quantity) {
+    for (const robot::Column& column : robot::columns_of(quantity))
+      if (sigma > 0) noise.emplace(column.name, sigma);
   };
-  add(options.mocap_noise_m * options.noise_scale, {"x_m", "y_m", "z_m"});
-  add(options.mocap_noise_rad * options.noise_scale, {"yaw_rad"});
-  if (const auto* ins = sensor_of(robot, SensorType::ins)) add(ins->noise_rad, {"roll_rad", "pitch_rad"});
+  add(options.mocap_noise_m * options.noise_scale, position);
+  add(options.mocap_noise_rad * options.noise_scale, yaw);
+  if (const auto* ins = sensor_of(robot, SensorType::ins)) add(ins->noise_rad, tilt);
   if (const auto* imu = sensor_of(robot, SensorType::imu)) {
-    add(imu->noise_radps, {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"});
-    add(imu->noise_mps2, {"acc_x_mps2", "acc_y_mps2", "acc_z_mps2"});
+    add(imu->noise_radps, turn_rate);
+    add(imu->noise_mps2, acceleration);
   }
   const double radius_m = robot.drive.sprocket_radius_m;
   if (const auto* tachometer = sensor_of(robot, SensorType::tachometer))
-    add(tachometer->noise_radps * radius_m, {"track_left_mps", "track_right_mps"});
+    add(tachometer->noise_radps * radius_m, track_speed);
   if (const auto* encoder = sensor_of(robot, SensorType::encoder))
-    add(with_rounding(encoder->noise_rad * radius_m, metres_per_count(robot.drive)), {"track_left_m", "track_right_m"});
+    add(with_rounding(encoder->noise_rad * radius_m, metres_per_count(robot.drive)), track_travel);
   if (const auto* drives = sensor_of(robot, SensorType::drives)) {
-    add(drives->noise_a, {"track_left_a", "track_right_a"});
-    add(drives->noise_v, {"battery_v"});
+    add(drives->noise_a, track_current);
+    add(drives->noise_v, battery_voltage);
     if (robot.has_flippers()) {
-      add(drives->noise_a, flipper_names("flipper_", "_a"));
-      add(with_rounding(drives->noise_rad, robot.servo.resolution_rad), flipper_names("flipper_", "_rad"));
+      add(drives->noise_a, flipper_current);
+      add(with_rounding(drives->noise_rad, robot.servo.resolution_rad), flipper_angle);
     }
   }
   return noise;
@@ -101,28 +96,31 @@ RunRecorder::RunRecorder(const RobotDescription& robot, const RollOutOptions& op
       mocap_noise_(options.seed, "world", "motion capture"),
       tracking_(robot.effects),
       clock_offset_s_(robot.effects.clock_offset_s) {
+  using enum robot::Quantity;
   const bool flippers = robot.has_flippers(), drives = has(robot, SensorType::drives);
-  time_ = add_group(true, {"t_s"});
-  cmd_track_ = add_group(true, {"cmd_track_left_mps", "cmd_track_right_mps"});
-  cmd_flipper_ = add_group(flippers, flipper_names("cmd_flipper_", "_rad"));
-  track_speed_ = add_group(has(robot, SensorType::tachometer), {"track_left_mps", "track_right_mps"});
-  track_travel_ = add_group(has(robot, SensorType::encoder), {"track_left_m", "track_right_m"});
-  flipper_ = add_group(drives && flippers, flipper_names("flipper_", "_rad"));
-  track_current_ = add_group(drives, {"track_left_a", "track_right_a"});
-  flipper_current_ = add_group(drives && flippers, flipper_names("flipper_", "_a"));
-  battery_ = add_group(drives, {"battery_v"});
-  position_ = add_group(true, {"x_m", "y_m", "z_m"});
-  tilt_ = add_group(has(robot, SensorType::ins), {"roll_rad", "pitch_rad"});
-  yaw_ = add_group(true, {"yaw_rad"});
-  gyro_ = add_group(has(robot, SensorType::imu), {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"});
-  acceleration_ = add_group(has(robot, SensorType::imu), {"acc_x_mps2", "acc_y_mps2", "acc_z_mps2"});
+  const bool imu = has(robot, SensorType::imu);
+  time_ = add_group(true, time);
+  cmd_track_ = add_group(true, track_command);
+  cmd_flipper_ = add_group(flippers, flipper_command);
+  track_speed_ = add_group(has(robot, SensorType::tachometer), track_speed);
+  track_travel_ = add_group(has(robot, SensorType::encoder), track_travel);
+  flipper_ = add_group(drives && flippers, flipper_angle);
+  track_current_ = add_group(drives, track_current);
+  flipper_current_ = add_group(drives && flippers, flipper_current);
+  battery_ = add_group(drives, battery_voltage);
+  position_ = add_group(true, position);
+  tilt_ = add_group(has(robot, SensorType::ins), tilt);
+  yaw_ = add_group(true, yaw);
+  gyro_ = add_group(imu, turn_rate);
+  acceleration_ = add_group(imu, acceleration);
   run_.values.resize(run_.columns.size());
 }
 
-RunRecorder::Group RunRecorder::add_group(bool measured, const Names& names) {
+RunRecorder::Group RunRecorder::add_group(bool measured, robot::Quantity quantity) {
   if (!measured) return {};
-  const Group group{run_.columns.size(), names.size()};
-  run_.columns.insert(run_.columns.end(), names.begin(), names.end());
+  const std::span<const robot::Column> columns = robot::columns_of(quantity);
+  const Group group{run_.columns.size(), columns.size()};
+  for (const robot::Column& column : columns) run_.columns.emplace_back(column.name);
   return group;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/sensors/noise.hpp"
+#include "robot/columns.hpp"
 #include "rollout/roll_out.hpp"
 #include "rollout/tracking.hpp"
 
@@ -25,12 +26,11 @@ class RunRecorder {
   runs::Run take();
 
  private:
-  using Names = std::vector<std::string>;
   // Columns side by side, found by the first one; none where the robot does not measure them.
   struct Group {
     std::size_t first = 0, count = 0;
   };
-  Group add_group(bool measured, const Names& names);
+  Group add_group(bool measured, robot::Quantity quantity);
   void put(Group group, std::initializer_list<double> values);
   void shift_clock();
   void add_mocap_noise();

@@ -1,36 +1,28 @@
 #include "gap/diagnose/channels.hpp"
 
-#include <iterator>
+#include <algorithm>
+#include <array>
 
 namespace kenaf::gap {
 namespace {
 
-using physics::Stage;
+constexpr auto kChannelCount =
+    static_cast<std::size_t>(std::ranges::count_if(robot::columns(), &robot::Column::is_compared));
 
-constexpr Channel kAllChannels[] = {{"track_left_mps", "m/s", false, Stage::drive, 1e-3, "track speed"},
-                                    {"track_right_mps", "m/s", false, Stage::drive, 1e-3, "track speed"},
-                                    {"track_left_m", "m", false, Stage::drive, 1e-3, "track travel"},
-                                    {"track_right_m", "m", false, Stage::drive, 1e-3, "track travel"},
-                                    {"flipper_fl_rad", "rad", true, Stage::drive, 1e-3, "flipper angle"},
-                                    {"flipper_fr_rad", "rad", true, Stage::drive, 1e-3, "flipper angle"},
-                                    {"flipper_rl_rad", "rad", true, Stage::drive, 1e-3, "flipper angle"},
-                                    {"flipper_rr_rad", "rad", true, Stage::drive, 1e-3, "flipper angle"},
-                                    {"track_left_a", "A", false, Stage::drive, 0.05, "track current"},
-                                    {"track_right_a", "A", false, Stage::drive, 0.05, "track current"},
-                                    {"flipper_fl_a", "A", false, Stage::drive, 0.05, "flipper current"},
-                                    {"flipper_fr_a", "A", false, Stage::drive, 0.05, "flipper current"},
-                                    {"flipper_rl_a", "A", false, Stage::drive, 0.05, "flipper current"},
-                                    {"flipper_rr_a", "A", false, Stage::drive, 0.05, "flipper current"},
-                                    {"battery_v", "V", false, Stage::drive, 0.02, "battery voltage"},
-                                    {"x_m", "m", false, Stage::body, 5e-4, "position"},
-                                    {"y_m", "m", false, Stage::body, 5e-4, "position"},
-                                    {"z_m", "m", false, Stage::body, 5e-4, "height"},
-                                    {"yaw_rad", "rad", true, Stage::body, 5e-4, "yaw", true},
-                                    {"roll_rad", "rad", true, Stage::sensor, 5e-4, "roll", true},
-                                    {"pitch_rad", "rad", true, Stage::sensor, 5e-4, "pitch"},
-                                    {"gyro_x_radps", "rad/s", false, Stage::sensor, 2e-3, "roll rate"},
-                                    {"gyro_y_radps", "rad/s", false, Stage::sensor, 2e-3, "pitch rate"},
-                                    {"gyro_z_radps", "rad/s", false, Stage::sensor, 2e-3, "yaw rate"}};
+constexpr std::array<Channel, kChannelCount> compared_columns() {
+  std::array<Channel, kChannelCount> channels{};
+  std::size_t next = 0;
+  for (const robot::Seen seen : {robot::Seen::drive, robot::Seen::body, robot::Seen::sensor})
+    for (const robot::Column& column : robot::columns()) {
+      const robot::Comparison& compared = column.comparison;
+      if (column.is_compared() && compared.seen == seen)
+        channels[next++] = {column.name,         column.unit,   column.wraps,  seen,
+                            compared.resolution, compared.kind, compared.level};
+    }
+  return channels;
+}
+
+constexpr std::array<Channel, kChannelCount> kAllChannels = compared_columns();
 
 }  // namespace
 
@@ -52,7 +44,7 @@ std::string_view kind_name(std::size_t kind) {
 }
 
 std::size_t kind_count() {
-  return kind_of(std::size(kAllChannels) - 1) + 1;
+  return kind_of(kAllChannels.size() - 1) + 1;
 }
 
 }  // namespace kenaf::gap

@@ -23,7 +23,7 @@ std::string_view column_of(const Bin& bin) {
 }
 
 bool is_drive(const Bin& bin) {
-  return diagnosis_channels()[bin.channel].measured == physics::Stage::drive;
+  return diagnosis_channels()[bin.channel].seen == robot::Seen::drive;
 }
 
 // The angle that the gyro turned since the start, in the columns of the angles.

@@ -253,7 +253,7 @@ TEST_CASE("R5 a value that is only held is not recorded as measured") {
   state.fields = robot::kHasPosture | robot::kHasBattery | robot::held(robot::kHasPosture);
   const hrt::RecordRow row = hrt::record_row(state, DriveCommand{}, 0);
   const auto cell = [&](const char* name) {
-    const auto& columns = hrt::record_columns();
+    const auto columns = hrt::record_columns();
     return row[static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin())];
   };
   CHECK(cell("battery_v") == 24);
