@@ -100,14 +100,6 @@ void add_belt(Surface& surface, const BeltLoop& belt) {
   for (const double left : {1.0, -1.0}) add_side(surface, belt, left);
 }
 
-bool is_front(robot::Flipper which) {
-  return which == robot::kFrontLeft || which == robot::kFrontRight;
-}
-
-robot::Track side_of(robot::Flipper which) {
-  return which == robot::kFrontLeft || which == robot::kRearLeft ? robot::kLeft : robot::kRight;
-}
-
 }  // namespace
 
 void add_box(Surface& surface, const Vector3d& size_m, const physics::Pose& X_LBox, Material material) {
@@ -148,12 +140,12 @@ Surface flipper_surface(const physics::RobotDescription& robot, robot::Flipper w
   const physics::FlipperDescription& flipper = robot.flipper.front();
   Surface surface;
   // the upper run goes forward on both ends of the robot: toward the tip in front, toward the pivot behind
-  const double s_sign = !flipper.belt_driven ? 0 : is_front(which) ? 1 : -1;
+  const double s_sign = !flipper.belt_driven ? 0 : robot::is_front(which) ? 1 : -1;
   add_belt(surface, {physics::flipper_outline(flipper),
                      Vector3d::Zero(),
                      flipper.width_m,
-                     is_front(which) ? Material::front_flipper : Material::rear_flipper,
-                     side_of(which),
+                     robot::is_front(which) ? Material::front_flipper : Material::rear_flipper,
+                     robot::side_of(which),
                      s_sign,
                      {{{0, 0}, kWheelShare * flipper.pivot_radius_m},
                       {{flipper.length_m, 0}, kWheelShare * flipper.tip_radius_m}}});
@@ -162,10 +154,10 @@ Surface flipper_surface(const physics::RobotDescription& robot, robot::Flipper w
 
 physics::Pose flipper_pose(const physics::RobotDescription& robot, robot::Flipper which, double angle_rad) {
   Vector3d pivot_B = robot.flipper.front().p_BPivot_m;
-  if (!is_front(which)) pivot_B.x() *= -1;
-  if (side_of(which) == robot::kRight) pivot_B.y() *= -1;
+  if (!robot::is_front(which)) pivot_B.x() *= -1;
+  if (robot::side_of(which) == robot::kRight) pivot_B.y() *= -1;
   const Eigen::Quaterniond tip_up(Eigen::AngleAxisd(-angle_rad, Vector3d::UnitY()));
-  const Eigen::Quaterniond turned(Eigen::AngleAxisd(is_front(which) ? 0 : pi, Vector3d::UnitZ()));
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(robot::is_front(which) ? 0 : pi, Vector3d::UnitZ()));
   return {pivot_B, turned * tip_up};
 }
 

@@ -273,8 +273,8 @@ int hrt_set_flipper(int flipper, double deg) {
 
 int hrt_set_flippers(double front_left_deg, double front_right_deg, double rear_left_deg, double rear_right_deg) {
   return guarded([&] {
-    std::array<double, kenaf::hrt::kFlipperCount> angles = {front_left_deg, front_right_deg, rear_left_deg,
-                                                            rear_right_deg};
+    std::array<double, kenaf::robot::kFlipperCount> angles = {front_left_deg, front_right_deg, rear_left_deg,
+                                                              rear_right_deg};
     for (double& angle : angles) {
       require_range(angle, -kMaxFlipper_deg, kMaxFlipper_deg, "hrt_set_flippers: an angle");
       angle /= kDegrees;

@@ -25,6 +25,17 @@ constexpr std::ptrdiff_t place_of(robot::Quantity quantity) {
                        [](const robot::Column& column) { return column.by_robot; });
 }
 
+// `values` into a row, in the order of the quantity's columns.
+template <robot::Quantity quantity>
+void put(RecordRow& row, std::span<const double> values) {
+  constexpr std::ptrdiff_t kPlace = place_of(quantity);
+  std::ranges::copy(values, row.begin() + kPlace);
+}
+template <robot::Quantity quantity>
+void put(RecordRow& row, double value) {
+  put<quantity>(row, std::span(&value, 1));
+}
+
 // A recording begins anywhere: without the rounding of its difference the same run has the same file.
 double whole_nanoseconds(double t_s) {
   return static_cast<double>(std::llround(t_s * 1e9)) / 1e9;
@@ -51,46 +62,42 @@ RecordRow record_row(const robot::State& state, const DriveCommand& command, dou
   using enum robot::Quantity;
   RecordRow row;
   row.fill(kNotMeasured);
-  const auto put = [&row](robot::Quantity quantity, std::span<const double> values) {
-    std::ranges::copy(values, row.begin() + place_of(quantity));
-  };
-  const auto put_one = [&put](robot::Quantity quantity, double value) { put(quantity, {&value, 1}); };
   const auto has = [&](robot::StateField field) { return robot::is_new(state.fields, field); };
 
   // what was asked
-  put_one(time, t_s);
-  put(track_command, command.track_speed_mps);
+  put<time>(row, t_s);
+  put<track_command>(row, command.track_speed_mps);
   std::array<double, robot::kFlipperCount> flipper_rad = command.flipper_rad;
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
     if ((command.flipper_mask >> i & 1) == 0) flipper_rad[i] = kNotMeasured;
-  put(flipper_command, flipper_rad);
+  put<flipper_command>(row, flipper_rad);
 
   // what was measured
   if (has(robot::kHasEncoders)) {
-    put(track_speed, state.track_mps);
-    put(track_travel, state.track_m);
+    put<track_speed>(row, state.track_mps);
+    put<track_travel>(row, state.track_m);
   }
-  if (has(robot::kHasFlippers)) put(flipper_angle, state.flipper_rad);
+  if (has(robot::kHasFlippers)) put<flipper_angle>(row, state.flipper_rad);
   if (has(robot::kHasCurrents)) {
-    put(track_current, state.track_a);
-    put(flipper_current, state.flipper_a);
+    put<track_current>(row, state.track_a);
+    put<flipper_current>(row, state.flipper_a);
   }
-  if (has(robot::kHasBattery)) put_one(battery_voltage, state.battery_v);
+  if (has(robot::kHasBattery)) put<battery_voltage>(row, state.battery_v);
   if (has(robot::kHasGroundTruth)) {
-    put(position, state.p_WB_m);
-    put(tilt, std::span(state.orientation_rad).first(2));
-    put_one(yaw, state.orientation_rad[2]);
+    put<position>(row, state.p_WB_m);
+    put<tilt>(row, std::span(state.orientation_rad).first(2));
+    put<yaw>(row, state.orientation_rad[2]);
   }
   if (has(robot::kHasInertial)) {
-    put(turn_rate, state.gyro_radps);
-    put(acceleration, state.acceleration_mps2);
+    put<turn_rate>(row, state.gyro_radps);
+    put<acceleration>(row, state.acceleration_mps2);
   }
-  if (has(robot::kHasPosture)) put(posture, state.posture_rad);
+  if (has(robot::kHasPosture)) put<posture>(row, state.posture_rad);
 
   // how the cycle went
-  put_one(robot_time, state.robot_time_s);
-  put_one(frame, state.frame);
-  put_one(late_commands, state.late_commands);
+  put<robot_time>(row, state.robot_time_s);
+  put<frame>(row, state.frame);
+  put<late_commands>(row, state.late_commands);
   return row;
 }
 

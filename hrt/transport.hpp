@@ -13,9 +13,6 @@
 
 namespace kenaf::hrt {
 
-using robot::kFlipperCount;
-using robot::kTrackCount;
-
 // What the robot shall do from the next cycle on. Complete and absolute.
 struct DriveCommand {
   std::array<double, robot::kTrackCount> track_speed_mps{};

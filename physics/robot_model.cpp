@@ -11,13 +11,6 @@ namespace {
 
 constexpr int kFlipperPieces = 2;  // of its straight run, with contacts at the ends of each
 
-bool is_front(robot::Flipper flipper) {
-  return flipper == robot::kFrontLeft || flipper == robot::kFrontRight;
-}
-robot::Track side_of(robot::Flipper flipper) {
-  return flipper == robot::kFrontLeft || flipper == robot::kRearLeft ? robot::kLeft : robot::kRight;
-}
-
 Surface belt_surface(const RobotDescription& robot, robot::Track side, double friction_along, double friction_across,
                      Belt* belt, double axis_y) {
   const Effects& effects = robot.effects;
@@ -144,9 +137,9 @@ void RobotModel::make_flipper(robot::Flipper which, RobotId id) {
   const Outline outline = flipper_outline(f);
   const OutlineMoments m = moments(outline);
   const Eigen::Vector3d com(m.centroid.x(), 0, m.centroid.y());
-  const robot::Track side = side_of(which);
+  const robot::Track side = robot::side_of(which);
   // a rear flipper is a front one that is turned half round: x out along the arm, tip up about -y for all four
-  const bool front = is_front(which);
+  const bool front = robot::is_front(which);
   const Eigen::Vector3d pivot(front ? f.p_BPivot_m.x() : -f.p_BPivot_m.x(),
                               side == robot::kLeft ? f.p_BPivot_m.y() : -f.p_BPivot_m.y(), f.p_BPivot_m.z());
   const btQuaternion turn = front ? btQuaternion::getIdentity() : btQuaternion(0, 0, 1, 0);

@@ -8,10 +8,6 @@ namespace kenaf::frames {
 
 namespace {
 
-bool is_front(robot::Flipper flipper) {
-  return flipper == robot::kFrontLeft || flipper == robot::kFrontRight;
-}
-
 // Half a turn about x, the map between the two frames. It is its own inverse.
 Vector3 half_turn_about_x(const Vector3& v) {
   return {v[0], -v[1], -v[2]};
@@ -39,11 +35,11 @@ Vector3 rep103_angles_from_usarsim(const Vector3& roll_pitch_yaw) {
 }
 
 double usarsim_flipper_from_tip_up(robot::Flipper flipper, double tip_up_rad) {
-  return is_front(flipper) ? -tip_up_rad : tip_up_rad;
+  return robot::is_front(flipper) ? -tip_up_rad : tip_up_rad;
 }
 
 double tip_up_from_usarsim_flipper(robot::Flipper flipper, double joint_rad) {
-  return is_front(flipper) ? -joint_rad : joint_rad;
+  return robot::is_front(flipper) ? -joint_rad : joint_rad;
 }
 
 double usarsim_link_from_rep103(double angle_rad) {

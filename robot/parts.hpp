@@ -1,6 +1,6 @@
 // The parts of a robot that move: two tracks and four flippers, and the order in which all arrays have them.
 // A flipper's angle is 0 straight out along the body and positive with its tip up, for all four. Radians.
-// Thread safety: constants.
+// Thread safety: constants and pure functions.
 #pragma once
 
 #include <array>
@@ -11,6 +11,13 @@ namespace kenaf::robot {
 
 enum Track : std::size_t { kLeft, kRight, kTrackCount };
 enum Flipper : std::size_t { kFrontLeft, kFrontRight, kRearLeft, kRearRight, kFlipperCount };
+
+constexpr bool is_front(Flipper flipper) {
+  return flipper == kFrontLeft || flipper == kFrontRight;
+}
+constexpr Track side_of(Flipper flipper) {
+  return flipper == kFrontLeft || flipper == kRearLeft ? kLeft : kRight;
+}
 
 // As in the names of a run's columns: flipper_fl_rad, ...
 inline constexpr std::array<std::string_view, kTrackCount> kTrackNames{"left", "right"};

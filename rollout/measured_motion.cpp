@@ -144,8 +144,6 @@ std::optional<double> slope(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, 
 // their ways along the measured yaw.
 StartMotion motion_of_tracks(const MeasuredMotion& measured, const Poses& poses,
                              const std::array<double, robot::kTrackCount>& track_mps) {
-  using robot::kLeft;
-  using robot::kRight;
   StartMotion motion{.track_mps = track_mps, .forward_mps = {}, .yaw_radps = {}};
   const auto n = static_cast<Eigen::Index>(poses.t_s.size());
   if (n < 2) return motion;

@@ -18,7 +18,6 @@ using physics::Pose;
 using physics::RobotDescription;
 using physics::RobotId;
 using physics::World;
-using robot::Command;
 using FlipperAngles = std::array<double, robot::kFlipperCount>;
 
 constexpr double kSettle_s = 0.5;  // a robot that is put down stands still after that

@@ -15,12 +15,6 @@ namespace {
 using physics::RobotDescription;
 using physics::SensorDescription;
 using physics::SensorType;
-using robot::kFrontLeft;
-using robot::kFrontRight;
-using robot::kLeft;
-using robot::kRearLeft;
-using robot::kRearRight;
-using robot::kRight;
 
 const SensorDescription* sensor_of(const RobotDescription& robot, SensorType type) {
   const auto found = std::ranges::find(robot.sensors, type, &SensorDescription::type);

@@ -44,7 +44,6 @@ std::optional<robot::Flipper> find_flipper(std::string_view name) {
 
 robot::JointCommand joint_command(const physics::RobotDescription& description, const physics::RobotTruth& truth,
                                   robot::Flipper flipper, JointOrder order, double value) {
-  using robot::JointMode;
   const physics::FlipperDescription& joint = description.flipper.front();
   const physics::FlipperServoDescription& servo = description.servo;
   const double tip_up = frames::tip_up_from_usarsim_flipper(flipper, value);

@@ -31,7 +31,6 @@ void release(Simulation& simulation, Session& session) {
 }
 
 robot::Command within_limits(const physics::RobotDescription& robot, robot::Command command) {
-  using robot::JointMode;
   for (double& speed : command.track_speed_mps) {
     speed = std::clamp(speed, -robot.drive.max_speed_mps, robot.drive.max_speed_mps);
   }

@@ -106,8 +106,8 @@ RobotParts parts_of(const RobotDescription& robot) {
   const OutlineMoments m = moments(outline);
   const double xx = m.Ixx / m.area, zz = m.Izz / m.area, yy = f.width_m * f.width_m / 12;
   for (const robot::Flipper which : {robot::kFrontLeft, robot::kFrontRight, robot::kRearLeft, robot::kRearRight}) {
-    const bool front = which == robot::kFrontLeft || which == robot::kFrontRight;
-    const robot::Track side = which == robot::kFrontLeft || which == robot::kRearLeft ? robot::kLeft : robot::kRight;
+    const bool front = robot::is_front(which);
+    const robot::Track side = robot::side_of(which);
     const Eigen::Vector3d pivot(front ? f.p_BPivot_m.x() : -f.p_BPivot_m.x(),
                                 side == robot::kLeft ? f.p_BPivot_m.y() : -f.p_BPivot_m.y(), f.p_BPivot_m.z());
     // a rear flipper is a front one that is turned half round

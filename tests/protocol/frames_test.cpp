@@ -17,7 +17,6 @@
 
 using namespace kenaf;
 using namespace kenaf::frames;
-using robot::Flipper;
 using std::numbers::pi;
 
 namespace {

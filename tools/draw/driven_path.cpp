@@ -73,8 +73,8 @@ DrivenPath driven_path(const runs::Run& run, const std::string& name, const phys
   Channel x(run, "x_m", 0), y(run, "y_m", 0), z(run, "z_m", resting_height_m);
   Channel roll(run, "roll_rad", 0), pitch(run, "pitch_rad", 0), yaw(run, "yaw_rad", 0);
   std::vector<Channel> flippers;
-  for (const std::string place : {"fl", "fr", "rl", "rr"}) {
-    const std::string measured = "flipper_" + place + "_rad";
+  for (const std::string_view place : robot::kFlipperNames) {
+    const std::string measured = "flipper_" + std::string(place) + "_rad";
     const std::string column = run.column(measured).empty() ? "cmd_" + measured : measured;
     flippers.emplace_back(run, column, Channel(run, column, start_rad).first_or(start_rad));
   }

@@ -47,8 +47,9 @@ std::vector<Belt> belts_of(const physics::RobotDescription& robot, const Posture
   if (!robot.has_flippers()) return belts;
   const physics::FlipperDescription& flipper = robot.flipper.front();
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
-    const double front = i == robot::kFrontLeft || i == robot::kFrontRight ? 1 : -1;
-    const double left = i == robot::kFrontLeft || i == robot::kRearLeft ? 1 : -1;
+    const auto which = static_cast<robot::Flipper>(i);
+    const double front = robot::is_front(which) ? 1 : -1;
+    const double left = robot::side_of(which) == robot::kLeft ? 1 : -1;
     const Vector3d pivot_B = mirrored(flipper.p_BPivot_m, front, left);
     const double angle_rad = posture.flipper_rad[i];
     const Vector3d along_B(front * std::cos(angle_rad), 0, std::sin(angle_rad));
