@@ -137,7 +137,8 @@ constexpr std::span<const Column> columns() {
 
 // The columns of a quantity.
 constexpr std::span<const Column> columns_of(Quantity quantity) {
-  const auto [first, last] = std::ranges::equal_range(columns(), quantity, {}, &Column::quantity);
+  const auto first = std::ranges::lower_bound(columns(), quantity, {}, &Column::quantity);
+  const auto last = std::ranges::upper_bound(columns(), quantity, {}, &Column::quantity);
   return {first, last};
 }
 
