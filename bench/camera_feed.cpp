@@ -28,10 +28,10 @@
 #include <thread>
 #include <vector>
 
-#include "camera/server/feed.hpp"
-#include "camera/server/image_server.hpp"
-#include "physics/server/manual_drive.hpp"
-#include "physics/server/world_server.hpp"
+#include "server/image_server/feed.hpp"
+#include "server/image_server/image_server.hpp"
+#include "server/world_server/manual_drive.hpp"
+#include "server/world_server/world_server.hpp"
 
 using namespace kenaf;
 using Clock = std::chrono::steady_clock;
@@ -69,7 +69,7 @@ double quantile(std::vector<double> values, double share) {
 // Exposures of the frames that were published, by camera and number.
 class Exposures {
  public:
-  explicit Exposures(camera::Feed& feed)
+  explicit Exposures(image_server::Feed& feed)
       : listening_(feed.listen([this, &feed] {
           const std::lock_guard lock(mutex_);
           for (const auto& frame : feed.newest()) exposed_[{frame->camera, frame->number}] = frame->exposed;
@@ -165,13 +165,13 @@ void Reader::read(std::uint16_t port) {
 
 struct World {
   World(const std::string& name, double speed) : server(options(name, speed)), thread([this] { server.run(); }) {
-    server.ask([](server::Simulation& simulation) {
+    server.ask([](world_server::Simulation& simulation) {
       std::uint32_t id = 0;
-      const server::OperatorId nobody{1};
-      server::place_robot_by_hand(simulation, nobody, id);
-      server::Session& session = *simulation.find_session(id);
+      const world_server::OperatorId nobody{1};
+      world_server::place_robot_by_hand(simulation, nobody, id);
+      world_server::Session& session = *simulation.find_session(id);
       // released, and told to turn on the spot: nobody has to repeat it
-      server::let_go(simulation, id, nobody);
+      world_server::let_go(simulation, id, nobody);
       session.robot->command.track_speed_mps = {-0.1, 0.1};
       simulation.apply_command(session);
     });
@@ -182,29 +182,29 @@ struct World {
   }
   double time_s() {
     std::promise<double> promise;
-    server.ask([&](server::Simulation& simulation) { promise.set_value(simulation.world.time_s()); });
+    server.ask([&](world_server::Simulation& simulation) { promise.set_value(simulation.world.time_s()); });
     return promise.get_future().get();
   }
-  static server::ServerOptions options(const std::string& name, double speed) {
-    server::ServerOptions options;
+  static world_server::ServerOptions options(const std::string& name, double speed) {
+    world_server::ServerOptions options;
     options.world = name;
     options.port = 0;
     options.speed = speed;
     return options;
   }
-  server::WorldServer server;
+  world_server::WorldServer server;
   std::thread thread;
 };
 
 struct Readers {
   explicit Readers(World& world)
       : feed(world.server),
-        images(feed, "127.0.0.1", 0, camera::ImageType::good),
+        images(feed, "127.0.0.1", 0, image_server::ImageType::good),
         exposures(feed),
         front(images.port(), "Camera", exposures),
         top(images.port(), "BirdsEye", exposures) {}
-  camera::Feed feed;
-  camera::ImageServer images;
+  image_server::Feed feed;
+  image_server::ImageServer images;
   Exposures exposures;
   Reader front, top;
 };

@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "bench/relay_client.hpp"
-#include "protocol/usarsim_message.hpp"
+#include "formats/protocol/usarsim_message.hpp"
 #include "tests/support/process.hpp"
 
 namespace {
@@ -28,7 +28,7 @@ using kenaf::bench::RelayClient;
 using kenaf::support::Process;
 using kenaf::support::TemporaryFolder;
 using kenaf::support::wait_for_port;
-namespace usarsim = kenaf::usarsim;
+namespace protocol = kenaf::protocol;
 
 // Passes bytes between the relay and the world server and keeps the speeds that were commanded.
 class Tap {
@@ -83,16 +83,18 @@ class Tap {
   void note(std::string_view text) {
     lines_.push(text);
     while (const auto line = lines_.next()) {
-      usarsim::MessageView message;
-      if (usarsim::parse_message(*line, message) != usarsim::ParseError::none || !message.is("DRIVE")) continue;
+      protocol::usarsim::MessageView message;
+      if (protocol::usarsim::parse_message(*line, message) != protocol::usarsim::ParseError::none ||
+          !message.is("DRIVE"))
+        continue;
       const auto left = message.find("Left");
-      const auto spin = left ? usarsim::parse_number(*left) : std::nullopt;
+      const auto spin = left ? protocol::usarsim::parse_number(*left) : std::nullopt;
       if (spin && *spin != 0 && speeds_.insert(std::llround(*spin * 1e9)).second) distinct_.store(speeds_.size());
     }
   }
   int listener_ = -1;
   std::uint16_t port_ = 0;
-  usarsim::LineSplitter lines_;
+  protocol::usarsim::LineSplitter lines_;
   std::set<long long> speeds_;
   std::atomic<std::size_t> distinct_{0};
   std::thread thread_;
@@ -127,12 +129,12 @@ int main(int argc, char** argv) {
       std::atomic<bool> done{false};
       std::thread listener([&] {
         while (!done) {
-          frame = client.wait_for<kenaf::relay::State>([&](const auto&) { return true; }).robot.frame;
+          frame = client.wait_for<kenaf::protocol::relay::State>([&](const auto&) { return true; }).robot.frame;
         }
       });
       const double cpu_before = relay.cpu_s();
       const auto start = std::chrono::steady_clock::now();
-      kenaf::relay::Command command{};
+      kenaf::protocol::relay::Command command{};
       command.session = RelayClient::kSession;
       for (int i = 1; i <= sent; ++i) {
         command.sequence = static_cast<std::uint32_t>(i);

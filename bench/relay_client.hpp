@@ -16,7 +16,7 @@
 #include <string>
 #include <variant>
 
-#include "protocol/relay_datagram.hpp"
+#include "formats/protocol/relay_datagram.hpp"
 
 namespace kenaf::bench {
 
@@ -48,39 +48,39 @@ class RelayClient {
  public:
   explicit RelayClient(std::uint16_t port) : fd_(connected_socket(SOCK_DGRAM, port)) {}
   ~RelayClient() {
-    send(kenaf::relay::Bye{kSession});
+    send(kenaf::protocol::relay::Bye{kSession});
     ::close(fd_);
   }
   RelayClient(const RelayClient&) = delete;
   RelayClient& operator=(const RelayClient&) = delete;
 
-  void send(const kenaf::relay::Datagram& datagram) {
-    std::array<std::byte, kenaf::relay::kMaxDatagramBytes> bytes;
-    const std::size_t size = kenaf::relay::encode(datagram, bytes);
+  void send(const kenaf::protocol::relay::Datagram& datagram) {
+    std::array<std::byte, kenaf::protocol::relay::kMaxDatagramBytes> bytes;
+    const std::size_t size = kenaf::protocol::relay::encode(datagram, bytes);
     if (::send(fd_, bytes.data(), size, 0) < 0) fail("send");
   }
   template <class Kind, class Accepts>
   Kind wait_for(Accepts accepts) {
-    kenaf::relay::Datagram datagram;
+    kenaf::protocol::relay::Datagram datagram;
     while (true) {
       const ssize_t got = ::recv(fd_, bytes_.data(), bytes_.size(), 0);
       if (got <= 0) fail("no answer from the relay");
       const std::span<const std::byte> view(bytes_.data(), static_cast<std::size_t>(got));
-      if (kenaf::relay::decode(view, datagram) != kenaf::relay::DecodeError::none) continue;
+      if (kenaf::protocol::relay::decode(view, datagram) != kenaf::protocol::relay::DecodeError::none) continue;
       if (const Kind* kind = std::get_if<Kind>(&datagram); kind != nullptr && accepts(*kind)) return *kind;
     }
   }
   // Becomes the commander; the world server may still be starting behind the relay.
   void greet(bool lockstep) {
-    const kenaf::relay::Hello hello{kSession, 0.01, 0.5, lockstep, false};
+    const kenaf::protocol::relay::Hello hello{kSession, 0.01, 0.5, lockstep, false};
     for (int tries = 0; tries < 100; ++tries) {
       send(hello);
-      kenaf::relay::Datagram datagram;
+      kenaf::protocol::relay::Datagram datagram;
       const ssize_t got = ::recv(fd_, bytes_.data(), bytes_.size(), 0);
       if (got <= 0) fail("no answer from the relay");
       const std::span<const std::byte> view(bytes_.data(), static_cast<std::size_t>(got));
-      if (kenaf::relay::decode(view, datagram) == kenaf::relay::DecodeError::none &&
-          std::holds_alternative<kenaf::relay::Welcome>(datagram)) {
+      if (kenaf::protocol::relay::decode(view, datagram) == kenaf::protocol::relay::DecodeError::none &&
+          std::holds_alternative<kenaf::protocol::relay::Welcome>(datagram)) {
         return;
       }
       ::usleep(50000);
@@ -91,7 +91,7 @@ class RelayClient {
 
  private:
   int fd_;
-  std::array<std::byte, kenaf::relay::kMaxDatagramBytes> bytes_;
+  std::array<std::byte, kenaf::protocol::relay::kMaxDatagramBytes> bytes_;
 };
 
 }  // namespace kenaf::bench

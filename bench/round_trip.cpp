@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "bench/relay_client.hpp"
-#include "protocol/relay_datagram.hpp"
+#include "formats/protocol/relay_datagram.hpp"
 #include "tests/support/process.hpp"
 
 namespace {
@@ -151,8 +151,8 @@ Samples pings_by_relay(const std::string& bin, int count) {
   client.greet(false);
   return timed(count, [&](int i) {
     const auto id = static_cast<std::uint32_t>(i + 1);
-    client.send(kenaf::relay::Ping{RelayClient::kSession, id});
-    client.wait_for<kenaf::relay::Pong>([&](const auto& pong) { return pong.id == id; });
+    client.send(kenaf::protocol::relay::Ping{RelayClient::kSession, id});
+    client.wait_for<kenaf::protocol::relay::Pong>([&](const auto& pong) { return pong.id == id; });
   });
 }
 
@@ -183,15 +183,15 @@ Samples cycles_by_relay(const std::string& bin, int count) {
   Process relay = servers.start_relay();
   RelayClient client(wait_for_port(servers.folder.path() / "relay", relay));
   client.greet(true);
-  std::uint32_t frame = client.wait_for<kenaf::relay::State>([](const auto&) { return true; }).robot.frame;
-  kenaf::relay::Command command{};
+  std::uint32_t frame = client.wait_for<kenaf::protocol::relay::State>([](const auto&) { return true; }).robot.frame;
+  kenaf::protocol::relay::Command command{};
   command.session = RelayClient::kSession;
   return timed(count, [&](int i) {
     command.sequence = static_cast<std::uint32_t>(i + 1);
     command.frame = frame;
     client.send(command);
-    frame =
-        client.wait_for<kenaf::relay::State>([&](const auto& state) { return state.robot.frame > frame; }).robot.frame;
+    frame = client.wait_for<kenaf::protocol::relay::State>([&](const auto& state) { return state.robot.frame > frame; })
+                .robot.frame;
   });
 }
 

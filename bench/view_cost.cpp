@@ -4,8 +4,8 @@
 #include <spdlog/spdlog.h>
 #include <time.h>
 
-#include "live/messages.hpp"
-#include "physics/server/manual_drive.hpp"
+#include "server/live/messages.hpp"
+#include "server/world_server/manual_drive.hpp"
 
 namespace {
 
@@ -31,18 +31,18 @@ int main() {
   spdlog::set_level(spdlog::level::warn);
   fmt::print("robots  step/us  state/us  words/us  bytes  states at 30 Hz of one core\n");
   for (const int robots : {1, 8, 64}) {
-    server::ServerOptions options;
+    world_server::ServerOptions options;
     options.speed = 0;
-    server::Simulation simulation(options);
+    world_server::Simulation simulation(options);
     for (int i = 0; i < robots; ++i) {
-      server::Session& session = simulation.connect("bench");
+      world_server::Session& session = simulation.connect("bench");
       simulation.receive(
           session, fmt::format("INIT {{ClassName USARBot.Kenaf}} {{Name R{}}} {{Location 0,{},0}}\r\n", i, 2 * i), 0);
       session.out.clear();
     }
     const double step_us = microseconds(300, [&] { simulation.world.step(); });
-    server::WorldState state;
-    const double state_us = microseconds(3000, [&] { server::read_state(simulation, state); });
+    world_server::WorldState state;
+    const double state_us = microseconds(3000, [&] { world_server::read_state(simulation, state); });
     std::string text;
     const double words_us = microseconds(300, [&] { text = live::state_message(state, 1, 1, 1); });
     fmt::print("{:6}  {:7.1f}  {:8.2f}  {:8.1f}  {:5}  {:.3f} %\n", robots, step_us, state_us, words_us, text.size(),

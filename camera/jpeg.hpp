@@ -17,9 +17,9 @@ class JpegEncoder {
   JpegEncoder(const JpegEncoder&) = delete;
   JpegEncoder& operator=(const JpegEncoder&) = delete;
 
-  // The bytes of a JPEG file (baseline, 4:2:0: colour at half the resolution); valid until the next call. `quality`: 1 to
-  // 100, else std::invalid_argument. The buffer is used again; what TurboJPEG
-  // allocates for a picture (some 40 blocks) it gives back.
+  // The bytes of a JPEG file (baseline, 4:2:0: colour at half the resolution); valid until the next call. `quality`: 1
+  // to 100, else std::invalid_argument. The buffer is used again; what TurboJPEG allocates for a picture (some 40
+  // blocks) it gives back.
   std::span<const std::uint8_t> encode(const Picture& picture, int quality);
 
  private:

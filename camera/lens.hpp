@@ -1,9 +1,9 @@
 // A pinhole camera: where a point of the world is in the picture, and where a pixel looks.
 //
-// Camera frame C (REP 103, the body's convention, not the optical one): origin at the pinhole, x along the optical axis,
-// y left, z up. Picture: u to the right, v down, in pixels, from the upper left corner of the upper left pixel; so the
-// centre of the pixel in column i and row j is (i + 0.5, j + 0.5), and the optical axis goes through (width / 2, height / 2).
-// Pixels are square. No distortion. Thread safety: pure functions.
+// Camera frame C (REP 103, the body's convention, not the optical one): origin at the pinhole, x along the optical
+// axis, y left, z up. Picture: u to the right, v down, in pixels, from the upper left corner of the upper left pixel;
+// so the centre of the pixel in column i and row j is (i + 0.5, j + 0.5), and the optical axis goes through (width / 2,
+// height / 2). Pixels are square. No distortion. Thread safety: pure functions.
 #pragma once
 
 #include <optional>
@@ -13,8 +13,8 @@
 namespace kenaf::camera {
 
 struct Lens {
-  int width, height;              // pixels, 1 to 16384
-  double field_of_view_rad;       // between the picture's left and right border: above 0, below pi
+  int width, height;         // pixels, 1 to 16384
+  double field_of_view_rad;  // between the picture's left and right border: above 0, below pi
 };
 
 struct View {
@@ -22,7 +22,9 @@ struct View {
   physics::Pose X_WC;
 };
 
-struct Pixel { double u, v; };
+struct Pixel {
+  double u, v;
+};
 
 // Of one unit of tangent: a point at (1, y, z) in C is at u = width / 2 - f y, v = height / 2 - f z.
 double focal_length_px(const Lens& lens);
@@ -31,8 +33,8 @@ double focal_length_px(const Lens& lens);
 // of the pinhole, where it has no picture.
 std::optional<Pixel> project(const View& view, const Eigen::Vector3d& p_W);
 
-// Where a pixel looks, in W. Not of unit length: its component along the optical axis is 1, so that view.X_WC.p plus `z`
-// times it lies at depth `z`. project() takes every such point of z > 0 back to the pixel.
+// Where a pixel looks, in W. Not of unit length: its component along the optical axis is 1, so that view.X_WC.p plus
+// `z` times it lies at depth `z`. project() takes every such point of z > 0 back to the pixel.
 Eigen::Vector3d ray(const View& view, Pixel pixel);
 
 // Whether a pixel lies in the picture.

@@ -1,4 +1,5 @@
 // How a mesh's surface faces the sun, smoothed: what is curved looks curved, and what has an edge keeps it.
+//
 // Thread safety: a pure function.
 #pragma once
 
@@ -9,8 +10,8 @@
 
 namespace kenaf::camera {
 
-// For each corner of each triangle the cosine between `toward_sun_W` (unit) and the mean normal, weighted by area, of the
-// triangles that meet there and are inclined to this one by less than 35 degrees; not below 0.
+// For each corner of each triangle the cosine between `toward_sun_W` (unit) and the mean normal, weighted by area, of
+// the triangles that meet there and are inclined to this one by less than 35 degrees; not below 0.
 std::vector<std::array<float, 3>> mesh_facing(const physics::TriangleMesh& mesh, const Eigen::Vector3d& toward_sun_W);
 
 }  // namespace kenaf::camera

@@ -12,7 +12,8 @@ struct Picture {
   std::vector<std::uint8_t> rgb;
   // The first of the three bytes of a pixel.
   const std::uint8_t* at(int column, int row) const {
-    return &rgb[3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column))];
+    return &rgb[3 *
+                (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column))];
   }
 };
 

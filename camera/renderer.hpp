@@ -1,6 +1,7 @@
 // The picture of a camera: visibility (which face each pixel shows), then shading (its colour).
 //
 // A camera has no body: it sees its own robot where geometry says so.
+//
 // Thread safety: none; one renderer for each thread. Several renderers may show one Scene at once.
 #pragma once
 

@@ -1,4 +1,5 @@
 // Where a robot's cameras are, and what they see by. Which there are stands in its description ([[camera]]).
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -9,8 +10,9 @@
 
 namespace kenaf::camera {
 
-// A camera fixed on the body is at its mount. One on a mission package is at the package's mount, turned by link 1 about
-// the mount's z (pan; positive: to the left), then by link 2, if there is one, about y (tilt; positive: down, as pitch).
+// A camera fixed on the body is at its mount. One on a mission package is at the package's mount, turned by link 1
+// about the mount's z (pan; positive: to the left), then by link 2, if there is one, about y (tilt; positive: down, as
+// pitch).
 physics::Pose camera_pose(const RobotSnapshot& robot, const physics::CameraDescription& camera);
 
 // With the field of view as zoomed: clamped to what the camera can.

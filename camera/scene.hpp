@@ -1,10 +1,11 @@
 // The world as rays meet it: the physics' own geometry in Embree, with a face for every plane piece of it.
 //
 // Ground planes are infinite, and cast analytically. Fixed boxes and meshes are one Embree scene that is built once;
-// loose boxes and the parts of robots (hull with tracks, each arm) are instances in a second one, whose poses follow the
-// snapshots. A picture is made in the thread that calls, with no other thread, window or GPU.
+// loose boxes and the parts of robots (hull with tracks, each arm) are instances in a second one, whose poses follow
+// the snapshots. A picture is made in the thread that calls, with no other thread, window or GPU.
 //
-// Thread safety: cast(), cast_any() and face() may be called by several threads between two updates; update() excludes them.
+// Thread safety: cast(), cast_any() and face() may be called by several threads between two updates; update() excludes
+// them.
 #pragma once
 
 #include <cstdint>
@@ -24,12 +25,12 @@ inline constexpr FaceId kNothing = 0x7fffffff;  // the sky
 // A face where it is in the world now.
 struct PlacedFace {
   Eigen::Vector3d normal_W;
-  double distance;                 // normal . p_W
-  Affine s, t;                     // of p_W
-  Affine facing;                   // how much the surface faces the sun: cosine of the angle; not below 0; a mesh's is smooth
+  double distance;  // normal . p_W
+  Affine s, t;      // of p_W
+  Affine facing;    // how much the surface faces the sun: cosine of the angle; not below 0; a mesh's is smooth
   Material material;
-  Eigen::Vector2d half{0, 0};      // as Face
-  bool of_mesh = false;            // one triangle of a smooth surface
+  Eigen::Vector2d half{0, 0};  // as Face
+  bool of_mesh = false;        // one triangle of a smooth surface
 };
 
 // Around a box or a part of a robot.
@@ -64,7 +65,8 @@ class Scene {
 
   // The first face along each ray, from `near` to `far` times its direction; `far` becomes where, `face` what.
   void cast(RayBatch& rays) const;
-  // `face` becomes 0 where something lies between `near` and `far`, else kNothing. Planes stop only what comes from above.
+  // `face` becomes 0 where something lies between `near` and `far`, else kNothing. Planes stop only what comes from
+  // above.
   void cast_any(RayBatch& rays) const;
   PlacedFace face(FaceId id) const;
   std::size_t face_count() const;

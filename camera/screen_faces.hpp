@@ -26,12 +26,12 @@ struct RayBasis {
 };
 
 struct ScreenFace {
-  Linear nearness;                  // 1 / depth, 1/m
-  Linear s, t, facing;              // each times nearness
+  Linear nearness;      // 1 / depth, 1/m
+  Linear s, t, facing;  // each times nearness
   Eigen::Vector3f normal_W;
-  float facing_sun;                 // cosine; of a mesh's triangle its own, not the smoothed one
+  float facing_sun;  // cosine; of a mesh's triangle its own, not the smoothed one
   Material material;
-  float half_s, half_t;             // as Face
+  float half_s, half_t;  // as Face
   bool of_mesh;
 };
 

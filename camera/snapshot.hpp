@@ -1,7 +1,7 @@
 // What of a world can be seen at one moment: a plain value, so that pictures are made while the world steps on.
 //
-// Taken by the thread that owns the World; afterwards any thread may read it. Planes and meshes never move and are not in
-// it: they are in physics::WorldDescription. Boxes are, the fixed ones too, because World can move and remove any.
+// Taken by the thread that owns the World; afterwards any thread may read it. Planes and meshes never move and are not
+// in it: they are in physics::WorldDescription. Boxes are, the fixed ones too, because World can move and remove any.
 #pragma once
 
 #include <array>
@@ -18,17 +18,17 @@ struct RobotSnapshot {
   physics::RobotId id;
   std::shared_ptr<const physics::RobotDescription> description;  // shared by all snapshots of this robot
   std::string name;
-  physics::Pose X_WB;                                            // after a fault where it last was whole
+  physics::Pose X_WB;  // after a fault where it last was whole
   std::array<double, robot::kFlipperCount> flipper_rad;
-  std::array<double, robot::kTrackCount> track_m;              // travel of the belts, so that they are seen to run
-  std::vector<std::vector<double>> mission_link_rad;             // of each mission package, link 1 first
+  std::array<double, robot::kTrackCount> track_m;     // travel of the belts, so that they are seen to run
+  std::vector<std::vector<double>> mission_link_rad;  // of each mission package, link 1 first
 };
 
 struct BoxSnapshot {
   physics::BoxId id;
   Eigen::Vector3d size_m;
   physics::Pose X_WBox;
-  bool fixed;                                                    // no mass: moves only when it is told to
+  bool fixed;  // no mass: moves only when it is told to
 };
 
 struct WorldSnapshot {

@@ -1,7 +1,7 @@
 // What a part of the scene looks like from outside: triangles, gathered into plane faces that carry a texture.
 //
-// A face is the unit of all that follows: two rays that hit the same face hit the same plane, whatever the triangles are.
-// Part frame L, metres. Thread safety: values and pure functions.
+// A face is the unit of all that follows: two rays that hit the same face hit the same plane, whatever the triangles
+// are. Part frame L, metres. Thread safety: values and pure functions.
 #pragma once
 
 #include <array>
@@ -13,7 +13,16 @@
 namespace kenaf::camera {
 
 enum class Material : std::uint8_t {
-  ground, terrain, fixed_box, loose_box, hull, belt, track_side, front_flipper, rear_flipper, drum
+  ground,
+  terrain,
+  fixed_box,
+  loose_box,
+  hull,
+  belt,
+  track_side,
+  front_flipper,
+  rear_flipper,
+  drum
 };
 inline constexpr std::size_t kMaterialCount = 10;
 
@@ -26,12 +35,12 @@ struct Affine {
 
 // A plane face. Its texture has the coordinates s and t, and repeats where either grows by 1.
 struct Face {
-  Eigen::Vector3d normal;          // unit, outward
-  double distance;                 // normal . p of its points
+  Eigen::Vector3d normal;  // unit, outward
+  double distance;         // normal . p of its points
   Affine s, t;
   Material material;
-  Eigen::Vector2d half{0, 0};      // of a box: |s| and |t| at its edges, which are drawn; 0: no edges
-  double s_per_track_m = 0;        // how far s moves when the belt of `track` does
+  Eigen::Vector2d half{0, 0};  // of a box: |s| and |t| at its edges, which are drawn; 0: no edges
+  double s_per_track_m = 0;    // how far s moves when the belt of `track` does
   robot::Track track = robot::kLeft;
 };
 
@@ -47,8 +56,8 @@ void add_box(Surface& surface, const Eigen::Vector3d& size_m, const physics::Pos
 
 // What of a robot is one rigid part: B with hull and both main tracks, and an arm, whose frame is at its pivot, x out
 // along the arm. Outlines are the physics' own (physics/robot_shapes.hpp); belts show a lug every 30 mm, wherever the
-// track's travel has taken it, and wheels stand 2 mm out of the sides so that ends and middle can be told apart: both are
-// for the eye, no description has them.
+// track's travel has taken it, and wheels stand 2 mm out of the sides so that ends and middle can be told apart: both
+// are for the eye, no description has them.
 Surface body_surface(const physics::RobotDescription& robot);
 Surface flipper_surface(const physics::RobotDescription& robot, robot::Flipper which);
 

@@ -1,7 +1,7 @@
 // Which face each pixel shows, and whether the sun reaches it there.
 //
-// Rays are cast at the corners of cells of 8 x 8 pixels. Where all four meet one plane face, in the light or in the shade
-// alike, the cell shows that face; else it is quartered, down to the pixel. On a mesh it is enough that the four
+// Rays are cast at the corners of cells of 8 x 8 pixels. Where all four meet one plane face, in the light or in the
+// shade alike, the cell shows that face; else it is quartered, down to the pixel. On a mesh it is enough that the four
 // triangles' planes and light are nearly those of one smooth surface; each pixel then takes the nearest corner's. Where
 // all four are in the light, what lies between them on the mesh is taken to be, too.
 //
@@ -39,10 +39,12 @@ class Visibility {
   std::size_t ray_count() const { return ray_count_; }
 
  private:
-  struct Cell { std::int16_t x, y; };
+  struct Cell {
+    std::int16_t x, y;
+  };
   struct Request {
     std::int16_t x, y;
-    bool mesh_is_lit;                         // where it meets a mesh; else only a ray toward the sun can tell
+    bool mesh_is_lit;  // where it meets a mesh; else only a ray toward the sun can tell
   };
 
   void mark_small(const Scene& scene, const View& view, int cell);
@@ -53,7 +55,7 @@ class Visibility {
 
   std::vector<Cell> cells_, next_cells_;
   std::vector<Request> requested_;
-  std::vector<std::uint8_t> marked_;          // of each coarsest cell: it is cast pixel by pixel
+  std::vector<std::uint8_t> marked_;  // of each coarsest cell: it is cast pixel by pixel
   int marked_columns_ = 0;
   std::vector<std::uint32_t> toward_sun_of_;  // which ray of the batch each ray toward the sun belongs to
   RayBatch rays_, sun_rays_;

@@ -3,13 +3,13 @@
 include(CMakePackageConfigHelpers)
 
 install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kenaf" COMPONENT development)
-install(DIRECTORY robots worlds manoeuvres DESTINATION "${CMAKE_INSTALL_DATADIR}/kenaf" COMPONENT data
+install(DIRECTORY share/robots share/worlds share/manoeuvres DESTINATION "${CMAKE_INSTALL_DATADIR}/kenaf" COMPONENT data
   FILES_MATCHING PATTERN "*.toml" PATTERN "*.sdf" PATTERN "*.png" PATTERN "*.obj")
 install(FILES README.md CHANGELOG.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
 install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" COMPONENT programs
   FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
 install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_DOCDIR}/include/kenaf" COMPONENT programs)  # pages lead to it
-install(DIRECTORY examples/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples" COMPONENT programs FILES_MATCHING
+install(DIRECTORY examples teleop DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs FILES_MATCHING
   PATTERN "*.c" PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.hpp" PATTERN "*.script")
 
 set(cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kenaf")

@@ -78,7 +78,7 @@ function(kenaf_compile_together name)
   endforeach()
 endfunction()
 
-# kenaf_room(NAME sources...): the static library of one room. Includes are written from the root: "protocol/frames.hpp".
+# kenaf_room(NAME sources...): the static library of one room. Includes are written from the root: "formats/protocol/frames.hpp".
 function(kenaf_room name)
   add_library(${name} STATIC ${ARGN})
   kenaf_compile_together(${name})
@@ -214,7 +214,7 @@ function(kenaf_test name)
   endforeach()
 endfunction()
 
-# kenaf_fuzzer(NAME SOURCE s LIBRARIES l...): one libFuzzer target, seeded from fuzz/corpus/NAME.
+# kenaf_fuzzer(NAME SOURCE s LIBRARIES l...): one libFuzzer target, seeded from tests/fuzz/corpus/NAME.
 function(kenaf_fuzzer name)
   cmake_parse_arguments(FUZZ "" "SOURCE" "LIBRARIES" ${ARGN})
   add_executable(${name} ${FUZZ_SOURCE})

@@ -1,4 +1,5 @@
 // Random numbers: the same for a seed with every standard library, which its own distributions are not.
+//
 // Thread safety: each function changes its engine alone.
 #pragma once
 

@@ -12,7 +12,8 @@ namespace kenaf::gap {
 
 struct Ranks {
   int rank = 0, count = 1;
-  // Each rank comes with those results[j] for which j % count is its rank, and leaves with all. All ranks call it together.
+  // Each rank comes with those results[j] for which j % count is its rank, and leaves with all. All ranks call it
+  // together.
   std::function<void(std::vector<Eigen::VectorXd>& results)> share;
   // Whether it is true of any rank. All ranks call it together.
   std::function<bool(bool)> any;

@@ -1,5 +1,5 @@
-// What lies between the shared behaviour and a camera: libkenaf_sim reads the world server's image port, libkenaf_real a
-// video device.
+// What lies between the shared behaviour and a camera: libkenaf_sim reads the world server's image port, libkenaf_real
+// a video device.
 #pragma once
 
 #include <chrono>
@@ -21,12 +21,13 @@ struct CameraPicture {
     yuyv   // Y0 U Y1 V for each two pixels, ITU-R BT.601, 16 to 235; rows from the top, no padding; width is even
   };
   Encoding encoding = Encoding::jpeg;
-  int width = 0, height = 0;   // of rgb and yuyv, whose bytes are as many as these say
-  std::uint64_t number = 0;    // grows; the same number is the same picture again
-  std::optional<double> robot_time_s{};                               // of the exposure; nullopt: the camera does not know it
-  std::optional<std::chrono::steady_clock::time_point> exposed_at{};  // not later than it really was; nullopt: not known
-  int jpeg_quality = 80;       // for a file that is made of rgb or yuyv
-  std::string camera{};        // its name; "": not known
+  int width = 0, height = 0;             // of rgb and yuyv, whose bytes are as many as these say
+  std::uint64_t number = 0;              // grows; the same number is the same picture again
+  std::optional<double> robot_time_s{};  // of the exposure; nullopt: the camera does not know it
+  std::optional<std::chrono::steady_clock::time_point>
+      exposed_at{};       // not later than it really was; nullopt: not known
+  int jpeg_quality = 80;  // for a file that is made of rgb or yuyv
+  std::string camera{};   // its name; "": not known
   std::vector<std::uint8_t> bytes{};
 };
 
@@ -35,8 +36,8 @@ class Camera {
  public:
   virtual ~Camera() = default;
 
-  // Throws Error: HRT_E_LINK, HRT_E_DEVICE or HRT_E_CONFIG in words that say what to start or to connect. Returns early where
-  // it is interrupted.
+  // Throws Error: HRT_E_LINK, HRT_E_DEVICE or HRT_E_CONFIG in words that say what to start or to connect. Returns early
+  // where it is interrupted.
   virtual void open() = 0;
 
   // Waits for the next picture, which may be the same again; nullopt after interrupt(). Throws Error once none can be
@@ -51,8 +52,8 @@ class Camera {
 };
 
 // Each of the two libraries defines these.
-// What `name` stands for: two names of one camera give the same. "" is the robot's first one. Throws Error where it is known
-// without the camera that there is none.
+// What `name` stands for: two names of one camera give the same. "" is the robot's first one. Throws Error where it is
+// known without the camera that there is none.
 std::string resolve_camera(const hrt_config& config, const std::string& name);
 // `camera`: as resolve_camera returned it. Cheap: nothing is opened yet.
 std::unique_ptr<Camera> make_camera(const hrt_config& config, const std::string& camera);

@@ -29,8 +29,8 @@ class CameraStream {
   CameraStream(const CameraStream&) = delete;
   CameraStream& operator=(const CameraStream&) = delete;
 
-  // The newest picture whose number is not `had` (0: any), waited for until `until`; null: there was none. Throws the Error
-  // that ended the stream, also one that came between two calls.
+  // The newest picture whose number is not `had` (0: any), waited for until `until`; null: there was none. Throws the
+  // Error that ended the stream, also one that came between two calls.
   std::shared_ptr<const CameraPicture> wait(std::uint64_t had, Clock::time_point until);
 
   // Every wait() throws Error(HRT_E_CLOSED) from now on.

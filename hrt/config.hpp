@@ -17,8 +17,8 @@ hrt_config default_config();
 // The first published size: a program that was compiled then passes a struct that ends there.
 inline constexpr std::size_t kFirstConfigSize = offsetof(hrt_config, camera_server);
 
-// `config` of a program, which may have been compiled with an older and so shorter struct: what it lacks is as by default.
-// Reads config.size bytes. Throws Error(HRT_E_ARGUMENT) where it is not from hrt_config_default().
+// `config` of a program, which may have been compiled with an older and so shorter struct: what it lacks is as by
+// default. Reads config.size bytes. Throws Error(HRT_E_ARGUMENT) where it is not from hrt_config_default().
 hrt_config whole_config(const hrt_config& config);
 
 // The value of an environment variable, or nullptr.

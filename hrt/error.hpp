@@ -1,4 +1,5 @@
 // How a failure travels inside of the library: thrown as an Error, turned into a return code at the C border (hrt.cpp).
+//
 // Thread safety: a value.
 #pragma once
 

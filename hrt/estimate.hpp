@@ -37,8 +37,9 @@ class Estimator {
   std::int64_t t_ns_ = 0, passed_ns_ = 0;  // the robot's clock in the newest cycle, and what has passed on it
   bool started_ = false;
   bool has_posture_ = false;  // was ever seen: the heading is the encoders' before, and while it is lost
-  double posture_gap_s_ = 0, gap_turn_rad_ = 0;  // since it was last seen; what the encoders turned and is not counted yet
-  double posture_offset_rad_ = 0;                // heading minus the sensor's yaw
+  double posture_gap_s_ = 0,
+         gap_turn_rad_ = 0;        // since it was last seen; what the encoders turned and is not counted yet
+  double posture_offset_rad_ = 0;  // heading minus the sensor's yaw
   bool has_travel_ = false;
   double raw_heading_rad_ = 0;  // unwrapped, not smoothed
   double start_heading_rad_ = 0;

@@ -11,7 +11,8 @@
 
 namespace kenaf::hrt {
 
-// As hrt.h has it: fills `picture` (all but its size member) and `data`. `format` is one of HRT_PICTURE_... . Throws Error.
+// As hrt.h has it: fills `picture` (all but its size member) and `data`. `format` is one of HRT_PICTURE_... . Throws
+// Error.
 void get_picture(Robot& robot, Cameras& cameras, const std::string& camera, int format, std::span<std::uint8_t> data,
                  double timeout_s, hrt_picture& picture);
 

@@ -12,7 +12,9 @@ namespace kenaf::hrt {
 
 struct PictureSize {
   int width, height;  // 1 to kMaxSide
-  std::size_t rgb_bytes() const { return std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+  std::size_t rgb_bytes() const {
+    return std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
 };
 // What a file claims to hold is not believed beyond this: decoding a progressive one takes 6 bytes a pixel.
 inline constexpr int kMaxSide = 4096;

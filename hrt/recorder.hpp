@@ -11,10 +11,10 @@
 #include <thread>
 #include <vector>
 
+#include "formats/runs/run_file.hpp"
 #include "hrt/transport.hpp"
 #include "robot/columns.hpp"
 #include "robot/state.hpp"
-#include "runs/run_file.hpp"
 
 namespace kenaf::hrt {
 
@@ -24,7 +24,8 @@ inline constexpr std::size_t kRecordColumns =
 using RecordRow = std::array<double, kRecordColumns>;
 std::vector<std::string> record_columns();
 
-// One row: `state` with the command that is in force from its time on. NaN where nothing was measured since the state before.
+// One row: `state` with the command that is in force from its time on. NaN where nothing was measured since the state
+// before.
 RecordRow record_row(const robot::State& state, const DriveCommand& command, double t_s);
 
 // Thread safety: add() belongs to one thread at a time; finish() comes after the last add().
@@ -38,12 +39,12 @@ class Recorder {
   Recorder(const std::string& path, bool wait_when_full);
   ~Recorder();  // finishes; errors are lost then. Without a row the file is not made, and one of its name stays
 
-  // `t_s`: an Estimate's, because the clock of `state` may be put back. Time in the file counts from the first state added. A
-  // state no later than the one before is left out.
+  // `t_s`: an Estimate's, because the clock of `state` may be put back. Time in the file counts from the first state
+  // added. A state no later than the one before is left out.
   void add(const robot::State& state, const DriveCommand& command, double t_s);
 
-  // Writes what is queued and closes the file. Throws Error(HRT_E_RECORD): not whole, with the reason; what there is stays in
-  // the part file.
+  // Writes what is queued and closes the file. Throws Error(HRT_E_RECORD): not whole, with the reason; what there is
+  // stays in the part file.
   void finish();
 
  private:

@@ -55,8 +55,8 @@ class Robot {
   void wait_flippers(double tolerance_rad, double timeout_s);
   void sleep(double seconds);
   void wait_cycle();
-  // For what no cycle brings: calls `wait_a_little`, which takes some tens of milliseconds at most, until it returns true. Robot
-  // time runs on meanwhile, and the program counts as calling.
+  // For what no cycle brings: calls `wait_a_little`, which takes some tens of milliseconds at most, until it returns
+  // true. Robot time runs on meanwhile, and the program counts as calling.
   void wait_beside(const std::function<bool()>& wait_a_little);
 
   void set_tracks(double left_mps, double right_mps);
@@ -71,8 +71,8 @@ class Robot {
   bool is_lost() const;
   // Throws where the link is lost or the robot closed; else the program has called.
   void note_call();
-  // The robot time of a moment of the wall clock that has just been, by the newest cycle; nullopt in lock step, where robot
-  // time stands and runs as it likes.
+  // The robot time of a moment of the wall clock that has just been, by the newest cycle; nullopt in lock step, where
+  // robot time stands and runs as it likes.
   std::optional<double> robot_time_at(std::chrono::steady_clock::time_point moment) const;
 
   // Stops the robot and ends every call with HRT_E_CLOSED; a recording ends with the cycle that is known now. Throws
@@ -149,8 +149,9 @@ class Robot {
   std::vector<Due> due_;
   std::unique_ptr<Recorder> recorder_;
 
-  std::mutex close_mutex_;   // one close at a time
-  std::mutex record_mutex_;  // one recording is begun or ended at a time; locked before mutex_, and never by the cycle thread
+  std::mutex close_mutex_;  // one close at a time
+  std::mutex
+      record_mutex_;  // one recording is begun or ended at a time; locked before mutex_, and never by the cycle thread
   std::thread thread_;
 };
 

@@ -25,8 +25,8 @@ struct Connection {
   bool lockstep;    // in force
 };
 
-// Thread safety: open, wait_state, send, keep_alive and close belong to one thread at a time; interrupt and the link health may be
-// called from any thread while it is open.
+// Thread safety: open, wait_state, send, keep_alive and close belong to one thread at a time; interrupt and the link
+// health may be called from any thread while it is open.
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -51,7 +51,8 @@ class Transport {
   // Stops the robot and gives it back, also where it throws: Error where the robot did not show that it stopped.
   virtual void close() = 0;
 
-  // What the robot goes on without, in words; "" where nothing is missing. As of the newest state, for the thread that waits for it.
+  // What the robot goes on without, in words; "" where nothing is missing. As of the newest state, for the thread that
+  // waits for it.
   virtual std::string warning() const { return {}; }
 
   virtual double round_trip_s() const = 0;  // newest, wall clock; 0: not known yet

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "canbus/robot_bus.hpp"
+#include "can/canbus/robot_bus.hpp"
 #include "libkenaf_real/master.hpp"
 #include "libkenaf_real/process_image.hpp"
 
@@ -15,8 +15,9 @@ namespace kenaf::real {
 // A drive that sent nothing for so long is lost; so is a sensor, without which the robot goes on.
 inline constexpr double kSilentDrive_s = 0.05, kSilentSensor_s = 0.1;
 
-// Throws hrt::Error(HRT_E_CONFIG): in so short a period the bus cannot carry a cycle, with room to spare for errors and for what
-// is not a cycle's; or it is so long that a drive's silence shows too late, or after less than two frames that got lost.
+// Throws hrt::Error(HRT_E_CONFIG): in so short a period the bus cannot carry a cycle, with room to spare for errors and
+// for what is not a cycle's; or it is so long that a drive's silence shows too late, or after less than two frames that
+// got lost.
 void check_period(const canbus::RobotBus& bus, double period_s);
 
 struct DriveOrder {
@@ -46,9 +47,8 @@ class BusCycle {
   void start();
   void stop();
 
-  // Waits for the next SYNC, and then until all nodes have answered it or 0.6 periods are over; of several that wait, the newest
-  // alone is a beat. nullopt: interrupted.
-  // Throws hrt::Error(HRT_E_LINK): no SYNC comes any more.
+  // Waits for the next SYNC, and then until all nodes have answered it or 0.6 periods are over; of several that wait,
+  // the newest alone is a beat. nullopt: interrupted. Throws hrt::Error(HRT_E_LINK): no SYNC comes any more.
   std::optional<Beat> wait();
   // In force from the next SYNC on; late where it has come already. Throws HeldUp.
   void send(const DriveOrders& orders);
@@ -60,8 +60,8 @@ class BusCycle {
   void watch_restarts() { image_.watch_restarts(); }
   // The first drive that is not under control: restarted, silent, or not enabled.
   std::optional<std::size_t> lost_drive() const;
-  // What is wrong with it at this moment, in words that name it. Its emergency message, where it sends one, may come some
-  // milliseconds after its statusword: emergency_of, "" where there is none.
+  // What is wrong with it at this moment, in words that name it. Its emergency message, where it sends one, may come
+  // some milliseconds after its statusword: emergency_of, "" where there is none.
   std::string loss_of(std::size_t drive) const;
   std::string emergency_of(std::size_t drive) const;
   bool slope_is_silent() const, gyro_is_silent() const;

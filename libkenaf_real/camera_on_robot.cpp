@@ -4,18 +4,18 @@
 
 #include <algorithm>
 
-#include "description/description_file.hpp"
-#include "description/toml_reader.hpp"
+#include "formats/description/description_file.hpp"
+#include "formats/description/toml_reader.hpp"
 #include "hrt/error.hpp"
 
 namespace kenaf::real {
 
 std::vector<CameraOnRobot> parse_cameras(std::string_view toml_text, const std::string& name_for_errors) {
   constexpr std::size_t kMaxCameras = 8;
-  const toml::table root = parse_toml(toml_text, name_for_errors);
-  TomlReader file(root, "", name_for_errors);
+  const toml::table root = description::parse_toml(toml_text, name_for_errors);
+  description::TomlReader file(root, "", name_for_errors);
   std::vector<CameraOnRobot> cameras;
-  for (TomlReader& table : file.tables("camera")) {
+  for (description::TomlReader& table : file.tables("camera")) {
     CameraOnRobot camera{};
     camera.name = table.text("name");
     if (camera.name.empty()) table.fail("name", "must not be empty");
@@ -41,7 +41,7 @@ std::vector<CameraOnRobot> parse_cameras(std::string_view toml_text, const std::
 }
 
 std::vector<CameraOnRobot> load_cameras(const std::string& name_or_path) {
-  const DescriptionFile file = read_description_file("robot", name_or_path, ".toml");
+  const description::DescriptionFile file = description::read_description_file("robot", name_or_path, ".toml");
   return parse_cameras(file.text, file.path);
 }
 

@@ -1,5 +1,5 @@
-// The cameras of the real robot: what of its description's [[camera]] the video devices are set to. docs/robot-description.md
-// explains the keys; the simulator reads the others.
+// The cameras of the real robot: what of its description's [[camera]] the video devices are set to.
+// docs/robot-description.md explains the keys; the simulator reads the others.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct CameraOnRobot {
   std::string device;  // "/dev/video0"; "": the description names none
   int width, height;   // pixels
   double rate_hz;
-  int jpeg_quality;    // 1 to 100; of files that are made here
+  int jpeg_quality;  // 1 to 100; of files that are made here
 };
 
 // A shipped name ("kenaf") or a path of a TOML file. Throws DescriptionError with file, line and column.

@@ -5,10 +5,10 @@
 #include <atomic>
 #include <cmath>
 
-#include "canbus/bus_layout.hpp"
-#include "canbus/robot_bus.hpp"
-#include "canbus/socket_bus.hpp"
-#include "description/description_error.hpp"
+#include "can/canbus/bus_layout.hpp"
+#include "can/canbus/robot_bus.hpp"
+#include "can/canbus/socket_bus.hpp"
+#include "formats/description/description_error.hpp"
 #include "hrt/error.hpp"
 #include "libkenaf_real/bus_cycle.hpp"
 #include "libkenaf_real/commissioning.hpp"
@@ -32,7 +32,7 @@ canbus::RobotBus read_description(const hrt_config& config) {
     if (config.can_interface[0] != '\0') bus.interface = config.can_interface;
     check_period(bus, config.period_s);
     return bus;
-  } catch (const DescriptionError& error) {
+  } catch (const description::DescriptionError& error) {
     throw Error(HRT_E_CONFIG, error.what());
   }
 }

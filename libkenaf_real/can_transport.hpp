@@ -1,22 +1,24 @@
-// The real robot: CiA 402 drives on a CAN bus. Beat by beat, all in the one thread that waits for states and answers them.
+// The real robot: CiA 402 drives on a CAN bus. Beat by beat, all in the one thread that waits for states and answers
+// them.
 //
 // Who loses control stops the robot: a program that ends or hangs sends no heartbeat any more, and the drives stop by
-// themselves after master_silence_s; a drive that is silent, in fault or restarted ends the loop with a quick stop for all
-// others; so does a bus that is down or off.
+// themselves after master_silence_s; a drive that is silent, in fault or restarted ends the loop with a quick stop for
+// all others; so does a bus that is down or off.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <optional>
 
-#include "canopen/bus.hpp"
+#include "can/canopen/bus.hpp"
 #include "hrt/transport.hpp"
 #include "robot/state.hpp"
 
 namespace kenaf::real {
 
 // The bus that `config` and description name; throws canopen::BusError.
-using OpenBus = std::function<std::unique_ptr<canopen::Bus>(const std::string& interface, std::span<const std::uint16_t> ids)>;
+using OpenBus =
+    std::function<std::unique_ptr<canopen::Bus>(const std::string& interface, std::span<const std::uint16_t> ids)>;
 
 class CanTransport final : public hrt::Transport {
  public:
@@ -35,9 +37,9 @@ class CanTransport final : public hrt::Transport {
   bool is_paused() const override { return false; }
 
  private:
-  struct Session;  // an open robot
+  struct Session;                         // an open robot
   std::optional<robot::State> measure();  // as wait_state, in the beats and the late orders since SYNC began
-  void let_go();  // the robot is lost, and told to stop
+  void let_go();                          // the robot is lost, and told to stop
 
   OpenBus open_bus_;
   std::unique_ptr<Session> session_;

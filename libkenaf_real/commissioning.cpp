@@ -8,8 +8,8 @@
 #include <set>
 #include <vector>
 
-#include "canbus/bus_layout.hpp"
-#include "canopen/device.hpp"
+#include "can/canbus/bus_layout.hpp"
+#include "can/canopen/device.hpp"
 #include "hrt/error.hpp"
 
 namespace kenaf::real {

@@ -1,11 +1,11 @@
-// From what the robot shall do to what each drive is told in a cycle: limits, ramps where the mode leaves them to the master,
-// and the handshake of profile position mode.
+// From what the robot shall do to what each drive is told in a cycle: limits, ramps where the mode leaves them to the
+// master, and the handshake of profile position mode.
 #pragma once
 
 #include <array>
 
-#include "canbus/robot_bus.hpp"
-#include "canopen/drive.hpp"
+#include "can/canbus/robot_bus.hpp"
+#include "can/canopen/drive.hpp"
 #include "hrt/transport.hpp"
 #include "libkenaf_real/bus_cycle.hpp"
 
@@ -22,9 +22,9 @@ class DriveTargets {
   // The flippers stay where they are until they are told otherwise.
   DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image);
 
-  // A speed out of range is cut to the description's limit; a flipper's angle is taken to the same direction within the limits
-  // or, where there is none, to the nearer limit. Ramps go on by one period a call, also where the call before is
-  // longer ago: a drive goes to each target within a period, and what was missed would be a jump beyond the limits.
+  // A speed out of range is cut to the description's limit; a flipper's angle is taken to the same direction within the
+  // limits or, where there is none, to the nearer limit. Ramps go on by one period a call, also where the call before
+  // is longer ago: a drive goes to each target within a period, and what was missed would be a jump beyond the limits.
   DriveOrders step(const hrt::DriveCommand& command, const ProcessImage& image, double period_s);
 
  private:

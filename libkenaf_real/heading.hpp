@@ -1,8 +1,8 @@
 // The robot's heading from a yaw-rate gyro: integrated SYNC by SYNC, its bias learnt whenever the robot stands.
 //
-// The rate about the body's z axis is taken for the rate of yaw, divided by cos(pitch) / cos(roll) of z-y-x angles, without the
-// part of the pitch rate, which is not measured: exact on level ground and along a slope, and wrong while a robot that is
-// rolled pitches. A gyro's bias drifts; between stands of the robot the heading drifts with it.
+// The rate about the body's z axis is taken for the rate of yaw, divided by cos(pitch) / cos(roll) of z-y-x angles,
+// without the part of the pitch rate, which is not measured: exact on level ground and along a slope, and wrong while a
+// robot that is rolled pitches. A gyro's bias drifts; between stands of the robot the heading drifts with it.
 #pragma once
 
 namespace kenaf::real {

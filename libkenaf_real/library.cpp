@@ -1,6 +1,6 @@
 // What makes this library libkenaf_real.
-#include "canbus/socket_bus.hpp"
-#include "description/description_error.hpp"
+#include "can/canbus/socket_bus.hpp"
+#include "formats/description/description_error.hpp"
 #include "hrt/camera.hpp"
 #include "hrt/error.hpp"
 #include "hrt/transport.hpp"
@@ -20,7 +20,7 @@ namespace {
 real::CameraOnRobot described_camera(const hrt_config& config, const std::string& name) {
   try {
     return real::choose_camera(real::load_cameras(config.robot), name, config.robot);
-  } catch (const DescriptionError& error) {
+  } catch (const description::DescriptionError& error) {
     throw Error(HRT_E_CONFIG, error.what());
   }
 }

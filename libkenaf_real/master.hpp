@@ -1,6 +1,7 @@
 // The master's place on the bus: waiting, with its heartbeat going on meanwhile, and SDO for the set-up.
 //
-// The heartbeat is sent by whoever waits here, and by no thread or timer of its own: a program that hangs must not look alive.
+// The heartbeat is sent by whoever waits here, and by no thread or timer of its own: a program that hangs must not look
+// alive.
 #pragma once
 
 #include <functional>
@@ -8,9 +9,9 @@
 #include <string>
 #include <string_view>
 
-#include "canopen/bus.hpp"
-#include "canopen/pdo.hpp"
-#include "canopen/sdo_client.hpp"
+#include "can/canopen/bus.hpp"
+#include "can/canopen/pdo.hpp"
+#include "can/canopen/sdo_client.hpp"
 #include "hrt/error.hpp"
 
 namespace kenaf::real {
@@ -52,8 +53,9 @@ class Master {
   // From now on a heartbeat goes out whenever one is due in receive().
   void start_heartbeat();
   void stop_heartbeat() { next_heartbeat_.reset(); }
-  // From now on the drives obey: a pause of `silence` in the heartbeat ends it, and is HeldUp from receive() and check_pause(),
-  // once, before anything else is sent. Drives whose watch began anew would take what comes next as if nothing had been.
+  // From now on the drives obey: a pause of `silence` in the heartbeat ends it, and is HeldUp from receive() and
+  // check_pause(), once, before anything else is sent. Drives whose watch began anew would take what comes next as if
+  // nothing had been.
   void watch_pauses(canopen::Time silence) { longest_pause_ = silence; }
   void check_pause();
 

@@ -1,12 +1,12 @@
-// From what the nodes measured to the robot's state: SI units, travel that counts on where the drives' counters wrap, posture
-// from inclinometer and gyro.
+// From what the nodes measured to the robot's state: SI units, travel that counts on where the drives' counters wrap,
+// posture from inclinometer and gyro.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <string>
 
-#include "canbus/robot_bus.hpp"
+#include "can/canbus/robot_bus.hpp"
 #include "libkenaf_real/bus_cycle.hpp"
 #include "libkenaf_real/commissioning.hpp"
 #include "libkenaf_real/heading.hpp"
@@ -18,8 +18,8 @@ class MeasuredState {
  public:
   MeasuredState(const canbus::RobotBus& bus, const NodeFacts& facts, double period_s);
 
-  // For one beat. Without posture (kHasPosture) while inclinometer or gyro are silent or there is none of them; warning()
-  // says so. The heading catches up on a short silence with the rate that it finds after it.
+  // For one beat. Without posture (kHasPosture) while inclinometer or gyro are silent or there is none of them;
+  // warning() says so. The heading catches up on a short silence with the rate that it finds after it.
   robot::State update(const BusCycle& cycle, const Beat& beat);
   const std::string& warning() const { return warning_; }
 

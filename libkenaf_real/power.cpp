@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "canopen/device.hpp"
+#include "can/canopen/device.hpp"
 #include "hrt/error.hpp"
 #include "libkenaf_real/commissioning.hpp"
 
@@ -28,7 +28,7 @@ constexpr Time kPowerDown = std::chrono::milliseconds(300);
 // Leaving quick stop straight to operation (CiA 402, transition 16) keeps the torque of flippers that carry the robot,
 // but not every drive can; after so many cycles it is left through "switch on disabled".
 constexpr int kHoldThroughQuickStop = 20;
-// The order that leads back is an edge to "enable" (candrives/power_states.hpp). A drive that stopped by itself,
+// The order that leads back is an edge to "enable" (can/candrives/power_states.hpp). A drive that stopped by itself,
 // because its master died, still has "enable" as its last controlword: so it hears "quick stop" first, which leads
 // nowhere from there (CiA 402-2, 10), and again every so many cycles, for a frame may get lost.
 constexpr int kEdgeEachCycles = 4;

@@ -5,21 +5,21 @@
 #include <cstdint>
 #include <optional>
 
-#include "canbus/bus_layout.hpp"
-#include "canbus/robot_bus.hpp"
-#include "canopen/bus.hpp"
-#include "canopen/emergency.hpp"
+#include "can/canbus/bus_layout.hpp"
+#include "can/canbus/robot_bus.hpp"
+#include "can/canopen/bus.hpp"
+#include "can/canopen/emergency.hpp"
 
 namespace kenaf::real {
 
 struct DriveInput {
   std::uint16_t statusword = 0;
   std::int32_t position = 0;
-  std::int32_t velocity = 0;     // tracks
+  std::int32_t velocity = 0;        // tracks
   std::int16_t current_permil = 0;  // of the rated current
   std::optional<canopen::Time> state_at, effort_at;
   std::optional<canopen::Emergency> emergency;  // the newest, until it is cleared
-  bool restarted = false;        // a boot-up message came after watch_restarts()
+  bool restarted = false;                       // a boot-up message came after watch_restarts()
 };
 
 struct SlopeInput {

@@ -16,8 +16,8 @@
 #include <cstring>
 #include <utility>
 
+#include "formats/protocol/image_message.hpp"
 #include "hrt/error.hpp"
-#include "protocol/image_message.hpp"
 
 namespace kenaf::real {
 namespace {
@@ -58,7 +58,7 @@ Struct of_capture() {
 std::optional<std::vector<std::uint8_t>> bytes_of_buffer(Encoding encoding, int width, int height,
                                                          std::size_t row_bytes, std::span<const std::uint8_t> buffer) {
   if (encoding == Encoding::jpeg) {
-    if (!image::is_whole_jpeg(buffer)) return std::nullopt;
+    if (!protocol::image::is_whole_jpeg(buffer)) return std::nullopt;
     return std::vector<std::uint8_t>(buffer.begin(), buffer.end());
   }
   const std::size_t row = std::size_t{2} * static_cast<std::size_t>(width), rows = static_cast<std::size_t>(height);

@@ -1,8 +1,8 @@
 // A video device of Linux (V4L2) that streams into memory it shares with the program: webcams, capture cards, vivid.
 // Source: the kernel's Documentation/userspace-api/media/v4l.
 //
-// It gives Motion JPEG, which is handed on as it is, or YUYV; Motion JPEG where it can, because that is what USB has room for at
-// full rate. The resolution is the description's, exactly; the rate the nearest that the device has.
+// It gives Motion JPEG, which is handed on as it is, or YUYV; Motion JPEG where it can, because that is what USB has
+// room for at full rate. The resolution is the description's, exactly; the rate the nearest that the device has.
 #pragma once
 
 #include <chrono>
@@ -17,8 +17,8 @@
 
 namespace kenaf::real {
 
-// What of a filled buffer a picture's bytes are. `row_bytes`: from row to row in the buffer, YUYV only. nullopt: it is not
-// whole, as it happens with webcams at their start and where USB loses packets.
+// What of a filled buffer a picture's bytes are. `row_bytes`: from row to row in the buffer, YUYV only. nullopt: it is
+// not whole, as it happens with webcams at their start and where USB loses packets.
 std::optional<std::vector<std::uint8_t>> bytes_of_buffer(hrt::CameraPicture::Encoding encoding, int width, int height,
                                                          std::size_t row_bytes, std::span<const std::uint8_t> buffer);
 

@@ -97,7 +97,7 @@ void ImageClient::open() {
       setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
       // Nothing but requests for pictures goes to a server that is not asked for a certain one: an old one knows
       // nothing else.
-      if (!camera_.empty()) send_all(image::select_request(camera_));
+      if (!camera_.empty()) send_all(protocol::image::select_request(camera_));
       return;
     }
     why = std::strerror(wrong);
@@ -123,7 +123,7 @@ void ImageClient::send_all(std::string_view bytes) {
 
 void ImageClient::request() {
   requested_at_ = Clock::now();
-  send_all(is_old_server_ ? image::kOldRequest : image::kJpegRequest);
+  send_all(is_old_server_ ? protocol::image::kOldRequest : protocol::image::kJpegRequest);
 }
 
 bool ImageClient::receive_some() {
@@ -173,24 +173,24 @@ std::optional<hrt::CameraPicture> ImageClient::next() {
 }
 
 hrt::CameraPicture ImageClient::picture_of_answer() {
-  image::Answer answer = std::exchange(reader_.answer, {});
-  if (answer.type == image::kRefused)
+  protocol::image::Answer answer = std::exchange(reader_.answer, {});
+  if (answer.type == protocol::image::kRefused)
     throw hrt::Error(HRT_E_DEVICE, fmt::format("{}: {}", camera_.empty() ? "no camera" : "camera '" + camera_ + "'",
                                                printable(answer.data)));
   hrt::CameraPicture picture;
-  if (answer.type == image::kRaw) {
-    std::optional<image::RawPicture> raw = image::read_raw_picture(answer.data);
+  if (answer.type == protocol::image::kRaw) {
+    std::optional<protocol::image::RawPicture> raw = protocol::image::read_raw_picture(answer.data);
     if (!raw) lose(fmt::format("sent a raw picture of {} bytes, which are not those of its size", answer.data.size()));
     picture.encoding = hrt::CameraPicture::Encoding::rgb;
     picture.width = raw->width;
     picture.height = raw->height;
     picture.bytes = std::move(raw->rgb);
   } else {
-    if (!image::is_whole_jpeg(answer.data)) lose("sent a picture that is no whole JPEG");
+    if (!protocol::image::is_whole_jpeg(answer.data)) lose("sent a picture that is no whole JPEG");
     picture.bytes = std::move(answer.data);
   }
-  std::optional<image::FrameNote> note;
-  if (picture.encoding == hrt::CameraPicture::Encoding::jpeg) note = image::read_frame_note(picture.bytes);
+  std::optional<protocol::image::FrameNote> note;
+  if (picture.encoding == hrt::CameraPicture::Encoding::jpeg) note = protocol::image::read_frame_note(picture.bytes);
   if (note) {
     is_kenaf_server_ = true;
     is_old_server_ = false;  // it was only slow

@@ -1,8 +1,10 @@
-// A camera of the simulated robot: TCP to the world server's image port and back. protocol/image_message.hpp has the wire format.
+// A camera of the simulated robot: TCP to the world server's image port and back. formats/protocol/image_message.hpp
+// has the wire format.
 //
-// One request is under way at a time, so a picture is asked for when there is a use for it, and none waits in a buffer and grows
-// old. USARSim image servers that know neither 'J' nor frame notes are understood: where a first 'J' stays unanswered for a
-// second, 'OK' is asked with from then on; pictures are counted here then, and their age and robot time are not known.
+// One request is under way at a time, so a picture is asked for when there is a use for it, and none waits in a buffer
+// and grows old. USARSim image servers that know neither 'J' nor frame notes are understood: where a first 'J' stays
+// unanswered for a second, 'OK' is asked with from then on; pictures are counted here then, and their age and robot
+// time are not known.
 #pragma once
 
 #include <array>
@@ -12,15 +14,16 @@
 #include <span>
 #include <string>
 
+#include "formats/protocol/image_message.hpp"
 #include "hrt/camera.hpp"
 #include "kenaf/hrt.h"
-#include "protocol/image_message.hpp"
 
 namespace kenaf::sim {
 
 class ImageClient final : public hrt::Camera {
  public:
-  // `camera`: "ROBOT/CAMERA", "CAMERA" of the robot that was placed last, or "": the server's own choice, its robot's first one.
+  // `camera`: "ROBOT/CAMERA", "CAMERA" of the robot that was placed last, or "": the server's own choice, its robot's
+  // first one.
   ImageClient(const hrt_config& config, const std::string& camera);
   ~ImageClient() override;
   ImageClient(const ImageClient&) = delete;
@@ -46,15 +49,16 @@ class ImageClient final : public hrt::Camera {
   hrt::CameraPicture picture_of_answer();
 
   std::string server_, camera_;
-  std::chrono::duration<double> patience_, silence_;  // with a connection that is being made; with one that says nothing
+  std::chrono::duration<double> patience_,
+      silence_;  // with a connection that is being made; with one that says nothing
   int socket_ = -1, interrupt_ = -1;
-  bool is_old_server_ = false;    // it knows 'OK' alone
-  bool is_kenaf_server_ = false;  // it has sent a frame note
+  bool is_old_server_ = false;                       // it knows 'OK' alone
+  bool is_kenaf_server_ = false;                     // it has sent a frame note
   Clock::time_point requested_at_{}, request_at_{};  // the last one; the next one, not before
   Clock::time_point newest_at_ = Clock::now();
   std::uint64_t newest_number_ = 0;
   std::uint64_t counted_ = 0;  // pictures without a frame note
-  image::AnswerReader reader_;
+  protocol::image::AnswerReader reader_;
   std::array<std::uint8_t, 65536> buffer_{};
   std::span<const std::uint8_t> unread_{};  // of buffer_
 };

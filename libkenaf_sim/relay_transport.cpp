@@ -42,7 +42,7 @@ auto seconds(double value) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(value));
 }
 
-std::string words(const relay::Refused& refused) {
+std::string words(const protocol::relay::Refused& refused) {
   return {refused.text.data(), std::min(refused.text_length, refused.text.size())};
 }
 
@@ -97,27 +97,29 @@ void RelayTransport::connect_socket() {
   }
 }
 
-hrt::Connection RelayTransport::greet(const relay::Hello& hello) {
+hrt::Connection RelayTransport::greet(const protocol::relay::Hello& hello) {
   const Clock::time_point start = Clock::now();
   const Clock::time_point deadline = start + seconds<Clock::duration>(connect_timeout_s_);
   Clock::time_point hello_at = start;
-  std::optional<relay::Refused> refused;
+  std::optional<protocol::relay::Refused> refused;
   for (;;) {
     const Clock::time_point now = Clock::now();
-    if (refused && refused->reason == relay::RefusedReason::busy && now - start >= kBusyPatience) break;
+    if (refused && refused->reason == protocol::relay::RefusedReason::busy && now - start >= kBusyPatience) break;
     if (now >= deadline) break;
     if (now >= hello_at) {
       transmit(hello);
       hello_at = now + kHelloEvery;
     }
-    while (const std::optional<relay::Datagram> datagram = receive()) {
-      if (const auto* welcome = std::get_if<relay::Welcome>(&*datagram); welcome && welcome->session == session_) {
+    while (const std::optional<protocol::relay::Datagram> datagram = receive()) {
+      if (const auto* welcome = std::get_if<protocol::relay::Welcome>(&*datagram);
+          welcome && welcome->session == session_) {
         return {welcome->period_s, welcome->lockstep};
       }
-      if (const auto* answer = std::get_if<relay::Refused>(&*datagram); answer && answer->session == session_) {
+      if (const auto* answer = std::get_if<protocol::relay::Refused>(&*datagram);
+          answer && answer->session == session_) {
         refused = *answer;
         // These do not change by asking again.
-        if (answer->reason == relay::RefusedReason::bad_request) {
+        if (answer->reason == protocol::relay::RefusedReason::bad_request) {
           throw Error(HRT_E_REFUSED, fmt::format("the relay at {} refused: {}", relay_, words(*answer)));
         }
       }
@@ -130,14 +132,14 @@ hrt::Connection RelayTransport::greet(const relay::Hello& hello) {
                 fmt::format("no relay at {}{}; start kenaf-relayd, or set relay in kenaf.toml or KENAF_RELAY", relay_,
                             port_closed_ ? ": nobody listens there" : " answered"));
   }
-  const bool no_world = refused->reason == relay::RefusedReason::no_world_server;
+  const bool no_world = refused->reason == protocol::relay::RefusedReason::no_world_server;
   throw Error(HRT_E_REFUSED, fmt::format("the relay at {} refused: {}{}", relay_, words(*refused),
                                          no_world ? "; start kenaf-world" : ""));
 }
 
 std::optional<robot::State> RelayTransport::wait_state() {
   for (;;) {
-    while (const std::optional<relay::Datagram> datagram = receive()) {
+    while (const std::optional<protocol::relay::Datagram> datagram = receive()) {
       if (std::optional<robot::State> state = take(*datagram)) return state;
     }
     const Clock::time_point now = Clock::now();
@@ -147,21 +149,21 @@ std::optional<robot::State> RelayTransport::wait_state() {
   }
 }
 
-std::optional<robot::State> RelayTransport::take(const relay::Datagram& datagram) {
+std::optional<robot::State> RelayTransport::take(const protocol::relay::Datagram& datagram) {
   const Clock::time_point now = Clock::now();
-  if (const auto* pong = std::get_if<relay::Pong>(&datagram)) {
+  if (const auto* pong = std::get_if<protocol::relay::Pong>(&datagram)) {
     if (pong->session == session_ && pong->id == ping_id_) {
       round_trip_s_ = std::chrono::duration<double>(now - pinged_at_).count();
       life_at_ = now;
     }
     return std::nullopt;
   }
-  if (const auto* refused = std::get_if<relay::Refused>(&datagram)) {
+  if (const auto* refused = std::get_if<protocol::relay::Refused>(&datagram)) {
     if (refused->session != session_) return std::nullopt;
     throw Error(HRT_E_LINK, fmt::format("the relay at {} ended the session: {}; hrt_close() and hrt_kenaf_init() again",
                                         relay_, words(*refused)));
   }
-  const auto* state = std::get_if<relay::State>(&datagram);
+  const auto* state = std::get_if<protocol::relay::State>(&datagram);
   if (state == nullptr || state->session != session_) return std::nullopt;
   if (state->world_server_lost) {
     throw Error(HRT_E_LINK, fmt::format("the relay at {} lost its world server; once it is back, hrt_close() and "
@@ -248,13 +250,13 @@ void RelayTransport::ping(Clock::time_point now) {
   ++ping_id_;
   pinged_at_ = now;
   ping_at_ = now + kPingEvery;
-  transmit(relay::Ping{.session = session_, .id = ping_id_});
+  transmit(protocol::relay::Ping{.session = session_, .id = ping_id_});
 }
 
 void RelayTransport::close() {
   if (socket_ < 0) return;
   // Not answered, so one is not enough where packets get lost.
-  for (int i = 0; session_ != 0 && i < kByeCount; ++i) transmit(relay::Bye{.session = session_});
+  for (int i = 0; session_ != 0 && i < kByeCount; ++i) transmit(protocol::relay::Bye{.session = session_});
   ::close(socket_);
   socket_ = -1;
   session_ = 0;
@@ -266,15 +268,15 @@ void RelayTransport::interrupt() {
   [[maybe_unused]] const ssize_t written = write(interrupt_, &one, sizeof one);
 }
 
-void RelayTransport::transmit(const relay::Datagram& datagram) {
-  std::array<std::byte, relay::kMaxDatagramBytes> bytes;
-  const std::size_t size = relay::encode(datagram, bytes);
+void RelayTransport::transmit(const protocol::relay::Datagram& datagram) {
+  std::array<std::byte, protocol::relay::kMaxDatagramBytes> bytes;
+  const std::size_t size = protocol::relay::encode(datagram, bytes);
   // A datagram that cannot be sent is as good as lost: whatever matters is sent again. A closed port is reported to
   // the next call on the socket, which may be this one.
   if (::send(socket_, bytes.data(), size, MSG_NOSIGNAL) < 0 && errno == ECONNREFUSED) port_closed_ = true;
 }
 
-std::optional<relay::Datagram> RelayTransport::receive() {
+std::optional<protocol::relay::Datagram> RelayTransport::receive() {
   for (;;) {
     const ssize_t size = recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
     if (size < 0) {
@@ -286,8 +288,9 @@ std::optional<relay::Datagram> RelayTransport::receive() {
       return std::nullopt;
     }
     port_closed_ = false;
-    relay::Datagram datagram;
-    if (relay::decode(std::span(buffer_).first(static_cast<std::size_t>(size)), datagram) == relay::DecodeError::none) {
+    protocol::relay::Datagram datagram;
+    if (protocol::relay::decode(std::span(buffer_).first(static_cast<std::size_t>(size)), datagram) ==
+        protocol::relay::DecodeError::none) {
       return datagram;
     }
   }

@@ -11,8 +11,8 @@
 #include <optional>
 #include <string>
 
+#include "formats/protocol/relay_datagram.hpp"
 #include "hrt/transport.hpp"
-#include "protocol/relay_datagram.hpp"
 
 namespace kenaf::sim {
 
@@ -36,12 +36,12 @@ class RelayTransport final : public hrt::Transport {
   using Clock = std::chrono::steady_clock;
 
   void connect_socket();
-  hrt::Connection greet(const relay::Hello& hello);
+  hrt::Connection greet(const protocol::relay::Hello& hello);
   // The next well-formed datagram that waits in the socket.
-  std::optional<relay::Datagram> receive();
+  std::optional<protocol::relay::Datagram> receive();
   // A state that begins a new cycle. Throws where the datagram ends the session.
-  std::optional<robot::State> take(const relay::Datagram& datagram);
-  void transmit(const relay::Datagram& datagram);
+  std::optional<robot::State> take(const protocol::relay::Datagram& datagram);
+  void transmit(const protocol::relay::Datagram& datagram);
   void send_what_is_due(Clock::time_point now);
   void ping(Clock::time_point now);
   void check_life(Clock::time_point now);  // the first State has connect_timeout_s from open() on
@@ -52,11 +52,11 @@ class RelayTransport final : public hrt::Transport {
   double link_timeout_s_ = 0, connect_timeout_s_ = 0;
   int socket_ = -1, interrupt_ = -1;
   bool port_closed_ = false;  // the last answer was that nobody listens there
-  std::array<std::byte, relay::kMaxDatagramBytes + 1> buffer_{};
+  std::array<std::byte, protocol::relay::kMaxDatagramBytes + 1> buffer_{};
 
-  std::uint64_t session_ = 0;  // 0: none
-  std::uint32_t frame_ = 0;    // newest State
-  relay::Command command_{};   // sequence 0: none yet
+  std::uint64_t session_ = 0;           // 0: none
+  std::uint32_t frame_ = 0;             // newest State
+  protocol::relay::Command command_{};  // sequence 0: none yet
   Clock::time_point resend_at_, state_at_, life_at_, alive_at_, ping_at_, pinged_at_;
   Clock::time_point looked_at_;  // when the socket was last looked at
   Clock::duration resend_after_{};

@@ -1,5 +1,5 @@
-// Brings the contacts of belts (belt_contacts.hpp) into Bullet: one algorithm for each pair of a belt and a plane, box or
-// mesh, and the list of what touches, from which the contact solver takes it.
+// Brings the contacts of belts (belt_contacts.hpp) into Bullet: one algorithm for each pair of a belt and a plane, box
+// or mesh, and the list of what touches, from which the contact solver takes it.
 #pragma once
 
 #include <array>
@@ -41,14 +41,14 @@ struct BeltContact {
 struct BeltPair {
   const btCollisionObject *body, *ground;
   const BeltShape* belt;
-  btTransform X_WT;                 // at this step
+  btTransform X_WT;  // at this step
   std::vector<BeltContact> contacts;
 };
 
 class BeltGround {
  public:
-  // Makes `dispatcher` use it for belts. Other hulls meet planes by `hull_plane`, boxes and hulls by `hull_solid`, meshes as
-  // `configuration` has it.
+  // Makes `dispatcher` use it for belts. Other hulls meet planes by `hull_plane`, boxes and hulls by `hull_solid`,
+  // meshes as `configuration` has it.
   BeltGround(btCollisionDispatcher& dispatcher, btCollisionConfiguration& configuration, HullPlaneContacts& hull_plane,
              HullSolidContacts& hull_solid);
   ~BeltGround();

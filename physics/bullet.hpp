@@ -8,10 +8,18 @@
 
 namespace kenaf::physics {
 
-inline btVector3 to_bullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-inline Eigen::Vector3d from_bullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
-inline btQuaternion to_bullet(const Eigen::Quaterniond& q) { return {q.x(), q.y(), q.z(), q.w()}; }
-inline btTransform to_bullet(const Pose& X) { return btTransform(to_bullet(X.q), to_bullet(X.p)); }
+inline btVector3 to_bullet(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline Eigen::Vector3d from_bullet(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+inline btQuaternion to_bullet(const Eigen::Quaterniond& q) {
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+inline btTransform to_bullet(const Pose& X) {
+  return btTransform(to_bullet(X.q), to_bullet(X.p));
+}
 inline Pose from_bullet(const btTransform& X) {
   const btQuaternion q = X.getRotation();
   return {from_bullet(X.getOrigin()), Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z())};

@@ -18,11 +18,13 @@ namespace kenaf::physics {
 // 2. gain: what one side's metre per second is to the other. As long as it stands behind the loss and before the slew
 //    limit its place changes nothing, since a delay of a multiple is a multiple of the delay. Then the gain of the turn
 //    rate, and the limits of forward speed and turn rate: of a controller that takes these two in place of two tracks.
-// 3. dead band: of what arrives, after gains and limits, a track's speed that is too small counts as none. Before the delay, so
+// 3. dead band: of what arrives, after gains and limits, a track's speed that is too small counts as none. Before the
+// delay, so
 //    that no speed between two commands, which nobody sent, falls into it.
 // 4. delay: of what arrives, joints' modes and values included. One that is no whole number of steps lies on the
 //    straight line between the two steps beside it, so that what a robot does changes smoothly with the delay.
-// 5. slew limits: the drives' own ramp, so it acts on what has arrived, and limits the speeds that the belts are to have:
+// 5. slew limits: the drives' own ramp, so it acts on what has arrived, and limits the speeds that the belts are to
+// have:
 //    first how fast their mean and their difference change, which are forward speed and turn rate, then each of them.
 // No allocation after construction.
 class CommandChannel {
@@ -34,8 +36,8 @@ class CommandChannel {
 
   // As if `command` had been sent for ever; the ramp stands at rest.
   void restart(const robot::Command& command);
-  // As if `command` had been sent for so long that nothing else is under way, with the ramp at `track_mps`: a robot that
-  // is on its way already.
+  // As if `command` had been sent for so long that nothing else is under way, with the ramp at `track_mps`: a robot
+  // that is on its way already.
   void begin(const robot::Command& command, const std::array<double, robot::kTrackCount>& track_mps);
   // The tracks stand, whatever was commanded: the ramp begins at 0 again. What is under way arrives.
   void stop_ramp() { ramp_mps_ = {}; }
@@ -52,12 +54,12 @@ class CommandChannel {
   double loss_, gain_, gain_turn_, dead_band_mps_;
   // Of the mean of both tracks, and of half their difference. Infinite: no limit.
   double most_forward_mps_, most_turn_mps_;
-  // What the ramp moves in a step at most: each track's speed, the mean of both, and half their difference. Infinite: no
-  // limit.
+  // What the ramp moves in a step at most: each track's speed, the mean of both, and half their difference. Infinite:
+  // no limit.
   double side_step_mps_, forward_step_mps_, turn_step_mps_;
   bool ramps_;
   std::size_t delay_steps_;
-  double delay_rest_ = 0;          // of a step, below 1
+  double delay_rest_ = 0;  // of a step, below 1
   robot::Command sent_, received_, told_;
   std::vector<robot::Command> line_;  // what was received in the last steps, a ring
   std::size_t newest_ = 0;

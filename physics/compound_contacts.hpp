@@ -1,5 +1,5 @@
-// Contacts of a compound (a robot's hull with its tracks) with anything else: those of its pieces, each by the dispatcher's
-// algorithm for the two shapes.
+// Contacts of a compound (a robot's hull with its tracks) with anything else: those of its pieces, each by the
+// dispatcher's algorithm for the two shapes.
 //
 // In place of Bullet's own, which allocates lists whenever a compound comes near another body.
 #pragma once

@@ -1,5 +1,5 @@
-// One contact point in the solver of a step: a normal that gives way a little, friction within an ellipse, and the belts
-// that run through it. docs/physics.md has the equations and why they are so.
+// One contact point in the solver of a step: a normal that gives way a little, friction within an ellipse, and the
+// belts that run through it. docs/physics.md has the equations and why they are so.
 #pragma once
 
 #include <span>
@@ -20,7 +20,8 @@ struct Meeting {
   const Collider *collider_a, *collider_b;
   SolverBody *body_a, *body_b;  // null: B is fixed
   const Surface *surface_a, *surface_b;
-  // About which their belts turn, in W, and what of the belts' speed moves their surfaces; unused where there is no belt.
+  // About which their belts turn, in W, and what of the belts' speed moves their surfaces; unused where there is no
+  // belt.
   btVector3 belt_axis_a, belt_axis_b;
   btScalar driving_a, driving_b;
   btScalar kept;  // of the last step's friction
@@ -79,9 +80,9 @@ class Contact {
   btScalar normal_velocity_;  // before any impulse of this step
   Two slip_;
   btScalar normal_mass_, softness_, give_velocity_;
-  Two normal_to_slip_;       // for a unit normal impulse
-  Two stick_[2];             // inverse of the 2 x 2 matrix from friction impulse to slip
-  Two slide_step_;           // times mu
+  Two normal_to_slip_;  // for a unit normal impulse
+  Two stick_[2];        // inverse of the 2 x 2 matrix from friction impulse to slip
+  Two slide_step_;      // times mu
   Two mu_, inverse_mu_;
   Two belt_gain_a_, belt_gain_b_;  // slip for a belt's speed; 0 without a belt
   Two belt_push_a_, belt_push_b_;  // belt's speed for a unit impulse

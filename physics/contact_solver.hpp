@@ -1,5 +1,5 @@
-// A sequential impulse solver as Bullet's, with contacts of our own: belts that run over surfaces, friction that does not
-// depend on axes, and a little give of the ground. docs/physics.md has the equations and why they are so.
+// A sequential impulse solver as Bullet's, with contacts of our own: belts that run over surfaces, friction that does
+// not depend on axes, and a little give of the ground. docs/physics.md has the equations and why they are so.
 #pragma once
 
 #include <span>
@@ -27,15 +27,16 @@ class ContactSolver {
   void remove_belt(Belt* belt);
   // For what leaves its place or the world: contacts() no longer speaks of it.
   void forget_contacts_of(const btCollisionObject& object);
-  // One step's impulses, written back as velocities. Each of `joints` is a FlipperJoint. What one group of bodies does has
-  // no influence on how another is solved: each stops where nothing changes in it any more.
+  // One step's impulses, written back as velocities. Each of `joints` is a FlipperJoint. What one group of bodies does
+  // has no influence on how another is solved: each stops where nothing changes in it any more.
   void solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatcher& dispatcher,
              btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info);
   // Of the last step.
   std::span<const Contact> contacts() const { return contacts_; }
 
  private:
-  // Of one side of a robot, so that a step need not allocate. In a field of pallets each of its three belts is near ten or more.
+  // Of one side of a robot, so that a step need not allocate. In a field of pallets each of its three belts is near ten
+  // or more.
   static constexpr std::size_t kManyContacts = 128, kManyPairs = 48;
 
   struct BeltOfBody {
@@ -62,7 +63,8 @@ class ContactSolver {
   BodyGroups groups_;
   // Places in Bullet's list of joints, in belts_, and in touching_.
   PlacesByGroup joints_by_group_, belts_by_group_, touching_by_group_;
-  std::vector<std::size_t> touching_;  // the number of a manifold that has contacts, or of a pair, counted on from those
+  std::vector<std::size_t>
+      touching_;  // the number of a manifold that has contacts, or of a pair, counted on from those
   // Group by group.
   std::vector<JointRows> joints_;
   std::vector<Contact> contacts_;

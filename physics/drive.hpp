@@ -10,8 +10,8 @@ namespace kenaf::physics {
 // as far as its force reaches. In the motor's own direction of turning the force falls linearly from standstill to
 // none at the maximum speed (the torque-speed line of a DC motor); against it, all of it can brake. Both ends of the
 // line shrink with the battery's voltage. A loop with droop has no integrator: its motor gives force in proportion to
-// what is lacking to the reference, (reference - speed) / droop, within the same bounds. On that line the motor has the voltage all to itself, so what current
-// voltage and winding allow is what force the line allows.
+// what is lacking to the reference, (reference - speed) / droop, within the same bounds. On that line the motor has the
+// voltage all to itself, so what current voltage and winding allow is what force the line allows.
 class TrackDrive {
  public:
   TrackDrive(robot::Track side, const TrackDriveDescription& drive, const Effects& effects);

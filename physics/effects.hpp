@@ -2,6 +2,7 @@
 // simulator, the command line and the diagnosis. docs/effects.md has the physics of each.
 //
 // Every parameter has a neutral value, and with all at neutral a simulation gives the same bits as without effects.
+//
 // Thread safety: values and constants.
 #pragma once
 
@@ -20,12 +21,13 @@ std::string_view stage_name(Stage stage);
 struct Effects {
   // command: what becomes of a command before the drives get it
   double command_delay_s = 0;
-  double command_loss = 0;           // share of commands that do not arrive
-  double command_gain = 1;           // of track speeds
-  double command_gain_turn = 1;      // of the turn rate alone
-  double command_limit_forward_spm = 0, command_limit_turn_sprad = 0;  // forward speed and turn rate are at most 1 / this
-  double command_dead_band_mps = 0;  // slower track commands do not move a track
-  double command_slew_s2pm = 0;      // track speeds change by 1 / this at most
+  double command_loss = 0;       // share of commands that do not arrive
+  double command_gain = 1;       // of track speeds
+  double command_gain_turn = 1;  // of the turn rate alone
+  double command_limit_forward_spm = 0,
+         command_limit_turn_sprad = 0;  // forward speed and turn rate are at most 1 / this
+  double command_dead_band_mps = 0;     // slower track commands do not move a track
+  double command_slew_s2pm = 0;         // track speeds change by 1 / this at most
   double command_slew_forward_s2pm = 0, command_slew_turn_s2prad = 0;  // the same of forward speed and turn rate
   // drive: between the command that arrived and belt or flipper
   double drive_lag_s = 0;      // a second first-order lag of the speed loop
@@ -69,8 +71,8 @@ struct Effects {
   double tracking_delay_s = 0;   // of the pose that motion capture or lidar reports; no sensor of the robot
   double tracking_scale = 1;     // of its x, y from the first pose on
   double tracked_point_forward_m = 0, tracked_point_left_m = 0;  // in B, of the point whose pose that is
-  double tracking_turn_rad = 0;  // of the heading that it reports against the body's
-  double clock_offset_s = 0;     // its clock is behind (+) that of the robot
+  double tracking_turn_rad = 0;                                  // of the heading that it reports against the body's
+  double clock_offset_s = 0;                                     // its clock is behind (+) that of the robot
 
   bool operator==(const Effects&) const = default;
 };

@@ -12,17 +12,17 @@ namespace kenaf::physics {
 
 // What is between the servo and its arm: nothing, unless the effects put something there.
 struct ServoCoupling {
-  double lag_s = 0;                // of the angle that the servo follows
-  double play_rad = 0;             // between both ends
+  double lag_s = 0;     // of the angle that the servo follows
+  double play_rad = 0;  // between both ends
   double compliance_radpnm = 0;
   bool rigid() const { return play_rad == 0 && compliance_radpnm == 0; }
 };
 
 // The angle is counted through full turns, so a flipper with more than half a turn of travel knows where it is.
 //
-// Rigid, servo and arm are one, and the servo's row moves the arm. Otherwise the servo has an angle of its own: it moves
-// as it is told, and drags the arm by a spring and a damper that begin at the end of the play. Where the spring's torque
-// would go beyond the servo's, it is the servo that gives way.
+// Rigid, servo and arm are one, and the servo's row moves the arm. Otherwise the servo has an angle of its own: it
+// moves as it is told, and drags the arm by a spring and a damper that begin at the end of the play. Where the spring's
+// torque would go beyond the servo's, it is the servo that gives way.
 class FlipperJoint : public btTypedConstraint {
  public:
   // `X_AJ`, `X_BJ`: the joint's frame in the frames of the two bodies' centres of mass. They coincide at angle 0; a
@@ -37,10 +37,10 @@ class FlipperJoint : public btTypedConstraint {
   // At rest, as after a teleport. Who lifts a robot turns no servo: it and the arm stay as far apart as they are.
   void come_to_rest();
   // Sets the servo for the next step.
-  void drive(const robot::JointCommand& command, const FlipperDescription& flipper, const FlipperServoDescription& servo,
-             double time_step_s);
-  // Instead of drive(): at the end of the next step the servo has this direction, whatever it can do; it turns at most at
-  // 10 rad/s. Rigid, the arm is there, too; else it follows through play and compliance.
+  void drive(const robot::JointCommand& command, const FlipperDescription& flipper,
+             const FlipperServoDescription& servo, double time_step_s);
+  // Instead of drive(): at the end of the next step the servo has this direction, whatever it can do; it turns at most
+  // at 10 rad/s. Rigid, the arm is there, too; else it follows through play and compliance.
   void prescribe(double angle_rad, double time_step_s);
 
   double angle_rad() const { return angle_rad_; }
@@ -49,10 +49,12 @@ class FlipperJoint : public btTypedConstraint {
   double speed_radps() const;
   double torque_nm(double time_step_s) const { return row_impulse[5] / time_step_s; }  // + lifts the tip
   // Of it, what the servo gives: not the mechanical stop, which holds for nothing.
-  double servo_nm(double time_step_s) const { return std::clamp(torque_nm(time_step_s), -servo_most_nm_, servo_most_nm_); }
+  double servo_nm(double time_step_s) const {
+    return std::clamp(torque_nm(time_step_s), -servo_most_nm_, servo_most_nm_);
+  }
 
-  // An equation for the solver: angular_a . w_A + angular_b . w_B = velocity, held by an impulse between `low` and `high`.
-  // The first three rows have v_A - v_B along x, y, z of W too.
+  // An equation for the solver: angular_a . w_A + angular_b . w_B = velocity, held by an impulse between `low` and
+  // `high`. The first three rows have v_A - v_B along x, y, z of W too.
   struct Row {
     btVector3 angular_a, angular_b;
     btScalar velocity, low = -SIMD_INFINITY, high = SIMD_INFINITY;
@@ -80,7 +82,7 @@ class FlipperJoint : public btTypedConstraint {
   double target_radps_ = 0, min_impulse_ = 0, max_impulse_ = 0, softness_ = 0;
   ServoCoupling coupling_;
   double servo_most_nm_ = 0;
-  double followed_rad_ = 0;  // the commanded angle behind the lag
+  double followed_rad_ = 0;                                      // the commanded angle behind the lag
   double servo_rad_ = 0, servo_radps_ = 0, most_apart_rad_ = 0;  // unused where it is rigid
 };
 

@@ -60,24 +60,25 @@ GreyPicture read_grey_png(std::string_view png) {
   reader.left = png;
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, keep_error, ignore_warning);
   if (reader.png) reader.info = png_create_info_struct(reader.png);
-  if (!reader.info) throw DescriptionError("libpng does not start: too little memory");
+  if (!reader.info) throw description::DescriptionError("libpng does not start: too little memory");
   png_set_read_fn(reader.png, &reader, take_bytes);
   constexpr png_alloc_size_t kMostChunkBytes = 1U << 20U;
   png_set_chunk_malloc_max(reader.png, kMostChunkBytes);
   png_set_keep_unknown_chunks(reader.png, PNG_HANDLE_CHUNK_NEVER, nullptr, 0);
-  if (!read_header(reader)) throw DescriptionError("is not a PNG picture: " + reader.error);
+  if (!read_header(reader)) throw description::DescriptionError("is not a PNG picture: " + reader.error);
 
   GreyPicture picture;
   picture.width = png_get_image_width(reader.png, reader.info);
   picture.height = png_get_image_height(reader.png, reader.info);
   const auto [least, most] = std::minmax(picture.width, picture.height);
   if (least < 2 || most > kMostPixelsASide)
-    throw DescriptionError(fmt::format("is {} x {} pixels; a height map must be from 2 to {} pixels a side",
-                                       picture.width, picture.height, kMostPixelsASide));
+    throw description::DescriptionError(
+        fmt::format("is {} x {} pixels; a height map must be from 2 to {} pixels a side", picture.width, picture.height,
+                    kMostPixelsASide));
   const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
   if (png_get_color_type(reader.png, reader.info) != PNG_COLOR_TYPE_GRAY ||
       (!wide && png_get_bit_depth(reader.png, reader.info) != 8))
-    throw DescriptionError("is not a grey picture of 8 or 16 bits without transparency; save it as one");
+    throw description::DescriptionError("is not a grey picture of 8 or 16 bits without transparency; save it as one");
 
   png_set_interlace_handling(reader.png);
   png_read_update_info(reader.png, reader.info);
@@ -85,7 +86,8 @@ GreyPicture read_grey_png(std::string_view png) {
   std::vector<png_byte> bytes(row_bytes * picture.height);
   std::vector<png_bytep> rows;
   for (std::size_t row = 0; row < picture.height; ++row) rows.push_back(&bytes[row * row_bytes]);
-  if (!read_pixels(reader, rows.data())) throw DescriptionError("is a damaged PNG picture: " + reader.error);
+  if (!read_pixels(reader, rows.data()))
+    throw description::DescriptionError("is a damaged PNG picture: " + reader.error);
   picture.values.resize(std::size_t{picture.width} * picture.height);
   for (std::size_t i = 0; i < picture.values.size(); ++i)
     picture.values[i] = static_cast<std::uint16_t>(wide ? (bytes[2 * i] << 8) + bytes[2 * i + 1] : bytes[i]);

@@ -1,4 +1,5 @@
 // A height map: a grey PNG picture as ground.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -16,7 +17,7 @@ inline constexpr std::uint32_t kMostPixelsASide = 1025;
 
 struct GreyPicture {
   std::uint32_t width = 0, height = 0;
-  std::vector<std::uint16_t> values;     // row by row from the top, 0 black; 8 bit pictures up to 255
+  std::vector<std::uint16_t> values;  // row by row from the top, 0 black; 8 bit pictures up to 255
 };
 
 // The bytes of a PNG file with one grey channel of 8 or 16 bits, 2 to kMostPixelsASide pixels a side. Throws

@@ -8,8 +8,8 @@
 
 namespace kenaf::physics {
 
-// Makes `dispatcher` use it in contact tests, for convex hulls and static planes in either order. In a step a hull may be a
-// belt: there BeltGround chooses, and takes create() where it is none.
+// Makes `dispatcher` use it in contact tests, for convex hulls and static planes in either order. In a step a hull may
+// be a belt: there BeltGround chooses, and takes create() where it is none.
 class HullPlaneContacts {
  public:
   explicit HullPlaneContacts(btCollisionDispatcher& dispatcher);

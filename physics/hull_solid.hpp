@@ -1,8 +1,8 @@
-// Contacts of a convex hull with another or with a box: the nearest points, and where they overlap, the corners of one's face
-// on the other's.
+// Contacts of a convex hull with another or with a box: the nearest points, and where they overlap, the corners of
+// one's face on the other's.
 //
-// The points are those of Bullet's btConvexConvexAlgorithm. Each of those has lists of its own for the corners, which it
-// allocates anew when two bodies touch; here all share two that stay.
+// The points are those of Bullet's btConvexConvexAlgorithm. Each of those has lists of its own for the corners, which
+// it allocates anew when two bodies touch; here all share two that stay.
 #pragma once
 
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>

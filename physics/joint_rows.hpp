@@ -1,8 +1,8 @@
 // The six rows of a flipper's joint in the solver of a step: five that hold it together, and its servo's.
 //
-// Each row waits for the one before, so what counts is how long one takes from velocity to velocity. Both bodies' numbers
-// are side by side, in registers for all six rows, and there are no sums of zeros; with the same in Contact that takes
-// 12 % off a climb's time.
+// Each row waits for the one before, so what counts is how long one takes from velocity to velocity. Both bodies'
+// numbers are side by side, in registers for all six rows, and there are no sums of zeros; with the same in Contact
+// that takes 12 % off a climb's time.
 #pragma once
 
 #include <array>

@@ -150,16 +150,17 @@ void check_collada(std::string_view bytes) {
     for (const ColladaCheck::Accessor& accessor : check.accessors) {
       const auto array = check.array_lengths.find(accessor.array);
       if (array != check.array_lengths.end() && accessor.reach > array->second)
-        throw DescriptionError(fmt::format("has an <accessor> of {} values of an array of {} (line {})", accessor.reach,
-                                           array->second, accessor.line));
+        throw description::DescriptionError(fmt::format("has an <accessor> of {} values of an array of {} (line {})",
+                                                        accessor.reach, array->second, accessor.line));
     }
     return;
   }
   if (check.refusal)
-    throw DescriptionError(fmt::format("{} (line {})", check.refusal, XML_GetCurrentLineNumber(parser.get())));
-  throw DescriptionError(fmt::format("is not a well-formed Collada file: {} (line {})",
-                                     XML_ErrorString(XML_GetErrorCode(parser.get())),
-                                     XML_GetCurrentLineNumber(parser.get())));
+    throw description::DescriptionError(
+        fmt::format("{} (line {})", check.refusal, XML_GetCurrentLineNumber(parser.get())));
+  throw description::DescriptionError(fmt::format("is not a well-formed Collada file: {} (line {})",
+                                                  XML_ErrorString(XML_GetErrorCode(parser.get())),
+                                                  XML_GetCurrentLineNumber(parser.get())));
 }
 
 // Assimp cuts the ears off a polygon one by one, and looks at all of its corners for each.
@@ -169,8 +170,8 @@ void check_polygons(const aiScene& scene) {
     const aiMesh& mesh = *scene.mMeshes[m];
     for (unsigned f = 0; f < mesh.mNumFaces; ++f)
       if (mesh.mFaces[f].mNumIndices > kMostCorners)
-        throw DescriptionError(fmt::format("has a polygon of {} corners, of at most {}: triangulate it",
-                                           mesh.mFaces[f].mNumIndices, kMostCorners));
+        throw description::DescriptionError(fmt::format("has a polygon of {} corners, of at most {}: triangulate it",
+                                                        mesh.mFaces[f].mNumIndices, kMostCorners));
   }
 }
 
@@ -218,14 +219,14 @@ class Collector {
     constexpr std::size_t kCorners = 3;
     if (mesh.mNumFaces > most_triangles_ - content_.surface.triangles.size() - content_.other_faces ||
         mesh.mNumVertices > kCorners * most_triangles_ - vertices.size())
-      throw DescriptionError(
+      throw description::DescriptionError(
           fmt::format("has more triangles than the {} that are left for this world", most_triangles_));
     const std::size_t first = vertices.size();
     const bool mirrored = X_FileNode.linear().determinant() < 0;
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
       const aiVector3D& p = mesh.mVertices[v];
       vertices.emplace_back(X_FileNode * Eigen::Vector3d(p.x, p.y, p.z));
-      if (!vertices.back().allFinite()) throw DescriptionError("has a vertex that is not a number");
+      if (!vertices.back().allFinite()) throw description::DescriptionError("has a vertex that is not a number");
     }
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
@@ -235,7 +236,8 @@ class Collector {
       }
       std::array<std::uint32_t, 3> triangle{};
       for (unsigned i = 0; i < 3; ++i) {
-        if (face.mIndices[i] >= mesh.mNumVertices) throw DescriptionError("has a triangle with a missing vertex");
+        if (face.mIndices[i] >= mesh.mNumVertices)
+          throw description::DescriptionError("has a triangle with a missing vertex");
         triangle[mirrored ? 2 - i : i] = static_cast<std::uint32_t>(first + face.mIndices[i]);
       }
       content_.surface.triangles.push_back(triangle);
@@ -243,9 +245,9 @@ class Collector {
   }
 
   [[noreturn]] void refuse_empty() const {
-    if (part_.submesh.empty()) throw DescriptionError("has no triangles");
-    throw DescriptionError(fmt::format("has no submesh \"{}\" with triangles; its meshes are: {}", part_.submesh,
-                                       fmt::join(names_, ", ")));
+    if (part_.submesh.empty()) throw description::DescriptionError("has no triangles");
+    throw description::DescriptionError(fmt::format("has no submesh \"{}\" with triangles; its meshes are: {}",
+                                                    part_.submesh, fmt::join(names_, ", ")));
   }
 
   void centre() {
@@ -265,7 +267,7 @@ class Collector {
 }  // namespace
 
 MeshContent read_mesh(std::string_view bytes, MeshFormat format, const MeshPart& part, std::size_t most_triangles) {
-  if (bytes.empty()) throw DescriptionError("is an empty file");
+  if (bytes.empty()) throw description::DescriptionError("is an empty file");
   if (format == MeshFormat::dae) check_collada(bytes);
   const std::string extension = extension_of(format), name = "mesh." + extension;
   try {
@@ -279,12 +281,13 @@ MeshContent read_mesh(std::string_view bytes, MeshFormat format, const MeshPart&
       scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
     }
     if (!scene || !scene->mRootNode)
-      throw DescriptionError(fmt::format("cannot be read as a .{} mesh: {}", extension, importer.GetErrorString()));
+      throw description::DescriptionError(
+          fmt::format("cannot be read as a .{} mesh: {}", extension, importer.GetErrorString()));
     return Collector(*scene, part, most_triangles).collect();
-  } catch (const DescriptionError&) {
+  } catch (const description::DescriptionError&) {
     throw;
   } catch (const std::exception& error) {
-    throw DescriptionError(fmt::format("cannot be read as a .{} mesh: {}", extension, error.what()));
+    throw description::DescriptionError(fmt::format("cannot be read as a .{} mesh: {}", extension, error.what()));
   }
 }
 

@@ -60,12 +60,13 @@ bool is_simple(const std::vector<Vector2d>& corners) {
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 3>> triangulate(std::vector<Vector2d>& corners) {
-  if (corners.size() > kMostCorners) throw DescriptionError("a polygon must have at most 500 corners");
+  if (corners.size() > kMostCorners) throw description::DescriptionError("a polygon must have at most 500 corners");
   if (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
   drop_needless_corners(corners);
-  if (corners.size() < 3) throw DescriptionError("a polygon must have at least 3 corners that are not in line");
+  if (corners.size() < 3)
+    throw description::DescriptionError("a polygon must have at least 3 corners that are not in line");
   constexpr const char* kNotSimple = "a polygon must not touch or cross itself";
-  if (!is_simple(corners)) throw DescriptionError(kNotSimple);
+  if (!is_simple(corners)) throw description::DescriptionError(kNotSimple);
   double twice_area = 0;
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) twice_area += cross(corners[0], corners[i], corners[i + 1]);
   if (twice_area < 0) std::ranges::reverse(corners);
@@ -88,7 +89,7 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(std::vector<Vector2d>& cor
     };
     std::size_t ear = 0;
     while (ear < n && !is_ear(ear)) ++ear;
-    if (ear == n) throw DescriptionError(kNotSimple);  // as near to it as rounding can tell
+    if (ear == n) throw description::DescriptionError(kNotSimple);  // as near to it as rounding can tell
     triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
   }

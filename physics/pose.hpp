@@ -1,4 +1,5 @@
 // A rigid pose and its roll, pitch, yaw. World and body frames: x forward, y left, z up (REP 103).
+//
 // Thread safety: values and pure functions.
 #pragma once
 

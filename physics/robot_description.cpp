@@ -8,12 +8,17 @@
 #include <numbers>
 #include <set>
 
-#include "description/data_files.hpp"
-#include "description/description_file.hpp"
-#include "description/toml_reader.hpp"
+#include "formats/description/data_files.hpp"
+#include "formats/description/description_file.hpp"
+#include "formats/description/toml_reader.hpp"
 
 namespace kenaf::physics {
 namespace {
+
+using description::kNotNegative;
+using description::kPositive;
+using description::Range;
+using description::TomlReader;
 
 using std::numbers::pi;
 constexpr Range kFriction{.min = 0, .max = 10};
@@ -246,7 +251,7 @@ double RobotDescription::encoder_factor(robot::Track side) const {
 }
 
 RobotDescription parse_robot(std::string_view toml_text, const std::string& name_for_errors) {
-  const toml::table root = parse_toml(toml_text, name_for_errors);
+  const toml::table root = description::parse_toml(toml_text, name_for_errors);
   TomlReader file(root, "", name_for_errors);
   RobotDescription robot{};
   robot.name = std::filesystem::path(name_for_errors).stem().string();
@@ -277,24 +282,24 @@ RobotDescription parse_robot(std::string_view toml_text, const std::string& name
       table.fail("name", fmt::format("is one camera too many: at most {}", kMaxCameras));
   }
   if (file.has("effects")) robot.effects = read_effects(file.table("effects"));
-  file.leave("can");  // of the real robot's bus: canbus/robot_bus.hpp
+  file.leave("can");  // of the real robot's bus: can/canbus/robot_bus.hpp
   file.finish();
   return robot;
 }
 
 RobotDescription load_robot(const std::string& name_or_path) {
-  const DescriptionFile file = read_description_file("robot", name_or_path, ".toml");
+  const description::DescriptionFile file = description::read_description_file("robot", name_or_path, ".toml");
   return parse_robot(file.text, file.path);
 }
 
 std::string robot_name_for_class(std::string_view usarsim_class) {
   std::string name(usarsim_class.substr(usarsim_class.rfind('.') + 1));  // npos + 1 is 0
   for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  // a name, not a path: what a stranger sends never leaves robots/
+  // a name, not a path: what a stranger sends never leaves share/robots/
   const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) || c == '_' || c == '-';
   });
-  return plain && !find_data_file("robots", name, ".toml").empty() ? name : std::string();
+  return plain && !description::find_data_file("robots", name, ".toml").empty() ? name : std::string();
 }
 
 }  // namespace kenaf::physics

@@ -1,6 +1,7 @@
 // What a robot is: a plain value, read from a TOML file in robots/. docs/robot-description.md lists every key.
 //
 // Body frame B: origin at the body's geometric centre, x forward, y left, z up. SI units, radians.
+//
 // Thread safety: a value.
 #pragma once
 
@@ -12,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "description/description_error.hpp"
+#include "formats/description/description_error.hpp"
 #include "physics/effects.hpp"
 #include "physics/pose.hpp"
 #include "robot/parts.hpp"
@@ -20,37 +21,37 @@
 namespace kenaf::physics {
 
 struct BodyDescription {
-  double mass_kg;                  // of the body with its main tracks, without flippers
-  Eigen::Vector3d size_m;          // collision box of the hull between the tracks
-  Eigen::Vector3d p_BBcm_m;        // centre of mass
-  Eigen::Vector3d inertia_kgm2;    // about the centre of mass, along x, y, z
-  double friction;                 // of the hull against ground of friction 1
+  double mass_kg;                // of the body with its main tracks, without flippers
+  Eigen::Vector3d size_m;        // collision box of the hull between the tracks
+  Eigen::Vector3d p_BBcm_m;      // centre of mass
+  Eigen::Vector3d inertia_kgm2;  // about the centre of mass, along x, y, z
+  double friction;               // of the hull against ground of friction 1
 
   bool operator==(const BodyDescription&) const = default;
 };
 
 // A track is a stadium: a rectangle with a half circle at each end, swept across its width.
 struct TrackDescription {
-  double length_m;                 // over both end arcs
+  double length_m;  // over both end arcs
   double end_radius_m;
   double width_m;
-  Eigen::Vector3d p_BT_m;          // centre of the LEFT track; the right one is its mirror image
-  double friction_along;           // rolling direction
+  Eigen::Vector3d p_BT_m;  // centre of the LEFT track; the right one is its mirror image
+  double friction_along;   // rolling direction
   double friction_across;
-  int pieces;                      // of the belly with contacts of their own; they spread the load along it
-  double lug_height_m;             // what of the belt's profile catches behind an edge
+  int pieces;           // of the belly with contacts of their own; they spread the load along it
+  double lug_height_m;  // what of the belt's profile catches behind an edge
 
   bool operator==(const TrackDescription&) const = default;
 };
 
 struct TrackDriveDescription {
-  double sprocket_radius_m;        // turns spin into surface speed
+  double sprocket_radius_m;  // turns spin into surface speed
   double max_speed_mps;
-  double max_force_n;              // at the belt, at standstill
-  double time_constant_s;          // of the closed speed loop
-  double moving_mass_kg;           // belt, sprocket, gear and rotor, as felt at the belt
-  double encoder_counts_per_radian;// of the sprocket
-  double amperes_per_newton;       // motor current for a belt force
+  double max_force_n;                // at the belt, at standstill
+  double time_constant_s;            // of the closed speed loop
+  double moving_mass_kg;             // belt, sprocket, gear and rotor, as felt at the belt
+  double encoder_counts_per_radian;  // of the sprocket
+  double amperes_per_newton;         // motor current for a belt force
   double idle_amperes;
 
   bool operator==(const TrackDriveDescription&) const = default;
@@ -59,17 +60,17 @@ struct TrackDriveDescription {
 // An arm with a track of its own: a large drum at its pivot, a small one at its tip, a belt around both.
 struct FlipperDescription {
   double mass_kg;
-  double length_m;                 // pivot to the centre of the tip drum
+  double length_m;  // pivot to the centre of the tip drum
   double pivot_radius_m;
   double tip_radius_m;
   double width_m;
-  Eigen::Vector3d p_BPivot_m;      // of the FRONT LEFT flipper; the others are mirror images
+  Eigen::Vector3d p_BPivot_m;  // of the FRONT LEFT flipper; the others are mirror images
   double friction_along;
   double friction_across;
-  double min_angle_rad;            // positive tip up
+  double min_angle_rad;  // positive tip up
   double max_angle_rad;
   double start_angle_rad;
-  bool belt_driven;                // its belt runs with the main track of its side
+  bool belt_driven;  // its belt runs with the main track of its side
 
   bool operator==(const FlipperDescription&) const = default;
 };
@@ -78,7 +79,7 @@ struct FlipperServoDescription {
   double max_speed_radps;
   double max_torque_nm;
   double amperes_per_nm;
-  double resolution_rad = 0;       // of its encoder; 0: exact
+  double resolution_rad = 0;  // of its encoder; 0: exact
 
   bool operator==(const FlipperServoDescription&) const = default;
 };
@@ -86,13 +87,23 @@ struct FlipperServoDescription {
 struct BatteryDescription {
   double open_circuit_v;
   double internal_resistance_ohm;
-  double capacity_s;               // what USARSim reports as {Battery}: seconds left, counted down
+  double capacity_s;  // what USARSim reports as {Battery}: seconds left, counted down
 
   bool operator==(const BatteryDescription&) const = default;
 };
 
 enum class SensorType {
-  ground_truth, ins, imu, encoder, odometry, tachometer, sonar, range_scanner, gps, touch, drives
+  ground_truth,
+  ins,
+  imu,
+  encoder,
+  odometry,
+  tachometer,
+  sonar,
+  range_scanner,
+  gps,
+  touch,
+  drives
 };
 // USARSim's name of a sensor type: "GroundTruth", "INS", "IMU", "Encoder", "Odometry", "Tachometer", "Sonar",
 // "RangeScanner", "GPS", "Touch", and "Drives" for the one that USARSim does not have (motor currents, battery).
@@ -100,10 +111,10 @@ std::string_view usarsim_type_name(SensorType type);
 
 struct SensorDescription {
   SensorType type;
-  std::string name;                // unique on the robot
-  Pose X_BS;                       // where it is mounted
-  double period_s;                 // 0: at every output of its connection
-  double delay_s;                  // age of what it reports
+  std::string name;  // unique on the robot
+  Pose X_BS;         // where it is mounted
+  double period_s;   // 0: at every output of its connection
+  double delay_s;    // age of what it reports
   // 1-sigma, white, per sample, and a constant bias drawn once for each robot. In the reading's own units.
   double noise_m = 0, noise_rad = 0, noise_radps = 0, noise_mps2 = 0, noise_a = 0, noise_v = 0;
   double bias_rad = 0, bias_radps = 0;
@@ -121,22 +132,22 @@ struct MissionPackageDescription {
   };
   std::string name;
   Pose X_BM;
-  std::vector<Link> links;         // link 1 first
+  std::vector<Link> links;  // link 1 first
 
   bool operator==(const MissionPackageDescription&) const = default;
 };
 
 // What takes pictures (camera/). Frame C: x along the optical axis, y left, z up.
 struct CameraDescription {
-  std::string name;                // unique among the robot's cameras
-  std::optional<std::size_t> mission_package;  // index of the mount that turns it, which has one link or two
-  Pose X_BC;                       // where it is fixed on the body, if it is on no package
-  int width, height;               // pixels
-  double field_of_view_rad;        // horizontal, as it starts
+  std::string name;                                     // unique among the robot's cameras
+  std::optional<std::size_t> mission_package;           // index of the mount that turns it, which has one link or two
+  Pose X_BC;                                            // where it is fixed on the body, if it is on no package
+  int width, height;                                    // pixels
+  double field_of_view_rad;                             // horizontal, as it starts
   double min_field_of_view_rad, max_field_of_view_rad;  // of its zoom
-  double rate_hz;                  // pictures a second
-  double latency_s;                // from the moment that a picture shows until it can be sent
-  int jpeg_quality;                // 1 to 100
+  double rate_hz;                                       // pictures a second
+  double latency_s;                                     // from the moment that a picture shows until it can be sent
+  int jpeg_quality;                                     // 1 to 100
 
   bool operator==(const CameraDescription&) const = default;
 };
@@ -147,22 +158,22 @@ inline double side_factor(robot::Track side, double asymmetry) {
 }
 
 struct RobotDescription {
-  std::string name;                // as its file is called
-  std::string usarsim_class;       // "USARBot.Kenaf"
+  std::string name;           // as its file is called
+  std::string usarsim_class;  // "USARBot.Kenaf"
   BodyDescription body;
   TrackDescription track;
   TrackDriveDescription drive;
-  std::vector<FlipperDescription> flipper;   // empty, or one that stands for all four
+  std::vector<FlipperDescription> flipper;  // empty, or one that stands for all four
   FlipperServoDescription servo{};
   BatteryDescription battery{};
   std::vector<SensorDescription> sensors;
   std::vector<MissionPackageDescription> mission_packages;
   std::vector<CameraDescription> cameras;
-  Effects effects;                 // switched on by [effects.NAME] tables
+  Effects effects;  // switched on by [effects.NAME] tables
 
   bool has_flippers() const { return !flipper.empty(); }
   double total_mass_kg() const;
-  double track_gauge_m() const;    // between the tracks' centre planes
+  double track_gauge_m() const;                    // between the tracks' centre planes
   double encoder_factor(robot::Track side) const;  // what its encoder reports of a metre
 
   bool operator==(const RobotDescription&) const = default;

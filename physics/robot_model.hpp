@@ -55,8 +55,8 @@ class RobotModel {
     Collider collider;
     BeltShape belt;
     ShapeTag tag;
-    btTransform X_FlipperCom;    // the flipper's frame (x out along the arm) to its centre of mass
-    btTransform X_BodyPivot;     // where that frame is in B at angle 0
+    btTransform X_FlipperCom;  // the flipper's frame (x out along the arm) to its centre of mass
+    btTransform X_BodyPivot;   // where that frame is in B at angle 0
   };
 
   void enter_dynamics();

@@ -21,7 +21,7 @@ Outline flipper_outline(const FlipperDescription& flipper);
 struct OutlineMoments {
   double area;
   Eigen::Vector2d centroid;
-  double Ixx, Izz;   // integrals of x^2 and z^2
+  double Ixx, Izz;  // integrals of x^2 and z^2
 };
 OutlineMoments moments(const Outline& outline);
 

@@ -37,7 +37,7 @@ std::string SdfPlaces::place(const sdf::ElementPtr& element) const {
 }
 
 void SdfPlaces::fail(const sdf::ElementPtr& element, const std::string& what) const {
-  throw DescriptionError(fmt::format("{}: {}", place(element), what));
+  throw description::DescriptionError(fmt::format("{}: {}", place(element), what));
 }
 
 void SdfPlaces::skip(const sdf::ElementPtr& element, const std::string& what) const {

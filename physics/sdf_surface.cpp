@@ -30,8 +30,8 @@ Eigen::Vector3d from_sdf(const ignition::math::Vector3d& v) {
 void check_sizes(const sdf::ElementPtr& element, std::initializer_list<double> sizes) {
   for (const double size : sizes)
     if (!(size > 0 && size <= kMaxCoordinate_m))
-      throw DescriptionError(fmt::format("the sizes of a <{}> must be more than 0 and at most {} m", element->GetName(),
-                                         kMaxCoordinate_m));
+      throw description::DescriptionError(fmt::format("the sizes of a <{}> must be more than 0 and at most {} m",
+                                                      element->GetName(), kMaxCoordinate_m));
 }
 
 TriangleSurface read_polyline(const sdf::ElementPtr& element) {
@@ -40,7 +40,8 @@ TriangleSurface read_polyline(const sdf::ElementPtr& element) {
     const auto p = point->Get<ignition::math::Vector2d>();
     corners.emplace_back(p.X(), p.Y());
     if (!corners.back().allFinite() || corners.back().norm() > kMaxCoordinate_m)
-      throw DescriptionError(fmt::format("a <point> is not a number or further than {} m away", kMaxCoordinate_m));
+      throw description::DescriptionError(
+          fmt::format("a <point> is not a number or further than {} m away", kMaxCoordinate_m));
   }
   return prism_surface(std::move(corners), element->Get<double>("height"));
 }
@@ -58,15 +59,17 @@ std::optional<MeshFormat> format_of(const std::string& uri) {
 TriangleSurface read_mesh_element(const SdfPlaces& places, const sdf::Mesh& mesh, WorldFiles& files,
                                   std::size_t most_triangles) {
   const std::optional<MeshFormat> format = format_of(mesh.Uri());
-  if (!format) throw DescriptionError(fmt::format("\"{}\": a mesh must be a .stl, .obj or .dae file", mesh.Uri()));
+  if (!format)
+    throw description::DescriptionError(fmt::format("\"{}\": a mesh must be a .stl, .obj or .dae file", mesh.Uri()));
   const Eigen::Vector3d scale = from_sdf(mesh.Scale());
-  if (!scale.allFinite() || !(scale.cwiseAbs().minCoeff() > 0)) throw DescriptionError("<scale> must not be zero");
+  if (!scale.allFinite() || !(scale.cwiseAbs().minCoeff() > 0))
+    throw description::DescriptionError("<scale> must not be zero");
   const std::string bytes = files.read(mesh.Uri());
   MeshContent content;
   try {
     content = read_mesh(bytes, *format, {mesh.Submesh(), mesh.CenterSubmesh()}, most_triangles);
-  } catch (const DescriptionError& error) {
-    throw DescriptionError(fmt::format("\"{}\" {}", mesh.Uri(), error.what()));
+  } catch (const description::DescriptionError& error) {
+    throw description::DescriptionError(fmt::format("\"{}\" {}", mesh.Uri(), error.what()));
   }
   if (content.other_faces > 0)
     places.skip(mesh.Element(),
@@ -80,12 +83,12 @@ TriangleSurface read_mesh_element(const SdfPlaces& places, const sdf::Mesh& mesh
 TriangleSurface read_height_map_element(const sdf::Heightmap& map, WorldFiles& files) {
   const Eigen::Vector3d size = from_sdf(map.Size()), position = from_sdf(map.Position());
   check_sizes(map.Element(), {size.x(), size.y(), size.z()});
-  if (!position.allFinite()) throw DescriptionError("<pos> must be numbers");
+  if (!position.allFinite()) throw description::DescriptionError("<pos> must be numbers");
   const std::string bytes = files.read(map.Uri());
   try {
     return height_map_surface(read_grey_png(bytes), size, position);
-  } catch (const DescriptionError& error) {
-    throw DescriptionError(fmt::format("\"{}\" {}", map.Uri(), error.what()));
+  } catch (const description::DescriptionError& error) {
+    throw description::DescriptionError(fmt::format("\"{}\" {}", map.Uri(), error.what()));
   }
 }
 
@@ -137,7 +140,7 @@ TriangleSurface read_surface(const SdfPlaces& places, const sdf::Geometry& geome
   TriangleSurface surface;
   try {
     surface = read_shape(places, geometry, files, most_triangles, element);
-  } catch (const DescriptionError& error) {
+  } catch (const description::DescriptionError& error) {
     places.fail(element, error.what());
   }
   if (surface.triangles.empty()) return surface;

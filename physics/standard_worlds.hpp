@@ -1,4 +1,5 @@
 // The shipped worlds of one measure, at any measure: what a search for the highest step that is climbed varies.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -6,12 +7,12 @@
 
 namespace kenaf::physics {
 
-// As worlds/step-200.sdf: a platform 3 m deep, 2 m wide and `height_m` high on level ground, its face at x = 1 m.
+// As share/worlds/step-200.sdf: a platform 3 m deep, 2 m wide and `height_m` high on level ground, its face at x = 1 m.
 // Throws std::invalid_argument unless the height is from 1 mm to 10 m.
 WorldDescription step_world(double height_m);
 
-// As worlds/trench-200.sdf: a trench 1 m deep from x = 1 m to 1 m + `width_m` between two platforms with their tops at
-// z = 0, 4 m wide, of 6 m and 5 m length. Throws std::invalid_argument unless the width is from 1 mm to 10 m.
+// As share/worlds/trench-200.sdf: a trench 1 m deep from x = 1 m to 1 m + `width_m` between two platforms with their
+// tops at z = 0, 4 m wide, of 6 m and 5 m length. Throws std::invalid_argument unless the width is from 1 mm to 10 m.
 WorldDescription trench_world(double width_m);
 
 }  // namespace kenaf::physics

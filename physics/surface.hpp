@@ -25,8 +25,8 @@ struct Belt {
   double motor_impulse_ns = 0;
   double friction_impulse_ns = 0;  // dry and rolling, of the running gear
   double viscous_impulse_ns = 0;
-  double load_ns = 0;              // what presses on it
-  double kept = 1;  // of the friction that the next step starts from
+  double load_ns = 0;  // what presses on it
+  double kept = 1;     // of the friction that the next step starts from
 };
 
 struct Surface {

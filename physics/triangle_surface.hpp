@@ -13,13 +13,13 @@ namespace kenaf::physics {
 
 struct TriangleSurface {
   std::vector<Eigen::Vector3d> vertices;
-  std::vector<std::array<std::uint32_t, 3>> triangles;   // counter-clockwise as seen from outside
+  std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise as seen from outside
 };
 
 struct TidySurface {
-  std::size_t dropped = 0;        // triangles without area
-  bool closed = false;            // every edge has a triangle on either side
-  bool windings_agree = true;     // no two neighbours take the same edge in the same direction
+  std::size_t dropped = 0;     // triangles without area
+  bool closed = false;         // every edge has a triangle on either side
+  bool windings_agree = true;  // no two neighbours take the same edge in the same direction
 };
 
 // Joins vertices at the same place, drops triangles without area (thinner than 1 um), and turns the triangles of a

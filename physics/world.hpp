@@ -2,6 +2,7 @@
 //
 // Deterministic: the same descriptions, settings, seed and calls give the same bits. Knows nothing of sockets, of
 // wall-clock time or of USARSim. Frame W: x forward, y left, z up; SI units.
+//
 // Thread safety: none; one thread owns a World. Two Worlds share nothing and may run on two threads.
 #pragma once
 
@@ -38,11 +39,11 @@ enum class BoxId : std::uint32_t {};
 // The exact state of a robot, without sensors in between.
 struct RobotTruth {
   Pose X_WB;
-  Eigen::Vector3d v_WB_mps, w_WB_radps;            // of the body frame's origin, in W
+  Eigen::Vector3d v_WB_mps, w_WB_radps;  // of the body frame's origin, in W
   std::array<double, robot::kTrackCount> track_mps, track_m;
-  std::array<double, robot::kTrackCount> track_force_n;   // motor's at the belt, + pushes the robot forward
+  std::array<double, robot::kTrackCount> track_force_n;  // motor's at the belt, + pushes the robot forward
   std::array<double, robot::kFlipperCount> flipper_rad, flipper_radps, flipper_nm;
-  std::array<double, robot::kFlipperCount> servo_rad;     // on the servo's side of play and compliance, if there are any
+  std::array<double, robot::kFlipperCount> servo_rad;  // on the servo's side of play and compliance, if there are any
   double battery_v, battery_left_s;
 };
 
@@ -58,7 +59,10 @@ struct DriveCurrents {
   std::array<double, robot::kFlipperCount> flipper_a{};
 };
 
-struct RayHit { double distance_m; Eigen::Vector3d normal_W; };
+struct RayHit {
+  double distance_m;
+  Eigen::Vector3d normal_W;
+};
 
 class World {
  public:
@@ -69,7 +73,7 @@ class World {
 
   const WorldDescription& description() const;
   const PhysicsSettings& settings() const;
-  double time_s() const;          // step_count() times the time step
+  double time_s() const;  // step_count() times the time step
   std::uint64_t step_count() const;
 
   // Places a robot with all joints at their start angles and at rest. A pose in which it would touch ground or box is
@@ -92,17 +96,18 @@ class World {
   // state of turning at these speeds, and what `command` differs by from them they still have to do. What holds of
   // it the next steps decide, by friction and mass. Not for a robot with a fault.
   void set_in_motion(RobotId id, const RobotMotion& motion, const robot::Command& command);
-  // In the steps to come, until told otherwise, a belt has exactly the speed and a flipper's servo exactly the angle that is
-  // stated: no motor limit, no lag, no command has a part in it. Angles are directions: a flipper goes the short way, at
-  // most at 10 rad/s. Play and compliance are between servo and arm, where no encoder sees them: the arm has them still. A drive that is let go follows its command from the speed at that moment. Forces and currents
-  // are those that the ground asks for. teleport() and reset() end it.
+  // In the steps to come, until told otherwise, a belt has exactly the speed and a flipper's servo exactly the angle
+  // that is stated: no motor limit, no lag, no command has a part in it. Angles are directions: a flipper goes the
+  // short way, at most at 10 rad/s. Play and compliance are between servo and arm, where no encoder sees them: the arm
+  // has them still. A drive that is let go follows its command from the speed at that moment. Forces and currents are
+  // those that the ground asks for. teleport() and reset() end it.
   void prescribe(RobotId id, const PrescribedMotion& motion);
   // Starts a sensor's integration anew: encoder counts, odometry, tachometer angle from 0; INS from its argument.
   void reset_sensor(RobotId id, std::size_t sensor, std::optional<GroundTruthReading> pose = std::nullopt);
 
   // One time step for everything.
   void step();
-  std::size_t contact_count() const;   // contact points of the last step
+  std::size_t contact_count() const;  // contact points of the last step
 
   RobotTruth truth(RobotId id) const;
   DriveCurrents drive_currents(RobotId id) const;
@@ -121,7 +126,7 @@ class World {
   Pose box_pose(BoxId id) const;
   // Those of the description first, in its order; then as they were added.
   std::vector<BoxId> boxes() const;
-  const Box& box(BoxId id) const;      // as it was described or added, wherever it is now
+  const Box& box(BoxId id) const;  // as it was described or added, wherever it is now
 
   // The first surface along a ray; `ignore` is a robot that the ray passes through.
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,

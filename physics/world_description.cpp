@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sdf/sdf.hh>
 
-#include "description/description_file.hpp"
+#include "formats/description/description_file.hpp"
 #include "physics/sdf_reader.hpp"
 #include "physics/sdf_surface.hpp"
 #include "physics/world_files.hpp"
@@ -160,16 +160,16 @@ WorldDescription parse_world(std::string_view sdf_text, const std::string& name_
     }
     std::string what = error.Message();
     if (error.Code() == sdf::ErrorCode::STRING_READ) what = "is not a well-formed SDF document";  // it quotes all of it
-    throw DescriptionError(fmt::format("{}: {}", place, what));
+    throw description::DescriptionError(fmt::format("{}: {}", place, what));
   }
   if (root.WorldCount() != 1)
-    throw DescriptionError(
+    throw description::DescriptionError(
         fmt::format("{}: must hold exactly one <world>, but holds {}", name_for_errors, root.WorldCount()));
   return read_world(reader, *root.WorldByIndex(0));
 }
 
 WorldDescription load_world(const std::string& name_or_path, std::vector<std::string>& unsupported) {
-  const DescriptionFile file = read_description_file("world", name_or_path, ".sdf");
+  const description::DescriptionFile file = description::read_description_file("world", name_or_path, ".sdf");
   const std::filesystem::path folder = std::filesystem::path(file.path).parent_path();
   return parse_world(file.text, file.path, folder.empty() ? "." : folder, unsupported);
 }

@@ -1,4 +1,4 @@
-// What a world is: ground, boxes and start poses, read from an SDF file in worlds/ through libsdformat.
+// What a world is: ground, boxes and start poses, read from an SDF file in share/worlds/ through libsdformat.
 // World frame W: x forward, y left, z up. SI units. Thread safety: a value.
 #pragma once
 
@@ -15,16 +15,16 @@
 namespace kenaf::physics {
 
 struct GroundPlane {
-  Pose X_WP;              // the plane's own z axis is its normal
-  double friction = 1;    // multiplies the robot's own friction coefficients
+  Pose X_WP;            // the plane's own z axis is its normal
+  double friction = 1;  // multiplies the robot's own friction coefficients
 };
 
 struct Box {
   std::string name;
   Eigen::Vector3d size_m;
-  Pose X_WBox;            // centre
+  Pose X_WBox;  // centre
   double friction = 1;
-  double mass_kg = 0;     // 0: fixed in the world
+  double mass_kg = 0;  // 0: fixed in the world
 };
 
 // A fixed surface of triangles: a mesh, a height map, or a shape that is neither box nor plane. Solid on the side
@@ -37,7 +37,7 @@ struct TriangleMesh {
 };
 
 struct StartPose {
-  std::string name;       // "PlayerStart_0" where the file names none
+  std::string name;  // "PlayerStart_0" where the file names none
   Pose X_WB;
 };
 
@@ -47,12 +47,12 @@ struct WorldDescription {
   std::vector<GroundPlane> planes;
   std::vector<Box> boxes;
   std::vector<TriangleMesh> meshes;
-  std::vector<StartPose> start_poses;   // SDF frames attached to the world whose name begins with "start"; at least one
+  std::vector<StartPose> start_poses;  // SDF frames attached to the world whose name begins with "start"; at least one
 };
 
-// A shipped name ("flat") or the path of an SDF file. Throws DescriptionError ("file:line: what is wrong"); what SDF has
-// and this simulator does not is listed in `unsupported`, an element a line, rather than dropped in silence.
-// Meshes and height maps are looked up in the SDF file's own folder and below it, nowhere else; a world may have 2^21
+// A shipped name ("flat") or the path of an SDF file. Throws DescriptionError ("file:line: what is wrong"); what SDF
+// has and this simulator does not is listed in `unsupported`, an element a line, rather than dropped in silence. Meshes
+// and height maps are looked up in the SDF file's own folder and below it, nowhere else; a world may have 2^21
 // triangles and 64 MiB of files.
 WorldDescription load_world(const std::string& name_or_path, std::vector<std::string>& unsupported);
 // `folder`: where the files that the text names are; empty: it may name none.

@@ -19,7 +19,7 @@ std::string path_of(const std::string& uri) {
     if (uri.starts_with(scheme)) return uri.substr(scheme.size());
   const std::size_t colon = uri.find("://");
   if (colon != std::string::npos)
-    throw DescriptionError(
+    throw description::DescriptionError(
         fmt::format("\"{}\": only file:// and model:// are read, no {}://", uri, uri.substr(0, colon)));
   return uri;
 }
@@ -33,24 +33,27 @@ bool is_within(const fs::path& folder, const fs::path& file) {
 std::string WorldFiles::read(const std::string& uri) {
   const std::string path = path_of(uri);
   if (folder_.empty())
-    throw DescriptionError(fmt::format("\"{}\": this world has no folder in which to look for files", uri));
+    throw description::DescriptionError(
+        fmt::format("\"{}\": this world has no folder in which to look for files", uri));
   std::error_code error;
   const fs::path folder = fs::canonical(folder_, error);
   const fs::path file = error ? fs::path() : fs::canonical(folder / path, error);
   if (!error && !is_within(folder, file))
-    throw DescriptionError(
+    throw description::DescriptionError(
         fmt::format("\"{}\" is not in the world's folder {}, where all of its files must be", uri, folder.string()));
   if (error || !fs::is_regular_file(file, error))
-    throw DescriptionError(
+    throw description::DescriptionError(
         fmt::format("\"{}\": there is no such file in the world's folder {}", uri, folder_.string()));
   std::ifstream in(file, std::ios::binary);
   const std::size_t most = std::min(kMostFileBytes, bytes_left_);
   std::string bytes(std::min<std::size_t>(fs::file_size(file, error), most + 1), '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!in || error) throw DescriptionError(fmt::format("\"{}\" cannot be read; check its permissions", uri));
+  if (!in || error)
+    throw description::DescriptionError(fmt::format("\"{}\" cannot be read; check its permissions", uri));
   if (bytes.size() > most)
-    throw DescriptionError(fmt::format("\"{}\" is too large: a file may have {} MiB, all of a world's files {} MiB",
-                                       uri, kMostFileBytes >> 20U, kMostBytes >> 20U));
+    throw description::DescriptionError(
+        fmt::format("\"{}\" is too large: a file may have {} MiB, all of a world's files {} MiB", uri,
+                    kMostFileBytes >> 20U, kMostBytes >> 20U));
   bytes_left_ -= bytes.size();
   return bytes;
 }

@@ -15,9 +15,9 @@ class WorldFiles {
   explicit WorldFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   // The bytes of the file that `uri` names: "a/b.stl", "file://a/b.stl", "file:///folder/a/b.stl" or
-  // "model://a/b.stl", where a is a folder within this one. Throws DescriptionError with what is wrong, without a place: a
-  // path that leads out of the folder (through ".." or a link too), no regular file, more than 16 MiB, more than 64 MiB
-  // with all read before.
+  // "model://a/b.stl", where a is a folder within this one. Throws DescriptionError with what is wrong, without a
+  // place: a path that leads out of the folder (through ".." or a link too), no regular file, more than 16 MiB, more
+  // than 64 MiB with all read before.
   std::string read(const std::string& uri);
 
  private:

@@ -1,5 +1,6 @@
-// Keeps the relay from being used against others: whoever forges the sender of a small datagram would have a large answer
-// sent to it.
+// Keeps the relay from being used against others: whoever forges the sender of a small datagram would have a large
+// answer sent to it.
+//
 // Thread safety: a value.
 #pragma once
 

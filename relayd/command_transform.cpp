@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "protocol/frames.hpp"
-#include "protocol/usarsim_message.hpp"
+#include "formats/protocol/frames.hpp"
+#include "formats/protocol/usarsim_message.hpp"
 
 namespace kenaf::relayd {
 
@@ -15,61 +15,62 @@ constexpr double kMaxFlipperAngle_rad = 100;
 
 }  // namespace
 
-void write_command(std::string& out, const relay::Command& command, double wheel_radius_m,
+void write_command(std::string& out, const protocol::relay::Command& command, double wheel_radius_m,
                    std::optional<std::int64_t> world_frame) {
-  usarsim::MessageWriter writer(out);
+  protocol::usarsim::MessageWriter writer(out);
   if (command.flipper_mask != 0) {
     writer.begin("MULTIDRIVE");
     for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
       if ((command.flipper_mask >> i & 1u) == 0) continue;
       const auto flipper = static_cast<robot::Flipper>(i);
-      writer.number(frames::usarsim_flipper_name(flipper),
-                    frames::usarsim_flipper_from_tip_up(flipper, command.flipper_rad[i]), usarsim::kExactNumber);
+      writer.number(protocol::frames::usarsim_flipper_name(flipper),
+                    protocol::frames::usarsim_flipper_from_tip_up(flipper, command.flipper_rad[i]),
+                    protocol::usarsim::kExactNumber);
     }
     if (world_frame) writer.integer("Frame", *world_frame);
     writer.end();
   }
   const auto spin = [&](robot::Track track) {
-    return frames::spin_from_surface_speed(command.track_speed_mps[track], wheel_radius_m);
+    return protocol::frames::spin_from_surface_speed(command.track_speed_mps[track], wheel_radius_m);
   };
   writer.begin("DRIVE")
-      .number("Left", spin(robot::kLeft), usarsim::kExactNumber)
-      .number("Right", spin(robot::kRight), usarsim::kExactNumber);
+      .number("Left", spin(robot::kLeft), protocol::usarsim::kExactNumber)
+      .number("Right", spin(robot::kRight), protocol::usarsim::kExactNumber);
   if (world_frame) writer.integer("Frame", *world_frame);
   writer.end();
 }
 
 void write_stop(std::string& out) {
-  usarsim::MessageWriter(out)
+  protocol::usarsim::MessageWriter(out)
       .begin("DRIVE")
-      .number("Left", 0, usarsim::kExactNumber)
-      .number("Right", 0, usarsim::kExactNumber)
+      .number("Left", 0, protocol::usarsim::kExactNumber)
+      .number("Right", 0, protocol::usarsim::kExactNumber)
       .end();
 }
 
 void write_world_session(std::string& out, const WorldSession& session) {
-  usarsim::MessageWriter(out)
+  protocol::usarsim::MessageWriter(out)
       .begin("CONTROL")
       .text("Type", "Session")
-      .number("Period", session.period_s, usarsim::kExactNumber)
+      .number("Period", session.period_s, protocol::usarsim::kExactNumber)
       .boolean("Lockstep", session.lockstep)
-      .number("CommandTimeout", session.command_timeout_s, usarsim::kExactNumber)
+      .number("CommandTimeout", session.command_timeout_s, protocol::usarsim::kExactNumber)
       .integer("Precision", 12)
       .end();
 }
 
 void write_ping(std::string& out, std::int64_t id) {
-  usarsim::MessageWriter(out).begin("PING").integer("Id", id).end();
+  protocol::usarsim::MessageWriter(out).begin("PING").integer("Id", id).end();
 }
 
-const char* out_of_range(const relay::Command& command) {
+const char* out_of_range(const protocol::relay::Command& command) {
   const auto beyond = [](double limit) { return [limit](double value) { return std::abs(value) > limit; }; };
   if (std::ranges::any_of(command.track_speed_mps, beyond(kMaxTrackSpeed_mps))) return "a track speed above 10 m/s";
   if (std::ranges::any_of(command.flipper_rad, beyond(kMaxFlipperAngle_rad))) return "a flipper angle above 100 rad";
   return nullptr;
 }
 
-const char* out_of_range(const relay::Hello& hello) {
+const char* out_of_range(const protocol::relay::Hello& hello) {
   if (hello.period_s < 0.001 || hello.period_s > 1) return "the period is not from 0.001 to 1 s";
   if (hello.command_timeout_s < 0.01 || hello.command_timeout_s > 10) {
     return "the command timeout is not from 0.01 to 10 s";

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "protocol/relay_datagram.hpp"
+#include "formats/protocol/relay_datagram.hpp"
 
 namespace kenaf::relayd {
 
@@ -19,7 +19,7 @@ struct WorldSession {
 
 // MULTIDRIVE with the flippers named by the mask, then DRIVE, which ends the answer. Surface speeds become spins of a
 // wheel of `wheel_radius_m`, flipper angles USARSim's joint angles. Without `world_frame` it takes effect at once.
-void write_command(std::string& out, const relay::Command& command, double wheel_radius_m,
+void write_command(std::string& out, const protocol::relay::Command& command, double wheel_radius_m,
                    std::optional<std::int64_t> world_frame);
 
 void write_stop(std::string& out);  // both tracks 0, at once
@@ -29,8 +29,8 @@ void write_world_session(std::string& out, const WorldSession& session);
 void write_ping(std::string& out, std::int64_t id);
 
 // In words what no Kenaf can do, or nullptr: more than 10 m/s, more than 100 rad.
-const char* out_of_range(const relay::Command& command);
+const char* out_of_range(const protocol::relay::Command& command);
 // The same of a Hello, by the ranges of docs/relay-protocol.md.
-const char* out_of_range(const relay::Hello& hello);
+const char* out_of_range(const protocol::relay::Hello& hello);
 
 }  // namespace kenaf::relayd

@@ -17,11 +17,11 @@ double seconds(CommanderSession::Duration duration) {
 
 }  // namespace
 
-void CommanderSession::on_datagram(const relay::Datagram& datagram, const Address& from, TimePoint now) {
-  if (const auto* command = std::get_if<relay::Command>(&datagram)) take(*command, from, now);
-  if (const auto* hello = std::get_if<relay::Hello>(&datagram)) take(*hello, from, now);
-  if (const auto* ping = std::get_if<relay::Ping>(&datagram)) take(*ping, from, now);
-  if (const auto* bye = std::get_if<relay::Bye>(&datagram)) take(*bye, from, now);
+void CommanderSession::on_datagram(const protocol::relay::Datagram& datagram, const Address& from, TimePoint now) {
+  if (const auto* command = std::get_if<protocol::relay::Command>(&datagram)) take(*command, from, now);
+  if (const auto* hello = std::get_if<protocol::relay::Hello>(&datagram)) take(*hello, from, now);
+  if (const auto* ping = std::get_if<protocol::relay::Ping>(&datagram)) take(*ping, from, now);
+  if (const auto* bye = std::get_if<protocol::relay::Bye>(&datagram)) take(*bye, from, now);
 }
 
 bool CommanderSession::is_commander(std::uint64_t session, const Address& from) {
@@ -34,15 +34,16 @@ bool CommanderSession::is_commander(std::uint64_t session, const Address& from) 
   return false;
 }
 
-void CommanderSession::take(const relay::Hello& hello, const Address& from, TimePoint now) {
+void CommanderSession::take(const protocol::relay::Hello& hello, const Address& from, TimePoint now) {
   if (const char* wrong = out_of_range(hello)) {
-    if (answers_to_strangers_.allow(now)) refuse(hello.session, from, relay::RefusedReason::bad_request, wrong);
+    if (answers_to_strangers_.allow(now))
+      refuse(hello.session, from, protocol::relay::RefusedReason::bad_request, wrong);
     return;
   }
   if (is_open()) {
     if (hello.session != hello_.session || from != commander_) {
       if (!answers_to_strangers_.allow(now)) return;
-      refuse(hello.session, from, relay::RefusedReason::busy,
+      refuse(hello.session, from, protocol::relay::RefusedReason::busy,
              fmt::format("{} has commanded the robot for {:.1f} s", to_text(commander_), seconds(now - opened_)));
       return;
     }
@@ -57,7 +58,7 @@ void CommanderSession::take(const relay::Hello& hello, const Address& from, Time
   };
   if (std::ranges::any_of(ended_, is_late_copy)) {
     if (answers_to_strangers_.allow(now))
-      refuse(hello.session, from, relay::RefusedReason::unknown_session, "this session is over");
+      refuse(hello.session, from, protocol::relay::RefusedReason::unknown_session, "this session is over");
     return;
   }
   phase_ = Phase::opening;
@@ -109,10 +110,10 @@ void CommanderSession::on_frame(const WorldFrame& frame, TimePoint now) {
   send_state(now);
 }
 
-void CommanderSession::take(const relay::Command& command, const Address& from, TimePoint now) {
+void CommanderSession::take(const protocol::relay::Command& command, const Address& from, TimePoint now) {
   if (!is_commander(command.session, from)) {
     if ((command.session != hello_.session || phase_ == Phase::none) && answers_to_strangers_.allow(now)) {
-      refuse(command.session, from, relay::RefusedReason::unknown_session,
+      refuse(command.session, from, protocol::relay::RefusedReason::unknown_session,
              "the relay does not know this session; begin a new one with Hello");
     }
     return;
@@ -128,7 +129,7 @@ void CommanderSession::take(const relay::Command& command, const Address& from, 
     if (const auto held_back = log_range_.allow(now)) {
       spdlog::warn("command {} of {} refused: {} ({} more before)", command.sequence, to_text(from), wrong, *held_back);
     }
-    refuse(command.session, from, relay::RefusedReason::bad_request, wrong);
+    refuse(command.session, from, protocol::relay::RefusedReason::bad_request, wrong);
     return;
   }
   if (command.frame > state_.robot.frame) {
@@ -141,7 +142,7 @@ void CommanderSession::take(const relay::Command& command, const Address& from, 
   accept(command);
 }
 
-void CommanderSession::accept(const relay::Command& command) {
+void CommanderSession::accept(const protocol::relay::Command& command) {
   if (!world_counts_late_ && command.frame < state_.robot.frame) ++late_counted_here_;
   state_.acknowledged = command.sequence;
   commanded_s_ = state_.robot.robot_time_s;
@@ -149,10 +150,11 @@ void CommanderSession::accept(const relay::Command& command) {
   port_.drive(command, command.frame == 0 ? std::nullopt : std::optional(command.frame - frame_offset_));
 }
 
-void CommanderSession::take(const relay::Ping& ping, const Address& from, TimePoint now) {
+void CommanderSession::take(const protocol::relay::Ping& ping, const Address& from, TimePoint now) {
   if (!is_commander(ping.session, from)) {
     if ((ping.session != hello_.session || phase_ == Phase::none) && answers_to_strangers_.allow(now)) {
-      refuse(ping.session, from, relay::RefusedReason::unknown_session, "the relay does not know this session");
+      refuse(ping.session, from, protocol::relay::RefusedReason::unknown_session,
+             "the relay does not know this session");
     }
     return;
   }
@@ -161,16 +163,16 @@ void CommanderSession::take(const relay::Ping& ping, const Address& from, TimePo
 }
 
 void CommanderSession::on_pong(std::uint32_t id, TimePoint) {
-  if (phase_ == Phase::active) port_.send(commander_, relay::Pong{hello_.session, id});
+  if (phase_ == Phase::active) port_.send(commander_, protocol::relay::Pong{hello_.session, id});
 }
 
-void CommanderSession::take(const relay::Bye& bye, const Address& from, TimePoint now) {
+void CommanderSession::take(const protocol::relay::Bye& bye, const Address& from, TimePoint now) {
   if (is_commander(bye.session, from)) end("said goodbye", now);
 }
 
 void CommanderSession::on_world_lost(std::string_view why, TimePoint now) {
   if (phase_ == Phase::opening) {
-    refuse(hello_.session, commander_, relay::RefusedReason::no_world_server, why);
+    refuse(hello_.session, commander_, protocol::relay::RefusedReason::no_world_server, why);
     phase_ = Phase::none;
   } else if (phase_ == Phase::active) {
     end("lost the world server", now);
@@ -182,7 +184,7 @@ void CommanderSession::on_world_lost(std::string_view why, TimePoint now) {
 
 void CommanderSession::on_time(TimePoint now, bool world_is_alive) {
   if (phase_ == Phase::opening && now - opened_ >= kWorldMustOpenIn) {
-    refuse(hello_.session, commander_, relay::RefusedReason::no_world_server,
+    refuse(hello_.session, commander_, protocol::relay::RefusedReason::no_world_server,
            "the world server did not begin the session");
     end("could not begin", now);
   }
@@ -198,7 +200,7 @@ void CommanderSession::on_time(TimePoint now, bool world_is_alive) {
 
 void CommanderSession::shut_down(TimePoint now) {
   if (!is_open()) return;
-  refuse(hello_.session, commander_, relay::RefusedReason::unknown_session, "the relay is shutting down");
+  refuse(hello_.session, commander_, protocol::relay::RefusedReason::unknown_session, "the relay is shutting down");
   end("is left alone: the relay ends", now);
 }
 
@@ -225,9 +227,9 @@ void CommanderSession::end(std::string_view why, TimePoint now) {
   phase_ = Phase::none;
 }
 
-void CommanderSession::refuse(std::uint64_t session, const Address& to, relay::RefusedReason reason,
+void CommanderSession::refuse(std::uint64_t session, const Address& to, protocol::relay::RefusedReason reason,
                               std::string_view text) {
-  relay::Refused refused{session, reason, {}, std::min(text.size(), relay::kMaxReasonBytes)};
+  protocol::relay::Refused refused{session, reason, {}, std::min(text.size(), protocol::relay::kMaxReasonBytes)};
   std::copy_n(text.begin(), refused.text_length, refused.text.begin());
   port_.send(to, refused);
 }

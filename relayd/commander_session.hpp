@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-#include "protocol/relay_datagram.hpp"
+#include "formats/protocol/relay_datagram.hpp"
 #include "relayd/answer_limiter.hpp"
 #include "relayd/log_limiter.hpp"
 #include "relayd/sensor_transform.hpp"
@@ -22,12 +22,12 @@ namespace kenaf::relayd {
 // What a session asks of the relay around it.
 class SessionPort {
  public:
-  virtual void send(const Address& to, const relay::Datagram& datagram) = 0;
+  virtual void send(const Address& to, const protocol::relay::Datagram& datagram) = 0;
   // Starts a session with the world, which CommanderSession::on_world_ready() or on_world_lost() answers, at once or
   // later.
-  virtual void open_world(const relay::Hello& hello) = 0;
+  virtual void open_world(const protocol::relay::Hello& hello) = 0;
   virtual void close_world() = 0;  // stops the robot and lets robot time run
-  virtual void drive(const relay::Command& command, std::optional<std::int64_t> world_frame) = 0;
+  virtual void drive(const protocol::relay::Command& command, std::optional<std::int64_t> world_frame) = 0;
   virtual void stop_robot() = 0;
   // False where the world server cannot answer; otherwise CommanderSession::on_pong() follows.
   virtual bool ping_world(std::uint32_t id) = 0;
@@ -57,7 +57,7 @@ class CommanderSession {
 
   explicit CommanderSession(SessionPort& port) : port_(port) {}
 
-  void on_datagram(const relay::Datagram& datagram, const Address& from, TimePoint now);
+  void on_datagram(const protocol::relay::Datagram& datagram, const Address& from, TimePoint now);
   void on_world_ready(const WorldReady& ready, TimePoint now);
   void on_frame(const WorldFrame& frame, TimePoint now);
   void on_pong(std::uint32_t id, TimePoint now);
@@ -84,24 +84,24 @@ class CommanderSession {
 
   bool is_open() const { return phase_ == Phase::opening || phase_ == Phase::active; }
   bool is_commander(std::uint64_t session, const Address& from);
-  void take(const relay::Hello& hello, const Address& from, TimePoint now);
-  void take(const relay::Command& command, const Address& from, TimePoint now);
-  void take(const relay::Ping& ping, const Address& from, TimePoint now);
-  void take(const relay::Bye& bye, const Address& from, TimePoint now);
-  void accept(const relay::Command& command);
-  void refuse(std::uint64_t session, const Address& to, relay::RefusedReason reason, std::string_view text);
+  void take(const protocol::relay::Hello& hello, const Address& from, TimePoint now);
+  void take(const protocol::relay::Command& command, const Address& from, TimePoint now);
+  void take(const protocol::relay::Ping& ping, const Address& from, TimePoint now);
+  void take(const protocol::relay::Bye& bye, const Address& from, TimePoint now);
+  void accept(const protocol::relay::Command& command);
+  void refuse(std::uint64_t session, const Address& to, protocol::relay::RefusedReason reason, std::string_view text);
   void send_welcome();
   void send_state(TimePoint now);
   void end(std::string_view why, TimePoint now);
 
   SessionPort& port_;
   Phase phase_ = Phase::none;
-  relay::Hello hello_{};
-  relay::Welcome welcome_{};
+  protocol::relay::Hello hello_{};
+  protocol::relay::Welcome welcome_{};
   Address commander_;
   TimePoint opened_, heard_, sent_;
 
-  relay::State state_{};                 // as it was sent last
+  protocol::relay::State state_{};       // as it was sent last
   std::int64_t frame_offset_ = 0;        // State.frame = the world's frame + this
   std::uint32_t late_before_ = 0;        // what the world counted before the session
   std::uint32_t late_counted_here_ = 0;  // for a world server that does not count

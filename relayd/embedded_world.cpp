@@ -4,8 +4,8 @@ namespace kenaf::relayd {
 
 namespace {
 
-server::ServerOptions server_options(const EmbeddedWorld& options) {
-  server::ServerOptions out;
+world_server::ServerOptions server_options(const EmbeddedWorld& options) {
+  world_server::ServerOptions out;
   out.world = options.world;
   out.robot = options.robot;
   out.speed = options.speed;
@@ -18,7 +18,7 @@ server::ServerOptions server_options(const EmbeddedWorld& options) {
 
 EmbeddedWorldServer::EmbeddedWorldServer(const EmbeddedWorld& options)
     : server_(server_options(options)),
-      cameras_(camera::open_cameras(server_, options.cameras, "127.0.0.1")),
+      cameras_(image_server::open_cameras(server_, options.cameras, "127.0.0.1")),
       view_(live::open_view(server_, options.view, cameras_.feed.get())),
       thread_([this] { server_.run(); }) {}
 

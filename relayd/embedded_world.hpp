@@ -5,10 +5,10 @@
 #include <memory>
 #include <thread>
 
-#include "camera/server/served_cameras.hpp"
-#include "live/view.hpp"
-#include "physics/server/world_server.hpp"
 #include "relayd/options.hpp"
+#include "server/image_server/served_cameras.hpp"
+#include "server/live/view.hpp"
+#include "server/world_server/world_server.hpp"
 
 namespace kenaf::relayd {
 
@@ -20,8 +20,8 @@ class EmbeddedWorldServer {
   std::uint16_t port() const { return server_.port(); }
 
  private:
-  server::WorldServer server_;
-  camera::ServedCameras cameras_;
+  world_server::WorldServer server_;
+  image_server::ServedCameras cameras_;
   std::unique_ptr<live::View> view_;  // ends after the thread, and before the cameras and the server
   std::thread thread_;
 };

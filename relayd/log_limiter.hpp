@@ -1,4 +1,5 @@
 // Keeps hostile input from filling the disk: at most one line a second of each kind, the others are counted.
+//
 // Thread safety: one for each kind of line and thread.
 #pragma once
 

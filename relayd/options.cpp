@@ -80,7 +80,7 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
 
   std::string cameras = "on", camera_port = "5003", camera_image = "good";
   const auto camera_option = [&](const char* name, std::string& text,
-                                 void (*set)(camera::CameraOptions&, std::string_view), const char* what) {
+                                 void (*set)(image_server::CameraOptions&, std::string_view), const char* what) {
     app.add_option(name, text, what)
         ->needs(embedded_flag)
         ->check([&embedded, set](const std::string& given) {
@@ -88,11 +88,11 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
         })
         ->capture_default_str();
   };
-  camera_option("--cameras", cameras, camera::set_cameras,
+  camera_option("--cameras", cameras, image_server::set_cameras,
                 "off: no pictures from the robots' cameras of --embedded, neither by TCP nor in the live view");
-  camera_option("--camera-port", camera_port, camera::set_camera_port,
+  camera_option("--camera-port", camera_port, image_server::set_camera_port,
                 "TCP port of the image server of --embedded, on loopback; 0: any free one; off: none");
-  camera_option("--camera-image", camera_image, camera::set_camera_image,
+  camera_option("--camera-image", camera_image, image_server::set_camera_image,
                 "what it sends: raw, or a JPEG: superb, good, normal, fair, bad");
 
   try {

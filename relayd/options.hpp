@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "camera/server/options.hpp"
-#include "live/view_options.hpp"
 #include "relayd/relay.hpp"
+#include "server/image_server/options.hpp"
+#include "server/live/view_options.hpp"
 
 namespace kenaf::relayd {
 
@@ -15,7 +15,7 @@ struct EmbeddedWorld {
   std::string robot = "kenaf";
   double speed = 1;
   live::ViewOptions view;
-  camera::CameraOptions cameras;
+  image_server::CameraOptions cameras;
 };
 
 struct Options {

@@ -99,18 +99,19 @@ void Relay::receive_commands() {
 }
 
 void Relay::take_datagram(std::size_t bytes, const Address& from) {
-  const relay::DecodeError error = relay::decode({received_.data(), bytes}, arrival_.datagram);
+  const protocol::relay::DecodeError error = protocol::relay::decode({received_.data(), bytes}, arrival_.datagram);
   const bool for_the_relay = std::visit(
       [](const auto& datagram) {
         using Kind = std::decay_t<decltype(datagram)>;
-        return std::is_same_v<Kind, relay::Hello> || std::is_same_v<Kind, relay::Command> ||
-               std::is_same_v<Kind, relay::Ping> || std::is_same_v<Kind, relay::Bye>;
+        return std::is_same_v<Kind, protocol::relay::Hello> || std::is_same_v<Kind, protocol::relay::Command> ||
+               std::is_same_v<Kind, protocol::relay::Ping> || std::is_same_v<Kind, protocol::relay::Bye>;
       },
       arrival_.datagram);
-  if (error != relay::DecodeError::none || !for_the_relay) {
+  if (error != protocol::relay::DecodeError::none || !for_the_relay) {
     if (const auto held_back = log_malformed_.allow()) {
       spdlog::warn("{} bytes from {} ignored: {} ({} more before)", bytes, to_text(from),
-                   error == relay::DecodeError::none ? "only a relay sends this kind" : relay::describe(error),
+                   error == protocol::relay::DecodeError::none ? "only a relay sends this kind"
+                                                               : protocol::relay::describe(error),
                    *held_back);
     }
     return;
@@ -237,9 +238,9 @@ void Relay::request_link(const WorldSession& session) {
 
 // --- what the session asks for
 
-void Relay::send(const Address& to, const relay::Datagram& datagram) {
-  std::array<std::byte, relay::kMaxDatagramBytes> bytes;
-  const std::size_t size = relay::encode(datagram, bytes);
+void Relay::send(const Address& to, const protocol::relay::Datagram& datagram) {
+  std::array<std::byte, protocol::relay::kMaxDatagramBytes> bytes;
+  const std::size_t size = protocol::relay::encode(datagram, bytes);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(to.ipv4);
@@ -248,7 +249,7 @@ void Relay::send(const Address& to, const relay::Datagram& datagram) {
   ::sendto(udp_.get(), bytes.data(), size, MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&address), sizeof address);
 }
 
-void Relay::open_world(const relay::Hello& hello) {
+void Relay::open_world(const protocol::relay::Hello& hello) {
   const WorldSession wanted{hello.period_s, hello.lockstep, hello.command_timeout_s};
   if (!world_ || hello.reset_robot) {
     request_link(wanted);  // a robot is put back by leaving the world and entering it again
@@ -272,7 +273,7 @@ void Relay::close_world() {
   flush();
 }
 
-void Relay::drive(const relay::Command& command, std::optional<std::int64_t> world_frame) {
+void Relay::drive(const protocol::relay::Command& command, std::optional<std::int64_t> world_frame) {
   if (!world_) return;
   write_command(out_, command, world_->wheel_radius_m, world_->extended ? world_frame : std::nullopt);
   flush();

@@ -16,7 +16,7 @@
 #include <string>
 #include <string_view>
 
-#include "protocol/relay_datagram.hpp"
+#include "formats/protocol/relay_datagram.hpp"
 #include "relayd/commander_session.hpp"
 #include "relayd/mailbox.hpp"
 #include "relayd/sockets.hpp"
@@ -47,7 +47,7 @@ class Relay : private SessionPort {
   using TimePoint = std::chrono::steady_clock::time_point;
 
   struct Arrival {
-    relay::Datagram datagram;
+    protocol::relay::Datagram datagram;
     Address from;
   };
 
@@ -69,10 +69,10 @@ class Relay : private SessionPort {
   void request_link(const WorldSession& session);
   void shut_down();
 
-  void send(const Address& to, const relay::Datagram& datagram) override;
-  void open_world(const relay::Hello& hello) override;
+  void send(const Address& to, const protocol::relay::Datagram& datagram) override;
+  void open_world(const protocol::relay::Hello& hello) override;
   void close_world() override;
-  void drive(const relay::Command& command, std::optional<std::int64_t> world_frame) override;
+  void drive(const protocol::relay::Command& command, std::optional<std::int64_t> world_frame) override;
   void stop_robot() override;
   bool ping_world(std::uint32_t id) override;
 
@@ -89,7 +89,7 @@ class Relay : private SessionPort {
 
   // The receiver's.
   Waker receiver_waker_;
-  std::array<std::byte, relay::kMaxDatagramBytes + 1> received_;  // one more, so that a longer one shows
+  std::array<std::byte, protocol::relay::kMaxDatagramBytes + 1> received_;  // one more, so that a longer one shows
   Arrival arrival_;
   LogLimiter log_malformed_, log_overflow_;
 

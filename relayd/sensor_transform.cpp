@@ -5,22 +5,22 @@
 #include <span>
 #include <utility>
 
-#include "protocol/frames.hpp"
+#include "formats/protocol/frames.hpp"
 #include "robot/state.hpp"
 
 namespace kenaf::relayd {
 
 namespace {
 
-using frames::Vector3;
-using usarsim::MessageView;
+using protocol::frames::Vector3;
+using protocol::usarsim::MessageView;
 
 // No sensor of this robot comes near; a line beyond it is garbage, and products of what is below it stay finite.
 constexpr double kMostOfAnything = 1e12;
 
 bool read(const MessageView& message, std::string_view key, std::span<double> out) {
   const auto text = message.find(key);
-  return text && usarsim::parse_numbers(*text, out) &&
+  return text && protocol::usarsim::parse_numbers(*text, out) &&
          std::ranges::all_of(out, [](double value) { return std::abs(value) < kMostOfAnything; });
 }
 
@@ -31,19 +31,19 @@ std::optional<double> read(const MessageView& message, std::string_view key) {
 
 bool contains_ignoring_case(std::string_view text, std::string_view part) {
   for (std::size_t i = 0; i + part.size() <= text.size(); ++i) {
-    if (usarsim::equal_ignoring_case(text.substr(i, part.size()), part)) return true;
+    if (protocol::usarsim::equal_ignoring_case(text.substr(i, part.size()), part)) return true;
   }
   return false;
 }
 
 bool is_type(const MessageView& message, std::string_view type) {
   const auto found = message.find("Type");
-  return found && usarsim::equal_ignoring_case(*found, type);
+  return found && protocol::usarsim::equal_ignoring_case(*found, type);
 }
 
 bool is_true(const MessageView& message, std::string_view key) {
   const auto text = message.find(key);
-  return text && usarsim::parse_bool(*text).value_or(false);
+  return text && protocol::usarsim::parse_bool(*text).value_or(false);
 }
 
 }  // namespace
@@ -76,18 +76,18 @@ void SensorTransform::take_sensor(const MessageView& message) {
     take_ticks(message);
   } else if (is_type(message, "INS")) {
     if (!read(message, "Orientation", v)) return;
-    state.posture_rad = frames::rep103_angles_from_usarsim(v);
+    state.posture_rad = protocol::frames::rep103_angles_from_usarsim(v);
     note(robot::kHasPosture);
     has_ins_ = true;
   } else if (is_type(message, "IMU")) {
     if (!has_ins_ && read(message, "Rotation", v)) {
-      state.posture_rad = frames::rep103_angles_from_usarsim(v);
+      state.posture_rad = protocol::frames::rep103_angles_from_usarsim(v);
       note(robot::kHasPosture);
     }
     Vector3 acceleration;
     if (!read(message, "AngularVel", v) || !read(message, "XYZAcceleration", acceleration)) return;
-    state.gyro_radps = frames::rep103_vector_from_usarsim(v);
-    state.acceleration_mps2 = frames::rep103_vector_from_usarsim(acceleration);
+    state.gyro_radps = protocol::frames::rep103_vector_from_usarsim(v);
+    state.acceleration_mps2 = protocol::frames::rep103_vector_from_usarsim(acceleration);
     note(robot::kHasInertial);
   } else if (is_type(message, "Tachometer")) {
     // A robot with more wheels lists them in an order only it knows.
@@ -108,19 +108,19 @@ void SensorTransform::take_sensor(const MessageView& message) {
   } else if (is_type(message, "GroundTruth")) {
     Vector3 angles;
     if (!read(message, "Location", v) || !read(message, "Orientation", angles)) return;
-    state.p_WB_m = frames::rep103_vector_from_usarsim(v);
-    state.orientation_rad = frames::rep103_angles_from_usarsim(angles);
+    state.p_WB_m = protocol::frames::rep103_vector_from_usarsim(v);
+    state.orientation_rad = protocol::frames::rep103_angles_from_usarsim(angles);
     note(robot::kHasGroundTruth);
   }
 }
 
 // UT2004 writes {Name ECLeft Tick 0} {Name ECRight Tick 0}, UDK a line {Name ECLeft} {Tick 0} for each.
 void SensorTransform::take_ticks(const MessageView& message) {
-  for (const usarsim::Group& group : message.all()) {
-    if (!usarsim::equal_ignoring_case(group.key, "Name")) continue;
+  for (const protocol::usarsim::Group& group : message.all()) {
+    if (!protocol::usarsim::equal_ignoring_case(group.key, "Name")) continue;
     std::string_view rest = group.value;
-    const std::string_view name = usarsim::next_word(rest);
-    if (usarsim::equal_ignoring_case(usarsim::next_word(rest), "Tick")) {
+    const std::string_view name = protocol::usarsim::next_word(rest);
+    if (protocol::usarsim::equal_ignoring_case(protocol::usarsim::next_word(rest), "Tick")) {
       take_tick(name, rest);
     } else if (const auto ticks = message.find("Tick")) {
       take_tick(name, *ticks);
@@ -129,7 +129,7 @@ void SensorTransform::take_ticks(const MessageView& message) {
 }
 
 void SensorTransform::take_tick(std::string_view name, std::string_view ticks) {
-  const auto count = usarsim::parse_number(ticks);
+  const auto count = protocol::usarsim::parse_number(ticks);
   if (!count || std::abs(*count) > kMostOfAnything) return;
   for (const auto& [track, side] : {std::pair{robot::kLeft, "left"}, {robot::kRight, "right"}}) {
     if (!contains_ignoring_case(name, side)) continue;
@@ -157,11 +157,13 @@ bool SensorTransform::take_status(const MessageView& message) {
   std::array<double, robot::kFlipperCount> joint_rad;
   bool all_flippers = true;
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
-    all_flippers &= read(message, frames::usarsim_flipper_name(static_cast<robot::Flipper>(i)), {&joint_rad[i], 1});
+    all_flippers &=
+        read(message, protocol::frames::usarsim_flipper_name(static_cast<robot::Flipper>(i)), {&joint_rad[i], 1});
   }
   if (all_flippers) {
     for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
-      state.flipper_rad[i] = frames::tip_up_from_usarsim_flipper(static_cast<robot::Flipper>(i), joint_rad[i]);
+      state.flipper_rad[i] =
+          protocol::frames::tip_up_from_usarsim_flipper(static_cast<robot::Flipper>(i), joint_rad[i]);
     }
     note(robot::kHasFlippers);
   }
@@ -182,7 +184,7 @@ void SensorTransform::finish_tracks() {
   for (std::size_t i = 0; i < robot::kTrackCount; ++i) {
     state.track_m[i] = *ticks_[i] * resolution_rad_ * wheel_radius_m;
     if (spin_radps_) {
-      state.track_mps[i] = frames::surface_speed_from_spin((*spin_radps_)[i], wheel_radius_m);
+      state.track_mps[i] = protocol::frames::surface_speed_from_spin((*spin_radps_)[i], wheel_radius_m);
     } else if (has_new_ticks && ticks_interval_s_ > 1e-6) {
       state.track_mps[i] = first ? 0 : (state.track_m[i] - earlier_track_m_[i]) / ticks_interval_s_;
     }

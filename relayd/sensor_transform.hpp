@@ -17,7 +17,7 @@
 #include <optional>
 #include <string_view>
 
-#include "protocol/usarsim_message.hpp"
+#include "formats/protocol/usarsim_message.hpp"
 #include "robot/state.hpp"
 
 namespace kenaf::relayd {
@@ -39,17 +39,17 @@ class SensorTransform {
 
   // Reads SEN, STA, CONF and GEO; ignores the rest, and every value it cannot understand or that is out of all reason.
   // True: the message was a STA with a time, and frame() is complete.
-  bool take(const usarsim::MessageView& message);
+  bool take(const protocol::usarsim::MessageView& message);
 
   const WorldFrame& frame() const { return frame_; }
   std::optional<double> wheel_radius_m() const { return wheel_radius_m_; }
 
  private:
   void note(robot::StateField field);
-  void take_sensor(const usarsim::MessageView& message);
-  void take_ticks(const usarsim::MessageView& message);
+  void take_sensor(const protocol::usarsim::MessageView& message);
+  void take_ticks(const protocol::usarsim::MessageView& message);
   void take_tick(std::string_view name, std::string_view ticks);
-  bool take_status(const usarsim::MessageView& message);
+  bool take_status(const protocol::usarsim::MessageView& message);
   void finish_tracks();
 
   WorldFrame frame_;

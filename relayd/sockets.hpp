@@ -61,10 +61,10 @@ struct Endpoint {
   socklen_t size = 0;
 };
 
-// A TCP connection to the first of `endpoints` that takes it, which does not block, with TCP_NODELAY. Waits until `deadline`
-// at most, shared among the endpoints, and no longer once `cancel_fd` is readable: nullopt, which says nothing about the
-// server.
-std::optional<Descriptor> connect_tcp(std::span<const Endpoint> endpoints, std::chrono::steady_clock::time_point deadline,
-                                      int cancel_fd);
+// A TCP connection to the first of `endpoints` that takes it, which does not block, with TCP_NODELAY. Waits until
+// `deadline` at most, shared among the endpoints, and no longer once `cancel_fd` is readable: nullopt, which says
+// nothing about the server.
+std::optional<Descriptor> connect_tcp(std::span<const Endpoint> endpoints,
+                                      std::chrono::steady_clock::time_point deadline, int cancel_fd);
 
 }  // namespace kenaf::relayd

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "protocol/frames.hpp"
+#include "formats/protocol/frames.hpp"
 
 namespace kenaf::relayd {
 
@@ -13,14 +13,14 @@ constexpr auto kGreetingWithin = 1s;
 constexpr auto kRobotWithin = 3s;
 constexpr auto kRestWithin = 500ms;  // STA after RES, or RES after STA
 
-bool has_value(const usarsim::MessageView& message, std::string_view key, std::string_view value) {
+bool has_value(const protocol::usarsim::MessageView& message, std::string_view key, std::string_view value) {
   const auto found = message.find(key);
-  return found && usarsim::equal_ignoring_case(*found, value);
+  return found && protocol::usarsim::equal_ignoring_case(*found, value);
 }
 
 }  // namespace
 
-std::optional<SessionAnswer> read_session_answer(const usarsim::MessageView& message) {
+std::optional<SessionAnswer> read_session_answer(const protocol::usarsim::MessageView& message) {
   if (!message.is("RES") || !has_value(message, "Type", "Control") || !has_value(message, "Name", "Session")) {
     return std::nullopt;
   }
@@ -32,19 +32,20 @@ std::optional<SessionAnswer> read_session_answer(const usarsim::MessageView& mes
   if (!has_value(message, "Status", "OK")) return std::nullopt;
   const auto number = [&](std::string_view key, double otherwise) {
     const auto text = message.find(key);
-    return text ? usarsim::parse_number(*text).value_or(otherwise) : otherwise;
+    return text ? protocol::usarsim::parse_number(*text).value_or(otherwise) : otherwise;
   };
   answer.ready.robot_time_s = number("Time", 0);
   answer.ready.period_s = number("Period", answer.ready.period_s);
   const auto lockstep = message.find("Lockstep");
-  answer.ready.lockstep = lockstep && usarsim::parse_bool(*lockstep).value_or(false);
+  answer.ready.lockstep = lockstep && protocol::usarsim::parse_bool(*lockstep).value_or(false);
   return answer;
 }
 
 WorldHandshake::WorldHandshake(const RobotPlacement& placement, const WorldSession& session, TimePoint connected)
     : placement_(placement), session_(session), deadline_(connected + kGreetingWithin) {}
 
-void WorldHandshake::on_message(const usarsim::MessageView& message, bool is_frame, TimePoint now, std::string& out) {
+void WorldHandshake::on_message(const protocol::usarsim::MessageView& message, bool is_frame, TimePoint now,
+                                std::string& out) {
   if (result_ != Result::pending) return;
   if (!greeted_) {
     if (message.is("NFO")) place(now, out);
@@ -78,12 +79,14 @@ void WorldHandshake::place(TimePoint now, std::string& out) {
   greeted_ = true;
   deadline_ = now + kRobotWithin;
   write_world_session(out, session_);
-  usarsim::MessageWriter writer(out);
+  protocol::usarsim::MessageWriter writer(out);
   writer.begin("INIT").text("ClassName", placement_.class_name).text("Name", placement_.name);
   if (placement_.pose) {
     const auto& [x, y, z, roll, pitch, yaw] = *placement_.pose;
-    writer.numbers("Location", frames::usarsim_vector_from_rep103({x, y, z}), usarsim::kExactNumber);
-    writer.numbers("Rotation", frames::usarsim_angles_from_rep103({roll, pitch, yaw}), usarsim::kExactNumber);
+    writer.numbers("Location", protocol::frames::usarsim_vector_from_rep103({x, y, z}),
+                   protocol::usarsim::kExactNumber);
+    writer.numbers("Rotation", protocol::frames::usarsim_angles_from_rep103({roll, pitch, yaw}),
+                   protocol::usarsim::kExactNumber);
   } else if (!placement_.start.empty()) {
     writer.text("Start", placement_.start);
   }

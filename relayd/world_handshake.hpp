@@ -15,7 +15,7 @@
 #include <optional>
 #include <string>
 
-#include "protocol/usarsim_message.hpp"
+#include "formats/protocol/usarsim_message.hpp"
 #include "relayd/command_transform.hpp"
 #include "relayd/commander_session.hpp"
 
@@ -33,7 +33,7 @@ struct SessionAnswer {
   WorldReady ready;
   std::string refusal;  // the server's words; empty = accepted
 };
-std::optional<SessionAnswer> read_session_answer(const usarsim::MessageView& message);
+std::optional<SessionAnswer> read_session_answer(const protocol::usarsim::MessageView& message);
 
 class WorldHandshake {
  public:
@@ -44,7 +44,7 @@ class WorldHandshake {
 
   // Both append to `out` what is to be sent. on_message() gets every message of the server until result() tells;
   // `is_frame`: it was a STA that SensorTransform understood.
-  void on_message(const usarsim::MessageView& message, bool is_frame, TimePoint now, std::string& out);
+  void on_message(const protocol::usarsim::MessageView& message, bool is_frame, TimePoint now, std::string& out);
   void on_time(TimePoint now, std::string& out);
 
   Result result() const { return result_; }

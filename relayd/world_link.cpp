@@ -52,7 +52,7 @@ struct WorldLink::Connection {
   WorldHandshake handshake;
   bool handed_over = false;
   SensorTransform transform{};
-  usarsim::LineSplitter lines{};
+  protocol::usarsim::LineSplitter lines{};
   std::string out{};
 };
 
@@ -118,7 +118,7 @@ std::string WorldLink::serve(const std::atomic<bool>& stopping) {
       if (got == 0) return "it closed the connection";
       if (got < 0 && errno != EAGAIN && errno != EINTR) return std::strerror(errno);
       if (got > 0 && !connection.lines.push({bytes.data(), static_cast<std::size_t>(got)})) {
-        note_malformed("an oversized line", usarsim::kMaxLineBytes);
+        note_malformed("an oversized line", protocol::usarsim::kMaxLineBytes);
       }
       while (const auto line = connection.lines.next()) read_line(*line, connection);
     }
@@ -128,9 +128,9 @@ std::string WorldLink::serve(const std::atomic<bool>& stopping) {
 }
 
 void WorldLink::read_line(std::string_view line, Connection& connection) {
-  const usarsim::ParseError error = usarsim::parse_message(line, message_);
-  if (error != usarsim::ParseError::none) {
-    note_malformed(usarsim::describe(error), line.size());
+  const protocol::usarsim::ParseError error = protocol::usarsim::parse_message(line, message_);
+  if (error != protocol::usarsim::ParseError::none) {
+    note_malformed(protocol::usarsim::describe(error), line.size());
     return;
   }
   const bool is_frame = connection.transform.take(message_);
@@ -141,7 +141,7 @@ void WorldLink::read_line(std::string_view line, Connection& connection) {
     put(connection.transform.frame());
   } else if (message_.is("PONG")) {
     const auto id = message_.find("Id");
-    const auto number = id ? usarsim::parse_number(*id) : std::nullopt;
+    const auto number = id ? protocol::usarsim::parse_number(*id) : std::nullopt;
     if (number && std::abs(*number) < 1e12) put(WorldPong{static_cast<std::int64_t>(*number)});
   } else if (auto answer = read_session_answer(message_)) {
     put(std::move(*answer));

@@ -8,7 +8,7 @@
 #include <string>
 #include <variant>
 
-#include "protocol/usarsim_message.hpp"
+#include "formats/protocol/usarsim_message.hpp"
 #include "relayd/address_lookup.hpp"
 #include "relayd/mailbox.hpp"
 #include "relayd/sensor_transform.hpp"
@@ -70,7 +70,7 @@ class WorldLink {
   LinkRequest request_;
   AddressLookup lookup_;
   const std::atomic<bool>* stopping_ = nullptr;
-  usarsim::MessageView message_;
+  protocol::usarsim::MessageView message_;
   LogLimiter log_malformed_;
   bool was_up_ = false;
 };

@@ -1,6 +1,7 @@
-// The columns of a recorded run: one row of a table for each, from which recorders, diagnosis, report, playback and the page
-// docs/run-format.md have them. A new channel is a row here, and where its value comes from: hrt/recorder.cpp for the robot,
-// rollout/run_recorder.cpp for the simulator.
+// The columns of a recorded run: one row of a table for each, from which recorders, diagnosis, report, playback and the
+// page docs/run-format.md have them. A new channel is a row here, and where its value comes from: hrt/recorder.cpp for
+// the robot, rollout/run_recorder.cpp for the simulator.
+//
 // Thread safety: constants and pure functions.
 #pragma once
 
@@ -10,7 +11,8 @@
 
 namespace kenaf::robot {
 
-// What a column is a part of: the columns of one quantity stand side by side, in the order of robot/parts.hpp or of x, y, z.
+// What a column is a part of: the columns of one quantity stand side by side, in the order of robot/parts.hpp or of x,
+// y, z.
 enum class Quantity {
   time,
   track_command,
@@ -38,14 +40,14 @@ enum class Seen { drive, body, sensor };
 // Compared between robot and simulation by the diagnosis.
 struct Comparison {
   Seen seen = Seen::drive;
-  double resolution = 0;     // finer than this no difference counts, in the column's unit (chosen); 0: it is not compared
-  std::string_view kind{};   // columns of one kind share the size of what no effect explains: "track speed"
-  bool level = false;        // says little where the nose points up or down: small turns of the body turn it far
+  double resolution = 0;  // finer than this no difference counts, in the column's unit (chosen); 0: it is not compared
+  std::string_view kind{};  // columns of one kind share the size of what no effect explains: "track speed"
+  bool level = false;       // says little where the nose points up or down: small turns of the body turn it far
 };
 
 struct Column {
-  std::string_view name;     // ends with its unit: "track_left_mps"
-  std::string_view unit;     // as people write it: "m/s"
+  std::string_view name;  // ends with its unit: "track_left_mps"
+  std::string_view unit;  // as people write it: "m/s"
   Quantity quantity;
   bool by_robot = true;      // whether the library records it
   bool by_simulator = true;  // whether the simulator does
@@ -55,8 +57,8 @@ struct Column {
   constexpr bool is_compared() const { return comparison.resolution > 0; }
 };
 
-// Acceleration is not compared. Between contacts it says what posture and gyro say, and at a contact it is a spike whose height
-// depends on the contact's stiffness and the sensor's bandwidth, which nobody knows.
+// Acceleration is not compared. Between contacts it says what posture and gyro say, and at a contact it is a spike
+// whose height depends on the contact's stiffness and the sensor's bandwidth, which nobody knows.
 namespace column_table {
 
 inline constexpr bool kByBoth = true, kWraps = true, kLevel = true;

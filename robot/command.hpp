@@ -1,4 +1,5 @@
 // What a robot can be told to do. SI units; frames of REP 103: x forward, y left, z up.
+//
 // Thread safety: values.
 #pragma once
 

@@ -1,7 +1,9 @@
-// What is measured of a robot in one cycle, whoever measured it: the real robot's library, or the relay of a simulated one.
+// What is measured of a robot in one cycle, whoever measured it: the real robot's library, or the relay of a simulated
+// one.
 //
-// SI and radians; world W and body B are x forward, y left, z up (REP 103). Angles of a pose are the intrinsic z-y-x angles
-// roll, pitch, yaw; pitch is positive nose down.
+// SI and radians; world W and body B are x forward, y left, z up (REP 103). Angles of a pose are the intrinsic z-y-x
+// angles roll, pitch, yaw; pitch is positive nose down.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -14,16 +16,17 @@ namespace kenaf::robot {
 
 // What a State holds that was measured. A value whose bit is missing is 0 and means nothing.
 enum StateField : std::uint32_t {
-  kHasPosture = 1u << 0,       // posture_rad: the robot's own posture sensor
-  kHasEncoders = 1u << 1,      // track_m, track_mps
-  kHasFlippers = 1u << 2,      // flipper_rad
-  kHasCurrents = 1u << 3,      // track_a, flipper_a
-  kHasBattery = 1u << 4,       // battery_v
-  kHasInertial = 1u << 5,      // gyro_radps, acceleration_mps2
-  kHasGroundTruth = 1u << 6,   // p_WB_m, orientation_rad: only a simulator knows it
+  kHasPosture = 1u << 0,      // posture_rad: the robot's own posture sensor
+  kHasEncoders = 1u << 1,     // track_m, track_mps
+  kHasFlippers = 1u << 2,     // flipper_rad
+  kHasCurrents = 1u << 3,     // track_a, flipper_a
+  kHasBattery = 1u << 4,      // battery_v
+  kHasInertial = 1u << 5,     // gyro_radps, acceleration_mps2
+  kHasGroundTruth = 1u << 6,  // p_WB_m, orientation_rad: only a simulator knows it
 };
 
-// A StateField so many places further up: its sensor said nothing since the State before, and the value is the last one.
+// A StateField so many places further up: its sensor said nothing since the State before, and the value is the last
+// one.
 inline constexpr int kHeldShift = 16;
 
 constexpr std::uint32_t held(std::uint32_t fields) {
@@ -36,22 +39,22 @@ constexpr bool is_new(std::uint32_t fields, StateField field) {
 }
 
 struct State {
-  std::uint32_t frame;             // starts at 1, one more for each cycle of a session: a gap is a lost State
-  std::uint32_t late_commands;     // of this session, those that arrived after the frame they were meant for
-  std::uint32_t fields;            // StateField bits, and held() ones
-  bool stopped_by_silence;         // the robot was stopped because no command came in time
+  std::uint32_t frame;          // starts at 1, one more for each cycle of a session: a gap is a lost State
+  std::uint32_t late_commands;  // of this session, those that arrived after the frame they were meant for
+  std::uint32_t fields;         // StateField bits, and held() ones
+  bool stopped_by_silence;      // the robot was stopped because no command came in time
   double robot_time_s;
-  std::array<double, 3> posture_rad;           // roll, pitch, yaw
-  std::array<double, 3> gyro_radps;            // in B
-  std::array<double, 3> acceleration_mps2;     // in B, gravity's reaction included: at rest +g on z
-  std::array<double, kTrackCount> track_m;     // travel since the robot was placed
+  std::array<double, 3> posture_rad;        // roll, pitch, yaw
+  std::array<double, 3> gyro_radps;         // in B
+  std::array<double, 3> acceleration_mps2;  // in B, gravity's reaction included: at rest +g on z
+  std::array<double, kTrackCount> track_m;  // travel since the robot was placed
   std::array<double, kTrackCount> track_mps;
   std::array<double, kTrackCount> track_a;
   std::array<double, kFlipperCount> flipper_rad;
   std::array<double, kFlipperCount> flipper_a;
   double battery_v;
   std::array<double, 3> p_WB_m;
-  std::array<double, 3> orientation_rad;       // roll, pitch, yaw
+  std::array<double, 3> orientation_rad;  // roll, pitch, yaw
 };
 
 }  // namespace kenaf::robot

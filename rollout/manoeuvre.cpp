@@ -7,13 +7,18 @@
 #include <filesystem>
 #include <numbers>
 
-#include "description/data_files.hpp"
-#include "description/description_file.hpp"
-#include "description/toml_reader.hpp"
-#include "runs/dataset.hpp"
+#include "formats/description/data_files.hpp"
+#include "formats/description/description_file.hpp"
+#include "formats/description/toml_reader.hpp"
+#include "formats/runs/dataset.hpp"
 
 namespace kenaf::rollout {
 namespace {
+
+using description::kAny;
+using description::kPositive;
+using description::Range;
+using description::TomlReader;
 
 namespace fs = std::filesystem;
 
@@ -114,7 +119,7 @@ void name_as_dataset_does(Manoeuvre& replay, const fs::path& run_file) {
 }
 
 std::vector<Manoeuvre> read_file(const fs::path& path) {
-  const DescriptionFile file = read_description_file("manoeuvre", path.string(), ".toml");
+  const description::DescriptionFile file = description::read_description_file("manoeuvre", path.string(), ".toml");
   return parse_manoeuvres(file.text, file.path);
 }
 
@@ -127,7 +132,7 @@ double Manoeuvre::at_most_s() const {
 }
 
 std::vector<Manoeuvre> parse_manoeuvres(std::string_view toml_text, const std::string& name_for_errors) {
-  const toml::table root = parse_toml(toml_text, name_for_errors);
+  const toml::table root = description::parse_toml(toml_text, name_for_errors);
   TomlReader file(root, "", name_for_errors);
   const std::vector<Phase> shared_phases = read_phases(file);
   std::vector<Manoeuvre> manoeuvres;
@@ -144,7 +149,7 @@ std::vector<Manoeuvre> parse_manoeuvres(std::string_view toml_text, const std::s
 
 std::vector<Manoeuvre> shipped_manoeuvres() {
   std::vector<Manoeuvre> all;
-  for (const fs::path& path : list_data_files("manoeuvres", ".toml"))
+  for (const fs::path& path : description::list_data_files("manoeuvres", ".toml"))
     for (Manoeuvre& manoeuvre : read_file(path)) all.push_back(std::move(manoeuvre));
   std::ranges::stable_sort(all, {}, &Manoeuvre::name);
   return all;
@@ -162,7 +167,7 @@ Manoeuvre load_manoeuvre(const std::string& name) {
   if (name.find('/') != name.npos || name.ends_with(".toml")) {
     const std::vector<Manoeuvre> all = read_file(name);
     if (all.size() > 1)
-      throw DescriptionError(
+      throw description::DescriptionError(
           fmt::format("{}: holds {} manoeuvres; give the path of a file that holds one", name, all.size()));
     return all.front();
   }
@@ -171,7 +176,7 @@ Manoeuvre load_manoeuvre(const std::string& name) {
   if (found != all.end()) return *found;
   std::vector<std::string> names;
   for (const Manoeuvre& manoeuvre : all) names.push_back(manoeuvre.name);
-  throw DescriptionError(
+  throw description::DescriptionError(
       fmt::format("manoeuvre \"{}\": no such manoeuvre; give the path of a TOML file, replay:FILE.csv, "
                   "replay-measured:FILE.csv, or one of {}",
                   name, fmt::join(names, ", ")));

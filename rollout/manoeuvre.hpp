@@ -1,8 +1,9 @@
 // A manoeuvre: what is driven, as data. One place for tests, benchmarks, the command line and the diagnosis.
 //
-// Each file in manoeuvres/ holds one or more manoeuvres that share their phases and differ in their world. A phase sets
-// track speeds and flipper angles and lasts until an operator who watches posture and place would go on.
+// Each file in share/manoeuvres/ holds one or more manoeuvres that share their phases and differ in their world. A
+// phase sets track speeds and flipper angles and lasts until an operator who watches posture and place would go on.
 // docs/manoeuvres.md lists every key. SI units, radians, frames of REP 103; pitch positive nose down.
+//
 // Thread safety: values.
 #pragma once
 
@@ -13,10 +14,10 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/runs/run_file.hpp"
 #include "physics/pose.hpp"
 #include "robot/command.hpp"
 #include "rollout/measured_motion.hpp"
-#include "runs/run_file.hpp"
 
 namespace kenaf::rollout {
 
@@ -59,9 +60,9 @@ struct TimedCommand {
 // A start that is not the world's: that of a recorded run, where the robot is once it has settled.
 struct Start {
   double x_m, y_m, yaw_rad;
-  std::optional<double> z_m;  // empty: on the ground
+  std::optional<double> z_m;                                            // empty: on the ground
   std::optional<std::array<double, robot::kFlipperCount>> flipper_rad;  // empty: as the robot's description says
-  std::optional<StartMotion> motion{};    // empty: it stands
+  std::optional<StartMotion> motion{};                                  // empty: it stands
 };
 
 struct Manoeuvre {
@@ -81,9 +82,9 @@ struct Manoeuvre {
 };
 
 // A shipped name ("step-200-flippers"), the path of a TOML file that holds one manoeuvre, "replay:FILE.csv", which
-// is replay_of() that recorded run, or "replay-measured:FILE.csv", replay_measured_of() it. Where that file is a run of the
-// dataset.toml beside it, it has that run's manoeuvre name and world. Throws DescriptionError with file,
-// line and column, for a replay runs::RunFileError.
+// is replay_of() that recorded run, or "replay-measured:FILE.csv", replay_measured_of() it. Where that file is a run of
+// the dataset.toml beside it, it has that run's manoeuvre name and world. Throws DescriptionError with file, line and
+// column, for a replay runs::RunFileError.
 Manoeuvre load_manoeuvre(const std::string& name);
 // The manoeuvres of a file, whose own worlds are beside it.
 std::vector<Manoeuvre> parse_manoeuvres(std::string_view toml_text, const std::string& name_for_errors);

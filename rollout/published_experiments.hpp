@@ -1,5 +1,6 @@
 // The published evaluation's 12 experiments (SSRR 2008, Table I): seven steps, five trenches, each with its outcome in
 // the published simulation and in reality. docs/table1.md says what of it is known and what is inferred or chosen.
+//
 // Thread safety: pure functions; any number at once.
 #pragma once
 
@@ -25,8 +26,8 @@ std::string manoeuvre_name(const PublishedExperiment& experiment);
 // Kenaf without its batteries: its centre of mass, flippers straight out, lies 15 mm further back.
 physics::RobotDescription robot_of_the_experiments();
 
-// The manoeuvre of the experiments, without noise, at an obstacle of any size from 1 mm to 10 m: at the published sizes the
-// same bits as the shipped manoeuvre in its shipped world.
+// The manoeuvre of the experiments, without noise, at an obstacle of any size from 1 mm to 10 m: at the published sizes
+// the same bits as the shipped manoeuvre in its shipped world.
 RollOut attempt(Obstacle obstacle, double size_m, const physics::RobotDescription& robot, double time_step_s);
 
 }  // namespace kenaf::rollout

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "formats/runs/run_file.hpp"
 #include "physics/world.hpp"
 #include "rollout/manoeuvre.hpp"
-#include "runs/run_file.hpp"
 
 namespace kenaf::rollout {
 

@@ -1,4 +1,5 @@
 // Turns commands, sensor readings and motion capture into the rows of a run.
+//
 // Thread safety: none; one thread owns a RunRecorder.
 #pragma once
 

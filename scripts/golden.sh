@@ -13,7 +13,7 @@ mkdir -p "$1"
 out=$(cd "$1" && pwd)
 build=$(cd "${2:-$root/build/release}" && pwd)
 [ -z "$(ls -A "$out")" ] || { echo "golden: $out holds something; give an empty folder" >&2; exit 2; }
-export KENAF_DATA_DIR=$root PATH="$build/bin:$PATH" LD_LIBRARY_PATH="$build/lib"
+export KENAF_DATA_DIR=$root/share PATH="$build/bin:$PATH" LD_LIBRARY_PATH="$build/lib"
 scratch=$(mktemp -d)
 pids=()
 stop() { for pid in "${pids[@]}"; do kill -TERM "$pid" 2>/dev/null && wait "$pid" || true; done; pids=(); }

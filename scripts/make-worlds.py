@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the worlds that come in families, and those whose ground is computed, into worlds/.
+"""Writes the worlds that come in families, and those whose ground is computed, into share/worlds/.
 
     scripts/make-worlds.py [FOLDER]
 
@@ -233,7 +233,7 @@ def rubble_obj():
 
 
 def main():
-    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent / "worlds"
+    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parent.parent / "share/worlds"
     worlds = [step(mm) for mm in range(50, 351, 50)] + [trench(mm) for mm in range(100, 401, 50)]
     worlds += [ramp(degrees) for degrees in (10, 20, 30)]
     worlds += [stairs(), step_field(), tilted_box(), half_cylinder(), hills(), rubble()]

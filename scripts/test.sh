@@ -72,7 +72,7 @@ run_fuzzer() {
   local found="$build/found/$fuzzer" log="$build/$fuzzer.log"
   mkdir -p "$found"
   if ! "$build/bin/$fuzzer" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=0 \
-      -artifact_prefix="$found/" "$found" "fuzz/corpus/$fuzzer" >"$log" 2>&1; then
+      -artifact_prefix="$found/" "$found" "tests/fuzz/corpus/$fuzzer" >"$log" 2>&1; then
     tail -n 60 "$log"
     echo "test: $fuzzer found an input that fails; it is in $found" >&2
     exit 255

@@ -8,10 +8,10 @@
 namespace kenaf::bench {
 
 struct AccuracyFigure {
-  const char* name;   // also the CSV's column, unit included
+  const char* name;  // also the CSV's column, unit included
   const char* what;
-  const char* format; // of a table's cell
-  double tolerance;   // of the project's own tests of this closed form
+  const char* format;  // of a table's cell
+  double tolerance;    // of the project's own tests of this closed form
 };
 // Errors; 0 is right, the sign says which way.
 const std::vector<AccuracyFigure>& accuracy_figures();

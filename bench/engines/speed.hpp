@@ -9,9 +9,9 @@ namespace kenaf::bench {
 
 struct Speed {
   double cpu_us_per_step, wall_us_per_step;  // medians over the repeats
-  double times_as_slow;                      // as the first engine, which ran just before each time; median of the pairs
+  double times_as_slow;  // as the first engine, which ran just before each time; median of the pairs
   double contacts_per_step;
-  physics::Pose end;                         // where the robot came to
+  physics::Pose end;  // where the robot came to
   double steps_per_s() const { return 1e6 / cpu_us_per_step; }
 };
 
@@ -24,8 +24,9 @@ std::vector<Speed> measure_speeds(const EngineScene& scene, const std::vector<En
 struct Rates {
   double by_wall, by_cpu;
 };
-// Of `threads` threads over that of one, measured in pairs, one after the other. A pair counts where no thread waited for
-// its core for more than 2 % of the time. Medians of the first `pairs` that count, or of all where none does within a minute.
+// Of `threads` threads over that of one, measured in pairs, one after the other. A pair counts where no thread waited
+// for its core for more than 2 % of the time. Medians of the first `pairs` that count, or of all where none does within
+// a minute.
 struct Scaling {
   Rates times, one, all;
   int undisturbed, tried;

@@ -1,4 +1,5 @@
 // What may be the cause of a gap: every number by which a robot can differ from its nominal model.
+//
 // Thread safety: values and pure functions; Candidate::set may be called by any number of threads, each on a robot of
 // its own.
 #pragma once
@@ -10,7 +11,7 @@
 
 #include "physics/robot_description.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::candidates {
 
 // One number that may be the cause of a gap: how it changes a robot, and how far it may go. Of three kinds: a parameter
 // of an effect of the catalogue, a number of the robot's description, an effect of one's own (own_effects.hpp).
@@ -23,18 +24,19 @@ struct Candidate {
   std::string unit;       // "m", "s^2/m"; "1" for a ratio
   std::string summary;    // one line
   physics::Stage stage = physics::Stage::body;
-  double neutral = 0;  // where the effect is not there; of a number of the description: as it is described
-  double present = 0;  // of the robot that it was made for, whose every bit set() leaves as it is at this value
+  double neutral = 0;       // where the effect is not there; of a number of the description: as it is described
+  double present = 0;       // of the robot that it was made for, whose every bit set() leaves as it is at this value
   double min = 0, max = 0;  // where to search, for a robot of this size; min < max, neutral and present within
   bool is_number_of_description = false;
-  // By how much this is off where the number of the description is off by all of itself, or by its range where it is 0 (a
-  // sensor's delay by 0.2 s): of the number itself, and of an effect that leave_out() kept in its place. 0: there is no such number.
+  // By how much this is off where the number of the description is off by all of itself, or by its range where it is 0
+  // (a sensor's delay by 0.2 s): of the number itself, and of an effect that leave_out() kept in its place. 0: there is
+  // no such number.
   double whole = 0;
   // Another candidate's `effect` that changes a run in the same way, by a scale or an offset where this is the number
   // itself, or so nearly that no run tells them apart. Empty: there is none. Of two such, one is enough.
   std::string same_as;
-  // The `effect` of a candidate that multiplies this number and others by one factor: of the friction of the main belts that of
-  // all belts. Empty: there is none.
+  // The `effect` of a candidate that multiplies this number and others by one factor: of the friction of the main belts
+  // that of all belts. Empty: there is none.
   std::string part_of;
   // Keys of the robot's TOML file that set() changes: "effects.command_slew.slowness_s2pm", "track.left_center_m[1]".
   std::vector<std::string> keys;
@@ -68,4 +70,4 @@ std::vector<Candidate> all_candidates(const physics::RobotDescription& robot, bo
 // same, the first.
 std::vector<Candidate> leave_out(std::vector<Candidate> all, std::span<const std::string> left_out);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::candidates

@@ -4,7 +4,7 @@
 
 #include "gap/candidates/candidate.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::candidates {
 
 bool is_part_of(const Candidate& part, const Candidate& whole) {
   return !part.part_of.empty() && part.part_of == whole.effect;
@@ -30,4 +30,4 @@ std::vector<Candidate> leave_out(std::vector<Candidate> all, std::span<const std
   return kept;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::candidates

@@ -7,7 +7,7 @@
 #include "gap/candidates/candidate.hpp"
 #include "gap/candidates/search_range.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::candidates {
 namespace {
 
 using physics::EffectInfo;
@@ -160,4 +160,4 @@ std::vector<Candidate> catalogue_candidates(const RobotDescription& robot, bool 
   return candidates;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::candidates

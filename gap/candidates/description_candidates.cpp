@@ -8,7 +8,7 @@
 #include "gap/candidates/robot_numbers.hpp"
 #include "gap/candidates/search_range.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::candidates {
 namespace {
 
 using physics::RobotDescription;
@@ -259,4 +259,4 @@ std::vector<Candidate> description_candidates(const RobotDescription& robot) {
   return candidates;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::candidates

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <set>
 
-#include "description/description_file.hpp"
-#include "description/toml_reader.hpp"
+#include "formats/description/description_file.hpp"
+#include "formats/description/toml_reader.hpp"
 #include "gap/candidates/robot_numbers.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::candidates {
 namespace {
 
 using physics::RobotDescription;
@@ -29,20 +29,20 @@ bool is_plain_name(std::string_view name) {
          std::ranges::all_of(name, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
-std::string read_name(TomlReader& table, std::string_view key) {
+std::string read_name(description::TomlReader& table, std::string_view key) {
   std::string name = table.text(key);
   if (!is_plain_name(name)) table.fail(key, "must be of the letters a to z, digits and _, at most 64");
   return name;
 }
 
-std::string read_line(TomlReader& table, std::string_view key) {
+std::string read_line(description::TomlReader& table, std::string_view key) {
   std::string text = table.text(key);
   const bool one_line = std::ranges::none_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
   if (text.empty() || text.size() > 200 || !one_line) table.fail(key, "must be one line of text, of at most 200 bytes");
   return text;
 }
 
-Stage read_stage(TomlReader& table) {
+Stage read_stage(description::TomlReader& table) {
   const std::string name = table.text("stage");
   std::vector<std::string_view> names;
   for (const Stage stage : kStages) {
@@ -65,7 +65,7 @@ std::string keys_like(std::string_view key, const RobotDescription& robot) {
                       : fmt::format("it has {}", fmt::join(keys, ", "));
 }
 
-OwnMove read_move(TomlReader& table, const RobotDescription& robot) {
+OwnMove read_move(description::TomlReader& table, const RobotDescription& robot) {
   const std::string key = table.text("key");
   std::optional<RobotNumber> number = find_robot_number(robot, key);
   if (!number)
@@ -80,10 +80,10 @@ OwnMove read_move(TomlReader& table, const RobotDescription& robot) {
   return move;
 }
 
-std::vector<OwnMove> read_moves(TomlReader& table, const RobotDescription& robot) {
+std::vector<OwnMove> read_moves(description::TomlReader& table, const RobotDescription& robot) {
   std::vector<OwnMove> moves;
   std::set<std::string> keys;  // in the file: a number moved twice would not move in a straight line
-  for (TomlReader& move : table.tables("moves")) {
+  for (description::TomlReader& move : table.tables("moves")) {
     moves.push_back(read_move(move, robot));
     if (!keys.insert(moves.back().number.written_as).second) move.fail("key", "is moved by this effect already");
     if (moves.size() > kMaxMoves)
@@ -94,14 +94,14 @@ std::vector<OwnMove> read_moves(TomlReader& table, const RobotDescription& robot
 }
 
 // What moves in a straight line is within its limits all along if it is at both ends.
-void check_end(const TomlReader& table, std::string_view end, double value, const Candidate& candidate,
+void check_end(const description::TomlReader& table, std::string_view end, double value, const Candidate& candidate,
                RobotDescription robot) {
   candidate.set(robot, value);
   const std::string why = why_impossible(robot);
   if (!why.empty()) table.fail(end, fmt::format("is {}, and with that there is no such robot: {}", value, why));
 }
 
-Candidate read_effect(TomlReader& table, const RobotDescription& robot) {
+Candidate read_effect(description::TomlReader& table, const RobotDescription& robot) {
   Candidate candidate;
   candidate.name = candidate.effect = read_name(table, "name");
   if (physics::find_effect(candidate.name)) table.fail("name", "is the name of an effect of the catalogue");
@@ -134,17 +134,17 @@ Candidate read_effect(TomlReader& table, const RobotDescription& robot) {
 std::vector<Candidate> read_own_effects(const std::filesystem::path& file, const RobotDescription& robot) {
   // a path, never a name that is looked for where the project's own files are
   const std::filesystem::path path = file.has_parent_path() ? file : "." / file;
-  const DescriptionFile read = read_description_file("effect", path.string(), ".toml");
+  const description::DescriptionFile read = description::read_description_file("effect", path.string(), ".toml");
   return parse_own_effects(read.text, file.string(), robot);
 }
 
 std::vector<Candidate> parse_own_effects(std::string_view toml, const std::string& name_for_errors,
                                          const RobotDescription& robot) {
-  const toml::table root = parse_toml(toml, name_for_errors);
-  TomlReader file(root, "", name_for_errors);
+  const toml::table root = description::parse_toml(toml, name_for_errors);
+  description::TomlReader file(root, "", name_for_errors);
   std::vector<Candidate> candidates;
   std::set<std::string> names;
-  for (TomlReader& table : file.tables("effect")) {
+  for (description::TomlReader& table : file.tables("effect")) {
     candidates.push_back(read_effect(table, robot));
     if (!names.insert(candidates.back().name).second) table.fail("name", "is the name of another effect too");
     if (candidates.size() > kMaxEffects)
@@ -155,4 +155,4 @@ std::vector<Candidate> parse_own_effects(std::string_view toml, const std::strin
   return candidates;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::candidates

@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include "description/description_error.hpp"
+#include "formats/description/description_error.hpp"
 #include "gap/candidates/candidate.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::candidates {
 
 // In the order of the file. set() moves each key from where the robot has it, so what other candidates have set before
 // is moved along. Throws DescriptionError with file, line and column where the file is wrong: a key that is unknown or
@@ -19,4 +19,4 @@ std::vector<Candidate> read_own_effects(const std::filesystem::path& file, const
 std::vector<Candidate> parse_own_effects(std::string_view toml, const std::string& name_for_errors,
                                          const physics::RobotDescription& robot);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::candidates

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace kenaf::gap {
+namespace kenaf::gap::candidates {
 namespace {
 
 using physics::BatteryDescription;
@@ -236,4 +236,4 @@ std::string why_impossible(const RobotDescription& robot) {
   return {};
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::candidates

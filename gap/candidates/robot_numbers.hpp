@@ -1,4 +1,5 @@
 // The numbers of a robot's description, found by the keys of its TOML file.
+//
 // Thread safety: values and pure functions; RobotNumber's functions may be called by any thread.
 #pragma once
 
@@ -11,7 +12,7 @@
 
 #include "physics/robot_description.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::candidates {
 
 struct NumberRange {
   double min = -std::numeric_limits<double>::infinity();
@@ -41,4 +42,4 @@ std::optional<RobotNumber> find_robot_number(const physics::RobotDescription& ro
 // twice track.end_radius_m". Empty: it would not.
 std::string why_impossible(const physics::RobotDescription& robot);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::candidates

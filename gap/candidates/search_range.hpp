@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace kenaf::gap {
+namespace kenaf::gap::candidates {
 
 struct SearchRange {
   double min, max;
@@ -20,4 +20,4 @@ inline SearchRange with(SearchRange range, double value) {
   return {std::min(range.min, value), std::max(range.max, value)};
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::candidates

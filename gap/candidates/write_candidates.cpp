@@ -12,7 +12,7 @@
 
 #include "gap/candidates/robot_numbers.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::candidates {
 namespace {
 
 using physics::RobotDescription;
@@ -142,11 +142,12 @@ std::string robot_toml_with(const std::string& toml_text, std::span<const std::p
   std::string text = toml_text;
   for (const std::string& key : keys) {
     const std::optional<RobotNumber> number = find_robot_number(before, key);
-    if (!number) throw DescriptionError(fmt::format("the robot has no {}: the candidates are of another one", key));
+    if (!number)
+      throw description::DescriptionError(fmt::format("the robot has no {}: the candidates are of another one", key));
     if (!same_bits(number->get(before), number->get(after))) text = with_number(text, key, number->get(after));
   }
   physics::parse_robot(text, "robot.toml");
   return text;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::candidates

@@ -5,10 +5,10 @@
 #include <string>
 #include <utility>
 
-#include "description/description_error.hpp"
+#include "formats/description/description_error.hpp"
 #include "gap/candidates/candidate.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::candidates {
 
 // The text of the robot that the candidates make, one after the other, of the robot of `toml_text`, for which they were
 // made: parse_robot() of the one gives the bits of the other. What does not change stays as it is written, with all
@@ -19,4 +19,4 @@ namespace kenaf::gap {
 // Throws DescriptionError where `toml_text` is no robot, or the values together make none.
 std::string robot_toml_with(const std::string& toml_text, std::span<const std::pair<Candidate, double>> values);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::candidates

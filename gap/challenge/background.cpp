@@ -10,20 +10,20 @@
 #include "gap/candidates/robot_numbers.hpp"
 #include "gap/random_numbers.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 // Nearly every draw is a robot; so many in a row that are none would be a fault of this program.
 constexpr int kDraws = 20;
 
 // track.contact_length_m moves what track.length_m does; one of them is enough.
-bool is_derived(const Candidate& number) {
+bool is_derived(const candidates::Candidate& number) {
   return number.same_as.starts_with("track.");
 }
 
 physics::RobotDescription moved(physics::RobotDescription robot, const Background& background) {
   for (const BackgroundNumber& number : background.numbers) {
-    const std::optional<RobotNumber> found = find_robot_number(robot, number.key);
+    const std::optional<candidates::RobotNumber> found = candidates::find_robot_number(robot, number.key);
     if (!found) throw std::runtime_error(fmt::format("the robot has no {}", number.key));
     found->set(robot, number.value);
   }
@@ -34,11 +34,11 @@ physics::RobotDescription moved(physics::RobotDescription robot, const Backgroun
 
 Background draw_background(const physics::RobotDescription& robot, std::uint64_t seed,
                            std::span<const std::string> without) {
-  const std::vector<Candidate> candidates = description_candidates(robot);
+  const std::vector<candidates::Candidate> candidates = candidates::description_candidates(robot);
   Random random(seed);
   for (int draw = 0; draw < kDraws; ++draw) {
     Background background;
-    for (const Candidate& number : candidates) {
+    for (const candidates::Candidate& number : candidates) {
       if (is_derived(number)) continue;
       const double part = uniform(random, -kBackgroundOff, kBackgroundOff);
       // drawn for all, so that the others stay what they are whatever is left out
@@ -46,16 +46,16 @@ Background draw_background(const physics::RobotDescription& robot, std::uint64_t
       const double value = number.present + part * number.whole;
       background.numbers.push_back({number.name, std::clamp(value, number.min, number.max)});
     }
-    if (why_impossible(moved(robot, background)).empty()) return background;
+    if (candidates::why_impossible(moved(robot, background)).empty()) return background;
   }
   throw std::logic_error("no background of this robot is one that its description allows");
 }
 
 physics::RobotDescription with_background(physics::RobotDescription robot, const Background& background) {
   robot = moved(std::move(robot), background);
-  if (const std::string why = why_impossible(robot); !why.empty())
+  if (const std::string why = candidates::why_impossible(robot); !why.empty())
     throw std::runtime_error(fmt::format("the background makes no robot: {}", why));
   return robot;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

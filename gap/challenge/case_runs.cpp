@@ -7,6 +7,7 @@
 #include <random>
 #include <span>
 
+#include "formats/runs/dataset.hpp"
 #include "gap/challenge/foreign.hpp"
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/prediction.hpp"
@@ -14,9 +15,8 @@
 #include "gap/random_numbers.hpp"
 #include "rollout/engines/body_in_engine.hpp"
 #include "rollout/roll_out.hpp"
-#include "runs/dataset.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,7 +45,7 @@ void add_coloured_noise(runs::Run& run, const CasePlan& plan, std::uint64_t seed
 // Whole counts, as a sensor reports them.
 void count(runs::Run& run, double count_scale) {
   if (count_scale == 0) return;
-  for (const Channel& channel : diagnosis_channels())
+  for (const diagnose::Channel& channel : diagnose::diagnosis_channels())
     for (std::size_t c = 0; c < run.columns.size(); ++c) {
       if (run.columns[c] != channel.column) continue;
       const double step = count_scale * channel.resolution;
@@ -133,7 +133,7 @@ void write_case_runs(const CasePlan& plan, const physics::RobotDescription& robo
     dataset.runs.push_back({fmt::format("run-{:03}.csv", i), manoeuvre.name, manoeuvre.world});
   }
   for_each_job(dataset.runs.size(), jobs, [&](std::size_t i) {
-    check_goes_on(stop);
+    diagnose::check_goes_on(stop);
     runs::Run run = make_run(plan, robot, dataset.runs[i].manoeuvre, mixed(runs.seed, i + 2));
     if (!runs.longest_s.empty()) cut_off(run, runs.longest_s[i / repeats]);
     runs::write_run(folder / dataset.runs[i].file, run);
@@ -141,4 +141,4 @@ void write_case_runs(const CasePlan& plan, const physics::RobotDescription& robo
   runs::write_dataset(folder, dataset);
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -11,7 +11,7 @@
 #include "gap/random_numbers.hpp"
 #include "rollout/roll_out.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 const std::filesystem::path& written(const std::filesystem::path& folder, CasePlan plan, unsigned jobs,
@@ -36,7 +36,7 @@ CaseScale::CaseScale(const CasePlan& plan, unsigned jobs, const std::atomic<bool
       runs_(written(folder_.path, in_own_engine(plan), jobs, stop), jobs, stop) {
   floors_ = floors_around(runs_, runs_.predictor.unvaried());
   floor_rms_ = rms_of_repeats(runs_, floors_, runs_.residuals);
-  background_ = shifts_of(runs_, robot_, Fidelity::coarse);
+  background_ = shifts_of(runs_, robot_, diagnose::Fidelity::coarse);
   background_floors_ = rms(floors_, background_) / floor_rms_;
   if (plan.engine.empty()) return;
   // the same runs with the same noise as the other engine has them: what these differ by is background, too
@@ -72,31 +72,31 @@ LookAlike CaseScale::look_alike_of(const CasePlan& plan) {
 }
 
 Differences CaseScale::shift_of(const physics::RobotDescription& robot) {
-  return shifts_of(runs_, robot, Fidelity::coarse) - background_;
+  return shifts_of(runs_, robot, diagnose::Fidelity::coarse) - background_;
 }
 
 // Where belts and flippers turn as they were measured, commands play no part.
 Differences CaseScale::shift_of_foreign(const std::string& foreign, double amount) {
-  const Observations& observed = runs_.observations;
+  const diagnose::Observations& observed = runs_.observations;
   Differences shifts;
   for (std::size_t s = 0; s < shifts.size(); ++s) {
-    const Passage passage = kEachChannelOnce[s];
+    const diagnose::Passage passage = kEachChannelOnce[s];
     shifts[s].resize(observed.runs.size());
     for_each_job(shifts[s].size(), jobs_, [&](std::size_t r) {
-      check_goes_on(stop_);
-      const StageFeatures& features = runs_.features.of(passage)[r];
+      diagnose::check_goes_on(stop_);
+      const diagnose::StageFeatures& features = runs_.features.of(passage)[r];
       if (features.bins.empty()) return;
-      const Observation& run = observed.runs[r];
+      const diagnose::Observation& run = observed.runs[r];
       const auto values = [&](double of_it) {
-        const bool by_commands = passage == Passage::command_to_drive || !run.measured;
+        const bool by_commands = passage == diagnose::Passage::command_to_drive || !run.measured;
         rollout::Manoeuvre replay = by_commands ? run.replay : *run.measured;
         if (by_commands) obey_foreign(replay, foreign, of_it);
         rollout::RollOutOptions options;
         options.noise_scale = options.mocap_noise_m = options.mocap_noise_rad = 0;
         runs::Run simulated = rollout::roll_out(robot_, observed.worlds[run.world], replay, options).run;
         record_foreign(simulated, foreign, of_it);
-        const FeatureMap& map = runs_.features.maps[r];
-        return stage_values(passage, features, map, map.of(simulated), simulated);
+        const diagnose::FeatureMap& map = runs_.features.maps[r];
+        return diagnose::stage_values(passage, features, map, map.of(simulated), simulated);
       };
       shifts[s][r] = values(amount) - values(0);
     });
@@ -104,4 +104,4 @@ Differences CaseScale::shift_of_foreign(const std::string& foreign, double amoun
   return shifts;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

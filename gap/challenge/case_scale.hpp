@@ -1,4 +1,5 @@
 // How large gaps look in the runs of a case.
+//
 // Thread safety: one thread at a time; calculates with as many as it is given. Deterministic.
 #pragma once
 
@@ -7,9 +8,9 @@
 
 #include "gap/challenge/compared_runs.hpp"
 #include "gap/challenge/plan.hpp"
-#include "gap/temporary_folder.hpp"
+#include "gap/challenge/temporary_folder.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 
 struct Size {
   double floors = 0;            // rms over all channels, over that of repeats of a robot without gap
@@ -49,4 +50,4 @@ class CaseScale {
   double background_floors_ = 0;
 };
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -6,7 +6,7 @@
 #include "gap/diagnose/diagnosis.hpp"
 #include "gap/diagnose/repeats.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 constexpr std::size_t kMostRuns = 100;  // all runs of a case
@@ -14,13 +14,13 @@ constexpr std::size_t kMostRuns = 100;  // all runs of a case
 }  // namespace
 
 ComparedRuns::ComparedRuns(const std::filesystem::path& dataset, unsigned threads, const std::atomic<bool>* stop)
-    : observations(observe(dataset, "", "", kMostRuns)),
-      features(compared_features(observations, DiagnosisOptions().span_s)),
-      predictor(observations, features, repeats_of(observations), threads, stop),
-      same_orders(same_orders_of(observations)) {
+    : observations(diagnose::observe(dataset, "", "", kMostRuns)),
+      features(diagnose::compared_features(observations, diagnose::DiagnosisOptions().span_s)),
+      predictor(observations, features, diagnose::repeats_of(observations), threads, stop),
+      same_orders(diagnose::same_orders_of(observations)) {
   predictor.simulate_nominal();
   for (std::size_t s = 0; s < kEachChannelOnce.size(); ++s) {
-    const std::vector<StageFeatures>& stage = features.of(kEachChannelOnce[s]);
+    const std::vector<diagnose::StageFeatures>& stage = features.of(kEachChannelOnce[s]);
     for (std::size_t r = 0; r < stage.size(); ++r)
       residuals[s].push_back(stage[r].measured - predictor.nominal(kEachChannelOnce[s])[r]);
   }
@@ -32,19 +32,20 @@ Differences operator-(Differences a, const Differences& b) {
   return a;
 }
 
-Floors floors_around(ComparedRuns& runs, const Variation& model) {
+Floors floors_around(ComparedRuns& runs, const diagnose::Variation& model) {
   Floors floors;
   for (std::size_t s = 0; s < floors.size(); ++s) {
-    const Passage passage = kEachChannelOnce[s];
-    const std::vector<StageFeatures>& features = runs.features.of(passage);
-    floors[s] = noise_floor(features, runs.residuals[s], runs.same_orders,
-                            open_shapes(features, runs.predictor, passage, model, kOpenStart_m, kOpenStart_rad));
+    const diagnose::Passage passage = kEachChannelOnce[s];
+    const std::vector<diagnose::StageFeatures>& features = runs.features.of(passage);
+    floors[s] = diagnose::noise_floor(features, runs.residuals[s], runs.same_orders,
+                                      diagnose::open_shapes(features, runs.predictor, passage, model,
+                                                            diagnose::kOpenStart_m, diagnose::kOpenStart_rad));
   }
   return floors;
 }
 
-Differences shifts_of(ComparedRuns& runs, const physics::RobotDescription& robot, Fidelity fidelity) {
-  Variation variation = runs.predictor.unvaried();
+Differences shifts_of(ComparedRuns& runs, const physics::RobotDescription& robot, diagnose::Fidelity fidelity) {
+  diagnose::Variation variation = runs.predictor.unvaried();
   variation.robot = robot;
   Differences shifts;
   for (std::size_t s = 0; s < shifts.size(); ++s)
@@ -66,9 +67,9 @@ double rms(const Floors& floors, const Differences& differences) {
 double rms_of_repeats(const ComparedRuns& runs, const Floors& floors, const Differences& residuals) {
   double sum = 0, bins = 0;
   for (std::size_t s = 0; s < floors.size(); ++s) {
-    const std::vector<StageFeatures>& features = runs.features.of(kEachChannelOnce[s]);
-    const Shift deviations = deviations_from_repeats(features, residuals[s], runs.same_orders);
-    const std::vector<std::vector<bool>> shared = shared_bins(features, runs.same_orders);
+    const std::vector<diagnose::StageFeatures>& features = runs.features.of(kEachChannelOnce[s]);
+    const diagnose::Shift deviations = diagnose::deviations_from_repeats(features, residuals[s], runs.same_orders);
+    const std::vector<std::vector<bool>> shared = diagnose::shared_bins(features, runs.same_orders);
     for (std::size_t r = 0; r < deviations.size(); ++r) {
       if (deviations[r].size() == 0) continue;
       sum += floors[s].whiteners[r](deviations[r]).squaredNorm();
@@ -78,4 +79,4 @@ double rms_of_repeats(const ComparedRuns& runs, const Floors& floors, const Diff
   return bins > 0 ? std::sqrt(sum / bins) : 1;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

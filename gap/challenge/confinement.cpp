@@ -12,7 +12,7 @@
 #define LANDLOCK_ACCESS_FS_TRUNCATE (1ULL << 14)
 #endif
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 namespace fs = std::filesystem;
@@ -67,4 +67,4 @@ bool Confinement::enter() const {
   return ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && ::syscall(SYS_landlock_restrict_self, ruleset_, 0) == 0;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

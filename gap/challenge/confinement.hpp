@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 
 // Made by the process that starts another one, which then puts itself under it.
 class Confinement {
@@ -17,8 +17,8 @@ class Confinement {
   Confinement& operator=(const Confinement&) = delete;
 
   bool confines() const { return ruleset_ >= 0; }
-  // Confines the calling thread and all that it starts, for good; after fork() it may be called at once. False: it could
-  // not be done.
+  // Confines the calling thread and all that it starts, for good; after fork() it may be called at once. False: it
+  // could not be done.
   bool enter() const;
 
  private:
@@ -28,4 +28,4 @@ class Confinement {
 // Whether this kernel can confine.
 bool can_confine();
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

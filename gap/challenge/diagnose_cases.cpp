@@ -19,10 +19,10 @@
 #include <system_error>
 #include <thread>
 
-#include "description/data_files.hpp"
+#include "formats/description/data_files.hpp"
 #include "gap/challenge/confinement.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 namespace fs = std::filesystem;
@@ -43,7 +43,7 @@ struct Descriptor {
 
 std::vector<fs::path> readable(const fs::path& data) {
   std::vector<fs::path> paths{data, "/proc/self/exe", "/usr", "/lib", "/lib64", "/dev/null", "/etc/ld.so.cache"};
-  for (const fs::path& root : data_roots())
+  for (const fs::path& root : description::data_roots())
     for (const char* folder : {"robots", "worlds", "manoeuvres"}) paths.push_back(root / folder);
   return paths;
 }
@@ -130,4 +130,4 @@ void diagnose_cases(const std::vector<CaseToDiagnose>& cases, unsigned at_once, 
   end_all();
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 constexpr double kTwoSided95 = 1.96;
@@ -57,4 +57,4 @@ Figure median_figure(std::string_view id, std::string_view what, std::string_vie
   return figure;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

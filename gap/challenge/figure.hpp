@@ -1,4 +1,5 @@
 // A figure of a score: a share, a mean or a median with its interval, beside its target.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -6,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 
 struct Figure {
   std::string_view id, what, target;
@@ -41,4 +42,4 @@ Figure difference_figure(std::string_view id, std::string_view what, std::string
 Figure median_figure(std::string_view id, std::string_view what, std::string_view target, std::vector<double> values,
                      double least, double most);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <string>
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 std::vector<double>* column_of(runs::Run& run, std::string_view name) {
@@ -83,4 +83,4 @@ void record_foreign(runs::Run& run, std::string_view foreign, double amount) {
         for (double& rate_radps : *column) rate_radps /= 1 + kOfRate_sprad * amount * std::abs(rate_radps);
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

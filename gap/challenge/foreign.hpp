@@ -1,13 +1,14 @@
 // Deviations that no candidate of a diagnosis is: what they do to commands, or to what is measured of the robot.
+//
 // Thread safety: pure functions.
 #pragma once
 
 #include <string_view>
 
+#include "formats/runs/run_file.hpp"
 #include "rollout/manoeuvre.hpp"
-#include "runs/run_file.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 
 // `amount`: 0 changes nothing, 1 is as much as is credible.
 
@@ -17,4 +18,4 @@ void obey_foreign(rollout::Manoeuvre& replay, std::string_view foreign, double a
 // What is recorded of a run.
 void record_foreign(runs::Run& run, std::string_view foreign, double amount);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

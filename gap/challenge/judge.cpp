@@ -6,7 +6,7 @@
 #include "gap/challenge/stand_ins.hpp"
 #include "physics/effects.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -77,7 +77,7 @@ bool stands_apart(const ReadTable& table, const std::string& name) {
   const auto row = static_cast<std::size_t>(std::ranges::find(table.effects, name) - table.effects.begin());
   if (row == table.effects.size()) return false;
   for (std::size_t other = 0; other < table.effects.size(); ++other)
-    if (other != row && !(table.angle_deg[row][other] >= kToldApart_deg)) return false;
+    if (other != row && !(table.angle_deg[row][other] >= diagnose::kToldApart_deg)) return false;
   return true;
 }
 
@@ -95,7 +95,7 @@ Judgement judge(const CasePlan& plan, const std::optional<ReadReport>& report) {
   for (const HiddenEffect& hidden : plan.effects)
     if (in_catalogue) result.hidden.push_back(reported_name(hidden.effect, hidden.parameter));
   result.found.assign(result.hidden.size(), Found::missed);
-  result.can_be_told_apart = is_outside(plan.stratum) && plan.look_alike.angle_deg >= kToldApart_deg;
+  result.can_be_told_apart = is_outside(plan.stratum) && plan.look_alike.angle_deg >= diagnose::kToldApart_deg;
   if (!report) return result;
 
   for (const std::string& name : report->named)
@@ -124,4 +124,4 @@ Judgement judge(const CasePlan& plan, const std::optional<ReadReport>& report) {
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -7,13 +7,13 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "formats/runs/whole_file.hpp"
 #include "gap/challenge/case_runs.hpp"
 #include "gap/challenge/sha256.hpp"
 #include "physics/effects.hpp"
 #include "physics/robot_description.hpp"
-#include "runs/whole_file.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 namespace fs = std::filesystem;
@@ -296,4 +296,4 @@ fs::path report_folder(const fs::path& folder, const std::string& name) {
   return folder / "reports" / name;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -1,9 +1,10 @@
-// What is hidden in the cases of a challenge, and how it is sealed: the key is in no file until all cases are diagnosed,
-// but its hash is, so that it cannot become another one. Enciphered with the seed it is there, so that a challenge that was
-// interrupted need not make its cases again.
+// What is hidden in the cases of a challenge, and how it is sealed: the key is in no file until all cases are
+// diagnosed, but its hash is, so that it cannot become another one. Enciphered with the seed it is there, so that a
+// challenge that was interrupted need not make its cases again.
 //
-// The key holds a salt of 256 bits, without which its hash could be found by trying what may be hidden. The salt is made
-// from the challenge's seed, so that a challenge that was interrupted has the same key when it goes on.
+// The key holds a salt of 256 bits, without which its hash could be found by trying what may be hidden. The salt is
+// made from the challenge's seed, so that a challenge that was interrupted has the same key when it goes on.
+//
 // Thread safety: values; functions that touch files only those that they are given.
 #pragma once
 
@@ -15,7 +16,7 @@
 
 #include "gap/challenge/plan.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 
 struct SealedCase {
   CasePlan plan;
@@ -44,11 +45,11 @@ std::string commitment_text(const std::string& key_text);
 std::string enciphered(const std::string& key_text, std::uint64_t seed);
 std::string deciphered(const std::string& text, std::uint64_t seed);
 
-// A case beside its data in CASES while the others are made, enciphered with the seed, so that a challenge that is interrupted then
-// need not make it again: CASES/NAME.enciphered. `cases`: how many the challenge has, for the same seed plans others for another
-// number, and for another kind of challenge.
-void keep_made_case(const std::filesystem::path& folder, const SealedCase& sealed, std::uint64_t seed, std::size_t cases,
-                    ChallengeKind kind = ChallengeKind::exact);
+// A case beside its data in CASES while the others are made, enciphered with the seed, so that a challenge that is
+// interrupted then need not make it again: CASES/NAME.enciphered. `cases`: how many the challenge has, for the same
+// seed plans others for another number, and for another kind of challenge.
+void keep_made_case(const std::filesystem::path& folder, const SealedCase& sealed, std::uint64_t seed,
+                    std::size_t cases, ChallengeKind kind = ChallengeKind::exact);
 // Nothing where there is none, where seed, number or kind are others, or where its data are no longer what was made.
 std::optional<SealedCase> made_case(const std::filesystem::path& folder, const std::string& name, std::uint64_t seed,
                                     std::size_t cases, ChallengeKind kind = ChallengeKind::exact);
@@ -66,4 +67,4 @@ ChallengeKey open_key(const std::filesystem::path& folder);
 std::filesystem::path case_folder(const std::filesystem::path& folder, const std::string& name);    // DIR/cases/NAME
 std::filesystem::path report_folder(const std::filesystem::path& folder, const std::string& name);  // DIR/reports/NAME
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -8,10 +8,11 @@
 
 #include "gap/challenge/stand_ins.hpp"
 #include "gap/diagnose/curve_fit.hpp"
+#include "gap/diagnose/decision_settings.hpp"
 #include "gap/diagnose/model_search.hpp"
 #include "gap/diagnose/stage_candidates.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 // Those that a first look shows to be nearest get whole curves; of them the nearest get points where they fit best, so
@@ -27,82 +28,87 @@ struct Near {
 
 class Stage {
  public:
-  Stage(ComparedRuns& runs, Passage passage, StageData data, std::span<const Candidate> candidates)
+  Stage(ComparedRuns& runs, diagnose::Passage passage, diagnose::StageData data,
+        std::span<const candidates::Candidate> candidates)
       : data_(std::move(data)),
-        whiteners_(whiteners_of(data_, no_discrepancy())),
-        curves_(empty_curves(data_, candidates)) {
-    simulate_ = [&runs, passage, candidates, this](std::span<const Settings> asked, Fidelity) {
-      std::vector<Variation> variations;
-      for (const Settings& settings : asked) {
+        whiteners_(diagnose::whiteners_of(data_, diagnose::no_discrepancy())),
+        curves_(diagnose::empty_curves(data_, candidates)) {
+    simulate_ = [&runs, passage, candidates, this](std::span<const diagnose::Settings> asked, diagnose::Fidelity) {
+      std::vector<diagnose::Variation> variations;
+      for (const diagnose::Settings& settings : asked) {
         variations.push_back(runs.predictor.unvaried());
-        variations.back().robot = with_settings(std::move(variations.back().robot), candidates, settings);
+        variations.back().robot = diagnose::with_settings(std::move(variations.back().robot), candidates, settings);
       }
-      std::vector<GroupVectors> shifts;
-      for (const Shift& shift : runs.predictor.shifts(variations, passage, Fidelity::coarse))
-        shifts.push_back(mean_of_groups(data_, shift));
+      std::vector<diagnose::GroupVectors> shifts;
+      for (const diagnose::Shift& shift : runs.predictor.shifts(variations, passage, diagnose::Fidelity::coarse))
+        shifts.push_back(diagnose::mean_of_groups(data_, shift));
       return shifts;
     };
-    const bool drives_measured =
-        std::ranges::all_of(runs.observations.runs, [](const Observation& run) { return run.measured.has_value(); });
-    possible_ = candidates_of(passage, candidates, drives_measured);
+    const bool drives_measured = std::ranges::all_of(
+        runs.observations.runs, [](const diagnose::Observation& run) { return run.measured.has_value(); });
+    possible_ = diagnose::candidates_of(passage, candidates, drives_measured);
   }
 
   // Best first.
   std::vector<Near> nearest() {
-    add_first_look(curves_, data_, possible_, simulate_);
+    diagnose::add_first_look(curves_, data_, possible_, simulate_);
     std::vector<std::size_t> followed;
     for (const Near& near : ranked())
       if (followed.size() < kFollowed) followed.push_back(near.candidate);
-    add_spread(curves_, data_, followed, simulate_);
-    follow_bends(curves_, data_, followed, simulate_);
+    diagnose::add_spread(curves_, data_, followed, simulate_);
+    diagnose::follow_bends(curves_, data_, followed, simulate_);
     std::vector<Near> best = ranked();
     for (int round = 0; round < kRounds; ++round) {
-      std::vector<Setting> points;
+      std::vector<diagnose::Setting> points;
       for (std::size_t i = 0; i < std::min(kRefined, best.size()); ++i)
         points.push_back({best[i].candidate, best[i].value});
-      add_points(curves_, data_, points, Fidelity::coarse, simulate_);
+      diagnose::add_points(curves_, data_, points, diagnose::Fidelity::coarse, simulate_);
       best = ranked();
     }
     return best;
   }
 
-  double hidden_squared() const { return products_of(whiteners_, curves_.shifts, residuals_of(data_)).gap_gap; }
+  double hidden_squared() const {
+    return diagnose::products_of(whiteners_, curves_.shifts, diagnose::residuals_of(data_)).gap_gap;
+  }
 
  private:
   std::vector<Near> ranked() const {
-    const Products products = products_of(whiteners_, curves_.shifts, residuals_of(data_));
+    const diagnose::Products products =
+        diagnose::products_of(whiteners_, curves_.shifts, diagnose::residuals_of(data_));
     std::vector<Near> result;
     for (const std::size_t c : possible_) {
-      const CurveFit fit = fit_one(products, curves_.curves, c);
+      const diagnose::CurveFit fit = diagnose::fit_one(products, curves_.curves, c);
       result.push_back({fit.left, c, fit.places.front().value});
     }
     std::ranges::stable_sort(result, {}, &Near::left);
     return result;
   }
 
-  StageData data_;
-  std::vector<GroupWhitener> whiteners_;
-  EffectCurves curves_;
-  Simulate simulate_;
+  diagnose::StageData data_;
+  std::vector<diagnose::GroupWhitener> whiteners_;
+  diagnose::EffectCurves curves_;
+  diagnose::Simulate simulate_;
   std::vector<std::size_t> possible_;
 };
 
 // In which nobody could overlook it.
-bool shows(const StageData& data) {
-  const auto bins = static_cast<double>(bin_count(data));
-  return bins > 0 && gap_in_noise(data) >= DecisionSettings().negligible * std::sqrt(bins);
+bool shows(const diagnose::StageData& data) {
+  const auto bins = static_cast<double>(diagnose::bin_count(data));
+  return bins > 0 && diagnose::gap_in_noise(data) >= diagnose::DecisionSettings().negligible * std::sqrt(bins);
 }
 
 }  // namespace
 
 LookAlike look_alike(ComparedRuns& runs, const Floors& floors, const Differences& hidden,
                      std::span<const std::string> without) {
-  const std::vector<Candidate> candidates =
-      leave_out(all_candidates(runs.observations.robot, has_obstacles(runs.observations)), without);
+  const std::vector<candidates::Candidate> candidates = candidates::leave_out(
+      candidates::all_candidates(runs.observations.robot, diagnose::has_obstacles(runs.observations)), without);
   LookAlike nearest;
   for (std::size_t s = 0; s < kEachChannelOnce.size(); ++s) {
-    const Passage passage = kEachChannelOnce[s];
-    StageData data = stage_data(passage, runs.features.of(passage), runs.predictor.repeats(), hidden[s], floors[s]);
+    const diagnose::Passage passage = kEachChannelOnce[s];
+    diagnose::StageData data =
+        diagnose::stage_data(passage, runs.features.of(passage), runs.predictor.repeats(), hidden[s], floors[s]);
     if (!shows(data)) continue;
     Stage stage(runs, passage, std::move(data), candidates);
     const std::vector<Near> ranking = stage.nearest();
@@ -116,4 +122,4 @@ LookAlike look_alike(ComparedRuns& runs, const Floors& floors, const Differences
   return nearest;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -14,13 +14,13 @@
 #include "gap/diagnose/isolability.hpp"
 #include "gap/random_numbers.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 namespace fs = std::filesystem;
 
 double present_value(const std::string& key) {
-  return std::ranges::find(challenged_numbers(), key, &Candidate::name)->present;
+  return std::ranges::find(challenged_numbers(), key, &candidates::Candidate::name)->present;
 }
 
 constexpr int kTries = 14;
@@ -145,7 +145,8 @@ void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs, const std:
     if (size == best_size && !(candidate.look_alike.angle_deg > best.look_alike.angle_deg)) continue;
     best_size = size;
     best = std::move(candidate);
-    if (size == kCloseToPlanned && (!is_outside(plan.stratum) || best.look_alike.angle_deg >= kToldApart_deg)) break;
+    if (size == kCloseToPlanned && (!is_outside(plan.stratum) || best.look_alike.angle_deg >= diagnose::kToldApart_deg))
+      break;
   }
   plan = best;
   make_again(plan, folder, jobs, stop);
@@ -166,4 +167,4 @@ void make_unseen(const CasePlan& plan, const fs::path& folder, unsigned jobs) {
   write_case_runs(plan, hidden_robot(plan), {{plan.unseen}, {}, 2, mixed(plan.seed, 3)}, folder, jobs, nullptr);
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -14,7 +14,7 @@
 #include "gap/random_numbers.hpp"
 #include "rollout/engines/body_in_engine.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 constexpr std::string_view kKindNames[] = {"exact", "imperfect", "mujoco", "ode"};  // as ChallengeKind
@@ -194,23 +194,24 @@ double value_in_model(const CasePlan& plan, const HiddenEffect& hidden) {
 }
 
 double furthest_value(const CasePlan& plan, const physics::EffectParameter& parameter, bool upward) {
-  static const std::vector<Candidate> candidates =
-      catalogue_candidates(physics::load_robot(kChallengedRobot), /*has_obstacles=*/true);
+  static const std::vector<candidates::Candidate> candidates =
+      candidates::catalogue_candidates(physics::load_robot(kChallengedRobot), /*has_obstacles=*/true);
   const double scale = scale_in_model(plan, parameter);
   double min = parameter.min, max = parameter.max;
-  for (const Candidate& candidate : candidates)
+  for (const candidates::Candidate& candidate : candidates)
     if (&parameter_of({candidate.effect, candidate.parameter}) == &parameter) min = candidate.min, max = candidate.max;
   const double end = upward ? std::min(max, max / scale) : std::max(min, min / scale);
   return parameter.neutral + kFurthest * (end - parameter.neutral);
 }
 
 double furthest_value_of_number(const CasePlan& plan, bool upward) {
-  const Candidate& number = *std::ranges::find(challenged_numbers(), plan.number.key, &Candidate::name);
+  const candidates::Candidate& number =
+      *std::ranges::find(challenged_numbers(), plan.number.key, &candidates::Candidate::name);
   physics::RobotDescription robot = with_background(physics::load_robot(kChallengedRobot), plan.background);
   double value = number.present + kFurthest * ((upward ? number.max : number.min) - number.present);
   for (int halving = 0; halving < kRangeHalvings; ++halving) {
-    find_robot_number(robot, number.name)->set(robot, value);
-    if (why_impossible(robot).empty()) return value;
+    candidates::find_robot_number(robot, number.name)->set(robot, value);
+    if (candidates::why_impossible(robot).empty()) return value;
     value = std::midpoint(value, number.present);
   }
   return number.present;
@@ -309,4 +310,4 @@ std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, Chal
   return plans;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

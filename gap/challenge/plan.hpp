@@ -1,9 +1,10 @@
-// What the cases of a challenge are: which effects are hidden in them, how large, in which manoeuvres, and how the "real"
-// side differs from the model besides, so that a fit is no tautology.
+// What the cases of a challenge are: which effects are hidden in them, how large, in which manoeuvres, and how the
+// "real" side differs from the model besides, so that a fit is no tautology.
 //
-// There are two challenges. In the exact one the model with the hidden effects is right but for contacts and noise. In the
-// imperfect one it never is, as with a real robot: every number of the description is a little off, a background to
+// There are two challenges. In the exact one the model with the hidden effects is right but for contacts and noise. In
+// the imperfect one it never is, as with a real robot: every number of the description is a little off, a background to
 // what is hidden. In those of another engine that engine moves the body besides, so that contacts are others, too.
+//
 // Thread safety: pure functions; deterministic for a seed.
 #pragma once
 
@@ -16,7 +17,7 @@
 #include "physics/effects.hpp"
 #include "physics/world.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 
 inline constexpr const char* kChallengedRobot = "kenaf";
 // In a case's folder, the dataset of the robot as it was before.
@@ -30,16 +31,16 @@ bool is_imperfect(ChallengeKind kind);
 std::string_view engine_of(ChallengeKind kind);
 
 enum class Stratum {
-  none,      // nothing hidden but the background, where there is one
-  single,    // one effect of the catalogue
-  pair,      // two
-  withheld,  // one, and the diagnosis has a catalogue without it
-  foreign,   // something that the catalogue never had
+  none,             // nothing hidden but the background, where there is one
+  single,           // one effect of the catalogue
+  pair,             // two
+  withheld,         // one, and the diagnosis has a catalogue without it
+  foreign,          // something that the catalogue never had
   withheld_number,  // one number of the description, and the diagnosis does not search for it
   baseline,         // one effect, or nothing, since runs of before that the diagnosis has as well
 };
 std::string_view stratum_name(Stratum stratum);
-bool is_outside(Stratum stratum);         // withheld or foreign: the diagnosis' catalogue does not have it
+bool is_outside(Stratum stratum);           // withheld or foreign: the diagnosis' catalogue does not have it
 Stratum stratum_of(std::string_view name);  // throws std::invalid_argument
 
 // How much of the squared gap an effect explains in one stage.
@@ -50,8 +51,8 @@ struct StageShare {
 
 struct HiddenEffect {
   std::string effect, parameter;
-  double floors = 0;  // size: how large the gap by it alone is, in noise floors, over all channels
-  double value = 0;   // that makes it so large; known once the case is made
+  double floors = 0;                 // size: how large the gap by it alone is, in noise floors, over all channels
+  double value = 0;                  // that makes it so large; known once the case is made
   double times_background = 0;       // size beside the background's, of the imperfect challenge
   std::vector<StageShare> shares{};  // of the stages that show it; likewise, known once the case is made
 };
@@ -72,7 +73,7 @@ struct CasePlan {
   std::string name;  // "case-017"
   Stratum stratum = Stratum::none;
   std::vector<HiddenEffect> effects;
-  std::string foreign;                  // one of foreign_effects(), or empty
+  std::string foreign;  // one of foreign_effects(), or empty
   double foreign_floors = 0, foreign_amount = 0, foreign_times_background = 0;
   HiddenNumber number;                  // of the description
   LookAlike look_alike;                 // of what is withheld or foreign; known once the case is made
@@ -81,10 +82,10 @@ struct CasePlan {
   std::vector<double> longest_s;        // after which each of its runs is cut off; empty: none is
   std::string unseen;                   // another one, to try the diagnosis' robot.toml on
   int repeats = 2;
-  std::string engine;                   // that moves the "real" body; empty: Kenaf's own
-  physics::PhysicsSettings physics;     // of the "real" side
+  std::string engine;                          // that moves the "real" body; empty: Kenaf's own
+  physics::PhysicsSettings physics;            // of the "real" side
   double noise_scale = 1, noise_memory_s = 0;  // of the pose; 0: white
-  double count_scale = 0;               // columns are whole counts of so many times their resolution; 0: they are not
+  double count_scale = 0;  // columns are whole counts of so many times their resolution; 0: they are not
   std::uint64_t seed = 0;
 
   bool is_imperfect() const { return !background.numbers.empty(); }
@@ -99,14 +100,15 @@ const physics::EffectParameter& parameter_of(const HiddenEffect& hidden);
 // multiply those of the "real" side's contacts, which are others.
 double value_in_model(const CasePlan& plan, const HiddenEffect& hidden);
 
-// The furthest value from neutral that a case may hide: within the range of a diagnosis' candidate on the "real" side and in
-// the model, for a diagnosis cannot find what is beyond.
+// The furthest value from neutral that a case may hide: within the range of a diagnosis' candidate on the "real" side
+// and in the model, for a diagnosis cannot find what is beyond.
 double furthest_value(const CasePlan& plan, const physics::EffectParameter& parameter, bool upward);
-// Likewise of the hidden number of the description; with it the robot of the background is one that its description allows.
+// Likewise of the hidden number of the description; with it the robot of the background is one that its description
+// allows.
 double furthest_value_of_number(const CasePlan& plan, bool upward);
 
-// Shares of strata, and sizes, are those of docs/gap-challenge.md. Of singles and withheld ones together each effect of the
-// catalogue has its turn; pairs and foreign ones are drawn by chance. In an order that says nothing.
+// Shares of strata, and sizes, are those of docs/gap-challenge.md. Of singles and withheld ones together each effect of
+// the catalogue has its turn; pairs and foreign ones are drawn by chance. In an order that says nothing.
 std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, ChallengeKind kind = ChallengeKind::exact);
 
 // Manoeuvres of a case and when they are cut off, for when an effect does not show in those it was given: all that this
@@ -122,4 +124,4 @@ struct ForeignEffect {
 };
 std::vector<ForeignEffect> foreign_effects();
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "runs/whole_file.hpp"
+#include "formats/runs/whole_file.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -84,4 +84,4 @@ std::optional<ReadReport> read_report(const std::filesystem::path& report_json) 
   }
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

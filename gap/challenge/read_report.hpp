@@ -1,4 +1,5 @@
 // What a report.json says, as far as it is scored.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -8,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 
 struct ReadEffect {
   std::string effect, parameter;
@@ -34,7 +35,7 @@ struct ReadStage {
 
 struct ReadReport {
   std::string verdict;
-  std::vector<std::string> named;                         // of all stages together
+  std::vector<std::string> named;                        // of all stages together
   std::vector<std::vector<std::string>> ambiguous_sets;  // likewise
   bool complete = false;
   std::vector<ReadStage> stages;
@@ -47,4 +48,4 @@ ReadReport report_of(const std::string& report_json);
 // Nothing where there is no such file, as of a diagnosis that failed, or it is what an interrupted one left.
 std::optional<ReadReport> read_report(const std::filesystem::path& report_json);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

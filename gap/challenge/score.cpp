@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 constexpr double kShrinkWithin = 0.05;
@@ -164,4 +164,4 @@ std::vector<SizeScore> scores_by_size(const std::vector<ScoredCase>& cases) {
   return scores;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -1,4 +1,5 @@
 // The score of a challenge: its figures beside their targets, and what went wrong where.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -8,12 +9,12 @@
 #include <string_view>
 #include <vector>
 
-#include "gap/challenge/judge.hpp"
 #include "gap/challenge/figure.hpp"
+#include "gap/challenge/judge.hpp"
 #include "gap/challenge/key.hpp"
 #include "gap/challenge/shrinks.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 
 struct ScoredCase {
   SealedCase sealed;
@@ -46,7 +47,8 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases);
 bool is_imperfect(const std::vector<ScoredCase>& cases);
 std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases);
 
-// Of one effect, over all cases that hide it and leave it in the catalogue; of one that is withheld or foreign, by verdict.
+// Of one effect, over all cases that hide it and leave it in the catalogue; of one that is withheld or foreign, by
+// verdict.
 struct EffectScore {
   std::string name;
   std::size_t hidden = 0, named = 0, ambiguous = 0, missed = 0, wrong = 0;
@@ -71,4 +73,4 @@ std::string score_markdown(const std::vector<ScoredCase>& cases);
 // Of the format kenaf-gap-score/1, docs/gap-challenge.md.
 std::string score_json(const std::vector<ScoredCase>& cases);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -5,7 +5,7 @@
 
 #include "gap/challenge/score.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -189,4 +189,4 @@ std::string score_json(const std::vector<ScoredCase>& cases) {
   return json.dump(1) + "\n";
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

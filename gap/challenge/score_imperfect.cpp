@@ -3,7 +3,7 @@
 
 #include "gap/challenge/score.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 constexpr double kShareWithin = 0.10;
@@ -94,4 +94,4 @@ std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
   };
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -10,7 +10,7 @@
 #include "gap/diagnose/prediction.hpp"
 #include "gap/parallel.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 
 namespace {
 namespace fs = std::filesystem;
@@ -24,7 +24,7 @@ void make_missing_data(const fs::path& folder, const ChallengeKey& key, unsigned
   std::mutex mutex;
   std::size_t made = 0;
   for_each_job(missing.size(), jobs, [&](std::size_t i) {
-    check_goes_on(stop);
+    diagnose::check_goes_on(stop);
     const fs::path data = case_folder(folder, missing[i]->plan.name), part = data.string() + ".part";
     fs::remove_all(part);
     make_again(missing[i]->plan, part, 1, stop);
@@ -41,4 +41,4 @@ void make_missing_data(const fs::path& folder, const ChallengeKey& key, unsigned
   });
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

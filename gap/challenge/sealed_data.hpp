@@ -12,13 +12,14 @@
 
 #include "gap/challenge/key.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 
 // Makes each dataset of `key` that is not in DIR/cases as it was sealed; others are left alone. After each it tells
-// `progress` how many of the missing ones are made. Throws std::runtime_error where what is made is not what was sealed,
-// by another version of the program or another kind of machine: no dataset is replaced by it. Throws Stopped soon after
-// `stop`, if there is one, is true; what was made by then stays.
+// `progress` how many of the missing ones are made. Throws std::runtime_error where what is made is not what was
+// sealed, by another version of the program or another kind of machine: no dataset is replaced by it. Throws Stopped
+// soon after `stop`, if there is one, is true; what was made by then stays.
 void make_missing_data(const std::filesystem::path& folder, const ChallengeKey& key, unsigned jobs,
-                       const std::atomic<bool>* stop, const std::function<void(std::size_t made, std::size_t missing)>& progress);
+                       const std::atomic<bool>* stop,
+                       const std::function<void(std::size_t made, std::size_t missing)>& progress);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -5,11 +5,11 @@
 
 #include <span>
 
+#include "formats/runs/dataset.hpp"
+#include "formats/runs/whole_file.hpp"
 #include "gap/challenge/plan.hpp"
-#include "runs/dataset.hpp"
-#include "runs/whole_file.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 class Hash {
@@ -51,4 +51,4 @@ std::string sha256_of_dataset(const std::filesystem::path& folder) {
   return hash.hex();
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -1,4 +1,5 @@
 // SHA-256 (FIPS 180-4), by which a challenge's key is committed to before it is shown.
+//
 // Thread safety: pure functions, but for what they read.
 #pragma once
 
@@ -6,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 
 // 64 hexadecimal digits, as sha256sum prints them.
 std::string sha256(std::string_view bytes);
@@ -16,4 +17,4 @@ std::string sha256(std::string_view bytes);
 // read.
 std::string sha256_of_dataset(const std::filesystem::path& folder);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -5,27 +5,27 @@
 #include "gap/diagnose/gap_size.hpp"
 #include "gap/diagnose/repeats.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 struct Squares {
-  KindSquares before, report, hidden, repeats;
+  diagnose::KindSquares before, report, hidden, repeats;
 };
 
-void append(KindSquares& to, const KindSquares& more) {
+void append(diagnose::KindSquares& to, const diagnose::KindSquares& more) {
   to.sum.insert(to.sum.end(), more.sum.begin(), more.sum.end());
   to.bins.insert(to.bins.end(), more.bins.begin(), more.bins.end());
 }
 
 Shrinks shrinks_of(const Squares& squares) {
-  const std::vector<double> weights = kind_weights(squares.before, squares.repeats);
+  const std::vector<double> weights = diagnose::kind_weights(squares.before, squares.repeats);
   Shrinks result;
-  result.before = weighted_rms(squares.before, weights);
+  result.before = diagnose::weighted_rms(squares.before, weights);
   // without repeats the noise is all that is known of what must stay
-  const double of_repeats = weighted_rms(squares.repeats, weights);
+  const double of_repeats = diagnose::weighted_rms(squares.repeats, weights);
   result.floor = std::min(of_repeats > 0 ? of_repeats : 1.0, result.before);
-  result.report = shrink(result.before, weighted_rms(squares.report, weights), result.floor);
-  result.hidden = shrink(result.before, weighted_rms(squares.hidden, weights), result.floor);
+  result.report = diagnose::shrink(result.before, diagnose::weighted_rms(squares.report, weights), result.floor);
+  result.hidden = diagnose::shrink(result.before, diagnose::weighted_rms(squares.hidden, weights), result.floor);
   return result;
 }
 
@@ -34,18 +34,20 @@ Shrinks shrinks_of(const Squares& squares) {
 ShrinksOfRuns shrinks_on(const std::filesystem::path& dataset, const physics::RobotDescription& report,
                          const physics::RobotDescription& hidden, unsigned threads) {
   ComparedRuns runs(dataset, threads);
-  Variation model = runs.predictor.unvaried();
+  diagnose::Variation model = runs.predictor.unvaried();
   model.robot = hidden;
   const Floors floors = floors_around(runs, model);
-  const Differences by_report = runs.residuals - shifts_of(runs, report, Fidelity::every_run);
-  const Differences by_hidden = runs.residuals - shifts_of(runs, hidden, Fidelity::every_run);
+  const Differences by_report = runs.residuals - shifts_of(runs, report, diagnose::Fidelity::every_run);
+  const Differences by_hidden = runs.residuals - shifts_of(runs, hidden, diagnose::Fidelity::every_run);
   ShrinksOfRuns result;
   Squares together;
   for (std::size_t s = 0; s < kEachChannelOnce.size(); ++s) {
-    const std::vector<StageFeatures>& features = runs.features.of(kEachChannelOnce[s]);
-    const auto squares = [&](const Shift& differences) { return squares_by_kind(features, floors[s], differences); };
+    const std::vector<diagnose::StageFeatures>& features = runs.features.of(kEachChannelOnce[s]);
+    const auto squares = [&](const diagnose::Shift& differences) {
+      return diagnose::squares_by_kind(features, floors[s], differences);
+    };
     const Squares stage{squares(runs.residuals[s]), squares(by_report[s]), squares(by_hidden[s]),
-                        squares(deviations_from_repeats(features, by_hidden[s], runs.same_orders))};
+                        squares(diagnose::deviations_from_repeats(features, by_hidden[s], runs.same_orders))};
     result.of_stage[s] = shrinks_of(stage);
     append(together.before, stage.before);
     append(together.report, stage.report);
@@ -56,4 +58,4 @@ ShrinksOfRuns shrinks_on(const std::filesystem::path& dataset, const physics::Ro
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

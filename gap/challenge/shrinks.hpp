@@ -8,7 +8,7 @@
 
 #include "gap/challenge/compared_runs.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 
 struct Shrinks {
   double before = 0, floor = 0;  // rms in units of noise, as in reports
@@ -21,15 +21,16 @@ struct ShrinksOfRuns {
   Shrinks together;                                       // each kind of channels of each stage by its own gap
 };
 
-// Of all runs of a dataset, by the diagnosis' own simulation, floor and measure (gap_size.hpp); the floor is that of the
-// model with the hidden effects. Deterministic, on any number of threads. Throws as observe() does.
+// Of all runs of a dataset, by the diagnosis' own simulation, floor and measure (gap_size.hpp); the floor is that of
+// the model with the hidden effects. Deterministic, on any number of threads. Throws as observe() does.
 ShrinksOfRuns shrinks_on(const std::filesystem::path& dataset, const physics::RobotDescription& report,
                          const physics::RobotDescription& hidden, unsigned threads);
 
 // Of one case; nothing where it was not measured.
 struct CaseShrinks {
-  std::vector<Shrinks> heldout;   // of each stage in which the report names something; `report` is its figure, of held-out runs
+  std::vector<Shrinks>
+      heldout;  // of each stage in which the report names something; `report` is its figure, of held-out runs
   std::optional<Shrinks> unseen;  // on runs of a manoeuvre that the diagnosis did not have, all stages together
 };
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-namespace kenaf::gap {
+namespace kenaf::gap::challenge {
 namespace {
 
 struct StandIn {
@@ -22,8 +22,9 @@ constexpr StandIn kStandIns[] = {
 
 }  // namespace
 
-const std::vector<Candidate>& challenged_numbers() {
-  static const std::vector<Candidate> numbers = description_candidates(physics::load_robot(kChallengedRobot));
+const std::vector<candidates::Candidate>& challenged_numbers() {
+  static const std::vector<candidates::Candidate> numbers =
+      candidates::description_candidates(physics::load_robot(kChallengedRobot));
   return numbers;
 }
 
@@ -41,7 +42,7 @@ std::vector<std::string> withheld_names(const CasePlan& plan) {
 
 std::vector<std::string> numbers_like(std::string_view effect) {
   std::vector<std::string> keys;
-  for (const Candidate& number : challenged_numbers())
+  for (const candidates::Candidate& number : challenged_numbers())
     if (number.same_as == effect) keys.push_back(number.name);
   for (const StandIn& stand_in : kStandIns)
     if (stand_in.effect == effect && physics::find_effect(stand_in.other) == nullptr) keys.emplace_back(stand_in.other);
@@ -50,7 +51,7 @@ std::vector<std::string> numbers_like(std::string_view effect) {
 
 std::vector<std::string> numbers_like_nothing_else() {
   std::vector<std::string> keys;
-  for (const Candidate& number : challenged_numbers())
+  for (const candidates::Candidate& number : challenged_numbers())
     if (number.same_as.empty() && std::ranges::count(kStandIns, number.name, &StandIn::other) == 0)
       keys.push_back(number.name);
   return keys;
@@ -59,7 +60,7 @@ std::vector<std::string> numbers_like_nothing_else() {
 std::string same_effect(const std::string& name) {
   static const std::map<std::string, std::string> same = [] {
     std::map<std::string, std::string> result;
-    for (const Candidate& number : challenged_numbers())
+    for (const candidates::Candidate& number : challenged_numbers())
       if (!number.same_as.empty()) result[number.name] = number.same_as;
     return result;
   }();
@@ -67,4 +68,4 @@ std::string same_effect(const std::string& name) {
   return found == same.end() ? name : found->second;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::challenge

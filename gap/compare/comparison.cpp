@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "gap/compare/pair_runs.hpp"
-#include "gap/plausibility.hpp"
+#include "gap/logs/plausibility.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 namespace {
 
@@ -43,8 +43,8 @@ PoseFrames frames_of(const runs::DatasetRun& run, const fs::path& folder) {
   PoseFrames frames = pose_frames(columns);
   if (!frames.unusable.empty()) return frames;
   constexpr std::string_view kOfPose[] = {"x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad"};
-  for (const Finding& finding : check_units(columns, run.file))
-    if (finding.severity == Finding::Severity::refuse && std::ranges::count(kOfPose, finding.column) > 0)
+  for (const logs::Finding& finding : logs::check_units(columns, run.file))
+    if (finding.severity == logs::Finding::Severity::refuse && std::ranges::count(kOfPose, finding.column) > 0)
       frames.unusable = finding.column + " " + finding.text;
   if (!run.fault.empty()) frames.unusable = "its simulation went wrong: " + run.fault;
   return frames;
@@ -127,4 +127,4 @@ ManoeuvreErrors over_all(const Comparison& comparison) {
   return all;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

@@ -1,4 +1,5 @@
 // Two datasets compared run by run.
+//
 // Thread safety: values and a function without state.
 #pragma once
 
@@ -7,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "formats/runs/dataset.hpp"
 #include "gap/compare/dp_matching.hpp"
 #include "gap/compare/frame_errors.hpp"
 #include "gap/compare/pose_frames.hpp"
-#include "runs/dataset.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 struct CompareOptions {
   bool align_start = true;       // move each simulated run to the start of its real one
@@ -21,27 +22,27 @@ struct CompareOptions {
 };
 
 struct ComparedRun {
-  std::string manoeuvre;         // empty: the datasets name none
-  std::size_t repeat;            // of the manoeuvre, from 0
+  std::string manoeuvre;              // empty: the datasets name none
+  std::size_t repeat;                 // of the manoeuvre, from 0
   std::string real_file, sim_file;    // as the datasets name them
   std::string real_world, sim_world;  // names or paths as load_world() takes them
   std::vector<PoseFrame> real, sim;   // sim as aligned
-  StartOffset start_offset;      // by which sim was moved; zero without CompareOptions::align_start
+  StartOffset start_offset;           // by which sim was moved; zero without CompareOptions::align_start
   Matching matching;
   RunErrors errors;
 };
 
 struct LeftOut {
-  std::string dataset;           // "real" or "sim"
+  std::string dataset;  // "real" or "sim"
   std::string file, manoeuvre;
-  std::string why;               // in words
+  std::string why;  // in words
 };
 
 struct Comparison {
   std::filesystem::path real_folder, sim_folder;
   runs::Dataset real, sim;
   CompareOptions options;
-  std::vector<ComparedRun> runs; // at least one, in the order of the real dataset
+  std::vector<ComparedRun> runs;  // at least one, in the order of the real dataset
   std::vector<LeftOut> left_out;
 };
 
@@ -63,4 +64,4 @@ std::vector<ManoeuvreErrors> by_manoeuvre(const Comparison& comparison);
 // Of all runs.
 ManoeuvreErrors over_all(const Comparison& comparison);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 namespace {
 
@@ -91,4 +91,4 @@ Matching match_paths(std::span<const Eigen::Vector2d> real, std::span<const Eige
   return matching;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

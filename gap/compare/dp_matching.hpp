@@ -16,7 +16,7 @@
 #include <span>
 #include <vector>
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 struct FramePair {
   std::uint32_t real, sim;  // indices of frames, from 0
@@ -42,4 +42,4 @@ std::size_t weighed_pairs(std::size_t real_count, std::size_t sim_count, std::op
 Matching match_paths(std::span<const Eigen::Vector2d> real, std::span<const Eigen::Vector2d> sim,
                      std::optional<std::size_t> band = std::nullopt);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

@@ -11,7 +11,7 @@
 #include "gap/compare/world_section.hpp"
 #include "gap/plot/simplify.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 namespace {
 
@@ -166,4 +166,4 @@ Chart angle_error_figure(const ComparedRun& run, double width_px) {
   return chart;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

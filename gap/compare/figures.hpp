@@ -1,5 +1,6 @@
 // The figures of one compared run, after figures 9 to 16 of the paper: both paths in the vertical plane, pitch, and the
 // errors of position and angle per frame.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -9,7 +10,7 @@
 #include "gap/plot/chart.hpp"
 #include "physics/world_description.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 // To scale, with the world's section behind; `world` may be null.
 plot::Chart path_figure(const ComparedRun& run, const physics::WorldDescription* world, double width_px);
@@ -20,4 +21,4 @@ plot::Chart pitch_figure(const ComparedRun& run, double width_px);
 plot::Chart position_error_figure(const ComparedRun& run, double width_px);
 plot::Chart angle_error_figure(const ComparedRun& run, double width_px);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

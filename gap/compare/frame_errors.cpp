@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 namespace {
 
@@ -100,4 +100,4 @@ RunErrors run_errors(const std::vector<PoseFrame>& real, const std::vector<PoseF
   return errors;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

@@ -4,6 +4,7 @@
 // paths and hides delays. *Same time*: with the simulated pose at the real frame's own time; it shows them.
 //
 // Errors are simulated less real; angles wrapped to [-pi, pi]. NaN: one of the two was not measured.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -14,13 +15,13 @@
 #include "gap/compare/dp_matching.hpp"
 #include "gap/compare/pose_frames.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 struct FrameError {
   double position_m;  // the norm of the difference of (x, z), never negative
   double y_m;
   double roll_rad, pitch_rad, yaw_rad;
-  double time_s;      // how much later the simulated frame is; NaN where they were compared at the same time
+  double time_s;  // how much later the simulated frame is; NaN where they were compared at the same time
 };
 
 FrameError frame_error(const PoseFrame& real, const PoseFrame& sim);
@@ -49,11 +50,11 @@ struct ErrorSummary {
 
 struct RunErrors {
   // A frame of the real run that is in several pairs has the mean of their errors' sizes here.
-  std::vector<FrameError> matched;     // one for each real frame; sizes, but time_s with its sign
-  std::vector<FrameError> same_time;   // one for each real frame; all NaN outside of the simulated run's time
+  std::vector<FrameError> matched;    // one for each real frame; sizes, but time_s with its sign
+  std::vector<FrameError> same_time;  // one for each real frame; all NaN outside of the simulated run's time
   // Every real frame counts once: the pairs that it is in share its weight.
   ErrorSummary matched_summary, same_time_summary;
-  FrameError at_end;                   // of the last pair, the two ends
+  FrameError at_end;  // of the last pair, the two ends
 };
 
 RunErrors run_errors(const std::vector<PoseFrame>& real, const std::vector<PoseFrame>& sim,
@@ -62,4 +63,4 @@ RunErrors run_errors(const std::vector<PoseFrame>& real, const std::vector<PoseF
 // For each pair the share of its real frame: one over the number of pairs that the frame is in.
 std::vector<double> pair_weights(const std::vector<FramePair>& pairs);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

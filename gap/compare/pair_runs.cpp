@@ -2,7 +2,7 @@
 
 #include <map>
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 namespace {
 
@@ -49,4 +49,4 @@ RunPairs pair_runs(const runs::Dataset& real, const runs::Dataset& sim) {
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

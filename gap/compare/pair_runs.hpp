@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "runs/dataset.hpp"
+#include "formats/runs/dataset.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 struct RunPair {
   std::size_t real, sim;  // indices in Dataset::runs
@@ -29,4 +29,4 @@ struct RunPairs {
 // them. Runs without a manoeuvre's name count as one manoeuvre. What has no counterpart is left out, with the reason.
 RunPairs pair_runs(const runs::Dataset& real, const runs::Dataset& sim);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

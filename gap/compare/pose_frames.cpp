@@ -6,7 +6,7 @@
 #include <numbers>
 #include <span>
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 namespace {
 
@@ -157,4 +157,4 @@ StartOffset align_start(const std::vector<PoseFrame>& real, std::vector<PoseFram
   return offset;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

@@ -1,6 +1,7 @@
 // The frames of a run: the rows in which the place of the robot in the vertical plane was measured.
 //
 // Frame W: x forward, y left, z up; intrinsic z-y-x angles, pitch positive nose down; SI units, radians. NaN: unknown.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -8,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "runs/run_file.hpp"
+#include "formats/runs/run_file.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 struct PoseFrame {
-  double t_s;                            // as in the run
-  double x_m, z_m;                       // always known
-  double y_m;                            // this and the angles: NaN where not known
-  double roll_rad, pitch_rad, yaw_rad;   // as measured or between measurements, not wrapped
+  double t_s;                           // as in the run
+  double x_m, z_m;                      // always known
+  double y_m;                           // this and the angles: NaN where not known
+  double roll_rad, pitch_rad, yaw_rad;  // as measured or between measurements, not wrapped
 };
 
 struct PoseFrames {
@@ -48,4 +49,4 @@ struct StartOffset {
 // first `start_s` seconds; 0: the first frame alone. Where y or yaw of a start is not known, only the place is moved.
 StartOffset align_start(const std::vector<PoseFrame>& real, std::vector<PoseFrame>& sim, double start_s);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

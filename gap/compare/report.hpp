@@ -1,4 +1,5 @@
 // A comparison as files and as text. docs/compare.md describes them.
+//
 // Thread safety: pure functions, but for write_report().
 #pragma once
 
@@ -7,7 +8,7 @@
 
 #include "gap/compare/comparison.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 // "matched-000.csv" for the first compared run.
 std::string matched_file_name(std::size_t run);
@@ -29,4 +30,4 @@ std::string comparison_text(const Comparison& comparison);
 // files that are whole. Throws runs::RunFileError.
 void write_report(const Comparison& comparison, const std::filesystem::path& folder);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

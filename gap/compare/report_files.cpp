@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "formats/runs/whole_file.hpp"
 #include "gap/compare/report.hpp"
-#include "runs/whole_file.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 namespace {
 
@@ -143,4 +143,4 @@ void write_report(const Comparison& comparison, const std::filesystem::path& fol
   runs::write_whole_file(folder / "compare.json", comparison_json(comparison));
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

@@ -13,7 +13,7 @@
 #include "gap/compare/report.hpp"
 #include "gap/compare/report_numbers.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 namespace {
 
@@ -47,7 +47,7 @@ class Worlds {
       std::vector<std::string> unsupported;  // of no interest for a picture
       try {
         entry->second = physics::load_world(name, unsupported);
-      } catch (const DescriptionError& error) {
+      } catch (const description::DescriptionError& error) {
         notes.push_back(fmt::format("The ground is not drawn: {}", error.what()));
       }
     }
@@ -193,4 +193,4 @@ std::string comparison_html(const Comparison& comparison) {
   return html + summary_table(comparison, drawn) + sections + left_out_list(comparison) + "</body>\n</html>\n";
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

@@ -6,7 +6,7 @@
 
 #include "gap/compare/comparison.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 inline constexpr double kMillimetres = 1e3, kDegrees = 57.29577951308232;
 
@@ -26,4 +26,4 @@ struct SummaryRow {
 // Each run; after the last of a manoeuvre that has several the manoeuvre; where there are several manoeuvres, all.
 std::vector<SummaryRow> summary_rows(const Comparison& comparison);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

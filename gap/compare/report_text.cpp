@@ -8,7 +8,7 @@
 #include "gap/compare/report.hpp"
 #include "gap/compare/report_numbers.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 namespace {
 
@@ -99,4 +99,4 @@ std::string comparison_text(const Comparison& comparison) {
   return text;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

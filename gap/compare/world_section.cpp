@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 namespace {
 
@@ -99,4 +99,4 @@ void draw_section(plot::Chart& chart, const physics::WorldDescription& world, do
   if (!meshes.empty()) chart.areas.push_back({std::move(meshes), plot::Ink::ground, false});
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

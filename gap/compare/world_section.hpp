@@ -8,11 +8,11 @@
 #include "gap/plot/chart.hpp"
 #include "physics/world_description.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::compare {
 
 struct WorldSection {
-  std::vector<std::vector<Eigen::Vector2d>> solids;                    // convex polygons (x, z) in m: boxes and planes
-  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> surfaces;   // lines of meshes
+  std::vector<std::vector<Eigen::Vector2d>> solids;                   // convex polygons (x, z) in m: boxes and planes
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> surfaces;  // lines of meshes
 };
 
 // The section at `y_m`, of fixed boxes, of planes from low.x to high.x and down to low.z, and of meshes. Boxes that can
@@ -24,4 +24,4 @@ WorldSection world_section(const physics::WorldDescription& world, double y_m, c
 void draw_section(plot::Chart& chart, const physics::WorldDescription& world, double y_m, const Eigen::Vector2d& low,
                   const Eigen::Vector2d& high);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::compare

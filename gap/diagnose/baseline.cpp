@@ -7,10 +7,10 @@
 #include <map>
 #include <utility>
 
+#include "formats/runs/run_file.hpp"
 #include "gap/diagnose/repeats.hpp"
-#include "runs/run_file.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -124,4 +124,4 @@ void compare_against(ComparedFeatures& now, const Baseline& baseline, const Comp
   }
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -14,7 +14,7 @@
 #include "gap/diagnose/observation.hpp"
 #include "gap/diagnose/prediction.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 struct Baseline {
   Observations observations;                     // described as the new dataset's robot
@@ -31,4 +31,4 @@ Baseline observe_baseline(const std::filesystem::path& folder, Observations& now
 void compare_against(ComparedFeatures& now, const Baseline& baseline, const ComparedFeatures& before,
                      const std::array<std::vector<Eigen::VectorXd>, kPassages.size()>& residuals);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

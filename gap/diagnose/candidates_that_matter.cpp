@@ -7,7 +7,7 @@
 #include "gap/diagnose/curve_fit.hpp"
 #include "gap/diagnose/model_search.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // All chosen.
@@ -102,4 +102,4 @@ std::vector<std::size_t> candidates_that_matter(const StageData& data, const Eff
   return matter;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

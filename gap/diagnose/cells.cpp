@@ -7,7 +7,7 @@
 
 #include "gap/diagnose/significance.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::VectorXd;
@@ -66,4 +66,4 @@ double inflation_from_repeats(const std::vector<StageFeatures>& features, const 
   return std::max(1.0, sum / static_cast<double>(squares.size()) / 0.759);
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

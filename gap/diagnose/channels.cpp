@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr auto kChannelCount =
@@ -47,4 +47,4 @@ std::size_t kind_count() {
   return kind_of(kAllChannels.size() - 1) + 1;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -1,5 +1,6 @@
-// The columns of a run that the diagnosis compares between robot and simulation: those of robot::columns(), first what is seen
-// at the drives, then at the body, then by sensors.
+// The columns of a run that the diagnosis compares between robot and simulation: those of robot::columns(), first what
+// is seen at the drives, then at the body, then by sensors.
+//
 // Thread safety: constants.
 #pragma once
 
@@ -9,16 +10,16 @@
 
 #include "robot/columns.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 struct Channel {
-  std::string_view column;   // of a `kenaf-runs/1` file
+  std::string_view column;  // of a `kenaf-runs/1` file
   std::string_view unit;
-  bool angle;                // wraps
+  bool angle;  // wraps
   robot::Seen seen;
-  double resolution;         // finer than this no difference counts, in `unit`
-  std::string_view kind;     // channels of one kind stand side by side
-  bool level;                // says little where the nose points up or down
+  double resolution;      // finer than this no difference counts, in `unit`
+  std::string_view kind;  // channels of one kind stand side by side
+  bool level;             // says little where the nose points up or down
 };
 
 std::span<const Channel> diagnosis_channels();
@@ -27,4 +28,4 @@ std::size_t kind_of(std::size_t channel);
 std::size_t kind_count();
 std::string_view kind_name(std::size_t kind);  // "track speed"
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -7,7 +7,7 @@
 
 #include "gap/diagnose/channels.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 Coherence::Coherence(const std::vector<StageFeatures>& features, std::vector<std::vector<std::size_t>> groups,
                      double stretch_s)
@@ -53,4 +53,4 @@ std::vector<ChannelEnergy> Coherence::by_channel(const std::vector<Eigen::Vector
   return channels;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

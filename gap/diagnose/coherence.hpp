@@ -2,19 +2,20 @@
 //
 // A gap looks alike in the repeats of a manoeuvre and in neighbouring spans of time; noise does not. So differences are
 // first averaged over both (a cell: one channel in one stretch of a manoeuvre) and then squared: 1 is chance.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
 #include <Eigen/Core>
 #include <vector>
 
-#include "gap/diagnose/stage_features.hpp"
 #include "gap/diagnose/noise_floor.hpp"
+#include "gap/diagnose/stage_features.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 struct Cell {
-  std::size_t group;    // of repeats_of()
+  std::size_t group;  // of repeats_of()
   std::size_t channel;
   std::size_t stretch;  // from the start: [stretch, stretch + 1) times stretch_s
   double z;             // standard normal by chance
@@ -42,9 +43,9 @@ class Coherence {
  private:
   std::vector<std::vector<std::size_t>> groups_;
   double stretch_s_;
-  std::vector<Cell> cells_;                         // with z = 0
-  std::vector<double> scale_;                       // 1 / sqrt of the bins in a cell
-  std::vector<std::vector<std::size_t>> cell_of_;   // of each bin of each run
+  std::vector<Cell> cells_;                        // with z = 0
+  std::vector<double> scale_;                      // 1 / sqrt of the bins in a cell
+  std::vector<std::vector<std::size_t>> cell_of_;  // of each bin of each run
 };
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // Between two neighbouring points of a curve, from `a` (share 0) to `b` (share 1).
@@ -226,4 +226,4 @@ Settings settings_of(std::span<const OnCurve> places) {
   return settings;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

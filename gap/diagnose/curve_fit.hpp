@@ -2,6 +2,7 @@
 //
 // Only inner products are needed.
 // Effects are taken to add: that holds for small ones, and is corrected where a fit is confirmed by simulation.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -12,7 +13,7 @@
 
 #include "gap/diagnose/effect_curves.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // Inner products of all columns of the curves, and of what they are fitted to.
 struct Products {
@@ -58,4 +59,4 @@ Eigen::VectorXd shift_at(const Eigen::MatrixXd& shifts, std::span<const OnCurve>
 GroupVectors shift_of(const EffectCurves& curves, std::span<const OnCurve> places);
 Settings settings_of(std::span<const OnCurve> places);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

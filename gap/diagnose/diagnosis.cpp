@@ -17,7 +17,7 @@
 #include "gap/diagnose/repeats.hpp"
 #include "gap/diagnose/stage_candidates.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 std::vector<double> stated_noise(const runs::Dataset& dataset) {
@@ -31,21 +31,22 @@ std::vector<double> stated_noise(const runs::Dataset& dataset) {
 
 // Catalogue, numbers of the description and effects of one's own, without those left out; of candidates that do the
 // same, the first.
-std::vector<Candidate> candidates_for(const Observations& observations, const DiagnosisOptions& options) {
+std::vector<candidates::Candidate> candidates_for(const Observations& observations, const DiagnosisOptions& options) {
   const physics::RobotDescription& robot = observations.robot;
-  std::vector<Candidate> all = all_candidates(robot, has_obstacles(observations));
-  if (!options.effects.empty()) std::ranges::move(read_own_effects(options.effects, robot), std::back_inserter(all));
+  std::vector<candidates::Candidate> all = candidates::all_candidates(robot, has_obstacles(observations));
+  if (!options.effects.empty())
+    std::ranges::move(candidates::read_own_effects(options.effects, robot), std::back_inserter(all));
   std::vector<std::string> left_out = options.without;
   for (const std::string& name : options.without) {
     const bool is_known = physics::find_effect(name) != nullptr ||
-                          std::ranges::any_of(all, [&](const Candidate& c) { return c.effect == name; });
+                          std::ranges::any_of(all, [&](const candidates::Candidate& c) { return c.effect == name; });
     if (!is_known)
       throw std::invalid_argument(fmt::format("--without {}: no such effect; `kenaf-gap effects --robot {}` lists them",
                                               name, observations.robot.name));
-    for (const Candidate& c : all)
+    for (const candidates::Candidate& c : all)
       if (c.effect == name && !c.same_as.empty()) left_out.push_back(c.same_as);
   }
-  std::vector<Candidate> result = leave_out(std::move(all), left_out);
+  std::vector<candidates::Candidate> result = candidates::leave_out(std::move(all), left_out);
   if (result.empty()) throw std::invalid_argument("--without leaves no effect to look for");
   return result;
 }
@@ -193,7 +194,7 @@ void widen_intervals(std::vector<StageDiagnosis>& stages, const std::vector<Prep
 }
 }  // namespace
 
-Diagnosis diagnose(const std::filesystem::path& folder, const DiagnosisOptions& options) {
+Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisOptions& options) {
   Diagnosis d;
   d.options = options;
   d.options.progress = {};
@@ -273,4 +274,4 @@ std::string group_title(const Diagnosis& d, std::size_t group) {
   return run.manoeuvre;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "gap/golden_section.hpp"
+#include "gap/diagnose/golden_section.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // Chosen: from one bin to longer than most manoeuvres' phases. The likelihood is flat between neighbours.
@@ -81,4 +81,4 @@ Discrepancy most_likely_discrepancy(std::span<const SeriesOfKind> series) {
   return best;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -2,8 +2,10 @@
 // O'Hagan 2014). It is coherent in time, differs from run to run, and its size is estimated together with the effects.
 //
 // In each channel it is an Ornstein-Uhlenbeck process, a stationary Gaussian process with the covariance
-// sigma^2 exp(-|dt| / memory). That process is Markov, so that a Kalman filter turns a series of n bins into n independent
-// standardised innovations in O(n) operations (Sarkka and Solin 2019, Applied Stochastic Differential Equations, ch. 10 and 12).
+// sigma^2 exp(-|dt| / memory). That process is Markov, so that a Kalman filter turns a series of n bins into n
+// independent standardised innovations in O(n) operations (Sarkka and Solin 2019, Applied Stochastic Differential
+// Equations, ch. 10 and 12).
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -11,7 +13,7 @@
 #include <span>
 #include <vector>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // Of one kind of channels. sigma in the unit of the channel, at least 0; memory_s > 0.
 struct Discrepancy {
@@ -19,8 +21,8 @@ struct Discrepancy {
   double memory_s = 1;
 };
 
-// Turns series with independent noise and a discrepancy into independent numbers of variance 1: the inverse of a Cholesky
-// factor of their covariance, without forming it.
+// Turns series with independent noise and a discrepancy into independent numbers of variance 1: the inverse of a
+// Cholesky factor of their covariance, without forming it.
 class SeriesWhitener {
  public:
   // `t_s`: of each bin, increasing. `variance`: of its noise, above 0.
@@ -45,8 +47,8 @@ struct SeriesOfKind {
   // Parts of the log-likelihood that this series counts for; 1 but where runs are weighted.
   double weight = 1;
 };
-// The discrepancy that makes `series` most likely, of one kind of channels: maximum likelihood over sigma for each of a few
-// memories from 0.25 to 16 s. sigma is 0 where noise alone explains them as well.
+// The discrepancy that makes `series` most likely, of one kind of channels: maximum likelihood over sigma for each of a
+// few memories from 0.25 to 16 s. sigma is 0 where noise alone explains them as well.
 Discrepancy most_likely_discrepancy(std::span<const SeriesOfKind> series);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

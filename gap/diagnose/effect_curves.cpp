@@ -5,7 +5,7 @@
 #include <iterator>
 #include <optional>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // Parts of the way from neutral to an end of the range.
@@ -83,7 +83,7 @@ std::vector<Setting> parts_of_ranges(const EffectCurves& curves, std::span<const
                                      std::span<const double> parts) {
   std::vector<Setting> points;
   for (const std::size_t c : chosen) {
-    const Candidate& candidate = curves.candidates[c];
+    const candidates::Candidate& candidate = curves.candidates[c];
     for (const double end : {candidate.min, candidate.max})
       for (const double part : parts)
         if (const double value = candidate.present + part * (end - candidate.present);
@@ -100,7 +100,7 @@ std::vector<Setting> ends_of_short_sides(const EffectCurves& curves, const Stage
   const double gap = gap_in_noise(data);
   std::vector<Setting> ends;
   for (const std::size_t c : chosen) {
-    const Candidate& candidate = curves.candidates[c];
+    const candidates::Candidate& candidate = curves.candidates[c];
     const std::vector<CurvePoint>& points = curves.curves[c].points;
     const auto side_of = [&](double value) { return value > candidate.present ? 1 : 0; };
     std::optional<double> length_by_value[2];
@@ -122,13 +122,13 @@ std::vector<Setting> ends_of_short_sides(const EffectCurves& curves, const Stage
 }
 
 // The upper end of the range; the lower one where there is nothing above.
-double end_of_range(const Candidate& candidate) {
+double end_of_range(const candidates::Candidate& candidate) {
   return candidate.max > candidate.present ? candidate.max : candidate.min;
 }
 
 }  // namespace
 
-double ordinarily_off(const Candidate& candidate) {
+double ordinarily_off(const candidates::Candidate& candidate) {
   const double to_end = end_of_range(candidate) - candidate.present;
   return candidate.present + std::copysign(std::min(kOrdinarilyOff * candidate.whole, std::abs(to_end)), to_end);
 }
@@ -155,7 +155,7 @@ bool is_bent(const EffectCurves& curves, const StageData& data, std::size_t c, d
   return !halves_of_bends(curves, data, c, length).empty();
 }
 
-EffectCurves empty_curves(const StageData& data, std::span<const Candidate> candidates) {
+EffectCurves empty_curves(const StageData& data, std::span<const candidates::Candidate> candidates) {
   EffectCurves curves{candidates, {}, {}};
   for (std::size_t c = 0; c < candidates.size(); ++c)
     curves.curves.push_back({c, {{candidates[c].present, -1, true}}, 0});
@@ -180,7 +180,7 @@ void add_first_look(EffectCurves& curves, const StageData& data, std::span<const
                     const Simulate& simulate) {
   std::vector<Setting> points;
   for (const std::size_t c : chosen) {
-    const Candidate& candidate = curves.candidates[c];
+    const candidates::Candidate& candidate = curves.candidates[c];
     const bool both_ways = candidate.min < candidate.present && candidate.present < candidate.max;
     const double end = end_of_range(candidate);
     points.push_back({c, candidate.present + kSpread[0] * (end - candidate.present)});
@@ -238,4 +238,4 @@ void insert_points(EffectCurves& curves, const StageData& data, std::span<const 
   }
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

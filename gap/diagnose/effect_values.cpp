@@ -9,7 +9,7 @@
 #include "gap/diagnose/significance.hpp"
 #include "gap/diagnose/trend.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -68,7 +68,7 @@ OwnValue own_value(const EffectCurves& curves, const OnCurve& place, const Matri
 }
 
 // By `sigma`, but not beyond a jump of the curve; beside one its whole segment, as the jump may be anywhere in it.
-Interval interval_of(const EffectCurve& curve, const Candidate& candidate, double value, double sigma) {
+Interval interval_of(const EffectCurve& curve, const candidates::Candidate& candidate, double value, double sigma) {
   Interval interval{value, std::max(candidate.min, value - kHalfWidth * sigma),
                     std::min(candidate.max, value + kHalfWidth * sigma)};
   for (std::size_t i = 1; i < curve.points.size(); ++i) {
@@ -137,7 +137,7 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
   const GroupVectors left = without_open_shapes(data, residual, model.likelihood.discrepancies);
   std::vector<EffectValue> values;
   for (std::size_t e = 0; e < model.places.size(); ++e) {
-    const Candidate& candidate = standing.curves.candidates[model.places[e].curve];
+    const candidates::Candidate& candidate = standing.curves.candidates[model.places[e].curve];
     const RandomEffect random = random_effect(own[e]);
     const auto i = static_cast<Index>(e);
     const double variance = information(i, i) > 0 ? covariance(i, i) : std::numeric_limits<double>::infinity();
@@ -149,4 +149,4 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
   return values;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -1,5 +1,6 @@
-// What other stages say of a stage's candidates: the same robot drove in all of them, so what one names is no surprise in another,
-// and what one speaks against is no cause in another.
+// What other stages say of a stage's candidates: the same robot drove in all of them, so what one names is no surprise
+// in another, and what one speaks against is no cause in another.
+//
 // Thread safety: values.
 #pragma once
 
@@ -11,7 +12,7 @@
 #include "gap/diagnose/evidence.hpp"
 #include "gap/diagnose/stage_features.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // An effect that another stage names, alone.
 struct NamedElsewhere {
@@ -36,4 +37,4 @@ struct Elsewhere {
   }
 };
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

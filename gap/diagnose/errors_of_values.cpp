@@ -7,7 +7,7 @@
 
 #include "gap/random_numbers.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -19,11 +19,11 @@ constexpr int kRobots = 8;
 constexpr double kOfRobots = 2.306;  // as kHalfWidth, of Student's t with kRobots degrees of freedom
 
 // Of the numbers alone; uniform, as a tolerance is.
-Settings drawn(std::span<const Candidate> candidates, const NumbersOff& numbers, Random& random) {
+Settings drawn(std::span<const candidates::Candidate> candidates, const NumbersOff& numbers, Random& random) {
   const double most = std::numbers::sqrt3 * numbers.sigma;
   Settings settings;
   for (const std::size_t c : numbers.candidates) {
-    const Candidate& candidate = candidates[c];
+    const candidates::Candidate& candidate = candidates[c];
     const double value = candidate.present + uniform(random, -most, most) * candidate.whole;
     settings.push_back({c, std::clamp(value, candidate.min, candidate.max)});
   }
@@ -96,11 +96,11 @@ VectorXd errors_of_values(const StageData& data, const StandingModel& standing, 
   return (of_noise.cwiseMax(0) + of_numbers).cwiseSqrt();
 }
 
-Interval widened(Interval interval, double standard_error, const Candidate& candidate) {
+Interval widened(Interval interval, double standard_error, const candidates::Candidate& candidate) {
   const double half = kHalfWidth * standard_error;
   interval.from = std::min(interval.from, std::max(candidate.min, interval.value - half));
   interval.to = std::max(interval.to, std::min(candidate.max, interval.value + half));
   return interval;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

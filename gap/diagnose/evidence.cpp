@@ -10,7 +10,7 @@
 #include "gap/diagnose/channels.hpp"
 #include "gap/parallel.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -397,4 +397,4 @@ std::vector<HeldOutShares::OfSet> shares_of_sets_held_out(const StageView& view,
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -1,4 +1,5 @@
 // What a model is worth on runs that it was not fitted to.
+//
 // Thread safety: values and pure functions; deterministic for a seed.
 #pragma once
 
@@ -13,7 +14,7 @@
 #include "gap/diagnose/gap_size.hpp"
 #include "gap/diagnose/side_by_side.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // What a stage is measured with.
 struct StageView {
@@ -35,13 +36,13 @@ struct GapMeasure {
 GapMeasure measure_gap(const StageView& view, const std::vector<Eigen::VectorXd>& after,
                        const std::vector<Eigen::VectorXd>& deviations, std::uint64_t seed);
 
-// Of each run that is the only one of its manoeuvre and without which the others do not show some effect, as that should gain
-// less than `evidence` there: its first half, up to where half of what the model shifts in it is over.
+// Of each run that is the only one of its manoeuvre and without which the others do not show some effect, as that
+// should gain less than `evidence` there: its first half, up to where half of what the model shifts in it is over.
 std::vector<RunPart> halves_of_runs_alone(const StageView& view, Passage passage, const StandingModel& standing,
                                           double evidence);
 
-// The places of a model fitted without the parts of each fold, for every run of each of its parts, in the order of time.
-// A single fold holds nothing out.
+// The places of a model fitted without the parts of each fold, for every run of each of its parts, in the order of
+// time. A single fold holds nothing out.
 struct PlacesOfPart {
   RunPart part;
   std::vector<OnCurve> places;
@@ -51,11 +52,11 @@ std::vector<std::vector<PlacesOfPart>> places_held_out(const StageView& view, Pa
                                                        unsigned threads);
 
 // Shares of the squared gap that a model takes off, each of its effects and sets of them: with them, fitted to the runs
-// that are not held out, less without them, the others as they are or fitted again to all runs, whichever takes off more. By
-// curves, on runs held out; at most 1.
+// that are not held out, less without them, the others as they are or fitted again to all runs, whichever takes off
+// more. By curves, on runs held out; at most 1.
 //
-// `beyond_numbers`, `of_kind` and `model_of_kind` have numbers of the description that are a little off in either model, as
-// the runs that are fitted to have them: what these explain as well is no share of an effect's.
+// `beyond_numbers`, `of_kind` and `model_of_kind` have numbers of the description that are a little off in either
+// model, as the runs that are fitted to have them: what these explain as well is no share of an effect's.
 struct HeldOutShares {
   // Of the stage, and of the kind of channels in which the effect takes off most.
   struct OfEffect {
@@ -74,10 +75,11 @@ struct HeldOutShares {
     OfEffect share;
   };
   std::vector<OfSet> sets{};  // those of interest, small ones first; shares_of_sets_held_out()
-  double model = 0;  // of the stage
+  double model = 0;           // of the stage
 };
 //
-// `without_each`: as simulated, of the model without each of its effects, the others at its values; empty: as the curves add up.
+// `without_each`: as simulated, of the model without each of its effects, the others at its values; empty: as the
+// curves add up.
 HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing,
                               const std::vector<Model>& without_each, const Folds& folds, unsigned threads);
 
@@ -90,4 +92,4 @@ std::vector<HeldOutShares::OfSet> shares_of_sets_held_out(const StageView& view,
                                                           const std::vector<Model>& without_sets, const Folds& folds,
                                                           unsigned threads);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -7,7 +7,7 @@
 #include "gap/diagnose/channels.hpp"
 #include "gap/logs/course.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
@@ -46,7 +46,7 @@ FeatureMap::FeatureMap(const runs::Run& measured, double span_s, std::span<const
     }
     if (series.t_s.empty()) continue;
     if (channel.angle) unwrap(series.value);
-    series.interval_s = series.t_s.size() > 1 ? median_step(series.t_s, series.value) : 0;
+    series.interval_s = series.t_s.size() > 1 ? logs::median_step(series.t_s, series.value) : 0;
     for (std::size_t i = 0; i < series.t_s.size(); ++i) {
       // a time on a border belongs to the later span, whatever its last bit
       const auto span = static_cast<std::size_t>(series.t_s[i] / span_s + 1e-6);
@@ -116,4 +116,4 @@ Eigen::VectorXd FeatureMap::of(const runs::Run& simulated, double late) const {
   return means;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

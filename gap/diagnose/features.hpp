@@ -1,7 +1,8 @@
 // What of a run is compared: the mean of each channel over short spans of time.
 //
-// A span's mean has less noise than a sample, and real and simulated runs need not be sampled at the same times. Time is
-// never warped: that would hide a delay.
+// A span's mean has less noise than a sample, and real and simulated runs need not be sampled at the same times. Time
+// is never warped: that would hide a delay.
+//
 // Thread safety: immutable after construction.
 #pragma once
 
@@ -10,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "runs/run_file.hpp"
+#include "formats/runs/run_file.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 struct Bin {
   std::size_t channel;  // of diagnosis_channels()
@@ -47,4 +48,4 @@ class FeatureMap {
   Eigen::VectorXd measured_;
 };
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr std::size_t kMostFolds = 5;
@@ -58,4 +58,4 @@ bool UsedParts::holds(std::size_t run, double t_s) const {
   return is_in_fold == inside_;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -1,4 +1,5 @@
 // Which runs, or parts of runs, are held out of a fit together.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -9,7 +10,7 @@
 
 #include "gap/diagnose/observation.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // A run from one time to another, since its start: all of it, where nothing else is said.
 struct RunPart {
@@ -52,4 +53,4 @@ class UsedParts {
   bool inside_ = false;
 };
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

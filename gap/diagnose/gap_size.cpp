@@ -5,7 +5,7 @@
 
 #include "gap/diagnose/channels.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 KindSquares squares_by_kind(const std::vector<StageFeatures>& features, const NoiseFloor& floor,
                             const std::vector<Eigen::VectorXd>& differences, const std::vector<double>& weights) {
@@ -55,4 +55,4 @@ double shrink(double before, double after, double floor) {
   return before > floor ? std::min(1.0, 1 - (after - floor) / (before - floor)) : 0;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::MatrixXd;
@@ -54,4 +54,4 @@ Isolability isolability(const StageData& data, const EffectCurves& curves) {
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

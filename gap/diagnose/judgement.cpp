@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // Effects stand in for each other where together they take off more than so many times what each does alone (chosen).
@@ -22,7 +22,7 @@ bool takes_off_enough(const HeldOutShares::OfEffect& share, const DecisionSettin
   return share.of_stage >= settings.stage_share && share.beyond_numbers >= settings.stage_share;
 }
 
-double change_by(const NamedEffect& effect, const Candidate& candidate) {
+double change_by(const NamedEffect& effect, const candidates::Candidate& candidate) {
   return std::abs(effect.value.value.value - candidate.present);
 }
 
@@ -84,7 +84,7 @@ std::vector<std::size_t> places_of_sets(const HeldOutShares& shares, const HeldO
   return places;
 }
 
-void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOutShares& shares,
+void judge(StageDecision& d, std::span<const candidates::Candidate> candidates, const HeldOutShares& shares,
            const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings) {
   using Share = HeldOutShares::OfEffect;
   for (std::size_t i = 0; i < d.effects.size(); ++i) {
@@ -116,4 +116,4 @@ void judge(StageDecision& d, std::span<const Candidate> candidates, const HeldOu
   d.verdict = any_rival ? Verdict::ambiguous : any_named ? Verdict::named : Verdict::unknown;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

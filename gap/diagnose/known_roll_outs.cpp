@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 std::size_t KnownRollOuts::number_of(const Variation& variation) {
   const auto place = std::ranges::find(variations_, variation);
@@ -26,4 +26,4 @@ void KnownRollOuts::forget() {
   *this = {};
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

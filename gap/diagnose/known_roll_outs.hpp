@@ -1,5 +1,6 @@
-// What the simulator has said already: two stages are compared in one replay, models share what is open around them, and two fits
-// may ask for one point. Nothing of that is simulated twice.
+// What the simulator has said already: two stages are compared in one replay, models share what is open around them,
+// and two fits may ask for one point. Nothing of that is simulated twice.
+//
 // Thread safety: a value.
 #pragma once
 
@@ -13,7 +14,7 @@
 #include "gap/diagnose/stage_features.hpp"
 #include "gap/diagnose/variation.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // What a run is driven with again.
 enum class Replay { commands, belts };
@@ -46,4 +47,4 @@ class KnownRollOuts {
   std::size_t bytes_ = 0;
 };
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -10,7 +10,7 @@
 #include "gap/diagnose/left_over_regressors.hpp"
 #include "gap/diagnose/left_over_words.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -158,4 +158,4 @@ std::vector<Dependence> describe_left_over(std::span<const LeftOverRun> runs, bo
   return told;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -6,7 +6,7 @@
 #include <map>
 #include <random>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -235,4 +235,4 @@ double lateness(const LeftOverRows& rows, const std::vector<LeftOverTerm>& terms
   return -term.slope / measured_share;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -4,7 +4,7 @@
 
 #include "gap/diagnose/left_over_words.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using R = Regressor;
@@ -157,4 +157,4 @@ std::vector<std::string> look_at_for_runs(Quantity quantity) {
   return named(causes_of(quantity).of_runs);
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

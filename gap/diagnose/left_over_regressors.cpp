@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -302,4 +302,4 @@ LeftOverRows rows_of(std::span<const LeftOverRun> runs, const QuantityInfo& quan
   return rows;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

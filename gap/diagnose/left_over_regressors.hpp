@@ -1,4 +1,6 @@
-// What a left-over is regressed on: the simulated quantity itself, what comes of it when it is late, and what else was measured.
+// What a left-over is regressed on: the simulated quantity itself, what comes of it when it is late, and what else was
+// measured.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -11,25 +13,26 @@
 #include "gap/diagnose/left_over.hpp"
 #include "gap/diagnose/left_over_series.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // In the order in which they are preferred where they explain the same.
 enum class Regressor {
-  simulated,     // the quantity itself: slope -0.48 where 0.52 of it was measured
-  delay,         // what it changed by in the last `parameter` seconds, for each second: slope -0.2 where it is 0.2 s late
-  lag,           // the same of a first-order lag of `parameter` seconds
-  ramp,          // what a limit of `parameter` on its change holds back: slope -1
-  constant,      // 1
-  direction,     // its sign; 0 about 0
-  command,       // commanded track speed, mean or of that track
-  speed,         // measured, mean of the tracks
-  turn,          // measured turn rate
-  turn_size,     // its absolute value
+  simulated,  // the quantity itself: slope -0.48 where 0.52 of it was measured
+  delay,      // what it changed by in the last `parameter` seconds, for each second: slope -0.2 where it is 0.2 s late
+  lag,        // the same of a first-order lag of `parameter` seconds
+  ramp,       // what a limit of `parameter` on its change holds back: slope -1
+  constant,   // 1
+  direction,  // its sign; 0 about 0
+  command,    // commanded track speed, mean or of that track
+  speed,      // measured, mean of the tracks
+  turn,       // measured turn rate
+  turn_size,  // its absolute value
   acceleration,  // forward, measured by the tracks
   load,          // measured current, mean of the tracks' motors
   pitch,
-  time,          // since the start of the run
-  place_x, place_y
+  time,  // since the start of the run
+  place_x,
+  place_y
 };
 
 struct LeftOverCandidate {
@@ -43,12 +46,12 @@ struct LeftOverCandidate {
 struct LeftOverRows {
   QuantityInfo quantity;
   std::vector<LeftOverCandidate> candidates;
-  Eigen::MatrixXd x;               // [row][candidate]
-  Eigen::VectorXd error, sigma;    // measured minus simulated; its noise
+  Eigen::MatrixXd x;             // [row][candidate]
+  Eigen::VectorXd error, sigma;  // measured minus simulated; its noise
   Eigen::VectorXd simulated;
-  Eigen::VectorXd speed_mps;       // how fast the tracks run, the mean of their sizes; NaN where not measured
+  Eigen::VectorXd speed_mps;  // how fast the tracks run, the mean of their sizes; NaN where not measured
   Eigen::VectorXd time_s;
-  std::vector<std::size_t> run;    // of each row
+  std::vector<std::size_t> run;  // of each row
   std::size_t runs = 0;
 };
 
@@ -57,4 +60,4 @@ LeftOverRows rows_of(std::span<const LeftOverRun> runs, const QuantityInfo& quan
 
 bool is_late(Regressor kind);  // delay, lag or ramp
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -110,4 +110,4 @@ double quantile_of(std::vector<double> values, double share) {
   return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -1,5 +1,6 @@
-// Least squares in which neither a single row nor a whole run counts for all (Huber, Robust Estimation of a Location Parameter,
-// 1964), of a left-over.
+// Least squares in which neither a single row nor a whole run counts for all (Huber, Robust Estimation of a Location
+// Parameter, 1964), of a left-over.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -8,7 +9,7 @@
 
 #include "gap/diagnose/left_over_regressors.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // Rows with what of them counts how much.
 struct RobustRows {
@@ -38,4 +39,4 @@ bool is_above_chance(const std::vector<double>& gains);
 // That share of the values is smaller; of at least one value.
 double quantile_of(std::vector<double> values, double share);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

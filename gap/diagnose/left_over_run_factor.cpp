@@ -3,7 +3,7 @@
 
 #include "gap/diagnose/left_over_fit.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -103,4 +103,4 @@ std::optional<RunFactor> run_factor(const LeftOverRows& rows, const LeftOverFit&
   return best;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -1,4 +1,6 @@
-// The quantities in which a left-over is told: rates of the body in place of its pose, both tracks as mean and difference.
+// The quantities in which a left-over is told: rates of the body in place of its pose, both tracks as mean and
+// difference.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -8,18 +10,18 @@
 
 #include "gap/diagnose/left_over.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 enum class Quantity {
   track_mean,
   track_difference,  // right minus left
   left_track,
   right_track,
-  current,           // mean of the tracks' motors
+  current,  // mean of the tracks' motors
   battery,
-  forward,           // in the body's frame, from the pose
+  forward,  // in the body's frame, from the pose
   sideways,
-  yaw_rate,          // from the pose
+  yaw_rate,  // from the pose
   gyro,
   pitch,
   roll,
@@ -52,4 +54,4 @@ Eigen::VectorXd filled(const Eigen::VectorXd& values);
 // Change for each second, over half a second or a little more; NaN at the ends and beside gaps.
 Eigen::VectorXd rate_of(const Eigen::VectorXd& values, double span_s);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -199,4 +199,4 @@ std::string words_of(const LeftOverRows& rows, const LeftOverFit& fit, const Run
                      most, what, 100 * by_run.share);
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -1,4 +1,5 @@
 // A term of what is left as a plain sentence, with where it holds, and what to look at because of it.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -7,7 +8,7 @@
 
 #include "gap/diagnose/left_over_fit.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // "yaw rate: measured 0.52 of the simulated, in every turn, at all speeds (84 % of what is left)".
 std::string words_of(const LeftOverRows& rows, const LeftOverFit& fit, const LeftOverTerm& term);
@@ -21,4 +22,4 @@ Eigen::VectorXd left_to(const LeftOverRows& rows, const LeftOverFit& fit, const 
 std::vector<std::string> look_at(Quantity quantity, Regressor on);
 std::vector<std::string> look_at_for_runs(Quantity quantity);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

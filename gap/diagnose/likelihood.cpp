@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "gap/diagnose/channels.hpp"
-#include "gap/golden_section.hpp"
+#include "gap/diagnose/golden_section.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -314,4 +314,4 @@ std::vector<double> deviance_of_groups(const StageData& data, const GroupVectors
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

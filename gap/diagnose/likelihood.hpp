@@ -1,11 +1,13 @@
-// How likely the residuals of a stage are under a model, with what the model lacks counted in: the covariance of a group is
+// How likely the residuals of a stage are under a model, with what the model lacks counted in: the covariance of a
+// group is
 //
 //   noise (diagonal) + discrepancy (of each channel) + L L'    and over all groups together + N N'
 //
-// L: shapes that are open in each group by itself, N: shapes with one amount in all groups, among them what the numbers of the
-// description shift that are each a little off. The sizes of the discrepancies and of that are those that make the
-// residuals most likely (empirical Bayes), so a model that leaves a lot is believed less, in the channels where it
+// L: shapes that are open in each group by itself, N: shapes with one amount in all groups, among them what the numbers
+// of the description shift that are each a little off. The sizes of the discrepancies and of that are those that make
+// the residuals most likely (empirical Bayes), so a model that leaves a lot is believed less, in the channels where it
 // leaves a lot. All is done by inner products of whitened columns.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -16,7 +18,7 @@
 #include "gap/diagnose/discrepancy.hpp"
 #include "gap/diagnose/stage_data.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 using GroupVectors = std::vector<Eigen::VectorXd>;  // of each group of a stage, its bins
 
@@ -51,8 +53,8 @@ class GroupWhitener {
 };
 std::vector<GroupWhitener> whiteners_of(const StageData& data, const Discrepancies& discrepancies);
 
-// Inner products of columns, summed over groups, with the amounts of shared shapes integrated out: x' C^-1 y for all pairs of
-// columns, C the covariance. `columns`: of each group, the same number. `weights`: of groups; empty: 1.
+// Inner products of columns, summed over groups, with the amounts of shared shapes integrated out: x' C^-1 y for all
+// pairs of columns, C the covariance. `columns`: of each group, the same number. `weights`: of groups; empty: 1.
 Eigen::MatrixXd inner_products(const std::vector<GroupWhitener>& whiteners, const std::vector<Eigen::MatrixXd>& columns,
                                std::span<const double> weights = {});
 
@@ -70,15 +72,17 @@ Likelihood likelihood_with(const StageData& data, const GroupVectors& residual, 
 std::vector<Eigen::VectorXd> whitened_rest(const StageData& data, const GroupVectors& residual,
                                            const Discrepancies& discrepancies);
 
-// A residual less what shared shapes most likely have in it, those of the description's numbers among them; of each group.
+// A residual less what shared shapes most likely have in it, those of the description's numbers among them; of each
+// group.
 GroupVectors without_shared_shapes(const StageData& data, const GroupVectors& residual,
                                    const Discrepancies& discrepancies);
 
 // The same less what the shapes that are open in each group by itself most likely have in it, too.
-GroupVectors without_open_shapes(const StageData& data, const GroupVectors& residual, const Discrepancies& discrepancies);
+GroupVectors without_open_shapes(const StageData& data, const GroupVectors& residual,
+                                 const Discrepancies& discrepancies);
 
-// How far each direction of the description's numbers most likely is off, in the unit of StageGroup::number_shapes; none by
-// more than 3 sigma, discrepancies.numbers_off.
+// How far each direction of the description's numbers most likely is off, in the unit of StageGroup::number_shapes;
+// none by more than 3 sigma, discrepancies.numbers_off.
 Eigen::VectorXd most_likely_numbers(const StageData& data, const GroupVectors& residual,
                                     const Discrepancies& discrepancies);
 
@@ -86,4 +90,4 @@ Eigen::VectorXd most_likely_numbers(const StageData& data, const GroupVectors& r
 std::vector<double> deviance_of_groups(const StageData& data, const GroupVectors& residual,
                                        const Discrepancies& discrepancies);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

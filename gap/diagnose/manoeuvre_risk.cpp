@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr double kFallWithin_s = 0.5;
@@ -138,4 +138,4 @@ Gentleness gentleness(const rollout::Manoeuvre& manoeuvre, bool level_ground, co
   return moves_flippers(manoeuvre) ? Gentleness::flat_flippers : Gentleness::flat_driving;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

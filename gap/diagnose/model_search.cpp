@@ -7,7 +7,7 @@
 
 #include "gap/parallel.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // Of the way from the present value: a curve is known on either side of a fit at these factors, so that its bend there
@@ -76,7 +76,7 @@ std::size_t near_best(std::span<const Model> sorted, double nominal_deviance, co
 
 // The fitted value and one on either side of it, where the curve has no point near them.
 std::vector<Setting> points_around(const EffectCurves& curves, const OnCurve& place, double bracket, bool exact) {
-  const Candidate& candidate = curves.candidates[place.curve];
+  const candidates::Candidate& candidate = curves.candidates[place.curve];
   const std::vector<CurvePoint>& points = curves.curves[place.curve].points;
   const double reach = place.value - candidate.present;
   if (reach == 0) return {};
@@ -101,7 +101,7 @@ void keep_better(Model& best, const StageData& data, const Model& fitted, GroupV
 
 // At the end of what is known of its curve, where its range goes on.
 bool ends_early(const EffectCurves& curves, const OnCurve& place) {
-  const Candidate& candidate = curves.candidates[place.curve];
+  const candidates::Candidate& candidate = curves.candidates[place.curve];
   const std::vector<CurvePoint>& points = curves.curves[place.curve].points;
   return (place.value <= points.front().value && points.front().value > candidate.min) ||
          (place.value >= points.back().value && points.back().value < candidate.max);
@@ -375,4 +375,4 @@ std::vector<Model> search_sets(const StageData& data, EffectCurves& curves, cons
   return models;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

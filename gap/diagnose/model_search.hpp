@@ -1,7 +1,9 @@
 // Models of a stage's gap, that is effects at fitted values, from curves to exact simulations.
 //
-// Cheap before dear: coarse curves rank all effects and sets of them; the best ones get points where they fit best, then
-// one run of each group at the full rate. Models are compared by their deviance, each with the discrepancies that suit it best.
+// Cheap before dear: coarse curves rank all effects and sets of them; the best ones get points where they fit best,
+// then one run of each group at the full rate. Models are compared by their deviance, each with the discrepancies that
+// suit it best.
+//
 // Thread safety: pure functions apart from what the simulator does.
 #pragma once
 
@@ -12,7 +14,7 @@
 #include "gap/diagnose/effect_curves.hpp"
 #include "gap/diagnose/likelihood.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 struct Model {
   std::vector<OnCurve> places;  // none: nominal
@@ -29,15 +31,15 @@ struct SearchSettings {
   int rounds = 2;               // of refining, coarse
   int exact_rounds = 4;         // at most, of refining at the full rate
   double near = 0.1;            // share of what the best one's deviance gains by which a finalist may be worse
-  double worth = 12;            // deviance that a single effect must gain on its curve to be refined: near what a name asks for
+  double worth = 12;  // deviance that a single effect must gain on its curve to be refined: near what a name asks for
   unsigned threads = 0;
 };
 
 Model nominal_model(const StageData& data);
 GroupVectors residuals_of(const StageData& data);
 // As it simulates at `settings`, every run. `like`: another model, with whose discrepancies the estimate begins.
-Model simulated_model(const StageData& data, const EffectCurves& curves, const Simulate& simulate, const Settings& settings,
-                      const Model& like);
+Model simulated_model(const StageData& data, const EffectCurves& curves, const Simulate& simulate,
+                      const Settings& settings, const Model& like);
 // What a model leaves of each group.
 GroupVectors rest_of(const StageData& data, const Model& model);
 bool has_effect(const Model& model, std::size_t candidate);
@@ -62,10 +64,10 @@ std::vector<Model> search_singles(const StageData& data, EffectCurves& curves, c
 // Sets of effects that these runs show.
 std::vector<EffectSet> all_pairs(const EffectCurves& curves);
 std::vector<EffectSet> with_one_more(const EffectCurves& curves, const EffectSet& set);
-// Those whose deviance is less than that of `than` by `by`, best first; only sets that were simulated at the full rate. What `than`
-// shifts beyond the sum of its curves is taken to be so in the sets, too, until they are simulated.
-// Curves that end before an effect's range does where one of the first sets fits best are followed to its ends.
+// Those whose deviance is less than that of `than` by `by`, best first; only sets that were simulated at the full rate.
+// What `than` shifts beyond the sum of its curves is taken to be so in the sets, too, until they are simulated. Curves
+// that end before an effect's range does where one of the first sets fits best are followed to its ends.
 std::vector<Model> search_sets(const StageData& data, EffectCurves& curves, const Model& than, double by,
                                const Simulate& simulate, const SearchSettings& settings, std::vector<EffectSet> sets);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -16,7 +16,7 @@
 #include "gap/diagnose/separation.hpp"
 #include "gap/parallel.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr double kLongestProposed_s = 40;  // chosen: what takes longer is driven in parts
@@ -323,4 +323,4 @@ std::string advice_in_words(std::span<const ProposedManoeuvre> proposed) {
   return none + "; nearest comes " + in_words(first);
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -7,7 +7,7 @@
 
 #include "gap/diagnose/channels.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -266,4 +266,4 @@ std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, 
   return open;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -30,7 +30,7 @@ struct SlightlyOff {
   Settings settings;
   double by;
 };
-SlightlyOff slightly_off(const Candidate& candidate, std::size_t number, Settings settings) {
+SlightlyOff slightly_off(const candidates::Candidate& candidate, std::size_t number, Settings settings) {
   const double step = ordinarily_off(candidate) - candidate.present;
   const auto set = std::ranges::find(settings, number, &Setting::candidate);
   if (set == settings.end()) {
@@ -43,7 +43,7 @@ SlightlyOff slightly_off(const Candidate& candidate, std::size_t number, Setting
 }
 
 // Of each group, what each number shifts beside `settings`, off by all of itself.
-std::vector<MatrixXd> shifts_beside(const StageData& data, std::span<const Candidate> candidates,
+std::vector<MatrixXd> shifts_beside(const StageData& data, std::span<const candidates::Candidate> candidates,
                                     std::span<const std::size_t> numbers, const Settings& settings,
                                     const Simulate& simulate) {
   std::vector<Settings> asked{settings};
@@ -87,11 +87,12 @@ std::vector<MatrixXd> principal_directions(const StageData& data, std::vector<Ma
 
 }  // namespace
 
-std::vector<std::size_t> numbers_but(std::span<const Candidate> candidates, std::span<const std::size_t> possible,
-                                     std::span<const std::size_t> valued) {
+std::vector<std::size_t> numbers_but(std::span<const candidates::Candidate> candidates,
+                                     std::span<const std::size_t> possible, std::span<const std::size_t> valued) {
   const auto has_value = [&](std::size_t c) {
-    return std::ranges::any_of(
-        valued, [&](std::size_t other) { return other == c || is_part_of(candidates[c], candidates[other]); });
+    return std::ranges::any_of(valued, [&](std::size_t other) {
+      return other == c || candidates::is_part_of(candidates[c], candidates[other]);
+    });
   };
   std::vector<std::size_t> numbers;
   for (const std::size_t c : possible)
@@ -104,7 +105,7 @@ std::vector<MatrixXd> number_shapes(const StageData& data, const EffectCurves& c
   std::vector<int> columns;
   std::vector<double> scales;
   for (const std::size_t c : possible) {
-    const Candidate& candidate = curves.candidates[c];
+    const candidates::Candidate& candidate = curves.candidates[c];
     if (candidate.whole == 0) continue;
     const CurvePoint* point = nearest_to_present(curves.curves[c], candidate.present);
     if (point == nullptr) continue;
@@ -118,14 +119,14 @@ std::vector<MatrixXd> number_shapes(const StageData& data, const EffectCurves& c
   return principal_directions(data, std::move(shifts));
 }
 
-std::vector<MatrixXd> number_shapes_around(const StageData& data, std::span<const Candidate> candidates,
+std::vector<MatrixXd> number_shapes_around(const StageData& data, std::span<const candidates::Candidate> candidates,
                                            std::span<const std::size_t> possible, const Settings& settings,
                                            std::span<const std::size_t> valued, const Simulate& simulate) {
   const std::vector<std::size_t> which = numbers_but(candidates, possible, valued);
   return principal_directions(data, shifts_beside(data, candidates, which, settings, simulate));
 }
 
-std::vector<MatrixXd> number_shapes_of_change(const StageData& data, std::span<const Candidate> candidates,
+std::vector<MatrixXd> number_shapes_of_change(const StageData& data, std::span<const candidates::Candidate> candidates,
                                               std::span<const std::size_t> possible, const Settings& settings,
                                               std::span<const std::size_t> valued, const Simulate& simulate) {
   const std::vector<std::size_t> which = numbers_but(candidates, possible, valued);
@@ -135,4 +136,4 @@ std::vector<MatrixXd> number_shapes_of_change(const StageData& data, std::span<c
   return principal_directions(data, std::move(shifts));
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -11,12 +11,12 @@
 #include "gap/logs/copies.hpp"
 #include "gap/logs/held_samples.hpp"
 #include "gap/logs/lifted_robot.hpp"
-#include "gap/plausibility.hpp"
+#include "gap/logs/plausibility.hpp"
 #include "robot/angles.hpp"
 #include "rollout/measured_motion.hpp"
 #include "rollout/roll_out.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 namespace fs = std::filesystem;
@@ -82,23 +82,24 @@ void empty_column(runs::Run& run, const std::string& name) {
 }
 
 void empty_repeats(runs::Run& run, const std::string& name) {
-  const std::optional<HeldSamples> held = held_samples(run.column("t_s"), run.column(name));
+  const std::optional<logs::HeldSamples> held = logs::held_samples(run.column("t_s"), run.column(name));
   if (!held) return;
   const auto column = static_cast<std::size_t>(std::ranges::find(run.columns, name) - run.columns.begin());
   for (const std::size_t row : held->repeats) run.values[column][row] = std::nan("");
 }
 
 // Empties the columns of dead sensors, and cells that only repeat a value. Throws where something is certainly wrong.
-void check(runs::Run& run, const std::string& file, const fs::path& folder, HeldInRuns& held, Observations& result) {
-  std::vector<Finding> found = check_run(run, file, &result.robot);
-  for (const Finding& finding : found)
-    if (finding.severity == Finding::Severity::held) empty_repeats(run, finding.column);
+void check(runs::Run& run, const std::string& file, const fs::path& folder, logs::HeldInRuns& held,
+           Observations& result) {
+  std::vector<logs::Finding> found = logs::check_run(run, file, &result.robot);
+  for (const logs::Finding& finding : found)
+    if (finding.severity == logs::Finding::Severity::held) empty_repeats(run, finding.column);
   held.take_off(found);
-  for (const Finding& finding : found) {
+  for (const logs::Finding& finding : found) {
     const std::string words = in_words(finding);
-    if (finding.severity == Finding::Severity::refuse)
+    if (finding.severity == logs::Finding::Severity::refuse)
       throw runs::RunFileError(fmt::format("{}/{}", folder.string(), words));
-    const bool is_dead = finding.severity == Finding::Severity::dead;
+    const bool is_dead = finding.severity == logs::Finding::Severity::dead;
     if (is_dead) empty_column(run, finding.column);
     result.warnings.push_back(is_dead ? words + " (left out)" : words);
   }
@@ -169,10 +170,10 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     result.warnings.push_back(fmt::format("{} of {} runs are used, drawn evenly from all manoeuvres", entries.size(),
                                           result.dataset.runs.size()));
   std::map<std::string, std::size_t> worlds;
-  KnownRuns known_runs;
-  std::vector<Finding> copies;
-  HeldInRuns held;
-  LiftedRobot lifted;
+  logs::KnownRuns known_runs;
+  std::vector<logs::Finding> copies;
+  logs::HeldInRuns held;
+  logs::LiftedRobot lifted;
   for (const runs::DatasetRun& entry : entries) {
     if (!entry.fault.empty()) {
       result.warnings.push_back(fmt::format("{}: its simulation went wrong; left out", entry.file));
@@ -203,10 +204,11 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     result.runs.push_back(std::move(observation));
   }
   if (const auto finding = lifted.finding()) {
-    for (Observation& observation : result.runs) forget_body(observation.run);
+    for (Observation& observation : result.runs) logs::forget_body(observation.run);
     result.warnings.push_back(in_words(*finding) + " (the drives alone are compared)");
   }
-  for (const Finding& finding : held.findings()) result.warnings.push_back(in_words(finding) + " (repeats left out)");
+  for (const logs::Finding& finding : held.findings())
+    result.warnings.push_back(in_words(finding) + " (repeats left out)");
   if (!copies.empty())
     result.warnings.push_back(
         in_words(copies.front()) +
@@ -217,7 +219,8 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
                                          result.warnings.empty() ? "" : "; the first one: " + result.warnings.front()));
   std::vector<std::vector<std::string>> columns;
   for (const Observation& run : result.runs) columns.push_back(run.run.columns);
-  for (const Finding& finding : check_noise(result.dataset, columns)) result.warnings.push_back(in_words(finding));
+  for (const logs::Finding& finding : logs::check_noise(result.dataset, columns))
+    result.warnings.push_back(in_words(finding));
   result.not_simulated = channels_not_simulated(result);
   for (const std::string& column : result.not_simulated)
     result.warnings.push_back(
@@ -225,4 +228,4 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

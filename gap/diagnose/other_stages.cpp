@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // A stage that names nothing new has heard the others.
@@ -46,9 +46,9 @@ bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<
 // The value that a stage gives an effect or its rival, and both ends of its interval: a rival is known as well as the
 // effect in whose place it is, in parts of what it changes.
 std::vector<Setting> values_of(const NamedEffect& effect, const Setting& setting,
-                               std::span<const Candidate> candidates) {
+                               std::span<const candidates::Candidate> candidates) {
   const Interval& own = effect.value.value;
-  const Candidate& candidate = candidates[setting.candidate];
+  const candidates::Candidate& candidate = candidates[setting.candidate];
   const double change = std::abs(own.value - candidates[effect.candidate].present);
   const double part = change > 0 ? (own.to - own.from) / 2 / change : 0;
   const double half = part * std::abs(setting.value - candidate.present);
@@ -91,7 +91,8 @@ std::vector<RefutedElsewhere> refuted_elsewhere(const std::vector<StageDiagnosis
 }
 
 // Whether a stage would decide otherwise.
-bool concerns(const StageDecision& decision, std::span<const Candidate> candidates, const Elsewhere& elsewhere) {
+bool concerns(const StageDecision& decision, std::span<const candidates::Candidate> candidates,
+              const Elsewhere& elsewhere) {
   for (std::size_t e = 0; e < decision.effects.size(); ++e) {
     const NamedEffect& effect = decision.effects[e];
     if (!effect.doubts.empty()) continue;
@@ -117,4 +118,4 @@ void settle_by_other_stages(std::vector<StageDiagnosis>& stages, const std::vect
     }
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

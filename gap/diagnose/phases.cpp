@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Column = std::span<const double>;
@@ -145,4 +145,4 @@ std::vector<PhaseSpan> phases_of(const Observation& observation) {
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -1,5 +1,6 @@
-// The phases of a run, found from what was measured: stand, speed change, slow down, cruise, turn, flippers, contact, climb,
-// descend, tip, land, fall. phases.cpp has the limits of each.
+// The phases of a run, found from what was measured: stand, speed change, slow down, cruise, turn, flippers, contact,
+// climb, descend, tip, land, fall. phases.cpp has the limits of each.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -8,7 +9,7 @@
 
 #include "gap/diagnose/observation.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 struct PhaseSpan {
   std::string_view name;
@@ -20,4 +21,4 @@ struct PhaseSpan {
 // pitch no climb.
 std::vector<PhaseSpan> phases_of(const Observation& observation);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

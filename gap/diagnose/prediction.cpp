@@ -11,7 +11,7 @@
 #include "gap/parallel.hpp"
 #include "rollout/roll_out.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -236,4 +236,4 @@ Shift Predictor::shift_of_each(std::span<const Variation> variations, Passage pa
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

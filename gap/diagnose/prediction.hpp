@@ -17,7 +17,7 @@
 #include "gap/diagnose/variation.hpp"
 #include "gap/ranks.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // Shifts of a stage's values, varied minus nominal, of every run.
 using Shift = std::vector<Eigen::VectorXd>;
@@ -46,9 +46,8 @@ class Predictor {
   // Both must outlive this. Once `stop`, if there is one, is true, simulations throw Stopped. `progress`, if any, is
   // called between simulations with how many are done, by the thread that asked for them.
   Predictor(const Observations& observations, const ComparedFeatures& features,
-            std::vector<std::vector<std::size_t>> repeats, unsigned threads,
-            const std::atomic<bool>* stop = nullptr, Ranks ranks = {},
-            std::function<void(std::size_t)> progress = {});
+            std::vector<std::vector<std::size_t>> repeats, unsigned threads, const std::atomic<bool>* stop = nullptr,
+            Ranks ranks = {}, std::function<void(std::size_t)> progress = {});
 
   // All runs once, of each stage that some run measures; comes first.
   void simulate_nominal();
@@ -81,8 +80,8 @@ class Predictor {
   std::vector<Eigen::VectorXd> values_of(std::span<const Asked> asked, std::span<const Variation> variations,
                                          Passage passage);
   // Each run with each variation, the runs of a variation one after another.
-  std::vector<Eigen::VectorXd> values_of_all(std::span<const std::size_t> of_runs, std::span<const Variation> variations,
-                                             Passage passage);
+  std::vector<Eigen::VectorXd> values_of_all(std::span<const std::size_t> of_runs,
+                                             std::span<const Variation> variations, Passage passage);
   // job(0) ... job(count - 1), by all ranks and threads together.
   std::vector<Eigen::VectorXd> all_of(std::size_t count, const std::function<Eigen::VectorXd(std::size_t)>& job);
   std::vector<Shift> shifts_of_groups(std::span<const Variation> variations, Passage passage, Fidelity fidelity);
@@ -105,4 +104,4 @@ class Predictor {
   std::size_t roll_outs_ = 0;
 };
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -8,11 +8,11 @@
 #include "gap/diagnose/same_parts.hpp"
 #include "gap/diagnose/stage_candidates.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // One point of each candidate that may act in the stage.
-EffectCurves first_look(const StageData& data, std::span<const Candidate> candidates,
+EffectCurves first_look(const StageData& data, std::span<const candidates::Candidate> candidates,
                         std::span<const std::size_t> possible, const Simulate& simulate) {
   EffectCurves curves = empty_curves(data, candidates);
   add_first_look(curves, data, possible, simulate);
@@ -60,7 +60,8 @@ Simulate simulator_of(const PreparedStage& stage, Predictor& predictor) {
   };
 }
 
-PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor) {
+PreparedStage prepare_stage(const StageInput& input, std::span<const candidates::Candidate> candidates,
+                            Predictor& predictor) {
   const std::vector<StageFeatures>& features = *input.features;
   PreparedStage stage{input, candidates, {}, {}, {}, {}};
   for (std::size_t r = 0; r < features.size(); ++r)
@@ -91,4 +92,4 @@ PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> 
   return stage;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

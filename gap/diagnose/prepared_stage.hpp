@@ -1,4 +1,6 @@
-// A stage with all that is simulated of it before anything is decided: what each candidate does, as far as it can matter.
+// A stage with all that is simulated of it before anything is decided: what each candidate does, as far as it can
+// matter.
+//
 // Thread safety: pure functions apart from what the predictor does.
 #pragma once
 
@@ -7,7 +9,7 @@
 
 #include "gap/diagnose/stage_decision.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // What the diagnosis of a stage starts from.
 struct StageInput {
@@ -23,13 +25,14 @@ struct StageInput {
 // A stage with what is simulated of it before anything is decided.
 struct PreparedStage {
   StageInput input;
-  std::span<const Candidate> candidates;  // must outlive this
-  std::vector<std::size_t> possible;      // candidates_of()
+  std::span<const candidates::Candidate> candidates;  // must outlive this
+  std::vector<std::size_t> possible;                  // candidates_of()
   std::vector<Eigen::VectorXd> residuals;
-  StageAround nominal;                    // no data where no run measures the stage
-  EffectCurves curves;                    // of those that can matter, over their range
+  StageAround nominal;  // no data where no run measures the stage
+  EffectCurves curves;  // of those that can matter, over their range
 };
-PreparedStage prepare_stage(const StageInput& input, std::span<const Candidate> candidates, Predictor& predictor);
+PreparedStage prepare_stage(const StageInput& input, std::span<const candidates::Candidate> candidates,
+                            Predictor& predictor);
 
 // Simulates settings in a stage. Both must outlive it.
 Simulate simulator_of(const PreparedStage& stage, Predictor& predictor);
@@ -41,4 +44,4 @@ std::vector<OpenShapes> open_around(const PreparedStage& stage, Predictor& predi
 StageData data_in(const PreparedStage& stage, const NoiseFloor& floor);
 bool has_baseline(const std::vector<StageFeatures>& features);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

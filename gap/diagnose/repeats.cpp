@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -183,4 +183,4 @@ std::vector<std::vector<bool>> shared_bins(const std::vector<StageFeatures>& fea
   return shared;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -1,4 +1,5 @@
 // Which runs repeat each other.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -9,15 +10,15 @@
 #include "gap/diagnose/observation.hpp"
 #include "gap/diagnose/stage_features.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
-// Runs that share a manoeuvre, a world, the speed with which they begin, and their commands, which need not be the same at
-// every time: an operator decides by what he sees. In the order in which each first comes. A dataset that calls all of its runs by one name although each has
-// commands of its own has as many groups as runs.
+// Runs that share a manoeuvre, a world, the speed with which they begin, and their commands, which need not be the same
+// at every time: an operator decides by what he sees. In the order in which each first comes. A dataset that calls all
+// of its runs by one name although each has commands of its own has as many groups as runs.
 std::vector<std::vector<std::size_t>> repeats_of(const Observations& observations);
 
-// The same, and with them the runs of that manoeuvre in which the operator gave the same orders at other times, or left one
-// out: he saw another outcome. How such runs differ is spread, as between repeats.
+// The same, and with them the runs of that manoeuvre in which the operator gave the same orders at other times, or left
+// one out: he saw another outcome. How such runs differ is spread, as between repeats.
 std::vector<std::vector<std::size_t>> same_orders_of(const Observations& observations);
 
 // The run of a group whose duration is the middle one.
@@ -33,4 +34,4 @@ std::vector<Eigen::VectorXd> deviations_from_repeats(const std::vector<StageFeat
 std::vector<std::vector<bool>> shared_bins(const std::vector<StageFeatures>& features,
                                            const std::vector<std::vector<std::size_t>>& repeats);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

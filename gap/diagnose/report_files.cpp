@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "description/data_files.hpp"
+#include "formats/description/data_files.hpp"
+#include "formats/runs/dataset.hpp"
+#include "formats/runs/whole_file.hpp"
 #include "gap/diagnose/report.hpp"
-#include "runs/dataset.hpp"
-#include "runs/whole_file.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 namespace fs = std::filesystem;
 
@@ -45,7 +45,7 @@ void check_keeps_inputs(const fs::path& out, const fs::path& dataset, const std:
     if (!fs::exists(replaced)) continue;
     const std::string name =
         robot.empty() ? runs::resolve_beside(dataset, runs::read_dataset(dataset).robot, ".toml") : robot;
-    if (same(replaced, find_data_file("robots", name, ".toml")))
+    if (same(replaced, description::find_data_file("robots", name, ".toml")))
       throw std::runtime_error(
           fmt::format("{}: is the description that is to be diagnosed, and the report would replace it; give another "
                       "folder for the reports",
@@ -77,4 +77,4 @@ fs::path write_diagnosis(const Diagnosis& d, const fs::path& folder) {
   return folder / kPage;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -6,7 +6,7 @@
 #include "gap/diagnose/report.hpp"
 #include "gap/plot/chart.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr std::string_view kPageStyle = R"(body { background: var(--paper); color: var(--ink); max-width: 1060px;
@@ -69,4 +69,4 @@ std::string diagnosis_html(const Diagnosis& d) {
   return diagnosis_page(d, simulate_overlays(d));
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

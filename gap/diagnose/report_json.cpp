@@ -7,7 +7,7 @@
 #include "gap/diagnose/report.hpp"
 #include "gap/diagnose/report_words.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -70,38 +70,38 @@ Json where_json(const Diagnosis& d, std::optional<std::size_t> main) {
 }
 
 Json effect_json(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect) {
-  const Candidate& candidate = d.candidates[effect.candidate];
+  const candidates::Candidate& candidate = d.candidates[effect.candidate];
   const Interval& value = effect.value.value;
-  return {{"name", candidate.effect},
-          {"parameters",
-           {{candidate.parameter,
-             {{"value", number(value.value)},
-              {"ci95", interval_json(value)},
-              {"spread", number(effect.value.spread)},
-              {"unit", candidate.unit},
-              {"nominal", number(candidate.present)}}}}},
-          {"explains", share_json(explained_by(stage, effect))},
-          {"explains_by_manoeuvre", share_json(effect.share_by_manoeuvre.of_stage)},
-          {"acts_most_in",
-           {{"channels", kind_name(effect.share.kind)},
-            {"explains", share_json(effect.share.of_kind)},
-            {"explains_by_manoeuvre", share_json(effect.share_by_manoeuvre.of_kind)}}},
-          {"heldout_shrink", number(stage.gap.shrink.value)},
-          {"heldout_shrink_ci95", interval_json(stage.gap.shrink)},
-          {"evidence", number(effect.evidence)},
-          {"at_bound", effect.at_bound},
-          {"is_named", effect.doubts.empty() && d.interrupted.empty()},
-          {"rivals", candidate_names(d, effect.rivals)},
-          {"partners", partner_names(d, stage, effect)},
-          {"explains_with_partners",
-           effect.partners.empty() ? Json(nullptr) : share_json(explained_by_set(stage, effect))},
-          {"doubts", doubts_in_words(d, effect)}};
+  return {
+      {"name", candidate.effect},
+      {"parameters",
+       {{candidate.parameter,
+         {{"value", number(value.value)},
+          {"ci95", interval_json(value)},
+          {"spread", number(effect.value.spread)},
+          {"unit", candidate.unit},
+          {"nominal", number(candidate.present)}}}}},
+      {"explains", share_json(explained_by(stage, effect))},
+      {"explains_by_manoeuvre", share_json(effect.share_by_manoeuvre.of_stage)},
+      {"acts_most_in",
+       {{"channels", kind_name(effect.share.kind)},
+        {"explains", share_json(effect.share.of_kind)},
+        {"explains_by_manoeuvre", share_json(effect.share_by_manoeuvre.of_kind)}}},
+      {"heldout_shrink", number(stage.gap.shrink.value)},
+      {"heldout_shrink_ci95", interval_json(stage.gap.shrink)},
+      {"evidence", number(effect.evidence)},
+      {"at_bound", effect.at_bound},
+      {"is_named", effect.doubts.empty() && d.interrupted.empty()},
+      {"rivals", candidate_names(d, effect.rivals)},
+      {"partners", partner_names(d, stage, effect)},
+      {"explains_with_partners", effect.partners.empty() ? Json(nullptr) : share_json(explained_by_set(stage, effect))},
+      {"doubts", doubts_in_words(d, effect)}};
 }
 
 Json ranking_json(const Diagnosis& d, const StageDiagnosis& stage) {
   Json ranking = Json::array();
   for (const SingleEvidence& single : stage.ranking) {
-    const Candidate& candidate = d.candidates[single.candidate];
+    const candidates::Candidate& candidate = d.candidates[single.candidate];
     ranking.push_back(
         {{"name", candidate.effect},
          {"parameters", {{candidate.parameter, {{"value", number(single.value)}, {"unit", candidate.unit}}}}},
@@ -241,4 +241,4 @@ std::string diagnosis_json(const Diagnosis& d) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";  // names of files may hold any bytes
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "description/description_error.hpp"
-#include "description/description_file.hpp"
+#include "formats/description/description_error.hpp"
+#include "formats/description/description_file.hpp"
 #include "gap/candidates/write_candidates.hpp"
 #include "gap/diagnose/report.hpp"
 #include "gap/diagnose/report_words.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr std::size_t kCommentColumns = 100;
@@ -81,16 +81,16 @@ RobotFile robot_file(const Diagnosis& d) {
   const Settings found = corrections(d);
   if (found.empty()) return file;
   const bool is_named = d.verdict == Verdict::named || d.verdict == Verdict::ambiguous;
-  std::vector<std::pair<Candidate, double>> values;
+  std::vector<std::pair<candidates::Candidate, double>> values;
   for (const Setting& setting : found) values.emplace_back(d.candidates[setting.candidate], setting.value);
   try {
-    const std::string text = read_description_file("robot", d.observations.robot_name, ".toml").text;
-    file.text = top_of_file(d, found, is_named) + robot_toml_with(text, values);
+    const std::string text = description::read_description_file("robot", d.observations.robot_name, ".toml").text;
+    file.text = top_of_file(d, found, is_named) + candidates::robot_toml_with(text, values);
     file.name = is_named ? "robot.toml" : "robot.candidate.toml";
-  } catch (const DescriptionError& error) {
+  } catch (const description::DescriptionError& error) {
     file.fault = error.what();
   }
   return file;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

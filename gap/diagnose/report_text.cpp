@@ -11,7 +11,7 @@
 #include "gap/diagnose/report.hpp"
 #include "gap/diagnose/report_words.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr std::size_t kScreenColumns = 100, kScreenLines = 40, kChannels = 4, kPhases = 3, kWarnings = 3;
@@ -51,7 +51,7 @@ void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
   }
   screen.add(fmt::format("{}: {} of the whole gap; {}", name, percent(share_of_gap(d, s)), gap_in_words(d, stage)));
   for (const NamedEffect& effect : stage.decision.effects) {
-    const Candidate& candidate = d.candidates[effect.candidate];
+    const candidates::Candidate& candidate = d.candidates[effect.candidate];
     std::string line = "  " + value_in_words(candidate, effect.value);
     if (!effect.doubts.empty())
       line += fmt::format("; no name: {}", fmt::join(doubts_in_words(d, effect), "; "));
@@ -123,4 +123,4 @@ std::string diagnosis_text(const Diagnosis& d) {
   return screen.take();
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

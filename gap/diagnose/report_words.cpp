@@ -9,7 +9,7 @@
 
 #include "gap/diagnose/channels.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr std::size_t kMostAlone = 3;
@@ -243,12 +243,12 @@ std::string against_in_words(const Diagnosis& d) {
       d.options.against.string(), d.baseline_runs);
 }
 
-std::string value_name(const Candidate& candidate) {
+std::string value_name(const candidates::Candidate& candidate) {
   if (candidate.is_number_of_description || candidate.name != candidate.effect) return candidate.name;
   return fmt::format("{} {}", candidate.name, candidate.parameter);
 }
 
-std::string value_in_words(const Candidate& candidate, const EffectValue& value) {
+std::string value_in_words(const candidates::Candidate& candidate, const EffectValue& value) {
   std::string text =
       fmt::format("{} = {}{} (95 % interval {} to {}), {} {}", value_name(candidate), figure(value.value.value),
                   unit_suffix(candidate.unit), figure(value.value.from), figure(value.value.to),
@@ -260,7 +260,7 @@ std::string value_in_words(const Candidate& candidate, const EffectValue& value)
 }
 
 std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& effect) {
-  const Candidate& candidate = d.candidates[effect.candidate];
+  const candidates::Candidate& candidate = d.candidates[effect.candidate];
   std::vector<std::string> words;
   for (const Doubt doubt : effect.doubts) switch (doubt) {
       case Doubt::end_of_range:
@@ -382,4 +382,4 @@ std::string wrapped(std::string_view text, std::size_t width, std::string_view i
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -1,4 +1,5 @@
 // The words that text, page and files of a report share.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -10,7 +11,7 @@
 
 #include "gap/diagnose/diagnosis.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // With three significant digits; "-" where it is not known.
 std::string figure(double value);
@@ -71,19 +72,21 @@ std::string_view noise_source(const Diagnosis& d);
 
 // The whole verdict in one sentence, without a full stop.
 std::string headline(const Diagnosis& d);
-// "The gap is what changed since before, of which 12 runs repeat these; ...". Without a full stop; empty without a baseline.
+// "The gap is what changed since before, of which 12 runs repeat these; ...". Without a full stop; empty without a
+// baseline.
 std::string against_in_words(const Diagnosis& d);
 // "command_slew slowness_s2pm"; where the name says the parameter, the name.
-std::string value_name(const Candidate& candidate);
+std::string value_name(const candidates::Candidate& candidate);
 // "command_slew slowness_s2pm = 0.69 s^2/m (95 % interval 0.65 to 0.72), nominal 0". Begins with the candidate's name.
-std::string value_in_words(const Candidate& candidate, const EffectValue& value);
+std::string value_in_words(const candidates::Candidate& candidate, const EffectValue& value);
 // Why an effect of the best model gets no name: "its value is at the end of its range (0 to 3 s)".
 std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& effect);
 // "no name for com_forward (drive to body): ...", of all effects of all stages.
 std::vector<std::string> all_doubts(const Diagnosis& d);
 // "8.10 noise units before, 1.90 after on runs held out; noise alone: 1.00".
 std::string gap_in_words(const Diagnosis& d, const StageDiagnosis& stage);
-// What a stage's best model leaves: "15 % of the gap is left", "what is left is within noise and spread". Empty without a gap.
+// What a stage's best model leaves: "15 % of the gap is left", "what is left is within noise and spread". Empty without
+// a gap.
 std::string left_in_words(const StageDiagnosis& stage);
 // StageDiagnosis::ranking by the share that each takes off, largest first.
 std::vector<SingleEvidence> ranked_by_share(const StageDiagnosis& stage);
@@ -93,4 +96,4 @@ std::vector<std::string> best_alone(const Diagnosis& d, const StageDiagnosis& st
 // Lines of at most `width` columns, all but the first after `indent`; words longer than that stay whole.
 std::string wrapped(std::string_view text, std::size_t width, std::string_view indent);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

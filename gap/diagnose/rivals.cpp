@@ -7,7 +7,7 @@
 #include "gap/diagnose/isolability.hpp"
 #include "gap/parallel.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // At the angle below which two effects cannot be told apart, the one that is not there leaves this share of what the
@@ -125,4 +125,4 @@ std::vector<Settings> rivals_of(const StageData& data, const EffectCurves& curve
   return rivals;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

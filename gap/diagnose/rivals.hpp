@@ -1,4 +1,5 @@
 // Candidates that do as well as one effect of a best model, in its place.
+//
 // Thread safety: pure functions apart from what the simulator does. Deterministic.
 #pragma once
 
@@ -8,12 +9,12 @@
 #include "gap/diagnose/decision_settings.hpp"
 #include "gap/diagnose/side_by_side.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
-// Models with a rival in the place of one effect, the best model itself first. `curves`: of all candidates, as they are alone.
-// `without`: the best model without the effect.
+// Models with a rival in the place of one effect, the best model itself first. `curves`: of all candidates, as they are
+// alone. `without`: the best model without the effect.
 std::vector<Settings> rivals_of(const StageData& data, const EffectCurves& curves, const StandingModel& standing,
                                 std::size_t place, const Model& without, const Simulate& simulate,
                                 const DecisionSettings& settings);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

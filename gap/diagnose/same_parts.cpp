@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr double kOfRange = 0.25, kSame = 0.01;  // chosen
@@ -11,24 +11,25 @@ struct PartOfWhole {
   std::size_t part, whole;
 };
 
-std::vector<PartOfWhole> parts_of_wholes(std::span<const Candidate> candidates, std::span<const std::size_t> possible) {
+std::vector<PartOfWhole> parts_of_wholes(std::span<const candidates::Candidate> candidates,
+                                         std::span<const std::size_t> possible) {
   std::vector<PartOfWhole> result;
   for (const std::size_t part : possible)
     for (const std::size_t whole : possible)
-      if (is_part_of(candidates[part], candidates[whole])) result.push_back({part, whole});
+      if (candidates::is_part_of(candidates[part], candidates[whole])) result.push_back({part, whole});
   return result;
 }
 
 }  // namespace
 
-std::vector<std::size_t> without_same_parts(const StageData& data, std::span<const Candidate> candidates,
+std::vector<std::size_t> without_same_parts(const StageData& data, std::span<const candidates::Candidate> candidates,
                                             std::span<const std::size_t> possible, const Simulate& simulate) {
   std::vector<std::size_t> kept(possible.begin(), possible.end());
   const std::vector<PartOfWhole> pairs = parts_of_wholes(candidates, possible);
   if (pairs.empty()) return kept;
   std::vector<Settings> asked;
   for (const auto& [p, w] : pairs) {
-    const Candidate &part = candidates[p], &whole = candidates[w];
+    const candidates::Candidate &part = candidates[p], &whole = candidates[w];
     const double value = whole.present + kOfRange * (whole.max - whole.present);
     asked.push_back({{w, value}});
     asked.push_back({{p, part.present * value / whole.present}});
@@ -43,4 +44,4 @@ std::vector<std::size_t> without_same_parts(const StageData& data, std::span<con
   return kept;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

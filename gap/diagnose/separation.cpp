@@ -3,7 +3,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr int kAtMostRounds = 100;
@@ -30,4 +30,4 @@ double separation(const Eigen::VectorXd& difference, const Eigen::MatrixXd& free
   return left.cwiseMax(-kOfOneBin).cwiseMin(kOfOneBin).norm();
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

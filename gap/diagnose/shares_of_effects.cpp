@@ -5,7 +5,7 @@
 
 #include "gap/diagnose/judgement.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // The model without each of these sets of its effects, the others at its values.
@@ -63,4 +63,4 @@ SharesOfEffects shares_of_effects(const StageView& view, Passage passage, const 
   return shares;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // How far to either side, of the way from neutral: so far that it shifts by several floors, for two simulations of what
@@ -48,7 +48,7 @@ struct Side {
 };
 
 double value_at(const EffectCurves& curves, const Model& model, const Side& side) {
-  const Candidate& candidate = curves.candidates[model.places[side.place].curve];
+  const candidates::Candidate& candidate = curves.candidates[model.places[side.place].curve];
   const double factor = side.outward ? 1 + side.share : 1 / (1 + side.share);
   return std::clamp(candidate.present + factor * (model.places[side.place].value - candidate.present), candidate.min,
                     candidate.max);
@@ -63,7 +63,7 @@ GroupVectors difference(const GroupVectors& a, const GroupVectors& b) {
 // Where a side shifts nothing: as far as that holds, by halves, and what is next there.
 void look_beyond_flat(const StageData& data, const EffectCurves& curves, const Simulate& simulate, const Model& model,
                       double length, Side& flat, std::vector<Side>& more) {
-  const Candidate& candidate = curves.candidates[model.places[flat.place].curve];
+  const candidates::Candidate& candidate = curves.candidates[model.places[flat.place].curve];
   const auto moved_by = [&](const Side& side) { return length_in_noise(data, difference(side.shift, model.shift)); };
   if (flat.jumps || length < kShifted_floors || moved_by(flat) > kSame_floors) return;
   const auto simulated_at = [&](double value) {
@@ -132,7 +132,7 @@ std::vector<Side> to_either_side(const StageData& data, const EffectCurves& curv
 // What the effect shifts on top of the others, where it stands, to either side, and straight on from there.
 std::vector<Known> beside_others(const EffectCurves& curves, const Model& model, std::size_t place,
                                  const std::vector<Side>& sides) {
-  const Candidate& candidate = curves.candidates[model.places[place].curve];
+  const candidates::Candidate& candidate = curves.candidates[model.places[place].curve];
   const double present = candidate.present, value = model.places[place].value;
   const double end = value > present ? candidate.max : candidate.min;
   const Known here{value, shift_of(curves, {&model.places[place], 1})};
@@ -228,4 +228,4 @@ Model values_without(const StageData& data, const StandingModel& standing, std::
   return {{}, shift_of(standing.curves, {}), true, likelihood_with(data, residuals_of(data), discrepancies)};
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 double p_of_squares(double sum, double freedom) {
   if (freedom <= 0) return 1;
@@ -15,4 +15,4 @@ double p_of_largest_square(double square, double count) {
   return std::min(1.0, count * std::erfc(std::sqrt(std::max(0.0, square) / 2)));
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -2,24 +2,24 @@
 
 #include <algorithm>
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // Whether drives report otherwise with it; the other sensors see the body.
-bool is_of_drives_sensors(const Candidate& candidate) {
+bool is_of_drives_sensors(const candidates::Candidate& candidate) {
   return std::ranges::any_of(candidate.keys, [](const std::string& key) {
     return key.starts_with("effects.encoder") || key.starts_with("sensor[");
   });
 }
 
 // Whether it is of a drive, but where the drive's own encoder does not see it.
-bool is_behind_encoders(const Candidate& candidate) {
+bool is_behind_encoders(const candidates::Candidate& candidate) {
   return std::ranges::any_of(candidate.keys, [](const std::string& key) {
     return key.starts_with("effects.flipper_backlash") || key.starts_with("effects.flipper_compliance");
   });
 }
 
-bool acts_in(Passage passage, const Candidate& candidate, bool drives_measured) {
+bool acts_in(Passage passage, const candidates::Candidate& candidate, bool drives_measured) {
   const bool is_of_drive = candidate.stage == physics::Stage::command || candidate.stage == physics::Stage::drive;
   const bool is_of_sensor = candidate.stage == physics::Stage::sensor;
   switch (passage) {
@@ -35,17 +35,18 @@ bool acts_in(Passage passage, const Candidate& candidate, bool drives_measured) 
 
 }  // namespace
 
-std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidate> candidates, bool drives_measured) {
+std::vector<std::size_t> candidates_of(Passage passage, std::span<const candidates::Candidate> candidates,
+                                       bool drives_measured) {
   std::vector<std::size_t> result;
   for (std::size_t c = 0; c < candidates.size(); ++c)
     if (acts_in(passage, candidates[c], drives_measured)) result.push_back(c);
   return result;
 }
 
-physics::RobotDescription with_settings(physics::RobotDescription robot, std::span<const Candidate> candidates,
-                                        const Settings& settings) {
+physics::RobotDescription with_settings(physics::RobotDescription robot,
+                                        std::span<const candidates::Candidate> candidates, const Settings& settings) {
   for (const Setting& setting : settings) candidates[setting.candidate].set(robot, setting.value);
   return robot;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

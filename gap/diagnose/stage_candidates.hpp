@@ -1,4 +1,5 @@
 // Which candidates can act in which stage, and a robot with some of them.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -8,14 +9,15 @@
 #include "gap/diagnose/effect_curves.hpp"
 #include "gap/diagnose/stage_features.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
-// The candidates that can act in a stage; the others cannot, whatever their value. `drives_measured`: every run measured its
-// tracks, so that the body is seen in a replay of these.
-std::vector<std::size_t> candidates_of(Passage passage, std::span<const Candidate> candidates, bool drives_measured);
+// The candidates that can act in a stage; the others cannot, whatever their value. `drives_measured`: every run
+// measured its tracks, so that the body is seen in a replay of these.
+std::vector<std::size_t> candidates_of(Passage passage, std::span<const candidates::Candidate> candidates,
+                                       bool drives_measured);
 
 // The nominal robot with candidates at these values.
-physics::RobotDescription with_settings(physics::RobotDescription robot, std::span<const Candidate> candidates,
-                                        const Settings& settings);
+physics::RobotDescription with_settings(physics::RobotDescription robot,
+                                        std::span<const candidates::Candidate> candidates, const Settings& settings);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

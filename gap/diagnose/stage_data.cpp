@@ -6,7 +6,7 @@
 
 #include "gap/diagnose/channels.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -122,4 +122,4 @@ std::size_t bin_count(const StageData& data) {
   return count;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

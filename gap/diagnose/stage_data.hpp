@@ -1,8 +1,9 @@
-// The residuals of one stage as the statistics see them: the mean over the repeats of each manoeuvre, its noise, and shapes
-// that the simulation leaves open.
+// The residuals of one stage as the statistics see them: the mean over the repeats of each manoeuvre, its noise, and
+// shapes that the simulation leaves open.
 //
-// What a model lacks is alike in all repeats of a manoeuvre, so repeats are no independent evidence of an effect: they make
-// the noise of their mean smaller, and a manoeuvre counts once.
+// What a model lacks is alike in all repeats of a manoeuvre, so repeats are no independent evidence of an effect: they
+// make the noise of their mean smaller, and a manoeuvre counts once.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -13,7 +14,7 @@
 #include "gap/diagnose/noise_floor.hpp"
 #include "gap/diagnose/stage_features.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // Bins of one channel, in a row.
 struct Series {
@@ -24,16 +25,16 @@ struct Series {
 // One manoeuvre: a group of repeats. Vectors and rows of matrices are its bins.
 struct StageGroup {
   std::vector<std::size_t> runs;
-  std::vector<Bin> bins;                         // that any of its runs has; channel by channel, in the order of time
+  std::vector<Bin> bins;  // that any of its runs has; channel by channel, in the order of time
   std::vector<Series> series;
-  std::vector<double> t_s;                       // of each bin's middle, since the start
-  std::vector<std::vector<Eigen::Index>> bin_of; // of each run, of each of its bins: the group's
-  Eigen::VectorXd count;                         // of used runs that have a bin
-  Eigen::VectorXd residual;                      // measured minus nominal
-  Eigen::VectorXd variance;                      // of its independent noise
-  Eigen::MatrixXd local_shapes;                  // in columns; each with an amount of its own in this group, 1 sigma
-  Eigen::MatrixXd shared_shapes;                 // in columns; each with one amount in all groups, 1 sigma
-  Eigen::MatrixXd number_shapes;                 // likewise; 1 sigma is as far as numbers of the description are off
+  std::vector<double> t_s;                        // of each bin's middle, since the start
+  std::vector<std::vector<Eigen::Index>> bin_of;  // of each run, of each of its bins: the group's
+  Eigen::VectorXd count;                          // of used runs that have a bin
+  Eigen::VectorXd residual;                       // measured minus nominal
+  Eigen::VectorXd variance;                       // of its independent noise
+  Eigen::MatrixXd local_shapes;                   // in columns; each with an amount of its own in this group, 1 sigma
+  Eigen::MatrixXd shared_shapes;                  // in columns; each with one amount in all groups, 1 sigma
+  Eigen::MatrixXd number_shapes;                  // likewise; 1 sigma is as far as numbers of the description are off
 };
 
 struct StageData {
@@ -54,4 +55,4 @@ std::vector<Eigen::VectorXd> mean_of_groups(const StageData& data, const std::ve
 
 std::size_t bin_count(const StageData& data);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

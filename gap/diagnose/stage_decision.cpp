@@ -7,8 +7,9 @@
 #include "gap/diagnose/cells.hpp"
 #include "gap/diagnose/rivals.hpp"
 #include "gap/diagnose/significance.hpp"
+#include "gap/parallel.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 // Of what a gap has beyond numbers that are a little off, so much must a model take off before the simulation's open
@@ -88,7 +89,7 @@ StandingModel without_weak_effects(const StageData& data, const EffectCurves& cu
 bool is_at_bound(const StageData& data, const StandingModel& standing, std::size_t place, double margin) {
   constexpr double kAtBound = 1e-3, kInside = 0.9;  // of the range, of the way from the present value
   const OnCurve& at = standing.model.places[place];
-  const Candidate& candidate = standing.curves.candidates[at.curve];
+  const candidates::Candidate& candidate = standing.curves.candidates[at.curve];
   const double same = kAtBound * (candidate.max - candidate.min);
   const auto is_end = [&](double end) { return end != candidate.neutral && std::abs(at.value - end) < same; };
   if (!is_end(candidate.min) && !is_end(candidate.max)) return false;
@@ -126,7 +127,8 @@ void describe_effects(StageDecision& d, const EffectCurves& curves, const Simula
 // The rival of an effect that takes its place, as other stages have it: the first that one names, or that none refutes
 // where one refutes the effect.
 std::optional<std::size_t> rival_in_place(const StageDecision& d, std::size_t effect,
-                                          std::span<const Candidate> candidates, const Elsewhere& elsewhere) {
+                                          std::span<const candidates::Candidate> candidates,
+                                          const Elsewhere& elsewhere) {
   if (const auto named = settled_elsewhere(d, effect, candidates, elsewhere.named)) return named;
   const std::vector<Settings>& models = d.models_of_rivals[effect];
   for (std::size_t r = 0; r < models.size(); ++r)
@@ -135,7 +137,7 @@ std::optional<std::size_t> rival_in_place(const StageDecision& d, std::size_t ef
 }
 
 // Rivals of an effect that another stage has settled, or refutes, are none.
-void strike_rivals(StageDecision& d, std::size_t effect, std::span<const Candidate> candidates,
+void strike_rivals(StageDecision& d, std::size_t effect, std::span<const candidates::Candidate> candidates,
                    const Elsewhere& elsewhere) {
   std::vector<Settings>& models = d.models_of_rivals[effect];
   if (settled_elsewhere(d, effect, candidates, elsewhere.named) == 0) models.resize(1);
@@ -181,7 +183,7 @@ std::string_view verdict_name(Verdict verdict) {
 }
 
 std::optional<std::size_t> settled_elsewhere(const StageDecision& decision, std::size_t effect,
-                                             std::span<const Candidate> candidates,
+                                             std::span<const candidates::Candidate> candidates,
                                              std::span<const NamedElsewhere> elsewhere) {
   const NamedEffect& chosen = decision.effects[effect];
   const Interval& own = chosen.value.value;
@@ -278,4 +280,4 @@ StageDecision decide_again(StageDecision decided, const OtherModel& other, const
   return d;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

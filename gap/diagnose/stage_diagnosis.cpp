@@ -15,7 +15,7 @@
 #include "gap/diagnose/repeats.hpp"
 #include "gap/diagnose/shares_of_effects.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::VectorXd;
@@ -169,7 +169,7 @@ std::vector<std::size_t> places_with_name(const StageDecision& decision) {
 StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
                               const Elsewhere& elsewhere) {
   const StageInput& input = prepared.input;
-  const std::span<const Candidate> candidates = prepared.candidates;
+  const std::span<const candidates::Candidate> candidates = prepared.candidates;
   const std::vector<StageFeatures>& features = *input.features;
   StageDiagnosis stage;
   stage.passage = input.passage;
@@ -273,4 +273,4 @@ void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predi
   }
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -1,4 +1,5 @@
 // One stage between command and sensor, from its residuals to a verdict with its evidence.
+//
 // Thread safety: pure functions apart from what the predictor does. Deterministic for a seed.
 #pragma once
 
@@ -12,7 +13,7 @@
 #include "gap/diagnose/stage_decision.hpp"
 #include "gap/diagnose/where.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 struct StageOptions {
   DecisionSettings decision;
@@ -30,7 +31,8 @@ struct SingleEvidence {
 
 struct StageDiagnosis {
   Passage passage = Passage::command_to_drive;
-  std::vector<Eigen::VectorXd> residuals;  // measured minus nominal, of each run; empty where it does not measure the stage
+  std::vector<Eigen::VectorXd>
+      residuals;  // measured minus nominal, of each run; empty where it does not measure the stage
   NoiseFloor nominal_floor;
   StageDecision decision;
   GapMeasure gap;               // with the best model, on runs held out
@@ -39,8 +41,8 @@ struct StageDiagnosis {
   std::vector<Eigen::VectorXd> left;        // what the model fitted to other runs leaves of each run
   GapPlaces where, where_left;
   Isolability isolability;
-  std::vector<SingleEvidence> ranking;      // best first
-  std::vector<Dependence> left_over;        // what is left goes with these, largest share first; none where it is complete
+  std::vector<SingleEvidence> ranking;  // best first
+  std::vector<Dependence> left_over;    // what is left goes with these, largest share first; none where it is complete
 
   bool is_measured() const { return !decision.data.groups.empty(); }
 };
@@ -49,8 +51,9 @@ struct StageDiagnosis {
 StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
                               const Elsewhere& elsewhere = {});
 
-// Intervals as wide as numbers of the description make them that are off, 1 sigma, by `numbers_off` (errors_of_values.hpp).
+// Intervals as wide as numbers of the description make them that are off, 1 sigma, by `numbers_off`
+// (errors_of_values.hpp).
 void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor, double numbers_off,
                      std::uint64_t seed);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

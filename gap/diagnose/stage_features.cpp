@@ -8,7 +8,7 @@
 
 #include "gap/diagnose/channels.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -120,4 +120,4 @@ VectorXd stage_values(Passage passage, const StageFeatures& stage, const Feature
   return gyro_against_angles(map, bins, features, simulated);
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -5,6 +5,7 @@
 //   body to sensor     how much faster the gyro says that the robot turns than its angles do, in the same replay
 //
 // Of a run that did not measure its tracks, the last two are seen in a replay of the commands.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -16,19 +17,21 @@
 #include "gap/diagnose/features.hpp"
 #include "gap/diagnose/observation.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 enum class Passage { command_to_drive, drive_to_body, body_to_sensor };
 inline constexpr std::array kPassages{Passage::command_to_drive, Passage::drive_to_body, Passage::body_to_sensor};
 std::string_view passage_name(Passage passage);  // "command to drive"
 
-// What of one run a stage compares. All vectors are in the order of `bins`: channel by channel, each in the order of time.
+// What of one run a stage compares. All vectors are in the order of `bins`: channel by channel, each in the order of
+// time.
 struct StageFeatures {
-  std::vector<Bin> bins;            // none: this run does not measure the stage
-  double span_s = 0;                // of a bin
-  Eigen::VectorXd measured;         // mean of each bin, in the unit of its channel
-  std::vector<Eigen::Index> rows{}; // of the bins in the run's FeatureMap
-  Eigen::VectorXd baseline_runs{};  // of each bin, how many runs it is compared against (baseline.hpp); empty: no baseline
+  std::vector<Bin> bins;             // none: this run does not measure the stage
+  double span_s = 0;                 // of a bin
+  Eigen::VectorXd measured;          // mean of each bin, in the unit of its channel
+  std::vector<Eigen::Index> rows{};  // of the bins in the run's FeatureMap
+  Eigen::VectorXd
+      baseline_runs{};  // of each bin, how many runs it is compared against (baseline.hpp); empty: no baseline
 };
 StageFeatures stage_features(Passage passage, const FeatureMap& map, const runs::Run& measured);
 
@@ -36,4 +39,4 @@ StageFeatures stage_features(Passage passage, const FeatureMap& map, const runs:
 Eigen::VectorXd stage_values(Passage passage, const StageFeatures& stage, const FeatureMap& map,
                              const Eigen::VectorXd& features, const runs::Run& simulated);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

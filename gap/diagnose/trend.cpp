@@ -7,7 +7,7 @@
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/significance.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -96,4 +96,4 @@ double trend(const StageData& data, const std::vector<Eigen::MatrixXd>& columns,
   return largest;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

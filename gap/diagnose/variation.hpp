@@ -1,14 +1,16 @@
 // How a simulation differs from the nominal one of a run.
+//
 // Thread safety: a value.
 #pragma once
 
 #include "physics/robot_description.hpp"
 #include "physics/world.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
-// A robot and a simulator, how far from the observed start the robot is put down, and how much earlier than the log says its
-// samples were taken, in parts of the time since the one before (of the angles alone in the passage from body to sensor).
+// A robot and a simulator, how far from the observed start the robot is put down, and how much earlier than the log
+// says its samples were taken, in parts of the time since the one before (of the angles alone in the passage from body
+// to sensor).
 struct Variation {
   physics::RobotDescription robot;
   physics::PhysicsSettings physics;
@@ -18,4 +20,4 @@ struct Variation {
   bool operator==(const Variation&) const = default;
 };
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

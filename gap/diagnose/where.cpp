@@ -6,7 +6,7 @@
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/repeats.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::VectorXd;
@@ -83,4 +83,4 @@ GapPlaces locate(const Observations& observations, const std::vector<StageFeatur
   return places;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -1,4 +1,5 @@
 // Where the gap is: which channels show it, and at which times and places of each manoeuvre.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -10,20 +11,20 @@
 #include "gap/diagnose/noise_floor.hpp"
 #include "gap/diagnose/phases.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 struct ChannelGap {
-  std::size_t channel;   // of diagnosis_channels()
-  double rms, floor;     // of a bin's residual, and of its noise, in the channel's unit
-  double share;          // of all that is beyond chance
+  std::size_t channel;  // of diagnosis_channels()
+  double rms, floor;    // of a bin's residual, and of its noise, in the channel's unit
+  double share;         // of all that is beyond chance
 };
 
 struct PhaseGap {
   std::string manoeuvre;
   std::string_view phase;
   double from_s, to_s, x_m, y_m;
-  double share;          // of all that is beyond chance
-  std::size_t group;     // of repeats_of()
+  double share;       // of all that is beyond chance
+  std::size_t group;  // of repeats_of()
 };
 
 struct GapPlaces {
@@ -34,8 +35,8 @@ struct GapPlaces {
 
 // What of a cell is beyond chance, in squared floors.
 double beyond_chance(const Cell& cell);
-// A shape that is taken off, as an offset of one count, leaves its negative where nothing was. A cell counts as it stands out
-// with shapes taken off, or without, whichever is less.
+// A shape that is taken off, as an offset of one count, leaves its negative where nothing was. A cell counts as it
+// stands out with shapes taken off, or without, whichever is less.
 std::vector<Cell> cells_that_stand_out(const NoiseFloor& floor, const Coherence& coherence,
                                        const std::vector<Eigen::VectorXd>& residual);
 
@@ -44,4 +45,4 @@ GapPlaces locate(const Observations& observations, const std::vector<StageFeatur
                  const std::vector<std::vector<std::size_t>>& repeats, const Coherence& coherence,
                  const std::vector<Eigen::VectorXd>& residual);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

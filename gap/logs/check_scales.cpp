@@ -5,7 +5,7 @@
 #include "gap/logs/run_checks.hpp"
 #include "robot/parts.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 namespace {
 
 // Chosen. Quantities go together from this correlation on; a factor is one of units where no slip, gain or gear
@@ -289,4 +289,4 @@ void RunChecks::check_ranges() {
                     *middle));
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

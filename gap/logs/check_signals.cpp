@@ -6,7 +6,7 @@
 #include "gap/logs/run_checks.hpp"
 #include "robot/parts.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 namespace {
 
 // Chosen.
@@ -228,4 +228,4 @@ void RunChecks::check_pose() {
   }
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 namespace {
 
 // All of these are chosen.
@@ -379,4 +379,4 @@ ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses) {
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

@@ -20,7 +20,7 @@
 
 #include "gap/logs/course.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 
 // Why the offset cannot be known, in words for the user.
 class NoOffset : public std::runtime_error {
@@ -30,31 +30,31 @@ class NoOffset : public std::runtime_error {
 
 // One quantity as both clocks saw it.
 struct CourseSeenTwice {
-  std::string name;                // for the report: "turn about z (gyro_z_radps)"
+  std::string name;  // for the report: "turn about z (gyro_z_radps)"
   Course robot, capture;
-  double least_gain, most_gain;    // robot's rate over the other's; both positive
-  double enough;                   // less than this in all, of the quantity's own unit, is no motion
-  bool slips;                      // measured at the tracks: belts lead and slip, so others are preferred
+  double least_gain, most_gain;  // robot's rate over the other's; both positive
+  double enough;                 // less than this in all, of the quantity's own unit, is no motion
+  bool slips;                    // measured at the tracks: belts lead and slip, so others are preferred
 };
 
 struct QuantityOffset {
   std::string name;
   double offset_s, standard_error_s;
-  double gain;                     // robot's rate over the other's
-  double correlation;              // of the two rates, about zero, at the offset
-  bool used;                       // in the result; else only for comparison
+  double gain;         // robot's rate over the other's
+  double correlation;  // of the two rates, about zero, at the offset
+  bool used;           // in the result; else only for comparison
 };
 
 struct ClockOffset {
-  double offset_s = 0;             // robot's time = the other clock's time + offset
+  double offset_s = 0;  // robot's time = the other clock's time + offset
   double standard_error_s = 0;
-  double overlap_s = 0;            // during which both clocks saw the robot
+  double overlap_s = 0;                    // during which both clocks saw the robot
   std::vector<QuantityOffset> quantities;  // those that tell the offset
-  bool from_tracks = false;        // only tracks told it: it holds as far as the body follows them at once
+  bool from_tracks = false;                // only tracks told it: it holds as far as the body follows them at once
 };
 
 // Throws NoOffset: nothing seen twice, no motion, no overlap, no agreement, more than one offset that fits, or an error
 // above 0.25 s. Where a gain outside of its bounds would fit, the words say which unit or sign looks wrong.
 ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

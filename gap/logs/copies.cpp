@@ -4,7 +4,7 @@
 
 #include <boost/container_hash/hash.hpp>
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 
 std::optional<Finding> KnownRuns::copy(const runs::Run& run, const std::string& file) {
   std::size_t hash = 0;
@@ -16,4 +16,4 @@ std::optional<Finding> KnownRuns::copy(const runs::Run& run, const std::string& 
                  fmt::format("holds the same numbers as {}; a copy is no repeat", known->second)};
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

@@ -1,5 +1,6 @@
 // Runs that hold the same numbers as one before. A file that was copied is no repeat: taken for one, it would say that
 // robots repeat themselves to the last bit, and every difference from the simulation would be a gap.
+//
 // Thread safety: a value; one thread at a time.
 #pragma once
 
@@ -8,10 +9,10 @@
 #include <string>
 #include <unordered_map>
 
-#include "gap/plausibility.hpp"
-#include "runs/run_file.hpp"
+#include "formats/runs/run_file.hpp"
+#include "gap/logs/plausibility.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 
 class KnownRuns {
  public:
@@ -23,4 +24,4 @@ class KnownRuns {
   std::unordered_map<std::size_t, std::string> file_of_;
 };
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -80,4 +80,4 @@ double comparing_window_s(double median_step_s) {
   return std::max(0.2, 3 * median_step_s);
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

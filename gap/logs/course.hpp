@@ -1,17 +1,18 @@
 // A quantity that adds up over time (travel, turned angle), as samples. Its mean rate over a window is a difference of
 // two values, so that a measured speed and a measured pose are compared alike, and nothing noisy is differentiated.
+//
 // Thread safety: pure functions.
 #pragma once
 
 #include <span>
 #include <vector>
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 
 struct Course {
-  std::vector<double> t_s;     // strictly increasing
-  std::vector<double> value;   // of the same size; its zero is anywhere
-  double longest_gap_s = 0;    // between samples farther apart nothing is known
+  std::vector<double> t_s;    // strictly increasing
+  std::vector<double> value;  // of the same size; its zero is anywhere
+  double longest_gap_s = 0;   // between samples farther apart nothing is known
 };
 
 // From values of a column that adds up already; empty cells (NaN) are left out. Gaps up to `longest_gap_s` are bridged.
@@ -31,8 +32,8 @@ double range(std::span<const double> column);
 double median_step(std::span<const double> t_s, std::span<const double> value);
 
 // How courses are made and compared where a log says nothing else. All chosen.
-constexpr double kStepsPerWindow = 4;              // windows overlap
-double longest_gap_s(double median_step_s);        // over which turns and travel go on as if nothing had happened
-double comparing_window_s(double median_step_s);   // of the slower of two courses
+constexpr double kStepsPerWindow = 4;             // windows overlap
+double longest_gap_s(double median_step_s);       // over which turns and travel go on as if nothing had happened
+double comparing_window_s(double median_step_s);  // of the slower of two courses
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 namespace {
 
 // All chosen.
@@ -56,4 +56,4 @@ std::optional<HeldSamples> held_samples(std::span<const double> t_s, std::span<c
   return held;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

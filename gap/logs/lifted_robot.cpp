@@ -9,7 +9,7 @@
 
 #include "gap/logs/course.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 namespace {
 
 // Chosen.
@@ -79,4 +79,4 @@ void forget_body(runs::Run& run) {
   }
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

@@ -9,7 +9,7 @@
 
 #include "physics/pose.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 namespace {
 
 constexpr double kLongestGapSteps = 2.5;  // chosen: one captured pose may be missing
@@ -115,4 +115,4 @@ MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const M
   return merged;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

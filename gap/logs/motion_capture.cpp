@@ -9,7 +9,7 @@
 
 #include "physics/pose.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 namespace {
 
 // How far from 1 the norm of a quaternion may be that was written with few digits.
@@ -119,4 +119,4 @@ MotionCapture motion_capture_of(const runs::Run& table, std::string_view name_fo
   return capture;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

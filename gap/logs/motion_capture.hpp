@@ -1,4 +1,5 @@
 // Poses that a motion-capture system (or lidar, total station) recorded beside the robot, from its CSV file.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -7,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "runs/run_file.hpp"
+#include "formats/runs/run_file.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 
 // Beyond this no time of a robot or of a capture lies, either way; larger numbers would lose their small digits.
 inline constexpr double kLatest_s = 1e12;
@@ -17,9 +18,9 @@ inline constexpr double kLatest_s = 1e12;
 enum class LengthUnit { metres, millimetres };
 
 struct CapturedPose {
-  double t_s;                // of the capture's own clock
-  Eigen::Vector3d p_m;       // z 0 where not measured
-  Eigen::Quaterniond q;      // roll and pitch 0 where not measured
+  double t_s;            // of the capture's own clock
+  Eigen::Vector3d p_m;   // z 0 where not measured
+  Eigen::Quaterniond q;  // roll and pitch 0 where not measured
 };
 
 struct MotionCapture {
@@ -35,4 +36,4 @@ struct MotionCapture {
 MotionCapture parse_motion_capture(std::string_view text, std::string_view name_for_errors, LengthUnit unit);
 MotionCapture motion_capture_of(const runs::Run& table, std::string_view name_for_errors, LengthUnit unit);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

@@ -3,7 +3,7 @@
 #include <limits>
 #include <numbers>
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 namespace {
 
 constexpr double kFewestPoints = 15;  // chosen
@@ -164,4 +164,4 @@ double RunChecks::farthest_from_start() const {
   return farthest;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

@@ -10,7 +10,7 @@
 #include "gap/logs/merge_pose.hpp"
 #include "physics/pose.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::logs {
 namespace {
 
 // What robots do: a gyro, a posture sensor or another pose agrees with motion capture, belts slip, and what track
@@ -141,4 +141,4 @@ std::vector<CourseSeenTwice> courses_seen_twice(const runs::Run& run, const Moti
   return seen;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::logs

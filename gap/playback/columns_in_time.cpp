@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 namespace {
 
 constexpr double kHole_s = 0.25, kUsualSteps = 3;
@@ -60,4 +60,4 @@ std::vector<double> column_at(const runs::Run& run, std::string_view column, std
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

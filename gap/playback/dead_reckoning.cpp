@@ -9,7 +9,7 @@
 #include "hrt/estimate.hpp"
 #include "robot/state.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 namespace {
 
 constexpr std::array<std::string_view, 3> kAngleColumns{"roll_rad", "pitch_rad", "yaw_rad"};
@@ -78,4 +78,4 @@ std::optional<ReckonedPath> reckon(const runs::Run& run, const physics::RobotDes
   return path;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

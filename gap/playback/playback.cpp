@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "runs/whole_file.hpp"
+#include "formats/runs/whole_file.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ PlayedRun prepare_run(const Playback& playback, std::size_t index) {
   return played;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

@@ -1,4 +1,5 @@
 // What is played back: the runs of a dataset, or one run alone, and what a report says of them.
+//
 // Thread safety: values; prepare_run() is for any thread.
 #pragma once
 
@@ -11,7 +12,7 @@
 
 #include "gap/playback/played_run.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 
 constexpr std::size_t kMostShownTimes = 20000;  // of a run: what a browser draws without thinking
 
@@ -24,27 +25,27 @@ struct PlaybackRequest {
 
 struct ListedRun {
   runs::DatasetRun entry;
-  std::string world_name;                // as it is shown
+  std::string world_name;  // as it is shown
   std::size_t rows;
   double duration_s;
-  std::size_t world;                     // of Playback::worlds
+  std::size_t world;  // of Playback::worlds
 };
 
 struct Playback {
-  std::string name;                      // of the folder or file
-  std::filesystem::path folder;          // of the runs
-  std::string source;                    // of the dataset
+  std::string name;              // of the folder or file
+  std::filesystem::path folder;  // of the runs
+  std::string source;            // of the dataset
   PlayedRobots robots;
   std::vector<physics::WorldDescription> worlds;
-  std::vector<ListedRun> runs;           // at least one
-  std::size_t first = 0;                 // of runs, the one to begin with
+  std::vector<ListedRun> runs;  // at least one
+  std::size_t first = 0;        // of runs, the one to begin with
   std::optional<ReportedPlaces> report;
-  std::vector<std::string> notes;        // on all runs, in sentences
+  std::vector<std::string> notes;  // on all runs, in sentences
 };
 
-// Reads and checks everything, simulates nothing. A file beside a dataset.toml that lists it has that dataset's robot, world and
-// manoeuvre. Throws std::exception with words for the user: what cannot be read, where; a report of other manoeuvres; no
-// such run.
+// Reads and checks everything, simulates nothing. A file beside a dataset.toml that lists it has that dataset's robot,
+// world and manoeuvre. Throws std::exception with words for the user: what cannot be read, where; a report of other
+// manoeuvres; no such run.
 Playback load_playback(const PlaybackRequest& request);
 
 // One of its runs, with its simulations. Throws std::exception in words where its file cannot be read any more.
@@ -54,4 +55,4 @@ PlayedRun prepare_run(const Playback& playback, std::size_t run);
 std::string playback_json(const Playback& playback);
 std::string played_run_json(const Playback& playback, std::size_t run, const PlayedRun& played);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

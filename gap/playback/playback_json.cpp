@@ -3,9 +3,9 @@
 
 #include "gap/diagnose/channels.hpp"
 #include "gap/playback/playback.hpp"
-#include "live/json_writer.hpp"
+#include "server/live/json_writer.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 namespace {
 
 using live::JsonWriter;
@@ -51,7 +51,7 @@ void write_body(JsonWriter& out, const PlayedBody& body) {
 // Columns that can be drawn, with their units; where a report says how much of the gap they show, that.
 void write_channels(JsonWriter& out, const Playback& playback, const PlayedRun& played) {
   out.key("channels").open('[');
-  for (const Channel& channel : diagnosis_channels()) {
+  for (const diagnose::Channel& channel : diagnose::diagnosis_channels()) {
     const std::string column(channel.column);
     if (std::ranges::none_of(played.bodies, [&](const PlayedBody& body) { return body.channels.contains(column); }))
       continue;
@@ -104,7 +104,7 @@ std::string played_run_json(const Playback& playback, std::size_t index, const P
   out.close(']');
   write_channels(out, playback, played);
   out.key("phases").open('[');
-  for (const PhaseSpan& phase : played.phases) {
+  for (const diagnose::PhaseSpan& phase : played.phases) {
     out.comma().open('{').key("phase").text(phase.name);
     out.key("from_s").number(phase.from_s, kDigits).key("to_s").number(phase.to_s, kDigits).close('}');
   }
@@ -119,4 +119,4 @@ std::string played_run_json(const Playback& playback, std::size_t index, const P
   return out.close('}').take();
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

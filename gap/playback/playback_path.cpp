@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 
 std::optional<PlaybackPath> parse_playback_path(std::string_view path) {
   if (path.empty()) return PlaybackPath{};
@@ -16,4 +16,4 @@ std::optional<PlaybackPath> parse_playback_path(std::string_view path) {
   return PlaybackPath{run, !path.empty()};
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

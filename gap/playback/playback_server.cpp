@@ -5,10 +5,10 @@
 
 #include "gap/playback/playback_path.hpp"
 #include "gap/playback/shelf.hpp"
-#include "live/scene_bytes.hpp"
-#include "live/web_server.hpp"
+#include "server/live/scene_bytes.hpp"
+#include "server/live/web_server.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 namespace {
 
 namespace http = boost::beast::http;
@@ -76,4 +76,4 @@ std::string PlaybackServer::url() const {
   return impl_->server.url();
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

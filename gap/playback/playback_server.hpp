@@ -6,14 +6,14 @@
 #include <string>
 
 #include "gap/playback/playback.hpp"
-#include "live/view_options.hpp"
+#include "server/live/view_options.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 
 class PlaybackServer {
  public:
-  // Listens, and serves from then on, on a thread of its own; runs are simulated on another one when a page asks for them.
-  // Throws std::runtime_error in words.
+  // Listens, and serves from then on, on a thread of its own; runs are simulated on another one when a page asks for
+  // them. Throws std::runtime_error in words.
   PlaybackServer(Playback playback, const live::ViewOptions& options);
   // Waits for a simulation that is under way.
   ~PlaybackServer();
@@ -28,4 +28,4 @@ class PlaybackServer {
   std::unique_ptr<Implementation> impl_;
 };
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

@@ -14,7 +14,7 @@
 #include "gap/playback/dead_reckoning.hpp"
 #include "robot/parts.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 namespace {
 
 constexpr std::array<std::string_view, 3> kPosition{"x_m", "y_m", "z_m"}, kAngles{"roll_rad", "pitch_rad", "yaw_rad"};
@@ -48,7 +48,7 @@ std::map<std::string, std::vector<double>> channels_of(const runs::Run& run, std
     if (auto values = column_at(run, column, times_s); runs::any_measured(values))
       channels[std::string(column)] = std::move(values);
   };
-  for (const Channel& channel : diagnosis_channels()) add(channel.column);
+  for (const diagnose::Channel& channel : diagnose::diagnosis_channels()) add(channel.column);
   for (const std::string_view command : kCommands) add(command);
   return channels;
 }
@@ -119,15 +119,15 @@ void complete_pose(PlayedBody& body, const PlayedBody* nominal, double standing_
   }
 }
 
-std::vector<PlayedBody> simulate_bodies(const Observation& observation, const PlayedRobots& robots,
+std::vector<PlayedBody> simulate_bodies(const diagnose::Observation& observation, const PlayedRobots& robots,
                                         const physics::WorldDescription& world, std::span<const double> times_s) {
-  Observations one;
+  diagnose::Observations one;
   one.robot = robots.nominal;
   one.worlds.push_back(world);
   one.runs.push_back(observation);
-  const ComparedFeatures no_features;
-  const Predictor predictor(one, no_features, {}, 1);
-  std::vector<Variation> variations{predictor.unvaried()};
+  const diagnose::ComparedFeatures no_features;
+  const diagnose::Predictor predictor(one, no_features, {}, 1);
+  std::vector<diagnose::Variation> variations{predictor.unvaried()};
   std::vector<PlayedBody> bodies(robots.corrected ? 2 : 1);
   if (robots.corrected) {
     variations.push_back(predictor.unvaried());
@@ -152,10 +152,10 @@ PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const st
   if (from == PoseFrom::dead_reckoning) played.bodies.front().channels = channels_of(run, played.times_s);
   if (!entry.fault.empty()) played.notes.push_back("This run's own simulation went wrong: " + entry.fault);
 
-  Observation observation{entry.file, entry.manoeuvre, 0, posed, {}, {}, 0};
-  if (played.times_s.back() <= rollout::kLongestManoeuvre_s) played.phases = phases_of(observation);
+  diagnose::Observation observation{entry.file, entry.manoeuvre, 0, posed, {}, {}, 0};
+  if (played.times_s.back() <= rollout::kLongestManoeuvre_s) played.phases = diagnose::phases_of(observation);
   try {
-    observation = observation_of(entry, posed, path);
+    observation = diagnose::observation_of(entry, posed, path);
     for (PlayedBody& body : simulate_bodies(observation, robots, world, played.times_s))
       played.bodies.push_back(std::move(body));
   } catch (const std::exception& error) {
@@ -176,4 +176,4 @@ PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const st
   return played;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

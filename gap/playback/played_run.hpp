@@ -1,4 +1,5 @@
 // A recorded run beside its simulations, ready to be shown: all at the same times.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -9,36 +10,36 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/runs/dataset.hpp"
 #include "gap/diagnose/phases.hpp"
 #include "gap/playback/reported_places.hpp"
 #include "physics/effects.hpp"
 #include "physics/robot_description.hpp"
 #include "physics/world_description.hpp"
-#include "runs/dataset.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 
 enum class PoseFrom { measured, dead_reckoning, nothing };
 
 struct PlayedBody {
-  std::string_view kind;                          // "recorded", "nominal", "corrected"
+  std::string_view kind;  // "recorded", "nominal", "corrected"
   PoseFrom pose_from = PoseFrom::measured;
   // Of frame B in W at each time; NaN where it is not known. Empty lists where it never is.
-  std::array<std::vector<double>, 3> p_WB_m;      // x, y, z
-  std::array<std::vector<double>, 3> angles_rad;  // roll, pitch, yaw
-  std::array<std::vector<double>, 4> flipper_rad; // measured, or commanded, or 0
+  std::array<std::vector<double>, 3> p_WB_m;       // x, y, z
+  std::array<std::vector<double>, 3> angles_rad;   // roll, pitch, yaw
+  std::array<std::vector<double>, 4> flipper_rad;  // measured, or commanded, or 0
   std::array<std::vector<double>, 2> track_m;
   std::map<std::string, std::vector<double>> channels;  // by column; those that it has
 };
 
 struct PlayedRun {
   runs::DatasetRun entry;
-  std::size_t rows;                     // of the file
-  std::vector<double> times_s;          // from 0
-  std::vector<PlayedBody> bodies;       // the recorded one first
-  std::vector<PhaseSpan> phases;
-  std::vector<ReportedPhase> marks;     // of the report, largest share first
-  std::vector<std::string> notes;       // what is not as one would expect, in sentences
+  std::size_t rows;                // of the file
+  std::vector<double> times_s;     // from 0
+  std::vector<PlayedBody> bodies;  // the recorded one first
+  std::vector<diagnose::PhaseSpan> phases;
+  std::vector<ReportedPhase> marks;  // of the report, largest share first
+  std::vector<std::string> notes;    // what is not as one would expect, in sentences
 };
 
 // What the runs of a dataset have in common.
@@ -47,10 +48,10 @@ struct PlayedRobots {
   std::optional<physics::RobotDescription> corrected;
 };
 
-// Simulates the run with the nominal and, if there is one, the corrected robot, as a diagnosis does: the same commands from
-// the same start, without noise. `path` names the file in notes. At most `most_times` times are shown. A run that cannot be
-// simulated is shown without, with a note.
-PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const std::string& path, const PlayedRobots& robots,
-                   const physics::WorldDescription& world, std::size_t most_times);
+// Simulates the run with the nominal and, if there is one, the corrected robot, as a diagnosis does: the same commands
+// from the same start, without noise. `path` names the file in notes. At most `most_times` times are shown. A run that
+// cannot be simulated is shown without, with a note.
+PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const std::string& path,
+                   const PlayedRobots& robots, const physics::WorldDescription& world, std::size_t most_times);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 namespace {
 
 using PlacesJson = nlohmann::json;
@@ -64,4 +64,4 @@ std::vector<ReportedPhase> phases_of_run(const ReportedPlaces& places, const std
   return result;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

@@ -4,7 +4,7 @@
 #include <exception>
 #include <utility>
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 
 Shelf::Shelf(std::size_t most_bytes, std::function<std::string(std::size_t)> make)
     : most_bytes_(most_bytes), make_(std::move(make)), thread_([this] { work(); }) {}
@@ -67,4 +67,4 @@ void Shelf::work() {
   }
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

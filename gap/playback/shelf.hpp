@@ -1,4 +1,5 @@
 // Texts that take long to make, made one at a time on a thread of their own when somebody asks, and kept for a while.
+//
 // Thread safety: all of it.
 #pragma once
 
@@ -12,12 +13,12 @@
 #include <string>
 #include <thread>
 
-namespace kenaf::gap {
+namespace kenaf::gap::playback {
 
 class Shelf {
  public:
-  // `make` is called on the shelf's thread; what it throws is told to who asked. Of what was made, the longest unasked for is
-  // dropped beyond `most_bytes`.
+  // `make` is called on the shelf's thread; what it throws is told to who asked. Of what was made, the longest unasked
+  // for is dropped beyond `most_bytes`.
   Shelf(std::size_t most_bytes, std::function<std::string(std::size_t)> make);
   // Waits for what is being made.
   ~Shelf();
@@ -44,7 +45,7 @@ class Shelf {
   std::map<std::size_t, std::shared_ptr<const std::string>> texts_;
   std::map<std::size_t, std::string> failures_;
   std::size_t bytes_ = 0;
-  std::thread thread_;             // last: it uses the others
+  std::thread thread_;  // last: it uses the others
 };
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::playback

@@ -1,4 +1,5 @@
 // Round numbers along an axis.
+//
 // Thread safety: pure functions.
 #pragma once
 

@@ -1,6 +1,7 @@
 // A chart as SVG: lines and areas over two axes with round ticks, for reports that open offline. Text stays text, so
 // that it can be searched and copied; colours are classes of one style sheet, so that a page suits light, dark and
 // paper.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -24,14 +25,14 @@ struct Line {
   std::vector<Point> points;  // in the axes' units; a point that is not finite breaks the line
   Ink ink = Ink::real;
   Stroke stroke = Stroke::solid;
-  std::string legend = {};    // empty: not in the legend
+  std::string legend = {};  // empty: not in the legend
 };
 
 // What is behind the lines; it does not widen the view.
 struct Area {
   std::vector<Point> outline;
   Ink ink = Ink::ground;
-  bool filled = true;         // and closed; false: only its line, which may have breaks
+  bool filled = true;  // and closed; false: only its line, which may have breaks
 };
 
 // A place with an amount, which the circle's area shows.
@@ -39,18 +40,18 @@ struct Disc {
   Point at;
   double radius_px;
   Ink ink = Ink::real;
-  bool filled = true;         // otherwise a ring
-  std::string label = {};     // above it, or below where there is no room
-  std::string legend = {};    // empty: not in the legend
+  bool filled = true;       // otherwise a ring
+  std::string label = {};   // above it, or below where there is no room
+  std::string legend = {};  // empty: not in the legend
 };
 
 struct Chart {
   std::string title, x_label, y_label;  // labels with their unit: "x (m)"
   std::vector<Area> areas;              // the first is the lowest; all are under the lines
   std::vector<Line> lines;
-  std::vector<Disc> discs;              // over the lines, clipped like areas; one that is not finite is left out
-  std::vector<Point> include;           // what the view shows beside all points of the lines; areas are clipped
-  bool equal_scales = false;            // as long on paper in both directions; the height follows
+  std::vector<Disc> discs;     // over the lines, clipped like areas; one that is not finite is left out
+  std::vector<Point> include;  // what the view shows beside all points of the lines; areas are clipped
+  bool equal_scales = false;   // as long on paper in both directions; the height follows
   double width_px = 540, height_px = 280;
 };
 

@@ -1,4 +1,5 @@
 // Named quantities one below the other, each a mark with its interval on one common axis.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -15,16 +16,16 @@ namespace kenaf::gap::plot {
 enum class Shape { ring, disc, bar };
 
 struct RowMark {
-  double value;                   // what is not finite is left out
+  double value;  // what is not finite is left out
   Shape shape = Shape::disc;
   Ink ink = Ink::real;
   std::optional<Range> interval{};  // a whisker
 };
 
 struct Row {
-  std::string label;              // left of the axis
-  std::vector<RowMark> marks;     // several are joined by a line
-  std::string note;               // right of the axis
+  std::string label;           // left of the axis
+  std::vector<RowMark> marks;  // several are joined by a line
+  std::string note;            // right of the axis
 };
 
 struct RowLegend {
@@ -38,8 +39,8 @@ struct RowChart {
   std::vector<Row> rows;
   std::vector<RowLegend> legend;
   std::vector<std::pair<double, std::string>> guides;  // dashed upright lines with their words
-  std::optional<Range> view;      // empty: of all values and intervals; what is beyond is drawn at its edge
-  bool logarithmic = false;       // all that is not positive is drawn at the left edge
+  std::optional<Range> view;  // empty: of all values and intervals; what is beyond is drawn at its edge
+  bool logarithmic = false;   // all that is not positive is drawn at the left edge
   double label_px = 190, note_px = 0, width_px = 1060;
 };
 

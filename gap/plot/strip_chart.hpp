@@ -1,4 +1,5 @@
 // Time spans with names, one strip for each row over one common axis, each span darker where more is.
+//
 // Thread safety: values and pure functions.
 #pragma once
 
@@ -14,20 +15,20 @@ struct StripSpan {
 };
 
 struct Strip {
-  std::string label;       // left of the axis
+  std::string label;  // left of the axis
   std::vector<StripSpan> spans;
 };
 
 struct StripChart {
   std::string title, x_label;
   std::vector<Strip> strips;
-  std::string legend;                    // what the shade means
-  std::string least, most;               // at the ends of the scale of shades
+  std::string legend;                      // what the shade means
+  std::string least, most;                 // at the ends of the scale of shades
   double label_px = 190, width_px = 1060;  // labels get more where they need it, up to half of the width
 };
 
-// One <svg> element, for the style sheet of chart.hpp. Without strips it says "nothing to show". A name without room in its
-// span shows under the pointer.
+// One <svg> element, for the style sheet of chart.hpp. Without strips it says "nothing to show". A name without room in
+// its span shows under the pointer.
 std::string to_svg(const StripChart& chart);
 
 }  // namespace kenaf::gap::plot

@@ -1,4 +1,5 @@
 // The pieces that all kinds of chart are written with.
+//
 // Thread safety: pure functions.
 #pragma once
 

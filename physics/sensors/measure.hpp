@@ -52,8 +52,8 @@ class GyroSense {
   Eigen::Vector3d bias_B_radps_;
 };
 
-// What an IMU reports of. Accelerations are the mean between `now` and `before`, which is one averaging time earlier. Pose
-// and rates may be older than the nominal delay says.
+// What an IMU reports of. Accelerations are the mean between `now` and `before`, which is one averaging time earlier.
+// Pose and rates may be older than the nominal delay says.
 struct ImuMotion {
   const MotionSample &now, &before;
   Pose X_WB;
@@ -75,8 +75,10 @@ OdometryReading measure_odometry(const SensorState& state, const MotionSample& n
 TachometerReading measure_tachometer(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
                                      const TrackDriveDescription& drive);
 // Advances odometry by a step from the encoders' whole counts.
-Eigen::Vector3d advance_odometry(const Eigen::Vector3d& odometry, const std::array<double, robot::kTrackCount>& old_track_m,
-                                 const std::array<double, robot::kTrackCount>& new_track_m, const RobotDescription& robot);
+Eigen::Vector3d advance_odometry(const Eigen::Vector3d& odometry,
+                                 const std::array<double, robot::kTrackCount>& old_track_m,
+                                 const std::array<double, robot::kTrackCount>& new_track_m,
+                                 const RobotDescription& robot);
 
 // The distance to the first surface along a ray from a point in W, if one is nearer than `max_m`.
 using RayCaster = std::function<std::optional<double>(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W,

@@ -24,12 +24,13 @@ struct DriveSample {
 
 struct EngineScene {
   std::string name;
-  physics::WorldDescription world;                  // planes and fixed boxes; one friction for all of them
-  std::optional<physics::RobotDescription> robot;   // else the block
+  physics::WorldDescription world;                 // planes and fixed boxes; one friction for all of them
+  std::optional<physics::RobotDescription> robot;  // else the block
   std::optional<physics::Box> block;
-  physics::Pose X_start;                            // of the robot's body frame
+  physics::Pose X_start;  // of the robot's body frame
   robot::Command command;
-  // By time, the first at 0; where there are any, belts and flippers do this, straight between two of them, whatever is commanded.
+  // By time, the first at 0; where there are any, belts and flippers do this, straight between two of them, whatever is
+  // commanded.
   std::vector<DriveSample> prescribed;
   double duration_s = 0;
   double time_step_s = 0.001;
@@ -44,23 +45,25 @@ EngineScene on_plane(const physics::RobotDescription& robot, double slope_rad);
 
 // A drum pair with a belt around: track (equal drums) or flipper. Profile in x and z, swept along y.
 struct Belted {
-  Eigen::Vector3d p_rear_m, p_front_m;              // drum centres, of the flipper: pivot and tip
+  Eigen::Vector3d p_rear_m, p_front_m;  // drum centres, of the flipper: pivot and tip
   double rear_radius_m, front_radius_m, width_m;
   double friction_along, friction_across;
-  std::optional<robot::Track> belt;               // whose speed it runs with
-  int boxes;                                        // of the straight part, for about as many contacts as Kenaf has
-  std::vector<Eigen::Vector3d> hull_m;              // corners of the convex hull of both drums
+  std::optional<robot::Track> belt;     // whose speed it runs with
+  int boxes;                            // of the straight part, for about as many contacts as Kenaf has
+  std::vector<Eigen::Vector3d> hull_m;  // corners of the convex hull of both drums
 };
 
-struct Cuboid { Eigen::Vector3d center_m, size_m; };
+struct Cuboid {
+  Eigen::Vector3d center_m, size_m;
+};
 // The straight part between the drums, cut into boxes of equal length; as high as the smaller drum.
 std::vector<Cuboid> straight_part(const Belted& shape, int boxes);
 
 struct Arm {
-  Belted shape;                                     // in the arm's frame: x out along the arm, origin at the pivot
+  Belted shape;  // in the arm's frame: x out along the arm, origin at the pivot
   double mass_kg;
-  Eigen::Vector3d p_com_m, inertia_kgm2;            // about the centre of mass
-  physics::Pose X_BArm;                             // at angle 0; a positive angle turns about -y of it
+  Eigen::Vector3d p_com_m, inertia_kgm2;  // about the centre of mass
+  physics::Pose X_BArm;                   // at angle 0; a positive angle turns about -y of it
 };
 
 // The angle of an arm before the first step.
@@ -70,15 +73,16 @@ double servo_torque_nm(const EngineScene& scene);
 
 struct RobotParts {
   std::array<Belted, robot::kTrackCount> tracks;  // in B
-  std::vector<Arm> arms;                            // in the order of physics::Flipper
+  std::vector<Arm> arms;                          // in the order of physics::Flipper
 };
 RobotParts parts_of(const physics::RobotDescription& robot);
 
-// The drives as Kenaf's are in physics/, but for the force: lag of a track's speed, position loop of a flipper. Or as prescribed.
+// The drives as Kenaf's are in physics/, but for the force: lag of a track's speed, position loop of a flipper. Or as
+// prescribed.
 class Drives {
  public:
   explicit Drives(const EngineScene& scene);
-  void advance();                                   // call before each step
+  void advance();  // call before each step
   double belt_mps(robot::Track track) const { return belt_mps_[track]; }
   // The speed that a flipper at `angle_rad` shall have; a prescribed one is there after the step.
   double flipper_radps(std::size_t flipper, double angle_rad) const;
@@ -89,7 +93,7 @@ class Drives {
 
   robot::Command command_;
   std::vector<DriveSample> prescribed_;
-  std::size_t next_ = 0;                            // of prescribed_, the first that is not over
+  std::size_t next_ = 0;  // of prescribed_, the first that is not over
   double time_step_s_ = 0, time_s_ = 0;
   double share_ = 1, max_mps_ = 0, max_radps_ = 0, servo_gain_per_s_ = 0;
   std::array<double, robot::kTrackCount> belt_mps_{};

@@ -1,5 +1,6 @@
-// Another physics engine that simulates one scene, and the engines there are: those that this was built with. For a benchmark to
-// be compared with, and for a "reality" whose contacts are not those of the model.
+// Another physics engine that simulates one scene, and the engines there are: those that this was built with. For a
+// benchmark to be compared with, and for a "reality" whose contacts are not those of the model.
+//
 // Thread safety: none of a Runner; each has its own, and any number may be built and stepped at once.
 #pragma once
 
@@ -21,7 +22,7 @@ class Runner {
 };
 
 struct Engine {
-  std::string name;     // "MuJoCo"
+  std::string name;  // "MuJoCo"
   std::string version;
   std::string setting;  // "Newton, elliptic"
   bool same_contacts;   // about as many as Kenaf, along all of a track; else fewer, for the record: no limit
@@ -30,8 +31,8 @@ struct Engine {
 
 std::vector<Engine> mujoco_engines();
 std::vector<Engine> ode_engines();
-// QuickStep takes constraints in an order by chance, from a generator that all worlds of a process share: this one begins it anew in
-// each step, one world at a time, so that a run has the same bits whatever else runs.
+// QuickStep takes constraints in an order by chance, from a generator that all worlds of a process share: this one
+// begins it anew in each step, one world at a time, so that a run has the same bits whatever else runs.
 Engine repeatable_ode_engine();
 
 }  // namespace kenaf::engines

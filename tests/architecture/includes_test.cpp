@@ -106,9 +106,9 @@ std::vector<std::string> against_the_table(const std::vector<Include>& includes,
   return faults;
 }
 
-// Folders at the top that hold sources, but those that may include any room.
+// Folders at the top that hold sources, except those that may include any room.
 std::vector<fs::path> folders_with_rooms() {
-  static const std::set<std::string> kAny{"bench", "fuzz", "tests"};
+  static const std::set<std::string> kAny{"bench", "tests"};
   std::vector<fs::path> folders;
   for (const fs::directory_entry& entry : fs::directory_iterator(kRoot)) {
     const std::string name = entry.path().filename();

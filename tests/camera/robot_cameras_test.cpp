@@ -67,7 +67,7 @@ namespace {
 
 // The error of kenaf.toml with `from` replaced.
 std::string error_with(const std::string& from, const std::string& to) {
-  std::ifstream in(std::string(KENAF_SOURCE_DIR) + "/robots/kenaf.toml");
+  std::ifstream in(std::string(KENAF_SOURCE_DIR) + "/share/robots/kenaf.toml");
   std::ostringstream all;
   all << in.rdbuf();
   std::string text = all.str();
@@ -76,7 +76,7 @@ std::string error_with(const std::string& from, const std::string& to) {
   text.replace(at, from.size(), to);
   try {
     physics::parse_robot(text, "test.toml");
-  } catch (const kenaf::DescriptionError& error) {
+  } catch (const kenaf::description::DescriptionError& error) {
     return error.what();
   }
   return "";

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "tests/runs/temporary_folder.hpp"
+#include "tests/formats/runs/temporary_folder.hpp"
 
 namespace kenaf::test {
 
@@ -17,8 +17,8 @@ struct Outcome {
 
 // In `folder`, with `arguments` as a shell takes them.
 inline Outcome kenaf_gap(const TemporaryFolder& folder, const std::string& arguments) {
-  const std::string command = "cd '" + folder.path().string() + "' && '" KENAF_GAP "' " + arguments +
-                              " >out.txt 2>error.txt </dev/null";
+  const std::string command =
+      "cd '" + folder.path().string() + "' && '" KENAF_GAP "' " + arguments + " >out.txt 2>error.txt </dev/null";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder / "out.txt"), read_file(folder / "error.txt")};
 }

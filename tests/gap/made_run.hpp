@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "runs/run_file.hpp"
+#include "formats/runs/run_file.hpp"
 
 namespace kenaf::test {
 

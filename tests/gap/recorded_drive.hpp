@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
+#include "formats/runs/run_file.hpp"
 #include "gap/logs/motion_capture.hpp"
-#include "runs/run_file.hpp"
 
 namespace kenaf::test {
 
@@ -78,19 +78,19 @@ inline runs::Run robot_log(const Drive& drive, unsigned seed, bool gyro = true) 
 }
 
 struct CaptureOptions {
-  double offset_s = 0;              // robot's time less the capture's
-  double from_s = 0, to_s = 1e9;    // of the robot's time
+  double offset_s = 0;            // robot's time less the capture's
+  double from_s = 0, to_s = 1e9;  // of the robot's time
   double period_s = 1 / 120.0;
-  double noise = 1;                 // times 1 mm and 2 mrad
+  double noise = 1;  // times 1 mm and 2 mrad
   double frame_yaw_rad = 0, frame_x_m = 0, frame_y_m = 0;
 };
 
-inline gap::MotionCapture captured(const Drive& drive, unsigned seed, const CaptureOptions& options) {
+inline gap::logs::MotionCapture captured(const Drive& drive, unsigned seed, const CaptureOptions& options) {
   std::mt19937 random(seed + 1000);
   std::normal_distribution<double> noise;
   const DrivenPath path(drive);
   const Eigen::Rotation2Dd frame(options.frame_yaw_rad);
-  gap::MotionCapture capture{{}, true, true};
+  gap::logs::MotionCapture capture{{}, true, true};
   const double to_s = std::min(options.to_s, drive.duration_s);
   for (int i = 0; options.from_s + i * options.period_s <= to_s; ++i) {
     const double t = options.from_s + i * options.period_s;
@@ -99,7 +99,8 @@ inline gap::MotionCapture captured(const Drive& drive, unsigned seed, const Capt
     const double y = pose.y_m + options.noise * 0.001 * noise(random);
     const Eigen::Vector2d p = frame * Eigen::Vector2d(x, y) + Eigen::Vector2d(options.frame_x_m, options.frame_y_m);
     const double yaw = options.frame_yaw_rad + pose.yaw_rad + options.noise * 0.002 * noise(random);
-    capture.poses.push_back({t - options.offset_s, {p.x(), p.y(), 0.09},
+    capture.poses.push_back({t - options.offset_s,
+                             {p.x(), p.y(), 0.09},
                              Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()))});
   }
   return capture;

@@ -1,7 +1,7 @@
 // What the attributes of an SVG text hold.
 //
-// Without std::regex: a program that has it at -O0 lends it to every library that uses it, and those that read worlds do so
-// whenever a process starts. 0.12 s for each test case.
+// Without std::regex: a program that has it at -O0 lends it to every library that uses it, and those that read worlds
+// do so whenever a process starts. 0.12 s for each test case.
 #pragma once
 
 #include <string>

@@ -17,9 +17,9 @@
 #include <thread>
 #include <utility>
 
+#include "formats/runs/run_file.hpp"
 #include "hrt/robot.hpp"
 #include "kenaf/hrt.h"
-#include "runs/run_file.hpp"
 #include "tests/hrt/fake_transport.hpp"
 #include "tests/support/process.hpp"
 

@@ -23,8 +23,8 @@ Bytes8 plain_jpeg(int width, int height, std::uint8_t red, std::uint8_t green, s
   return {file.begin(), file.end()};
 }
 
-Bytes8 noted(const Bytes8& jpeg, const image::FrameNote& note) {
-  const std::string segment = image::frame_note_segment(note);
+Bytes8 noted(const Bytes8& jpeg, const protocol::image::FrameNote& note) {
+  const std::string segment = protocol::image::frame_note_segment(note);
   Bytes8 out(jpeg.begin(), jpeg.begin() + 2);
   out.insert(out.end(), segment.begin(), segment.end());
   out.insert(out.end(), jpeg.begin() + 2, jpeg.end());
@@ -56,7 +56,7 @@ void FakeImageServer::Connection::send(std::string_view bytes) const {
 }
 
 void FakeImageServer::Connection::answer(std::uint8_t type, const Bytes8& data) const {
-  const auto header = image::answer_header(type, static_cast<std::uint32_t>(data.size()));
+  const auto header = protocol::image::answer_header(type, static_cast<std::uint32_t>(data.size()));
   send({reinterpret_cast<const char*>(header.data()), header.size()});
   send({reinterpret_cast<const char*>(data.data()), data.size()});
 }

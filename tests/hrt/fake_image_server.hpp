@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "protocol/image_message.hpp"
+#include "formats/protocol/image_message.hpp"
 
 namespace kenaf::hrt::test {
 
@@ -21,7 +21,7 @@ using Bytes8 = std::vector<std::uint8_t>;
 // A picture of one colour as JPEG.
 Bytes8 plain_jpeg(int width, int height, std::uint8_t red, std::uint8_t green, std::uint8_t blue);
 // With a frame note after its SOI, as a Kenaf server sends it.
-Bytes8 noted(const Bytes8& jpeg, const image::FrameNote& note);
+Bytes8 noted(const Bytes8& jpeg, const protocol::image::FrameNote& note);
 
 class FakeImageServer {
  public:

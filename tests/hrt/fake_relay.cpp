@@ -73,12 +73,12 @@ std::string FakeRelay::address() const {
   return fmt::format("127.0.0.1:{}", port_);
 }
 
-std::vector<relay::Command> FakeRelay::commands() const {
+std::vector<protocol::relay::Command> FakeRelay::commands() const {
   const std::lock_guard lock(mutex_);
   return commands_;
 }
 
-std::optional<relay::Hello> FakeRelay::hello() const {
+std::optional<protocol::relay::Hello> FakeRelay::hello() const {
   const std::lock_guard lock(mutex_);
   return hello_;
 }
@@ -91,19 +91,19 @@ void FakeRelay::run() {
     Bytes bytes;
     sockaddr_in from{};
     while (receive(socket_, bytes, from)) {
-      relay::Datagram datagram;
-      if (relay::decode(bytes, datagram) != relay::DecodeError::none) continue;
+      protocol::relay::Datagram datagram;
+      if (protocol::relay::decode(bytes, datagram) != protocol::relay::DecodeError::none) continue;
       const std::lock_guard lock(mutex_);
-      for (const relay::Datagram& answer : answers_to(datagram)) {
-        Bytes out(relay::kMaxDatagramBytes);
-        out.resize(relay::encode(answer, out));
+      for (const protocol::relay::Datagram& answer : answers_to(datagram)) {
+        Bytes out(protocol::relay::kMaxDatagramBytes);
+        out.resize(protocol::relay::encode(answer, out));
         transmit(socket_, out, from);
       }
     }
   }
 }
 
-relay::State FakeRelay::state() const {
+protocol::relay::State FakeRelay::state() const {
   return {.session = session_,
           .acknowledged = acknowledged_,
           .world_server_lost = false,
@@ -111,41 +111,42 @@ relay::State FakeRelay::state() const {
           .robot = plant_.state};
 }
 
-std::vector<relay::Datagram> FakeRelay::answers_to(const relay::Datagram& datagram) {
-  const auto refused = [&](std::uint64_t session, relay::RefusedReason reason) {
-    relay::Refused answer{};
+std::vector<protocol::relay::Datagram> FakeRelay::answers_to(const protocol::relay::Datagram& datagram) {
+  const auto refused = [&](std::uint64_t session, protocol::relay::RefusedReason reason) {
+    protocol::relay::Refused answer{};
     answer.session = session;
     answer.reason = reason;
     answer.text_length = behaviour_.words.copy(answer.text.data(), answer.text.size());
     return answer;
   };
-  if (const auto* hello = std::get_if<relay::Hello>(&datagram)) {
+  if (const auto* hello = std::get_if<protocol::relay::Hello>(&datagram)) {
     ++hellos_;
     hello_ = *hello;
     if (behaviour_.refuse && behaviour_.refuse_times-- > 0) return {refused(hello->session, *behaviour_.refuse)};
     session_ = hello->session;
-    const relay::Welcome welcome{session_, plant_.state.robot_time_s, behaviour_.plant.period_s, true};
+    const protocol::relay::Welcome welcome{session_, plant_.state.robot_time_s, behaviour_.plant.period_s, true};
     if (behaviour_.first_state_lost || behaviour_.no_state) return {welcome};
     return {welcome, state()};
   }
-  if (const auto* ping = std::get_if<relay::Ping>(&datagram)) {
+  if (const auto* ping = std::get_if<protocol::relay::Ping>(&datagram)) {
     ++pings_;
     if (behaviour_.silent_from_frame != 0 && plant_.state.frame + 1 >= behaviour_.silent_from_frame) return {};
-    return {relay::Pong{ping->session, ping->id}};
+    return {protocol::relay::Pong{ping->session, ping->id}};
   }
-  if (std::get_if<relay::Bye>(&datagram) != nullptr) {
+  if (std::get_if<protocol::relay::Bye>(&datagram) != nullptr) {
     ++byes_;
     return {};
   }
-  const auto* command = std::get_if<relay::Command>(&datagram);
+  const auto* command = std::get_if<protocol::relay::Command>(&datagram);
   if (command == nullptr || command->session != session_) return {};
   if (command->sequence == acknowledged_) ++repeats_;
   const std::uint32_t next = plant_.state.frame + 1;
   const auto happens_at = [&](std::uint32_t frame) { return frame != 0 && next >= frame; };
   if (happens_at(behaviour_.silent_from_frame) || behaviour_.no_state) return {};
   if (command->frame != plant_.state.frame || happens_at(behaviour_.frozen_from_frame)) return {state()};
-  if (happens_at(behaviour_.forgets_at_frame)) return {refused(session_, relay::RefusedReason::unknown_session)};
-  relay::State event = state();
+  if (happens_at(behaviour_.forgets_at_frame))
+    return {refused(session_, protocol::relay::RefusedReason::unknown_session)};
+  protocol::relay::State event = state();
   if (happens_at(behaviour_.world_lost_at_frame)) {
     event.world_server_lost = true;
     return {event};

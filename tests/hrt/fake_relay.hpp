@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "protocol/relay_datagram.hpp"
+#include "formats/protocol/relay_datagram.hpp"
 #include "tests/hrt/plant.hpp"
 
 namespace kenaf::hrt::test {
@@ -20,7 +20,7 @@ class FakeRelay {
  public:
   struct Behaviour {
     PlantSettings plant;
-    std::optional<relay::RefusedReason> refuse;
+    std::optional<protocol::relay::RefusedReason> refuse;
     std::string words = "because of the test";
     int refuse_times = 1 << 30;
     std::uint32_t silent_from_frame = 0;    // says nothing more instead of this frame; 0: never
@@ -37,17 +37,17 @@ class FakeRelay {
 
   std::string address() const;  // HOST:PORT
   std::uint16_t port() const { return port_; }
-  std::vector<relay::Command> commands() const;  // the answers to frame 1, 2, 3, ...
+  std::vector<protocol::relay::Command> commands() const;  // the answers to frame 1, 2, 3, ...
   int byes() const { return byes_; }
   int hellos() const { return hellos_; }
   int pings() const { return pings_; }
   int repeats() const { return repeats_; }  // Commands that it had already
-  std::optional<relay::Hello> hello() const;
+  std::optional<protocol::relay::Hello> hello() const;
 
  private:
   void run();
-  relay::State state() const;
-  std::vector<relay::Datagram> answers_to(const relay::Datagram& datagram);
+  protocol::relay::State state() const;
+  std::vector<protocol::relay::Datagram> answers_to(const protocol::relay::Datagram& datagram);
 
   Behaviour behaviour_;
   int socket_ = -1, stop_ = -1;
@@ -56,8 +56,8 @@ class FakeRelay {
   Plant plant_;
   std::uint64_t session_ = 0;
   std::uint32_t acknowledged_ = 0;
-  std::vector<relay::Command> commands_;
-  std::optional<relay::Hello> hello_;
+  std::vector<protocol::relay::Command> commands_;
+  std::optional<protocol::relay::Hello> hello_;
   std::atomic<int> byes_ = 0, hellos_ = 0, pings_ = 0, repeats_ = 0;
   std::thread thread_;
 };

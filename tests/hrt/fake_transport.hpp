@@ -21,11 +21,11 @@ namespace kenaf::hrt::test {
 struct FakeRobot {
   Plant plant;
   bool lockstep = true;
-  std::uint32_t lost_at_frame = 0;  // the link breaks instead of this frame; 0: never
-  std::uint32_t skipped_frame = 0;  // this one never arrives; 0: none
-  std::uint32_t reset_at_frame = 0; // the world is reset: its clock begins anew with this one; 0: never
-  int late_interrupts = 0;          // so many states are faster than an interrupt
-  bool runs_alone = false;          // not lock step: frames also come without answers, one each millisecond
+  std::uint32_t lost_at_frame = 0;   // the link breaks instead of this frame; 0: never
+  std::uint32_t skipped_frame = 0;   // this one never arrives; 0: none
+  std::uint32_t reset_at_frame = 0;  // the world is reset: its clock begins anew with this one; 0: never
+  int late_interrupts = 0;           // so many states are faster than an interrupt
+  bool runs_alone = false;           // not lock step: frames also come without answers, one each millisecond
 
   std::mutex mutex;
   std::condition_variable changed;

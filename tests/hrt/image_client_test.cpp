@@ -100,7 +100,7 @@ TEST_CASE("I2 number, robot time, name and pixels are the server's, the age coun
   FakeImageServer server([&](Client& connection) {
     while (const auto kind = connection.request()) {
       std::this_thread::sleep_for(100ms);  // of which the server says nothing
-      const image::FrameNote note{
+      const protocol::image::FrameNote note{
           .number = 41, .robot_time_s = 12.25, .age_ms = 20, .robot = "a b", .camera = "BirdsEye"};
       connection.answer(1, noted(green, note));
     }
@@ -217,11 +217,7 @@ TEST_CASE("I4 whatever else a server does wrong") {
     });
     check_failure(server.address(), HRT_E_LINK, words, 0.3);
   };
-  misbehave(
-      [](Client& c) {
-        c.send({"\x03\x04\x00\x00\x01", 5});
-      },
-      "67108865 bytes, which is more than a picture has");
+  misbehave([](Client& c) { c.send({"\x03\x04\x00\x00\x01", 5}); }, "67108865 bytes, which is more than a picture has");
   misbehave([](Client& c) { c.send("HTTP/1.1 400 Bad Request\r\n"); }, "type 72, which is no picture's");
   misbehave([&](Client& c) { c.answer(3, Bytes8(jpeg.begin(), jpeg.end() - 9)); }, "no whole JPEG");
   misbehave([&](Client& c) { c.answer(3, {}); }, "no whole JPEG");

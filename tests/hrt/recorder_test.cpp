@@ -18,10 +18,10 @@
 #include <string>
 #include <thread>
 
+#include "formats/runs/run_file.hpp"
 #include "hrt/error.hpp"
 #include "kenaf/hrt.h"
 #include "robot/state.hpp"
-#include "runs/run_file.hpp"
 #include "tests/hrt/fake_transport.hpp"
 #include "tests/support/process.hpp"
 

@@ -43,7 +43,7 @@ int drive_corner() {
   return HRT_OK;
 }
 
-std::vector<relay::Command> run_corner(const BadNetwork::Quality& quality, int& dropped) {
+std::vector<protocol::relay::Command> run_corner(const BadNetwork::Quality& quality, int& dropped) {
   FakeRelay::Behaviour behaviour;
   behaviour.plant.yaw_noise_rad = 0.0017;
   behaviour.plant.turn_efficiency = 0.6;
@@ -60,7 +60,7 @@ std::vector<relay::Command> run_corner(const BadNetwork::Quality& quality, int& 
   CHECK(state.lost_cycles == 0);
   REQUIRE(hrt_close() == HRT_OK);
   dropped = network.dropped();
-  std::vector<relay::Command> commands = relay.commands();
+  std::vector<protocol::relay::Command> commands = relay.commands();
   REQUIRE(commands.size() + 1 >= state.cycle);
   commands.resize(state.cycle - 1);
   return commands;
@@ -83,10 +83,10 @@ struct ChildEndsHere {
 
 TEST_CASE("R1 a bad network gives the same commands as a good one") {
   int dropped = 0;
-  const std::vector<relay::Command> good = run_corner({}, dropped);
+  const std::vector<protocol::relay::Command> good = run_corner({}, dropped);
   CHECK(dropped == 0);
   for (const unsigned seed : {1u, 2u}) {
-    const std::vector<relay::Command> bad =
+    const std::vector<protocol::relay::Command> bad =
         run_corner({.loss = 0.1, .doubling = 0.1, .delay = 0.1, .longest_delay_ms = 12, .seed = seed}, dropped);
     CHECK(dropped > 20);
     REQUIRE(bad.size() == good.size());
@@ -132,7 +132,7 @@ TEST_CASE("R2 what the configuration says is what Hello asks for") {
   config.reset_robot = 0;
   REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
   CHECK(hrt_close() == HRT_OK);
-  const relay::Hello hello = relay.hello().value();
+  const protocol::relay::Hello hello = relay.hello().value();
   CHECK(hello.period_s == 0.02);
   CHECK(hello.command_timeout_s == 0.4);
   CHECK(hello.lockstep);
@@ -172,7 +172,7 @@ TEST_CASE("R2 an address that is none is an error of the configuration") {
 
 TEST_CASE("R2 a refusal carries the relay's words") {
   FakeRelay::Behaviour behaviour;
-  behaviour.refuse = relay::RefusedReason::busy;
+  behaviour.refuse = protocol::relay::RefusedReason::busy;
   behaviour.words = "another commander has the robot";
   FakeRelay relay(behaviour);
   hrt_config config = config_for(relay.address());
@@ -182,7 +182,7 @@ TEST_CASE("R2 a refusal carries the relay's words") {
 
 TEST_CASE("R2 a relay that has no world server yet is asked again") {
   FakeRelay::Behaviour behaviour;
-  behaviour.refuse = relay::RefusedReason::no_world_server;
+  behaviour.refuse = protocol::relay::RefusedReason::no_world_server;
   behaviour.refuse_times = 3;
   FakeRelay relay(behaviour);
   hrt_config config = config_for(relay.address());
@@ -191,7 +191,7 @@ TEST_CASE("R2 a relay that has no world server yet is asked again") {
   CHECK(hrt_close() == HRT_OK);
 
   FakeRelay::Behaviour never;
-  never.refuse = relay::RefusedReason::no_world_server;
+  never.refuse = protocol::relay::RefusedReason::no_world_server;
   FakeRelay without(never);
   config = config_for(without.address());
   config.connect_timeout_s = 0.3;

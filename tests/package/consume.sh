@@ -73,7 +73,7 @@ cmake --build "$work/project/build" >"$work/build.log" 2>&1 || { cat "$work/buil
 expect_error "$work/project/build/square_sim" relay
 expect_error "$work/project/build/square_real" can
 # The library finds the robots that were installed with it, from a program that was not.
-sed 's/^interface = .*/interface = "stranger0"/' "$source/robots/kenaf.toml" >"$prefix/share/kenaf/robots/stranger.toml"
+sed 's/^interface = .*/interface = "stranger0"/' "$source/share/robots/kenaf.toml" >"$prefix/share/kenaf/robots/stranger.toml"
 KENAF_ROBOT=stranger expect_error "$work/project/build/square_real" "no SocketCAN\|'stranger0'"
 
 pkgconfig=$(dirname "$(find "$prefix" -name kenaf-sim.pc)")

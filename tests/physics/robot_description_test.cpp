@@ -11,7 +11,7 @@ using namespace kenaf::physics;
 namespace {
 
 std::string kenaf_text() {
-  std::ifstream in(std::string(KENAF_SOURCE_DIR) + "/robots/kenaf.toml");
+  std::ifstream in(std::string(KENAF_SOURCE_DIR) + "/share/robots/kenaf.toml");
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
@@ -25,7 +25,7 @@ std::string error_with(const std::string& from, const std::string& to) {
   text.replace(at, from.size(), to);
   try {
     parse_robot(text, "test.toml");
-  } catch (const kenaf::DescriptionError& error) {
+  } catch (const kenaf::description::DescriptionError& error) {
     return error.what();
   }
   return "";
@@ -90,8 +90,8 @@ TEST_CASE("What is wrong is said with file, line and column") {
   CHECK(error_with("[servo]", "[servo").find("test.toml:") == 0);
   CHECK(error_with("start_angle_rad = 1.0", "start_angle_rad = 4.0").find("between min_angle_rad") !=
         std::string::npos);
-  CHECK_THROWS_AS(load_robot("no-such-robot"), kenaf::DescriptionError);
-  CHECK_THROWS_AS(load_robot("./no-such-file.toml"), kenaf::DescriptionError);
+  CHECK_THROWS_AS(load_robot("no-such-robot"), kenaf::description::DescriptionError);
+  CHECK_THROWS_AS(load_robot("./no-such-file.toml"), kenaf::description::DescriptionError);
 }
 
 TEST_CASE("Effects, lugs and a servo's encoder stand in the description, or stay neutral") {

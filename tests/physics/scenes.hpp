@@ -54,8 +54,10 @@ inline void run(World& world, double time_s) {
 inline robot::Command drive(double left_mps, double right_mps, double front_rad = 1, double rear_rad = 1) {
   robot::Command command;
   command.track_speed_mps = {left_mps, right_mps};
-  for (const robot::Flipper f : {robot::kFrontLeft, robot::kFrontRight}) command.flipper[f] = {robot::JointMode::angle, front_rad};
-  for (const robot::Flipper f : {robot::kRearLeft, robot::kRearRight}) command.flipper[f] = {robot::JointMode::angle, rear_rad};
+  for (const robot::Flipper f : {robot::kFrontLeft, robot::kFrontRight})
+    command.flipper[f] = {robot::JointMode::angle, front_rad};
+  for (const robot::Flipper f : {robot::kRearLeft, robot::kRearRight})
+    command.flipper[f] = {robot::JointMode::angle, rear_rad};
   return command;
 }
 

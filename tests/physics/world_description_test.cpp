@@ -22,7 +22,7 @@ std::string error_of(const std::string& text) {
   std::vector<std::string> unsupported;
   try {
     parse_world(text, "test.sdf", "", unsupported);
-  } catch (const kenaf::DescriptionError& error) {
+  } catch (const kenaf::description::DescriptionError& error) {
     return error.what();
   }
   return "";
@@ -111,5 +111,5 @@ TEST_CASE("What cannot be a world is refused with its place") {
         std::string::npos);
   CHECK(error_of("<sdf version=\"1.9\"></sdf>").find("exactly one <world>") != std::string::npos);
   std::vector<std::string> unsupported;
-  CHECK_THROWS_AS(load_world("no-such-world", unsupported), kenaf::DescriptionError);
+  CHECK_THROWS_AS(load_world("no-such-world", unsupported), kenaf::description::DescriptionError);
 }

@@ -9,7 +9,7 @@
 #include "physics/mesh_file.hpp"
 #include "physics/triangle_surface.hpp"
 #include "physics/world_description.hpp"
-#include "tests/runs/temporary_folder.hpp"
+#include "tests/formats/runs/temporary_folder.hpp"
 
 using namespace kenaf::physics;
 using kenaf::test::TemporaryFolder;
@@ -40,7 +40,7 @@ std::string error_of_shape(const std::string& shape, const fs::path& folder = ""
   std::vector<std::string> unsupported;
   try {
     parse_world(world_of(shape), "t.sdf", folder, unsupported);
-  } catch (const kenaf::DescriptionError& error) {
+  } catch (const kenaf::description::DescriptionError& error) {
     return error.what();
   }
   return "";
@@ -95,7 +95,7 @@ std::string collada_error(const std::string& was, const std::string& is) {
   text.replace(text.find(was), was.size(), is);
   try {
     read_mesh(text, MeshFormat::dae, {}, 1000);
-  } catch (const kenaf::DescriptionError& error) {
+  } catch (const kenaf::description::DescriptionError& error) {
     return error.what();
   }
   return "";
@@ -426,7 +426,7 @@ TEST_CASE("U5: a polygon of more than 500 corners is not cut") {
     }
     try {
       read_mesh(text + face + "\n", MeshFormat::obj, {}, 1000);
-    } catch (const kenaf::DescriptionError& e) {
+    } catch (const kenaf::description::DescriptionError& e) {
       return e.what();
     }
     return "";
@@ -444,5 +444,5 @@ TEST_CASE("U5: lines and points count as triangles do, in every instance") {
   const MeshContent content = read_mesh(text, MeshFormat::dae, {}, 4);
   CHECK(content.surface.triangles.size() == 2);
   CHECK(content.other_faces == 2);
-  CHECK_THROWS_AS(read_mesh(text, MeshFormat::dae, {}, 3), kenaf::DescriptionError);
+  CHECK_THROWS_AS(read_mesh(text, MeshFormat::dae, {}, 3), kenaf::description::DescriptionError);
 }

@@ -9,7 +9,7 @@ using namespace kenaf::relayd;
 
 namespace {
 
-std::string written(const relay::Command& command, double radius_m, std::optional<std::int64_t> frame) {
+std::string written(const protocol::relay::Command& command, double radius_m, std::optional<std::int64_t> frame) {
   std::string out;
   write_command(out, command, radius_m, frame);
   return out;
@@ -18,13 +18,13 @@ std::string written(const relay::Command& command, double radius_m, std::optiona
 }  // namespace
 
 TEST_CASE("speeds become wheel spins: v / r, left and right kept apart") {
-  const relay::Command command{1, 1, 1, {0.1, -0.3}, 0, {}};
+  const protocol::relay::Command command{1, 1, 1, {0.1, -0.3}, 0, {}};
   CHECK(written(command, 0.05, std::nullopt) == "DRIVE {Left 2.000000000000} {Right -6.000000000000}\r\n");
   CHECK(written(command, 0.05, 17) == "DRIVE {Left 2.000000000000} {Right -6.000000000000} {Frame 17}\r\n");
 }
 
 TEST_CASE("flippers: tip up is negative in front and positive in the rear, DRIVE ends the answer") {
-  const relay::Command command{1, 1, 1, {0, 0}, 0b1111, {0.1, 0.2, 0.3, 0.4}};
+  const protocol::relay::Command command{1, 1, 1, {0, 0}, 0b1111, {0.1, 0.2, 0.3, 0.4}};
   CHECK(written(command, 0.05, 3) ==
         "MULTIDRIVE {FLFlipper -0.100000000000} {FRFlipper -0.200000000000} {RLFlipper 0.300000000000} "
         "{RRFlipper 0.400000000000} {Frame 3}\r\n"
@@ -32,7 +32,7 @@ TEST_CASE("flippers: tip up is negative in front and positive in the rear, DRIVE
 }
 
 TEST_CASE("a flipper that the mask leaves out is not mentioned") {
-  const relay::Command command{1, 1, 1, {0, 0}, 0b0100, {1, 1, 0.5, 1}};
+  const protocol::relay::Command command{1, 1, 1, {0, 0}, 0b0100, {1, 1, 0.5, 1}};
   CHECK(written(command, 0.05, std::nullopt).starts_with("MULTIDRIVE {RLFlipper 0.500000000000}\r\nDRIVE "));
 }
 
@@ -49,7 +49,7 @@ TEST_CASE("stop, session settings and ping") {
 }
 
 TEST_CASE("what no Kenaf can do is out of range, up to the limits is not") {
-  relay::Command command{1, 1, 1, {10, -10}, 15, {100, -100, 100, -100}};
+  protocol::relay::Command command{1, 1, 1, {10, -10}, 15, {100, -100, 100, -100}};
   CHECK(out_of_range(command) == nullptr);
   command.track_speed_mps[1] = -10.001;
   CHECK(std::string(out_of_range(command)).find("track speed") != std::string::npos);
@@ -57,7 +57,7 @@ TEST_CASE("what no Kenaf can do is out of range, up to the limits is not") {
   command.flipper_rad[3] = 100.1;
   CHECK(std::string(out_of_range(command)).find("flipper") != std::string::npos);
 
-  relay::Hello hello{1, 0.001, 10, true, false};
+  protocol::relay::Hello hello{1, 0.001, 10, true, false};
   CHECK(out_of_range(hello) == nullptr);
   hello.period_s = 0.0009;
   CHECK(out_of_range(hello) != nullptr);

@@ -16,16 +16,16 @@ namespace {
 const Address kFirst{0x7f000001, 1111}, kSecond{0x7f000001, 2222};
 
 struct FakePort : SessionPort {
-  void send(const Address& to, const relay::Datagram& datagram) override { sent.emplace_back(to, datagram); }
-  void open_world(const relay::Hello&) override { ++opened; }
+  void send(const Address& to, const protocol::relay::Datagram& datagram) override { sent.emplace_back(to, datagram); }
+  void open_world(const protocol::relay::Hello&) override { ++opened; }
   void close_world() override { ++closed; }
-  void drive(const relay::Command& command, std::optional<std::int64_t> frame) override {
+  void drive(const protocol::relay::Command& command, std::optional<std::int64_t> frame) override {
     driven.emplace_back(command.sequence, frame);
   }
   void stop_robot() override { ++stopped; }
   bool ping_world(std::uint32_t) override { return pings_world; }
 
-  std::vector<std::pair<Address, relay::Datagram>> sent;
+  std::vector<std::pair<Address, protocol::relay::Datagram>> sent;
   std::vector<std::pair<std::uint32_t, std::optional<std::int64_t>>> driven;
   int opened = 0, closed = 0, stopped = 0;
   bool pings_world = true;
@@ -35,8 +35,12 @@ struct Fixture {
   Fixture() { spdlog::set_level(spdlog::level::off); }
   ~Fixture() { spdlog::set_level(spdlog::level::info); }
 
-  void from(const Address& address, const relay::Datagram& datagram) { session.on_datagram(datagram, address, now); }
-  void hello(const Address& address, std::uint64_t id) { from(address, relay::Hello{id, 0.01, 0.5, true, false}); }
+  void from(const Address& address, const protocol::relay::Datagram& datagram) {
+    session.on_datagram(datagram, address, now);
+  }
+  void hello(const Address& address, std::uint64_t id) {
+    from(address, protocol::relay::Hello{id, 0.01, 0.5, true, false});
+  }
   void open(std::uint64_t id = 7) {
     hello(kFirst, id);
     session.on_world_ready({1.0, 0.01, true}, now);
@@ -48,7 +52,7 @@ struct Fixture {
     session.on_frame(world, now);
   }
   void command(std::uint32_t sequence, std::uint32_t answers, std::uint64_t id = 7, const Address& address = kFirst) {
-    from(address, relay::Command{id, sequence, answers, {0.1, 0.1}, 0, {}});
+    from(address, protocol::relay::Command{id, sequence, answers, {0.1, 0.1}, 0, {}});
   }
   void pass(CommanderSession::Duration time, bool world_is_alive = true) {
     now += time;
@@ -58,9 +62,9 @@ struct Fixture {
   const Kind* newest() const {
     return port.sent.empty() ? nullptr : std::get_if<Kind>(&port.sent.back().second);
   }
-  relay::RefusedReason refused() const {
-    REQUIRE(newest<relay::Refused>() != nullptr);
-    return newest<relay::Refused>()->reason;
+  protocol::relay::RefusedReason refused() const {
+    REQUIRE(newest<protocol::relay::Refused>() != nullptr);
+    return newest<protocol::relay::Refused>()->reason;
   }
 
   CommanderSession::TimePoint now{1h};
@@ -77,10 +81,10 @@ TEST_CASE_METHOD(Fixture,
   CHECK(port.opened == 1);
   CHECK(port.sent.empty());
   session.on_world_ready({1.0, 0.02, true}, now);
-  REQUIRE(newest<relay::Welcome>() != nullptr);
-  CHECK(newest<relay::Welcome>()->session == 7);
-  CHECK(newest<relay::Welcome>()->robot_time_s == 1.0);
-  CHECK(newest<relay::Welcome>()->period_s == 0.02);
+  REQUIRE(newest<protocol::relay::Welcome>() != nullptr);
+  CHECK(newest<protocol::relay::Welcome>()->session == 7);
+  CHECK(newest<protocol::relay::Welcome>()->robot_time_s == 1.0);
+  CHECK(newest<protocol::relay::Welcome>()->period_s == 0.02);
   hello(kFirst, 7);
   CHECK(port.sent.size() == 2);
   CHECK(port.opened == 1);
@@ -90,14 +94,14 @@ TEST_CASE_METHOD(Fixture, "another commander is refused, and told who commands a
   open();
   now += 12s;
   hello(kSecond, 8);
-  CHECK(refused() == relay::RefusedReason::busy);
-  const auto* refusal = newest<relay::Refused>();
+  CHECK(refused() == protocol::relay::RefusedReason::busy);
+  const auto* refusal = newest<protocol::relay::Refused>();
   CHECK(std::string(refusal->text.data(), refusal->text_length) == "127.0.0.1:1111 has commanded the robot for 12.0 s");
   CHECK(port.sent.back().first == kSecond);
   hello(kSecond, 7);  // nor under the first one's number
-  CHECK(refused() == relay::RefusedReason::busy);
+  CHECK(refused() == protocol::relay::RefusedReason::busy);
   command(1, 0, 7, kSecond);
-  from(kSecond, relay::Bye{7});
+  from(kSecond, protocol::relay::Bye{7});
   CHECK(port.driven.empty());
   CHECK(session.session() == 7);
 }
@@ -108,48 +112,50 @@ TEST_CASE_METHOD(Fixture, "strangers get a hundred answers a second in all, and 
     for (int i = 0; i < 10000; ++i) each(Address{0x0a000000u + static_cast<std::uint32_t>(i), 1111});
     return port.sent.size() - before;
   };
-  CHECK(answers([this](const Address& stranger) { from(stranger, relay::Ping{99, 1}); }) == 100);
+  CHECK(answers([this](const Address& stranger) { from(stranger, protocol::relay::Ping{99, 1}); }) == 100);
   CHECK(answers([this](const Address& stranger) { command(1, 0, 99, stranger); }) == 0);
   open();
   const std::size_t with_welcome = port.sent.size();
-  from(kFirst, relay::Command{7, 1, 0, {99, 0}, 0, {}});  // out of range
+  from(kFirst, protocol::relay::Command{7, 1, 0, {99, 0}, 0, {}});  // out of range
   CHECK(port.sent.size() == with_welcome + 1);
   now += 500ms;
   CHECK(answers([this](const Address& stranger) { hello(stranger, 8); }) == 50);  // busy
   now += 1h;
-  CHECK(answers([this](const Address& stranger) { from(stranger, relay::Hello{8, -1, 0.5, true, false}); }) == 100);
+  CHECK(answers([this](const Address& stranger) {
+          from(stranger, protocol::relay::Hello{8, -1, 0.5, true, false});
+        }) == 100);
 }
 
 TEST_CASE_METHOD(Fixture, "an unknown session is told so, an unknown Bye is nobody's") {
   command(1, 0, 99);
-  CHECK(refused() == relay::RefusedReason::unknown_session);
-  from(kFirst, relay::Ping{99, 1});
-  CHECK(refused() == relay::RefusedReason::unknown_session);
+  CHECK(refused() == protocol::relay::RefusedReason::unknown_session);
+  from(kFirst, protocol::relay::Ping{99, 1});
+  CHECK(refused() == protocol::relay::RefusedReason::unknown_session);
   port.sent.clear();
-  from(kFirst, relay::Bye{99});
+  from(kFirst, protocol::relay::Bye{99});
   CHECK(port.sent.empty());
 }
 
 TEST_CASE_METHOD(Fixture, "a Hello out of range is refused in words") {
-  from(kFirst, relay::Hello{7, 2.0, 0.5, true, false});
-  CHECK(refused() == relay::RefusedReason::bad_request);
+  from(kFirst, protocol::relay::Hello{7, 2.0, 0.5, true, false});
+  CHECK(refused() == protocol::relay::RefusedReason::bad_request);
   CHECK(port.opened == 0);
 }
 
 TEST_CASE_METHOD(Fixture, "States count from 1, whatever the world counts from, and commands are counted back") {
   open();
   frame(31, 1.0, 5);
-  CHECK(newest<relay::State>()->robot.frame == 1);
-  CHECK(newest<relay::State>()->robot.late_commands == 0);
+  CHECK(newest<protocol::relay::State>()->robot.frame == 1);
+  CHECK(newest<protocol::relay::State>()->robot.late_commands == 0);
   frame(32, 1.01, 6);
-  CHECK(newest<relay::State>()->robot.frame == 2);
-  CHECK(newest<relay::State>()->robot.late_commands == 1);
+  CHECK(newest<protocol::relay::State>()->robot.frame == 2);
+  CHECK(newest<protocol::relay::State>()->robot.late_commands == 1);
   command(1, 2);
   CHECK(port.driven.back() == std::pair<std::uint32_t, std::optional<std::int64_t>>{1, 32});
   // The world counts anew; States go on.
   frame(1, 0.0);
-  CHECK(newest<relay::State>()->robot.frame == 3);
-  CHECK(newest<relay::State>()->acknowledged == 1);
+  CHECK(newest<protocol::relay::State>()->robot.frame == 3);
+  CHECK(newest<protocol::relay::State>()->acknowledged == 1);
 }
 
 TEST_CASE_METHOD(Fixture, "a frame that is told again is no new one: the world paused") {
@@ -159,9 +165,9 @@ TEST_CASE_METHOD(Fixture, "a frame that is told again is no new one: the world p
   again.state.robot_time_s = 1.0;
   again.paused = true;
   session.on_frame(again, now);
-  CHECK(newest<relay::State>()->robot.frame == 1);
-  CHECK(newest<relay::State>()->world_paused);
-  CHECK_FALSE(newest<relay::State>()->robot.stopped_by_silence);
+  CHECK(newest<protocol::relay::State>()->robot.frame == 1);
+  CHECK(newest<protocol::relay::State>()->world_paused);
+  CHECK_FALSE(newest<protocol::relay::State>()->robot.stopped_by_silence);
 }
 
 TEST_CASE_METHOD(Fixture, "only a new Command reaches the world, a repeated one brings the newest State again") {
@@ -173,9 +179,9 @@ TEST_CASE_METHOD(Fixture, "only a new Command reaches the world, a repeated one 
   port.sent.clear();
   command(1, 1);
   CHECK(port.driven.size() == 1);
-  REQUIRE(newest<relay::State>() != nullptr);
-  CHECK(newest<relay::State>()->robot.frame == 2);
-  CHECK(newest<relay::State>()->acknowledged == 1);
+  REQUIRE(newest<protocol::relay::State>() != nullptr);
+  CHECK(newest<protocol::relay::State>()->robot.frame == 2);
+  CHECK(newest<protocol::relay::State>()->acknowledged == 1);
 
   command(3, 2);
   port.sent.clear();
@@ -196,8 +202,8 @@ TEST_CASE_METHOD(Fixture, "a Command before the first State takes effect at once
 TEST_CASE_METHOD(Fixture, "an absurd Command is refused and does not count as one") {
   open();
   frame(1, 1.0);
-  from(kFirst, relay::Command{7, 1, 1, {10.5, 0}, 0, {}});
-  CHECK(refused() == relay::RefusedReason::bad_request);
+  from(kFirst, protocol::relay::Command{7, 1, 1, {10.5, 0}, 0, {}});
+  CHECK(refused() == protocol::relay::RefusedReason::bad_request);
   CHECK(port.driven.empty());
   command(1, 1);
   CHECK(port.driven.size() == 1);
@@ -212,12 +218,12 @@ TEST_CASE_METHOD(Fixture, "without Commands for the time-out of robot time the r
   frame(3, 1.51);
   frame(4, 1.52);
   CHECK(port.stopped == 1);
-  CHECK(newest<relay::State>()->robot.stopped_by_silence);
+  CHECK(newest<protocol::relay::State>()->robot.stopped_by_silence);
   command(1, 1);  // a copy of an old one does not start it again
-  CHECK(newest<relay::State>()->robot.stopped_by_silence);
+  CHECK(newest<protocol::relay::State>()->robot.stopped_by_silence);
   command(2, 4);
   frame(5, 1.53);
-  CHECK_FALSE(newest<relay::State>()->robot.stopped_by_silence);
+  CHECK_FALSE(newest<protocol::relay::State>()->robot.stopped_by_silence);
   CHECK(port.driven.size() == 2);
 }
 
@@ -226,7 +232,7 @@ TEST_CASE_METHOD(Fixture, "a second of wall-clock silence ends the session, the 
   frame(1, 1.0);
   pass(999ms);
   CHECK(session.session() == 7);
-  from(kFirst, relay::Ping{7, 1});  // anything of it counts
+  from(kFirst, protocol::relay::Ping{7, 1});  // anything of it counts
   pass(999ms);
   CHECK(session.session() == 7);
   pass(1ms);
@@ -238,14 +244,14 @@ TEST_CASE_METHOD(Fixture, "a second of wall-clock silence ends the session, the 
 
 TEST_CASE_METHOD(Fixture, "Bye ends it at once, a late copy of its Hello does not begin it again") {
   open();
-  from(kFirst, relay::Bye{7});
+  from(kFirst, protocol::relay::Bye{7});
   CHECK(session.session() == 0);
   CHECK(port.closed == 1);
   now += 900ms;
   hello(kFirst, 7);
-  CHECK(refused() == relay::RefusedReason::unknown_session);
+  CHECK(refused() == protocol::relay::RefusedReason::unknown_session);
   CHECK(port.opened == 1);
-  from(kFirst, relay::Bye{7});
+  from(kFirst, protocol::relay::Bye{7});
   CHECK(port.closed == 1);
   now += 200ms;
   hello(kFirst, 7);
@@ -269,7 +275,7 @@ TEST_CASE_METHOD(Fixture, "a lost world server is told until the commander leave
   open();
   frame(1, 1.0);
   session.on_world_lost("gone", now);
-  CHECK(newest<relay::State>()->world_server_lost);
+  CHECK(newest<protocol::relay::State>()->world_server_lost);
   CHECK(session.session() == 0);
   port.sent.clear();
   pass(50ms);
@@ -279,7 +285,7 @@ TEST_CASE_METHOD(Fixture, "a lost world server is told until the commander leave
   CHECK(port.driven.empty());
 
   SECTION("Bye") {
-    from(kFirst, relay::Bye{7});
+    from(kFirst, protocol::relay::Bye{7});
     port.sent.clear();
     pass(50ms);
     CHECK(port.sent.empty());
@@ -301,28 +307,28 @@ TEST_CASE_METHOD(Fixture, "a lost world server is told until the commander leave
 TEST_CASE_METHOD(Fixture, "a world server that cannot be opened refuses, with its reason") {
   hello(kFirst, 7);
   session.on_world_lost("no world server at 127.0.0.1:3000: Connection refused", now);
-  CHECK(refused() == relay::RefusedReason::no_world_server);
+  CHECK(refused() == protocol::relay::RefusedReason::no_world_server);
   hello(kFirst, 7);  // the same may try again
   CHECK(port.opened == 2);
   pass(5s);
-  CHECK(refused() == relay::RefusedReason::no_world_server);
+  CHECK(refused() == protocol::relay::RefusedReason::no_world_server);
   CHECK(session.session() == 0);
 }
 
 TEST_CASE_METHOD(Fixture, "where the world cannot be pinged the relay answers itself") {
   open();
-  from(kFirst, relay::Ping{7, 3});
-  CHECK(newest<relay::Pong>() == nullptr);
+  from(kFirst, protocol::relay::Ping{7, 3});
+  CHECK(newest<protocol::relay::Pong>() == nullptr);
   session.on_pong(3, now);
-  CHECK(newest<relay::Pong>()->id == 3);
+  CHECK(newest<protocol::relay::Pong>()->id == 3);
   port.pings_world = false;
-  from(kFirst, relay::Ping{7, 4});
-  CHECK(newest<relay::Pong>()->id == 4);
+  from(kFirst, protocol::relay::Ping{7, 4});
+  CHECK(newest<protocol::relay::Pong>()->id == 4);
 }
 
 TEST_CASE_METHOD(Fixture, "a relay that ends tells its commander and stops the robot") {
   open();
   session.shut_down(now);
-  CHECK(refused() == relay::RefusedReason::unknown_session);
+  CHECK(refused() == protocol::relay::RefusedReason::unknown_session);
   CHECK(port.closed == 1);
 }

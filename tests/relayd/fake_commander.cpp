@@ -27,72 +27,77 @@ FakeCommander::FakeCommander(std::uint16_t relay_port, std::uint64_t session)
   }
 }
 
-void FakeCommander::send(const relay::Datagram& datagram) {
-  std::array<std::byte, relay::kMaxDatagramBytes> bytes;
-  send_bytes({bytes.data(), relay::encode(datagram, bytes)});
+void FakeCommander::send(const protocol::relay::Datagram& datagram) {
+  std::array<std::byte, protocol::relay::kMaxDatagramBytes> bytes;
+  send_bytes({bytes.data(), protocol::relay::encode(datagram, bytes)});
 }
 
 void FakeCommander::send_bytes(std::span<const std::byte> bytes) {
   ::send(fd_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
 }
 
-std::optional<relay::Datagram> FakeCommander::receive(int milliseconds) {
+std::optional<protocol::relay::Datagram> FakeCommander::receive(int milliseconds) {
   pollfd reading{fd_.get(), POLLIN, 0};
-  std::array<std::byte, relay::kMaxDatagramBytes> bytes;
+  std::array<std::byte, protocol::relay::kMaxDatagramBytes> bytes;
   if (::poll(&reading, 1, milliseconds) <= 0) return std::nullopt;
   const ssize_t got = ::recv(fd_.get(), bytes.data(), bytes.size(), 0);
-  relay::Datagram datagram;
-  if (got < 0 || relay::decode({bytes.data(), static_cast<std::size_t>(got)}, datagram) != relay::DecodeError::none) {
+  protocol::relay::Datagram datagram;
+  if (got < 0 || protocol::relay::decode({bytes.data(), static_cast<std::size_t>(got)}, datagram) !=
+                     protocol::relay::DecodeError::none) {
     return std::nullopt;
   }
   return datagram;
 }
 
-relay::Datagram FakeCommander::hello(bool lockstep, bool reset_robot, double period_s, double timeout_s) {
+protocol::relay::Datagram FakeCommander::hello(bool lockstep, bool reset_robot, double period_s, double timeout_s) {
   const auto end = Clock::now() + kPatience;
   while (Clock::now() < end) {
-    send(relay::Hello{session_, period_s, timeout_s, lockstep, reset_robot});
+    send(protocol::relay::Hello{session_, period_s, timeout_s, lockstep, reset_robot});
     const auto answer = receive(20);
     if (!answer) continue;
-    if (std::holds_alternative<relay::Welcome>(*answer) || std::holds_alternative<relay::Refused>(*answer)) {
+    if (std::holds_alternative<protocol::relay::Welcome>(*answer) ||
+        std::holds_alternative<protocol::relay::Refused>(*answer)) {
       return *answer;
     }
   }
   throw std::runtime_error("the relay does not answer Hello");
 }
 
-std::optional<relay::State> FakeCommander::next_state(std::uint32_t after, const relay::Datagram& again) {
+std::optional<protocol::relay::State> FakeCommander::next_state(std::uint32_t after,
+                                                                const protocol::relay::Datagram& again) {
   const auto end = Clock::now() + kPatience;
   while (Clock::now() < end) {
     const auto datagram = receive(kResend_ms);
     if (!datagram) send(again);
-    const auto* state = datagram ? std::get_if<relay::State>(&*datagram) : nullptr;
+    const auto* state = datagram ? std::get_if<protocol::relay::State>(&*datagram) : nullptr;
     if (state != nullptr && state->session == session_ && state->robot.frame > after) return *state;
   }
   return std::nullopt;
 }
 
-std::optional<relay::State> FakeCommander::wait_for(const std::function<bool(const relay::State&)>& holds) {
+std::optional<protocol::relay::State> FakeCommander::wait_for(
+    const std::function<bool(const protocol::relay::State&)>& holds) {
   const auto end = Clock::now() + kPatience;
   while (Clock::now() < end) {
     const auto datagram = receive(50);
-    const auto* state = datagram ? std::get_if<relay::State>(&*datagram) : nullptr;
+    const auto* state = datagram ? std::get_if<protocol::relay::State>(&*datagram) : nullptr;
     if (state != nullptr && state->session == session_ && holds(*state)) return *state;
   }
   return std::nullopt;
 }
 
-std::vector<relay::State> FakeCommander::drive(
-    std::uint32_t frames, const std::function<void(const relay::State&, relay::Command&)>& control) {
-  std::vector<relay::State> states;
-  relay::Datagram again = relay::Ping{session_, 0};
+std::vector<protocol::relay::State> FakeCommander::drive(
+    std::uint32_t frames,
+    const std::function<void(const protocol::relay::State&, protocol::relay::Command&)>& control) {
+  std::vector<protocol::relay::State> states;
+  protocol::relay::Datagram again = protocol::relay::Ping{session_, 0};
   std::uint32_t after = 0;
   for (std::uint32_t i = 1; i <= frames; ++i) {
     const auto state = next_state(after, again);
     if (!state) throw std::runtime_error("no State any more");
     after = state->robot.frame;
     states.push_back(*state);
-    relay::Command next = command(i, state->robot.frame, 0, 0);
+    protocol::relay::Command next = command(i, state->robot.frame, 0, 0);
     control(*state, next);
     again = next;
     send(again);
@@ -102,12 +107,12 @@ std::vector<relay::State> FakeCommander::drive(
   return states;
 }
 
-relay::Command FakeCommander::command(std::uint32_t sequence, std::uint32_t frame, double left_mps,
-                                      double right_mps) const {
+protocol::relay::Command FakeCommander::command(std::uint32_t sequence, std::uint32_t frame, double left_mps,
+                                                double right_mps) const {
   return {session_, sequence, frame, {left_mps, right_mps}, 0, {}};
 }
 
-std::string text_of(const relay::Refused& refused) {
+std::string text_of(const protocol::relay::Refused& refused) {
   return {refused.text.data(), refused.text_length};
 }
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "protocol/relay_datagram.hpp"
+#include "formats/protocol/relay_datagram.hpp"
 #include "relayd/sockets.hpp"
 
 namespace kenaf::test {
@@ -18,28 +18,31 @@ class FakeCommander {
  public:
   FakeCommander(std::uint16_t relay_port, std::uint64_t session);
 
-  void send(const relay::Datagram& datagram);
+  void send(const protocol::relay::Datagram& datagram);
   void send_bytes(std::span<const std::byte> bytes);
   // The next datagram, or nullopt after `milliseconds`.
-  std::optional<relay::Datagram> receive(int milliseconds);
+  std::optional<protocol::relay::Datagram> receive(int milliseconds);
 
   // Says Hello until it is answered.
-  relay::Datagram hello(bool lockstep, bool reset_robot = false, double period_s = 0.01, double timeout_s = 0.5);
+  protocol::relay::Datagram hello(bool lockstep, bool reset_robot = false, double period_s = 0.01,
+                                  double timeout_s = 0.5);
   // The next State with a frame beyond that of `after`, sending `again` every few milliseconds meanwhile; nullopt
   // after 10 s.
-  std::optional<relay::State> next_state(std::uint32_t after, const relay::Datagram& again);
+  std::optional<protocol::relay::State> next_state(std::uint32_t after, const protocol::relay::Datagram& again);
   // Waits, silently, for a State that holds; nullopt after 10 s.
-  std::optional<relay::State> wait_for(const std::function<bool(const relay::State&)>& holds);
+  std::optional<protocol::relay::State> wait_for(const std::function<bool(const protocol::relay::State&)>& holds);
   // `frames` steps in lock step: a command for each State, by the State alone. All States but the last.
-  std::vector<relay::State> drive(std::uint32_t frames,
-                                  const std::function<void(const relay::State&, relay::Command&)>& control);
-  relay::Command command(std::uint32_t sequence, std::uint32_t frame, double left_mps, double right_mps) const;
+  std::vector<protocol::relay::State> drive(
+      std::uint32_t frames,
+      const std::function<void(const protocol::relay::State&, protocol::relay::Command&)>& control);
+  protocol::relay::Command command(std::uint32_t sequence, std::uint32_t frame, double left_mps,
+                                   double right_mps) const;
 
  private:
   relayd::Descriptor fd_;
   std::uint64_t session_;
 };
 
-std::string text_of(const relay::Refused& refused);
+std::string text_of(const protocol::relay::Refused& refused);
 
 }  // namespace kenaf::test

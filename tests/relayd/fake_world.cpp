@@ -22,9 +22,9 @@ namespace {
 constexpr double kWheelRadius_m = 0.05;
 constexpr double kTick_rad = 0.001;
 
-double number(const usarsim::MessageView& message, std::string_view key, double otherwise) {
+double number(const protocol::usarsim::MessageView& message, std::string_view key, double otherwise) {
   const auto text = message.find(key);
-  return text ? usarsim::parse_number(*text).value_or(otherwise) : otherwise;
+  return text ? protocol::usarsim::parse_number(*text).value_or(otherwise) : otherwise;
 }
 
 }  // namespace
@@ -88,7 +88,7 @@ void FakeWorld::run() {
 // Without lock step a frame goes out every 2 ms of wall-clock time, whatever its robot time. Lock step waits for ever,
 // so that no test depends on how fast the machine is.
 void FakeWorld::serve(int fd) {
-  usarsim::LineSplitter splitter;
+  protocol::usarsim::LineSplitter splitter;
   std::array<char, 4096> bytes;
   send_text(fd, "NFO {Gametype BotDeathMatch} {Level Fake} {TimeLimit 20}\r\n");
   auto sent = std::chrono::steady_clock::now();
@@ -120,8 +120,8 @@ bool FakeWorld::handle(const std::string& line, int fd) {
     const std::lock_guard lock(mutex_);
     lines_.push_back(line);
   }
-  usarsim::MessageView message;
-  usarsim::parse_message(line, message);
+  protocol::usarsim::MessageView message;
+  protocol::usarsim::parse_message(line, message);
   const auto type = message.find("Type").value_or("");
   if (message.is("INIT")) {
     has_robot_ = options_.accepts_robot;

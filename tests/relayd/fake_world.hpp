@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "protocol/usarsim_message.hpp"
+#include "formats/protocol/usarsim_message.hpp"
 #include "relayd/sockets.hpp"
 
 namespace kenaf::test {
@@ -35,7 +35,7 @@ class FakeWorld {
   std::string last(const std::string& beginning) const;  // "" where there is none
   double x_m() const { return x_m_; }
   double speed_mps() const { return speed_mps_; }
-  void mute(bool on) { mute_ = on; }  // keeps the connection and says nothing
+  void mute(bool on) { mute_ = on; }                      // keeps the connection and says nothing
   void close_at_control() { closes_at_control_ = true; }  // the next one, instead of answering; then it is there again
 
  private:

@@ -50,7 +50,7 @@ TEST_CASE("all options") {
   CHECK(options->embedded->world == "step-100");
   CHECK(options->embedded->speed == 0);
   CHECK(options->embedded->view == kenaf::live::ViewOptions{});
-  CHECK(options->embedded->cameras == kenaf::camera::CameraOptions{});
+  CHECK(options->embedded->cameras == kenaf::image_server::CameraOptions{});
   CHECK(options->relay.placement.start == "start_1");
 }
 
@@ -61,7 +61,7 @@ TEST_CASE("cameras are chosen on the command line of --embedded") {
   REQUIRE(with_cameras);
   CHECK_FALSE(with_cameras->embedded->cameras.on);
   CHECK(with_cameras->embedded->cameras.image_port == 0);
-  CHECK(with_cameras->embedded->cameras.image_type == kenaf::camera::ImageType::raw);
+  CHECK(with_cameras->embedded->cameras.image_type == kenaf::image_server::ImageType::raw);
 }
 
 TEST_CASE("wrong options end with status 2, help with 0") {

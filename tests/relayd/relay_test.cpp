@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 namespace {
 
 // Drives to x = 0.5 m by what it measures, so that each lost or stale State would show in all later ones.
-void approach(const relay::State& state, relay::Command& command) {
+void approach(const protocol::relay::State& state, protocol::relay::Command& command) {
   const double speed_mps = 2 * (0.5 - state.robot.track_m[robot::kLeft]) + 0.01 * std::sin(state.robot.frame);
   command.track_speed_mps = {speed_mps, speed_mps};
   command.flipper_mask = 0b0101;
@@ -41,12 +41,12 @@ TEST_CASE("the relay places a robot, opens a session in lock step and carries co
   FakeCommander commander(relay.port(), 7);
   const auto answer = commander.hello(true, true);
   REQUIRE(is_welcome(answer));
-  CHECK(std::get<relay::Welcome>(answer).lockstep);
-  CHECK(std::get<relay::Welcome>(answer).period_s == Approx(0.01));
+  CHECK(std::get<protocol::relay::Welcome>(answer).lockstep);
+  CHECK(std::get<protocol::relay::Welcome>(answer).period_s == Approx(0.01));
   CHECK(world.last("INIT") == "INIT {ClassName USARBot.Kenaf} {Name Kenaf}");
 
   // 0.2 m/s for 50 periods of 0.01 s: 0.1 m.
-  const auto states = commander.drive(50, [](const relay::State&, relay::Command& command) {
+  const auto states = commander.drive(50, [](const protocol::relay::State&, protocol::relay::Command& command) {
     command.track_speed_mps = {0.2, 0.2};
   });
   CHECK(world.x_m() == Approx(0.1).margin(1e-9));
@@ -63,7 +63,7 @@ TEST_CASE("the relay places a robot, opens a session in lock step and carries co
 
 TEST_CASE("loss, reordering and duplicates change nothing but latency") {
   std::vector<std::string> clean;
-  std::vector<relay::State> clean_states;
+  std::vector<protocol::relay::State> clean_states;
   {
     FakeWorld world;
     RunningRelay relay(world.port());
@@ -96,14 +96,14 @@ TEST_CASE("one commander at a time, the next one is served after Bye or silence"
   FakeCommander first(relay.port(), 1), second(relay.port(), 2);
   REQUIRE(is_welcome(first.hello(false)));
   const auto busy = refusal(second.hello(false));
-  CHECK(busy.reason == relay::RefusedReason::busy);
+  CHECK(busy.reason == protocol::relay::RefusedReason::busy);
   CHECK(text_of(busy).find("127.0.0.1:") != std::string::npos);
 
   second.send(second.command(1, 1, 1, 1));
-  CHECK(refusal(*second.receive(5000)).reason == relay::RefusedReason::unknown_session);
+  CHECK(refusal(*second.receive(5000)).reason == protocol::relay::RefusedReason::unknown_session);
   CHECK(is_welcome(first.hello(false)));  // the Welcome may have been lost
 
-  first.send(relay::Bye{1});
+  first.send(protocol::relay::Bye{1});
   REQUIRE(eventually([&] { return is_welcome(second.hello(false)); }));
   // The second falls silent.
   FakeCommander third(relay.port(), 3);
@@ -116,7 +116,7 @@ TEST_CASE("a silent commander's robot is stopped by robot time, and the commande
   RunningRelay relay(world.port());
   FakeCommander commander(relay.port(), 9);
   REQUIRE(is_welcome(commander.hello(false, false, 0.01, 0.5)));
-  const auto first = commander.next_state(0, relay::Ping{9, 1});
+  const auto first = commander.next_state(0, protocol::relay::Ping{9, 1});
   REQUIRE(first);
   commander.send(commander.command(1, first->robot.frame, 0.3, 0.3));
   REQUIRE(eventually([&] { return world.speed_mps() > 0.29; }));
@@ -149,7 +149,7 @@ TEST_CASE("the world server is lost and comes back") {
 
   FakeCommander next(relay.port(), 6);
   const auto none = refusal(next.hello(true));
-  CHECK(none.reason == relay::RefusedReason::no_world_server);
+  CHECK(none.reason == protocol::relay::RefusedReason::no_world_server);
   CHECK(text_of(none).find("refused") != std::string::npos);
 
   FakeWorldOptions same;
@@ -168,12 +168,12 @@ TEST_CASE("a world server that hangs is left") {
   commander.drive(3, approach);
   world.mute(true);
   // The commander keeps the session alive, as it must.
-  relay::State lost{};
+  protocol::relay::State lost{};
   REQUIRE(eventually([&] {
-    commander.send(relay::Ping{5, 1});
+    commander.send(protocol::relay::Ping{5, 1});
     const auto datagram = commander.receive(50);
-    if (!datagram || !std::holds_alternative<relay::State>(*datagram)) return false;
-    lost = std::get<relay::State>(*datagram);
+    if (!datagram || !std::holds_alternative<protocol::relay::State>(*datagram)) return false;
+    lost = std::get<protocol::relay::State>(*datagram);
     return lost.world_server_lost;
   }));
   world.mute(false);
@@ -188,7 +188,7 @@ TEST_CASE("reset_robot enters the world anew, in lock step from the first frame"
   REQUIRE(is_welcome(first.hello(true)));
   first.drive(20, approach);
   CHECK(world.x_m() > 0.01);
-  first.send(relay::Bye{1});
+  first.send(protocol::relay::Bye{1});
 
   const int before = world.connections();
   FakeCommander second(relay.port(), 2);
@@ -207,7 +207,7 @@ TEST_CASE("without a commander there is no lock step and the robot stands") {
   REQUIRE(is_welcome(commander.hello(true)));
   commander.drive(5, approach);
   CHECK(world.speed_mps() > 0);
-  for (int i = 0; i < 3; ++i) commander.send(relay::Bye{1});
+  for (int i = 0; i < 3; ++i) commander.send(protocol::relay::Bye{1});
   REQUIRE(eventually([&] { return world.last("CONTROL").find("{Lockstep False}") != std::string::npos; }));
   CHECK(world.speed_mps() == 0);
   CHECK(world.last("DRIVE") == "DRIVE {Left 0.000000000000} {Right 0.000000000000}");
@@ -220,9 +220,9 @@ TEST_CASE("a ping goes to the world server and back") {
   REQUIRE(is_welcome(commander.hello(true)));
   bool answered = false;
   REQUIRE(eventually([&] {
-    commander.send(relay::Ping{4, 4000000000u});
+    commander.send(protocol::relay::Ping{4, 4000000000u});
     const auto datagram = commander.receive(100);
-    const auto* pong = datagram ? std::get_if<relay::Pong>(&*datagram) : nullptr;
+    const auto* pong = datagram ? std::get_if<protocol::relay::Pong>(&*datagram) : nullptr;
     answered = pong != nullptr && pong->id == 4000000000u && pong->session == 4;
     return answered;
   }));
@@ -235,14 +235,14 @@ TEST_CASE("a plain USARSim server works without the extensions") {
   FakeWorld world(plain);
   RunningRelay relay(world.port());
   FakeCommander commander(relay.port(), 4);
-  relay::Datagram answer = commander.hello(true);
+  protocol::relay::Datagram answer = commander.hello(true);
   REQUIRE(is_welcome(answer));
-  CHECK_FALSE(std::get<relay::Welcome>(answer).lockstep);
-  CHECK(std::get<relay::Welcome>(answer).period_s == Approx(0.2));
+  CHECK_FALSE(std::get<protocol::relay::Welcome>(answer).lockstep);
+  CHECK(std::get<protocol::relay::Welcome>(answer).period_s == Approx(0.2));
 
-  const auto first = commander.next_state(0, relay::Ping{4, 1});
+  const auto first = commander.next_state(0, protocol::relay::Ping{4, 1});
   REQUIRE(first);
-  relay::Command command = commander.command(1, first->robot.frame, 0.1, -0.2);
+  protocol::relay::Command command = commander.command(1, first->robot.frame, 0.1, -0.2);
   command.flipper_mask = 0b1111;
   command.flipper_rad = {0.5, 0.5, 0.25, 0.25};
   commander.send(command);
@@ -255,10 +255,10 @@ TEST_CASE("a plain USARSim server works without the extensions") {
   CHECK(world.last("MULTIDRIVE") ==
         "MULTIDRIVE {FLFlipper -0.500000000000} {FRFlipper -0.500000000000} {RLFlipper 0.250000000000} "
         "{RRFlipper 0.250000000000}");
-  commander.send(relay::Ping{4, 77});
+  commander.send(protocol::relay::Ping{4, 77});
   CHECK(eventually([&] {
     const auto datagram = commander.receive(100);
-    return datagram && std::holds_alternative<relay::Pong>(*datagram);
+    return datagram && std::holds_alternative<protocol::relay::Pong>(*datagram);
   }));
 }
 
@@ -269,7 +269,7 @@ TEST_CASE("a world server that accepts no robot is named with a reason") {
   RunningRelay relay(world.port());
   FakeCommander commander(relay.port(), 4);
   const auto refused = refusal(commander.hello(true));
-  CHECK(refused.reason == relay::RefusedReason::no_world_server);
+  CHECK(refused.reason == protocol::relay::RefusedReason::no_world_server);
   CHECK(text_of(refused).find("USARBot.Kenaf") != std::string::npos);
 }
 
@@ -283,19 +283,19 @@ TEST_CASE("hostile datagrams: a log line, nothing dead, nothing lost") {
   const auto attack = [&] {
     for (std::uint32_t i = 0; i < 50; ++i) {
       for (std::byte& byte : bytes) byte = static_cast<std::byte>(random());
-      const std::size_t size = relay::encode(attacker.command(1 + i % 3, 0, 5, 5), bytes);
+      const std::size_t size = protocol::relay::encode(attacker.command(1 + i % 3, 0, 5, 5), bytes);
       const std::size_t cut = i % 2 == 0 ? size : random() % bytes.size();
       bytes[random() % size] ^= static_cast<std::byte>(1 << random() % 8);
       attacker.send_bytes({bytes.data(), cut});
     }
-    attacker.send(relay::Bye{4});                     // of another's session
+    attacker.send(protocol::relay::Bye{4});           // of another's session
     attacker.send(commander.command(1000, 0, 9, 9));  // likewise
-    relay::State not_for_a_relay{};
+    protocol::relay::State not_for_a_relay{};
     not_for_a_relay.session = 4;
     attacker.send(not_for_a_relay);
   };
   std::uint32_t frames = 0;
-  const auto states = commander.drive(40, [&](const relay::State& state, relay::Command& command) {
+  const auto states = commander.drive(40, [&](const protocol::relay::State& state, protocol::relay::Command& command) {
     if (state.robot.frame % 4 == 0) attack();
     command.track_speed_mps = {0.2, 0.2};
     ++frames;
@@ -309,7 +309,7 @@ TEST_CASE("hostile datagrams: a log line, nothing dead, nothing lost") {
   commander.send(commander.command(100, 41, 11, 0));
   const auto refused = [&] {
     const auto datagram = commander.receive(100);
-    return datagram && std::holds_alternative<relay::Refused>(*datagram);
+    return datagram && std::holds_alternative<protocol::relay::Refused>(*datagram);
   };
   CHECK(eventually(refused));
 }
@@ -324,7 +324,7 @@ TEST_CASE("hostile lines from the world server: a log line, nothing dead, nothin
   RunningRelay relay(world.port());
   FakeCommander commander(relay.port(), 4);
   REQUIRE(is_welcome(commander.hello(true)));
-  const auto states = commander.drive(10, [](const relay::State&, relay::Command& command) {
+  const auto states = commander.drive(10, [](const protocol::relay::State&, protocol::relay::Command& command) {
     command.track_speed_mps = {0.2, 0.2};
   });
   CHECK(world.x_m() == Approx(10 * 0.002).margin(1e-9));
@@ -353,7 +353,8 @@ TEST_CASE("the relay ends cleanly: the commander is told and the robot stands") 
   relay.stop();
   CHECK(eventually([&] { return world.speed_mps() == 0; }));
   bool told = false;
-  while (const auto datagram = commander.receive(200)) told |= std::holds_alternative<relay::Refused>(*datagram);
+  while (const auto datagram = commander.receive(200))
+    told |= std::holds_alternative<protocol::relay::Refused>(*datagram);
   CHECK(told);
 }
 
@@ -365,7 +366,7 @@ TEST_CASE("the relay ends cleanly before it ever found a world server") {
   }
   RunningRelay relay(nobody);
   FakeCommander commander(relay.port(), 4);
-  CHECK(refusal(commander.hello(true)).reason == relay::RefusedReason::no_world_server);
+  CHECK(refusal(commander.hello(true)).reason == protocol::relay::RefusedReason::no_world_server);
   CHECK(eventually([&] { return relay.log().count("no world server at") >= 1; }));
   std::this_thread::sleep_for(300ms);
   CHECK(relay.log().count("no world server at") == 1);  // once a change of state
@@ -378,9 +379,9 @@ TEST_CASE("the steady path allocates nothing") {
   FakeCommander commander(relay.port(), 4);
   REQUIRE(is_welcome(commander.hello(true)));
   std::uint64_t before = 0, after = 0;
-  commander.drive(600, [&](const relay::State& state, relay::Command& command) {
+  commander.drive(600, [&](const protocol::relay::State& state, protocol::relay::Command& command) {
     approach(state, command);
-    commander.send(relay::Ping{4, 1});
+    commander.send(protocol::relay::Ping{4, 1});
     if (state.robot.frame == 200) before = allocations();
     if (state.robot.frame == 600) after = allocations();
   });

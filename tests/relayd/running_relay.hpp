@@ -71,12 +71,12 @@ class RunningRelay {
   std::thread thread_;
 };
 
-inline bool is_welcome(const relay::Datagram& datagram) {
-  return std::holds_alternative<relay::Welcome>(datagram);
+inline bool is_welcome(const protocol::relay::Datagram& datagram) {
+  return std::holds_alternative<protocol::relay::Welcome>(datagram);
 }
-inline relay::Refused refusal(const relay::Datagram& datagram) {
-  REQUIRE(std::holds_alternative<relay::Refused>(datagram));
-  return std::get<relay::Refused>(datagram);
+inline protocol::relay::Refused refusal(const protocol::relay::Datagram& datagram) {
+  REQUIRE(std::holds_alternative<protocol::relay::Refused>(datagram));
+  return std::get<protocol::relay::Refused>(datagram);
 }
 
 }  // namespace kenaf::test

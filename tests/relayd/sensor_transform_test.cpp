@@ -13,8 +13,8 @@ using namespace kenaf::relayd;
 namespace {
 
 bool take(SensorTransform& transform, std::string_view line) {
-  usarsim::MessageView message;
-  REQUIRE(usarsim::parse_message(line, message) == usarsim::ParseError::none);
+  protocol::usarsim::MessageView message;
+  REQUIRE(protocol::usarsim::parse_message(line, message) == protocol::usarsim::ParseError::none);
   return transform.take(message);
 }
 

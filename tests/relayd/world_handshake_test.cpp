@@ -15,8 +15,8 @@ struct Conversation {
 
   // What the relay answers.
   std::string hears(std::string_view line) {
-    usarsim::MessageView message;
-    usarsim::parse_message(line, message);
+    protocol::usarsim::MessageView message;
+    protocol::usarsim::parse_message(line, message);
     std::string out;
     handshake.on_message(message, message.is("STA"), now, out);
     return out;

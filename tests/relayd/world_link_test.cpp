@@ -50,7 +50,7 @@ TEST_CASE("a Hello while the relay is still connecting is answered by what comes
   REQUIRE(eventually([&] { return connect_is_pending(world.port()); }));
 
   FakeCommander commander(relay.port(), 7);
-  commander.send(relay::Hello{7, 0.01, 0.5, true, false});
+  commander.send(protocol::relay::Hello{7, 0.01, 0.5, true, false});
   // A connect() that comes to nothing within its time is a reason to refuse; that the Hello came is none.
   const auto patient_hello = [&] {
     const auto answer = commander.hello(true);
@@ -61,7 +61,7 @@ TEST_CASE("a Hello while the relay is still connecting is answered by what comes
   if (const auto early = commander.receive(300)) CHECK(text_of(refusal(*early)).find("anceled") == std::string::npos);
   waiting.clear();
   CHECK(eventually(patient_hello));
-  CHECK(commander.drive(3, [](const relay::State&, relay::Command&) {}).size() == 3);
+  CHECK(commander.drive(3, [](const protocol::relay::State&, protocol::relay::Command&) {}).size() == 3);
 }
 
 TEST_CASE("what a lost world server did not answer any more is not waited for on the next connection") {
@@ -71,7 +71,7 @@ TEST_CASE("what a lost world server did not answer any more is not waited for on
   REQUIRE(is_welcome(first.hello(false)));
   const int controls = world.count("CONTROL"), connections = world.connections();
   world.close_at_control();  // what Bye makes of it is not answered
-  first.send(relay::Bye{1});
+  first.send(protocol::relay::Bye{1});
   // Connected anew, the relay begins a session and, as nobody wants it, ends it.
   REQUIRE(eventually([&] { return world.count("CONTROL") == controls + 3; }));
   CHECK(world.connections() == connections + 1);

@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 #include <set>
 
-#include "description/data_files.hpp"
+#include "formats/description/data_files.hpp"
 #include "physics/robot_description.hpp"
-#include "tests/runs/temporary_folder.hpp"
+#include "tests/formats/runs/temporary_folder.hpp"
 
 using namespace kenaf;
 using namespace kenaf::rollout;
@@ -48,7 +48,7 @@ std::string give_up_in_phase(int number, const std::string& what = "{ x_below_m 
 std::string error_of(const std::string& text) {
   try {
     parse_manoeuvres(text, "my.toml");
-  } catch (const DescriptionError& error) {
+  } catch (const description::DescriptionError& error) {
     return error.what();
   }
   return "";
@@ -131,7 +131,7 @@ TEST_CASE("The shipped manoeuvres: each name once, sorted, found by its name") {
     CHECK((names.empty() || *names.rbegin() < manoeuvre.name));
     CHECK(names.insert(manoeuvre.name).second);
     CHECK_FALSE(manoeuvre.summary.empty());
-    CHECK_FALSE(find_data_file("worlds", manoeuvre.world, ".sdf").empty());
+    CHECK_FALSE(description::find_data_file("worlds", manoeuvre.world, ".sdf").empty());
   }
   for (const std::string name : {"straight",      "straight-fast",     "turn-in-place", "arc",        "square",
                                  "flipper-sweep", "random-speeds",     "speed-steps",   "drop",       "ramp",

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "formats/runs/dataset.hpp"
 #include "robot/angles.hpp"
 #include "rollout/roll_out.hpp"
-#include "runs/dataset.hpp"
 #include "tests/rollout/exact_runs.hpp"
 
 using namespace kenaf;

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "rollout/roll_out.hpp"
-#include "tests/runs/temporary_folder.hpp"
+#include "tests/formats/runs/temporary_folder.hpp"
 
 using namespace kenaf;
 using namespace kenaf::rollout;

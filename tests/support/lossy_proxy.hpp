@@ -1,4 +1,5 @@
-// UDP between a client and a server as a bad network carries it: datagrams are lost, doubled, late and overtaken. Seeded.
+// UDP between a client and a server as a bad network carries it: datagrams are lost, doubled, late and overtaken.
+// Seeded.
 #pragma once
 
 #include <atomic>
@@ -12,10 +13,10 @@
 namespace kenaf::support {
 
 struct Network {
-  double lost = 0.2, doubled = 0.2;              // shares of the datagrams
-  double delayed = 0.25;                         // share that takes up to `delay` longer
+  double lost = 0.2, doubled = 0.2;  // shares of the datagrams
+  double delayed = 0.25;             // share that takes up to `delay` longer
   std::chrono::microseconds delay{8000};
-  std::chrono::microseconds latency{0};          // of all, each way
+  std::chrono::microseconds latency{0};  // of all, each way
 };
 
 struct ProxyHooks {

@@ -1,4 +1,5 @@
 // Child processes for tests and benchmarks: started, watched, signalled, and never left behind.
+//
 // Thread safety: a Process belongs to one thread.
 #pragma once
 

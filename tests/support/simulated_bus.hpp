@@ -1,8 +1,8 @@
 // A CAN bus in this process whose slaves are the simulated ones, for tests of a master: nothing waits for a clock. Time
 // stands still while the master computes, and runs in receive() and run_until(), from one event to the next.
 //
-// One frame is on the bus at a time. Of those that wait, the lowest identifier goes first; each takes its longest possible
-// time at 500 kbit/s (worst_case_bits) and reaches everybody at its end.
+// One frame is on the bus at a time. Of those that wait, the lowest identifier goes first; each takes its longest
+// possible time at 500 kbit/s (worst_case_bits) and reaches everybody at its end.
 #pragma once
 
 #include <deque>
@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "candrives/ideal_plant.hpp"
-#include "candrives/robot_slaves.hpp"
-#include "canopen/bus.hpp"
+#include "can/candrives/ideal_plant.hpp"
+#include "can/candrives/robot_slaves.hpp"
+#include "can/canopen/bus.hpp"
 
 namespace kenaf::candrives {
 
@@ -46,17 +46,18 @@ class SimulatedBus final : public canopen::Bus {
   void inject(const Fault& fault);
   void send_as_other(const canopen::Frame& frame) { put(frame, Sender::other); }
   const std::vector<LoggedFrame>& log() const { return log_; }  // everything that was on the bus
-  double load() const;                                        // share of the time in which it was busy
+  double load() const;                                          // share of the time in which it was busy
 
   // Every frame before it goes onto the bus: may change it; false drops it.
   std::function<bool(canopen::Frame&, Sender)> alter;
   // The master is dead: nothing it sent or sends reaches the bus any more, its SYNC ends. It can still look on.
   void stop_master();
-  // The interface is down: send, receive and start_sync throw BusError with `words`, and nothing is carried. Up again, SYNC
-  // has to be started anew.
+  // The interface is down: send, receive and start_sync throw BusError with `words`, and nothing is carried. Up again,
+  // SYNC has to be started anew.
   void go_down(const std::string& words);
   void come_up() { down_.reset(); }
-  // Time runs on without the master; what the slaves send is logged, and what was on its way to the master is lost to it.
+  // Time runs on without the master; what the slaves send is logged, and what was on its way to the master is lost to
+  // it.
   void run_until(canopen::Time until);
   // The master is held up: time runs on, and what is sent to it waits in its socket.
   void hold_up_until(canopen::Time until);

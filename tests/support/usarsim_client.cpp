@@ -62,11 +62,11 @@ double number_in(std::string_view line, std::string_view key) {
 }
 
 double number_in(std::string_view line, std::string_view key, std::size_t index) {
-  usarsim::MessageView message;
+  protocol::usarsim::MessageView message;
   std::array<double, 256> numbers{};
-  if (usarsim::parse_message(line, message) == usarsim::ParseError::none) {
+  if (protocol::usarsim::parse_message(line, message) == protocol::usarsim::ParseError::none) {
     if (const auto value = message.find(key)) {
-      const auto count = usarsim::parse_number_list(*value, numbers);
+      const auto count = protocol::usarsim::parse_number_list(*value, numbers);
       if (count && index < *count && index < numbers.size()) return numbers[index];
     }
   }

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "protocol/usarsim_message.hpp"
+#include "formats/protocol/usarsim_message.hpp"
 
 namespace kenaf::support {
 
@@ -25,7 +25,7 @@ class UsarsimClient {
 
  private:
   int descriptor_;
-  usarsim::LineSplitter lines_;
+  protocol::usarsim::LineSplitter lines_;
 };
 
 // The number of `key` in `line`, such as Time in "STA {Time 1.5}". Throws where there is none.

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "runs/run_file.hpp"
+#include "formats/runs/run_file.hpp"
 #include "tests/support/process.hpp"
 
 namespace kenaf::system_test {

@@ -74,7 +74,8 @@ TEST_CASE("a program sees through both of Kenaf's cameras, and what it sees turn
   CHECK(std::string(above.camera) == "BirdsEye");
   CHECK(mean_difference(ahead, down) > 5);
 
-  // Each once; at whole multiples of a thirtieth of a second of robot time, but for the first one, which is taken at once.
+  // Each once; at whole multiples of a thirtieth of a second of robot time, but for the first one, which is taken at
+  // once.
   (void)look(nullptr, front);
   for (int i = 0; i < 5; ++i) {
     const hrt_picture before = front;

@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "runs/dataset.hpp"
-#include "tests/runs/temporary_folder.hpp"
+#include "formats/runs/dataset.hpp"
+#include "tests/formats/runs/temporary_folder.hpp"
 
 using namespace kenaf;
 using test::read_file;

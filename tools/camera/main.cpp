@@ -13,7 +13,7 @@
 
 #include "camera/renderer.hpp"
 #include "camera/robot_cameras.hpp"
-#include "runs/whole_file.hpp"
+#include "formats/runs/whole_file.hpp"
 
 namespace {
 

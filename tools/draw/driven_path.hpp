@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "formats/runs/run_file.hpp"
 #include "physics/pose.hpp"
 #include "physics/robot_description.hpp"
-#include "runs/run_file.hpp"
 
 namespace kenaf::draw {
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "runs/dataset.hpp"
-#include "runs/whole_file.hpp"
+#include "formats/runs/dataset.hpp"
+#include "formats/runs/whole_file.hpp"
 #include "tools/draw/picture.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 #include "gap/diagnose/report.hpp"
 #include "gap/plot/chart.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using plot::escaped;
@@ -86,11 +86,12 @@ std::string where_is_it(const Diagnosis& d) {
 }
 
 std::string effect_item(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect) {
-  const Candidate& candidate = d.candidates[effect.candidate];
+  const candidates::Candidate& candidate = d.candidates[effect.candidate];
   const std::string words = value_in_words(candidate, effect.value);  // begins with the name
   std::string item = fmt::format("{}: <b>{}</b>{}", with_capital(from_to(stage.passage)), escaped(candidate.name),
                                  escaped(words.substr(candidate.name.size())));
-  item += fmt::format("; it takes off {} of the gap in {}", percent(effect.share.of_kind), kind_name(effect.share.kind));
+  item +=
+      fmt::format("; it takes off {} of the gap in {}", percent(effect.share.of_kind), kind_name(effect.share.kind));
   if (!effect.partners.empty())
     item += fmt::format("; with {} {}, and how much of it is whose these runs do not tell",
                         escaped(enumeration(partner_names(d, stage, effect))), percent(effect.share_of_set.of_kind));
@@ -105,8 +106,8 @@ std::string without_name(const Diagnosis& d, const StageDiagnosis& stage) {
   std::vector<std::string> doubted;
   for (const NamedEffect& effect : stage.decision.effects)
     if (!effect.doubts.empty())
-      doubted.push_back(fmt::format("{} ({})", d.candidates[effect.candidate].name,
-                                    fmt::join(doubts_in_words(d, effect), "; ")));
+      doubted.push_back(
+          fmt::format("{} ({})", d.candidates[effect.candidate].name, fmt::join(doubts_in_words(d, effect), "; ")));
   std::string item = names_found(stage).empty() ? "no effect is named. " : "";
   if (!doubted.empty()) item += fmt::format("{}o name for {}. ", item.empty() ? 'n' : 'N', enumeration(doubted));
   if (names_found(stage).empty())
@@ -230,4 +231,4 @@ std::string answer_section(const Diagnosis& d) {
   return html + "</section>\n";
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -8,7 +8,7 @@
 #include "gap/diagnose/page/words.hpp"
 #include "gap/plot/heat_map.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using Eigen::Index;
@@ -143,4 +143,4 @@ std::string confusability_part(const Diagnosis& d, const StageDiagnosis& stage) 
   return html + matrix(names, angle_deg) + pairs_in_words(names, angle_deg) + "</details>\n";
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

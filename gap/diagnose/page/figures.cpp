@@ -13,7 +13,7 @@
 #include "gap/plot/simplify.hpp"
 #include "gap/plot/svg.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using plot::Chart;
@@ -91,7 +91,8 @@ Chart place_chart(const Diagnosis& d, const Overlay& overlay, std::vector<Line> 
   const std::vector<Place> places = places_of(run.run);
   const double y_m = places.empty() || std::isnan(places.front().y_m) ? 0 : places.front().y_m;
   if (run.world < d.observations.worlds.size())
-    draw_section(chart, d.observations.worlds[run.world], y_m, low.array() - beyond_m, high.array() + beyond_m);
+    compare::draw_section(chart, d.observations.worlds[run.world], y_m, low.array() - beyond_m,
+                          high.array() + beyond_m);
   return chart;
 }
 
@@ -262,4 +263,4 @@ Chart places_figure(const Diagnosis& d, const Overlay& overlay, const StageDiagn
   return chart;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

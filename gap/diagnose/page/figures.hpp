@@ -1,11 +1,12 @@
 // The charts of single runs: what was measured beside what is simulated.
+//
 // Thread safety: pure functions.
 #pragma once
 
 #include "gap/diagnose/page/overlays.hpp"
 #include "gap/plot/chart.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 inline constexpr double kWide_px = 1060, kHalf_px = 524;
 
@@ -24,4 +25,4 @@ plot::Chart residual_figure(const Diagnosis& d, const Overlay& overlay);
 // The path with the gap of each phase of a stage at the place of the phase, before (rings) and after (discs).
 plot::Chart places_figure(const Diagnosis& d, const Overlay& overlay, const StageDiagnosis& stage);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

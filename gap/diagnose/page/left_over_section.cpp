@@ -8,7 +8,7 @@
 #include "gap/diagnose/page/words.hpp"
 #include "gap/plot/chart.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr std::size_t kMostPlots = 6;  // chosen: three rows of two
@@ -68,4 +68,4 @@ std::string left_over_section(std::span<const Dependence> left_over, std::string
   return html + "</div>\n";
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -6,7 +6,7 @@
 #include "gap/diagnose/page/words.hpp"
 #include "gap/diagnose/report.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 std::string overlay_section(const Diagnosis& d, std::span<const Overlay> overlays) {
   std::string html = section_head("overlay", "Real, nominal and corrected runs");
@@ -39,4 +39,4 @@ std::string overlay_section(const Diagnosis& d, std::span<const Overlay> overlay
   return html;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -16,7 +16,7 @@
 #include "gap/diagnose/stage_candidates.hpp"
 #include "gap/parallel.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr std::size_t kMostGroups = 8, kLeastChannels = 2, kMostChannels = 4;
@@ -108,7 +108,7 @@ std::vector<Overlay> simulate_overlays(const Diagnosis& d) {
   Variation corrected = predictor.unvaried();
   const Settings found = corrections(d);
   corrected.robot = with_settings(std::move(corrected.robot), d.candidates, found);
-  const bool has_model = !found.empty() && why_impossible(corrected.robot).empty();
+  const bool has_model = !found.empty() && candidates::why_impossible(corrected.robot).empty();
   for_each_job(overlays.size(), d.options.jobs, [&](std::size_t i) {
     overlays[i].nominal = predictor.simulate(overlays[i].run, predictor.unvaried());
     if (has_model) overlays[i].corrected = predictor.simulate(overlays[i].run, corrected);
@@ -134,4 +134,4 @@ std::vector<plot::Point> over_time(const runs::Run& run, std::size_t channel) {
   return points;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

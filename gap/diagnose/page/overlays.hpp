@@ -1,4 +1,6 @@
-// The runs that the page draws: of each manoeuvre one as it was measured, with the nominal simulation and the corrected one.
+// The runs that the page draws: of each manoeuvre one as it was measured, with the nominal simulation and the corrected
+// one.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -8,12 +10,12 @@
 #include "gap/diagnose/diagnosis.hpp"
 #include "gap/plot/chart.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 struct Overlay {
-  std::size_t group, run;            // of Diagnosis::repeats; its representative
-  std::vector<std::size_t> channels; // that show most of the gap in this manoeuvre, of diagnosis_channels()
-  std::vector<double> shares;        // of each of these channels, of what is beyond chance in all runs
+  std::size_t group, run;             // of Diagnosis::repeats; its representative
+  std::vector<std::size_t> channels;  // that show most of the gap in this manoeuvre, of diagnosis_channels()
+  std::vector<double> shares;         // of each of these channels, of what is beyond chance in all runs
   runs::Run nominal;
   std::optional<runs::Run> corrected;  // with corrections(), where there are some
 };
@@ -30,4 +32,4 @@ void choose_channels(const Diagnosis& d, std::vector<Overlay>& overlays);
 // A column over time, without what was not measured; broken where nothing was measured for long. Angles do not jump.
 std::vector<plot::Point> over_time(const runs::Run& run, std::size_t channel);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -8,7 +8,7 @@
 #include "gap/diagnose/page/words.hpp"
 #include "gap/plot/row_chart.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr std::size_t kMostRows = 12, kMostTableRows = 100;
@@ -41,7 +41,7 @@ std::string ranking_table(const Diagnosis& d, const StageDiagnosis& stage) {
   Table table{{"candidate", "value", "nominal", "takes off", "evidence", "what it is"}, {}, {0, 5}};
   for (std::size_t i = 0; i < std::min(kMostTableRows, stage.ranking.size()); ++i) {
     const SingleEvidence& single = stage.ranking[i];
-    const Candidate& candidate = d.candidates[single.candidate];
+    const candidates::Candidate& candidate = d.candidates[single.candidate];
     table.rows.push_back({value_name(candidate), figure(single.value) + unit_suffix(candidate.unit),
                           figure(candidate.present) + unit_suffix(candidate.unit), percent(single.explains),
                           figure(single.evidence), candidate.summary});
@@ -65,4 +65,4 @@ std::string ranking_part(const Diagnosis& d, const StageDiagnosis& stage) {
          ranking_table(d, stage) + "</details>\n";
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -10,7 +10,7 @@
 #include "gap/diagnose/page/words.hpp"
 #include "gap/plot/row_chart.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -89,4 +89,4 @@ std::string residual_part(const Diagnosis& d, const StageDiagnosis& stage) {
   return html + channel_figure(d, residuals) + table_of(residuals);
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -12,7 +12,7 @@
 #include "gap/diagnose/page/words.hpp"
 #include "gap/plot/row_chart.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 using plot::Ink;
@@ -84,7 +84,7 @@ std::string shrink_figure(const Diagnosis& d, const StageDiagnosis& stage) {
 }
 
 std::string value_figure(const Diagnosis& d, const NamedEffect& effect) {
-  const Candidate& candidate = d.candidates[effect.candidate];
+  const candidates::Candidate& candidate = d.candidates[effect.candidate];
   const Interval& value = effect.value.value;
   plot::RowChart chart;
   chart.title = fmt::format("{} with its 95 % interval", value_name(candidate));
@@ -105,7 +105,7 @@ std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
       {},
       {0, 1}};
   for (const NamedEffect& effect : stage.decision.effects) {
-    const Candidate& candidate = d.candidates[effect.candidate];
+    const candidates::Candidate& candidate = d.candidates[effect.candidate];
     std::string name = "yes";
     if (!effect.doubts.empty())
       name = fmt::format("no: {}", fmt::join(doubts_in_words(d, effect), "; "));
@@ -153,4 +153,4 @@ std::string stage_section(const Diagnosis& d, std::size_t s) {
   return html + residual_part(d, stage) + ranking_part(d, stage) + confusability_part(d, stage);
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

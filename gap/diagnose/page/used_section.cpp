@@ -10,7 +10,7 @@
 #include "gap/diagnose/page/words.hpp"
 #include "gap/plot/row_chart.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr std::size_t kMostNext = 10, kMostRepeated = 60, kMostFiles = 4, kMostWarnings = 100;
@@ -175,4 +175,4 @@ std::string method_section(const Diagnosis& d) {
          "</ul>\n";
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

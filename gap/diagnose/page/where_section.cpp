@@ -8,7 +8,7 @@
 #include "gap/diagnose/page/words.hpp"
 #include "gap/plot/strip_chart.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr std::size_t kMostPhases = 12;  // in the table
@@ -127,4 +127,4 @@ std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays)
   return html;
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

@@ -7,7 +7,7 @@
 
 #include "gap/plot/chart.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 using plot::escaped;
 
@@ -42,4 +42,4 @@ std::string to_html(const Table& table) {
   return html + "</table></div>\n";
 }
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

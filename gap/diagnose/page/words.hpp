@@ -1,4 +1,5 @@
 // How the page writes things; what it calls them is in gap/diagnose/report_words.hpp.
+//
 // Thread safety: pure functions.
 #pragma once
 
@@ -8,7 +9,7 @@
 
 #include "gap/diagnose/report_words.hpp"
 
-namespace kenaf::gap {
+namespace kenaf::gap::diagnose {
 
 // A probability, "< 0.0001" at least.
 std::string probability(double p);
@@ -26,4 +27,4 @@ struct Table {
 };
 std::string to_html(const Table& table);
 
-}  // namespace kenaf::gap
+}  // namespace kenaf::gap::diagnose

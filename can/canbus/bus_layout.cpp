@@ -1,0 +1,107 @@
+#include "can/canbus/bus_layout.hpp"
+
+#include "can/canopen/device.hpp"
+#include "can/canopen/drive.hpp"
+
+namespace kenaf::canbus {
+namespace {
+
+using canopen::Frame;
+using canopen::NodeId;
+using canopen::Pdo;
+using canopen::PdoDirection;
+namespace object = canopen::object;
+
+constexpr std::uint8_t kEachSync = 1, kEachFifthSync = 5;
+
+Frame frame_of(const Pdo& pdo) {
+  Frame frame;
+  frame.length = byte_count(pdo);
+  return frame;
+}
+
+// One kind of frame of the bus and how often it comes.
+struct Traffic {
+  Frame frame;
+  double per_s;
+};
+
+std::vector<Traffic> traffic_of(const RobotBus& bus, double period_s) {
+  const double cycles_per_s = 1 / period_s;
+  std::vector<Traffic> all{{canopen::kSync, cycles_per_s}};
+  const auto add = [&](const Pdo& pdo) { all.push_back({frame_of(pdo), cycles_per_s / pdo.transmission}); };
+  for (std::size_t i = 0; i < kDriveCount; ++i) {
+    const DrivePdos pdos = pdos_of(bus, i);
+    add(pdos.state);
+    if (pdos.has_effort) add(pdos.effort);
+    add(pdos.command);
+    if (pdos.has_battery) add(pdos.battery);
+  }
+  std::size_t nodes = kDriveCount;
+  if (bus.inclinometer) {
+    add(inclinometer_pdo());
+    ++nodes;
+  }
+  if (bus.gyro) {
+    // as the device has it: eight bytes at most, once a SYNC
+    all.push_back({{.length = canopen::kMaxFrameBytes}, cycles_per_s});
+    ++nodes;
+  }
+  const Frame heartbeat{.length = 1};
+  all.push_back({heartbeat, 1 / bus.master_heartbeat_s});
+  all.push_back({heartbeat, static_cast<double>(nodes) / bus.node_heartbeat_s});
+  return all;
+}
+
+}  // namespace
+
+DrivePdos pdos_of(const RobotBus& bus, std::size_t drive) {
+  using enum PdoDirection;
+  const bool track = is_track(drive);
+  Pdo effort{transmit, 2, track ? kEachSync : kEachFifthSync, {}};
+  if (track) effort.objects.push_back(object::velocity_actual);
+  if (bus.has_currents) effort.objects.push_back(object::current_actual);
+  const bool has_effort = !effort.objects.empty();
+  return {.state = {transmit, 1, kEachSync, {object::statusword, object::position_actual}},
+          .effort = std::move(effort),
+          .battery = {transmit, 3, 10, {object::dc_link_voltage}},
+          .command = {receive,
+                      1,
+                      kEachSync,
+                      {object::controlword,
+                       is_position(bus.drives[drive].mode) ? object::target_position : object::target_velocity}},
+          .has_effort = has_effort,
+          .has_battery = bus.has_battery && drive == 0};
+}
+
+Pdo inclinometer_pdo() {
+  return {PdoDirection::transmit, 1, kEachSync, {object::slope_longitudinal, object::slope_lateral}};
+}
+
+std::vector<std::uint16_t> ids_to_hear(const RobotBus& bus) {
+  std::vector<std::uint16_t> ids{canopen::kSyncId, static_cast<std::uint16_t>(canopen::kHeartbeatId + bus.master)};
+  const auto add_node = [&ids](NodeId node) {
+    for (const std::uint16_t base :
+         {canopen::kTransmitPdoId[0], canopen::kTransmitPdoId[1], canopen::kTransmitPdoId[2],
+          canopen::kTransmitPdoId[3], canopen::kEmergencyId, canopen::kSdoResponseId, canopen::kHeartbeatId})
+      ids.push_back(static_cast<std::uint16_t>(base + node));
+  };
+  for (const DriveOnBus& drive : bus.drives) add_node(drive.node);
+  if (bus.inclinometer) add_node(bus.inclinometer->node);
+  if (bus.gyro) add_node(bus.gyro->node);
+  return ids;
+}
+
+double worst_case_bits_per_s(const RobotBus& bus, double period_s) {
+  double bits = 0;
+  for (const Traffic& traffic : traffic_of(bus, period_s)) bits += worst_case_bits(traffic.frame) * traffic.per_s;
+  return bits;
+}
+
+double frames_per_s(const RobotBus& bus, double period_s) {
+  double frames = 0;
+  for (const Traffic& traffic : traffic_of(bus, period_s)) frames += traffic.per_s;
+  return frames;
+}
+
+}  // namespace kenaf::canbus

@@ -1,0 +1,250 @@
+#include "can/canbus/robot_bus.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "formats/description/description_file.hpp"
+#include "formats/description/toml_reader.hpp"
+
+namespace kenaf::canbus {
+namespace {
+
+using description::kPositive;
+using description::Range;
+using description::TomlReader;
+
+using canopen::DriveMode;
+using canopen::NodeId;
+
+constexpr double kTurn_rad = 2 * std::numbers::pi;
+constexpr Range kCounts{.min = -1e9, .max = 1e9};
+constexpr Range kAngle{.min = -kTurn_rad, .max = kTurn_rad};
+// What is longer than this is not a stop: a commander that fell silent must not be noticed by what the robot ran into.
+constexpr double kLongestStop_s = 0.2;
+constexpr int kBitRate = 500'000;
+
+DriveMode read_mode(TomlReader& table, std::array<DriveMode, 2> choice) {
+  const std::string text = table.text("mode");
+  for (const DriveMode mode : choice) {
+    if (text == canopen::describe(mode)) return mode;
+  }
+  table.fail("mode", fmt::format("is \"{}\", but must be \"{}\" or \"{}\"", text, canopen::describe(choice[0]),
+                                 canopen::describe(choice[1])));
+}
+
+int read_direction(TomlReader& table, std::string_view key = "direction") {
+  const int direction = table.integer(key, -1, 1);
+  if (direction == 0) table.fail(key, "is 0, but must be 1 or -1");
+  return direction;
+}
+
+// Motor, encoder and gear of one kind of drive. `turns_per_unit`: of the motor, for 1 m of track or 1 rad of flipper.
+DriveOnBus read_kind(TomlReader& table, double turns_per_unit) {
+  DriveOnBus drive{};
+  drive.units.counts_per_unit = table.number("counts_per_turn", {.min = 1, .max = 1e8}) * turns_per_unit;
+  drive.units.velocity_per_unit = table.number("velocity_units_per_turn", kPositive) * turns_per_unit;
+  drive.units.acceleration_per_unit = table.number("acceleration_units_per_turn", kPositive) * turns_per_unit;
+  return drive;
+}
+
+double motor_turns(TomlReader& table) {
+  return table.number("gear_ratio", {.min = 1e-3, .max = 1e5});
+}
+
+// Of one drive of its kind: where it is on the bus, and which way it turns.
+DriveOnBus read_drive(TomlReader table, DriveOnBus drive) {
+  drive.node = static_cast<NodeId>(table.integer("node", 1, canopen::kMaxNode));
+  const int direction = read_direction(table);
+  drive.units.counts_per_unit *= direction;
+  drive.units.velocity_per_unit *= direction;
+  if (table.has("zero_counts")) drive.units.zero_counts = table.number("zero_counts", kCounts);
+  table.finish();
+  return drive;
+}
+
+// What the drive's numbers of 32 bits must be able to say.
+void check_numbers(TomlReader& table, const DriveOnBus& drive) {
+  const double most = std::numeric_limits<std::int32_t>::max();
+  const auto check = [&](std::string_view key, double value, const char* what) {
+    if (std::abs(value) > most)
+      table.fail(key,
+                 fmt::format("makes {} {:.3g} in the drive's units, which do not fit in its 32 bits", what, value));
+    if (std::abs(value) < 1) table.fail(key, fmt::format("makes {} less than one of the drive's units", what));
+  };
+  check("velocity_units_per_turn", drive.max_speed * drive.units.velocity_per_unit, "the full speed");
+  check("acceleration_units_per_turn", drive.acceleration * drive.units.acceleration_per_unit, "the acceleration");
+  check("acceleration_units_per_turn", drive.quick_stop_deceleration * drive.units.acceleration_per_unit,
+        "the quick stop's deceleration");
+  for (const double position : {drive.min_position, drive.max_position}) {
+    if (std::abs(drive.units.zero_counts + position * drive.units.counts_per_unit) > most)
+      table.fail("counts_per_turn", "puts the flipper's limits beyond the 32 bits of the drive's position");
+  }
+}
+
+Homing read_homing(TomlReader table) {
+  Homing homing{};
+  homing.method = static_cast<std::int8_t>(table.integer("method", -128, 127));
+  homing.home_rad = table.number("home_rad", kAngle);
+  homing.offset_direction = table.has("offset_direction") ? read_direction(table, "offset_direction") : 1;
+  homing.speed_radps = table.number("speed_radps", {.min = 0, .max = 3, .open_min = true});
+  homing.acceleration_radps2 = table.number("acceleration_radps2", kPositive);
+  homing.patience_s = table.number("patience_s", {.min = 0, .max = 120, .open_min = true});
+  table.finish();
+  return homing;
+}
+
+void read_tracks(TomlReader table, TomlReader motor, RobotBus& bus) {
+  const double radius_m = motor.number("sprocket_radius_m", kPositive);
+  DriveOnBus kind = read_kind(table, motor_turns(table) / (kTurn_rad * radius_m));
+  kind.mode = read_mode(table, {DriveMode::profile_velocity, DriveMode::cyclic_velocity});
+  kind.max_speed = motor.number("max_speed_mps", kPositive);
+  kind.acceleration = table.number("acceleration_mps2", {.min = 0, .max = 100, .open_min = true});
+  kind.quick_stop_deceleration = table.number("quick_stop_mps2", {.min = 0, .max = 1000, .open_min = true});
+  bus.speed_loop_s = table.number("speed_loop_s", {.min = 0, .max = 1});
+  check_numbers(table, kind);
+  bus.drives[0] = read_drive(table.table("left"), kind);
+  bus.drives[1] = read_drive(table.table("right"), kind);
+  table.finish();
+  if (longest_stop_s(bus) > kLongestStop_s) {
+    table.fail("quick_stop_mps2",
+               fmt::format("lets a track run for {:.3f} s after the master fell silent (master_silence_s and a stop "
+                           "from {} m/s); it must stop within {} s",
+                           longest_stop_s(bus), kind.max_speed, kLongestStop_s));
+  }
+}
+
+void read_flippers(TomlReader table, TomlReader joint, TomlReader servo, RobotBus& bus) {
+  DriveOnBus kind = read_kind(table, motor_turns(table) / kTurn_rad);
+  kind.mode = read_mode(table, {DriveMode::profile_position, DriveMode::cyclic_position});
+  kind.max_speed = servo.number("max_speed_radps", kPositive);
+  kind.min_position = joint.number("min_angle_rad", kAngle);
+  kind.max_position = joint.number("max_angle_rad", kAngle);
+  kind.acceleration = table.number("acceleration_radps2", {.min = 0, .max = 1e4, .open_min = true});
+  kind.quick_stop_deceleration = table.number("quick_stop_radps2", {.min = 0, .max = 1e4, .open_min = true});
+  if (table.has("homing")) kind.homing = read_homing(table.table("homing"));
+  constexpr std::array kKeys = {"front_left", "front_right", "rear_left", "rear_right"};
+  for (std::size_t i = 0; i < kKeys.size(); ++i) {
+    DriveOnBus& drive = bus.drives[robot::kTrackCount + i] = read_drive(table.table(kKeys[i]), kind);
+    check_numbers(table, drive);
+  }
+  table.finish();
+}
+
+InclinometerAxis read_axis(TomlReader table) {
+  InclinometerAxis axis{};
+  const std::string name = table.text("axis");
+  if (name != "lateral" && name != "longitudinal")
+    table.fail("axis", fmt::format("is \"{}\", but must be \"lateral\" or \"longitudinal\"", name));
+  axis.lateral = name == "lateral";
+  axis.direction = read_direction(table);
+  axis.zero_rad = table.number("zero_rad", kAngle);
+  table.finish();
+  return axis;
+}
+
+InclinometerOnBus read_inclinometer(TomlReader table) {
+  InclinometerOnBus out{};
+  out.node = static_cast<NodeId>(table.integer("node", 1, canopen::kMaxNode));
+  out.roll = read_axis(table.table("roll"));
+  out.pitch = read_axis(table.table("pitch"));
+  if (out.roll.lateral == out.pitch.lateral) table.fail("pitch", "is on the same axis of the sensor as roll");
+  table.finish();
+  return out;
+}
+
+GyroOnBus read_gyro(TomlReader table) {
+  GyroOnBus out{};
+  out.node = static_cast<NodeId>(table.integer("node", 1, canopen::kMaxNode));
+  out.pdo = static_cast<std::uint8_t>(table.integer("pdo", 1, 4));
+  out.first_bit = static_cast<std::uint8_t>(table.integer("first_bit", 0, 56));
+  out.bits = static_cast<std::uint8_t>(table.integer("bits", 2, 32));
+  if (out.first_bit + out.bits > 64) table.fail("bits", "reaches beyond the eight bytes of a frame");
+  out.units_per_radps = table.number("units_per_radps");
+  if (out.units_per_radps == 0) table.fail("units_per_radps", "is 0");
+  table.finish();
+  return out;
+}
+
+void check_nodes(TomlReader& table, const RobotBus& bus) {
+  std::map<NodeId, std::string_view> taken;
+  const auto take = [&](NodeId node, std::string_view name, std::string_view key) {
+    const auto [where, is_new] = taken.emplace(node, name);
+    if (!is_new) table.fail(key, fmt::format("has node {} twice: {} and {}", node, where->second, name));
+  };
+  take(bus.master, "the master", "master_node");
+  for (std::size_t i = 0; i < kDriveCount; ++i)
+    take(bus.drives[i].node, kDriveNames[i], is_track(i) ? "track" : "flipper");
+  if (bus.inclinometer) take(bus.inclinometer->node, "inclinometer", "inclinometer");
+  if (bus.gyro) take(bus.gyro->node, "gyro", "gyro");
+}
+
+}  // namespace
+
+RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for_errors) {
+  const toml::table root = description::parse_toml(toml_text, name_for_errors);
+  TomlReader file(root, "", name_for_errors);
+  if (!file.has("can")) {
+    throw description::DescriptionError(
+        fmt::format("{}: has no table [can], which says what is on the robot's CAN bus", name_for_errors));
+  }
+  TomlReader table = file.table("can");
+  RobotBus bus{};
+  bus.interface = table.text("interface");
+  if (bus.interface.empty() || bus.interface.size() > 15) table.fail("interface", "must be of 1 to 15 characters");
+  bus.bit_rate = table.has("bit_rate") ? table.integer("bit_rate", 10'000, 1'000'000) : kBitRate;
+  bus.master = static_cast<NodeId>(table.integer("master_node", 1, canopen::kMaxNode));
+  bus.master_heartbeat_s = table.number("master_heartbeat_s", {.min = 0.005, .max = 0.1});
+  bus.master_silence_s = table.number("master_silence_s", {.min = 0.01, .max = 0.2});
+  if (bus.master_silence_s < 2 * bus.master_heartbeat_s)
+    table.fail("master_silence_s", "is less than two heartbeats: one late heartbeat would stop the robot");
+  bus.node_heartbeat_s = table.number("node_heartbeat_s", {.min = 0.01, .max = 10});
+  bus.has_currents = !table.has("currents") || table.boolean("currents");
+  bus.has_battery = !table.has("battery") || table.boolean("battery");
+  bus.answer_s = table.number("answer_s", {.min = 0.01, .max = 10});
+  if (file.has("track")) bus.track_gauge_m = 2 * file.table("track").vector3("left_center_m").y();
+  read_tracks(table.table("track"), file.table("drive"), bus);
+  if (!file.has("flipper"))
+    table.fail("flipper", "has no [flipper] in this description: this library drives robots with four");
+  read_flippers(table.table("flipper"), file.table("flipper"), file.table("servo"), bus);
+  if (table.has("inclinometer")) bus.inclinometer = read_inclinometer(table.table("inclinometer"));
+  if (table.has("gyro")) bus.gyro = read_gyro(table.table("gyro"));
+  check_nodes(table, bus);
+  table.finish();
+  return bus;
+}
+
+RobotBus load_robot_bus(const std::string& name_or_path) {
+  const description::DescriptionFile file = description::read_description_file("robot", name_or_path, ".toml");
+  return parse_robot_bus(file.text, file.path);
+}
+
+double longest_stop_s(const RobotBus& bus) {
+  const DriveOnBus& track = bus.drives[0];
+  return bus.master_silence_s + track.max_speed / track.quick_stop_deceleration;
+}
+
+std::int32_t position_to_drive(const DriveUnits& units, double position) {
+  return static_cast<std::int32_t>(std::lround(units.zero_counts + position * units.counts_per_unit));
+}
+
+double position_from_drive(const DriveUnits& units, std::int32_t counts) {
+  return (counts - units.zero_counts) / units.counts_per_unit;
+}
+
+std::int32_t velocity_to_drive(const DriveUnits& units, double velocity) {
+  return static_cast<std::int32_t>(std::lround(velocity * units.velocity_per_unit));
+}
+
+double velocity_from_drive(const DriveUnits& units, std::int32_t velocity) {
+  return velocity / units.velocity_per_unit;
+}
+
+std::uint32_t acceleration_to_drive(const DriveUnits& units, double acceleration) {
+  return static_cast<std::uint32_t>(std::lround(acceleration * units.acceleration_per_unit));
+}
+
+}  // namespace kenaf::canbus

@@ -1,0 +1,56 @@
+// A CAN bus through SocketCAN: CAN_RAW for frames, with filters, error frames and the kernel's time stamps, and CAN_BCM
+// for the SYNC, which the kernel sends by its own timer. Documentation/networking/can.rst of the Linux kernel.
+//
+// Thread safety: as canopen::Bus.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "can/canbus/wall_clock.hpp"
+#include "can/canopen/bus.hpp"
+
+namespace kenaf::canbus {
+
+// The bus cannot be had at all: no SocketCAN in the kernel, no such interface, not for CAN, down. In words, with what
+// to do.
+class NoBus : public canopen::BusError {
+ public:
+  using canopen::BusError::BusError;
+};
+
+class SocketBus final : public canopen::Bus {
+ public:
+  // Receives standard data frames with one of the identifiers `ids` (at most 512), none: all; and the controller's
+  // error frames. Throws NoBus.
+  explicit SocketBus(const std::string& interface, std::span<const std::uint16_t> ids = {});
+  ~SocketBus() override;
+  SocketBus(const SocketBus&) = delete;
+  SocketBus& operator=(const SocketBus&) = delete;
+
+  canopen::Time now() const override;
+  // Where the interface's queue is full, waits for room, 20 ms at most.
+  void send(const canopen::Frame& frame) override;
+  std::optional<canopen::ReceivedFrame> receive(canopen::Time until) override;
+  void start_sync(canopen::Time period) override;
+  void stop_sync() override;
+  void interrupt() override;
+
+ private:
+  void open(std::span<const std::uint16_t> ids);
+  void close();
+  [[noreturn]] void lost(int error) const;
+  std::optional<canopen::ReceivedFrame> read_frame();
+
+  std::string interface_;
+  int raw_ = -1, broadcast_manager_ = -1, interrupt_ = -1;
+  WallClock wall_clock_;
+  std::string last_warning_;  // the newest error frame in words, "" after none: "no acknowledgement: is anybody else on
+                              // the bus?"
+};
+
+// What a controller's error frame says, in words. <linux/can/error.h>
+std::string describe_error_frame(std::uint32_t can_id);
+
+}  // namespace kenaf::canbus

@@ -1,0 +1,124 @@
+// kenaf-candrives: drives, inclinometer and gyro of a robot as CANopen slaves on a CAN interface.
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include "can/canbus/socket_bus.hpp"
+#include "can/candrives/ideal_plant.hpp"
+#include "can/candrives/path_log.hpp"
+#include "can/candrives/robot_plant.hpp"
+#include "can/candrives/service.hpp"
+
+namespace {
+
+using namespace kenaf;
+
+std::atomic<bool> stop_asked{false};
+
+void on_signal(int) {
+  stop_asked = true;
+}
+
+void stop_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGINT, &action, nullptr);
+  // in the background of a terminal there is no input, which is no reason to stand still
+  signal(SIGTTIN, SIG_IGN);
+}
+
+struct Options {
+  std::string interface, robot = "kenaf", world = "flat", log;
+  bool ideal = false;
+  double time_step_s = physics::PhysicsSettings{}.time_step_s;
+  std::vector<std::string> faults;
+};
+
+constexpr const char* kFaultHelp =
+    R"(A fault, now or later, any number of times; standard input takes the same, a line each:
+  WHO WHAT [at SECONDS | SECONDS after motion] [for SECONDS]
+WHO:  node NUMBER, track left, flipper front left, ..., inclinometer, gyro, all, bus
+WHAT: silent, power loss, fault CODE, following error, deaf, sdo abort, sdo late, sdo wrong toggle, short pdos, garbage, healed
+As: --fault "node 3 silent at 5" --fault "track left fault 0x2310 0.5 after motion")";
+
+std::optional<Options> read_options(int argc, char** argv, int& exit_status) {
+  Options options;
+  CLI::App app(
+      "The drives, inclinometer and gyro of a robot as CANopen slaves (CiA 402, CiA 410) on a CAN interface.\n"
+      "Their motors turn the tracks and flippers of a simulated robot. docs/can-drives.md tells more.",
+      "kenaf-candrives");
+  app.set_version_flag("--version", KENAF_VERSION);
+  app.add_option("--interface", options.interface, "CAN interface (default: the one in the robot's description)");
+  app.add_option("--robot", options.robot, "Robot: a shipped name or a TOML file with a [can] table")
+      ->capture_default_str();
+  auto* world = app.add_option("--world", options.world, "World: a shipped name or an SDF file")->capture_default_str();
+  auto* ideal = app.add_flag("--ideal", options.ideal,
+                             "No physics: motors that follow exactly, tracks that never slip, level ground")
+                    ->excludes(world);
+  app.add_option("--time-step", options.time_step_s,
+                 "Physics time step in seconds; larger ones need less of a processor")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0001, 0.01))
+      ->excludes(ideal);
+  app.add_option("--log", options.log, "Write where the robot really was into this CSV file, a line each 10 ms")
+      ->excludes(ideal);
+  app.add_option("--fault", options.faults, kFaultHelp)->take_all();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    exit_status = app.exit(error) == 0 ? 0 : 2;
+    return std::nullopt;
+  }
+  return options;
+}
+
+void run(const Options& options) {
+  const canbus::RobotBus bus = canbus::load_robot_bus(options.robot);
+  const std::string interface = options.interface.empty() ? bus.interface : options.interface;
+  std::vector<candrives::PlannedFault> faults;
+  for (const std::string& words : options.faults) faults.push_back(candrives::parse_fault(words, bus));
+
+  std::optional<candrives::PathLog> log;
+  std::unique_ptr<candrives::Plant> plant;
+  std::string where = interface + ": robot " + options.robot;
+  if (options.ideal) {
+    auto ideal = std::make_unique<candrives::IdealPlant>();
+    ideal->set_gauge(physics::load_robot(options.robot).track_gauge_m());
+    plant = std::move(ideal);
+    where += " with ideal motors";
+  } else {
+    auto robot =
+        std::make_unique<candrives::RobotPlant>(options.robot, options.world, bus.speed_loop_s, options.time_step_s);
+    if (!options.log.empty()) {
+      log.emplace(options.log);
+      robot->on_step = [&log, robot = robot.get()] { log->write(robot->time_s(), [robot] { return robot->truth(); }); };
+    }
+    plant = std::move(robot);
+    where += " in world " + options.world;
+  }
+
+  candrives::Service service(bus, *plant, where);
+  for (const auto& fault : faults) service.plan(fault);
+  service.run([&] { return std::make_unique<canbus::SocketBus>(interface); }, stop_asked);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int exit_status = 0;
+  const auto options = read_options(argc, argv, exit_status);
+  if (!options) return exit_status;
+  stop_on_signals();
+  try {
+    run(*options);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "kenaf-candrives: " << error.what() << '\n';
+    return 1;
+  }
+}

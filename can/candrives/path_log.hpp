@@ -1,0 +1,35 @@
+// Where the simulated robot really was: a line of comma-separated values each 10 ms.
+#pragma once
+
+#include <fstream>
+#include <functional>
+#include <string>
+
+#include "physics/world.hpp"
+
+namespace kenaf::candrives {
+
+inline constexpr double kPathPeriod_s = 0.01;
+
+class PathLog {
+ public:
+  // Throws std::runtime_error where the file cannot be written.
+  explicit PathLog(const std::string& file);
+  ~PathLog();
+  PathLog(const PathLog&) = delete;
+  PathLog& operator=(const PathLog&) = delete;
+  // Writes a line if a period has passed since the last; only then it asks for the truth. Where the file can no longer
+  // be written, stderr is told once, and the rest is missing: the drives go on.
+  void write(double t_s, const std::function<physics::RobotTruth()>& truth_now);
+
+ private:
+  void flush();
+
+  const std::string name_;
+  std::ofstream file_;
+  double next_s_ = 0;
+  int lines_ = 0;
+  bool failure_told_ = false;
+};
+
+}  // namespace kenaf::candrives

@@ -1,0 +1,86 @@
+// A node's process data objects: up to four that it transmits (TPDO) and four that it receives (RPDO), each described
+// by two records in the object dictionary, which a master may write by SDO.
+//
+//   communication, 0x1400 and 0x1800 + number - 1      mapping, 0x1600 and 0x1a00 + number - 1
+//     1  COB-ID; bit 31 set: this PDO is invalid         0     how many objects are mapped; 0: none
+//     2  transmission type                               1..8  index << 16 | sub-index << 8 | bits
+//     3  inhibit time, 100 us (TPDO)
+//     5  event timer, ms (TPDO)
+//
+// Order of a change (CiA 301, 7.5.2.36 and 7.5.2.38): PDO invalid, count to 0, objects, count, PDO valid. Another order
+// is refused. Transmission types (7.5.2.35 and 7.5.2.37): 0 = at the SYNC after a change, 1 to 240 = at each n-th SYNC,
+// 254 and 255 = when the data changes or the event timer has run out; for an RPDO 0 to 240 = what came is taken at the
+// next SYNC, 254 and 255 = at once. Remote requests (252, 253) are refused, as CiA 301 advises against them.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "can/candrives/dictionary.hpp"
+#include "can/canopen/nmt.hpp"
+
+namespace kenaf::candrives {
+
+using Frames = std::vector<canopen::Frame>;
+
+// A PDO as a node has it before anybody writes to it.
+struct DefaultPdo {
+  canopen::Pdo pdo;
+  bool valid = true;
+  std::uint16_t inhibit_100us = 0, event_ms = 0;  // TPDO
+};
+
+class ProcessData {
+ public:
+  // Adds the records of `pdos`: a node has those PDOs and no others. The dictionary outlives this object.
+  ProcessData(canopen::NodeId node, Dictionary& objects, const std::vector<DefaultPdo>& pdos);
+
+  // The rules of the two records above; nullopt too where the object is none of theirs.
+  std::optional<canopen::SdoAbort> check(canopen::ObjectAddress object, std::int64_t value) const;
+
+  // After a write to `object`: a PDO that was changed begins anew.
+  void on_written(canopen::ObjectAddress object);
+  // The node begins to be operational: all of them begin anew, nothing of before is taken or sent.
+  void begin();
+
+  enum class Reception { not_for_me, taken, too_short };
+  Reception on_frame(const canopen::Frame& frame);
+  // What synchronous RPDOs brought is written, then synchronous TPDOs are sent. `refresh` brings what is measured into
+  // the dictionary, between the two.
+  void on_sync(canopen::Time now, const std::function<void()>& refresh, Frames& out);
+  // Event-driven TPDOs whose data has changed, or whose event timer has run out.
+  void on_time(canopen::Time now, Frames& out);
+  // Next event timer; Time::max(): none.
+  canopen::Time deadline() const;
+  // Some TPDO follows its data, so that the data should be kept up to date.
+  bool follows_data() const;
+
+ private:
+  struct State {
+    std::uint16_t communication, mapping;  // indices of the two records
+    bool transmit;
+    std::array<std::uint8_t, 8> received{};
+    bool pending = false;    // received, and not taken yet
+    std::uint8_t syncs = 0;  // since it was transmitted last
+    std::optional<canopen::Frame> sent{};
+    canopen::Time sent_at{};
+  };
+  bool is_valid(const State& state) const;
+  bool is_active(const State& state) const;  // valid, and something is mapped
+  bool is_event_driven(const State& state) const;
+  canopen::Time event_time(const State& state) const;  // zero: no event timer
+  canopen::Time inhibit_time(const State& state) const;
+  std::vector<canopen::MappedObject> mapped(const State& state) const;
+  std::size_t bytes(const State& state) const;
+  canopen::Frame pack(const State& state) const;
+  void begin(State& state);
+  void take(State& state, std::vector<Dictionary::Number>& numbers) const;
+  void transmit(State& state, const canopen::Frame& frame, canopen::Time now, Frames& out);
+  std::optional<canopen::SdoAbort> check_cob_id(const State& state, std::int64_t value) const;
+  std::optional<canopen::SdoAbort> check_mapping(const State& state, std::uint8_t sub, std::int64_t value) const;
+
+  Dictionary* objects_;
+  std::vector<State> pdos_;
+};
+
+}  // namespace kenaf::candrives

@@ -1,0 +1,96 @@
+// One CANopen node without its device profile: what every slave on a bus does. CiA 301.
+//
+//   NMT          boot-up message, pre-operational, operational, stopped; the two resets                   7.2.8, 7.3.2
+//   SDO          its object dictionary, read and written by the master                                    7.2.4
+//   PDO, SYNC    process_data.hpp                                                                         7.2.2, 7.2.5
+//   heartbeat    its own (object 0x1017), and the master's, which it watches (0x1016)                     7.2.8.2.2
+//   emergency    error_state.hpp                                                                          7.2.7
+//
+//                     power on, reset node
+//                              | boot-up message
+//                              v
+//          stopped <---> pre-operational <---> operational        What works: SDO in the latter two, PDO in the last,
+//             ^                                     ^             NMT and heartbeats in all.
+//             +-------------------------------------+
+//
+// A device profile derives from it and adds objects, and what happens when they are written. Frames and times go in,
+// frames come out; no clock and no socket is here. Not copied or moved: its parts refer to each other.
+#pragma once
+
+#include <string>
+
+#include "can/candrives/dictionary.hpp"
+#include "can/candrives/error_state.hpp"
+#include "can/candrives/process_data.hpp"
+#include "can/canopen/nmt.hpp"
+#include "can/canopen/sdo_server.hpp"
+
+namespace kenaf::candrives {
+
+struct DeviceIdentity {
+  std::uint32_t device_type = 0;  // object 0x1000: the lower 16 bits are the profile
+  std::string name;               // 0x1008
+  std::uint32_t vendor_id = 0, product_code = 0, revision = 0, serial_number = 0;  // 0x1018
+};
+
+class Slave {
+ public:
+  Slave(canopen::NodeId node, const DeviceIdentity& identity, const std::vector<DefaultPdo>& pdos);
+  virtual ~Slave() = default;
+  Slave(const Slave&) = delete;
+  Slave& operator=(const Slave&) = delete;
+
+  canopen::NodeId node() const { return node_; }
+  canopen::NmtState state() const { return state_; }
+  const Dictionary& objects() const { return objects_; }
+
+  // All objects as they are at first, then the boot-up message.
+  void power_on(canopen::Time now, Frames& out);
+  void on_frame(const canopen::Frame& frame, canopen::Time now, Frames& out);
+  // Heartbeats, the watch over the master's, event-driven PDOs, and messages of errors that came since the last call.
+  void on_time(canopen::Time now, Frames& out);
+  // When on_time has something to do, as far as it is known by now; Time::max(): not before a frame comes.
+  canopen::Time deadline() const;
+  // It sends PDOs whenever its data change, so that on_time should be called after every change of the data.
+  bool follows_data() const;
+
+ protected:
+  // Objects of the device profile are added in the constructor of the deriving class.
+  Dictionary& dictionary() { return objects_; }
+  ErrorState& errors() { return errors_; }
+
+  // Power on or reset node; objects have their first values.
+  virtual void on_reset() {}
+  // Brings measured values into the dictionary, before they are read or sent.
+  virtual void refresh() {}
+  virtual std::optional<canopen::SdoAbort> check_write(canopen::ObjectAddress, std::int64_t) { return std::nullopt; }
+  virtual void on_write(canopen::ObjectAddress, std::int64_t) {}
+  // The master is gone or has cut the connection: its heartbeat was lost, or NMT stop or a reset of the communication
+  // came. CiA 402-2, abort connection option code, has this list.
+  virtual void on_connection_lost() {}
+
+ private:
+  canopen::ObjectAccess object_access();
+  void on_order(canopen::NmtCommand command, canopen::Time now, Frames& out);
+  void boot(canopen::Time now, Frames& out);
+  void reset_communication();
+  void enter(canopen::NmtState state);
+  void on_sync(const canopen::Frame& frame, canopen::Time now, Frames& out);
+  void on_heartbeat(const canopen::Heartbeat& heartbeat, canopen::Time now);
+  void watch_master(canopen::Time now);
+  void send_messages(canopen::Time now, Frames& out);
+  std::optional<canopen::SdoAbort> check(canopen::ObjectAddress object, std::int64_t value);
+  void written(canopen::ObjectAddress object, std::int64_t value);
+
+  canopen::NodeId node_;
+  Dictionary objects_;
+  ProcessData process_data_;
+  canopen::SdoServer sdo_;
+  ErrorState errors_;
+  canopen::NmtState state_ = canopen::NmtState::boot_up;
+  canopen::Time next_heartbeat_ = canopen::Time::max();
+  canopen::Time master_lost_at_ = canopen::Time::max();  // max: it has not been heard yet, or is lost already
+  bool heartbeat_changed_ = false;                       // object 0x1017 was written: it begins at once
+};
+
+}  // namespace kenaf::candrives

@@ -1,0 +1,190 @@
+#include "can/canlog/describe.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <numbers>
+#include <span>
+
+#include "can/canlog/describe_sdo.hpp"
+#include "can/canopen/device.hpp"
+#include "can/canopen/drive.hpp"
+#include "can/canopen/emergency.hpp"
+#include "can/canopen/nmt.hpp"
+
+namespace kenaf::canlog {
+namespace {
+
+using canopen::Frame;
+using canopen::NmtCommand;
+using canopen::NmtState;
+using canopen::PowerState;
+namespace object = canopen::object;
+
+std::string bytes_of(const Frame& frame) {
+  return fmt::format("{:02X}", fmt::join(frame.data.begin(), frame.data.begin() + frame.length, " "));
+}
+
+std::string malformed(const std::string& what, const Frame& frame) {
+  return fmt::format("{}, malformed: {} bytes {}", what, frame.length, bytes_of(frame));
+}
+
+std::string_view order_words(NmtCommand command) {
+  switch (command) {
+    case NmtCommand::start:
+      return "start";
+    case NmtCommand::stop:
+      return "stop";
+    case NmtCommand::enter_pre_operational:
+      return "enter pre-operational";
+    case NmtCommand::reset_node:
+      return "reset node";
+    case NmtCommand::reset_communication:
+      return "reset communication";
+  }
+  return "unknown order";
+}
+
+std::string nmt_words(const Frame& frame, const Network& network) {
+  const auto order = canopen::nmt_order_from(frame);
+  if (!order) return malformed("NMT", frame);
+  return fmt::format("NMT {}: {}", order_words(order->command),
+                     order->node == 0 ? "all nodes" : network.name(order->node));
+}
+
+std::string sync_words(const Frame& frame) {
+  if (!canopen::is_sync(frame)) return malformed("SYNC", frame);
+  return frame.length == 0 ? "SYNC" : fmt::format("SYNC {}", frame.data[0]);
+}
+
+std::string heartbeat_words(const Frame& frame, const std::string& name) {
+  const auto heartbeat = canopen::heartbeat_from(frame);
+  if (!heartbeat) return malformed(name + ": heartbeat", frame);
+  if (heartbeat->state == NmtState::boot_up) return name + ": boot-up";
+  return fmt::format("{}: heartbeat, {}", name, describe(heartbeat->state));
+}
+
+std::string emergency_words(const Frame& frame, const std::string& name) {
+  const auto emergency = canopen::emergency_from(frame);
+  if (!emergency) return malformed(name + ": EMCY", frame);
+  return fmt::format("{}: EMCY {}", name, describe(*emergency));
+}
+
+// ---- process data ----
+
+// Where a drive counts backwards, nothing is not "-0".
+double without_minus_zero(double value) {
+  return value + 0.0;
+}
+
+std::string position_words(std::int64_t counts, std::size_t drive, const Network& network) {
+  const canbus::DriveUnits& units = network.bus().drives[drive].units;
+  const double position = without_minus_zero(position_from_drive(units, static_cast<std::int32_t>(counts)));
+  if (canbus::is_track(drive)) return fmt::format("{} counts ({:.4f} m)", counts, position);
+  return fmt::format("{} counts ({:.2f} deg)", counts, position * 180 / std::numbers::pi);
+}
+
+std::string velocity_words(std::int64_t velocity, std::size_t drive, const Network& network) {
+  const canbus::DriveUnits& units = network.bus().drives[drive].units;
+  const double speed = without_minus_zero(velocity_from_drive(units, static_cast<std::int32_t>(velocity)));
+  return fmt::format("{:.3g} {}", speed, canbus::is_track(drive) ? "m/s" : "rad/s");
+}
+
+// The bits of a statusword that are the same in every mode, beyond the state.
+std::string status_words(std::uint16_t statusword) {
+  std::string words(describe(canopen::power_state_of(statusword)));
+  if ((statusword & canopen::kStatusWarning) != 0) words += ", warning";
+  if ((statusword & canopen::kStatusTargetReached) != 0) words += ", target reached";
+  if ((statusword & canopen::kStatusInternalLimit) != 0) words += ", limit active";
+  return words;
+}
+
+// CiA 402-2, controlword: table of commands.
+std::string control_words(std::uint16_t controlword) {
+  if ((controlword & canopen::kControlFaultReset) != 0) return "fault reset";
+  if ((controlword & 0x02) == 0) return "disable voltage";
+  if ((controlword & 0x04) == 0) return "quick stop";
+  if ((controlword & 0x01) == 0) return "shutdown";
+  if ((controlword & 0x08) == 0) return "switch on";
+  std::string words = "enable";
+  if ((controlword & canopen::kControlNewSetPoint) != 0) words += ", new set-point";
+  if ((controlword & canopen::kControlHalt) != 0) words += ", halt";
+  return words;
+}
+
+std::string value_words(const canopen::MappedObject& mapped, std::int64_t value, const KnownPdo& known,
+                        const Network& network) {
+  const canopen::ObjectAddress at = mapped.object;
+  if (at == object::statusword.object) return status_words(static_cast<std::uint16_t>(value));
+  if (at == object::controlword.object) return control_words(static_cast<std::uint16_t>(value));
+  if (at == object::current_actual.object)
+    return fmt::format("current {:.1f} % of rated", 0.1 * static_cast<double>(value));
+  if (at == object::dc_link_voltage.object) return fmt::format("supply {:.1f} V", 1e-3 * static_cast<double>(value));
+  if (at == object::slope_longitudinal.object) return fmt::format("slope longitudinal {}", value);
+  if (at == object::slope_lateral.object) return fmt::format("lateral {}", value);
+  if (known.drive) {
+    if (at == object::position_actual.object) return "position " + position_words(value, *known.drive, network);
+    if (at == object::target_position.object) return "to " + position_words(value, *known.drive, network);
+    if (at == object::velocity_actual.object) return "speed " + velocity_words(value, *known.drive, network);
+    if (at == object::target_velocity.object) return velocity_words(value, *known.drive, network);
+  }
+  return fmt::format("{} = {}", to_string(at), value);
+}
+
+std::string gyro_words(const Frame& frame, const std::string& name, const canbus::GyroOnBus& gyro) {
+  const auto rate = canopen::bits_of(frame, gyro.first_bit, gyro.bits);
+  if (!rate) return malformed(name, frame);
+  return fmt::format("{}: yaw rate {} units ({:.4f} rad/s)", name, *rate, *rate / gyro.units_per_radps);
+}
+
+std::string pdo_words(const Frame& frame, const Address& address, const Network& network) {
+  const KnownPdo* known = network.pdo(frame.id);
+  const std::string name = (address.service == Service::receive_pdo ? "command " : "") + network.name(address.node);
+  if (known == nullptr) {
+    return fmt::format("{}: {}PDO{}, not one of this robot's: {}", name,
+                       address.service == Service::receive_pdo ? 'R' : 'T', address.pdo, bytes_of(frame));
+  }
+  if (network.is_gyro(frame.id)) return gyro_words(frame, name, *network.bus().gyro);
+  std::array<std::int64_t, 8> values{};
+  if (!unpack(known->pdo, frame, values)) return malformed(name, frame);
+  std::string words = name + ": ";
+  for (std::size_t i = 0; i < known->pdo.objects.size(); ++i)
+    words += (i == 0 ? "" : ", ") + value_words(known->pdo.objects[i], values[i], *known, network);
+  return words;
+}
+
+}  // namespace
+
+std::string describe(const Frame& frame, const Network& network) {
+  const Address address = address_of(frame.id);
+  const std::string name = network.name(address.node);
+  switch (address.service) {
+    case Service::nmt:
+      return nmt_words(frame, network);
+    case Service::sync:
+      return sync_words(frame);
+    case Service::time_stamp:
+      return "TIME " + bytes_of(frame);
+    case Service::emergency:
+      return emergency_words(frame, name);
+    case Service::transmit_pdo:
+    case Service::receive_pdo:
+      return pdo_words(frame, address, network);
+    case Service::sdo_request:
+      return frame.length == 8 ? sdo_request_words(frame, name) : malformed("SDO request to " + name, frame);
+    case Service::sdo_answer:
+      return frame.length == 8 ? sdo_answer_words(frame, name) : malformed("SDO answer of " + name, frame);
+    case Service::heartbeat:
+      return heartbeat_words(frame, name);
+    case Service::none:
+      break;
+  }
+  return fmt::format("identifier {:#05x}, which CANopen gives to nobody: {}", frame.id, bytes_of(frame));
+}
+
+std::string describe(const LogFrame& logged, const Network& network) {
+  if (logged.kind != canopen::CandumpKind::data) return std::string(describe(logged.kind));
+  return describe(logged.frame, network);
+}
+
+}  // namespace kenaf::canlog

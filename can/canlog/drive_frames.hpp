@@ -1,0 +1,32 @@
+// The frames of a drive in the loop, as numbers.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "can/canlog/network.hpp"
+#include "can/canopen/drive.hpp"
+
+namespace kenaf::canlog {
+
+struct DriveCommand {
+  std::size_t drive;
+  std::uint16_t controlword;
+  std::int32_t target;  // position or velocity, in the drive's units
+};
+// nullopt: the frame is no command PDO of a drive, or has not its length.
+std::optional<DriveCommand> drive_command_from(const canopen::Frame& frame, const Network& network);
+
+struct DriveStatus {
+  std::size_t drive;
+  std::uint16_t statusword;
+  std::int32_t position;
+};
+std::optional<DriveStatus> drive_status_from(const canopen::Frame& frame, const Network& network);
+
+// CiA 402-2, controlword: commands, by bits 0 to 3 and 7.
+enum class DriveOrder : std::uint8_t { disable_voltage, quick_stop, shutdown, switch_on, enable, fault_reset };
+DriveOrder order_of(std::uint16_t controlword);
+std::string_view describe(DriveOrder order);  // "quick stop"
+
+}  // namespace kenaf::canlog

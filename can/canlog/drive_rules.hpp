@@ -1,0 +1,56 @@
+// The rules of a drive's power states, set-points and targets. CiA 402-2.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <set>
+
+#include "can/canlog/drive_frames.hpp"
+#include "can/canlog/findings.hpp"
+
+namespace kenaf::canlog {
+
+class DriveRules {
+ public:
+  // All must outlive this.
+  DriveRules(const Network& network, const CheckOptions& options, Findings& findings);
+
+  void on_frame(const LogFrame& logged);
+  void on_write(const WrittenObject& written);
+  void on_restart(canopen::NodeId node);
+
+ private:
+  struct Shown {
+    DriveStatus status;
+    canopen::Time at;
+    unsigned sync;
+    canopen::PowerState state() const { return canopen::power_state_of(status.statusword); }
+  };
+  struct Drive {
+    canopen::DriveMode mode;
+    std::optional<Shown> shown{}, before{};  // its newest statusword, and the one before
+    std::optional<DriveCommand> command{};   // the newest
+    std::set<DriveOrder> orders{};           // given since it showed its present state, and the one in force then
+    bool followed = false;                   // every order since its start, or since the first that is here
+    bool ended = false;                      // told to stop; until it is enabled anew
+  };
+  void on_command(const LogFrame& logged, const DriveCommand& command);
+  void on_status(const LogFrame& logged, const DriveStatus& status);
+  void check_order(const LogFrame& logged, const DriveCommand& command, const Drive& drive);
+  void check_fault_reset(const LogFrame& logged, const DriveCommand& command, const Drive& drive);
+  void check_target(const LogFrame& logged, const DriveCommand& command, const Drive& drive);
+  void check_set_point(const LogFrame& logged, const DriveCommand& command, const Drive& drive);
+  void check_transition(const LogFrame& logged, const DriveStatus& status, const Drive& drive);
+  // Whether `holds` is true of what the drive showed last, or of what it showed before where the two frames may have
+  // crossed.
+  template <class Holds>
+  bool could_be(const LogFrame& logged, const Drive& drive, Holds holds) const;
+
+  const Network& network_;
+  const CheckOptions& options_;
+  Findings& findings_;
+  std::array<Drive, canbus::kDriveCount> drives_{};
+  unsigned syncs_ = 0;
+};
+
+}  // namespace kenaf::canlog

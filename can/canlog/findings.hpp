@@ -1,0 +1,36 @@
+// Where the parts of the check put what they find, and what all of them are told.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "can/canlog/rules.hpp"
+#include "can/canopen/object.hpp"
+
+namespace kenaf::canlog {
+
+class Findings {
+ public:
+  template <class... Args>
+  void add(const LogFrame& at, const Rule& rule, fmt::format_string<Args...> format, Args&&... args) {
+    found_.push_back({at.line, at.at, rule, fmt::format(format, std::forward<Args>(args)...)});
+  }
+  std::vector<Violation> take() { return std::move(found_); }
+
+ private:
+  std::vector<Violation> found_;
+};
+
+// An SDO write that the node has confirmed.
+struct WrittenObject {
+  canopen::NodeId node;
+  canopen::ObjectAddress object;
+  canopen::ObjectBytes value;
+
+  // Little-endian, of four bytes at most.
+  std::uint32_t number() const { return canopen::get_unsigned(value, 0, std::min<std::size_t>(value.size(), 4)); }
+};
+
+}  // namespace kenaf::canlog

@@ -1,0 +1,34 @@
+// The rules that a frame keeps or breaks by itself: identifier, length, content.
+#pragma once
+
+#include <set>
+
+#include "can/canlog/findings.hpp"
+#include "can/canlog/pdo_setup.hpp"
+
+namespace kenaf::canlog {
+
+class FrameRules {
+ public:
+  // All must outlive this.
+  FrameRules(const Network& network, const PdoSetup& setup, Findings& findings)
+      : network_(network), setup_(setup), findings_(findings) {}
+
+  // False: the frame is not what its identifier promises, and nothing more can be said of it.
+  bool check(const LogFrame& logged, const Address& address);
+
+ private:
+  bool check_kind(const LogFrame& logged);
+  bool check_identifier(const LogFrame& logged, const Address& address);
+  bool check_length(const LogFrame& logged, const Address& address);
+  bool check_content(const LogFrame& logged, const Address& address);
+
+  const Network& network_;
+  const PdoSetup& setup_;
+  Findings& findings_;
+  // each said once: who is on the bus without having to sends again and again
+  std::set<std::uint16_t> strange_ids_;
+  std::set<canopen::CandumpKind> strange_kinds_;
+};
+
+}  // namespace kenaf::canlog

@@ -1,0 +1,80 @@
+#include "can/canlog/loop_span.hpp"
+
+#include <array>
+#include <optional>
+
+#include "can/canlog/drive_frames.hpp"
+#include "can/canlog/findings.hpp"
+#include "can/canlog/node_states.hpp"
+#include "can/canlog/sdo_dialogue.hpp"
+
+namespace kenaf::canlog {
+
+using canopen::DriveMode;
+using canopen::PowerState;
+
+namespace {
+
+struct Followed {
+  DriveMode mode;
+  PowerState state = PowerState::undefined;
+  std::optional<DriveCommand> last{};
+};
+
+// Whether `command` asks the drive to move.
+bool is_motion(const DriveCommand& command, const Followed& drive) {
+  if (order_of(command.controlword) != DriveOrder::enable || drive.state != PowerState::operation_enabled) return false;
+  const auto set_point = [](std::uint16_t word) { return (word & canopen::kControlNewSetPoint) != 0; };
+  switch (drive.mode) {
+    case DriveMode::profile_velocity:
+    case DriveMode::cyclic_velocity:
+      return command.target != 0;
+    case DriveMode::profile_position:
+      return set_point(command.controlword) && !(drive.last && set_point(drive.last->controlword));
+    case DriveMode::cyclic_position:
+      return drive.last && order_of(drive.last->controlword) == DriveOrder::enable &&
+             command.target != drive.last->target;
+    case DriveMode::homing:
+      break;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<LoopSpan> loop_spans(const Log& log, const Network& network) {
+  const CheckOptions options;
+  Findings ignored;
+  SdoDialogue dialogue(network, options, ignored);
+  std::array<Followed, canbus::kDriveCount> drives{};
+  for (std::size_t i = 0; i < drives.size(); ++i) drives[i].mode = network.bus().drives[i].mode;
+
+  std::vector<LoopSpan> spans;
+  bool within = false;
+  for (std::size_t i = 0; i < log.frames.size(); ++i) {
+    const LogFrame& logged = log.frames[i];
+    if (logged.kind != canopen::CandumpKind::data) continue;
+    const Address address = address_of(logged.frame.id);
+    if (const auto written = dialogue.on_frame(logged, address)) {
+      const auto drive = network.drive_of(written->node);
+      if (drive && written->object == canopen::object::mode.object)
+        drives[*drive].mode = static_cast<DriveMode>(written->number());
+    }
+    if (const auto status = drive_status_from(logged.frame, network))
+      drives[status->drive].state = canopen::power_state_of(status->statusword);
+    if (const auto order = canopen::nmt_order_from(logged.frame); order && order->command != canopen::NmtCommand::start)
+      within = false;
+    const auto command = drive_command_from(logged.frame, network);
+    if (!command) continue;
+    Followed& drive = drives[command->drive];
+    if (is_motion(*command, drive)) {
+      if (!within) spans.push_back({i, i});
+      within = true;
+      spans.back().last = i;
+    }
+    drive.last = command;
+  }
+  return spans;
+}
+
+}  // namespace kenaf::canlog

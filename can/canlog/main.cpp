@@ -1,0 +1,133 @@
+// kenaf-canlog: a recorded CAN bus in words, held against the standards' rules, and in figures.
+//
+//   kenaf-canlog square.log | less
+//   candump -L can0 | kenaf-canlog --figures
+//   kenaf-canlog --check --robot kenaf square.log
+//
+// Exit status: 0, 1 where --check found a rule broken, 2 bad input, or what comes out cannot be written.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+#include "can/canlog/describe.hpp"
+#include "can/canlog/figures.hpp"
+#include "can/canlog/log.hpp"
+#include "can/canlog/rules.hpp"
+
+namespace {
+
+using namespace kenaf;
+
+constexpr int kBroken = 1, kBadInput = 2;
+
+struct Options {
+  std::string robot = "kenaf", log = "-", interface;
+  double bit_rate = 500'000, sync_window_ms = 0, answer_ms = 0;
+  bool check = false, figures = false;
+};
+
+canlog::Log load_log(const Options& options) {
+  if (options.log == "-") return canlog::read_log(std::cin, options.interface);
+  std::ifstream in(options.log);
+  if (!in) throw std::runtime_error(options.log + ": cannot be opened");
+  return canlog::read_log(in, options.interface);
+}
+
+double seconds(canopen::Time time) {
+  return std::chrono::duration<double>(time).count();
+}
+
+canopen::Time from_ms(double ms) {
+  return std::chrono::round<canopen::Time>(std::chrono::duration<double, std::milli>(ms));
+}
+
+// The times are those since the first frame.
+void print_words(const canlog::Log& log, const canlog::Network& network) {
+  for (const canlog::LogFrame& logged : log.frames)
+    fmt::print("{:12.6f}  {}\n", seconds(logged.at - log.frames.front().at), describe(logged, network));
+}
+
+bool print_violations(const Options& options, const canlog::Log& log, const canlog::Network& network) {
+  canlog::CheckOptions check;
+  if (options.sync_window_ms > 0) check.sync_window = from_ms(options.sync_window_ms);
+  if (options.answer_ms > 0) check.sdo_answer = from_ms(options.answer_ms);
+  const std::vector<canlog::Violation> found = check_rules(log, network, check);
+  std::set<std::string_view> broken;
+  for (const canlog::Violation& one : found) {
+    fmt::print("{}:{}: {:.6f} s: {}: {}\n", options.log, one.line, seconds(one.at - log.frames.front().at),
+               one.rule.name, one.words);
+    broken.insert(one.rule.name);
+  }
+  for (const canlog::Rule* rule : canlog::all_rules()) {
+    if (broken.contains(rule->name)) fmt::print("rule {} ({}): {}\n", rule->name, rule->source, rule->words);
+  }
+  fmt::print("{} frames, {} rules, violations: {}\n", log.frames.size(), canlog::all_rules().size(), found.size());
+  return found.empty();
+}
+
+// What was printed may not have gone anywhere, on a full disk.
+void finish_output() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw std::runtime_error("standard output cannot be written; is its disk full?");
+}
+
+int run(const Options& options) {
+  const canlog::Network network(canbus::load_robot_bus(options.robot));
+  const canlog::Log log = load_log(options);
+  for (const canlog::BadLine& bad : log.bad_lines) fmt::print(stderr, "{}:{}: {}\n", options.log, bad.line, bad.words);
+  if (log.other_interfaces > 0) {
+    fmt::print(stderr, "{}: {} lines are not of {} and were left out (--interface chooses another)\n", options.log,
+               log.other_interfaces, log.interface);
+  }
+  if (log.frames.empty()) throw std::runtime_error(options.log + ": no frame in it; is it of `candump -L`?");
+  if (!options.check && !options.figures) print_words(log, network);
+  if (options.figures) fmt::print("{}", to_text(figures_of(log, network), options.bit_rate));
+  const bool broken = options.check && !print_violations(options, log, network);
+  finish_output();
+  return broken ? kBroken : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Reads a recorded CAN bus (candump -L): in words, held against CANopen's rules, in figures.",
+               "kenaf-canlog");
+  app.set_version_flag("--version", KENAF_VERSION);
+  app.add_option("LOG", options.log, "a log of `candump -L`; - is standard input")->capture_default_str();
+  app.add_option("--robot", options.robot, "the description that says what is on the bus, a name or a TOML file")
+      ->capture_default_str();
+  app.add_option("--interface", options.interface, "this one's lines alone (default: that of the first line)");
+  app.add_flag("--check", options.check, "names every broken rule; exit status 1 where there is one");
+  app.add_option("--sync-window", options.sync_window_ms,
+                 "--check: ms after SYNC in which nodes must answer (default: object 0x1007 as it was written)")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--answer", options.answer_ms,
+                 "--check: ms in which SDO requests must be answered (default: the description's answer_s)")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--figures", options.figures, "load, SYNC's jitter, times of answers and commands");
+  app.add_option("--bitrate", options.bit_rate, "--figures: of the bus, in bit/s")
+      ->check(CLI::Range(10'000.0, 1'000'000.0))
+      ->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int status = app.exit(error);
+    return status == 0 ? 0 : kBadInput;
+  }
+  try {
+    return run(options);
+  } catch (const std::exception& error) {
+    // not fmt::print, which throws where standard error is on the full disk too
+    std::fprintf(stderr, "kenaf-canlog: %s\n", error.what());
+    return kBadInput;
+  }
+}

@@ -1,0 +1,79 @@
+// Holds a recorded bus against the standards' rules. docs/can-log.md has them as a table, with what each needs to be
+// judged.
+//
+// Only what the log itself shows is judged: of a log that begins in the middle, nothing is said about a node's state
+// before that state was on the bus.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "can/canlog/log.hpp"
+#include "can/canlog/network.hpp"
+
+namespace kenaf::canlog {
+
+struct Rule {
+  std::string_view name;    // "sdo-dialogue"
+  std::string_view source;  // standard and section
+  std::string_view words;   // what it asks for
+};
+
+namespace rule {
+inline constexpr Rule identifier{
+    "identifier", "CiA 301, 7.3.3 to 7.3.5",
+    "data frames with the identifiers of the predefined connection set, of nodes that are known"},
+    length{"length", "CiA 301, 7.2",
+           "each service has its length: NMT 2, SYNC 0 or 1, heartbeat 1, SDO and EMCY 8, PDOs as they are mapped"},
+    content{"content", "CiA 301, 7.2.8", "orders and states are ones that NMT has"},
+    boot_up{"boot-up", "CiA 301, 7.3.2.2.1", "a node that was reset says boot-up before anything else"},
+    nmt_state{"nmt-state", "CiA 301, 7.3.2.3",
+              "PDOs from and to operational nodes alone; SDO and EMCY not from or to stopped ones"},
+    sdo_dialogue{"sdo-dialogue", "CiA 301, 7.2.4.3",
+                 "one transfer at a time; each answer is the request's: object, kind, toggle bit"},
+    sdo_time{"sdo-time", "CiA 301, 7.2.4", "each request is answered in time"},
+    sdo_in_loop{"sdo-in-loop", "this project: docs/can-robot.md", "no SDO from the first motion to the last"},
+    pdo_setup{"pdo-setup", "CiA 301, 7.5.2.36 and 7.5.2.38",
+              "a PDO is made invalid, emptied, mapped, counted and made valid, in this order"},
+    sync_pdo{"sync-pdo", "CiA 301, 7.2.2.2 and 7.2.2.3",
+             "a synchronous PDO comes once at each SYNC that is its own, within the window"},
+    master_heartbeat{"master-heartbeat", "CiA 301, 7.5.2.19", "no longer between heartbeats than what 0x1016 says"},
+    controlword{"controlword", "CiA 402-2, controlword and state machine",
+                "an order towards operation has a transition in the state that the drive shows"},
+    fault_reset{"fault-reset", "CiA 402-2, transition 15", "bit 7 as an edge, of a drive in fault"},
+    statusword{"statusword", "CiA 402-2, state machine",
+               "from state to state by the transitions there are, towards operation by order alone"},
+    set_point{"set-point", "CiA 402-2, profile position: set-point handshake",
+              "raised when the drive is ready for it, lowered when it has taken it"},
+    target{"target", "this project: docs/can-robot.md",
+           "before operation enabled and after a quick stop: speed 0, positions held"};
+}  // namespace rule
+std::span<const Rule* const> all_rules();
+
+struct Violation {
+  std::size_t line;
+  canopen::Time at;
+  Rule rule;
+  std::string words;
+};
+
+struct CheckOptions {
+  std::optional<canopen::Time> sdo_answer{};  // nullopt: answer_s of the description
+  std::optional<canopen::Time>
+      sync_window{};  // nullopt: what was written to 0x1007; where nothing was, until the next SYNC
+  // Frames of two senders that wait at the same time cross: what one shows so shortly before another is sent could not
+  // be known to its sender. The longest frame takes 0.27 ms at 500 kbit/s.
+  canopen::Time crossing = std::chrono::milliseconds(1);
+  // A heartbeat has the lowest priority and may have waited: one that contradicts an order counts once the order is so
+  // old.
+  canopen::Time heartbeat_wait = std::chrono::milliseconds(50);
+  double hold_tolerance_rad = 0.01;  // of a flipper that is told to stay where it is
+};
+
+// In the order of the log.
+std::vector<Violation> check_rules(const Log& log, const Network& network, const CheckOptions& options = {});
+
+}  // namespace kenaf::canlog

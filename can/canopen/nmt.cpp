@@ -1,0 +1,73 @@
+#include "can/canopen/nmt.hpp"
+
+#include <array>
+
+namespace kenaf::canopen {
+namespace {
+
+bool is_state(std::uint8_t value) {
+  switch (static_cast<NmtState>(value)) {
+    case NmtState::boot_up:
+    case NmtState::stopped:
+    case NmtState::operational:
+    case NmtState::pre_operational:
+      return true;
+  }
+  return false;
+}
+
+bool is_command(std::uint8_t value) {
+  switch (static_cast<NmtCommand>(value)) {
+    case NmtCommand::start:
+    case NmtCommand::stop:
+    case NmtCommand::enter_pre_operational:
+    case NmtCommand::reset_node:
+    case NmtCommand::reset_communication:
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string_view describe(NmtState state) {
+  switch (state) {
+    case NmtState::boot_up:
+      return "boot-up";
+    case NmtState::stopped:
+      return "stopped";
+    case NmtState::operational:
+      return "operational";
+    case NmtState::pre_operational:
+      return "pre-operational";
+  }
+  return "unknown state";
+}
+
+Frame encode(const NmtOrder& order) {
+  const std::array data{static_cast<std::uint8_t>(order.command), order.node};
+  return make_frame(kNmtCommandId, data);
+}
+
+std::optional<NmtOrder> nmt_order_from(const Frame& frame) {
+  if (frame.id != kNmtCommandId || frame.length != 2 || !is_command(frame.data[0]) || frame.data[1] > kMaxNode)
+    return std::nullopt;
+  return NmtOrder{static_cast<NmtCommand>(frame.data[0]), frame.data[1]};
+}
+
+Frame encode(const Heartbeat& heartbeat) {
+  const std::array data{static_cast<std::uint8_t>(heartbeat.state)};
+  return make_frame(static_cast<std::uint16_t>(kHeartbeatId + heartbeat.node), data);
+}
+
+std::optional<Heartbeat> heartbeat_from(const Frame& frame) {
+  if (frame.id <= kHeartbeatId || frame.id > kHeartbeatId + kMaxNode || frame.length != 1 || !is_state(frame.data[0]))
+    return std::nullopt;
+  return Heartbeat{static_cast<NodeId>(frame.id - kHeartbeatId), static_cast<NmtState>(frame.data[0])};
+}
+
+bool is_sync(const Frame& frame) {
+  return frame.id == kSyncId && frame.length <= 1;
+}
+
+}  // namespace kenaf::canopen

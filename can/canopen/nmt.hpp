@@ -1,0 +1,56 @@
+// Network management: which node a frame is of, states, commands, heartbeat, SYNC. CiA 301, 7.2.5 (SYNC), 7.2.8 (NMT)
+// and 7.3.3 (predefined connection set). Thread safety: values and pure functions.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "can/canopen/frame.hpp"
+
+namespace kenaf::canopen {
+
+using NodeId = std::uint8_t;  // 1 to 127
+inline constexpr NodeId kMaxNode = 127;
+
+// COB-IDs of the predefined connection set; those with a node add its id.
+inline constexpr std::uint16_t kNmtCommandId = 0x000, kSyncId = 0x080, kEmergencyId = 0x080;
+inline constexpr std::uint16_t kTransmitPdoId[4] = {0x180, 0x280, 0x380, 0x480};
+inline constexpr std::uint16_t kReceivePdoId[4] = {0x200, 0x300, 0x400, 0x500};
+inline constexpr std::uint16_t kSdoResponseId = 0x580, kSdoRequestId = 0x600, kHeartbeatId = 0x700;
+
+enum class NmtState : std::uint8_t { boot_up = 0x00, stopped = 0x04, operational = 0x05, pre_operational = 0x7f };
+std::string_view describe(NmtState state);  // "pre-operational"
+
+enum class NmtCommand : std::uint8_t {
+  start = 0x01,
+  stop = 0x02,
+  enter_pre_operational = 0x80,
+  reset_node = 0x81,
+  reset_communication = 0x82,
+};
+
+struct NmtOrder {
+  NmtCommand command;
+  NodeId node;  // 0: all nodes
+};
+
+Frame encode(const NmtOrder& order);
+// nullopt: another identifier, not two bytes, a command that CiA 301 lacks, a node above 127.
+std::optional<NmtOrder> nmt_order_from(const Frame& frame);
+
+struct Heartbeat {
+  NodeId node;
+  NmtState state;  // boot_up: the node has just started
+};
+
+Frame encode(const Heartbeat& heartbeat);
+// nullopt: another identifier, not one byte, a state that CiA 301 lacks (bit 7 is node guarding's toggle bit, 0 here).
+std::optional<Heartbeat> heartbeat_from(const Frame& frame);
+
+// A SYNC without counter, the form of a SYNC producer whose object 0x1019 is 0.
+inline constexpr Frame kSync{.id = kSyncId};
+// With a counter byte it is a SYNC too.
+bool is_sync(const Frame& frame);
+
+}  // namespace kenaf::canopen

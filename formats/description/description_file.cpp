@@ -1,0 +1,45 @@
+#include "formats/description/description_file.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cerrno>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <vector>
+
+#include "formats/description/data_files.hpp"
+#include "formats/description/description_error.hpp"
+
+namespace kenaf::description {
+namespace {
+
+std::string shipped_names(const std::string& folder, std::string_view extension) {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& path : list_data_files(folder, extension)) names.push_back(path.stem().string());
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
+DescriptionFile read_description_file(std::string_view kind, const std::string& name_or_path,
+                                      std::string_view extension) {
+  const std::string folder = std::string(kind) + "s";
+  const std::filesystem::path path = find_data_file(folder, name_or_path, extension);
+  if (path.empty())
+    throw DescriptionError(
+        fmt::format("{0} \"{1}\": no such {0}; give the path of a file that ends in {2}, or one of {3}", kind,
+                    name_or_path, extension, shipped_names(folder, extension)));
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  in.peek();
+  if (!in.is_open() || in.bad())
+    throw DescriptionError(
+        fmt::format("{}: cannot be read: {}", path.string(), std::generic_category().message(errno)));
+  std::ostringstream text;
+  if (in) text << in.rdbuf();  // an empty file has nothing to be read
+  return {path.string(), text.str()};
+}
+
+}  // namespace kenaf::description

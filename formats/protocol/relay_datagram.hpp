@@ -1,0 +1,117 @@
+// The datagrams between libkenaf_sim and relayd: their contents as plain structs, and the two pure functions that
+// turn them into bytes and back. docs/relay-protocol.md is the page for people; this header is its contract in code.
+//
+// Frames and units: SI and radians; world W and body B are x forward, y left, z up (REP 103). Angles of a pose are the
+// intrinsic z-y-x angles roll, pitch, yaw; pitch is positive nose down. Flippers: robot/parts.hpp.
+//
+// Thread safety: everything here is a value or a pure function. Nothing allocates.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <variant>
+
+#include "robot/parts.hpp"
+#include "robot/state.hpp"
+
+namespace kenaf::protocol::relay {
+
+inline constexpr std::uint32_t kMagic = 0x46'41'4e'4b;  // the bytes "KNAF" on the wire
+inline constexpr std::uint8_t kVersion = 1;
+inline constexpr std::size_t kMaxDatagramBytes = 512;
+inline constexpr std::size_t kMaxReasonBytes = 200;
+
+// Asks to become the commander of the robot. Answered by Welcome or Refused. Sent again until one of them arrives.
+struct Hello {
+  std::uint64_t session;     // chosen at random by the commander, never 0
+  double period_s;           // robot time between two States, 0.001 to 1
+  double command_timeout_s;  // robot time of silence after which the robot is stopped, 0.01 to 10
+  bool lockstep;             // robot time waits for each Command
+  bool reset_robot;          // put the robot back to its start pose first
+};
+
+struct Welcome {
+  std::uint64_t session;
+  double robot_time_s;
+  double period_s;  // in force: a world server that cannot change its rate keeps its own
+  bool lockstep;    // in force
+};
+
+enum class RefusedReason : std::uint8_t {
+  busy = 1,             // another commander has the robot
+  no_world_server = 2,  // the relay has no connection to a world server, or it accepted no robot
+  unknown_session = 3,  // the relay does not know this session: it was restarted, or the session had fallen silent
+  bad_request = 4,      // a field out of its range
+};
+
+struct Refused {
+  std::uint64_t session;
+  RefusedReason reason;
+  std::array<char, kMaxReasonBytes> text;  // UTF-8, zero padded
+  std::size_t text_length;
+};
+
+// What the robot shall do from the frame after `frame` on. Complete and absolute: only the newest matters, so a lost
+// or doubled Command changes nothing but latency. Sent again every few milliseconds until a State acknowledges it.
+struct Command {
+  std::uint64_t session;
+  std::uint32_t sequence;  // starts at 1, one more for each new Command; a resent Command keeps its sequence
+  std::uint32_t frame;     // the State this answers; 0 before the first
+  std::array<double, robot::kTrackCount> track_speed_mps;
+  std::uint8_t flipper_mask;  // bit i: flipper_rad[i] is commanded; the others keep what they were told last
+  std::array<double, robot::kFlipperCount> flipper_rad;
+};
+
+// What was measured, and how the session is. stopped_by_silence: no Command came within command_timeout_s.
+struct State {
+  std::uint64_t session;
+  std::uint32_t acknowledged;  // sequence of the newest Command handed to the world server, 0 = none
+  bool world_server_lost;      // the connection to the world server broke; the session is over
+  bool world_paused;           // robot time stands still on request of somebody else
+  robot::State robot;
+};
+
+// Ends the session: the robot stops and the relay is free for the next commander. Not answered; sent three times.
+struct Bye {
+  std::uint64_t session;
+};
+
+// Measures the round trip to the world server and back: the relay forwards it at once and answers with Pong.
+struct Ping {
+  std::uint64_t session;
+  std::uint32_t id;
+};
+
+struct Pong {
+  std::uint64_t session;
+  std::uint32_t id;
+};
+
+using Datagram = std::variant<Hello, Welcome, Refused, Command, State, Bye, Ping, Pong>;
+
+enum class DecodeError : std::uint8_t {
+  none = 0,
+  too_short,  // shorter than the header, or than its kind needs
+  too_long,   // bytes left over after the last field
+  bad_magic,
+  bad_version,
+  bad_kind,
+  bad_session,  // session 0
+  not_finite,   // a number is NaN or infinite
+  bad_value,    // a flag or an enumeration out of its range
+};
+
+// One sentence for a log line, such as "not a Kenaf datagram (bad magic)".
+std::string_view describe(DecodeError error);
+
+// Writes `datagram` into `out` and returns the bytes used; `out` holds at least kMaxDatagramBytes.
+std::size_t encode(const Datagram& datagram, std::span<std::byte> out);
+
+// Reads one datagram. On an error `out` is unchanged. Checks form, not ranges: that a speed is one the robot can
+// drive is for the relay to judge.
+DecodeError decode(std::span<const std::byte> bytes, Datagram& out);
+
+}  // namespace kenaf::protocol::relay

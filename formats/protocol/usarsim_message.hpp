@@ -1,0 +1,127 @@
+// The USARSim text protocol's grammar, both ways, without allocation on the reading side.
+//
+//   line    := TYPE {group}* EOL          EOL read: CR, LF or any mix of them; EOL written: CR LF
+//   group   := '{' key [value] '}'        value: the rest of the group, trimmed; it may hold further key value pairs,
+//                                         as UT2004 writes `{Name ECLeft Tick 0}`
+//
+// Reading is lenient, as real clients need it: types and keys compare without case, white space is optional, numbers
+// of a vector are separated by commas or blanks, a decimal comma is understood where it cannot be a separator.
+// Sources: the UT2004 and UDK USARSim servers and the clients listed in docs/world-server-protocol.md.
+//
+// Thread safety: values and pure functions. A MessageView refers to the line it was read from and lives no longer.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace kenaf::protocol::usarsim {
+
+inline constexpr std::size_t kMaxGroups = 64;
+inline constexpr std::size_t kMaxLineBytes = 65536;
+
+struct Group {
+  std::string_view key;    // "" for an empty group
+  std::string_view value;  // trimmed; may be empty
+};
+
+struct MessageView {
+  std::string_view type;  // trimmed, case as it came
+  std::array<Group, kMaxGroups> groups;
+  std::size_t group_count = 0;
+
+  std::span<const Group> all() const { return {groups.data(), group_count}; }
+
+  // The value of the first group whose key matches without case.
+  std::optional<std::string_view> find(std::string_view key) const;
+
+  // True where the type matches without case.
+  bool is(std::string_view expected_type) const;
+};
+
+enum class ParseError : std::uint8_t {
+  none = 0,
+  empty,            // nothing but white space
+  no_type,          // begins with a brace
+  unclosed_group,   // '{' without '}'
+  text_between,     // text outside of braces after the first group
+  too_many_groups,  // more than kMaxGroups
+};
+std::string_view describe(ParseError error);
+
+// Reads one line without its EOL. On an error `out` holds what was read up to there.
+ParseError parse_message(std::string_view line, MessageView& out);
+
+bool equal_ignoring_case(std::string_view a, std::string_view b);
+
+// The whole text as one finite number; white space around it is allowed, "1,5" reads as 1.5.
+std::optional<double> parse_number(std::string_view text);
+// "true", "True", "1", "yes" and their opposites.
+std::optional<bool> parse_bool(std::string_view text);
+// Exactly `out.size()` numbers, separated by commas or blanks. Where that does not give the count, commas are taken for
+// decimal signs: "4,5 1,9 1,8" and "4,5,1,9,1,8" read as three numbers. False leaves `out` unspecified.
+bool parse_numbers(std::string_view text, std::span<double> out);
+// Any count up to `out.size()`, further ones are counted but not stored; nullopt if one of them is no number.
+std::optional<std::size_t> parse_number_list(std::string_view text, std::span<double> out);
+
+// The next white-space separated word of `rest`, which is shortened by it; "" at the end.
+std::string_view next_word(std::string_view& rest);
+
+// Cuts a TCP byte stream into lines. One for each connection. Holds an unfinished line and the lines not yet taken:
+// take all of them after each push(), and it never holds more than kMaxLineBytes beside the bytes of that push.
+class LineSplitter {
+ public:
+  // Appends received bytes. False: a line grew beyond kMaxLineBytes; it is dropped up to its end, later lines survive.
+  bool push(std::string_view bytes);
+  // The next complete, non-empty line, or nullopt. Valid until the next call of push().
+  std::optional<std::string_view> next();
+  // Lines that push() had to drop so far.
+  std::uint64_t dropped_lines() const { return dropped_lines_; }
+
+ private:
+  std::string buffer_;
+  std::size_t read_ = 0;        // before it: taken
+  std::size_t line_start_ = 0;  // from it on: the unfinished line
+  bool dropping_ = false;
+  std::uint64_t dropped_lines_ = 0;
+};
+
+// How numbers are written. The two historic dialects differ in it, and a connection may ask for more digits.
+struct NumberFormat {
+  int decimals = 4;
+  bool truncate = false;  // cut off (UDK) instead of rounding (UT2004)
+};
+constexpr NumberFormat kExactNumber{12, false};  // of what Kenaf's own programs send
+
+// Appends messages to a buffer that keeps its capacity, so that a steady stream allocates nothing.
+class MessageWriter {
+ public:
+  explicit MessageWriter(std::string& out) : out_(out) {}
+
+  MessageWriter& begin(std::string_view type);
+  MessageWriter& text(std::string_view key, std::string_view value);
+  MessageWriter& number(std::string_view key, double value, NumberFormat format);
+  MessageWriter& integer(std::string_view key, std::int64_t value);
+  MessageWriter& boolean(std::string_view key, bool value);                                           // True, False
+  MessageWriter& numbers(std::string_view key, std::span<const double> values, NumberFormat format);  // a,b,c
+  // For groups of several pairs: open_group("Name", "ECLeft"), then add...("Tick", 0), then close_group().
+  MessageWriter& open_group(std::string_view key, std::string_view value);
+  MessageWriter& add_text(std::string_view key, std::string_view value);
+  MessageWriter& add_number(std::string_view key, double value, NumberFormat format);
+  MessageWriter& add_integer(std::string_view key, std::int64_t value);
+  MessageWriter& add_numbers(std::string_view key, std::span<const double> values, NumberFormat format);
+  MessageWriter& close_group();
+  void end();  // CR LF
+
+ private:
+  std::string& out_;
+};
+
+// Appends `value` as `format` says, without exponent, "-0.00" written as "0.00"; NaN and infinity as 0.
+void append_number(std::string& out, double value, NumberFormat format);
+
+}  // namespace kenaf::protocol::usarsim

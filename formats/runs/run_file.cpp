@@ -1,0 +1,279 @@
+#include "formats/runs/run_file.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "formats/runs/whole_file.hpp"
+
+namespace kenaf::runs {
+
+namespace {
+
+constexpr std::string_view kTimeColumn = "t_s";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets write it
+// Bounds of memory, chosen: 2^24 values are 134 MB.
+constexpr std::size_t kMostValues = std::size_t{1} << 24, kLongestLine = std::size_t{1} << 20;
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+struct Cell {
+  std::string_view text;  // without blanks around it
+  std::size_t column;     // of its first character in the line, from 1
+};
+
+// Where in the text an error is.
+struct Place {
+  std::string_view file;
+  std::size_t line;
+};
+
+[[noreturn]] void fail(const Place& place, std::size_t column, const std::string& what) {
+  throw RunFileError(std::string(place.file) + ":" + std::to_string(place.line) + ":" + std::to_string(column) + ": " +
+                     what);
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  return "'" + std::string(text.substr(0, kLongest)) + (text.size() > kLongest ? "...'" : "'");
+}
+
+Cell trimmed(std::string_view text, std::size_t column) {
+  const std::size_t first = std::min(text.size(), text.find_first_not_of(" \t"));
+  text.remove_prefix(first);
+  text = text.substr(0, text.find_last_not_of(" \t") + 1);
+  return {text, column + first};
+}
+
+void split(std::string_view line, std::vector<Cell>& cells) {
+  cells.clear();
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = std::min(line.size(), line.find(',', begin));
+    cells.push_back(trimmed(line.substr(begin, end - begin), begin + 1));
+    if (end == line.size()) return;
+    begin = end + 1;
+  }
+}
+
+bool only_blanks(std::string_view text) {
+  return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
+}
+
+std::optional<double> finite_number(std::string_view text) {
+  double value = 0;
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+// The index of the time column. Throws where the header is none.
+std::size_t check_columns(const std::vector<Cell>& cells, const Place& place) {
+  std::set<std::string_view> names;
+  for (const Cell& cell : cells) {
+    if (cell.text.empty()) fail(place, cell.column, "a column without a name");
+    if (cell.text.find('\r') != cell.text.npos) fail(place, cell.column, "a column's name has a line end in it");
+    if (!names.insert(cell.text).second)
+      fail(place, cell.column, "the column " + in_quotes(cell.text) + " is named twice");
+  }
+  const auto time = std::ranges::find(cells, kTimeColumn, &Cell::text);
+  if (time == cells.end()) fail(place, 1, "no column t_s; the first line names the columns, t_s among them");
+  return static_cast<std::size_t>(time - cells.begin());
+}
+
+double read_cell(const Cell& cell, const std::string& column_name, const Place& place) {
+  if (cell.text.empty()) return kNotMeasured;
+  const std::optional<double> value = finite_number(cell.text);
+  if (!value) {
+    fail(place, cell.column,
+         in_quotes(cell.text) + " in column " + in_quotes(column_name) +
+             " is no finite number; leave the cell empty where nothing was measured");
+  }
+  return *value;
+}
+
+void check_time(double time_s, double last_time_s, std::size_t column, const Place& place) {
+  if (std::isnan(time_s)) fail(place, column, "the row has no time; every row needs its t_s");
+  if (time_s <= last_time_s) fail(place, column, "t_s does not grow from the row before");
+}
+
+// Reads a run from its text piece by piece, so that no more of a long file is held than its values.
+class RunReader {
+ public:
+  explicit RunReader(std::string_view name_for_errors) : place_{name_for_errors, 0} {}
+
+  void take(std::string_view text) {
+    for (std::size_t end; (end = text.find('\n')) != text.npos; text.remove_prefix(end + 1)) {
+      begun_.append(text.substr(0, end));
+      take_line();
+    }
+    begun_.append(text);
+    if (begun_.size() > kLongestLine) fail({place_.file, place_.line + 1}, kLongestLine, "the line is too long");
+  }
+
+  Run finish() {
+    if (!begun_.empty()) take_line();
+    if (!has_header_) fail({place_.file, 1}, 1, "the file is empty; its first line names the columns, t_s among them");
+    return std::move(run_);
+  }
+
+ private:
+  void take_line() {
+    std::string_view line = begun_;
+    if (place_.line == 0 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    ++place_.line;
+    if (!only_blanks(line)) {
+      if (first_blank_ != 0) refuse_blank();
+      has_header_ ? take_row(line) : take_header(line);
+    } else if (first_blank_ == 0) {
+      first_blank_ = place_.line;  // of those at the end, or one too many
+      blank_ = line;
+    }
+    begun_.clear();
+  }
+
+  void refuse_blank() {
+    place_.line = first_blank_;
+    has_header_ ? take_row(blank_) : take_header(blank_);
+  }
+
+  void take_header(std::string_view line) {
+    split(line, cells_);
+    time_column_ = check_columns(cells_, place_);
+    for (const Cell& cell : cells_) run_.columns.emplace_back(cell.text);
+    run_.values.resize(cells_.size());
+    has_header_ = true;
+  }
+
+  void take_row(std::string_view line) {
+    split(line, cells_);
+    if (cells_.size() != run_.columns.size()) {
+      fail(place_, cells_.size() > run_.columns.size() ? cells_[run_.columns.size()].column : line.size() + 1,
+           "the row has " + std::to_string(cells_.size()) + " cells, but the first line names " +
+               std::to_string(run_.columns.size()) + " columns");
+    }
+    if ((run_.row_count() + 1) * cells_.size() > kMostValues)
+      fail(place_, 1,
+           "more than " + std::to_string(kMostValues) + " values; that is beyond an hour of 40 columns at " +
+               "100 Hz: cut the file into one for each run");
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      run_.values[i].push_back(read_cell(cells_[i], run_.columns[i], place_));
+    }
+    const double time_s = run_.values[time_column_].back();
+    check_time(time_s, last_time_s_, cells_[time_column_].column, place_);
+    last_time_s_ = time_s;
+  }
+
+  Place place_;        // the line taken last; 0: none yet
+  std::string begun_;  // a line whose end has not come
+  bool has_header_ = false;
+  std::size_t first_blank_ = 0, time_column_ = 0;
+  std::string blank_;
+  double last_time_s_ = -std::numeric_limits<double>::infinity();
+  std::vector<Cell> cells_;
+  Run run_;
+};
+
+void append_number(std::string& out, double value) {
+  std::array<char, 32> digits;
+  out.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+}
+
+}  // namespace
+
+std::span<const double> Run::column(std::string_view name) const {
+  const auto found = std::ranges::find(columns, name);
+  if (found == columns.end()) return {};
+  return values[static_cast<std::size_t>(found - columns.begin())];
+}
+
+bool any_measured(std::span<const double> column) {
+  return std::ranges::any_of(column, [](double value) { return !std::isnan(value); });
+}
+
+Run read_run(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  RunReader reader(name);
+  read_in_chunks(file, [&reader](std::string_view chunk) { reader.take(chunk); });
+  return reader.finish();
+}
+
+Run parse_run(std::string_view text, std::string_view name_for_errors) {
+  RunReader reader(name_for_errors);
+  reader.take(text);
+  return reader.finish();
+}
+
+RunWriter::RunWriter(std::filesystem::path file, std::vector<std::string> columns)
+    : file_(std::move(file)), column_count_(columns.size()), last_time_s_(-std::numeric_limits<double>::infinity()) {
+  for (const std::string& column : columns) {
+    if (!line_.empty()) line_ += ',';
+    line_ += column;
+  }
+  const std::string name = file_.string();
+  const Place place{name, 1};
+  std::vector<Cell> cells;
+  split(line_, cells);
+  if (!std::ranges::equal(cells, columns, {}, &Cell::text) || line_.find('\n') != std::string::npos) {
+    fail(place, 1, "a column's name has a comma, a line end or a blank beside it in it");
+  }
+  time_column_ = check_columns(cells, place);
+  line_ += '\n';
+  descriptor_ = open_part_file(file_);
+  try {
+    append_to_part_file(descriptor_, file_, line_);
+  } catch (...) {
+    ::close(descriptor_);
+    throw;
+  }
+}
+
+RunWriter::~RunWriter() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void RunWriter::add_row(std::span<const double> row) {
+  const auto refuse = [this](const std::string& what) { throw RunFileError(file_.string() + ": " + what); };
+  if (descriptor_ < 0) refuse("is closed, no row can follow");
+  if (broken_) refuse("a row before could not be written");
+  if (row.size() != column_count_) {
+    refuse("a row of " + std::to_string(row.size()) + " values for " + std::to_string(column_count_) + " columns");
+  }
+  if (!(row[time_column_] > last_time_s_)) refuse("t_s does not grow from the row before");
+  line_.clear();
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (i > 0) line_ += ',';
+    if (std::isinf(row[i])) refuse("infinity in column " + std::to_string(i + 1));
+    if (!std::isnan(row[i])) append_number(line_, row[i]);
+  }
+  line_ += '\n';
+  broken_ = true;  // until the whole row is written
+  append_to_part_file(descriptor_, file_, line_);
+  broken_ = false;
+  last_time_s_ = row[time_column_];
+}
+
+void RunWriter::finish() {
+  if (descriptor_ < 0) return;
+  if (broken_) throw RunFileError(file_.string() + ": stays a part file, a row could not be written");
+  finish_part_file(std::exchange(descriptor_, -1), file_);
+}
+
+void write_run(const std::filesystem::path& file, const Run& run) {
+  RunWriter writer(file, run.columns);
+  std::vector<double> row(run.columns.size());
+  for (std::size_t i = 0; i < run.row_count(); ++i) {
+    for (std::size_t c = 0; c < row.size(); ++c) row[c] = run.values[c][i];
+    writer.add_row(row);
+  }
+  writer.finish();
+}
+
+}  // namespace kenaf::runs

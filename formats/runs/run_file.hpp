@@ -1,0 +1,77 @@
+// One run of a `kenaf-runs/1` dataset: a CSV file with named columns in SI units, one row per sample time.
+// docs/run-format.md describes the format. Real logs and simulated logs share it.
+//
+// Frames: world x forward at the start, y left, z up; body x forward, y left, z up; pitch positive nose down.
+//
+// Thread safety: values and pure functions; a RunWriter belongs to one thread.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kenaf::runs {
+
+inline constexpr double kSameTime_s = 1e-9;  // apart: sample times are multiples of a step that is no binary fraction
+
+// What is wrong with a file, with file, line and column (both from 1) in its text.
+class RunFileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// A run in memory, column by column. A cell that was not measured is NaN.
+struct Run {
+  std::vector<std::string> columns;         // "t_s" is always among them
+  std::vector<std::vector<double>> values;  // values[column][row]
+
+  std::size_t row_count() const { return values.empty() ? 0 : values.front().size(); }
+  // The values of a column, or an empty span where the run does not have it.
+  std::span<const double> column(std::string_view name) const;
+};
+
+// Whether a column has any cell that is not NaN.
+bool any_measured(std::span<const double> column);
+
+// Reads a run. Throws RunFileError: no such file, no t_s, times not strictly increasing, a cell that is no finite
+// number, a row with another count of cells, a column named twice or not at all, more than 2^24 values (an hour of 40
+// columns at 100 Hz is less). Unknown columns are kept. However long the file, memory is bounded by its values.
+Run read_run(const std::filesystem::path& file);
+Run parse_run(std::string_view text, std::string_view name_for_errors);
+
+// Writes a run row by row, aside in `<file>.part`; finish() renames it, so that `file` is whole or absent.
+// All numbers are written with enough digits to read back the same double.
+class RunWriter {
+ public:
+  // Throws RunFileError where the file cannot be made, or read_run() would refuse its columns.
+  RunWriter(std::filesystem::path file, std::vector<std::string> columns);
+  ~RunWriter();  // without finish(): the part file stays for inspection
+  RunWriter(const RunWriter&) = delete;
+  RunWriter& operator=(const RunWriter&) = delete;
+
+  // One value for each column; NaN writes an empty cell. Throws RunFileError where the file cannot be written, or
+  // read_run() would refuse the row: another count of values, infinity, a time not after the row before; a refused row
+  // is left out and the next may follow. A row is with the operating system when this returns.
+  void add_row(std::span<const double> row);
+  // Throws RunFileError where the file is not whole or cannot be renamed. Doing it again does nothing.
+  void finish();
+
+ private:
+  std::filesystem::path file_;
+  std::size_t column_count_ = 0;
+  std::size_t time_column_ = 0;
+  double last_time_s_;
+  std::string line_;
+  bool broken_ = false;
+  int descriptor_ = -1;
+};
+
+// All of a run, by a RunWriter.
+void write_run(const std::filesystem::path& file, const Run& run);
+
+}  // namespace kenaf::runs

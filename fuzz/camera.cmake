@@ -1,1 +1,0 @@
-kenaf_fuzzer(image_request_fuzz SOURCE image_request_fuzz.cpp LIBRARIES kenaf_camera_server)

@@ -1,2 +1,0 @@
-kenaf_fuzzer(operator_link_fuzz SOURCE operator_link_fuzz.cpp LIBRARIES kenaf_operator)
-kenaf_fuzzer(operator_script_fuzz SOURCE operator_script_fuzz.cpp LIBRARIES kenaf_operator)

@@ -1,4 +1,0 @@
-kenaf_fuzzer(sensor_transform_fuzz SOURCE sensor_transform_fuzz.cpp LIBRARIES kenaf_relay)
-kenaf_fuzzer(commander_session_fuzz SOURCE commander_session_fuzz.cpp LIBRARIES kenaf_relay spdlog::spdlog)
-kenaf_fuzzer(address_fuzz SOURCE address_fuzz.cpp LIBRARIES kenaf_relay)
-kenaf_fuzzer(world_handshake_fuzz SOURCE world_handshake_fuzz.cpp LIBRARIES kenaf_relay)

@@ -1,0 +1,71 @@
+// kenaf-gap check: is a dataset what it says it is?
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "gap/commands/commands.hpp"
+#include "gap/logs/copies.hpp"
+#include "gap/logs/lifted_robot.hpp"
+#include "gap/logs/plausibility.hpp"
+
+namespace kenaf::gap::commands {
+namespace {
+
+void print(const std::vector<logs::Finding>& findings) {
+  for (const logs::Finding& finding : findings)
+    std::printf("%s%s\n", finding.severity != logs::Finding::Severity::refuse ? "warning: " : "",
+                logs::in_words(finding).c_str());
+}
+
+// One run in memory at a time, however many there are. Throws where something is refused.
+void check(const std::filesystem::path& folder) {
+  const runs::Dataset dataset = runs::read_dataset(folder);
+  const physics::RobotDescription robot = physics::load_robot(runs::resolve_beside(folder, dataset.robot, ".toml"));
+  std::vector<std::vector<std::string>> columns;
+  std::size_t refused = 0, warned = 0;
+  logs::KnownRuns known_runs;
+  logs::HeldInRuns held;
+  logs::LiftedRobot lifted;
+  const auto take = [&](const std::vector<logs::Finding>& findings) {
+    print(findings);
+    for (const logs::Finding& finding : findings)
+      ++(finding.severity == logs::Finding::Severity::refuse ? refused : warned);
+  };
+  for (const runs::DatasetRun& entry : dataset.runs) {
+    const runs::Run run = runs::read_run(folder / entry.file);
+    columns.push_back(run.columns);
+    if (const auto copy = known_runs.copy(run, entry.file)) take({*copy});
+    if (!entry.fault.empty()) continue;
+    std::vector<logs::Finding> found = logs::check_run(run, entry.file, &robot);
+    held.take_off(found);
+    take(found);
+    lifted.look_at(run, robot.track_gauge_m());
+  }
+  take(held.findings());
+  if (const auto finding = lifted.finding()) take({*finding});
+  take(logs::check_noise(dataset, columns));
+  const std::string counts =
+      fmt::format("{} runs; findings: {} refused, {} warned of", dataset.runs.size(), refused, warned);
+  if (refused > 0) throw std::runtime_error(fmt::format("{}: {}", folder.string(), counts));
+  std::printf("%s\n", counts.c_str());
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& program) {
+  const auto folder = std::make_shared<std::string>();
+  CLI::App* command =
+      program.add_subcommand("check", "looks for wrong units, signs, clocks and dead sensors in a dataset");
+  command->add_option("DATASET", *folder, "the dataset, a folder; required")->type_name("");
+  command->callback([folder] {
+    if (folder->empty()) throw CLI::RequiredError("DATASET");
+    check(*folder);
+  });
+}
+
+}  // namespace kenaf::gap::commands

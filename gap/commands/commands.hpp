@@ -1,0 +1,35 @@
+// The subcommands of kenaf-gap. Each declares itself, its options and what it does; what it does throws where the input
+// is bad, in words for the user, which the program prints before it ends with status 2.
+#pragma once
+
+#include <stdexcept>
+
+namespace CLI {
+class App;
+}
+
+namespace kenaf::gap {
+struct Ranks;
+}
+
+namespace kenaf::gap::commands {
+
+// Everything was done as asked, but runs are no use: status 1.
+struct RunsWentWrong : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+void add_challenge_command(CLI::App& program);
+void add_check_command(CLI::App& program);
+void add_compare_command(CLI::App& program);
+void add_dataset_command(CLI::App& program);
+// `ranks`: processes that do it together; the first one writes and prints.
+void add_diagnose_command(CLI::App& program, const Ranks& ranks);
+void add_effects_command(CLI::App& program);
+void add_manoeuvres_command(CLI::App& program);
+void add_merge_command(CLI::App& program);
+void add_play_command(CLI::App& program);
+void add_score_command(CLI::App& program);
+void add_simulate_command(CLI::App& program);
+
+}  // namespace kenaf::gap::commands

@@ -1,0 +1,69 @@
+// kenaf-gap dataset: a dataset from recorded runs.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "gap/commands/commands.hpp"
+#include "gap/datasets/collect.hpp"
+
+namespace kenaf::gap::commands {
+namespace {
+
+// "FILE", or "NAME=FILE" with a manoeuvre of its own.
+datasets::RecordedRun run_from(const std::string& text, const std::string& manoeuvre) {
+  const std::size_t equals = text.find('=');
+  if (equals == text.npos || std::filesystem::exists(text)) {
+    if (manoeuvre.empty())
+      throw std::invalid_argument(fmt::format("{}: which manoeuvre is it? Give --manoeuvre, or NAME={}", text, text));
+    return {text, manoeuvre};
+  }
+  if (equals == 0) throw std::invalid_argument(fmt::format("{}: no manoeuvre is named before the '='", text));
+  return {text.substr(equals + 1), text.substr(0, equals)};
+}
+
+}  // namespace
+
+void add_dataset_command(CLI::App& program) {
+  struct Options {
+    std::vector<std::string> runs;
+    std::string manoeuvre;
+    datasets::CollectRequest request;
+  };
+  const auto options = std::make_shared<Options>();
+  datasets::CollectRequest& request = options->request;
+  CLI::App* command = program.add_subcommand("dataset", "makes a dataset of recorded runs, or adds them to one");
+  command->add_option("RUN", options->runs, "the runs, CSV files; MANOEUVRE=FILE where one is of another; required")
+      ->type_name("...");
+  command->add_option("--manoeuvre", options->manoeuvre, "of the runs that do not name their own")->type_name("NAME");
+  command->add_option("--out", request.out, "folder of the dataset; is made or extended; required")->type_name("DIR");
+  command->add_option("--robot", request.robot, "a shipped name or a TOML file [kenaf, or the dataset's]");
+  command->add_option("--world", request.world, "a shipped name or an SDF file [each shipped manoeuvre's own]");
+  command->add_option("--source", request.source, "real or sim")
+      ->check(CLI::IsMember({"real", "sim"}))
+      ->type_name("SOURCE")
+      ->capture_default_str();
+  command->add_option("--description", request.description, "free text, for a new dataset");
+  command->add_flag("--unchecked", request.unchecked, "take runs too that the checks refuse");
+  command->callback([options] {
+    datasets::CollectRequest& asked = options->request;
+    if (options->runs.empty()) throw CLI::RequiredError("RUN");
+    if (asked.out.empty()) throw CLI::RequiredError("--out");
+    asked.runs.clear();
+    for (const std::string& text : options->runs) asked.runs.push_back(run_from(text, options->manoeuvre));
+    const datasets::CollectedDataset result = datasets::collect_dataset(asked);
+    for (const logs::Finding& finding : result.findings)
+      std::fprintf(stderr, "kenaf-gap: %s%s\n", finding.severity != logs::Finding::Severity::refuse ? "warning: " : "",
+                   logs::in_words(finding).c_str());
+    if (result.refused)
+      throw std::runtime_error("nothing was written; where a run is right all the same, give --unchecked");
+    for (std::size_t i = 0; i < result.runs.size(); ++i)
+      std::printf("%s: %s, from %s\n", result.runs[i].file.c_str(), result.runs[i].manoeuvre.c_str(),
+                  asked.runs[i].file.c_str());
+    std::printf("%s: %zu runs %s\n", asked.out.c_str(), result.runs.size(),
+                result.extended ? "added" : "in a new dataset");
+  });
+}
+
+}  // namespace kenaf::gap::commands

@@ -1,0 +1,75 @@
+// kenaf-gap diagnose: where simulation and runs part, which effect causes it, how far the gap shrinks with it.
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <limits>
+#include <memory>
+
+#include "gap/commands/commands.hpp"
+#include "gap/commands/interrupt.hpp"
+#include "gap/commands/option_checks.hpp"
+#include "gap/commands/progress_line.hpp"
+#include "gap/datasets/dataset_files.hpp"
+#include "gap/diagnose/report.hpp"
+
+namespace kenaf::gap::commands {
+
+void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
+  struct Options {
+    std::string dataset, out;
+    diagnose::DiagnosisOptions diagnosis;
+  };
+  const auto options = std::make_shared<Options>();
+  diagnose::DiagnosisOptions& diagnosis = options->diagnosis;
+  diagnosis.ranks = ranks;
+  CLI::App* command = program.add_subcommand("diagnose", "names the effects by which simulation and runs part, if any");
+  command->add_option("DATASET", options->dataset, "the runs, a folder; required")->type_name("");
+  command
+      ->add_option("--out", options->out,
+                   "folder for report.json, report.html and the robot with what was found; required")
+      ->type_name("DIR");
+  command
+      ->add_option("--against", diagnosis.against,
+                   "a dataset of the same manoeuvres from before: names what changed since then")
+      ->type_name("BASELINE");
+  command->add_option("--robot", diagnosis.robot, "a shipped name or a TOML file [the dataset's]");
+  command->add_option("--world", diagnosis.world, "a shipped name or an SDF file, for all runs [each run's own]");
+  command
+      ->add_option("--effects", diagnosis.effects, "a TOML file with effects of your own, looked for beside all others")
+      ->type_name("FILE");
+  command->add_option("--without", diagnosis.without, "leaves effects out of the search, by name, parted by commas")
+      ->delimiter(',')
+      ->type_name("EFFECT");
+  command->add_flag_callback(
+      "--no-next", [&diagnosis] { diagnosis.propose_next = false; },
+      "leaves out which manoeuvre to drive next, which takes simulations of its own");
+  command->add_option("--jobs", diagnosis.jobs, "threads; 0: one a core")
+      ->check(whole_number(kMostJobs))
+      ->capture_default_str();
+  command->add_option("--seed", diagnosis.seed, "of resampling")
+      ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
+      ->capture_default_str();
+  command->callback([options] {
+    for (const auto& [name, text] : {std::pair{"DATASET", &options->dataset}, {"--out", &options->out}})
+      if (text->empty()) throw CLI::RequiredError(name);
+    options->diagnosis.stop = &interruption();
+    const bool reports = options->diagnosis.ranks.rank == 0;
+    if (reports)
+      options->diagnosis.progress = [line = ProgressLine()](const diagnose::Progress& progress) mutable {
+        line.show(progress.doing, progress.done);
+      };
+    if (reports) {
+      datasets::check_can_write(options->out);
+      diagnose::check_keeps_inputs(options->out, options->dataset, options->diagnosis.robot);
+      if (!options->diagnosis.against.empty())
+        diagnose::check_is_other_folder(options->out, options->diagnosis.against);
+    }
+    const diagnose::Diagnosis result = diagnose::diagnose_dataset(options->dataset, options->diagnosis);
+    if (!reports) return;
+    if (!result.interrupted.empty()) clear_progress_line();
+    std::fputs(diagnose::diagnosis_text(result).c_str(), stdout);
+    std::printf("\n%s has the figures\n", diagnose::write_diagnosis(result, options->out).c_str());
+  });
+}
+
+}  // namespace kenaf::gap::commands

@@ -1,0 +1,24 @@
+#include "gap/commands/interrupt.hpp"
+
+#include <csignal>
+
+namespace kenaf::gap::commands {
+namespace {
+
+std::atomic<bool> interrupted = false;  // what a signal handler may write is global
+
+void interrupt(int signal) {
+  interrupted = true;
+  std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+const std::atomic<bool>& interruption() {
+  std::signal(SIGINT, interrupt);
+  std::signal(SIGTERM, interrupt);
+  if (std::signal(SIGHUP, interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // as nohup asked for
+  return interrupted;
+}
+
+}  // namespace kenaf::gap::commands

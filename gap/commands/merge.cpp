@@ -1,0 +1,103 @@
+// kenaf-gap merge: motion capture's pose into a run that the robot recorded.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "gap/commands/commands.hpp"
+#include "gap/commands/option_checks.hpp"
+#include "gap/logs/merge_pose.hpp"
+
+namespace kenaf::gap::commands {
+namespace {
+
+void print(const logs::MergedRun& merged) {
+  const logs::ClockOffset& offset = merged.offset;
+  if (offset.quantities.empty()) {
+    std::printf("time offset: %.4f s, as given\n", offset.offset_s);
+  } else {
+    std::printf("time offset: %.4f s, standard error %.4f s; run time = motion capture time + offset\n",
+                offset.offset_s, offset.standard_error_s);
+    for (const logs::QuantityOffset& quantity : offset.quantities)
+      std::printf("  from %s: %.4f s, standard error %.4f s, gain %.3g, correlation %.3f%s\n", quantity.name.c_str(),
+                  quantity.offset_s, quantity.standard_error_s, quantity.gain, quantity.correlation,
+                  quantity.used ? "" : "; not used, as tracks slip");
+    if (offset.from_tracks)
+      std::printf("  from the tracks alone: where the body follows its belts late, the offset is off by that\n");
+    std::printf("  both saw %.1f s\n", offset.overlap_s);
+  }
+  const std::size_t rows = merged.run.row_count();
+  std::printf("%zu of %zu rows have a pose, between captured ones at most %.3g s apart\n", merged.rows_with_pose, rows,
+              merged.max_gap_s);
+  for (const auto& [name, kept] : merged.renamed)
+    std::printf("%s was in the run: kept as %s\n", name.c_str(), kept.c_str());
+}
+
+}  // namespace
+
+void add_merge_command(CLI::App& program) {
+  struct Options {
+    std::string run, capture, out, units = "m";
+    logs::MergeOptions merge;
+    bool force = false;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* command = program.add_subcommand(
+      "merge", "puts motion capture's pose into a recorded run and says how far the clocks are apart");
+  command->add_option("RUN", options->run, "the run, a CSV file; required")->type_name("");
+  command->add_option("MOCAP", options->capture, "the motion capture, a CSV file; required")->type_name("");
+  command->add_option("--out", options->out, "the CSV file to write; required")->type_name("FILE");
+  command->add_option("--mocap-units", options->units, "of x_m, y_m and z_m in MOCAP: m or mm")
+      ->check(CLI::IsMember({"m", "mm"}))
+      ->type_name("UNIT")
+      ->capture_default_str();
+  command->add_flag("--keep-frame", options->merge.keep_frame,
+                    "keep the motion capture's frame; else the first pose is the origin, x forward");
+  command
+      ->add_option("--start", options->merge.start_s, "the first pose is the mean over this time; 0: the first row [0]")
+      ->check(number_in(0, 1e6))
+      ->type_name("SECONDS");
+  command
+      ->add_option("--max-gap", options->merge.max_gap_s,
+                   "no pose is put between captured ones that are farther apart [2.5 times their median step]")
+      ->check(number_in(1e-6, 1e6))
+      ->type_name("SECONDS");
+  command
+      ->add_option("--offset", options->merge.offset_s,
+                   "run time less motion capture time, where it is known; else it is estimated")
+      ->check(number_in(-1e12, 1e12))
+      ->type_name("SECONDS");
+  command->add_flag("--force", options->force, "replace the file to write where it is there");
+  command->callback([options] {
+    for (const auto& [name, text] :
+         {std::pair{"RUN", &options->run}, {"MOCAP", &options->capture}, {"--out", &options->out}})
+      if (text->empty()) throw CLI::RequiredError(name);
+    if (!options->force && std::filesystem::exists(options->out))
+      throw std::runtime_error(
+          fmt::format("{}: is there already; give another file, or --force to replace it", options->out));
+    const runs::Run run = runs::read_run(options->run);
+    const logs::LengthUnit unit = options->units == "mm" ? logs::LengthUnit::millimetres : logs::LengthUnit::metres;
+    const logs::MotionCapture capture =
+        logs::motion_capture_of(runs::read_run(options->capture), options->capture, unit);
+    const logs::MergedRun merged = [&] {
+      try {
+        return logs::merge_pose(run, capture, options->merge);
+      } catch (const logs::NoOffset& error) {
+        throw std::runtime_error(
+            fmt::format("{}, {}: no time offset can be estimated: {}. Nothing was written. "
+                        "Where the offset is known, give it with --offset",
+                        options->run, options->capture, error.what()));
+      } catch (const runs::RunFileError& error) {
+        throw std::runtime_error(fmt::format("{}: {}", options->run, error.what()));
+      }
+    }();
+    runs::write_run(options->out, merged.run);
+    print(merged);
+  });
+}
+
+}  // namespace kenaf::gap::commands

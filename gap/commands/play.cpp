@@ -1,0 +1,71 @@
+// kenaf-gap play: recorded runs beside their simulations, in a browser.
+#include <pthread.h>
+#include <signal.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+#include "gap/commands/commands.hpp"
+#include "gap/playback/playback_server.hpp"
+#include "server/live/view_options.hpp"
+
+namespace kenaf::gap::commands {
+namespace {
+
+// Of this thread and those that it starts: none is interrupted, and one waits.
+sigset_t block_signals_to_end() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signals;
+}
+
+void wait_for(const sigset_t& signals) {
+  int signal = 0;
+  sigwait(&signals, &signal);
+  // a second one ends the program at once, whatever is still being simulated
+  pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+}
+
+}  // namespace
+
+void add_play_command(CLI::App& program) {
+  struct Options {
+    playback::PlaybackRequest request;
+    std::string view = "127.0.0.1:8080", token;
+  };
+  const auto options = std::make_shared<Options>();
+  playback::PlaybackRequest& request = options->request;
+  CLI::App* command = program.add_subcommand("play", "plays recorded runs in a browser, beside their simulations");
+  command->add_option("RUNS", request.runs, "a dataset's folder, or the CSV file of one run; required")->type_name("");
+  command->add_option("--report", request.report, "folder that a diagnosis of these runs wrote: marks where the gap is")
+      ->type_name("DIR");
+  command->add_option("--run", request.run, "file or manoeuvre to begin with [the first]");
+  command->add_option("--robot", request.robot, "a shipped name or a TOML file [the dataset's, or kenaf]");
+  command->add_option("--world", request.world, "a shipped name or an SDF file [each run's own, or flat]");
+  command->add_option("--view", options->view, "where a browser finds the page, ADDRESS:PORT; port 0: any free one")
+      ->type_name("ADDRESS:PORT")
+      ->capture_default_str();
+  command
+      ->add_option("--view-token", options->token, "what a browser must know; where it is not on loopback one is made")
+      ->type_name("TOKEN");
+  command->callback([options] {
+    if (options->request.runs.empty()) throw CLI::RequiredError("RUNS");
+    live::ViewOptions view = live::parse_view_options(options->view);
+    if (!view.on) throw std::invalid_argument("--view off: there is nothing to do; give ADDRESS:PORT");
+    view.token = live::parse_view_token(options->token);
+    playback::Playback playback = playback::load_playback(options->request);
+    for (const std::string& note : playback.notes) std::fprintf(stderr, "kenaf-gap: %s\n", note.c_str());
+    const sigset_t signals = block_signals_to_end();
+    const playback::PlaybackServer server(std::move(playback), view);
+    std::printf("%s\nControl-C ends it\n", server.url().c_str());
+    std::fflush(stdout);
+    wait_for(signals);
+  });
+}
+
+}  // namespace kenaf::gap::commands

@@ -1,0 +1,103 @@
+#include "gap/logs/plausibility.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "gap/logs/lifted_robot.hpp"
+#include "gap/logs/run_checks.hpp"
+
+namespace kenaf::gap::logs {
+
+std::string in_words(const Finding& finding) {
+  std::string words = finding.file;
+  if (finding.line > 0) words += fmt::format(":{}", finding.line);
+  if (!finding.column.empty()) words += ": " + finding.column;
+  return words + ": " + finding.text;
+}
+
+bool any_refused(std::span<const Finding> findings) {
+  return std::ranges::find(findings, Finding::Severity::refuse, &Finding::severity) != findings.end();
+}
+
+void HeldInRuns::take_off(std::vector<Finding>& found) {
+  for (const Finding& finding : found) {
+    if (finding.severity != Finding::Severity::held) continue;
+    const auto known = std::ranges::find(columns_, finding.column, [](const OfColumn& of) { return of.first.column; });
+    if (known == columns_.end())
+      columns_.push_back({finding, 1});
+    else
+      ++known->runs;
+  }
+  std::erase_if(found, [](const Finding& finding) { return finding.severity == Finding::Severity::held; });
+}
+
+std::vector<Finding> HeldInRuns::findings() const {
+  std::vector<Finding> findings;
+  for (const OfColumn& of : columns_) {
+    findings.push_back(of.first);
+    if (of.runs > 1) findings.back().text += fmt::format(" (as in {} more)", of.runs - 1);
+  }
+  return findings;
+}
+
+std::vector<Finding> check_run(const runs::Run& run, const std::string& file, const physics::RobotDescription* robot) {
+  constexpr std::size_t kFewestRows = 10;
+  if (run.row_count() < kFewestRows)
+    return {{Finding::Severity::refuse, file, 0, "",
+             fmt::format("has {} rows; a run of fewer than {} tells nothing", run.row_count(), kFewestRows)}};
+  RunChecks checks(run, file, robot);
+  checks.check_clock();
+  std::vector<Finding> findings = checks.take();
+  if (any_refused(findings)) return findings;  // with false times all rates are false
+  checks.check_ranges();
+  checks.check_scales();
+  checks.check_commands();
+  checks.check_constants();
+  checks.check_held();
+  checks.check_pose();
+  std::ranges::move(checks.take(), std::back_inserter(findings));
+  return findings;
+}
+
+std::vector<Finding> check_units(const runs::Run& run, const std::string& file) {
+  RunChecks checks(run, file, nullptr);
+  checks.check_ranges();
+  checks.check_scales();
+  return checks.take();
+}
+
+std::vector<Finding> check_noise(const runs::Dataset& dataset,
+                                 std::span<const std::vector<std::string>> columns_of_runs) {
+  std::set<std::string> known;
+  for (const auto& columns : columns_of_runs) known.insert(columns.begin(), columns.end());
+  std::vector<Finding> findings;
+  for (const auto& [name, sigma] : dataset.noise)
+    if (!known.contains(name))
+      findings.push_back({Finding::Severity::warn, "dataset.toml", 0, name,
+                          "has a [noise], but no run has such a column; is its name right?"});
+  return findings;
+}
+
+std::vector<Finding> check_plausibility(const runs::Dataset& dataset, std::span<const runs::Run> runs,
+                                        const physics::RobotDescription* robot) {
+  std::vector<std::vector<std::string>> columns;
+  std::vector<Finding> findings;
+  HeldInRuns held;
+  LiftedRobot lifted;
+  for (std::size_t i = 0; i < std::min(runs.size(), dataset.runs.size()); ++i) {
+    columns.push_back(runs[i].columns);
+    if (!dataset.runs[i].fault.empty()) continue;
+    std::vector<Finding> found = check_run(runs[i], dataset.runs[i].file, robot);
+    held.take_off(found);
+    std::ranges::move(found, std::back_inserter(findings));
+    if (robot != nullptr) lifted.look_at(runs[i], robot->track_gauge_m());
+  }
+  std::ranges::move(held.findings(), std::back_inserter(findings));
+  if (const auto finding = lifted.finding()) findings.push_back(*finding);
+  std::ranges::move(check_noise(dataset, columns), std::back_inserter(findings));
+  return findings;
+}
+
+}  // namespace kenaf::gap::logs

@@ -1,0 +1,74 @@
+// kenaf-gap: how far simulation and reality are apart, and why.
+//
+//   kenaf-gap effects
+//   kenaf-gap compare REAL SIM --out DIR
+//   kenaf-gap --help
+//
+// Exit status: 0 done; 1 done but for runs whose simulation went wrong; 2 bad input, or what comes out cannot be
+// written, with what is wrong and where on standard error.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+
+#include "gap/commands/commands.hpp"
+#include "gap/commands/progress_line.hpp"
+#include "gap/ranks.hpp"
+
+namespace {
+
+constexpr int kWentWrong = 1, kBadInput = 2;
+
+constexpr void (*kCommands[])(CLI::App&) = {
+    kenaf::gap::commands::add_challenge_command,
+    kenaf::gap::commands::add_check_command,
+    kenaf::gap::commands::add_compare_command,
+    kenaf::gap::commands::add_dataset_command,
+    [](CLI::App& program) { kenaf::gap::commands::add_diagnose_command(program, {}); },
+    kenaf::gap::commands::add_effects_command,
+    kenaf::gap::commands::add_manoeuvres_command,
+    kenaf::gap::commands::add_merge_command,
+    kenaf::gap::commands::add_play_command,
+    kenaf::gap::commands::add_score_command,
+    kenaf::gap::commands::add_simulate_command,
+};
+
+std::string in_words(const CLI::App* program, const CLI::Error& error) {
+  std::string command = program->get_name();
+  for (const CLI::App* sub : program->get_subcommands()) command += " " + sub->get_name();
+  return fmt::format("kenaf-gap: {}\n{} --help says what there is\n", error.what(), command);
+}
+
+// What was printed may not have gone anywhere, on a full disk.
+void finish_output() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    throw std::runtime_error("standard output cannot be written; is its disk full?");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program{"How far are simulation and reality apart, and why?", "kenaf-gap"};
+  program.set_version_flag("--version", KENAF_VERSION);
+  program.failure_message(in_words);
+  program.require_subcommand(0, 1);  // required, but CLI11 would not say which word it did not know
+  for (const auto add : kCommands) add(program);
+  try {
+    program.parse(argc, argv);
+    if (program.get_subcommands().empty()) throw CLI::RequiredError("a subcommand");
+    finish_output();
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : kBadInput;
+  } catch (const kenaf::gap::commands::RunsWentWrong& error) {
+    kenaf::gap::commands::clear_progress_line();
+    std::fprintf(stderr, "kenaf-gap: %s\n", error.what());
+    return kWentWrong;
+  } catch (const std::exception& error) {
+    kenaf::gap::commands::clear_progress_line();
+    std::fprintf(stderr, "kenaf-gap: %s\n", error.what());
+    return kBadInput;
+  }
+  return 0;
+}

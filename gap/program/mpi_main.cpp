@@ -1,0 +1,101 @@
+// kenaf-gap-mpi: kenaf-gap diagnose by several processes, on several machines.
+//
+//   mpirun -n 8 kenaf-gap-mpi diagnose DATASET --out DIR
+//
+// Every machine needs the dataset, the shipped data and the same build. The first process writes the reports. Exit
+// status as kenaf-gap.
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <string_view>
+
+#include "gap/commands/commands.hpp"
+#include "gap/ranks.hpp"
+
+namespace {
+
+using kenaf::gap::Ranks;
+
+constexpr int kBadInput = 2;
+
+// What a rank has goes as one array: for each result its size, then its values.
+std::vector<double> packed(const std::vector<Eigen::VectorXd>& results, int rank, int count) {
+  std::vector<double> numbers;
+  for (auto j = static_cast<std::size_t>(rank); j < results.size(); j += static_cast<std::size_t>(count)) {
+    numbers.push_back(static_cast<double>(results[j].size()));
+    numbers.insert(numbers.end(), results[j].begin(), results[j].end());
+  }
+  return numbers;
+}
+
+void unpack(const double* numbers, std::vector<Eigen::VectorXd>& results, int rank, int count) {
+  for (auto j = static_cast<std::size_t>(rank); j < results.size(); j += static_cast<std::size_t>(count)) {
+    const auto size = static_cast<Eigen::Index>(*numbers++);
+    results[j] = Eigen::Map<const Eigen::VectorXd>(numbers, size);
+    numbers += size;
+  }
+}
+
+void share(std::vector<Eigen::VectorXd>& results, int rank, int count) {
+  const std::vector<double> own = packed(results, rank, count);
+  const int own_size = static_cast<int>(own.size());
+  std::vector<int> sizes(static_cast<std::size_t>(count)), offsets(sizes.size(), 0);
+  MPI_Allgather(&own_size, 1, MPI_INT, sizes.data(), 1, MPI_INT, MPI_COMM_WORLD);
+  for (std::size_t r = 1; r < sizes.size(); ++r) offsets[r] = offsets[r - 1] + sizes[r - 1];
+  std::vector<double> all(static_cast<std::size_t>(offsets.back() + sizes.back()));
+  MPI_Allgatherv(own.data(), own_size, MPI_DOUBLE, all.data(), sizes.data(), offsets.data(), MPI_DOUBLE,
+                 MPI_COMM_WORLD);
+  for (int r = 0; r < count; ++r)
+    if (r != rank) unpack(all.data() + offsets[static_cast<std::size_t>(r)], results, r, count);
+}
+
+bool any(bool mine) {
+  int sum = mine ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+  return sum > 0;
+}
+
+int run(int argc, char** argv, const Ranks& ranks) {
+  CLI::App program{"A diagnosis by several processes, started with mpirun", "kenaf-gap-mpi"};
+  program.set_version_flag("--version", KENAF_VERSION);
+  program.require_subcommand(1);
+  kenaf::gap::commands::add_diagnose_command(program, ranks);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    // all ranks have the same arguments: one says what is wrong with them
+    if (ranks.rank > 0) return error.get_exit_code() == 0 ? 0 : kBadInput;
+    return program.exit(error) == 0 ? 0 : kBadInput;
+  } catch (const std::exception& error) {
+    // each may have what the others do not: a machine without the dataset, a full disk
+    std::fprintf(stderr, "kenaf-gap-mpi: process %d of %d: %s\n", ranks.rank, ranks.count, error.what());
+    std::fflush(stderr);
+    MPI_Abort(MPI_COMM_WORLD, kBadInput);  // another rank may wait for this one's results
+  }
+  return 0;
+}
+
+bool only_asks(int argc, char** argv) {
+  return std::any_of(argv + 1, argv + argc,
+                     [](std::string_view word) { return word == "-h" || word == "--help" || word == "--version"; });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Outside of mpirun, MPI starts only on machines that could start processes on others; help is for all.
+  if (only_asks(argc, argv)) return run(argc, argv, {});
+  MPI_Init(&argc, &argv);
+  Ranks ranks;
+  MPI_Comm_rank(MPI_COMM_WORLD, &ranks.rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks.count);
+  ranks.share = [&ranks](std::vector<Eigen::VectorXd>& results) { share(results, ranks.rank, ranks.count); };
+  ranks.any = any;
+  const int status = run(argc, argv, ranks);
+  MPI_Finalize();
+  return status;
+}

@@ -1,0 +1,415 @@
+#include "server/image_server/feed.hpp"
+
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <atomic>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include "camera/jpeg.hpp"
+#include "camera/renderer.hpp"
+#include "camera/robot_cameras.hpp"
+#include "server/image_server/exposure.hpp"
+#include "server/image_server/view_name.hpp"
+
+namespace kenaf::image_server {
+
+namespace asio = boost::asio;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using FramePtr = std::shared_ptr<const Frame>;
+
+// Robots come and go, readers lose interest, while time stands still too: so often it is looked at all the same.
+constexpr std::chrono::milliseconds kLookAnyway{100};
+
+Clock::duration seconds(double s) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+}
+
+// What the world's thread needs to answer, also when the feed is gone meanwhile.
+struct Exchange {
+  camera::SnapshotTaker taker;  // the world's thread alone
+  // A request waits for the world's thread: there is never a second one. At once: not only when the next exposure falls
+  // due.
+  std::atomic<bool> queued = false, at_once = false;
+  std::mutex mutex;
+  std::function<void(std::shared_ptr<Exposure>)> take;  // hands on to the feed's thread; empty: it has ended
+
+  void answer(const world_server::Simulation& simulation, const std::shared_ptr<Exposure>& out) {
+    expose(simulation, taker, *out);
+    const std::lock_guard lock(mutex);
+    if (take) take(out);
+  }
+};
+
+}  // namespace
+
+struct Feed::Implementation {
+  explicit Implementation(world_server::WorldServer& world_server) : world(world_server) {}
+
+  void wake();
+  void ask(bool at_once);
+  void take(std::shared_ptr<Exposure> exposure);
+  void settle_views(const Exposure& exposure);
+  void draw(const Exposure& exposure, const std::vector<CameraId>& due);
+  FramePtr draw_one(const Exposure& exposure, std::size_t robot, std::size_t camera, std::uint64_t number);
+  void stand_still(CameraId id, const std::string& why);
+  void ask_later(const Exposure& exposure);
+  void publish_due();
+  void fall_asleep();
+  void tell();
+  bool make_room();
+
+  world_server::WorldServer& world;
+
+  // For any thread.
+  struct View {
+    Clock::time_point wanted;
+    std::optional<CameraId> camera;
+    std::string none;
+  };
+  struct Shown {
+    FramePtr newest;
+    std::string fault;
+  };
+  mutable std::mutex mutex;
+  std::map<std::string, View, std::less<>> views;
+  std::map<CameraId, Shown> shown;  // of the cameras that are drawn
+  std::mutex listeners_mutex;
+  std::map<std::uint64_t, std::function<void()>> listeners;
+  std::uint64_t last_listener = 0;
+
+  // Of the feed's thread.
+  struct Drawn {
+    std::unique_ptr<camera::Renderer> renderer;  // while somebody looks
+    std::optional<Tick> last;
+    std::uint64_t number = 0;
+    double rate_hz = 0;
+    bool wanted = false, faulty = false;
+    bool left_out = false;  // the last exposure, as it was late
+  };
+  struct Waiting {
+    Clock::time_point until;
+    FramePtr frame;
+  };
+  std::map<CameraId, Drawn> drawn;
+  std::vector<Waiting> waiting;          // for their latency to pass
+  std::unique_ptr<camera::Scene> scene;  // built when it is first needed
+  camera::JpegEncoder encoder;
+  bool awake = false;
+  std::uint64_t asked = 0;  // the newest request
+  std::shared_ptr<Exposure> spare;
+  std::shared_ptr<Exchange> exchange = std::make_shared<Exchange>();
+
+  asio::io_context io{1};
+  asio::executor_work_guard<asio::io_context::executor_type> work{io.get_executor()};
+  asio::steady_timer ask_timer{io}, look_timer{io}, publish_timer{io};
+  std::thread thread;
+};
+
+// A view that nobody asked for before: the world is asked at once what it is.
+void Feed::Implementation::wake() {
+  awake = true;
+  ask(true);
+}
+
+// One answer is expected at a time: a newer request takes the place of one that still waits for its step.
+void Feed::Implementation::ask(bool at_once) {
+  look_timer.expires_after(kLookAnyway);
+  look_timer.async_wait([this](boost::system::error_code cancelled) {
+    if (!cancelled && awake) ask(true);
+  });
+  if (at_once) exchange->at_once = true;
+  std::vector<DueCamera> cameras;
+  for (const auto& [id, camera] : drawn) {
+    if (camera.wanted && !camera.faulty) cameras.push_back({camera.rate_hz, camera.last});
+  }
+  if (!at_once && cameras.empty()) return;
+  if (exchange->queued.exchange(true)) return;
+  auto exposure = spare ? std::move(spare) : std::make_shared<Exposure>();
+  spare = nullptr;
+  exposure->asked = ++asked;
+  world.ask([exchange = exchange, exposure, cameras = std::move(cameras)](world_server::Simulation& simulation) {
+    exchange->queued = false;
+    std::uint64_t step = simulation.world.step_count();
+    if (!exchange->at_once.exchange(false))
+      step = next_exposure(cameras, step, simulation.world.settings().time_step_s);
+    simulation.call_at(exchange.get(), step, [exchange, exposure](world_server::Simulation& world_then) {
+      exchange->answer(world_then, exposure);
+    });
+  });
+}
+
+void Feed::Implementation::take(std::shared_ptr<Exposure> exposure) {
+  if (!awake) return;
+  const bool newest = exposure->asked == asked;
+  settle_views(*exposure);
+  const Clock::duration waited = Clock::now() - exposure->wall;
+  std::vector<CameraId> due;
+  bool wanted = false;
+  for (auto& [id, camera] : drawn) {
+    wanted = wanted || camera.wanted;
+    if (!camera.wanted || camera.faulty) continue;
+    if (!exposes_at({camera.rate_hz, camera.last}, exposure->step, exposure->time_step_s)) continue;
+    // Half a period late already: the next one is fresher. Never twice running, or a busy machine would show nothing.
+    const bool late = camera.last && exposure->speed > 0 && waited > seconds(0.5 / (camera.rate_hz * exposure->speed));
+    camera.left_out = late && !camera.left_out;
+    if (!camera.left_out) due.push_back(id);
+    const Tick tick = tick_at(exposure->step, exposure->time_step_s, camera.rate_hz);
+    // after a reset time begins anew, and numbers go on
+    camera.number += camera.last && tick > *camera.last ? tick - *camera.last : 1;
+    camera.last = tick;
+  }
+  {
+    const std::lock_guard lock(mutex);
+    if (views.empty() && !wanted) return fall_asleep();
+  }
+  // Where the clock sets the pace, the next exposure is asked for before this one is drawn: if drawing is late, it
+  // still is in time.
+  if (newest && exposure->speed > 0) ask(false);
+  if (!due.empty()) draw(*exposure, due);
+  if (newest && exposure->speed == 0) ask_later(*exposure);
+  spare = std::move(exposure);
+}
+
+// Forgets what nobody asks for any more, and finds out what the other views show.
+void Feed::Implementation::settle_views(const Exposure& exposure) {
+  const auto& robots = exposure.world.robots;
+  std::set<CameraId> wanted;
+  bool changed = false;
+  {
+    const std::lock_guard lock(mutex);
+    const Clock::time_point forgotten = Clock::now() - seconds(kWanted_s);
+    std::erase_if(views, [&](const auto& entry) { return entry.second.wanted < forgotten; });
+    for (auto& [name, view] : views) {
+      const auto camera = find_view(robots, name);
+      std::string none = camera ? std::string() : no_such_view(robots, name);
+      changed = changed || camera != view.camera || none != view.none;
+      view.camera = camera;
+      view.none = std::move(none);
+      if (camera) wanted.insert(*camera);
+    }
+    std::erase_if(shown, [&](const auto& entry) { return !wanted.contains(entry.first); });
+    for (const CameraId& id : wanted) shown.try_emplace(id);
+  }
+  std::erase_if(waiting, [&](const Waiting& entry) { return !wanted.contains(entry.frame->id); });
+  const auto robot_of = [&](CameraId id) { return std::ranges::find(robots, id.robot, &camera::RobotSnapshot::id); };
+  std::erase_if(drawn, [&](const auto& entry) { return robot_of(entry.first) == robots.end(); });
+  for (const CameraId& id : wanted) {
+    drawn[id].rate_hz = robot_of(id)->description->cameras[id.camera].rate_hz;
+  }
+  for (auto& [id, camera] : drawn) {
+    camera.wanted = wanted.contains(id);
+    if (camera.wanted) continue;
+    // its number stays, so that no reader meets it twice
+    camera.renderer.reset();
+    camera.last.reset();
+    camera.faulty = false;
+  }
+  if (changed) tell();
+}
+
+void Feed::Implementation::draw(const Exposure& exposure, const std::vector<CameraId>& due) {
+  try {
+    if (!scene) scene = std::make_unique<camera::Scene>(world.world_description());
+    scene->update(exposure.world);
+  } catch (const std::exception& error) {
+    scene.reset();  // it may be half of the one world, half of the other
+    for (const CameraId& id : due) stand_still(id, error.what());
+    return;
+  }
+  for (const CameraId& id : due) {
+    const auto& robots = exposure.world.robots;
+    const auto robot = std::ranges::find(robots, id.robot, &camera::RobotSnapshot::id) - robots.begin();
+    try {
+      const FramePtr frame = draw_one(exposure, static_cast<std::size_t>(robot), id.camera, drawn.at(id).number);
+      const double latency_s = robots[static_cast<std::size_t>(robot)].description->cameras[id.camera].latency_s;
+      const Clock::duration latency =
+          exposure.speed > 0 ? seconds(latency_s / exposure.speed) : Clock::duration::zero();
+      waiting.push_back({exposure.wall + latency, frame});
+    } catch (const std::exception& error) {
+      stand_still(id, error.what());
+    }
+  }
+  publish_due();
+}
+
+FramePtr Feed::Implementation::draw_one(const Exposure& exposure, std::size_t robot_index, std::size_t camera_index,
+                                        std::uint64_t number) {
+  const camera::RobotSnapshot& robot = exposure.world.robots[robot_index];
+  const physics::CameraDescription& camera = robot.description->cameras[camera_index];
+  Drawn& state = drawn.at({robot.id, camera_index});
+  if (!state.renderer) state.renderer = std::make_unique<camera::Renderer>();
+  const auto frame = std::make_shared<Frame>();
+  frame->id = {robot.id, camera_index};
+  frame->robot = robot.name;
+  frame->camera = camera.name;
+  frame->number = number;
+  frame->robot_time_s = exposure.world.time_s;
+  frame->exposed = exposure.wall;
+  const double field_of_view_rad = exposure.field_of_view_rad[robot_index][camera_index];
+  state.renderer->render(*scene, camera::camera_view(robot, camera, field_of_view_rad), frame->picture);
+  const auto jpeg = encoder.encode(frame->picture, camera.jpeg_quality);
+  frame->jpeg.assign(jpeg.begin(), jpeg.end());
+  return frame;
+}
+
+void Feed::Implementation::stand_still(CameraId id, const std::string& why) {
+  spdlog::error("camera {} of robot {} stands still: {}", id.camera, static_cast<std::uint32_t>(id.robot), why);
+  drawn.at(id).faulty = true;
+  {
+    const std::lock_guard lock(mutex);
+    if (const auto found = shown.find(id); found != shown.end()) found->second.fault = "no picture: " + why;
+  }
+  tell();
+}
+
+// The clock sets no pace: the rate does, by the wall clock.
+void Feed::Implementation::ask_later(const Exposure& exposure) {
+  double rate_hz = 1 / std::chrono::duration<double>(kLookAnyway).count();
+  for (const auto& [id, camera] : drawn) {
+    if (camera.wanted) rate_hz = std::max(rate_hz, camera.rate_hz);
+  }
+  ask_timer.expires_at(exposure.wall + seconds(1 / rate_hz));
+  ask_timer.async_wait([this](boost::system::error_code cancelled) {
+    if (!cancelled && awake) ask(false);
+  });
+}
+
+void Feed::Implementation::publish_due() {
+  bool published = false;
+  const Clock::time_point now = Clock::now();
+  Clock::time_point next = Clock::time_point::max();
+  {
+    const std::lock_guard lock(mutex);
+    for (const Waiting& entry : waiting) {
+      if (entry.until > now) {
+        next = std::min(next, entry.until);
+        continue;
+      }
+      const auto found = shown.find(entry.frame->id);
+      if (found == shown.end()) continue;
+      FramePtr& newest = found->second.newest;
+      if (!newest || newest->number < entry.frame->number) newest = entry.frame;
+      published = true;
+    }
+  }
+  std::erase_if(waiting, [&](const Waiting& entry) { return entry.until <= now; });
+  if (published) tell();
+  if (waiting.empty()) return;
+  publish_timer.expires_at(next);
+  publish_timer.async_wait([this](boost::system::error_code cancelled) {
+    if (!cancelled) publish_due();
+  });
+}
+
+// With the mutex held: who asks from now on wakes it again.
+void Feed::Implementation::fall_asleep() {
+  awake = false;
+  waiting.clear();
+  spare.reset();
+  ask_timer.cancel();
+  look_timer.cancel();
+  publish_timer.cancel();
+}
+
+void Feed::Implementation::tell() {
+  const std::lock_guard lock(listeners_mutex);
+  for (const auto& [number, told] : listeners) told();
+}
+
+// With the mutex held: forgets the view of no camera that was asked for longest ago. False: all show one.
+bool Feed::Implementation::make_room() {
+  auto oldest = views.end();
+  for (auto entry = views.begin(); entry != views.end(); ++entry) {
+    if (entry->second.camera) continue;
+    if (oldest == views.end() || entry->second.wanted < oldest->second.wanted) oldest = entry;
+  }
+  if (oldest == views.end()) return false;
+  views.erase(oldest);
+  return true;
+}
+
+Feed::Feed(world_server::WorldServer& world) : impl_(std::make_unique<Implementation>(world)) {
+  impl_->exchange->take = [feed = impl_.get()](std::shared_ptr<Exposure> exposure) {
+    asio::post(feed->io, [feed, exposure = std::move(exposure)]() mutable { feed->take(std::move(exposure)); });
+  };
+  impl_->thread = std::thread([feed = impl_.get()] {
+    pthread_setname_np(pthread_self(), "kenaf-cameras");
+    for (;;) {
+      try {
+        feed->io.run();
+        return;
+      } catch (const std::exception& error) {
+        spdlog::error("cameras: {}", error.what());  // of one picture; the next is tried
+      }
+    }
+  });
+}
+
+Feed::~Feed() {
+  {
+    const std::lock_guard lock(impl_->exchange->mutex);
+    impl_->exchange->take = nullptr;
+  }
+  impl_->io.stop();
+  impl_->thread.join();
+}
+
+Feed::Look Feed::look(std::string_view view) {
+  Look out;
+  bool is_new = false;
+  {
+    const std::lock_guard lock(impl_->mutex);
+    auto found = impl_->views.find(view);
+    if (found == impl_->views.end()) {
+      if (impl_->views.size() >= kMostViews && !impl_->make_room())
+        return {nullptr, "too many cameras are asked for at the same time"};
+      found = impl_->views.emplace(view, Implementation::View{}).first;
+      is_new = true;
+    }
+    Implementation::View& entry = found->second;
+    entry.wanted = Clock::now();
+    out.none = entry.none;
+    if (entry.camera) {
+      if (const auto shown = impl_->shown.find(*entry.camera); shown != impl_->shown.end()) {
+        out.frame = shown->second.newest;
+        out.none = shown->second.fault;
+      }
+    }
+  }
+  if (is_new) asio::post(impl_->io, [feed = impl_.get()] { feed->wake(); });
+  return out;
+}
+
+std::vector<std::shared_ptr<const Frame>> Feed::newest() const {
+  std::vector<FramePtr> out;
+  const std::lock_guard lock(impl_->mutex);
+  for (const auto& [id, shown] : impl_->shown) {
+    if (shown.newest) out.push_back(shown.newest);
+  }
+  return out;
+}
+
+std::shared_ptr<void> Feed::listen(std::function<void()> told) {
+  const std::lock_guard lock(impl_->listeners_mutex);
+  const std::uint64_t number = ++impl_->last_listener;
+  impl_->listeners.emplace(number, std::move(told));
+  return {nullptr, [feed = impl_.get(), number](void*) {
+            const std::lock_guard handle_lock(feed->listeners_mutex);
+            feed->listeners.erase(number);
+          }};
+}
+
+}  // namespace kenaf::image_server

@@ -1,0 +1,107 @@
+#include "server/image_server/image_server.hpp"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <map>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "server/image_server/image_connection.hpp"
+
+namespace kenaf::image_server {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+namespace {
+
+tcp::acceptor listen_for_readers(asio::io_context& io, const std::string& address, std::uint16_t port) {
+  error_code error;
+  const auto ip = asio::ip::make_address(address == "localhost" ? "127.0.0.1" : address, error);
+  if (error) throw std::runtime_error(fmt::format("\"{}\" is no address to listen on", address));
+  try {
+    return tcp::acceptor(io, tcp::endpoint(ip, port));
+  } catch (const boost::system::system_error& failure) {
+    throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; choose another by --camera-port", address, port,
+                                         failure.code().message()));
+  }
+}
+
+}  // namespace
+
+struct ImageServer::Implementation {
+  Implementation(Feed& feed, const std::string& address, std::uint16_t port, ImageType type,
+                 const ImageServerLimits& limits)
+      : desk{feed, limits, type}, acceptor(listen_for_readers(io, address, port)) {}
+
+  void accept();
+  void serve();
+
+  ImageDesk desk;
+  asio::io_context io{1};
+  tcp::acceptor acceptor;
+  asio::steady_timer accept_again{io};
+  std::shared_ptr<void> listening;
+  std::thread thread;
+};
+
+void ImageServer::Implementation::accept() {
+  acceptor.async_accept([this](error_code error, tcp::socket socket) {
+    if (error == asio::error::operation_aborted) return;
+    if (!error) {
+      if (desk.readers.size() < desk.limits.connections) serve_images(desk, std::move(socket));
+      return accept();
+    }
+    accept_again.expires_after(std::chrono::milliseconds(100));  // most often too many open files
+    accept_again.async_wait([this](error_code cancelled) {
+      if (!cancelled) accept();
+    });
+  });
+}
+
+void ImageServer::Implementation::serve() {
+  pthread_setname_np(pthread_self(), "kenaf-images");
+  for (;;) {
+    try {
+      io.run();
+      return;
+    } catch (const std::exception& error) {
+      spdlog::error("image server: {}", error.what());  // of one connection; the others are served on
+    }
+  }
+}
+
+ImageServer::ImageServer(Feed& feed, const std::string& address, std::uint16_t port, ImageType type,
+                         const ImageServerLimits& limits)
+    : impl_(std::make_unique<Implementation>(feed, address, port, type, limits)) {
+  Implementation& server = *impl_;
+  server.accept();
+  server.listening = feed.listen([&server] {
+    asio::post(server.io, [&server] {
+      for (std::size_t i = server.desk.readers.size(); i-- > 0;) server.desk.readers[i]->look();
+    });
+  });
+  server.thread = std::thread([&server] { server.serve(); });
+}
+
+ImageServer::~ImageServer() {
+  impl_->listening.reset();
+  impl_->io.stop();
+  impl_->thread.join();
+}
+
+std::uint16_t ImageServer::port() const {
+  return impl_->acceptor.local_endpoint().port();
+}
+
+}  // namespace kenaf::image_server

@@ -1,0 +1,24 @@
+#include "server/image_server/served_cameras.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <stdexcept>
+
+namespace kenaf::image_server {
+
+ServedCameras open_cameras(world_server::WorldServer& world, const CameraOptions& options, const std::string& address) {
+  ServedCameras cameras;
+  if (!options.on) return cameras;
+  cameras.feed = std::make_unique<Feed>(world);
+  if (!options.image_server) return cameras;
+  try {
+    cameras.image_server =
+        std::make_unique<ImageServer>(*cameras.feed, address, options.image_port, options.image_type);
+    spdlog::info("camera pictures on {}:{}", address, cameras.image_server->port());
+  } catch (const std::runtime_error& error) {
+    spdlog::warn("no image server: {}", error.what());
+  }
+  return cameras;
+}
+
+}  // namespace kenaf::image_server

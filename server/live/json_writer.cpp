@@ -1,0 +1,88 @@
+#include "server/live/json_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+namespace kenaf::live {
+
+JsonWriter& JsonWriter::raw(std::string_view text) {
+  out_ += text;
+  return *this;
+}
+
+JsonWriter& JsonWriter::key(std::string_view name) {
+  comma();
+  out_ += '"';
+  out_ += name;
+  out_ += "\":";
+  return *this;
+}
+
+JsonWriter& JsonWriter::comma() {
+  if (!out_.empty() && out_.back() != '{' && out_.back() != '[') out_ += ',';
+  return *this;
+}
+
+JsonWriter& JsonWriter::open(char bracket) {
+  out_ += bracket;
+  return *this;
+}
+
+JsonWriter& JsonWriter::close(char bracket) {
+  out_ += bracket;
+  return *this;
+}
+
+JsonWriter& JsonWriter::number(double value, int digits) {
+  if (!std::isfinite(value)) return raw("null");
+  fmt::format_to(std::back_inserter(out_), "{:.{}f}", value, digits);
+  while (digits > 0 && out_.back() == '0') out_.pop_back();
+  if (out_.back() == '.') out_.pop_back();
+  return *this;
+}
+
+JsonWriter& JsonWriter::integer(std::uint64_t value) {
+  fmt::format_to(std::back_inserter(out_), "{}", value);
+  return *this;
+}
+
+JsonWriter& JsonWriter::text(std::string_view value) {
+  using nlohmann::json;
+  return raw(json(value).dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+JsonWriter& JsonWriter::numbers(std::span<const double> values, int digits) {
+  open('[');
+  for (const double value : values) comma().number(value, digits);
+  return close(']');
+}
+
+JsonWriter& JsonWriter::vector(const Eigen::Vector3d& v) {
+  return numbers(std::array{v.x(), v.y(), v.z()});
+}
+
+JsonWriter& JsonWriter::rotation(const Eigen::Quaterniond& q) {
+  return numbers(std::array{q.w(), q.x(), q.y(), q.z()}, 5);
+}
+
+void write_dimensions(JsonWriter& out, const physics::RobotDimensions& size) {
+  out.key("body").vector(size.body_size_m);
+  out.key("track").open('{');
+  out.key("length").number(size.track_length_m).key("radius").number(size.track_radius_m);
+  out.key("width").number(size.track_width_m).key("at").vector(size.p_BT_m).close('}');
+  if (size.has_flippers) {
+    out.key("flipper").open('{');
+    out.key("length").number(size.flipper_length_m).key("width").number(size.flipper_width_m);
+    out.key("pivot_radius").number(size.pivot_radius_m).key("tip_radius").number(size.tip_radius_m);
+    out.key("at").vector(size.p_BPivot_m);
+    out.key("min").number(size.min_angle_rad).key("max").number(size.max_angle_rad);
+    out.key("max_speed").number(size.max_flipper_radps).close('}');
+  }
+  out.key("max_speed").number(size.max_speed_mps);
+}
+
+}  // namespace kenaf::live

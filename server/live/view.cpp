@@ -1,0 +1,182 @@
+#include "server/live/view.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+#include "server/live/hub.hpp"
+#include "server/live/messages.hpp"
+#include "server/live/picture_stream.hpp"
+#include "server/live/scene_bytes.hpp"
+#include "server/live/speed_meter.hpp"
+#include "server/live/viewer.hpp"
+#include "server/live/web_server.hpp"
+
+namespace kenaf::live {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+namespace {
+
+namespace http = boost::beast::http;
+
+Route scene_route(const Hub& hub) {
+  return [&hub](const Visit& visit) -> std::variant<Reply, TakeOver> {
+    if (!visit.rest.empty()) return reply_in_words(http::status::not_found, "There is no such file.\n");
+    return Reply{http::status::ok, "application/octet-stream", hub.scene};
+  };
+}
+
+Route viewer_route(Hub& hub) {
+  return [&hub](const Visit& visit) -> std::variant<Reply, TakeOver> {
+    if (!visit.rest.empty()) return reply_in_words(http::status::not_found, "There is no such file.\n");
+    if (!boost::beast::websocket::is_upgrade(visit.request)) {
+      return reply_in_words(http::status::upgrade_required, "This is for WebSockets.\n");
+    }
+    if (hub.viewers.size() >= hub.limits.viewers) {
+      return reply_in_words(http::status::service_unavailable, "Too many look on already.\n");
+    }
+    return TakeOver([&hub](boost::beast::tcp_stream stream, PageRequest upgrade) {
+      start_viewer(hub, std::move(stream), std::move(upgrade));
+    });
+  };
+}
+
+Route picture_route(Hub& hub) {
+  return [&hub](const Visit& visit) -> std::variant<Reply, TakeOver> {
+    auto picture = parse_picture_path(visit.rest);
+    if (!picture) return reply_in_words(http::status::not_found, "There is no such file.\n");
+    if (hub.cameras == nullptr) return reply_in_words(http::status::not_found, "The cameras are off.\n");
+    if (hub.picture_readers.size() >= hub.limits.pictures) {
+      return reply_in_words(http::status::service_unavailable, "Too many look through cameras already.\n");
+    }
+    return TakeOver([&hub, picture = std::move(*picture)](boost::beast::tcp_stream stream, const PageRequest&) {
+      start_pictures(hub, std::move(stream), picture);
+    });
+  };
+}
+
+}  // namespace
+
+struct View::Implementation {
+  Implementation(world_server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits,
+                 image_server::Feed* cameras)
+      : hub{.world = world,
+            .limits = limits,
+            .scene = std::make_shared<const std::string>(scene_bytes(world.world_description())),
+            .cameras = cameras,
+            .site = {.limits = limits,
+                     .token = token_for(options),
+                     .own_name = machine_name(),
+                     .assets = load_assets("index.html")}},
+        server(hub.site, options) {
+    hub.site.routes = {{"/scene", scene_route(hub)}, {"/ws", viewer_route(hub)}, {"/camera", picture_route(hub)}};
+    hub.viewer_came = [this] {
+      if (!looking) look();
+    };
+    if (cameras == nullptr) return;
+    told_of_frames = cameras->listen([this] {
+      asio::post(hub.site.io, [this] {
+        for (std::size_t i = hub.picture_readers.size(); i-- > 0;) hub.picture_readers[i]->look();
+      });
+    });
+  }
+
+  void look();
+  void show();
+  void wait_and_look();
+
+  Hub hub;
+  asio::steady_timer next_look{hub.site.io};
+  // Handed to the world's thread and back: it belongs to one of the two at a time.
+  world_server::WorldState state;
+  world_server::WorldState told;  // whose inventory the viewers have
+  bool looking = false;           // a look is under way or will be
+  std::uint64_t states = 0;
+  SpeedMeter speed;
+  std::shared_ptr<void> told_of_frames;
+  WebServer server;  // last: its thread ends before what it uses
+};
+
+void View::Implementation::look() {
+  looking = true;
+  hub.ask(
+      [this](world_server::Simulation& simulation) {
+        world_server::read_state(simulation, state);
+        return true;
+      },
+      [this](bool) {
+        show();
+        wait_and_look();
+      });
+}
+
+void View::Implementation::show() {
+  if (!hub.inventory || !same_inventory(state, told)) {
+    told = state;
+    hub.inventory = std::make_shared<const std::string>(inventory_message(state));
+    for (std::size_t i = hub.viewers.size(); i-- > 0;) hub.viewers[i]->tell(hub.inventory);
+  }
+  const double reached = speed.read(state.wall_s, state.time_s);
+  std::vector<FrameAge> frames;
+  if (hub.cameras != nullptr) {
+    for (const auto& frame : hub.cameras->newest()) {
+      frames.push_back({frame->id, frame->number, frame->robot_time_s, image_server::age_s(*frame)});
+    }
+  }
+  const auto message =
+      std::make_shared<const std::string>(state_message(state, ++states, reached, hub.viewers.size(), frames));
+  for (std::size_t i = hub.viewers.size(); i-- > 0;) hub.viewers[i]->show(message);
+}
+
+void View::Implementation::wait_and_look() {
+  next_look.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(hub.limits.period_s)));
+  next_look.async_wait([this](error_code cancelled) {
+    if (cancelled) return;
+    looking = !hub.viewers.empty();
+    if (looking) look();
+  });
+}
+
+View::View(world_server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits,
+           image_server::Feed* cameras)
+    : impl_(std::make_unique<Implementation>(world, options, limits, cameras)) {
+  impl_->server.start();
+}
+
+View::~View() = default;
+
+std::uint16_t View::port() const {
+  return impl_->server.port();
+}
+
+std::string View::url() const {
+  return impl_->server.url();
+}
+
+std::unique_ptr<View> open_view(world_server::WorldServer& world, const ViewOptions& options,
+                                image_server::Feed* cameras) {
+  if (!options.on) return nullptr;
+  try {
+    auto view = std::make_unique<View>(world, options, ViewLimits{}, cameras);
+    const std::string url = view->url();
+    spdlog::info("live view: {}", url);
+    // A token that was made is known from here alone, however little is logged.
+    const bool made_token = options.token.empty() && url.find("#token=") != std::string::npos;
+    if (made_token && !spdlog::should_log(spdlog::level::info)) fmt::print(stderr, "live view: {}\n", url);
+    return view;
+  } catch (const std::runtime_error& error) {
+    spdlog::warn("no live view: {}", error.what());
+    return nullptr;
+  }
+}
+
+}  // namespace kenaf::live

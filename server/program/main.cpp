@@ -1,0 +1,111 @@
+// kenaf-world: the simulated world behind the USARSim protocol.
+#include <pthread.h>
+#include <signal.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "server/image_server/served_cameras.hpp"
+#include "server/live/view.hpp"
+#include "server/world_server/world_server.hpp"
+
+namespace {
+
+// Written aside and renamed: who finds the file finds the whole number in it.
+void write_port_file(const std::filesystem::path& path, std::uint16_t port) {
+  std::filesystem::path aside = path;
+  aside += ".new";
+  std::ofstream file(aside);
+  file << port << '\n';
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(aside, path, error);
+  if (!file || error) throw std::runtime_error("cannot write the port file " + path.string());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  kenaf::world_server::ServerOptions options;
+  std::string dialect = "ut2004", log_level = "info", port_file, view = "127.0.0.1:8080", token, cameras = "on",
+              camera_port = "5003", camera_image = "good";
+  CLI::App app{"The Kenaf world server: simulated robots behind the USARSim protocol, a TCP connection for each.",
+               "kenaf-world"};
+  app.set_version_flag("--version", KENAF_VERSION);
+  app.add_option("--world", options.world, "World: a shipped name or an SDF file")->capture_default_str();
+  app.add_option("--robot", options.robot,
+                 "What USARBot.Kenaf is: a shipped name or a TOML file. Other classes, such as USARBot.P2AT, keep "
+                 "their shipped descriptions")
+      ->capture_default_str();
+  app.add_option("--port", options.port, "TCP port; 0: any free one, which is printed")->capture_default_str();
+  app.add_option("--listen", options.listen_address, "Address to listen on")->capture_default_str();
+  app.add_option("--speed", options.speed, "Times real time; 0: as fast as it goes")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--dialect", dialect, "How messages are written; reading understands both")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"ut2004", "udk"}));
+  app.add_option("--seed", options.seed, "Seed of the sensors' noise")->capture_default_str();
+  app.add_option("--time-step", options.time_step_s, "Physics time step in seconds")->capture_default_str();
+  app.add_option("--port-file", port_file, "Write the port into this file once the server listens");
+  app.add_option("--view", view, "Where a browser finds the live view, ADDRESS:PORT; off: nowhere")
+      ->capture_default_str();
+  app.add_option("--view-token", token, "What a browser must know; where it is not on loopback one is made");
+  app.add_option("--cameras", cameras, "off: no pictures from the robots' cameras, neither by TCP nor in the live view")
+      ->capture_default_str();
+  app.add_option("--camera-port", camera_port, "TCP port of USARSim's image server; 0: any free one; off: none")
+      ->capture_default_str();
+  app.add_option("--camera-image", camera_image, "What it sends: raw, or a JPEG: superb, good, normal, fair, bad")
+      ->capture_default_str();
+  app.add_option("--log-level", log_level, "What is logged")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
+      ->transform(CLI::Transformer({{"warning", "warn"}}).description(""));  // the word that is logged
+  CLI11_PARSE(app, argc, argv);
+  options.udk_dialect = dialect == "udk";
+  spdlog::set_level(spdlog::level::from_str(log_level));
+  spdlog::flush_on(spdlog::level::info);
+
+  // Blocked in every thread, so that only the one that waits for them gets them.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
+  try {
+    kenaf::live::ViewOptions view_options = kenaf::live::parse_view_options(view);
+    view_options.token = kenaf::live::parse_view_token(token);
+    kenaf::image_server::CameraOptions camera_options;
+    kenaf::image_server::set_cameras(camera_options, cameras);
+    kenaf::image_server::set_camera_port(camera_options, camera_port);
+    kenaf::image_server::set_camera_image(camera_options, camera_image);
+    kenaf::world_server::WorldServer server(options);
+    const auto served_cameras = kenaf::image_server::open_cameras(server, camera_options, options.listen_address);
+    const auto live_view = kenaf::live::open_view(server, view_options, served_cameras.feed.get());
+    std::thread stopper([&] {
+      int signal = 0;
+      sigwait(&signals, &signal);
+      server.stop();
+    });
+    int status = 0;
+    try {
+      spdlog::info("world {} on {}:{}", options.world, options.listen_address, server.port());
+      if (!port_file.empty()) write_port_file(port_file, server.port());
+      server.run();
+      spdlog::info("stopped");
+    } catch (const std::exception& error) {
+      spdlog::critical("{}", error.what());
+      status = 1;
+    }
+    pthread_kill(stopper.native_handle(), SIGTERM);  // where it was not a signal that ended it
+    stopper.join();
+    return status;
+  } catch (const std::exception& error) {
+    spdlog::critical("{}", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,84 @@
+#include "server/world_server/connection.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/buffer.hpp>
+#include <chrono>
+#include <exception>
+
+namespace kenaf::world_server {
+
+using boost::system::error_code;
+namespace asio = boost::asio;
+
+double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Connection::Connection(asio::ip::tcp::socket socket, Simulation& simulation, std::string peer,
+                       std::function<void(Connection&)> closed)
+    : socket_(std::move(socket)),
+      simulation_(simulation),
+      session_(simulation.connect(std::move(peer))),
+      closed_(std::move(closed)) {}
+
+void Connection::start() {
+  error_code ignored;  // a client that is gone already shows at the first read
+  socket_.non_blocking(true, ignored);
+  socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
+  flush();
+  read();
+}
+
+void Connection::read() {
+  if (!open_) return;
+  socket_.async_read_some(asio::buffer(received_), [self = shared_from_this()](error_code error, std::size_t count) {
+    if (!self->open_) return;
+    if (error) return self->close();
+    try {
+      self->simulation_.receive(self->session_, {self->received_.data(), count}, steady_seconds());
+    } catch (const std::exception& failure) {  // whatever one client sends, the others' world goes on
+      spdlog::error("{}: closed, what it sent cannot be obeyed: {}", self->session_.peer, failure.what());
+      return self->close();
+    }
+    self->flush();
+    if (self->open_ && self->session_.close) self->close();
+    self->read();
+  });
+}
+
+void Connection::flush() {
+  if (!open_ || session_.out.empty()) return;
+  if (!waiting_) {
+    error_code error;
+    const std::size_t sent = socket_.write_some(asio::buffer(session_.out), error);
+    session_.out.erase(0, sent);
+    if (error && error != asio::error::would_block) return close();
+  }
+  if (session_.out.size() > kMostUnread_bytes) {
+    if (!session_.close) spdlog::warn("{}: closed: it does not read what it is sent", session_.peer);
+    return close();
+  }
+  if (!session_.out.empty() && !waiting_) wait_until_writable();
+}
+
+void Connection::wait_until_writable() {
+  waiting_ = true;
+  socket_.async_wait(asio::ip::tcp::socket::wait_write, [self = shared_from_this()](error_code error) {
+    self->waiting_ = false;
+    if (!self->open_) return;
+    if (error) return self->close();
+    self->flush();
+  });
+}
+
+void Connection::close() {
+  if (!open_) return;
+  open_ = false;
+  error_code ignored;
+  socket_.close(ignored);
+  simulation_.disconnect(session_);
+  closed_(*this);
+}
+
+}  // namespace kenaf::world_server

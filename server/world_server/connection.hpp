@@ -1,0 +1,39 @@
+// The socket of one client.
+#pragma once
+
+#include <array>
+#include <boost/asio/ip/tcp.hpp>
+#include <functional>
+#include <memory>
+
+#include "server/world_server/simulation.hpp"
+
+namespace kenaf::world_server {
+
+double steady_seconds();
+
+class Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  // `closed` is called once, when the client is gone or was let go.
+  Connection(boost::asio::ip::tcp::socket socket, Simulation& simulation, std::string peer,
+             std::function<void(Connection&)> closed);
+
+  void start();
+  // Hands to the system what the session wants sent, as far as it takes it now; the rest follows by itself.
+  void flush();
+  void close();
+
+ private:
+  void read();
+  void wait_until_writable();
+
+  boost::asio::ip::tcp::socket socket_;
+  Simulation& simulation_;
+  Session& session_;
+  std::function<void(Connection&)> closed_;
+  bool open_ = true;
+  bool waiting_ = false;  // until the socket takes more
+  std::array<char, 16384> received_;
+};
+
+}  // namespace kenaf::world_server

@@ -1,0 +1,38 @@
+// USARSim's orders to a flipper joint, as DRIVE {Name n} {Order i} {Value v} and SET {Type Joint} give them.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "physics/world.hpp"
+
+namespace kenaf::world_server {
+
+// The numbers are the protocol's (UT2004 KRobot).
+enum class JointOrder {
+  angle = 0,
+  speed = 1,
+  torque = 2,
+  brake = 3,
+  relative_angle = 10,
+  relative_speed = 11,
+  relative_torque = 12
+};
+
+// "Angle", "RelVelocity", "10", ...; UDK's "Target" is an angle.
+std::optional<JointOrder> parse_joint_order(std::string_view text);
+
+// The order in which UT2004 lists the joints in STA, and {Name AllJoints} {Params a,b,c,d} is read.
+inline constexpr std::array kUsarsimJoints = {robot::kFrontRight, robot::kFrontLeft, robot::kRearRight,
+                                              robot::kRearLeft};
+
+// "FRFlipper" and so on, without case.
+std::optional<robot::Flipper> find_flipper(std::string_view name);
+
+// The joint command for `value` (USARSim's sign), within what the robot can do; `truth` is what relative orders start
+// from.
+robot::JointCommand joint_command(const physics::RobotDescription& description, const physics::RobotTruth& truth,
+                                  robot::Flipper flipper, JointOrder order, double value);
+
+}  // namespace kenaf::world_server

@@ -1,0 +1,18 @@
+// What the server tells a client about its robot; each function appends whole messages to session.out.
+#pragma once
+
+#include "server/world_server/simulation.hpp"
+
+namespace kenaf::world_server {
+
+// SEN: every sensor that has something to report.
+void write_sensors(Simulation& simulation, Session& session);
+// The same of given samples, in the order of the UT2004 server. Range scans are left turned round.
+void write_samples(std::vector<physics::SensorSample>& samples, const std::vector<physics::SensorDescription>& sensors,
+                   Dialect dialect, const Formats& formats, bool extended, std::string& out);
+// MISSTA (UT2004) or ASTA (UDK): a line for each mission package.
+void write_mission_packages(const Simulation& simulation, Session& session);
+// STA
+void write_status(const Simulation& simulation, Session& session);
+
+}  // namespace kenaf::world_server

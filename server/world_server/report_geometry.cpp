@@ -1,0 +1,264 @@
+// GETGEO and GETCONF: where things are mounted, and what they can do. Always answered: a type that the robot does not
+// have is echoed, as UT2004 did; UDK left its client waiting.
+#include <algorithm>
+#include <cmath>
+
+#include "server/world_server/joint_orders.hpp"
+#include "server/world_server/verbs.hpp"
+#include "server/world_server/wire_frames.hpp"
+
+namespace kenaf::world_server {
+
+namespace {
+
+using physics::SensorDescription;
+using physics::SensorType;
+using protocol::usarsim::MessageWriter;
+
+struct Request {
+  std::string type, name;  // name: "" = all
+  bool geometry;           // GEO, not CONF
+};
+
+std::string_view short_class_name(const physics::RobotDescription& robot) {
+  const std::string_view name = robot.usarsim_class;
+  return name.substr(name.rfind('.') + 1);  // npos + 1 is 0
+}
+
+// Over everything but the flippers, which move.
+protocol::frames::Vector3 dimensions_m(const physics::RobotDescription& robot) {
+  const double half_height_m = robot.body.size_m.z() / 2;
+  const double top_m = std::max(half_height_m, robot.track.p_BT_m.z() + robot.track.end_radius_m);
+  const double bottom_m = std::min(-half_height_m, robot.track.p_BT_m.z() - robot.track.end_radius_m);
+  return {std::max(robot.body.size_m.x(), robot.track.length_m),
+          std::max(robot.body.size_m.y(), robot.track_gauge_m() + robot.track.width_m), top_m - bottom_m};
+}
+
+void write_robot_geometry(MessageWriter& writer, const physics::RobotDescription& robot,
+                          protocol::usarsim::NumberFormat format) {
+  writer.begin("GEO")
+      .text("Type", "GroundVehicle")
+      .text("Name", short_class_name(robot))
+      .numbers("Dimensions", dimensions_m(robot), format)
+      .numbers("COG", wire_vector(robot.body.p_BBcm_m), format)
+      .number("WheelRadius", robot.drive.sprocket_radius_m, format)
+      .number("WheelSeparation", robot.track_gauge_m(), format)
+      .number("WheelBase", robot.track.length_m - 2 * robot.track.end_radius_m, format)
+      .end();
+}
+
+// MaxSpeed is the spin of the driven wheel in rad/s, as clients use it to scale DRIVE.
+void write_robot_configuration(MessageWriter& writer, const physics::RobotDescription& robot, Dialect dialect,
+                               protocol::usarsim::NumberFormat format) {
+  writer.begin("CONF");
+  if (dialect == Dialect::ut2004) writer.text("Type", "GroundVehicle").text("Name", short_class_name(robot));
+  if (dialect == Dialect::udk) writer.text("Name", short_class_name(robot)).text("Type", "GroundVehicle");
+  const double radius_m = robot.drive.sprocket_radius_m;
+  writer.text("SteeringType", "SkidSteered")
+      .number("Mass", robot.total_mass_kg(), format)
+      .number("MaxSpeed", protocol::frames::spin_from_surface_speed(robot.drive.max_speed_mps, radius_m), format)
+      .number("MaxTorque", robot.drive.max_force_n * radius_m, format)
+      .integer("MaxFrontSteer", 0)
+      .integer("MaxRearSteer", 0)
+      .end();
+}
+
+// `mount`: what turns it; empty: it is fixed on the robot.
+void add_mount(MessageWriter& writer, Dialect dialect, std::string_view name, const physics::Pose& X_B,
+               const physics::RobotDescription& robot, protocol::usarsim::NumberFormat format,
+               std::string_view mount = {}) {
+  const protocol::frames::Vector3 location = wire_vector(X_B.p), orientation = wire_angles(X_B.q);
+  if (dialect == Dialect::ut2004) {
+    writer.open_group("Name", name)
+        .add_numbers("Location", location, format)
+        .add_numbers("Orientation", orientation, format)
+        .add_text("Mount", mount.empty() ? "HARD" : mount)
+        .close_group();
+    return;
+  }
+  writer.text("Name", name)
+      .numbers("Location", location, format)
+      .numbers("Orientation", orientation, format)
+      .text("Mount", mount.empty() ? short_class_name(robot) : mount);
+}
+
+void add_configuration(MessageWriter& writer, const SensorDescription& sensor, double ticks_per_radian,
+                       std::string_view name, protocol::usarsim::NumberFormat format) {
+  writer.text("Name", name).number("ScanInterval", sensor.period_s, format);
+  switch (sensor.type) {
+    case SensorType::encoder:
+      writer.number("Resolution", 1 / ticks_per_radian, format);
+      break;
+    case SensorType::sonar:
+      writer.number("MaxRange", sensor.max_range_m, format)
+          .number("MinRange", sensor.min_range_m, format)
+          .number("BeamAngle", sensor.field_of_view_rad, format);
+      break;
+    case SensorType::range_scanner:
+      writer.number("MaxRange", sensor.max_range_m, format)
+          .number("MinRange", sensor.min_range_m, format)
+          .number("Resolution", sensor.resolution_rad, format)
+          .number("Fov", sensor.field_of_view_rad, format)
+          .boolean("Panning", true)
+          .boolean("Tilting", false);
+      break;
+    default:
+      break;
+  }
+}
+
+bool write_sensors(MessageWriter& writer, const Simulation& simulation, const Session& session,
+                   const Request& request) {
+  const physics::RobotDescription& robot = *session.robot->description;
+  const protocol::usarsim::NumberFormat format = session.formats.value;
+  bool found = false;
+  for (const SensorDescription& sensor : robot.sensors) {
+    if (!protocol::usarsim::equal_ignoring_case(physics::usarsim_type_name(sensor.type), request.type)) continue;
+    const bool encoder = sensor.type == SensorType::encoder;
+    // An encoder sensor is known by its two sides.
+    for (const std::string_view side : {"ECLeft", "ECRight"}) {
+      const std::string_view name = encoder ? side : std::string_view(sensor.name);
+      if (!request.name.empty() && !protocol::usarsim::equal_ignoring_case(name, request.name)) continue;
+      if (!found) writer.begin(request.geometry ? "GEO" : "CONF").text("Type", request.type);
+      found = true;
+      if (request.geometry) {
+        add_mount(writer, simulation.dialect, name, sensor.X_BS, robot, format);
+      } else {
+        add_configuration(writer, sensor, robot.drive.encoder_counts_per_radian, name, format);
+      }
+      if (!encoder) break;
+    }
+  }
+  if (found) writer.end();
+  return found;
+}
+
+// A line for each package, as clients of UT2004 read them.
+bool write_mission_packages(MessageWriter& writer, const Simulation& simulation, const Session& session,
+                            const Request& request) {
+  const physics::RobotDescription& robot = *session.robot->description;
+  const protocol::usarsim::NumberFormat format = session.formats.value;
+  bool found = false;
+  for (const physics::MissionPackageDescription& package : robot.mission_packages) {
+    if (!request.name.empty() && !protocol::usarsim::equal_ignoring_case(package.name, request.name)) continue;
+    found = true;
+    writer.begin(request.geometry ? "GEO" : "CONF").text("Type", request.type);
+    if (request.geometry) {
+      add_mount(writer, simulation.dialect, package.name, package.X_BM, robot, format);
+    } else {
+      writer.text("Name", package.name);
+    }
+    for (std::size_t link = 0; link < package.links.size(); ++link) {
+      writer.integer("Link", static_cast<std::int64_t>(link) + 1);
+      if (request.geometry) {
+        writer.integer("ParentLink", link == 0 ? -1 : static_cast<std::int64_t>(link));
+      } else {
+        writer.text("JointType", "Revolute")
+            .number("MaxSpeed", package.links[link].max_speed_radps, format)
+            .number("MaxTorque", 0, format)
+            .number("MinValue", protocol::frames::usarsim_link_from_rep103(package.links[link].max_rad), format)
+            .number("MaxValue", protocol::frames::usarsim_link_from_rep103(package.links[link].min_rad), format);
+      }
+    }
+    writer.end();
+  }
+  return found;
+}
+
+// {Type Joint}: USARSim had no word for where its flippers are, so this one is this server's own.
+bool write_flippers(MessageWriter& writer, const Session& session, const Request& request) {
+  const physics::RobotDescription& robot = *session.robot->description;
+  if (!robot.has_flippers()) return false;
+  const physics::FlipperDescription& flipper = robot.flipper.front();
+  const protocol::usarsim::NumberFormat format = session.formats.value;
+  bool found = false;
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+    const auto which = static_cast<robot::Flipper>(i);
+    const char* name = protocol::frames::usarsim_flipper_name(which);
+    if (!request.name.empty() && !protocol::usarsim::equal_ignoring_case(name, request.name)) continue;
+    if (!found) writer.begin(request.geometry ? "GEO" : "CONF").text("Type", request.type);
+    found = true;
+    writer.text("Name", name);
+    if (request.geometry) {
+      const bool rear = which == robot::kRearLeft || which == robot::kRearRight;
+      const bool right = which == robot::kFrontRight || which == robot::kRearRight;
+      const Eigen::Vector3d mirror(rear ? -1 : 1, right ? -1 : 1, 1);
+      writer.numbers("Location", wire_vector(flipper.p_BPivot_m.cwiseProduct(mirror)), format)
+          .number("Length", flipper.length_m, format);
+    } else {
+      const double a = protocol::frames::usarsim_flipper_from_tip_up(which, flipper.min_angle_rad);
+      const double b = protocol::frames::usarsim_flipper_from_tip_up(which, flipper.max_angle_rad);
+      writer.text("JointType", "Revolute")
+          .number("MaxSpeed", robot.servo.max_speed_radps, format)
+          .number("MaxTorque", robot.servo.max_torque_nm, format)
+          .number("MinValue", std::min(a, b), format)
+          .number("MaxValue", std::max(a, b), format);
+    }
+  }
+  if (found) writer.end();
+  return found;
+}
+
+// A camera that a package turns is where it is while the package's links are at 0.
+bool write_cameras(MessageWriter& writer, const Simulation& simulation, const Session& session,
+                   const Request& request) {
+  const physics::RobotDescription& robot = *session.robot->description;
+  const protocol::usarsim::NumberFormat format = session.formats.value;
+  bool found = false;
+  for (std::size_t i = 0; i < robot.cameras.size(); ++i) {
+    const physics::CameraDescription& camera = robot.cameras[i];
+    if (!request.name.empty() && !protocol::usarsim::equal_ignoring_case(camera.name, request.name)) continue;
+    if (!found) writer.begin(request.geometry ? "GEO" : "CONF").text("Type", request.type);
+    found = true;
+    if (request.geometry && camera.mission_package) {
+      const physics::MissionPackageDescription& package = robot.mission_packages[*camera.mission_package];
+      add_mount(writer, simulation.dialect, camera.name, package.X_BM, robot, format, package.name);
+    } else if (request.geometry) {
+      add_mount(writer, simulation.dialect, camera.name, camera.X_BC, robot, format);
+    } else {
+      writer.text("Name", camera.name)
+          .number("CameraDefFov", camera.field_of_view_rad, format)
+          .number("CameraMinFov", camera.min_field_of_view_rad, format)
+          .number("CameraMaxFov", camera.max_field_of_view_rad, format)
+          .number("CameraFov", session.robot->camera_field_of_view_rad[i], format)
+          .integer("CameraResX", camera.width)
+          .integer("CameraResY", camera.height);
+    }
+  }
+  if (found) writer.end();
+  return found;
+}
+
+void reply(const Simulation& simulation, Session& session, const MessageView& message, bool geometry) {
+  const Request request{printable(text_of(message, "Type")), printable(text_of(message, "Name")), geometry};
+  MessageWriter writer(session.out);
+  if (session.robot) {
+    const physics::RobotDescription& robot = *session.robot->description;
+    if (request.type.empty() || is_any_of(request.type, {"Robot", "GroundVehicle"})) {
+      if (geometry) return write_robot_geometry(writer, robot, session.formats.value);
+      return write_robot_configuration(writer, robot, simulation.dialect, session.formats.value);
+    }
+    if (write_sensors(writer, simulation, session, request)) return;
+    if (is_any_of(request.type, {"MisPkg", "Actuator"}) &&
+        write_mission_packages(writer, simulation, session, request)) {
+      return;
+    }
+    if (is_any_of(request.type, {"Joint"}) && write_flippers(writer, session, request)) return;
+    if (is_any_of(request.type, {"Camera"}) && write_cameras(writer, simulation, session, request)) return;
+  }
+  writer.begin(geometry ? "GEO" : "CONF").text("Type", request.type);
+  if (!request.name.empty()) writer.text("Name", request.name);
+  writer.end();
+}
+
+}  // namespace
+
+void get_geometry(Simulation& simulation, Session& session, const MessageView& message) {
+  reply(simulation, session, message, true);
+}
+
+void get_configuration(Simulation& simulation, Session& session, const MessageView& message) {
+  reply(simulation, session, message, false);
+}
+
+}  // namespace kenaf::world_server

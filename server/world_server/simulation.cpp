@@ -1,0 +1,376 @@
+#include "server/world_server/simulation.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "physics/terrain_effects.hpp"
+#include "server/world_server/manual_drive.hpp"
+#include "server/world_server/report.hpp"
+#include "server/world_server/verbs.hpp"
+
+namespace kenaf::world_server {
+
+namespace {
+
+// Lines kept for the next frame; an honest client sends one or two.
+constexpr std::size_t kMostDeferredBytes = 65536;
+
+// What the servers' timers were: UT2004's msgTimer, measured 0.2 s; UDK's StatusTimer 0.1 s.
+double default_period_s(Dialect dialect) {
+  return dialect == Dialect::ut2004 ? 0.2 : 0.1;
+}
+
+physics::World make_world(const ServerOptions& options) {
+  if (!(options.time_step_s > 0 && options.time_step_s <= 0.02)) {
+    throw std::runtime_error(
+        fmt::format("a time step of {} s: choose more than 0 and at most 0.02 s", options.time_step_s));
+  }
+  std::vector<std::string> unsupported;
+  const physics::WorldDescription nominal = physics::load_world(options.world, unsupported);
+  for (const std::string& element : unsupported) spdlog::warn("world {}: ignored: {}", options.world, element);
+  physics::PhysicsSettings settings;
+  settings.time_step_s = options.time_step_s;
+  // There is one world, so it is the one that the effects of --robot make, whoever else comes to drive in it.
+  const physics::Effects effects = physics::load_robot(options.robot).effects;
+  return physics::World(physics::with_terrain_effects(nominal, effects), settings, options.seed);
+}
+
+std::vector<physics::BoxId> find_loose_boxes(const physics::World& world) {
+  std::vector<physics::BoxId> boxes = world.boxes();
+  std::erase_if(boxes, [&](physics::BoxId id) { return world.box(id).mass_kg == 0; });
+  return boxes;
+}
+
+bool is_word(std::string_view text) {
+  return std::ranges::all_of(text, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+}
+
+}  // namespace
+
+Simulation::Simulation(const ServerOptions& server_options)
+    : options(server_options),
+      dialect(server_options.udk_dialect ? Dialect::udk : Dialect::ut2004),
+      world(make_world(server_options)),
+      clock(server_options.time_step_s, server_options.speed),
+      loose_boxes(find_loose_boxes(world)) {
+  if (!(options.speed >= 0 && std::isfinite(options.speed))) {
+    throw std::runtime_error("the speed is a factor of real time, 0 or more (0: as fast as it goes)");
+  }
+  // Read now, so that a wrong file ends the start and not somebody's INIT.
+  descriptions_.emplace(options.robot, physics::load_robot(options.robot));
+}
+
+Session& Simulation::connect(std::string peer) {
+  Session& session = *sessions.emplace_back(std::make_unique<Session>());
+  session.id = ++last_session_;
+  session.peer = std::move(peer);
+  session.formats = formats_of(dialect);
+  session.schedule.start(0, steps_for(default_period_s(dialect)), false);
+  protocol::usarsim::MessageWriter(session.out)
+      .begin("NFO")
+      .text("Gametype", "BotDeathMatch")
+      .text("Level", world.description().name)
+      .integer("TimeLimit", 20)
+      .end();
+  return session;
+}
+
+void Simulation::disconnect(const Session& session) {
+  if (session.robot) {
+    world.remove_robot(session.robot->id);
+    if (connection_log.allow(wall_s)) spdlog::info("{}: robot {} left", session.peer, session.robot->name);
+  }
+  std::erase_if(sessions, [&](const auto& other) { return other.get() == &session; });
+}
+
+void Simulation::receive(Session& session, std::string_view bytes, double now_wall_s) {
+  wall_s = now_wall_s;
+  if (session.close) return;
+  if (!session.lines.push(bytes)) {
+    ++session.bad_lines;
+    complain(*this, session, "a line is longer than 64 KiB", "");
+  }
+  while (const auto line = session.lines.next()) {
+    handle_line(session, *line);
+    if (session.bad_lines > kMostBadLines) {
+      spdlog::warn("{}: closed after {} lines that are no USARSim messages", session.peer, session.bad_lines);
+      session.close = true;
+      return;
+    }
+    // Here and not once all lines are obeyed: a packet has room for hundreds of requests of long answers, and all of
+    // them would hold up the world.
+    if (session.out.size() > kMostUnread_bytes) {
+      spdlog::warn("{}: closed: more than {} MiB wait for it", session.peer, kMostUnread_bytes >> 20);
+      session.close = true;
+      return;
+    }
+  }
+}
+
+void Simulation::handle_line(Session& session, std::string_view line) {
+  MessageView message;
+  const protocol::usarsim::ParseError error = protocol::usarsim::parse_message(line, message);
+  if (error == protocol::usarsim::ParseError::empty) return;
+  if (error != protocol::usarsim::ParseError::none || !is_word(message.type)) {
+    ++session.bad_lines;
+    const bool parsed = error == protocol::usarsim::ParseError::none;
+    complain(*this, session, parsed ? "not a USARSim message" : protocol::usarsim::describe(error), line);
+    return;
+  }
+  const VerbEntry* entry = find_verb(message);
+  if (entry == nullptr) {
+    complain(*this, session, "an unknown verb is ignored", line);
+    return;
+  }
+  const auto frame = number_of(message, "Frame");
+  if (entry->takes_frame && frame && session.schedule.numbered()) {
+    if (!(*frame >= 0 && *frame < 1e15)) return complain(*this, session, "no such frame", line);
+    switch (session.schedule.take_answer(static_cast<std::uint64_t>(*frame), message.is("DRIVE"))) {
+      case FrameSchedule::Answer::in_time:
+        if (session.deferred.size() + line.size() > kMostDeferredBytes) {
+          return complain(*this, session, "too many commands for one frame", line);
+        }
+        session.deferred.append(line).push_back('\n');
+        return;
+      case FrameSchedule::Answer::ahead:
+        return complain(*this, session, "answers a frame that was not sent yet", line);
+      case FrameSchedule::Answer::late:
+        break;
+    }
+  }
+  entry->verb(*this, session, message);
+}
+
+void Simulation::send_due(Session& session) {
+  if (!session.robot) return;
+  watch_operator(*this, session);
+  if (session.placed_by_operator) return session.out.clear();
+  const std::uint64_t step = world.step_count();
+  if (!session.schedule.due(step)) return watch_silence(session);
+
+  // What was meant for the frame that begins now.
+  due_lines_.clear();
+  std::swap(due_lines_, session.deferred);
+  for (std::string_view rest = due_lines_; !rest.empty();) {
+    const std::size_t end = rest.find('\n');
+    MessageView message;
+    if (protocol::usarsim::parse_message(rest.substr(0, end), message) == protocol::usarsim::ParseError::none) {
+      if (const VerbEntry* entry = find_verb(message)) entry->verb(*this, session, message);
+    }
+    rest.remove_prefix(end + 1);
+  }
+  watch_silence(session);
+
+  session.schedule.begin_frame(step);
+  write_sensors(*this, session);
+  write_mission_packages(*this, session);
+  write_status(*this, session);
+}
+
+void Simulation::watch_silence(Session& session) {
+  if (session.command_timeout_steps == 0) return;
+  if (world.step_count() < session.last_command_step + session.command_timeout_steps) return;
+  session.silent = true;
+  if (!session.stop.due(world.step_count())) return;
+  SessionRobot& robot = *session.robot;
+  robot.command.track_speed_mps = {};
+  forget_curve(robot);
+  // A flipper that was told a speed or a torque would go on; one that was told an angle holds it.
+  for (robot::JointCommand& joint : robot.command.flipper) {
+    if (joint.mode != robot::JointMode::angle) joint = {robot::JointMode::brake, 0};
+  }
+  apply_command(session);
+}
+
+void Simulation::apply_command(const Session& session) {
+  world.set_command(session.robot->id, session.hold ? session.hold->command : session.robot->command);
+}
+
+bool Simulation::held_by_lockstep(std::optional<double>& until_wall_s) {
+  bool held = false;
+  for (const auto& session : sessions) {
+    if (!session->robot || !session->schedule.holds(world.step_count())) continue;
+    if (session->schedule.let_go(wall_s, options.lockstep_wait_s)) {
+      if (session->lockstep_log.allow(wall_s)) {
+        spdlog::warn("{}: frame {} is not answered; time runs on without waiting", session->peer,
+                     session->schedule.frame());
+      }
+      send_due(*session);
+      continue;
+    }
+    held = true;
+    const double until = session->schedule.holds_since_wall_s().value_or(wall_s) + options.lockstep_wait_s;
+    until_wall_s = std::min(until, until_wall_s.value_or(until));
+  }
+  return held;
+}
+
+Simulation::Progress Simulation::advance(double now_wall_s) {
+  wall_s = now_wall_s;
+  for (const auto& session : sessions) send_due(*session);
+
+  const bool stepping = !step_requests_.empty();
+  if (!stepping && (clock.paused() || robot_count() == 0)) {
+    idle_ = true;
+    return {};
+  }
+  if (idle_) clock.skip(wall_s);
+  idle_ = false;
+  dropped_s_ += clock.pass(wall_s);
+  if (!stepping && !clock.step_due()) return {false, clock.next_step_wall_s()};
+  std::optional<double> until_wall_s;
+  if (held_by_lockstep(until_wall_s)) {
+    dropped_s_ = 0;  // it is the client that takes its time
+    return {false, until_wall_s};
+  }
+  if (dropped_s_ > 0.5 * clock.speed() && behind_log_.allow(wall_s)) {
+    spdlog::warn("this machine is too slow for {} times real time: robot time fell behind by {:.2f} s", clock.speed(),
+                 dropped_s_);
+    dropped_s_ = 0;
+  }
+
+  world.step();
+  if (!stepping) clock.stepped();
+  if (world.step_count() >= next_call_step_) call_due(world.step_count());
+  tell_faults();
+  answer_steps();
+  for (const auto& session : sessions) send_due(*session);
+  return {true, std::nullopt};
+}
+
+bool Simulation::begin_steps(std::uint32_t session, std::uint64_t steps) {
+  constexpr std::size_t kMostWaiting = 1000;
+  if (step_requests_.size() >= kMostWaiting) return false;
+  set_paused(true);
+  const std::uint64_t from = step_requests_.empty() ? world.step_count() : step_requests_.back().until_step;
+  step_requests_.push_back({session, from + steps});
+  return true;
+}
+
+void Simulation::answer_steps() {
+  while (!step_requests_.empty() && world.step_count() >= step_requests_.front().until_step) {
+    if (Session* session = find_session(step_requests_.front().session)) answer(*this, *session, "Control", "Step");
+    step_requests_.erase(step_requests_.begin());
+  }
+}
+
+void Simulation::tell_faults() {
+  for (const auto& session : sessions) {
+    if (!session->robot) continue;
+    SessionRobot& robot = *session->robot;
+    const std::string& fault = world.fault(robot.id);
+    const bool is_new = !fault.empty() && !robot.fault_told;
+    robot.fault_told = !fault.empty();
+    if (!is_new) continue;
+    if (fault_log_.allow(wall_s))
+      spdlog::error(
+          "{}: the simulation of robot {} went wrong: {}; it stands still until it is moved or the world is reset",
+          session->peer, robot.name, fault);
+    answer(*this, *session, "Robot", robot.name, fault);
+  }
+}
+
+void Simulation::set_paused(bool paused) {
+  if (clock.paused() == paused) return;
+  clock.set_paused(paused);
+  // While time stands still no output falls due, so a client would never learn why it hears nothing.
+  for (const auto& session : sessions) {
+    if (session->robot && session->extended && session->schedule.frame() > 0) write_status(*this, *session);
+  }
+}
+
+void Simulation::call_at(const void* owner, std::uint64_t step, std::function<void(Simulation&)> then) {
+  std::erase_if(calls_, [owner](const Call& call) { return call.owner == owner; });
+  calls_.push_back({owner, step, std::move(then)});
+  call_due(world.step_count());
+}
+
+// They may ask for further calls.
+void Simulation::call_due(std::uint64_t step) {
+  std::vector<Call> due;
+  for (const Call& call : calls_) {
+    if (call.step <= step) due.push_back(call);
+  }
+  std::erase_if(calls_, [step](const Call& call) { return call.step <= step; });
+  next_call_step_ = kNever;
+  for (const Call& call : calls_) next_call_step_ = std::min(next_call_step_, call.step);
+  for (const Call& call : due) call.then(*this);
+}
+
+void Simulation::reset() {
+  world.reset();
+  for (const StepRequest& request : step_requests_) {
+    if (Session* session = find_session(request.session)) {
+      answer(*this, *session, "Control", "Step", "the world was put back to its start");
+    }
+  }
+  step_requests_.clear();
+  for (const auto& session : sessions) {
+    session->deferred.clear();
+    session->last_command_step = 0;
+    session->silent = false;
+    session->stop.over();
+    session->schedule.restart_at(0);
+    if (!session->robot) continue;
+    session->robot->command = resting_command(*session->robot->description);
+    forget_curve(*session->robot);
+    session->robot->normalized = false;
+    session->robot->camera_field_of_view_rad = unzoomed(*session->robot->description);
+    if (session->hold) {
+      session->hold->command = standing_command();
+      session->hold->stop.over();
+    }
+    apply_command(*session);
+  }
+  call_due(kNever);
+}
+
+const physics::RobotDescription* Simulation::description_for_class(std::string_view class_name) {
+  std::string name = physics::robot_name_for_class(class_name);
+  if (name.empty()) return nullptr;
+  if (name == "kenaf") name = options.robot;
+  auto found = descriptions_.find(name);
+  if (found == descriptions_.end()) {
+    try {
+      found = descriptions_.emplace(name, physics::load_robot(name)).first;
+    } catch (const std::runtime_error& error) {
+      spdlog::error("{}", error.what());
+      return nullptr;
+    }
+  }
+  return &found->second;
+}
+
+robot::Command Simulation::resting_command(const physics::RobotDescription& description) {
+  robot::Command command;
+  if (description.has_flippers()) {
+    command.flipper.fill({robot::JointMode::angle, description.flipper.front().start_angle_rad});
+  }
+  return command;
+}
+
+std::vector<double> Simulation::unzoomed(const physics::RobotDescription& description) {
+  std::vector<double> angles_rad;
+  for (const physics::CameraDescription& camera : description.cameras) angles_rad.push_back(camera.field_of_view_rad);
+  return angles_rad;
+}
+
+std::size_t Simulation::robot_count() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(sessions, [](const auto& session) { return session->robot.has_value(); }));
+}
+
+std::uint64_t Simulation::steps_for(double robot_time_s) const {
+  return static_cast<std::uint64_t>(std::max(1LL, std::llround(robot_time_s / world.settings().time_step_s)));
+}
+
+Session* Simulation::find_session(std::uint32_t id) {
+  const auto found = std::ranges::find_if(sessions, [id](const auto& session) { return session->id == id; });
+  return found == sessions.end() ? nullptr : found->get();
+}
+
+}  // namespace kenaf::world_server

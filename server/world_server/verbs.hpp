@@ -1,0 +1,62 @@
+// What a client can ask for, one function for each verb. Each obeys `message` for `session`, and writes its answer,
+// where the protocol has one, to session.out. What cannot be obeyed is ignored, as USARSim does, with at most one
+// line in five seconds in the log.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "formats/protocol/usarsim_message.hpp"
+#include "server/world_server/simulation.hpp"
+
+namespace kenaf::world_server {
+
+using protocol::usarsim::MessageView;
+
+using Verb = void (*)(Simulation&, Session&, const MessageView&);
+struct VerbEntry {
+  std::string_view name;
+  Verb verb;
+  bool takes_frame;  // may carry {Frame n}
+};
+// nullptr: no such verb.
+const VerbEntry* find_verb(const MessageView& message);
+
+// verbs_session.cpp
+void init(Simulation&, Session&, const MessageView&);
+void get_start_poses(Simulation&, Session&, const MessageView&);
+// verbs_drive.cpp
+void drive(Simulation&, Session&, const MessageView&);
+void multi_drive(Simulation&, Session&, const MessageView&);
+// verbs_set.cpp
+void set(Simulation&, Session&, const MessageView&);
+void move_mission_package(Simulation&, Session&, const MessageView&);  // MISPKG, ACT
+// verbs_control.cpp
+void control(Simulation&, Session&, const MessageView&);
+void ping(Simulation&, Session&, const MessageView&);
+// verbs_world.cpp: CONTROL's requests about objects; false: `type` is none of them
+bool control_world(Simulation&, Session&, const MessageView&, std::string_view type);
+// report_geometry.cpp
+void get_geometry(Simulation&, Session&, const MessageView&);
+void get_configuration(Simulation&, Session&, const MessageView&);
+
+using Reason = std::string_view;  // why a verb failed
+constexpr Reason kDone;           // it did not
+
+// The value of `key`, "" where it is missing.
+std::string_view text_of(const MessageView& message, std::string_view key);
+std::optional<double> number_of(const MessageView& message, std::string_view key);
+std::optional<bool> bool_of(const MessageView& message, std::string_view key);
+bool is_any_of(std::string_view text, std::initializer_list<std::string_view> words);  // without case
+// What a client sent, fit for a log line or an answer: printable, and not longer than 64 characters.
+std::string printable(std::string_view text);
+
+inline constexpr std::string_view kNoRobotYet = "a command before INIT placed a robot is ignored";
+
+// A warning about what a client sent, `text`: the first is a line in the log, more within 5 s are counted.
+void complain(const Simulation&, Session&, std::string_view what, std::string_view text);
+
+// RES {Time t} {Type type} {Name name} {Status OK}, or {Status Failed} {Reason reason} where a reason is given.
+void answer(const Simulation&, Session&, std::string_view type, std::string_view name, std::string_view reason = {});
+
+}  // namespace kenaf::world_server

@@ -1,0 +1,173 @@
+// CONTROL's requests about objects, after the UDK server's WorldController. Objects are boxes; what else USARSim could
+// create or animate is refused with a reason.
+#include <algorithm>
+
+#include "server/world_server/verbs.hpp"
+#include "server/world_server/wire_frames.hpp"
+
+namespace kenaf::world_server {
+
+namespace {
+
+constexpr std::size_t kMostObjects = 1000;
+constexpr double kDensity_kgpm3 = 100;  // of a box that may fall: light enough for a robot to push
+
+auto find_object(Simulation& simulation, std::string_view name) {
+  return std::ranges::find_if(simulation.objects, [name](const WorldObject& object) {
+    return protocol::usarsim::equal_ignoring_case(object.name, name);
+  });
+}
+
+// "USARPhysObj.SmallBox", "Block", "crate": a class whose own name ends in one of these words.
+bool is_box_class(std::string_view class_name) {
+  class_name.remove_prefix(class_name.rfind('.') + 1);  // npos + 1 is 0
+  for (const std::string_view word : {"box", "block", "cube", "crate"}) {
+    if (class_name.size() >= word.size() &&
+        protocol::usarsim::equal_ignoring_case(class_name.substr(class_name.size() - word.size()), word)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+Reason create(Simulation& simulation, const MessageView& message) {
+  const std::string_view class_name = text_of(message, "ClassName");
+  if (!is_box_class(class_name))
+    return "only boxes can be created (a class name that ends in Box, Block, Cube or Crate)";
+  if (simulation.objects.size() >= kMostObjects) return "too many objects";
+  const std::string name = printable(text_of(message, "Name"));
+  if (name.empty()) return "Name is missing";
+  if (find_object(simulation, name) != simulation.objects.end()) return "an object of that name exists already";
+  const auto location = read_location(message, "Location");
+  if (!location) return "Location is not x,y,z";
+  protocol::frames::Vector3 size_m{1, 1, 1};
+  if (message.find("Scale") && !protocol::usarsim::parse_numbers(text_of(message, "Scale"), size_m))
+    return "Scale is not x,y,z";
+  if (std::ranges::any_of(size_m, [](double size) { return !(size >= 0.001 && size <= 1000); })) {
+    return "Scale is not from 0.001 to 1000";
+  }
+  physics::Box box;
+  box.name = name;
+  box.size_m = vector_from(size_m);
+  box.X_WBox.p = *location;
+  box.X_WBox.q = read_rotation(message, "Rotation").value_or(Eigen::Quaterniond::Identity());
+  if (is_any_of(text_of(message, "Physics"), {"RigidBody", "Falling", "Ground"})) {
+    box.mass_kg = kDensity_kgpm3 * box.size_m.prod();
+  }
+  simulation.objects.push_back({simulation.world.add_box(box), name, printable(class_name), box.size_m,
+                                bool_of(message, "Permanent").value_or(false)});
+  return kDone;
+}
+
+Reason kill(Simulation& simulation, const MessageView& message) {
+  const auto object = find_object(simulation, text_of(message, "Name"));
+  if (object == simulation.objects.end()) return "no object of that name (a robot leaves with its connection)";
+  simulation.world.remove_box(object->box);
+  simulation.objects.erase(object);
+  return kDone;
+}
+
+// Without a range, or where both ends are equal, all of them.
+Reason kill_all(Simulation& simulation, const MessageView& message) {
+  protocol::frames::Vector3 least{}, most{};
+  for (const auto& [key, corner] : {std::pair{"MinPos", &least}, std::pair{"MaxPos", &most}}) {
+    if (message.find(key) && !protocol::usarsim::parse_numbers(text_of(message, key), *corner))
+      return "MinPos or MaxPos is not x,y,z";
+  }
+  std::erase_if(simulation.objects, [&](const WorldObject& object) {
+    const protocol::frames::Vector3 location = wire_vector(simulation.world.box_pose(object.box).p);
+    bool inside = true;
+    for (std::size_t i = 0; i < location.size(); ++i) inside &= location[i] > least[i] && location[i] < most[i];
+    if (object.permanent || (least != most && !inside)) return false;
+    simulation.world.remove_box(object.box);
+    return true;
+  });
+  return kDone;
+}
+
+// Steps to somewhere add up, and what falls off the ground falls on: the world itself takes no such pose.
+bool is_too_far(const physics::Pose& X_W) {
+  return !X_W.q.coeffs().allFinite() || !(X_W.p.cwiseAbs().maxCoeff() <= kFarthest);
+}
+
+// Of an object, or of a robot by its name. What is not given stays.
+Reason move(Simulation& simulation, const MessageView& message, bool relative) {
+  const auto location = read_location(message, "Location");
+  const auto rotation = read_rotation(message, "Rotation");
+  if (!location && message.find("Location")) return "Location is not x,y,z";
+  if (!rotation && message.find("Rotation")) return "Rotation is not roll,pitch,yaw";
+  const auto moved = [&](physics::Pose X_W) {
+    if (location) X_W.p = relative ? Eigen::Vector3d(X_W.p + *location) : *location;
+    if (rotation) X_W.q = relative ? (X_W.q * *rotation).normalized() : *rotation;
+    return X_W;
+  };
+  const std::string_view name = text_of(message, "Name");
+  if (const auto object = find_object(simulation, name); object != simulation.objects.end()) {
+    const physics::Pose X_WBox = moved(simulation.world.box_pose(object->box));
+    if (is_too_far(X_WBox)) return "that is farther away than 100 km";
+    simulation.world.move_box(object->box, X_WBox);
+    return kDone;
+  }
+  for (const auto& other : simulation.sessions) {
+    if (!other->robot || !protocol::usarsim::equal_ignoring_case(other->robot->name, name)) continue;
+    const physics::Pose X_WB = moved(simulation.world.truth(other->robot->id).X_WB);
+    if (is_too_far(X_WB)) return "that is farther away than 100 km";
+    simulation.world.teleport(other->robot->id, X_WB);
+    return kDone;
+  }
+  return "no object or robot of that name";
+}
+
+// One line for all objects that match, as the UDK server wrote it, and the robot of that name.
+void get_status(const Simulation& simulation, Session& session, const MessageView& message) {
+  const auto matches = [&](std::string_view key, std::string_view text) {
+    const std::string_view wanted = text_of(message, key);
+    return wanted.empty() || protocol::usarsim::equal_ignoring_case(wanted, text);
+  };
+  protocol::usarsim::MessageWriter writer(session.out);
+  writer.begin("STA");
+  for (const WorldObject& object : simulation.objects) {
+    if (!matches("Name", object.name) || !matches("ClassName", object.class_name)) continue;
+    const physics::Pose X_WBox = simulation.world.box_pose(object.box);
+    const protocol::usarsim::NumberFormat format = session.formats.value;
+    writer.text("Name", object.name)
+        .numbers("Size", array_from(object.size_m), format)
+        .numbers("Location", wire_vector(X_WBox.p), format)
+        .numbers("Rotation", wire_angles(X_WBox.q), format);
+  }
+  for (const auto& other : simulation.sessions) {
+    if (!other->robot || !protocol::usarsim::equal_ignoring_case(other->robot->name, text_of(message, "Name")))
+      continue;
+    const physics::Pose X_WB = simulation.world.truth(other->robot->id).X_WB;
+    writer.text("Name", other->robot->name)
+        .numbers("Location", wire_vector(X_WB.p), session.formats.value)
+        .numbers("Rotation", wire_angles(X_WB.q), session.formats.value);
+  }
+  writer.end();
+}
+
+}  // namespace
+
+bool control_world(Simulation& simulation, Session& session, const MessageView& message, std::string_view type) {
+  Reason reason;
+  if (is_any_of(type, {"Create"})) {
+    reason = create(simulation, message);
+  } else if (is_any_of(type, {"Kill"})) {
+    reason = kill(simulation, message);
+  } else if (is_any_of(type, {"KillAll"})) {
+    reason = kill_all(simulation, message);
+  } else if (is_any_of(type, {"AbsMove", "RelMove"})) {
+    reason = move(simulation, message, is_any_of(type, {"RelMove"}));
+  } else if (is_any_of(type, {"GetSTA"})) {
+    get_status(simulation, session, message);
+    return true;
+  } else if (is_any_of(type, {"Rotate", "AddWP", "SetWP", "ClearWP", "Conveyor"})) {
+    reason = "objects that move by themselves are not supported";
+  } else {
+    return false;
+  }
+  answer(simulation, session, "Control", type, reason);
+  return true;
+}
+
+}  // namespace kenaf::world_server

@@ -1,0 +1,85 @@
+#include "server/world_server/world_state.hpp"
+
+namespace kenaf::world_server {
+
+namespace {
+
+void read_camera(const Simulation& simulation, const SessionRobot& robot, std::size_t index, CameraState& state) {
+  const physics::CameraDescription& camera = robot.description->cameras[index];
+  state.name = camera.name;
+  state.width = camera.width;
+  state.height = camera.height;
+  state.min_field_of_view_rad = camera.min_field_of_view_rad;
+  state.max_field_of_view_rad = camera.max_field_of_view_rad;
+  state.field_of_view_rad = robot.camera_field_of_view_rad[index];
+  const auto read_link = [&](std::size_t link, std::optional<CameraState::Link>& out) {
+    out.reset();
+    if (!camera.mission_package) return;
+    const auto& links = robot.description->mission_packages[*camera.mission_package].links;
+    if (link >= links.size()) return;
+    out = CameraState::Link{links[link].min_rad, links[link].max_rad,
+                            simulation.world.mission_link_rad(robot.id, *camera.mission_package, link)};
+  };
+  read_link(0, state.pan);
+  read_link(1, state.tilt);
+}
+
+void read_robot(const Simulation& simulation, const Session& session, RobotState& state) {
+  const SessionRobot& robot = *session.robot;
+  const physics::RobotTruth truth = simulation.world.truth(robot.id);
+  const physics::DriveCurrents currents = simulation.world.drive_currents(robot.id);
+  state.id = session.id;
+  state.robot = robot.id;
+  state.name = robot.name;
+  state.class_name = robot.description->usarsim_class;
+  state.dimensions = physics::dimensions_of(*robot.description);
+  state.X_WB = truth.X_WB;
+  state.v_WB_mps = truth.v_WB_mps;
+  state.track_mps = truth.track_mps;
+  state.track_m = truth.track_m;
+  state.track_a = currents.track_a;
+  state.flipper_rad = truth.flipper_rad;
+  state.flipper_a = currents.flipper_a;
+  state.battery_v = truth.battery_v;
+  state.battery_left_s = truth.battery_left_s;
+  state.command = session.hold ? session.hold->command : robot.command;
+  state.has_client = !session.placed_by_operator;
+  state.client_silent = session.silent;
+  state.client_silent_s = static_cast<double>(simulation.world.step_count() -
+                                              std::min(simulation.world.step_count(), session.last_command_step)) *
+                          simulation.world.settings().time_step_s;
+  state.late_answers = session.schedule.late();
+  state.holder = session.hold ? session.hold->holder : OperatorId{0};
+  state.holder_silent = session.hold && session.hold->silent;
+  state.fault = simulation.world.fault(robot.id);
+  state.cameras.resize(robot.description->cameras.size());
+  for (std::size_t i = 0; i < state.cameras.size(); ++i) read_camera(simulation, robot, i, state.cameras[i]);
+}
+
+void read_box(const Simulation& simulation, physics::BoxId id, BoxState& state) {
+  state.id = static_cast<std::uint32_t>(id);
+  state.size_m = simulation.world.box(id).size_m;
+  state.X_WBox = simulation.world.box_pose(id);
+}
+
+}  // namespace
+
+void read_state(const Simulation& simulation, WorldState& state) {
+  state.wall_s = simulation.wall_s;
+  state.time_s = simulation.world.time_s();
+  state.step = simulation.world.step_count();
+  state.paused = simulation.clock.paused();
+  state.speed = simulation.clock.speed();
+
+  state.robots.resize(simulation.robot_count());
+  std::size_t next = 0;
+  for (const auto& session : simulation.sessions) {
+    if (session->robot) read_robot(simulation, *session, state.robots[next++]);
+  }
+  state.boxes.resize(simulation.loose_boxes.size() + simulation.objects.size());
+  next = 0;
+  for (const physics::BoxId id : simulation.loose_boxes) read_box(simulation, id, state.boxes[next++]);
+  for (const WorldObject& object : simulation.objects) read_box(simulation, object.box, state.boxes[next++]);
+}
+
+}  // namespace kenaf::world_server

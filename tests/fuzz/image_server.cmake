@@ -1,0 +1,1 @@
+kenaf_fuzzer(image_request_fuzz SOURCE image_request_fuzz.cpp LIBRARIES kenaf_image_server)

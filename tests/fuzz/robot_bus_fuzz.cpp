@@ -1,0 +1,54 @@
+// What is on a robot's bus in its description: any text gives a bus whose nodes differ and whose numbers the drives can
+// hold, or an error with a place.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+#include <utility>
+
+#include "can/canbus/robot_bus.hpp"
+#include "formats/description/description_error.hpp"
+
+using namespace kenaf;
+
+namespace {
+
+void check(bool fine) {
+  if (!fine) std::abort();
+}
+
+// There and back: at most half a count lies between.
+void check_position(const canbus::DriveUnits& units, double position) {
+  const double back = canbus::position_from_drive(units, canbus::position_to_drive(units, position));
+  check(std::abs(back - position) * std::abs(units.counts_per_unit) <= 0.51);
+}
+
+void check_drive(const canbus::DriveOnBus& drive, bool track) {
+  check(drive.node >= 1 && drive.node <= canopen::kMaxNode);
+  check(canbus::velocity_to_drive(drive.units, drive.max_speed) != 0);
+  check(canbus::acceleration_to_drive(drive.units, drive.acceleration) >= 1);
+  check(canbus::acceleration_to_drive(drive.units, drive.quick_stop_deceleration) >= 1);
+  if (track) return;
+  check_position(drive.units, drive.min_position);
+  check_position(drive.units, drive.max_position);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    const canbus::RobotBus bus = canbus::parse_robot_bus({reinterpret_cast<const char*>(data), size}, "fuzz.toml");
+    check(!bus.interface.empty() && canbus::longest_stop_s(bus) <= 0.2);
+    std::array<bool, canopen::kMaxNode + 1> taken{};
+    taken[bus.master] = true;
+    for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
+      check_drive(bus.drives[i], canbus::is_track(i));
+      check(!std::exchange(taken[bus.drives[i].node], true));
+    }
+    if (bus.gyro) check(bus.gyro->first_bit + bus.gyro->bits <= 64 && !std::exchange(taken[bus.gyro->node], true));
+  } catch (const description::DescriptionError& error) {
+    check(std::string_view(error.what()).starts_with("fuzz.toml"));
+  }
+  return 0;
+}

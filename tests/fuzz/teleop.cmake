@@ -1,0 +1,2 @@
+kenaf_fuzzer(operator_link_fuzz SOURCE operator_link_fuzz.cpp LIBRARIES kenaf_teleop)
+kenaf_fuzzer(operator_script_fuzz SOURCE operator_script_fuzz.cpp LIBRARIES kenaf_teleop)

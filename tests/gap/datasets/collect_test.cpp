@@ -1,0 +1,185 @@
+// Recorded runs become a dataset, and more are added to it; nothing that was there is changed.
+#include <catch2/catch.hpp>
+#include <set>
+
+#include "formats/description/data_files.hpp"
+#include "formats/runs/dataset.hpp"
+#include "tests/gap/kenaf_gap.hpp"
+
+using namespace kenaf;
+using test::kenaf_gap;
+using test::Outcome;
+using test::read_file;
+using test::TemporaryFolder;
+using test::write_file;
+
+namespace {
+
+// A run of a quarter of a second, as a robot would record it; its rows differ by `speed`.
+void record(const TemporaryFolder& folder, const std::string& name, double speed = 0.2, double scale = 1) {
+  runs::Run run{{"t_s", "cmd_track_left_mps", "cmd_track_right_mps", "track_left_mps", "track_right_mps", "x_m", "y_m"},
+                {}};
+  run.values.resize(run.columns.size());
+  for (int i = 0; i < 300; ++i) {
+    const double t = 0.01 * i, row[] = {t, speed, speed, speed, speed, scale * speed * t, 0};
+    for (std::size_t c = 0; c < run.columns.size(); ++c) run.values[c].push_back(row[c]);
+  }
+  runs::write_run(folder / name, run);
+}
+
+}  // namespace
+
+TEST_CASE("Runs become a dataset that reads back, each with its manoeuvre and that one's world") {
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  record(folder, "b.csv", 0.3);
+  const Outcome outcome =
+      kenaf_gap(folder, "dataset a.csv step-200=b.csv --manoeuvre straight --description 'dry concrete' --out data");
+  CHECK(outcome.error == "");
+  REQUIRE(outcome.status == 0);
+  CHECK(outcome.out == "a.csv: straight, from a.csv\nb.csv: step-200, from b.csv\ndata: 2 runs in a new dataset\n");
+  const runs::Dataset dataset = runs::read_dataset(folder / "data");
+  CHECK(dataset.source == "real");
+  CHECK(dataset.robot == "kenaf");
+  CHECK(dataset.world == "flat");
+  CHECK(dataset.description == "dry concrete");
+  REQUIRE(dataset.runs.size() == 2);
+  CHECK(dataset.runs[0].world == "");
+  CHECK(dataset.runs[1].world == "step-200");
+  CHECK(read_file(folder / "data/b.csv") == read_file(folder / "b.csv"));
+  CHECK(kenaf_gap(folder, "check data").status == 0);
+}
+
+TEST_CASE("Runs are added at the end, what somebody wrote into dataset.toml stays, and no file is replaced") {
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  REQUIRE(kenaf_gap(folder, "dataset a.csv --manoeuvre straight --out data").status == 0);
+  const std::string mine = "# by hand\nlicence = \"BSD\"\n" + read_file(folder / "data/dataset.toml");
+  write_file(folder / "data/dataset.toml", mine);
+  const std::string first = read_file(folder / "data/a.csv");
+  record(folder, "a.csv", 0.25);
+  const Outcome outcome = kenaf_gap(folder, "dataset a.csv a.csv --manoeuvre straight --out data");
+  INFO(outcome.error);
+  REQUIRE(outcome.status == 0);
+  CHECK_THAT(outcome.out, Catch::StartsWith("a-2.csv: straight, from a.csv\na-3.csv: straight, from a.csv\n"));
+  CHECK_THAT(read_file(folder / "data/dataset.toml"), Catch::StartsWith(mine));
+  CHECK(runs::read_dataset(folder / "data").runs.size() == 3);
+  CHECK(read_file(folder / "data/a.csv") == first);
+  CHECK(read_file(folder / "data/a-3.csv") == read_file(folder / "a.csv"));
+}
+
+TEST_CASE("A dataset with a world and a robot of its own is added to from another folder") {
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  std::filesystem::create_directory(folder / "mine");
+  write_file(folder / "mine/hall.sdf", read_file(description::find_data_file("worlds", "flat", ".sdf")));
+  write_file(folder / "mine/my.toml", read_file(description::find_data_file("robots", "kenaf", ".toml")));
+  const std::string with_both = "dataset a.csv --manoeuvre own --world mine/hall.sdf --robot mine/my.toml --out data";
+  REQUIRE(kenaf_gap(folder, with_both).status == 0);
+  // hall.sdf and my.toml are beside dataset.toml; here are none of these names
+  Outcome added = kenaf_gap(folder, "dataset a.csv --manoeuvre own --out data");
+  CHECK(added.error == "");
+  CHECK(added.status == 0);
+  added = kenaf_gap(folder, with_both);
+  CHECK(added.error == "");
+  CHECK(added.status == 0);
+  const runs::Dataset dataset = runs::read_dataset(folder / "data");
+  CHECK(dataset.robot == "my.toml");
+  CHECK(dataset.world == "hall.sdf");
+  REQUIRE(dataset.runs.size() == 3);
+  for (const runs::DatasetRun& run : dataset.runs) CHECK(run.world.empty());  // the dataset's
+  write_file(folder / "mine/my.toml", read_file(folder / "mine/my.toml") + "\n# another one\n");
+  CHECK_THAT(kenaf_gap(folder, with_both).error, Catch::Contains("its robot is 'data/my.toml', not 'mine/my.toml'"));
+}
+
+TEST_CASE("A robot that was changed since its dataset was made is not that dataset's") {
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  const std::string kenaf = read_file(description::find_data_file("robots", "kenaf", ".toml"));
+  write_file(folder / "my.toml", kenaf);
+  const std::string command = "dataset a.csv --manoeuvre straight --robot my.toml --out data";
+  REQUIRE(kenaf_gap(folder, command).status == 0);
+  CHECK(kenaf_gap(folder, command).status == 0);
+  write_file(folder / "my.toml", kenaf + "\n# another one\n");
+  const Outcome changed = kenaf_gap(folder, command);
+  CHECK(changed.status == 2);
+  CHECK_THAT(changed.error, Catch::Contains("its robot is 'data/my.toml', not 'my.toml'"));
+  CHECK(runs::read_dataset(folder / "data").runs.size() == 2);
+  std::filesystem::remove(folder / "my.toml");  // the dataset's name of its own
+  CHECK(kenaf_gap(folder, command).status == 0);
+}
+
+TEST_CASE("A disk that gets full leaves nothing behind") {
+  if (!std::filesystem::exists("/dev/full")) return;
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  write_file(folder / "hall.sdf", read_file(description::find_data_file("worlds", "flat", ".sdf")));
+  REQUIRE(kenaf_gap(folder, "dataset a.csv --manoeuvre straight --out data").status == 0);
+  const std::string before = read_file(folder / "data/dataset.toml");
+  for (const char* file : {"dataset.toml.part", "hall.sdf.part"}) {
+    INFO(file);
+    std::filesystem::create_symlink("/dev/full", folder.path() / "data" / file);
+    const Outcome full = kenaf_gap(folder, "dataset a.csv --manoeuvre straight --world hall.sdf --out data");
+    CHECK(full.status == 2);
+    CHECK_THAT(full.error, Catch::Contains("No space left"));
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "data"))
+      names.insert(entry.path().filename().string());
+    CHECK(names == std::set<std::string>{"a.csv", "dataset.toml"});
+    CHECK(read_file(folder / "data/dataset.toml") == before);
+  }
+}
+
+TEST_CASE("A file of the dataset that is called like an unfinished copy stays") {
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  std::filesystem::rename(folder / "a.csv", folder / "a.csv.part");
+  REQUIRE(kenaf_gap(folder, "dataset a.csv.part --manoeuvre straight --out data").status == 0);
+  const std::string first = read_file(folder / "data/a.csv.part");
+  record(folder, "a.csv", 0.25);
+  REQUIRE(kenaf_gap(folder, "dataset a.csv --manoeuvre straight --out data").status == 0);
+  CHECK(read_file(folder / "data/a.csv.part") == first);
+  CHECK(runs::read_dataset(folder / "data").runs.at(1).file == "a-2.csv");
+}
+
+TEST_CASE("What is no run, or not plausible, writes nothing, and says why") {
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  record(folder, "mm.csv", 0.2, 1000);
+  write_file(folder / "bad.csv", "t_s,x_m\n0,0\n0,1\n");
+  std::filesystem::create_directory(folder / "taken");
+  write_file(folder / "taken/file.txt", "mine");
+  for (const auto& [arguments, words] :
+       {std::pair{"dataset a.csv bad.csv --manoeuvre straight --out data", "bad.csv:3:1: t_s does not grow"},
+        {"dataset a.csv mm.csv --manoeuvre straight --out data", "mm.csv: x_m: looks like millimetres"},
+        {"dataset a.csv none.csv --manoeuvre straight --out data", "none.csv: cannot be opened"},
+        {"dataset a.csv --out data", "a.csv: which manoeuvre is it?"},
+        {"dataset a.csv --manoeuvre of-my-own --out data", "no manoeuvre that ships is called 'of-my-own'"},
+        {"dataset a.csv --manoeuvre straight --robot nobody --out data", "nobody"},
+        {"dataset a.csv --manoeuvre straight --out taken", "taken: is not empty"},
+        {"dataset a.csv --manoeuvre straight", "--out is required"},
+        {"dataset --out data", "RUN is required"}}) {
+    INFO(arguments);
+    const Outcome outcome = kenaf_gap(folder, arguments);
+    CHECK(outcome.status == 2);
+    CHECK_THAT(outcome.error, Catch::Contains(words));
+    CHECK_FALSE(std::filesystem::exists(folder / "data"));
+  }
+  CHECK(read_file(folder / "taken/file.txt") == "mine");
+  CHECK(kenaf_gap(folder, "dataset mm.csv --manoeuvre straight --unchecked --out data").status == 0);
+  CHECK(kenaf_gap(folder, "dataset a.csv --manoeuvre of-my-own --world step-50 --out data").status == 0);
+  const std::string before = read_file(folder / "data/dataset.toml");
+  CHECK_THAT(kenaf_gap(folder, "dataset a.csv --manoeuvre straight --robot p2at --out data").error,
+             Catch::Contains("its robot is 'kenaf', not 'p2at'"));
+  write_file(folder / "data/dataset.toml",
+             "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = "
+             "\"flat\"\nrun = [{file = \"mm.csv\"}]\n");
+  const auto files = [&] {
+    const std::filesystem::directory_iterator all(folder / "data");
+    return std::distance(begin(all), end(all));
+  };
+  const auto count = files();
+  write_file(folder / "hall.sdf", read_file(description::find_data_file("worlds", "flat", ".sdf")));
+  CHECK(kenaf_gap(folder, "dataset a.csv --manoeuvre straight --world hall.sdf --out data").status == 2);
+  CHECK(files() == count);
+}

@@ -1,0 +1,57 @@
+// A person at the page of a served world, in a real browser. What the robot does is asked of the world server by a
+// second page, not of the browser that drives.
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "tests/server/live/browser.hpp"
+#include "tests/server/live/served_world.hpp"
+#include "tests/server/live/web_client.hpp"
+#include "tests/support/process.hpp"
+
+namespace kenaf::live {
+
+struct Desk {
+  support::TemporaryFolder profile;
+  ServedWorld world{"", {}, "step-200"};
+  Browser browser{profile.path()};
+  std::filesystem::path pictures = std::filesystem::path(KENAF_BIN_DIR) / ".." / "live-view";
+
+  Desk() {
+    std::filesystem::create_directories(pictures);
+    browser.resize(1280, 800);
+    browser.open(world.url());
+    browser.wait_for("document.getElementById('link')?.dataset.state === 'good'");
+  }
+  // The state of the first robot, once `condition` holds of it.
+  template <typename Condition>
+  nlohmann::json robot_with(Condition condition) {
+    WebClient witness(world.port());  // its own each time: one that is not read for 10 s is let go of
+    REQUIRE(witness.open_websocket());
+    for (;;) {
+      const nlohmann::json state = witness.message_of("state");
+      if (!state["robots"].empty() && condition(state["robots"][0])) return state["robots"][0];
+    }
+  }
+  void state_is(const std::string& state) {
+    browser.wait_for("document.getElementById('drive-state').dataset.state === '" + state + "'");
+  }
+  std::string state_now() { return browser.evaluate("document.getElementById('drive-state').dataset.state"); }
+  void place() {
+    browser.evaluate("document.getElementById('place').click()");
+    state_is("held");
+  }
+};
+
+inline bool drives(const nlohmann::json& robot) {
+  return robot["track_mps"][0] > 0.1;
+}
+inline bool stands(const nlohmann::json& robot) {
+  return robot["command"]["track"] == nlohmann::json::array({0, 0}) &&
+         std::abs(robot["track_mps"][0].get<double>()) < 0.01;
+}
+
+}  // namespace kenaf::live

@@ -1,0 +1,145 @@
+// A person at the playback page, in a real browser: a run plays, the time line is dragged, marks and figures are what
+// the files say. The pictures are kept beside the test's program, in live-view/.
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+
+#include "formats/runs/whole_file.hpp"
+#include "gap/datasets/simulate.hpp"
+#include "gap/playback/playback_server.hpp"
+#include "tests/formats/runs/temporary_folder.hpp"
+#include "tests/server/live/browser.hpp"
+
+namespace kenaf::live {
+
+namespace {
+
+using nlohmann::json;
+
+// Two phases of one run; that of the other manoeuvre is not shown with it.
+constexpr const char* kPlacesReport = R"({"format": "kenaf-gap-report/1", "verdict": "named", "named": ["drive_lag"],
+  "where": {"channels": [{"channel": "track_left_mps", "share": 0.6}],
+            "phases": [{"manoeuvre": "straight", "run": "run-000.csv", "phase": "cruise", "from_s": 1, "to_s": 4, "share": 0.5},
+                       {"manoeuvre": "straight", "run": "run-000.csv", "phase": "speed change", "from_s": 0.5, "to_s": 1, "share": 0.3},
+                       {"manoeuvre": "turn-in-place", "run": "run-001.csv", "phase": "turn", "from_s": 1, "to_s": 4, "share": 0.2}]}})";
+
+struct PlaybackDesk {
+  test::TemporaryFolder folder, profile;
+  gap::playback::PlaybackServer server{make(folder), {true, "127.0.0.1", 0, "sesame"}};
+  Browser browser{profile.path()};
+  std::filesystem::path pictures = std::filesystem::path(KENAF_BIN_DIR) / ".." / "live-view";
+
+  static gap::playback::Playback make(const test::TemporaryFolder& folder) {
+    gap::datasets::SimulationRequest request;
+    request.manoeuvres = {"straight", "turn-in-place"};
+    request.effects = {"drive_lag:lag_s=0.5"};
+    request.noise_scale = 0;
+    request.out = folder / "runs";
+    gap::datasets::simulate_dataset(request);
+    std::filesystem::create_directory(folder / "report");
+    runs::write_whole_file(folder / "report/report.json", kPlacesReport);
+    const std::string robot = runs::read_whole_file(std::string(KENAF_SOURCE_DIR) + "/share/robots/kenaf.toml");
+    runs::write_whole_file(folder / "report/robot.toml", robot + "\n[effects.drive_lag]\nlag_s = 0.5\n");
+    return gap::playback::load_playback({folder / "runs", folder / "report", "", "", ""});
+  }
+  PlaybackDesk() {
+    std::filesystem::create_directories(pictures);
+    browser.resize(1280, 800);
+    browser.open(server.url());
+    browser.wait_for("document.querySelectorAll('.mark').length");
+  }
+  void press(std::string_view code) {
+    browser.key(code, true);
+    browser.key(code, false);
+  }
+  double time_s() { return browser.evaluate("Number(document.getElementById('ruler').ariaValueNow)"); }
+  double cursor_px() { return browser.evaluate("parseFloat(document.getElementById('cursor').style.left)"); }
+  // Of the recorded robot, as the page says it.
+  double x_m() {
+    return browser.evaluate(
+        "Number(document.getElementById('place').textContent.match(/x (.*?),/)[1].replace('\u2212', '-'))");
+  }
+  double difference(int row, int column) {
+    return browser.evaluate("Number(document.querySelectorAll('#difference tbody tr')[" + std::to_string(row) +
+                            "].cells[" + std::to_string(column) + "].textContent.replace('\u2212', '-'))");
+  }
+};
+
+}  // namespace
+
+TEST_CASE("in a browser: a recorded run plays beside its simulations, and the time line leads through it") {
+  PlaybackDesk desk;
+  Browser& browser = desk.browser;
+  CHECK(browser.evaluate("document.querySelectorAll('.mark').length") == 2);  // of the report, for this run
+  CHECK(browser.evaluate("document.querySelectorAll('.phase').length") > 2);
+  CHECK(browser.evaluate("document.getElementById('verdict').textContent") == "named: drive_lag");
+  CHECK(browser.evaluate("document.querySelectorAll('#legend input').length") == 4);  // three robots and their paths
+  CHECK(browser.evaluate("document.getElementById('notes').children.length") == 0);
+  browser.wait_for("document.getElementById('canvas').width > 300");
+
+  // play moves the time and with it the robot; again, and it stands
+  CHECK(desk.time_s() == 0);
+  const double start_m = desk.x_m(), start_px = desk.cursor_px();
+  browser.evaluate(
+      "document.getElementById('pace').value = '5', document.getElementById('pace').dispatchEvent(new "
+      "Event('change'))");
+  desk.press("Space");
+  browser.wait_for("Number(document.getElementById('ruler').ariaValueNow) > 2.5");
+  desk.press("Space");
+  const double stopped_s = desk.time_s();
+  CHECK(desk.x_m() > start_m + 0.1);
+  CHECK(desk.cursor_px() > start_px + 100);
+  CHECK(browser.evaluate("document.getElementById('play').textContent") == "Play");
+
+  // a sample back, on; the ends
+  desk.press("ArrowRight");
+  const double sample_s = desk.time_s();
+  desk.press("ArrowRight");
+  CHECK(desk.time_s() == Approx(sample_s + 0.01));
+  desk.press("ArrowLeft");
+  desk.press("ArrowLeft");
+  CHECK(desk.time_s() == Approx(sample_s - 0.01));
+  CHECK(std::abs(desk.time_s() - stopped_s) <= 0.016);
+  desk.press("End");
+  // both drive the same commands: the nominal one, quicker to start and to stop, ends as far; the corrected one is the
+  // same
+  CHECK(desk.time_s() == Approx(6));
+  CHECK(std::abs(desk.difference(0, 2)) < 1);
+  desk.press("Home");
+  CHECK(desk.time_s() == 0);
+
+  // the middle of the time line is dragged to
+  browser.evaluate(
+      "(() => { const r = document.getElementById('lanes').getBoundingClientRect(); const at = (type, x) => "
+      "document.getElementById('lanes').dispatchEvent(new PointerEvent(type, {clientX: x, clientY: r.top + 5, "
+      "pointerId: 1, "
+      "bubbles: true})); document.getElementById('lanes').setPointerCapture = () => {}; at('pointerdown', r.left + "
+      "100); "
+      "at('pointermove', r.left + 58 + (r.width - 70) / 2); at('pointerup', r.left + 300); })()");
+  CHECK(desk.time_s() == Approx(3).margin(0.02));
+  // half a second of lag at 0.2 m/s or more: the recorded robot is behind the nominal one, and with the corrected one
+  CHECK(desk.difference(1, 1) < -50);
+  CHECK(std::abs(desk.difference(0, 2)) < 1);
+  CHECK(browser.evaluate("document.getElementById('now-phase').textContent") == "cruise");
+  // a mark says what it is to whoever comes to it by the keyboard
+  browser.evaluate("document.querySelectorAll('.mark')[1].focus()");
+  CHECK(browser.evaluate("document.getElementById('about-mark').textContent") ==
+        "straight, cruise, 1.00 to 4.00 s: 50 % of the gap");
+  browser.screenshot(desk.pictures / "playback.png");
+
+  // another run has its own phases and marks
+  browser.evaluate(
+      "document.getElementById('run').value = '1', document.getElementById('run').dispatchEvent(new Event('change'))");
+  browser.wait_for("document.querySelectorAll('.mark').length === 1");
+  browser.set_dark(true);
+  browser.resize(390, 844, true);
+  browser.wait_for("innerWidth === 390");
+  CHECK(browser.evaluate("document.documentElement.scrollWidth") <= 390);
+  CHECK(browser.evaluate("[...document.querySelectorAll('button, select, input')].filter((e) => e.checkVisibility() && "
+                         "!(e.textContent.trim() || e.ariaLabel || e.labels?.length)).length") == 0);
+  browser.screenshot(desk.pictures / "playback-phone-dark.png");
+  for (const std::string& complaint : browser.complaints()) UNSCOPED_INFO(complaint);
+  CHECK(browser.complaints().empty());
+}
+
+}  // namespace kenaf::live

@@ -1,0 +1,135 @@
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <random>
+#include <sstream>
+
+#include "tests/server/world_server/conversation.hpp"
+
+namespace kenaf::world_server {
+
+namespace {
+
+// All that is logged, at the most talkative level.
+struct WholeLog {
+  std::ostringstream text;
+  std::shared_ptr<spdlog::logger> before = spdlog::default_logger();
+
+  WholeLog() {
+    auto logger = std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(text));
+    logger->set_level(spdlog::level::trace);
+    spdlog::set_default_logger(logger);
+  }
+  ~WholeLog() { spdlog::set_default_logger(before); }
+  WholeLog(const WholeLog&) = delete;
+  WholeLog& operator=(const WholeLog&) = delete;
+
+  std::ptrdiff_t lines() const { return std::ranges::count(text.view(), '\n'); }
+};
+
+}  // namespace
+
+TEST_CASE("lines that are no messages are survived, and a client of nothing but them is let go") {
+  Conversation talk;
+  talk.send("INIT {ClassName USARBot.P2DX}\r\n");
+  for (const char* line : {"{", "}", "{}{}{}", "DRIVE {Left 1", "DRIVE }Left 1{", "GET / HTTP/1.1", "\x01\xff\xfe",
+                           "{Left 1}", "DRIVE {Left {Right 1}}", "XYZZY {Plugh 1}", "DRIVE {Left 1} stray"}) {
+    talk.send(std::string(line) + "\r\n");
+    CHECK_FALSE(talk.session->close);
+  }
+  CHECK(talk.session->bad_lines > 5);
+  talk.send("DRIVE {Left 1} {Right 1}\r\n");
+  CHECK(talk.command().track_speed_mps[robot::kLeft] > 0);
+  for (int i = 0; i < 1100; ++i) talk.send("{\r\n");
+  CHECK(talk.session->close);
+}
+
+TEST_CASE("a thousand commands before INIT are one line in the log") {
+  const auto lines_logged = [](bool udk, std::string_view line) {
+    Conversation talk(fast(udk));
+    const WholeLog log;
+    for (int i = 0; i < 1000; ++i) talk.send(std::string(line) + "\r\n");
+    return log.lines();
+  };
+  for (const bool udk : {false, true}) {
+    CHECK(lines_logged(udk, "DRIVE {Left 1} {Right 1}") == 1);
+    CHECK(lines_logged(udk, "MULTIDRIVE {FRFlipper 1}") == 1);
+    CHECK(lines_logged(udk, "MISPKG {Name C} {Link 1} {Value 1}") == 1);
+  }
+  const std::string set = "SET {Type Joint} {Name FRFlipper} {Opcode Angle} {Params 1}";
+  CHECK(lines_logged(true, set) == 1);
+  CHECK(lines_logged(false, set) == 0);  // answered, each
+}
+
+TEST_CASE("a line without end is dropped, bounded in memory, and what follows it is understood") {
+  Conversation talk;
+  talk.send("INIT {ClassName USARBot.P2DX}\r\n");
+  const std::string much(100000, 'x');
+  for (int i = 0; i < 50; ++i) talk.send(much);
+  talk.send("\r\nDRIVE {Left 1} {Right 1}\r\n");
+  CHECK(talk.command().track_speed_mps[robot::kLeft] > 0);
+  CHECK(talk.session->bad_lines == 1);
+}
+
+TEST_CASE("commands for one frame are bounded") {
+  Conversation talk;
+  talk.send("INIT {ClassName USARBot.P2DX}\r\nCONTROL {Type Session} {Period 1}\r\n");
+  REQUIRE(talk.run(0.001));
+  for (int i = 0; i < 10000; ++i) talk.send("DRIVE {Left 1} {Right 1} {Frame 1}\r\n");
+  CHECK(talk.session->deferred.size() <= 65536);
+}
+
+TEST_CASE("one packet of many requests is answered until too much waits, then its client is let go") {
+  Conversation talk;
+  for (int i = 0; i < 1000; ++i) {
+    talk.send("CONTROL {Type Create} {ClassName Box} {Name Box" + std::to_string(i) + "} {Location 0,0,0}\r\n");
+  }
+  REQUIRE(talk.simulation.objects.size() == 1000);
+  std::string packet;
+  for (int i = 0; i < 780; ++i) packet += "CONTROL{Type GetSTA}\n";
+  REQUIRE(packet.size() <= 16384);  // what a connection reads at once
+  // An answer of 1000 objects is some 100 KB or more, so all of them would be 80 MB.
+  talk.session->out.clear();
+  talk.send(packet);
+  CHECK(talk.session->close);
+  CHECK(talk.session->out.size() > 8 << 20);
+  CHECK(talk.session->out.size() < 9 << 20);
+  talk.send(packet);  // what is still on its way is not obeyed
+  CHECK(talk.session->out.size() < 9 << 20);
+}
+
+TEST_CASE("a name from outside cannot break an answer's grammar, nor fill it") {
+  Conversation talk;
+  const std::string answer = talk.answer_to("SET {Type \x01\x02} {Name " + std::string(5000, 'n') + "}\r\n");
+  CHECK(answer.size() < 300);
+  CHECK(answer.find('\x01') == std::string::npos);
+}
+
+TEST_CASE("random verbs with random values neither stop the world nor make it anything but finite") {
+  std::mt19937 random(5);
+  const auto pick = [&](std::initializer_list<const char*> words) { return words.begin()[random() % words.size()]; };
+  Conversation talk;
+  talk.send("INIT {ClassName USARBot.Kenaf}\r\n");
+  for (int i = 0; i < 3000; ++i) {
+    std::string line = pick({"DRIVE", "MULTIDRIVE", "SET", "MISPKG", "CONTROL", "GETGEO", "GETCONF", "PING", "INIT"});
+    const int groups = static_cast<int>(random() % 6);
+    for (int g = 0; g < groups; ++g) {
+      line += std::string(" {") + pick({"Left",       "Right",  "Type",      "Name",      "Value",    "Order", "Link",
+                                        "Opcode",     "Params", "FRFlipper", "Location",  "Rotation", "Frame", "Speed",
+                                        "Normalized", "Flip",   "Scale",     "ClassName", "Time",     "Period"}) +
+              " " + pick({"1e308",         "-1e308", "0",   "-0.5", "1,2,3",   "Joint",      "FRFlipper",
+                          "AbsMove",       "Create", "Box", "R1",   "Session", "Angle",      "True",
+                          "CameraPanTilt", "1e-300", "0.5", "nan",  "Robot1",  "1e5,1e5,1e5"}) +
+              "}";
+    }
+    talk.send(line + "\r\n");
+    talk.simulation.advance(talk.wall_s);
+    talk.wall_s += 0.001;
+    talk.session->out.clear();
+  }
+  CHECK(talk.truth().X_WB.p.allFinite());
+  CHECK(talk.truth().X_WB.q.coeffs().allFinite());
+}
+
+}  // namespace kenaf::world_server
