@@ -173,14 +173,11 @@ function(kenaf_test_settings name)
   endif()
 endfunction()
 
-# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [TIMEOUT s] [COST c] [ONE_AT_A_TIME]): one Catch2 program;
+# kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [COST c] [ONE_AT_A_TIME]): one Catch2 program;
 # ctest sees each of its test cases (under a sanitizer each of its files, which end in _test.cpp, without the cases tagged
 # [long]), and starts those of the highest cost first.
 function(kenaf_test name)
-  cmake_parse_arguments(TEST "ONE_AT_A_TIME" "TIMEOUT;COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
-  if(NOT TEST_TIMEOUT)
-    set(TEST_TIMEOUT 120)
-  endif()
+  cmake_parse_arguments(TEST "ONE_AT_A_TIME" "COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
   if(NOT TEST_COST)
     set(TEST_COST 0)
   endif()
@@ -202,7 +199,7 @@ function(kenaf_test name)
     catch_discover_tests(${name}
       EXTRA_ARGS --warn NoTests
       TEST_PREFIX "${name}: "
-      PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT ${TEST_TIMEOUT} COST ${TEST_COST} ${lock})
+      PROPERTIES LABELS "${TEST_LABELS}" COST ${TEST_COST} ${lock})
     return()
   endif()
   # a process takes a tenth of a second to start under a sanitizer: one for each file, not for each test case
@@ -210,7 +207,7 @@ function(kenaf_test name)
   foreach(source ${TEST_SOURCES})
     get_filename_component(file ${source} NAME_WE)
     add_test(NAME "${name}: ${file}" COMMAND ${name} --filenames-as-tags "[#${file}]~[long]")
-    set_tests_properties("${name}: ${file}" PROPERTIES LABELS "${TEST_LABELS}" TIMEOUT 600 COST ${TEST_COST})
+    set_tests_properties("${name}: ${file}" PROPERTIES LABELS "${TEST_LABELS}" COST ${TEST_COST})
   endforeach()
 endfunction()
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "physics/bullet.hpp"
+#include "physics/dynamics/bullet.hpp"
 #include "physics/robot_description.hpp"
 
 namespace kenaf::physics {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "physics/polygon.hpp"
+#include "physics/files/polygon.hpp"
 
 namespace kenaf::physics {
 namespace {

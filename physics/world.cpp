@@ -7,7 +7,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "physics/scene.hpp"
+#include "physics/dynamics/scene.hpp"
 #include "physics/sensors/sensor_set.hpp"
 
 namespace kenaf::physics {

@@ -7,9 +7,9 @@
 #include <sdf/sdf.hh>
 
 #include "formats/description/description_file.hpp"
-#include "physics/sdf_reader.hpp"
-#include "physics/sdf_surface.hpp"
-#include "physics/world_files.hpp"
+#include "physics/files/sdf_reader.hpp"
+#include "physics/files/sdf_surface.hpp"
+#include "physics/files/world_files.hpp"
 
 namespace kenaf::physics {
 namespace {

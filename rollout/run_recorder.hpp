@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "physics/sensors/noise.hpp"
+#include "physics/noise.hpp"
 #include "robot/columns.hpp"
 #include "rollout/roll_out.hpp"
 #include "rollout/tracking.hpp"

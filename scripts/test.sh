@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Builds and runs all tests.
 #
-#   scripts/test.sh                 release, asan, fuzz and tsan
+#   scripts/test.sh                 check, release, asan, fuzz and tsan
 #   scripts/test.sh release asan    only the named parts, of:
+#       check     scripts/check.sh: the form of all sources, and two minutes of clang-tidy over what the last commit touched
 #       release   g++, as installed: all tests, the CAN bus, the package
 #       asan      clang, address and undefined behaviour sanitizers: the rooms that take input from others, without what only calculates
 #       fuzz      the fuzzers of that build, 1 s each: all but kenaf-gap's
@@ -14,7 +15,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 parts=("$@")
-[ ${#parts[@]} -gt 0 ] || parts=(release asan fuzz tsan)
+[ ${#parts[@]} -gt 0 ] || parts=(check release asan fuzz tsan)
 jobs=$(nproc)
 tests_at_once=$((jobs + 2))  # some of the longest wait for a clock and need no processor
 command -v ccache >/dev/null && export CMAKE_CXX_COMPILER_LAUNCHER=ccache CMAKE_C_COMPILER_LAUNCHER=ccache
@@ -32,6 +33,11 @@ build() {
     echo "test: the build of '$preset' failed; its whole log is build/$preset.log" >&2
     exit 1
   fi
+}
+
+run_check() {
+  step "check"
+  CHECK_SECONDS=120 scripts/check.sh
 }
 
 run_release() {
@@ -83,8 +89,8 @@ run_fuzzer() {
 scripts/install-dependencies.sh
 for part in "${parts[@]}"; do
   case $part in
-    release|asan|fuzz|tsan|asan-all) "run_$part" ;;
-    *) echo "test: '$part' is not one of release, asan, fuzz, tsan, asan-all" >&2; exit 2 ;;
+    check|release|asan|fuzz|tsan|asan-all) "run_$part" ;;
+    *) echo "test: '$part' is not one of check, release, asan, fuzz, tsan, asan-all" >&2; exit 2 ;;
   esac
 done
 step "all parts passed: ${parts[*]}"

@@ -5,10 +5,10 @@
 #include <functional>
 #include <optional>
 
+#include "physics/noise.hpp"
 #include "physics/readings.hpp"
 #include "physics/robot_description.hpp"
 #include "physics/sensors/motion_history.hpp"
-#include "physics/sensors/noise.hpp"
 
 namespace kenaf::physics {
 

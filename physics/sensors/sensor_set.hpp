@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "physics/readings.hpp"
+#include "physics/robot_description.hpp"
 #include "physics/sensors/measure.hpp"
-#include "physics/world.hpp"
+#include "physics/world_values.hpp"
 
 namespace kenaf::physics {
 

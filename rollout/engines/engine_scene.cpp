@@ -13,7 +13,7 @@ namespace {
 using namespace physics;
 
 constexpr double kDrive_mps = 0.2;
-// as physics/flipper_joint.cpp has them, the last two where the motion is prescribed
+// as physics/dynamics/flipper_joint.cpp has them, the last two where the motion is prescribed
 constexpr double kServoGain_per_s = 30;
 constexpr double kFastest_radps = 10;
 constexpr double kAnyTorque_nm = 1e6;

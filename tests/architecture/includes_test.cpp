@@ -93,6 +93,8 @@ std::vector<std::string> against_the_table(const std::vector<Include>& includes,
     const std::string from = room_of(file, rooms), to = room_of(header, rooms);
     if (from.empty()) {
       faults.push_back(fmt::format("{} is in no room that the table lists", file));
+    } else if (from != to && !to.empty() && to != "include" && header.find('/', to.size() + 1) != std::string::npos) {
+      faults.push_back(fmt::format("{} includes {}: what is in a folder of {} is for {} alone", file, header, to, to));
     } else if (to.empty() || (from != to && !rooms.at(from).contains(to))) {
       faults.push_back(fmt::format("{} includes {}: the table does not list that for {}", file, header, from));
     } else {
@@ -165,6 +167,8 @@ TEST_CASE("An include that the table does not list is named, and so is a listed 
   CHECK(fault_of({"a/y.cpp", "b/y.hpp"}) == "a/y.cpp includes b/y.hpp: the table does not list that for a");
   CHECK(fault_of({"c/d/z.cpp", "c/x.hpp"}) == "c/d/z.cpp includes c/x.hpp: the table does not list that for c/d");
   CHECK(fault_of({"a/y.cpp", "kenaf/hrt.h"}) == "a/y.cpp includes kenaf/hrt.h: the table does not list that for a");
+  CHECK(fault_of({"c/x.cpp", "a/inside/y.hpp"}) ==
+        "c/x.cpp includes a/inside/y.hpp: what is in a folder of a is for a alone");
   CHECK(fault_of({"e/y.cpp", "a/y.hpp"}) == "e/y.cpp is in no room that the table lists");
   CHECK(against_the_table({right.begin() + 1, right.end()}, rooms) ==
         std::vector<std::string>{"c never includes a, which the table lists"});

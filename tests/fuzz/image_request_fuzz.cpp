@@ -7,7 +7,7 @@
 #include "server/image_server/image_request.hpp"
 #include "server/image_server/raw_picture.hpp"
 
-using namespace kenaf::camera;
+using namespace kenaf::image_server;
 
 namespace {
 
@@ -29,7 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   const auto whole = requests_in(bytes, bytes.size() + 1), pieces = requests_in(bytes, std::size_t{1} + data[0] % 32);
   if (whole.size() != pieces.size()) std::abort();
-  static const Picture picture{19, 7, std::vector<std::uint8_t>(3 * 19 * 7)};
+  static const kenaf::camera::Picture picture{19, 7, std::vector<std::uint8_t>(3 * 19 * 7)};
   for (std::size_t i = 0; i < whole.size(); ++i) {
     const ImageRequest &a = whole[i], &b = pieces[i];
     if (a.kind != b.kind || a.view != b.view || a.x != b.x || a.y != b.y || a.width != b.width ||

@@ -17,6 +17,7 @@
 #include "kenaf/hrt.h"
 #include "tests/hrt/fake_image_server.hpp"
 #include "tests/hrt/fake_transport.hpp"
+#include "tests/support/patience.hpp"
 
 using namespace kenaf::hrt;
 using namespace kenaf::hrt::test;
@@ -48,7 +49,7 @@ struct Scene {
   template <typename Condition>
   void await(const Condition& condition) {
     std::unique_lock lock(mutex);
-    REQUIRE(changed.wait_for(lock, 20s, condition));
+    REQUIRE(changed.wait_for(lock, kenaf::support::patience(), condition));
   }
 };
 

@@ -1,6 +1,6 @@
 // Where a belt touches. G1 level ground, G2 an edge under an arc, G3 half on a box, G4 a wall beside, G5 a corner,
 // G6 triangles, G7 a flipper's outline.
-#include "physics/belt_contacts.hpp"
+#include "physics/dynamics/belt_contacts.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

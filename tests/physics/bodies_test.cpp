@@ -1,7 +1,7 @@
 // B1 falling, B2 sliding down a slope, B3 holding on a slope, B4 resting, B5 turning: what mechanics says of a block.
 #include <catch2/catch.hpp>
 
-#include "physics/scene.hpp"
+#include "physics/dynamics/scene.hpp"
 #include "tests/physics/scenes.hpp"
 
 using namespace kenaf::physics;

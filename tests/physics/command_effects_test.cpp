@@ -1,7 +1,7 @@
 // Effects of the command stage: what becomes of a command before the drives have it.
 #include <catch2/catch.hpp>
 
-#include "physics/command_channel.hpp"
+#include "physics/dynamics/command_channel.hpp"
 #include "tests/physics/scenes.hpp"
 
 using namespace kenaf;

@@ -1,7 +1,7 @@
 // S1 rate, S2 noise and bias, S3 delay, S4 to S9 what each kind of sensor measures, S10 reset.
 #include <catch2/catch.hpp>
 
-#include "physics/sensors/noise.hpp"
+#include "physics/noise.hpp"
 #include "tests/physics/scenes.hpp"
 
 using namespace kenaf;

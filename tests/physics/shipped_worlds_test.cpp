@@ -58,7 +58,7 @@ void check_same(const WorldDescription& a, const WorldDescription& b) {
 
 TEST_CASE("All shipped worlds load completely, under their file's name, with a start at the origin") {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(KENAF_SOURCE_DIR "/worlds")) {
+  for (const auto& entry : std::filesystem::directory_iterator(KENAF_SOURCE_DIR "/share/worlds")) {
     if (entry.path().extension() != ".sdf") continue;
     const WorldDescription world = shipped(entry.path().stem());
     INFO(entry.path());

@@ -8,13 +8,13 @@
 #include <stdexcept>
 
 #include "tests/support/loopback.hpp"
+#include "tests/support/patience.hpp"
 
 namespace kenaf::test {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr auto kPatience = std::chrono::seconds(10);
 constexpr int kResend_ms = 4;
 
 }  // namespace
@@ -50,7 +50,7 @@ std::optional<protocol::relay::Datagram> FakeCommander::receive(int milliseconds
 }
 
 protocol::relay::Datagram FakeCommander::hello(bool lockstep, bool reset_robot, double period_s, double timeout_s) {
-  const auto end = Clock::now() + kPatience;
+  const auto end = Clock::now() + support::patience();
   while (Clock::now() < end) {
     send(protocol::relay::Hello{session_, period_s, timeout_s, lockstep, reset_robot});
     const auto answer = receive(20);
@@ -65,7 +65,7 @@ protocol::relay::Datagram FakeCommander::hello(bool lockstep, bool reset_robot, 
 
 std::optional<protocol::relay::State> FakeCommander::next_state(std::uint32_t after,
                                                                 const protocol::relay::Datagram& again) {
-  const auto end = Clock::now() + kPatience;
+  const auto end = Clock::now() + support::patience();
   while (Clock::now() < end) {
     const auto datagram = receive(kResend_ms);
     if (!datagram) send(again);
@@ -77,7 +77,7 @@ std::optional<protocol::relay::State> FakeCommander::next_state(std::uint32_t af
 
 std::optional<protocol::relay::State> FakeCommander::wait_for(
     const std::function<bool(const protocol::relay::State&)>& holds) {
-  const auto end = Clock::now() + kPatience;
+  const auto end = Clock::now() + support::patience();
   while (Clock::now() < end) {
     const auto datagram = receive(50);
     const auto* state = datagram ? std::get_if<protocol::relay::State>(&*datagram) : nullptr;

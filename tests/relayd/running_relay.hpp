@@ -12,18 +12,11 @@
 #include <thread>
 
 #include "relayd/relay.hpp"
+#include "tests/support/patience.hpp"
 
 namespace kenaf::test {
 
-template <class Condition>
-bool eventually(Condition condition) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return true;
-}
+using support::eventually;
 
 // What the relay logs, instead of printing it.
 class LogCapture {

@@ -1,4 +1,5 @@
 #include "tests/support/process.hpp"
+#include "tests/support/patience.hpp"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -75,9 +76,8 @@ std::optional<int> Process::status() {
   return status_;
 }
 
-std::optional<int> Process::wait_for(std::chrono::milliseconds limit) {
-  const auto end = std::chrono::steady_clock::now() + limit;
-  while (!status() && std::chrono::steady_clock::now() < end) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+std::optional<int> Process::wait() {
+  eventually([&] { return status().has_value(); });
   return status_;
 }
 
@@ -100,7 +100,8 @@ std::uint64_t Process::resident_bytes() const {
 }
 
 std::uint16_t wait_for_port(const std::filesystem::path& file, Process& server) {
-  for (int i = 0; i < 10000; ++i) {
+  const auto end = std::chrono::steady_clock::now() + patience();
+  while (std::chrono::steady_clock::now() < end) {
     int port = 0;
     if (std::ifstream in(file); in >> port) return static_cast<std::uint16_t>(port);
     if (const auto status = server.status()) {
@@ -109,7 +110,7 @@ std::uint16_t wait_for_port(const std::filesystem::path& file, Process& server) 
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  throw std::runtime_error("no port in " + file.string() + " after 20 s");
+  throw std::runtime_error("no port in " + file.string());
 }
 
 TemporaryFolder::TemporaryFolder() {

@@ -27,9 +27,10 @@ class Process {
 
   pid_t pid() const { return pid_; }
   void signal(int number) const;
-  // The exit status, or minus the signal that ended it; nullopt while it runs, or still runs after `limit`.
+  // Returns the exit status, or minus the signal that ended it; nullopt while it runs.
   std::optional<int> status();
-  std::optional<int> wait_for(std::chrono::milliseconds limit);
+  // The same of a process that is about to end; nullopt: it still runs after patience().
+  std::optional<int> wait();
 
   double cpu_s() const;                  // user and system time so far
   std::uint64_t resident_bytes() const;  // now
@@ -40,7 +41,7 @@ class Process {
 };
 
 // The port that a server writes into `file` once it listens. Throws std::runtime_error when the server ends first or
-// takes more than 20 s.
+// patience() does.
 std::uint16_t wait_for_port(const std::filesystem::path& file, Process& server);
 
 // A fresh empty folder below the system's temporary folder, removed with its contents at the end.

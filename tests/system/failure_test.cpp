@@ -69,7 +69,7 @@ TEST_CASE("F1 F2 the world server dies and comes back") {
   wait_for_motion(observer);
 
   chain.world().signal(SIGKILL);
-  const auto status = program.wait_for(20s);
+  const auto status = program.wait();
   INFO(chain.log("square_sim"));
   REQUIRE(status.has_value());
   CHECK(*status > 0);  // an error of the program's own, not a signal
@@ -80,7 +80,7 @@ TEST_CASE("F1 F2 the world server dies and comes back") {
   std::optional<int> again;
   for (int tries = 0; tries < 10 && again != 0; ++tries) {
     support::Process retry = chain.start_program("square_sim");
-    again = retry.wait_for(120s);
+    again = retry.wait();
     if (again != 0) std::this_thread::sleep_for(500ms);
   }
   INFO(chain.log("square_sim") << chain.log("relay"));
@@ -118,11 +118,11 @@ TEST_CASE("F4 a second commander is refused with a reason") {
   wait_for_motion(observer);
 
   support::Process second = chain.start_program("status_monitor_sim");
-  const auto refused = second.wait_for(30s);
+  const auto refused = second.wait();
   REQUIRE(refused.has_value());
   CHECK(*refused > 0);
   CHECK(chain.log("status_monitor_sim").find("has commanded the robot") != std::string::npos);
-  CHECK(first.wait_for(120s) == 0);
+  CHECK(first.wait() == 0);
 }
 
 TEST_CASE("F5 the relay dies") {
@@ -131,7 +131,7 @@ TEST_CASE("F5 the relay dies") {
   Observer observer(chain.world_port());
   wait_for_motion(observer);
   chain.relay().signal(SIGKILL);
-  const auto status = program.wait_for(20s);
+  const auto status = program.wait();
   REQUIRE(status.has_value());
   CHECK(*status > 0);
 }

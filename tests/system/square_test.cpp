@@ -24,7 +24,7 @@ support::Process start_square(Chain& chain) {
 }
 
 std::vector<Pose2> path_driven(Chain& chain, support::Process& program) {
-  const auto status = program.wait_for(300s);
+  const auto status = program.wait();
   INFO(chain.log("square_sim") << chain.log("relay") << chain.log("world"));
   REQUIRE(status == 0);
   return path_of(runs::read_run(chain.folder() / "square.csv"));
@@ -59,8 +59,8 @@ TEST_CASE("S1 S2 S5 the square closes, goes round its corners, and both servers 
 
   chain.relay().signal(SIGTERM);
   chain.world().signal(SIGTERM);
-  CHECK(chain.relay().wait_for(20s) == 0);
-  CHECK(chain.world().wait_for(20s) == 0);
+  CHECK(chain.relay().wait() == 0);
+  CHECK(chain.world().wait() == 0);
 }
 
 TEST_CASE("S3 half, double and full speed drive the same path", "[long]") {
@@ -89,7 +89,7 @@ TEST_CASE("S4 garbage at both ports during the run changes nothing") {
                             std::to_string(chain.world_port()), std::to_string(chain.relay_port()), "6"},
                            chain.folder() / "garbage.log");
   const std::vector<Pose2> path = drive_square(chain);
-  CHECK(garbage.wait_for(300s) == 0);
+  CHECK(garbage.wait() == 0);
 
   // The garbage places robots of its own in the world, at other places; contacts of one robot do not feel another's,
   // but the order of the solver's constraints may change, hence millimetres here and not bits.
@@ -99,5 +99,5 @@ TEST_CASE("S4 garbage at both ports during the run changes nothing") {
   CHECK_FALSE(chain.relay().status());
 
   chain.relay().signal(SIGTERM);
-  CHECK(chain.relay().wait_for(20s) == 0);
+  CHECK(chain.relay().wait() == 0);
 }

@@ -83,7 +83,7 @@ class Desk {
   // What was recorded; ends the control process.
   runs::Run recording() {
     control_->signal(SIGTERM);
-    REQUIRE(control_->wait_for(20s) == 0);
+    REQUIRE(control_->wait() == 0);
     return runs::read_run(folder_.path() / "run.csv");
   }
   Process& control() { return *control_; }
@@ -125,7 +125,7 @@ TEST_CASE("O1 an operator climbs a step of 200 mm over 100 ms of latency and 5 %
   Desk desk;
   support::LossyProxy proxy(desk.control_port(), 1, kBadNetwork);
   Process console = desk.console(proxy.port(), kStepScript);
-  const auto status = console.wait_for(90s);
+  const auto status = console.wait();
   INFO(desk.log("console") << desk.log("control"));
   REQUIRE(status == 0);
   check_on_top(desk.recording());
@@ -159,7 +159,7 @@ TEST_CASE("O2 the link cut in mid-climb: the robot holds its place until the ope
   CHECK(was_halted_by_silence);
   const double back_s = newest_robot_time_s;
   proxy.cut(false);
-  const auto status = console.wait_for(60s);
+  const auto status = console.wait();
   INFO(desk.log("console") << desk.log("control"));
   REQUIRE(status == 0);
 
@@ -209,10 +209,10 @@ TEST_CASE("O3 garbage, a second console, a killed one and its successor") {
   CHECK(desk.log("second").find("is ready") == std::string::npos);
 
   first.signal(SIGKILL);  // no Bye: the robot halts by the silence, then the second one gets it
-  CHECK(second.wait_for(30s) == 0);
+  CHECK(second.wait() == 0);
   CHECK(logged("control", "halted: silence"));
   Process third = desk.console(desk.control_port(), idle, "third");  // the second one said Bye
-  CHECK(third.wait_for(30s) == 0);
+  CHECK(third.wait() == 0);
   CHECK_FALSE(desk.control().status());
 
   const runs::Run run = desk.recording();
@@ -238,10 +238,10 @@ TEST_CASE("O4 the relay dies and comes back") {
   };
   REQUIRE(said("one"));
   desk.relay().signal(SIGKILL);
-  desk.relay().wait_for(10s);
+  desk.relay().wait();
   REQUIRE(said("lost"));
   desk.start_relay(desk.relay_port());
-  const auto status = console.wait_for(60s);
+  const auto status = console.wait();
   INFO(desk.log("console") << desk.log("control"));
   CHECK(status == 0);
   CHECK(desk.log("control").find("HRT_E_LINK") != std::string::npos);
@@ -252,7 +252,7 @@ TEST_CASE("O5 a network that is too slow moves nothing") {
   Desk desk;
   support::LossyProxy proxy(desk.control_port(), 3, {.lost = 0, .doubled = 0, .delayed = 0, .latency = 600ms});
   Process console = desk.console(proxy.port(), desk.script("wait until mode is halted within 20\nhold w for 2\n"));
-  const auto status = console.wait_for(60s);
+  const auto status = console.wait();
   INFO(desk.log("console") << desk.log("control"));
   REQUIRE(status == 0);
   CHECK(desk.log("control").find("halted: late") != std::string::npos);

@@ -213,5 +213,5 @@ TEST_CASE("C3 a signal or a key ends it, and leaves the terminal as it was") {
 TEST_CASE("C4 without a terminal it says what to do") {
   const kenaf::support::TemporaryFolder folder;
   kenaf::support::Process console({kProgram, "--gamepad", "none"}, folder.path() / "log");
-  CHECK(console.wait_for(20s) == 2);
+  CHECK(console.wait() == 2);
 }

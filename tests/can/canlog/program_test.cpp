@@ -24,7 +24,7 @@ Ended run(const std::string& lines, std::vector<std::string> options = {}) {
                                 std::string(KENAF_SOURCE_DIR) + "/share/robots/kenaf.toml"};
   argv.insert(argv.end(), options.begin(), options.end());
   support::Process program(argv, output);
-  const int status = program.wait_for(std::chrono::seconds(20)).value();
+  const int status = program.wait().value();
   std::ifstream file(output);
   std::string text{std::istreambuf_iterator<char>(file), {}};
   for (std::size_t at; (at = text.find(log)) != std::string::npos;) text.replace(at, log.size(), "LOG");
@@ -75,7 +75,7 @@ TEST_CASE("kenaf-canlog ends with 2 where its words cannot be written") {
   std::ofstream(log) << kLog;
   support::Process program({KENAF_CANLOG, log, "--robot", std::string(KENAF_SOURCE_DIR) + "/share/robots/kenaf.toml"},
                            "/dev/full");
-  CHECK(program.wait_for(std::chrono::seconds(20)) == 2);
+  CHECK(program.wait() == 2);
 }
 
 TEST_CASE("kenaf-canlog ends with 2 where there is nothing to read") {

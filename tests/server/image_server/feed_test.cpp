@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/server/image_server/served_cameras.hpp"
+#include "tests/support/patience.hpp"
 
 namespace kenaf::image_server {
 
@@ -16,7 +17,7 @@ using FramePtr = std::shared_ptr<const Frame>;
 // The next frame of the view that is not `before`.
 FramePtr next_frame(Feed& feed, const std::string& view, const FramePtr& before = nullptr) {
   FramePtr frame;
-  const bool came = comes_true([&] {
+  const bool came = support::eventually([&] {
     frame = feed.look(view).frame;
     return frame && frame != before;
   });
@@ -26,7 +27,7 @@ FramePtr next_frame(Feed& feed, const std::string& view, const FramePtr& before 
 
 std::string words_for(Feed& feed, const std::string& view) {
   std::string words;
-  comes_true([&] {
+  support::eventually([&] {
     words = feed.look(view).none;
     return !words.empty();
   });
@@ -70,7 +71,7 @@ TEST_CASE("F1: cameras of one rate show the same moment") {
     const FramePtr front = world.feed.look("Camera").frame, top = world.feed.look("BirdsEye").frame;
     return front && top && front->number > 2 && front->robot_time_s == top->robot_time_s;
   };
-  CHECK(comes_true(both));
+  CHECK(support::eventually(both));
 }
 
 TEST_CASE("F2: nothing is drawn while nobody looks, nor 2 s after the last look") {
@@ -80,7 +81,7 @@ TEST_CASE("F2: nothing is drawn while nobody looks, nor 2 s after the last look"
   CHECK(world.feed.newest().empty());
   const FramePtr frame = next_frame(world.feed, "");
   CHECK(world.feed.newest().size() == 1);
-  CHECK(comes_true([&] { return world.feed.newest().empty(); }));  // newest() is no look
+  CHECK(support::eventually([&] { return world.feed.newest().empty(); }));  // newest() is no look
   // whoever looks again sees no old picture, and no number a second time
   const FramePtr again = next_frame(world.feed, "");
   CHECK(again->number > frame->number);
@@ -92,7 +93,7 @@ TEST_CASE("F2: listeners are told of frames until they let go") {
   Robot robot(world, "R1");
   std::atomic<int> told = 0;
   auto handle = world.feed.listen([&] { ++told; });
-  CHECK(comes_true([&] {
+  CHECK(support::eventually([&] {
     world.feed.look("");
     return told > 3;
   }));
@@ -124,7 +125,7 @@ TEST_CASE("F3: after a reset time begins anew, and numbers go on") {
   frame = world.feed.look("").frame;
   robot.ask("CONTROL {Type Reset}");
   FramePtr first;
-  REQUIRE(comes_true([&] {
+  REQUIRE(support::eventually([&] {
     first = world.feed.look("").frame;
     return first && first->robot_time_s == 0;
   }));
@@ -139,19 +140,19 @@ TEST_CASE("F3: robots come and leave while they are watched") {
     next_frame(world.feed, "");
     {
       Robot second(world, "R2", "0,3,0");
-      CHECK(comes_true([&] {
+      CHECK(support::eventually([&] {
         const FramePtr frame = world.feed.look("").frame;
         return frame && frame->robot == "R2";  // the one placed last
       }));
       CHECK(next_frame(world.feed, "R1/BirdsEye")->robot == "R1");
     }
-    CHECK(comes_true([&] {
+    CHECK(support::eventually([&] {
       const FramePtr frame = world.feed.look("").frame;
       return frame && frame->robot == "R1";
     }));
     CHECK(words_for(world.feed, "R2/Camera").find("R1/Camera") != std::string::npos);
   }
-  CHECK(comes_true([&] { return !world.feed.look("").none.empty(); }));
+  CHECK(support::eventually([&] { return !world.feed.look("").none.empty(); }));
 }
 
 TEST_CASE("F3: names of no camera, however many are asked for, shut nobody out") {
@@ -172,13 +173,13 @@ TEST_CASE("F3: more views than anybody needs are refused, and forgotten") {
       if ((which >> letter & 1) != 0) out[3 + letter] = static_cast<char>(out[3 + letter] - 'A' + 'a');
     return out;
   };
-  CHECK(comes_true([&] {  // once it is known what the others show
+  CHECK(support::eventually([&] {  // once it is known what the others show
     bool refused = world.feed.look("R1/Camera").none.starts_with("too many");
     for (std::size_t i = 0; i < Feed::kMostViews; ++i)
       refused = world.feed.look(name(i)).none.starts_with("too many") || refused;
     return refused;
   }));
-  CHECK(comes_true([&] { return world.feed.look("R1/Camera").frame != nullptr; }));  // 2 s later
+  CHECK(support::eventually([&] { return world.feed.look("R1/Camera").frame != nullptr; }));  // 2 s later
 }
 
 TEST_CASE("F4: a feed ends while the world is not run, and while it draws") {

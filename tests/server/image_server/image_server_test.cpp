@@ -14,6 +14,7 @@
 #include "server/world_server/simulation.hpp"
 #include "tests/server/image_server/image_client.hpp"
 #include "tests/server/image_server/served_cameras.hpp"
+#include "tests/support/patience.hpp"
 
 namespace kenaf::image_server {
 
@@ -232,7 +233,7 @@ TEST_CASE("I5: V chooses what is shown, also with two robots, and words say what
     const Stamp found = stamp(client.ask(view_request(view) + "OK"));
     return found.robot + "/" + found.camera;
   };
-  REQUIRE(comes_true([&] { return client.ask().type == 2; }));
+  REQUIRE(support::eventually([&] { return client.ask().type == 2; }));
   CHECK(shown("") == "R2/Camera");
   CHECK(shown("BirdsEye") == "R2/BirdsEye");
   CHECK(shown("R1/Camera") == "R1/Camera");
@@ -245,7 +246,7 @@ TEST_CASE("I5: V chooses what is shown, also with two robots, and words say what
   CHECK(image.type == 255);
   CHECK(shown("R2/Camera") == "R2/Camera");
   second.reset();
-  CHECK(comes_true([&] { return client.ask().type == 255; }));
+  CHECK(support::eventually([&] { return client.ask().type == 255; }));
   CHECK(shown("") == "R1/Camera");
 }
 
@@ -267,7 +268,7 @@ TEST_CASE("I5: robots may leave in mid-frame") {
   ImageClient slow(world.port(), 4096), quick(world.port());
   for (int round = 0; round < 5; ++round) {
     auto robot = std::make_unique<Robot>(world, "R1");
-    REQUIRE(comes_true([&] { return quick.ask("J").type == 2; }));
+    REQUIRE(support::eventually([&] { return quick.ask("J").type == 2; }));
     slow.send("OK");
     REQUIRE(slow.hears(20000));
     quick.send("J");
@@ -307,7 +308,7 @@ TEST_CASE("I6: so many readers are served and no more") {
     CHECK(d.is_let_go());
   }
   // once one has gone there is room
-  CHECK(comes_true([&] {
+  CHECK(support::eventually([&] {
     try {
       ImageClient e(world.port());
       return e.ask().type == 2;
@@ -336,7 +337,7 @@ TEST_CASE("I6: fifty readers that do not read take a frame each at most, and are
   CHECK(resident_bytes() < before + (200 << 20));
   // all fifty have made room for others
   std::vector<std::unique_ptr<ImageClient>> others;
-  CHECK(comes_true([&] {
+  CHECK(support::eventually([&] {
     auto other = std::make_unique<ImageClient>(world.port());
     other->send("J");
     try {

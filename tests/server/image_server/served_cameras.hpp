@@ -10,6 +10,7 @@
 #include "server/image_server/feed.hpp"
 #include "server/image_server/image_server.hpp"
 #include "server/world_server/world_server.hpp"
+#include "tests/support/patience.hpp"
 #include "tests/support/usarsim_client.hpp"
 
 namespace kenaf::image_server {
@@ -57,15 +58,5 @@ struct Robot {
   }
   support::UsarsimClient client;
 };
-
-// Until it holds; false: not within 20 s.
-inline bool comes_true(const std::function<bool()>& condition) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return true;
-}
 
 }  // namespace kenaf::image_server

@@ -1,4 +1,5 @@
 #include "tests/server/live/browser.hpp"
+#include "tests/support/patience.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -16,8 +17,6 @@ namespace kenaf::live {
 using nlohmann::json;
 
 namespace {
-
-constexpr int kLongestWait_ms = 60000;
 
 std::string decode_base64(std::string_view text) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -92,7 +91,8 @@ json Browser::receive() {
       return message;
     }
     pollfd waiting{from_, POLLIN, 0};
-    if (::poll(&waiting, 1, kLongestWait_ms) <= 0) throw std::runtime_error("the browser does not answer");
+    if (::poll(&waiting, 1, 1000 * static_cast<int>(support::patience().count())) <= 0)
+      throw std::runtime_error("the browser does not answer");
     char bytes[65536];
     const ssize_t count = ::read(from_, bytes, sizeof bytes);
     if (count <= 0) throw std::runtime_error("the browser ended; is " KENAF_CHROMIUM " installed?");
@@ -157,11 +157,8 @@ json Browser::evaluate(const std::string& expression) {
 }
 
 void Browser::wait_for(const std::string& expression) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kLongestWait_ms);
-  while (evaluate("Boolean(" + expression + ")") != true) {
-    if (std::chrono::steady_clock::now() > end) throw std::runtime_error("in vain waited for: " + expression);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
+  const bool held = support::eventually([&] { return evaluate("Boolean(" + expression + ")") == true; });
+  if (!held) throw std::runtime_error("in vain waited for: " + expression);
 }
 
 void Browser::screenshot(const std::filesystem::path& png) {

@@ -11,6 +11,7 @@
 #include "camera/jpeg.hpp"
 #include "tests/server/live/served_world.hpp"
 #include "tests/server/live/web_client.hpp"
+#include "tests/support/patience.hpp"
 #include "tests/support/usarsim_client.hpp"
 
 namespace kenaf::live {
@@ -62,15 +63,6 @@ class Stream {
 
 camera::Picture picture_in(const std::string& jpeg) {
   return camera::decode_jpeg({reinterpret_cast<const std::uint8_t*>(jpeg.data()), jpeg.size()});
-}
-
-bool soon(const std::function<bool()>& condition) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  return true;
 }
 
 }  // namespace
@@ -181,7 +173,7 @@ TEST_CASE("a browser that does not read misses pictures, and one that goes has n
     }
     CHECK(parts < 40);
   }
-  CHECK(soon([&] { return world.cameras().newest().empty(); }));
+  CHECK(support::eventually([&] { return world.cameras().newest().empty(); }));
 }
 
 TEST_CASE(

@@ -8,6 +8,7 @@
 #include "server/world_server/manual_drive.hpp"
 #include "server/world_server/world_server.hpp"
 #include "tests/server/world_server/conversation.hpp"
+#include "tests/support/patience.hpp"
 
 namespace kenaf::world_server {
 
@@ -83,7 +84,7 @@ TEST_CASE("another thread is answered by the world's thread, also while time sta
       changed.notify_one();
     });
     std::unique_lock lock(mutex);
-    return changed.wait_for(lock, std::chrono::seconds(20), [&] { return answered; });
+    return changed.wait_for(lock, support::patience(), [&] { return answered; });
   };
   CHECK(ask());
   CHECK(steps == 0);

@@ -1,0 +1,388 @@
+#include "physics/dynamics/belt_contacts.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace kenaf::physics {
+namespace {
+
+constexpr btScalar kDeepest_m = 0.03;  // deeper inside, a face is not the one that is touched
+constexpr btScalar kSideways = 0.15;   // a normal with less than this in the slice's plane belongs to a wall beside
+constexpr btScalar kFacing = 0.9;      // cosine: a run faces a side of the ground
+constexpr btScalar kConeSlack = 0.05;  // sine: an edge is touched from within its two faces' normals
+constexpr int kMeshSlices = 5, kBoxSlices = 3;
+
+// Features are numbered: kind and place in the low bits, whose ground in the high ones.
+constexpr std::uint64_t feature(std::uint64_t ground, std::uint32_t slice, std::uint32_t place) {
+  return ground << 12 | slice << 8 | place;
+}
+
+struct Slices {
+  std::array<btScalar, kMeshSlices> y, share;
+  int count;
+};
+
+Slices slices(const BeltShape& belt, int count) {
+  Slices s{{}, {}, count};
+  for (int i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    s.y[k] = belt.half_width * (2.0 * i / (count - 1) - 1);
+    s.share[k] = (i == 0 || i == count - 1 ? 1.0 : 2.0) / (count - 1);
+  }
+  return s;
+}
+
+// The points of the outline that can touch a side with that unit normal: the lowest of each disc, and those of the run
+// that faces it. `use(place, point, share)`; points have y = 0.
+template <typename Use>
+void outline_points(const BeltShape& belt, const btVector3& normal, const Use& use) {
+  for (int disc = 0; disc < 2; ++disc)
+    use(static_cast<std::uint32_t>(disc), furthest_on_disc(belt, disc, -normal), 0.5);
+  const btVector3 run_normal(belt.lean, 0, normal.z() > 0 ? -belt.rise : belt.rise);
+  if (-run_normal.dot(normal) < kFacing) return;
+  const btVector3 from = furthest_on_disc(belt, 0, run_normal), to = furthest_on_disc(belt, 1, run_normal);
+  for (int i = 1; i < belt.pieces; ++i)
+    use(static_cast<std::uint32_t>(i + 1), from + (to - from) * (static_cast<btScalar>(i) / belt.pieces), 1.0);
+}
+
+// What of the outline meets a wall beside it: the ends of both runs, and both tips.
+template <typename Use>
+void side_points(const BeltShape& belt, const Use& use) {
+  std::uint32_t place = 0;
+  for (const btScalar side : {-1, 1})
+    for (const int disc : {0, 1}) use(place++, furthest_on_disc(belt, disc, {belt.lean, 0, side * belt.rise}));
+  use(place++, furthest_on_disc(belt, 0, {-1, 0, 0}));
+  use(place++, furthest_on_disc(belt, 1, {1, 0, 0}));
+}
+
+bool within_cone(const btVector3& outward, const btVector3& n1, const btVector3& n2) {
+  // outward = a n1 + b n2 for the part in the plane of both
+  const btScalar c = n1.dot(n2), d1 = outward.dot(n1), d2 = outward.dot(n2), sine2 = 1 - c * c;
+  if (sine2 < 1e-6) return false;
+  return d1 - c * d2 >= -kConeSlack * sine2 && d2 - c * d1 >= -kConeSlack * sine2;
+}
+
+// Lugs lie across the belt: behind an edge that runs along it, or nearly, there is nothing for them to catch.
+bool lies_across(const btVector3& edge) {
+  constexpr btScalar kNearly = 0.5;  // the cosine of 60 degrees (chosen)
+  return btFabs(edge.y()) > kNearly * edge.length();
+}
+
+// Corner k of a box has the sign + of axis j where bit j of k is set. Edge e runs along axis e / 4.
+struct BoxEdge {
+  int axis;
+  std::size_t from, to;  // corners
+  btScalar sign(int j) const { return from >> j & 1 ? 1 : -1; }
+};
+
+BoxEdge box_edge(std::uint32_t e) {
+  const int axis = static_cast<int>(e / 4);
+  std::size_t from = 0;
+  if (e & 1) from |= std::size_t{1} << (axis + 1) % 3;
+  if (e & 2) from |= std::size_t{1} << (axis + 2) % 3;
+  return {axis, from, from | std::size_t{1} << axis};
+}
+constexpr std::uint32_t kBoxEdges = 12;
+
+bool in_slabs(const BoxInT& box, const btVector3& from_center, int except) {
+  for (int j = 0; j < 3; ++j)
+    if (j != except && btFabs(box.axes.getColumn(j).dot(from_center)) > box.half[j]) return false;
+  return true;
+}
+
+class BoxTouches {
+ public:
+  BoxTouches(const BeltShape& belt, const BoxInT& box, std::vector<BeltTouch>& out)
+      : belt_(belt), box_(box), out_(out), first_(out.size()) {}
+
+  void find() {
+    btScalar reach[3];  // half extents of the box along T's axes
+    for (int k = 0; k < 3; ++k) {
+      reach[k] = 0;
+      for (int j = 0; j < 3; ++j) reach[k] += btFabs(box_.axes[k][j]) * box_.half[j];
+    }
+    const btVector3& c = box_.center;
+    const btScalar r = std::max(belt_.radius[0], belt_.radius[1]) + kTouching_m;
+    if (c.x() - reach[0] > belt_.length + belt_.radius[1] + kTouching_m ||
+        c.x() + reach[0] < -belt_.radius[0] - kTouching_m || btFabs(c.z()) > reach[2] + r)
+      return;
+    overlap_ = std::min(belt_.half_width + c.y() + reach[1], belt_.half_width - c.y() + reach[1]);
+    beside_ = c.y() > 0 ? 1 : -1;
+    if (overlap_ <= 0) return;
+    for (std::size_t k = 0; k < corner_.size(); ++k) {
+      corner_[k] = c;
+      for (int j = 0; j < 3; ++j) corner_[k] += box_.axes.getColumn(j) * (k >> j & 1 ? box_.half[j] : -box_.half[j]);
+    }
+
+    const Slices s = slices(belt_, kBoxSlices);
+    faces(s);
+    for (std::uint32_t e = 0; e < kBoxEdges; ++e) {
+      const BoxEdge edge = box_edge(e);
+      if (!near(corner_[edge.from], corner_[edge.to])) continue;
+      edge_in_slices(edge, e, s);
+      inner_edge(edge, e, s);
+    }
+    corners();
+    if (overlap_ < kDeepest_m && overlap_ < depth_in_plane()) side();
+  }
+
+ private:
+  void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar share, bool holds_lugs,
+           std::uint64_t id) {
+    // what is deeper along the slice than across it is a wall that the belt's side face meets
+    if (-gap <= overlap_) out_.push_back({p, normal, gap, share, holds_lugs, id});
+  }
+
+  // The faces that are not beside the slices: axis, side, normal, and the normal's part in the slices, unit length.
+  template <typename Use>
+  void for_each_face(Use&& use) const {
+    for (int j = 0; j < 3; ++j) {
+      for (const int sign : {-1, 1}) {
+        const btVector3 normal = box_.axes.getColumn(j) * sign;
+        const btScalar in_plane = btSqrt(normal.x() * normal.x() + normal.z() * normal.z());
+        if (in_plane < kSideways) continue;
+        use(j, sign, normal, btVector3(normal.x() / in_plane, 0, normal.z() / in_plane));
+      }
+    }
+  }
+
+  // How far the belt reaches below a face of axis j; `flat` is the part of the face's normal in the slices, unit
+  // length.
+  btScalar depth_below(int j, const btVector3& normal, const btVector3& flat) const {
+    const btScalar lowest =
+        std::min(normal.dot(furthest_on_disc(belt_, 0, -flat)), normal.dot(furthest_on_disc(belt_, 1, -flat))) -
+        btFabs(normal.y()) * belt_.half_width;
+    return box_.half[j] + normal.dot(box_.center) - lowest;
+  }
+
+  // How far the belt would have to go to be free of the box without leaving its slices; negative: it is free.
+  btScalar depth_in_plane() const {
+    btScalar least = BT_LARGE_FLOAT;
+    for_each_face([&](int j, int, const btVector3& normal, const btVector3& flat) {
+      least = std::min(least, depth_below(j, normal, flat));
+    });
+    return least;
+  }
+
+  void faces(const Slices& s) {
+    for_each_face([&](int j, int sign, const btVector3& normal, const btVector3& flat) {
+      if (depth_below(j, normal, flat) < -kTouching_m) return;
+      const std::uint32_t face = static_cast<std::uint32_t>(2 * j + (sign > 0));
+      outline_points(belt_, flat, [&](std::uint32_t place, const btVector3& p, btScalar share) {
+        face_points(j, normal, face, s, place, p, share);
+      });
+    });
+  }
+
+  // A point of the outline, in each slice. Where the face goes on across the whole belt, the edges of the belt carry
+  // all, as on a plane.
+  void face_points(int j, const btVector3& normal, std::uint32_t face, const Slices& s, std::uint32_t place,
+                   btVector3 p, btScalar share) {
+    const auto move_to = [&](std::size_t k) { p.setY(s.y[k]); };
+    const auto gap_here = [&] { return normal.dot(p - box_.center) - box_.half[j]; };
+    const auto counts = [](btScalar gap) { return gap <= kTouching_m && gap >= -kDeepest_m; };
+    const auto over = [&](std::size_t k) {
+      move_to(k);
+      return in_slabs(box_, p - box_.center, j);
+    };
+    // most points are far from most faces, which is quicker to see than where they are beside it
+    bool any = false;
+    for (std::size_t k = 0; k < kBoxSlices; ++k) {
+      move_to(k);
+      any = any || counts(gap_here());
+    }
+    if (!any) return;
+    const bool whole = over(0) && over(2);
+    for (std::size_t k = 0; k < kBoxSlices; ++k) {
+      if (whole ? k == 1 : !over(k)) continue;
+      move_to(k);
+      const btScalar gap = gap_here();
+      if (!counts(gap)) continue;
+      add(p - normal * (gap / 2), normal, gap, share * (whole ? 1 : s.share[k]), false,
+          feature(face, static_cast<std::uint32_t>(k), place));
+    }
+  }
+
+  // A point of an edge against the belt's outline.
+  void edge_point(const BoxEdge& edge, const btVector3& p, btScalar share, std::uint64_t id) {
+    const OutlineDistance at = distance_to_outline(belt_, p.x(), p.z());
+    if (at.distance > kTouching_m || at.distance < -kDeepest_m) return;
+    const int j1 = (edge.axis + 1) % 3, j2 = (edge.axis + 2) % 3;
+    const btVector3 normal = -at.outward;
+    if (!within_cone(normal, box_.axes.getColumn(j1) * edge.sign(j1), box_.axes.getColumn(j2) * edge.sign(j2))) return;
+    add(p + at.outward * (at.distance / -2), normal, at.distance, share,
+        lies_across(corner_[edge.to] - corner_[edge.from]), id);
+  }
+
+  // Whether a line reaches into the box that holds the belt.
+  bool near(const btVector3& p0, const btVector3& p1) const {
+    const btScalar r = std::max(belt_.radius[0], belt_.radius[1]) + kTouching_m;
+    return std::max(p0.x(), p1.x()) >= -belt_.radius[0] - kTouching_m &&
+           std::min(p0.x(), p1.x()) <= belt_.length + belt_.radius[1] + kTouching_m && std::max(p0.z(), p1.z()) >= -r &&
+           std::min(p0.z(), p1.z()) <= r && std::max(p0.y(), p1.y()) >= -belt_.half_width &&
+           std::min(p0.y(), p1.y()) <= belt_.half_width;
+  }
+
+  void edge_in_slices(const BoxEdge& edge, std::uint32_t e, const Slices& s) {
+    const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
+    const btScalar rise = p1.y() - p0.y();
+    if (btFabs(rise) < 1e-9) return;
+    for (std::size_t k = 0; k < kBoxSlices; ++k) {
+      const btScalar t = (s.y[k] - p0.y()) / rise;
+      if (t < 0 || t > 1) continue;
+      edge_point(edge, p0 + (p1 - p0) * t, s.share[k], feature(6 + e, static_cast<std::uint32_t>(k), 0));
+    }
+  }
+
+  void corners() {
+    for (std::uint32_t k = 0; k < 8; ++k) {
+      const btVector3& p = corner_[k];
+      if (btFabs(p.y()) > belt_.half_width) continue;
+      const OutlineDistance at = distance_to_outline(belt_, p.x(), p.z());
+      if (at.distance > kTouching_m || at.distance < -kDeepest_m) continue;
+      const btVector3 normal = -at.outward;
+      bool outside = false;
+      for (int j = 0; j < 3; ++j)
+        outside = outside || box_.axes.getColumn(j).dot(normal) * (k >> j & 1 ? 1 : -1) < -kConeSlack;
+      if (!outside) add(p + normal * (at.distance / 2), normal, at.distance, 1, true, feature(18, 0, k));
+    }
+  }
+
+  // An edge that stays between two slices: where it is deepest.
+  void inner_edge(const BoxEdge& edge, std::uint32_t e, const Slices& s) {
+    const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
+    const btScalar low = std::min(p0.y(), p1.y()), high = std::max(p0.y(), p1.y());
+    for (std::size_t k = 0; k < kBoxSlices; ++k)
+      if (low <= s.y[k] && s.y[k] <= high && high - low > 1e-9) return;
+    // the distance to a convex outline has one minimum along a line
+    const auto distance = [&](btScalar t) {
+      const btVector3 p = p0 + (p1 - p0) * t;
+      return distance_to_outline(belt_, p.x(), p.z()).distance;
+    };
+    btScalar from = 0, to = 1;
+    constexpr btScalar kGolden = 0.6180339887498949;
+    btScalar a = to - kGolden * (to - from), b = from + kGolden * (to - from);
+    btScalar at_a = distance(a), at_b = distance(b);
+    for (int i = 0; i < 24; ++i) {
+      if (at_a < at_b) {
+        to = b, b = a, at_b = at_a;
+        a = to - kGolden * (to - from), at_a = distance(a);
+      } else {
+        from = a, a = b, at_a = at_b;
+        b = from + kGolden * (to - from), at_b = distance(b);
+      }
+    }
+    edge_point(edge, p0 + (p1 - p0) * ((from + to) / 2), 1, feature(19, 0, e));
+  }
+
+  // The belt's side face against the box: instead of all that was found along the slices.
+  void side() {
+    out_.resize(first_);
+    btVector3 normal(0, -beside_, 0);
+    for (int j = 0; j < 3; ++j) {
+      const btVector3 axis = box_.axes.getColumn(j);
+      if (btFabs(axis.y()) > 1 - kSideways) normal = axis.y() * beside_ > 0 ? -axis : axis;
+    }
+    const btScalar y = beside_ * belt_.half_width;
+    const auto touch = [&](const btVector3& p, std::uint32_t place) {
+      out_.push_back({p, normal, -overlap_, 1, false, feature(20, 0, place)});
+    };
+    side_points(belt_, [&](std::uint32_t place, btVector3 p) {
+      p.setY(y - beside_ * overlap_ / 2);
+      if (in_slabs(box_, p - box_.center, -1)) touch(p, place);
+    });
+    for (std::uint32_t e = 0; e < kBoxEdges; ++e) {
+      const BoxEdge edge = box_edge(e);
+      const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
+      const btScalar rise = p1.y() - p0.y();
+      if (btFabs(rise) < 1e-9) continue;
+      const btScalar t = (y - beside_ * overlap_ / 2 - p0.y()) / rise;
+      if (t < 0 || t > 1) continue;
+      const btVector3 p = p0 + (p1 - p0) * t;
+      if (distance_to_outline(belt_, p.x(), p.z()).distance <= 0) touch(p, 8 + e);
+    }
+    for (std::uint32_t k = 0; k < 8; ++k) {
+      const btVector3& p = corner_[k];
+      if (btFabs(p.y()) <= belt_.half_width && distance_to_outline(belt_, p.x(), p.z()).distance <= 0) touch(p, 20 + k);
+    }
+  }
+
+  const BeltShape& belt_;
+  const BoxInT& box_;
+  std::vector<BeltTouch>& out_;
+  std::size_t first_;
+  std::array<btVector3, 8> corner_;
+  btScalar overlap_ = 0, beside_ = 1;
+};
+
+}  // namespace
+
+void touch_plane(const BeltShape& belt, const btVector3& normal, btScalar offset, std::vector<BeltTouch>& out) {
+  const btScalar in_plane = btSqrt(normal.x() * normal.x() + normal.z() * normal.z());
+  const auto touch = [&](btVector3 p, btScalar y, btScalar share, std::uint64_t id) {
+    p.setY(y);
+    const btScalar gap = normal.dot(p) - offset;
+    if (gap <= kTouching_m) out.push_back({p - normal * (gap / 2), normal, gap, share, false, id});
+  };
+  if (in_plane < kSideways) {
+    const btScalar y = normal.y() > 0 ? -belt.half_width : belt.half_width;
+    side_points(belt, [&](std::uint32_t place, const btVector3& p) { touch(p, y, 1, feature(0, 2, place)); });
+    return;
+  }
+  const btVector3 flat(normal.x() / in_plane, 0, normal.z() / in_plane);
+  for (const std::uint32_t slice : {0u, 1u})
+    outline_points(belt, flat, [&](std::uint32_t place, const btVector3& p, btScalar share) {
+      touch(p, slice ? belt.half_width : -belt.half_width, share, feature(0, slice, place));
+    });
+}
+
+void touch_box(const BeltShape& belt, const BoxInT& box, std::vector<BeltTouch>& out) {
+  BoxTouches(belt, box, out).find();
+}
+
+void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<BeltTouch>& out) {
+  const btScalar in_plane = btSqrt(t.normal.x() * t.normal.x() + t.normal.z() * t.normal.z());
+  const btVector3 sides[3] = {t.corner[1] - t.corner[0], t.corner[2] - t.corner[1], t.corner[0] - t.corner[2]};
+  const auto inside = [&](const btVector3& p) {
+    for (int i = 0; i < 3; ++i)
+      if (sides[i].cross(p - t.corner[i]).dot(t.normal) < 0) return false;
+    return true;
+  };
+  const auto face = [&](const btVector3& p, btScalar share, std::uint64_t id) {
+    const btScalar gap = t.normal.dot(p - t.corner[0]);
+    if (gap <= kTouching_m && gap >= -kDeepest_m && inside(p))
+      out.push_back({p - t.normal * (gap / 2), t.normal, gap, share, false, id});
+  };
+  if (in_plane < kSideways) {
+    const btScalar y = t.normal.y() > 0 ? -belt.half_width : belt.half_width;
+    side_points(belt, [&](std::uint32_t place, btVector3 p) {
+      p.setY(y);
+      face(p, 1, feature(t.index, kMeshSlices, place));
+    });
+    return;
+  }
+  const btVector3 flat(t.normal.x() / in_plane, 0, t.normal.z() / in_plane);
+  const Slices s = slices(belt, kMeshSlices);
+  for (int k = 0; k < s.count; ++k) {
+    const btScalar y = s.y[static_cast<std::size_t>(k)], slice_share = s.share[static_cast<std::size_t>(k)];
+    const auto slice = static_cast<std::uint32_t>(k);
+    outline_points(belt, flat, [&](std::uint32_t place, btVector3 p, btScalar share) {
+      p.setY(y);
+      face(p, share * slice_share, feature(t.index, slice, place));
+    });
+    for (int i = 0; i < 3; ++i) {
+      if (!t.owns_edge[i] || btFabs(sides[i].y()) < 1e-9) continue;
+      const btScalar along = (y - t.corner[i].y()) / sides[i].y();
+      if (along < 0 || along > 1) continue;
+      const btVector3 p = t.corner[i] + sides[i] * along;
+      const OutlineDistance at = distance_to_outline(belt, p.x(), p.z());
+      if (at.distance > kTouching_m || at.distance < -kDeepest_m ||
+          !within_cone(-at.outward, t.normal, t.neighbour_normal[i]))
+        continue;
+      out.push_back({p - at.outward * (at.distance / 2), -at.outward, at.distance, slice_share, lies_across(sides[i]),
+                     feature(t.index, slice, static_cast<std::uint32_t>(33 + i))});
+    }
+  }
+}
+
+}  // namespace kenaf::physics

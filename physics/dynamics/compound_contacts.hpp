@@ -1,0 +1,29 @@
+// Contacts of a compound (a robot's hull with its tracks) with anything else: those of its pieces, each by the
+// dispatcher's algorithm for the two shapes.
+//
+// In place of Bullet's own, which allocates lists whenever a compound comes near another body.
+#pragma once
+
+#include <cstddef>
+
+#include "physics/dynamics/bullet.hpp"
+
+namespace kenaf::physics {
+
+class CompoundContacts {
+ public:
+  static constexpr std::size_t kMostPieces = 3;  // of one compound
+
+  // Makes `dispatcher` use it for compounds beside planes, boxes, convex hulls, meshes and compounds.
+  explicit CompoundContacts(btCollisionDispatcher& dispatcher);
+
+ private:
+  struct Create : btCollisionAlgorithmCreateFunc {
+    btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                   const btCollisionObjectWrapper* body0,
+                                                   const btCollisionObjectWrapper* body1) override;
+  };
+  Create create_, create_swapped_;
+};
+
+}  // namespace kenaf::physics

@@ -1,0 +1,94 @@
+// One contact point in the solver of a step: a normal that gives way a little, friction within an ellipse, and the
+// belts that run through it. docs/physics.md has the equations and why they are so.
+#pragma once
+
+#include <span>
+
+#include "physics/dynamics/bullet.hpp"
+#include "physics/dynamics/solver_body.hpp"
+#include "physics/dynamics/surface.hpp"
+
+namespace kenaf::physics {
+
+struct ContactSettings {
+  double stiffness_npm;  // of one contact point
+  double damping_nspm;
+};
+
+// What touches. Everything is of body A relative to body B, and A is never fixed.
+struct Meeting {
+  const Collider *collider_a, *collider_b;
+  SolverBody *body_a, *body_b;  // null: B is fixed
+  const Surface *surface_a, *surface_b;
+  // About which their belts turn, in W, and what of the belts' speed moves their surfaces; unused where there is no
+  // belt.
+  btVector3 belt_axis_a, belt_axis_b;
+  btScalar driving_a, driving_b;
+  btScalar kept;  // of the last step's friction
+
+  Meeting(const btCollisionObject& a, const btCollisionObject& b, SolverBody* solver_a, SolverBody* solver_b,
+          const Surface& on_a, const Surface& on_b);
+};
+
+// Where it touches, however that was found.
+struct Touch {
+  btVector3 p_W, normal_W;  // from B to A
+  btScalar gap_m, share;
+  bool holds_lugs;
+  btScalar* kept[3];  // where the impulses stay from step to step: normal, along, across
+};
+
+class Contact {
+ public:
+  Contact(const Meeting& meeting, const Touch& touch, const ContactSettings& settings, btScalar time_step);
+
+  void warm_start();
+  // One iteration of contacts that follow each other; gives the largest square of the velocity by which one of them
+  // changed its body A.
+  static btScalar solve(std::span<Contact> contacts);
+  // Leaves the impulses where they were taken from.
+  void finish();
+
+  const Collider& collider_a() const { return *collider_a_; }
+  const Collider& collider_b() const { return *collider_b_; }
+  const btVector3& p_W() const { return p_W_; }
+  bool pressed() const { return normal_impulse_ > 0; }
+
+ private:
+  // What a contact changes of A.
+  struct Moved {
+    TwoVectors& delta;
+    btScalar &belt_mps, &load_ns;
+  };
+  Moved in_place(btScalar& none) const;  // `none`: instead of a belt's numbers
+  bool on_ground() const { return !body_b_ && !belt_b_; }
+  template <bool kOnGround>
+  btScalar solve_one(Moved a);
+  template <bool kOnGround>
+  void apply(Moved a, btScalar normal, Two friction);
+
+  SolverBody *body_a_, *body_b_;
+  Belt *belt_a_, *belt_b_;
+  // Three rows: normal, along, across; moving in lane 0, turning in lane 1.
+  TwoVectors row_[3];       // velocity of the row for a unit velocity of A: axis, arm x axis
+  TwoVectors response_[3];  // of A, for a unit impulse
+  TwoVectors row_b_[3], response_b_[3];
+  btScalar inverse_mass_a_;
+  // What is of friction has along in lane 0, across in lane 1.
+  btScalar normal_impulse_;
+  Two friction_impulse_;
+  btScalar normal_velocity_;  // before any impulse of this step
+  Two slip_;
+  btScalar normal_mass_, softness_, give_velocity_;
+  Two normal_to_slip_;  // for a unit normal impulse
+  Two stick_[2];        // inverse of the 2 x 2 matrix from friction impulse to slip
+  Two slide_step_;      // times mu
+  Two mu_, inverse_mu_;
+  Two belt_gain_a_, belt_gain_b_;  // slip for a belt's speed; 0 without a belt
+  Two belt_push_a_, belt_push_b_;  // belt's speed for a unit impulse
+  btScalar* kept_[3];
+  const Collider *collider_a_, *collider_b_;
+  btVector3 p_W_;
+};
+
+}  // namespace kenaf::physics

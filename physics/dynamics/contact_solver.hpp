@@ -1,0 +1,74 @@
+// A sequential impulse solver as Bullet's, with contacts of our own: belts that run over surfaces, friction that does
+// not depend on axes, and a little give of the ground. docs/physics.md has the equations and why they are so.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "physics/dynamics/belt_ground.hpp"
+#include "physics/dynamics/body_groups.hpp"
+#include "physics/dynamics/bullet.hpp"
+#include "physics/dynamics/contact.hpp"
+#include "physics/dynamics/joint_rows.hpp"
+#include "physics/dynamics/solver_body.hpp"
+#include "physics/dynamics/surface.hpp"
+
+namespace kenaf::physics {
+
+class ContactSolver {
+ public:
+  ContactSolver(const ContactSettings& settings, BeltGround& belt_ground)
+      : settings_(settings), belt_ground_(belt_ground) {
+    contacts_.reserve(kManyContacts);  // without a robot: of boxes
+  }
+
+  // `body`: that it belongs to, or one that is joined to that.
+  void add_belt(Belt* belt, const btRigidBody* body);
+  void remove_belt(Belt* belt);
+  // For what leaves its place or the world: contacts() no longer speaks of it.
+  void forget_contacts_of(const btCollisionObject& object);
+  // One step's impulses, written back as velocities. Each of `joints` is a FlipperJoint. What one group of bodies does
+  // has no influence on how another is solved: each stops where nothing changes in it any more.
+  void solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatcher& dispatcher,
+             btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info);
+  // Of the last step.
+  std::span<const Contact> contacts() const { return contacts_; }
+
+ private:
+  // Of one side of a robot, so that a step need not allocate. In a field of pallets each of its three belts is near ten
+  // or more.
+  static constexpr std::size_t kManyContacts = 128, kManyPairs = 48;
+
+  struct BeltOfBody {
+    Belt* belt;
+    const btRigidBody* body;
+  };
+
+  SolverBody* solver_body(const btCollisionObject& object);  // null: it is fixed
+  std::size_t group_of(const btCollisionObject& moving) const;
+  // Fills groups_, and which joints, belts and touches are in them.
+  void find_groups(btDispatcher& dispatcher, const btAlignedObjectArray<btTypedConstraint*>& joints);
+  void make_joints(const btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info);
+  void make_contacts(btDispatcher& dispatcher, btScalar time_step);
+  void start_belts();
+  btScalar iterate(std::size_t group, btScalar time_step);  // gives the largest square of a change of velocity
+  void add_manifold(btPersistentManifold& manifold, btScalar time_step);
+  void add_belt_pair(BeltPair& pair, btScalar time_step);
+  static btScalar solve_running_gear(Belt& belt, btScalar time_step);  // gives the largest square of a speed change
+
+  ContactSettings settings_;
+  BeltGround& belt_ground_;
+  std::vector<SolverBody> bodies_;
+  std::vector<BeltOfBody> belts_;
+  BodyGroups groups_;
+  // Places in Bullet's list of joints, in belts_, and in touching_.
+  PlacesByGroup joints_by_group_, belts_by_group_, touching_by_group_;
+  std::vector<std::size_t>
+      touching_;  // the number of a manifold that has contacts, or of a pair, counted on from those
+  // Group by group.
+  std::vector<JointRows> joints_;
+  std::vector<Contact> contacts_;
+  std::vector<std::size_t> contacts_end_;  // of each group
+};
+
+}  // namespace kenaf::physics

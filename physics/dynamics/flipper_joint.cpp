@@ -1,0 +1,163 @@
+#include "physics/dynamics/flipper_joint.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "robot/angles.hpp"
+
+namespace kenaf::physics {
+namespace {
+
+constexpr double kServoGain_per_s = 30;     // of the position loop
+constexpr double kEndStopTorque_nm = 1000;  // what the mechanical stop can hold
+constexpr double kEndStopGain_per_s = 20;
+constexpr double kTeeth_radpnm = 1e-4;      // give of the gear's teeth, where there is play
+constexpr double kSpringDamping_s = 0.005;  // damping of the coupling over its stiffness
+
+}  // namespace
+
+FlipperJoint::FlipperJoint(btRigidBody& a, btRigidBody& b, const btTransform& X_AJ, const btTransform& X_BJ,
+                           const ServoCoupling& coupling)
+    : btTypedConstraint(HINGE_CONSTRAINT_TYPE, a, b), X_AJ_(X_AJ), X_BJ_(X_BJ), coupling_(coupling) {}
+
+btVector3 FlipperJoint::axis_W() const {
+  return -(m_rbA.getCenterOfMassTransform().getBasis() * X_AJ_.getBasis().getColumn(1));
+}
+
+double FlipperJoint::raw_angle_rad() const {
+  const btMatrix3x3 R_WA = m_rbA.getCenterOfMassTransform().getBasis() * X_AJ_.getBasis();
+  const btVector3 out_W = m_rbB.getCenterOfMassTransform().getBasis() * X_BJ_.getBasis().getColumn(0);
+  return std::atan2(R_WA.getColumn(2).dot(out_W), R_WA.getColumn(0).dot(out_W));
+}
+
+void FlipperJoint::after_step(double time_step_s) {
+  angle_rad_ += robot::wrap_angle(raw_angle_rad() - angle_rad_);
+  if (!coupling_.rigid())
+    servo_rad_ =
+        std::clamp(servo_rad_ + time_step_s * servo_radps_, angle_rad_ - most_apart_rad_, angle_rad_ + most_apart_rad_);
+}
+
+void FlipperJoint::restart(double angle_rad) {
+  angle_rad_ = followed_rad_ = servo_rad_ = angle_rad;
+  come_to_rest();
+}
+
+void FlipperJoint::come_to_rest() {
+  servo_radps_ = 0;
+  row_impulse = {};
+}
+
+double FlipperJoint::speed_radps() const {
+  return axis_W().dot(m_rbB.getAngularVelocity() - m_rbA.getAngularVelocity());
+}
+
+void FlipperJoint::drive(const robot::JointCommand& command, const FlipperDescription& flipper,
+                         const FlipperServoDescription& servo, double time_step_s) {
+  double torque = servo.max_torque_nm;
+  double speed = 0;
+  const double at = servo_rad();
+  if (command.mode != robot::JointMode::angle) followed_rad_ = at;
+  switch (command.mode) {
+    case robot::JointMode::angle: {
+      double target = robot::reachable_angle(command.value, at, flipper.min_angle_rad, flipper.max_angle_rad);
+      if (coupling_.lag_s > 0) {
+        followed_rad_ -= std::expm1(-time_step_s / coupling_.lag_s) * (target - followed_rad_);
+        target = followed_rad_;
+      }
+      speed = std::clamp(kServoGain_per_s * (target - at), -servo.max_speed_radps, servo.max_speed_radps);
+      break;
+    }
+    case robot::JointMode::speed:
+      speed = std::clamp(command.value, -servo.max_speed_radps, servo.max_speed_radps);
+      break;
+    case robot::JointMode::torque:  // runs freely up to the servo's speed
+      torque = std::min(std::abs(command.value), servo.max_torque_nm);
+      speed = std::copysign(servo.max_speed_radps, command.value);
+      break;
+    case robot::JointMode::brake:
+      break;
+  }
+  servo_most_nm_ = torque;
+  min_impulse_ = -torque * time_step_s;
+  max_impulse_ = torque * time_step_s;
+  // never past a limit within the next step; a load may press it past, then the stop pushes back
+  speed = std::clamp(speed, std::min((flipper.min_angle_rad - at) / time_step_s, 0.0),
+                     std::max((flipper.max_angle_rad - at) / time_step_s, 0.0));
+  if (!coupling_.rigid()) push_through(speed, torque, time_step_s);
+  const double to_min = flipper.min_angle_rad - angle_rad_, to_max = flipper.max_angle_rad - angle_rad_;
+  if (to_max < 0 || to_min > 0) softness_ = 0;  // the stop is at the arm
+  if (to_max < 0) {
+    speed = std::min(speed, kEndStopGain_per_s * to_max);
+    min_impulse_ = -kEndStopTorque_nm * time_step_s;
+  } else if (to_min > 0) {
+    speed = std::max(speed, kEndStopGain_per_s * to_min);
+    max_impulse_ = kEndStopTorque_nm * time_step_s;
+  } else if (softness_ > 0) {
+    return;
+  }
+  target_radps_ = speed;
+}
+
+void FlipperJoint::prescribe(double angle_rad, double time_step_s) {
+  constexpr double kAnyTorque_nm = 1e6;
+  constexpr double kFastest_radps = 10;  // chosen: an arm that hung elsewhere at first gets there without a blow
+  const double at = servo_rad();
+  target_radps_ = std::clamp(robot::wrap_angle(angle_rad - at) / time_step_s, -kFastest_radps, kFastest_radps);
+  servo_most_nm_ = kAnyTorque_nm;
+  max_impulse_ = kAnyTorque_nm * time_step_s;
+  min_impulse_ = -max_impulse_;
+  softness_ = 0;
+  followed_rad_ = at + target_radps_ * time_step_s;
+  if (!coupling_.rigid()) push_through(target_radps_, kAnyTorque_nm, time_step_s);
+}
+
+// Spring and damper, implicit as a contact's: torque = k (apart + h (servo - arm speed)) + d (servo - arm speed), at
+// most what the servo has, and with play never a pull across it.
+void FlipperJoint::push_through(double servo_radps, double torque_nm, double time_step_s) {
+  const double give =
+      coupling_.play_rad > 0 ? std::max(coupling_.compliance_radpnm, kTeeth_radpnm) : coupling_.compliance_radpnm;
+  servo_radps_ = servo_radps;
+  most_apart_rad_ = coupling_.play_rad / 2 + give * torque_nm;
+  const double ahead = servo_rad_ - angle_rad_;
+  const double stiffness = 1 / give;
+  const double step_stiffness = stiffness * (time_step_s + kSpringDamping_s);
+  softness_ = 1 / (time_step_s * step_stiffness);
+  target_radps_ = servo_radps + stiffness * (ahead - std::copysign(coupling_.play_rad / 2, ahead)) / step_stiffness;
+  if (coupling_.play_rad > 0) (ahead < 0 ? max_impulse_ : min_impulse_) = 0;
+}
+
+void FlipperJoint::rows(btScalar correction_per_s, std::array<Row, kRows>& out) const {
+  const btTransform X_WJa = m_rbA.getCenterOfMassTransform() * X_AJ_;
+  const btTransform X_WJb = m_rbB.getCenterOfMassTransform() * X_BJ_;
+  const btVector3 r_a = X_WJa.getOrigin() - m_rbA.getCenterOfMassPosition();
+  const btVector3 r_b = X_WJb.getOrigin() - m_rbB.getCenterOfMassPosition();
+  const btVector3 apart = X_WJb.getOrigin() - X_WJa.getOrigin();
+  // the first three hold the pivots together
+  for (int i = 0; i < 3; ++i) {
+    Row& row = out[static_cast<std::size_t>(i)];
+    btVector3 axis(0, 0, 0);
+    axis[i] = 1;
+    row.angular_a = r_a.cross(axis);
+    row.angular_b = -r_b.cross(axis);
+    row.velocity = correction_per_s * apart[i];
+  }
+  // two keep the axes parallel
+  const btVector3 axis_a = X_WJa.getBasis().getColumn(1);
+  const btVector3 tilt = axis_a.cross(X_WJb.getBasis().getColumn(1));
+  for (const std::size_t i : {3u, 4u}) {
+    const btVector3 p = X_WJa.getBasis().getColumn(i == 3 ? 0 : 2);
+    out[i].angular_a = p;
+    out[i].angular_b = -p;
+    out[i].velocity = correction_per_s * tilt.dot(p);
+  }
+  // the last is the servo: B turns relative to A about -y of the joint
+  Row& servo = out[5];
+  servo.angular_a = axis_a;
+  servo.angular_b = -axis_a;
+  servo.velocity = target_radps_;
+  servo.low = min_impulse_;
+  servo.high = max_impulse_;
+  servo.softness = softness_;
+}
+
+}  // namespace kenaf::physics

@@ -1,0 +1,89 @@
+// A hinge between a robot's body and a flipper, with a servo that is limited in speed and torque.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "physics/dynamics/bullet.hpp"
+#include "physics/robot_description.hpp"
+#include "robot/command.hpp"
+
+namespace kenaf::physics {
+
+// What is between the servo and its arm: nothing, unless the effects put something there.
+struct ServoCoupling {
+  double lag_s = 0;     // of the angle that the servo follows
+  double play_rad = 0;  // between both ends
+  double compliance_radpnm = 0;
+  bool rigid() const { return play_rad == 0 && compliance_radpnm == 0; }
+};
+
+// The angle is counted through full turns, so a flipper with more than half a turn of travel knows where it is.
+//
+// Rigid, servo and arm are one, and the servo's row moves the arm. Otherwise the servo has an angle of its own: it
+// moves as it is told, and drags the arm by a spring and a damper that begin at the end of the play. Where the spring's
+// torque would go beyond the servo's, it is the servo that gives way.
+class FlipperJoint : public btTypedConstraint {
+ public:
+  // `X_AJ`, `X_BJ`: the joint's frame in the frames of the two bodies' centres of mass. They coincide at angle 0; a
+  // positive angle turns B about -y of the joint's frame.
+  FlipperJoint(btRigidBody& a, btRigidBody& b, const btTransform& X_AJ, const btTransform& X_BJ,
+               const ServoCoupling& coupling);
+
+  // Reads the angle from the bodies; call once after each step.
+  void after_step(double time_step_s);
+  // Places it without history.
+  void restart(double angle_rad);
+  // At rest, as after a teleport. Who lifts a robot turns no servo: it and the arm stay as far apart as they are.
+  void come_to_rest();
+  // Sets the servo for the next step.
+  void drive(const robot::JointCommand& command, const FlipperDescription& flipper,
+             const FlipperServoDescription& servo, double time_step_s);
+  // Instead of drive(): at the end of the next step the servo has this direction, whatever it can do; it turns at most
+  // at 10 rad/s. Rigid, the arm is there, too; else it follows through play and compliance.
+  void prescribe(double angle_rad, double time_step_s);
+
+  double angle_rad() const { return angle_rad_; }
+  // On the servo's side of play and compliance, where its encoder sits.
+  double servo_rad() const { return coupling_.rigid() ? angle_rad_ : servo_rad_; }
+  double speed_radps() const;
+  double torque_nm(double time_step_s) const { return row_impulse[5] / time_step_s; }  // + lifts the tip
+  // Of it, what the servo gives: not the mechanical stop, which holds for nothing.
+  double servo_nm(double time_step_s) const {
+    return std::clamp(torque_nm(time_step_s), -servo_most_nm_, servo_most_nm_);
+  }
+
+  // An equation for the solver: angular_a . w_A + angular_b . w_B = velocity, held by an impulse between `low` and
+  // `high`. The first three rows have v_A - v_B along x, y, z of W too.
+  struct Row {
+    btVector3 angular_a, angular_b;
+    btScalar velocity, low = -SIMD_INFINITY, high = SIMD_INFINITY;
+    btScalar softness = 0;  // by how much it gives way, in rad/s for an impulse of 1 N m s
+  };
+  static constexpr std::size_t kRows = 6;
+  // `correction_per_s`: of an error of position.
+  void rows(btScalar correction_per_s, std::array<Row, kRows>& out) const;
+
+  // Bullet's own solver never sees it.
+  void getInfo1(btConstraintInfo1* info) override { info->m_numConstraintRows = info->nub = 0; }
+  void getInfo2(btConstraintInfo2*) override {}
+  void setParam(int, btScalar, int) override {}
+  btScalar getParam(int, int) const override { return 0; }
+
+  std::array<double, kRows> row_impulse{};  // of the last step; the servo's is the last one
+
+ private:
+  void push_through(double servo_radps, double torque_nm, double time_step_s);
+  btVector3 axis_W() const;  // about which a positive angle turns
+  double raw_angle_rad() const;
+
+  btTransform X_AJ_, X_BJ_;
+  double angle_rad_ = 0;
+  double target_radps_ = 0, min_impulse_ = 0, max_impulse_ = 0, softness_ = 0;
+  ServoCoupling coupling_;
+  double servo_most_nm_ = 0;
+  double followed_rad_ = 0;                                      // the commanded angle behind the lag
+  double servo_rad_ = 0, servo_radps_ = 0, most_apart_rad_ = 0;  // unused where it is rigid
+};
+
+}  // namespace kenaf::physics

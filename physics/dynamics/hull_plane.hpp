@@ -1,0 +1,27 @@
+// Contacts of a convex hull with an infinite plane: the hull's own vertices, the four lowest at once.
+//
+// Bullet's own algorithm finds one vertex in a step and gathers the others while the body rocks, so that a load would
+// depend on how it came to stand.
+#pragma once
+
+#include "physics/dynamics/bullet.hpp"
+
+namespace kenaf::physics {
+
+// Makes `dispatcher` use it in contact tests, for convex hulls and static planes in either order. In a step a hull may
+// be a belt: there BeltGround chooses, and takes create() where it is none.
+class HullPlaneContacts {
+ public:
+  explicit HullPlaneContacts(btCollisionDispatcher& dispatcher);
+  btCollisionAlgorithmCreateFunc& create(bool plane_first) { return plane_first ? create_swapped_ : create_; }
+
+ private:
+  struct Create : btCollisionAlgorithmCreateFunc {
+    btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                   const btCollisionObjectWrapper* body0,
+                                                   const btCollisionObjectWrapper* body1) override;
+  };
+  Create create_, create_swapped_;
+};
+
+}  // namespace kenaf::physics

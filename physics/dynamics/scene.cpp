@@ -1,0 +1,224 @@
+#include "physics/dynamics/scene.hpp"
+
+#include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "physics/robot_shapes.hpp"
+
+namespace kenaf::physics {
+namespace {
+
+constexpr double kJointCorrection = 0.2;  // share of a joint's position error that is removed in a step
+constexpr double kFree_m = 1e-5;
+// An iteration that changes no velocity by more than this share of what gravity does in a step is the last one.
+constexpr double kSolved = 1e-5;
+
+// Of a uniform box of that half size. Bullet takes a hull for a box that is larger by its margins.
+btVector3 box_inertia(double mass_kg, const btVector3& half) {
+  const btVector3 squares = half * half;
+  return mass_kg / 3 * btVector3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y());
+}
+
+}  // namespace
+
+Scene::Scene(const WorldDescription& description, const PhysicsSettings& settings)
+    : dispatcher_(&configuration_),
+      hull_plane_(dispatcher_),
+      belt_ground_(dispatcher_, configuration_, hull_plane_, hull_solid_),
+      compound_contacts_(dispatcher_),
+      broadphase_(&pairs_),
+      solver_({settings.contact_stiffness_npm, settings.contact_damping_nspm}, belt_ground_),
+      world_(dispatcher_, broadphase_, configuration_, solver_) {
+  btContactSolverInfo& info = world_.getSolverInfo();
+  info.m_numIterations = settings.solver_iterations;
+  info.m_erp = kJointCorrection;
+  const double solved_mps = kSolved * description.gravity_W_mps2.norm() * settings.time_step_s;
+  info.m_leastSquaresResidualThreshold = solved_mps * solved_mps;
+  world_.setForceUpdateAllAabbs(false);
+  world_.setGravity(to_bullet(description.gravity_W_mps2));
+  for (const GroundPlane& plane : description.planes) {
+    Fixture& fixture = planes_.emplace_back();
+    fixture.shape = std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
+    add_fixture(fixture, 0, plane.friction, plane.X_WP);
+  }
+  for (const TriangleMesh& mesh : description.meshes) add_mesh(mesh);
+}
+
+Scene::~Scene() {
+  for (auto& [id, box] : boxes_) world_.removeRigidBody(box.body.get());
+  for (MeshFixture& mesh : meshes_) world_.removeRigidBody(mesh.fixture.body.get());
+  for (Fixture& plane : planes_) world_.removeRigidBody(plane.body.get());
+}
+
+void Scene::add_mesh(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return;
+  MeshFixture& added = meshes_.emplace_back();
+  added.mesh = mesh;
+  btIndexedMesh layout;
+  layout.m_numTriangles = static_cast<int>(mesh.triangles.size());
+  layout.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(added.mesh.triangles.data());
+  layout.m_triangleIndexStride = sizeof(added.mesh.triangles[0]);
+  layout.m_numVertices = static_cast<int>(mesh.vertices_W.size());
+  layout.m_vertexBase = reinterpret_cast<const unsigned char*>(added.mesh.vertices_W.data());
+  layout.m_vertexStride = sizeof(added.mesh.vertices_W[0]);
+  layout.m_vertexType = PHY_DOUBLE;
+  added.triangles.addIndexedMesh(layout, PHY_INTEGER);
+  constexpr bool kQuantized = true;  // of the tree's boxes, not of the vertices
+  added.fixture.shape = std::make_unique<btBvhTriangleMeshShape>(&added.triangles, kQuantized);
+  std::vector<btVector3> vertices;
+  for (const Eigen::Vector3d& p_W : mesh.vertices_W) vertices.push_back(to_bullet(p_W));
+  added.edges = std::make_unique<MeshEdges>(vertices, mesh.triangles);
+  added.tag.mesh = added.edges.get();
+  added.fixture.shape->setUserPointer(&added.tag);
+  add_fixture(added.fixture, 0, mesh.friction, {});
+}
+
+void Scene::add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W) {
+  fixture.collider = std::make_unique<Collider>();
+  fixture.collider->surfaces = {{.friction_along = friction, .friction_across = friction}};
+  const btVector3 inertia = mass_kg > 0 ? box_inertia(mass_kg, fixture.half) : btVector3(0, 0, 0);
+  fixture.body = std::make_unique<btRigidBody>(
+      btRigidBody::btRigidBodyConstructionInfo(mass_kg, nullptr, fixture.shape.get(), inertia));
+  fixture.body->setActivationState(DISABLE_DEACTIVATION);
+  fixture.body->setUserPointer(fixture.collider.get());
+  fixture.body->setWorldTransform(to_bullet(X_W));
+  fixture.body->setInterpolationWorldTransform(to_bullet(X_W));
+  fixture.body->updateInertiaTensor();
+  world_.addRigidBody(fixture.body.get());
+}
+
+void Scene::step(double time_step_s) {
+  world_.stepSimulation(time_step_s, 0);
+}
+
+void Scene::add_box(BoxId id, const Box& box) {
+  Fixture& fixture = boxes_[id];
+  if (box.mass_kg > 0) {
+    // a hull, so that it stands on planes as robots do
+    const Eigen::Vector2d half(box.size_m.x() / 2, box.size_m.z() / 2);
+    fixture.shape = make_prism({{half.x(), -half.y()}, half, {-half.x(), half.y()}, -half}, box.size_m.y(), {0, 0, 0});
+    fixture.half = to_bullet(Eigen::Vector3d(box.size_m / 2));
+    fixture.tag.box_half = &fixture.half;
+    fixture.shape->setUserPointer(&fixture.tag);
+  } else {
+    fixture.shape = make_box(box.size_m);
+  }
+  add_fixture(fixture, box.mass_kg, box.friction, box.X_WBox);
+}
+
+void Scene::remove_box(BoxId id) {
+  const auto found = boxes_.find(id);
+  if (found == boxes_.end()) throw std::out_of_range("no such box");
+  solver_.forget_contacts_of(*found->second.body);
+  world_.removeRigidBody(found->second.body.get());
+  boxes_.erase(found);
+}
+
+void Scene::move_box(BoxId id, const Pose& X_WBox) {
+  btRigidBody& body = *boxes_.at(id).body;
+  body.setWorldTransform(to_bullet(X_WBox));
+  body.setInterpolationWorldTransform(to_bullet(X_WBox));
+  body.setLinearVelocity({0, 0, 0});
+  body.setAngularVelocity({0, 0, 0});
+  body.updateInertiaTensor();
+  broadphase_.getOverlappingPairCache()->cleanProxyFromPairs(body.getBroadphaseHandle(), &dispatcher_);
+  world_.updateSingleAabb(&body);
+}
+
+Pose Scene::box_pose(BoxId id) const {
+  return from_bullet(boxes_.at(id).body->getWorldTransform());
+}
+
+double Scene::lift_needed(RobotModel& robot, double search_step_m) {
+  struct Deepest : btCollisionWorld::ContactResultCallback {
+    const btCollisionObject* self = nullptr;
+    const std::vector<btRigidBody*>* own = nullptr;
+    double search_step_m = 0, lift_m = 0;
+    bool needsCollision(btBroadphaseProxy* proxy) const override {
+      return std::find(own->begin(), own->end(), proxy->m_clientObject) == own->end();
+    }
+    btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper* object0, int, int,
+                             const btCollisionObjectWrapper*, int, int) override {
+      const double depth = -point.getDistance();
+      if (depth <= 0) return 0;
+      const double up = (object0->getCollisionObject() == self ? 1 : -1) * point.m_normalWorldOnB.z();
+      // a wall beside it, or an obstacle's underside: on, in steps, until it is above
+      constexpr double kSteepest = 0.3;
+      lift_m = std::max(lift_m, up > kSteepest ? depth / up : search_step_m);
+      return 0;
+    }
+  } deepest;
+  deepest.own = &robot.bodies();
+  deepest.search_step_m = search_step_m;
+  belt_ground_.set_probing(true);
+  for (btRigidBody* body : robot.bodies()) {
+    deepest.self = body;
+    world_.contactTest(body, deepest);
+  }
+  belt_ground_.set_probing(false);
+  return deepest.lift_m;
+}
+
+double Scene::depth_in_mesh(const Eigen::Vector3d& p_W) const {
+  struct MeshAbove : btCollisionWorld::ClosestRayResultCallback {
+    using ClosestRayResultCallback::ClosestRayResultCallback;
+    bool needsCollision(btBroadphaseProxy* proxy) const override {
+      const auto* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
+      return object->getCollisionShape()->getShapeType() == TRIANGLE_MESH_SHAPE_PROXYTYPE;
+    }
+  };
+  constexpr double kHighest_m = 1000;
+  const btVector3 from_W = to_bullet(p_W), to_W = from_W + btVector3(0, 0, kHighest_m);
+  MeshAbove above(from_W, to_W);
+  above.m_flags |= btTriangleRaycastCallback::kF_KeepUnflippedNormal;
+  world_.rayTest(from_W, to_W, above);
+  return above.hasHit() && above.m_hitNormalWorld.z() > 0 ? above.m_closestHitFraction * kHighest_m : 0;
+}
+
+void Scene::place_free(RobotModel& robot, Pose X_WB, bool start_joints) {
+  constexpr int kMaxLifts = 1000, kLiftsToDouble = 100;  // over 2 km in all
+  double search_step_m = 0.02;
+  // deep inside, it would touch none of the triangles
+  X_WB.p.z() += depth_in_mesh(X_WB.p);
+  robot.place(X_WB, start_joints);
+  for (int i = 1; i <= kMaxLifts; ++i) {
+    const double lift_m = lift_needed(robot, search_step_m);
+    if (lift_m <= 0) return;
+    if (i % kLiftsToDouble == 0) search_step_m *= 2;  // out of what is as high as a house
+    X_WB.p.z() += lift_m + kFree_m;
+    robot.place(X_WB, start_joints);
+  }
+}
+
+std::optional<RayHit> Scene::cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,
+                                      std::uint32_t ignored_robot) const {
+  struct Closest : btCollisionWorld::ClosestRayResultCallback {
+    using ClosestRayResultCallback::ClosestRayResultCallback;
+    std::uint32_t ignored = 0;
+    bool needsCollision(btBroadphaseProxy* proxy) const override {
+      const auto* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
+      return !ignored || static_cast<const Collider*>(object->getUserPointer())->robot != ignored;
+    }
+  };
+  const double length = direction_W.norm();
+  if (!(length > 0) || !(max_m > 0) || !from_W.allFinite()) return std::nullopt;
+  const Eigen::Vector3d to_W = from_W + direction_W * (max_m / length);
+  Closest closest(to_bullet(from_W), to_bullet(to_W));
+  closest.ignored = ignored_robot;
+  world_.rayTest(to_bullet(from_W), to_bullet(to_W), closest);
+  if (!closest.hasHit()) return std::nullopt;
+  return RayHit{closest.m_closestHitFraction * max_m, from_bullet(closest.m_hitNormalWorld)};
+}
+
+void Scene::touches(RobotId robot, std::vector<Eigen::Vector3d>& out) const {
+  out.clear();
+  const auto id = static_cast<std::uint32_t>(robot);
+  for (const Contact& contact : solver_.contacts())
+    if (contact.pressed() && (contact.collider_a().robot == id || contact.collider_b().robot == id))
+      out.push_back(from_bullet(contact.p_W()));
+}
+
+}  // namespace kenaf::physics

@@ -1,0 +1,161 @@
+#include "physics/files/sdf_surface.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <initializer_list>
+#include <optional>
+#include <sdf/Capsule.hh>
+#include <sdf/Cylinder.hh>
+#include <sdf/Ellipsoid.hh>
+#include <sdf/Heightmap.hh>
+#include <sdf/Mesh.hh>
+#include <sdf/Sphere.hh>
+
+#include "physics/height_map.hpp"
+#include "physics/mesh_file.hpp"
+#include "physics/robot_description.hpp"
+#include "physics/surface_shapes.hpp"
+
+namespace kenaf::physics {
+namespace {
+
+Eigen::Vector3d from_sdf(const ignition::math::Vector3d& v) {
+  return {v.X(), v.Y(), v.Z()};
+}
+
+// Radii, lengths, sizes. Errors of this and of the functions below get their place in read_surface().
+void check_sizes(const sdf::ElementPtr& element, std::initializer_list<double> sizes) {
+  for (const double size : sizes)
+    if (!(size > 0 && size <= kMaxCoordinate_m))
+      throw description::DescriptionError(fmt::format("the sizes of a <{}> must be more than 0 and at most {} m",
+                                                      element->GetName(), kMaxCoordinate_m));
+}
+
+TriangleSurface read_polyline(const sdf::ElementPtr& element) {
+  std::vector<Eigen::Vector2d> corners;
+  for (sdf::ElementPtr point = element->FindElement("point"); point; point = point->GetNextElement("point")) {
+    const auto p = point->Get<ignition::math::Vector2d>();
+    corners.emplace_back(p.X(), p.Y());
+    if (!corners.back().allFinite() || corners.back().norm() > kMaxCoordinate_m)
+      throw description::DescriptionError(
+          fmt::format("a <point> is not a number or further than {} m away", kMaxCoordinate_m));
+  }
+  return prism_surface(std::move(corners), element->Get<double>("height"));
+}
+
+std::optional<MeshFormat> format_of(const std::string& uri) {
+  const std::size_t dot = uri.rfind('.');
+  std::string ending = dot == std::string::npos ? "" : uri.substr(dot);
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending == ".stl") return MeshFormat::stl;
+  if (ending == ".obj") return MeshFormat::obj;
+  if (ending == ".dae") return MeshFormat::dae;
+  return std::nullopt;
+}
+
+TriangleSurface read_mesh_element(const SdfPlaces& places, const sdf::Mesh& mesh, WorldFiles& files,
+                                  std::size_t most_triangles) {
+  const std::optional<MeshFormat> format = format_of(mesh.Uri());
+  if (!format)
+    throw description::DescriptionError(fmt::format("\"{}\": a mesh must be a .stl, .obj or .dae file", mesh.Uri()));
+  const Eigen::Vector3d scale = from_sdf(mesh.Scale());
+  if (!scale.allFinite() || !(scale.cwiseAbs().minCoeff() > 0))
+    throw description::DescriptionError("<scale> must not be zero");
+  const std::string bytes = files.read(mesh.Uri());
+  MeshContent content;
+  try {
+    content = read_mesh(bytes, *format, {mesh.Submesh(), mesh.CenterSubmesh()}, most_triangles);
+  } catch (const description::DescriptionError& error) {
+    throw description::DescriptionError(fmt::format("\"{}\" {}", mesh.Uri(), error.what()));
+  }
+  if (content.other_faces > 0)
+    places.skip(mesh.Element(),
+                fmt::format("\"{}\": {} points and lines are not simulated", mesh.Uri(), content.other_faces));
+  for (Eigen::Vector3d& p : content.surface.vertices) p = p.cwiseProduct(scale);
+  if (scale.prod() < 0)
+    for (auto& t : content.surface.triangles) std::swap(t[1], t[2]);
+  return std::move(content.surface);
+}
+
+TriangleSurface read_height_map_element(const sdf::Heightmap& map, WorldFiles& files) {
+  const Eigen::Vector3d size = from_sdf(map.Size()), position = from_sdf(map.Position());
+  check_sizes(map.Element(), {size.x(), size.y(), size.z()});
+  if (!position.allFinite()) throw description::DescriptionError("<pos> must be numbers");
+  const std::string bytes = files.read(map.Uri());
+  try {
+    return height_map_surface(read_grey_png(bytes), size, position);
+  } catch (const description::DescriptionError& error) {
+    throw description::DescriptionError(fmt::format("\"{}\" {}", map.Uri(), error.what()));
+  }
+}
+
+// `element` becomes that of the shape, for errors.
+TriangleSurface read_shape(const SdfPlaces& places, const sdf::Geometry& geometry, WorldFiles& files,
+                           std::size_t most_triangles, sdf::ElementPtr& element) {
+  if (const sdf::Cylinder* cylinder = geometry.CylinderShape()) {
+    element = cylinder->Element();
+    check_sizes(element, {cylinder->Radius(), cylinder->Length()});
+    return cylinder_surface(cylinder->Radius(), cylinder->Length());
+  }
+  if (const sdf::Sphere* sphere = geometry.SphereShape()) {
+    element = sphere->Element();
+    check_sizes(element, {sphere->Radius()});
+    return sphere_surface(sphere->Radius());
+  }
+  if (const sdf::Capsule* capsule = geometry.CapsuleShape()) {
+    element = capsule->Element();
+    check_sizes(element, {capsule->Radius(), capsule->Length()});
+    return capsule_surface(capsule->Radius(), capsule->Length());
+  }
+  if (const sdf::Ellipsoid* ellipsoid = geometry.EllipsoidShape()) {
+    element = ellipsoid->Element();
+    const Eigen::Vector3d radii = from_sdf(ellipsoid->Radii());
+    check_sizes(element, {radii.x(), radii.y(), radii.z()});
+    return ellipsoid_surface(radii);
+  }
+  if (const sdf::Mesh* mesh = geometry.MeshShape()) {
+    element = mesh->Element();
+    return read_mesh_element(places, *mesh, files, most_triangles);
+  }
+  if (const sdf::Heightmap* map = geometry.HeightmapShape()) {
+    element = map->Element();
+    return read_height_map_element(*map, files);
+  }
+  if (geometry.Element()->HasElement("polyline")) {
+    element = geometry.Element()->GetElement("polyline");
+    check_sizes(element, {element->Get<double>("height")});
+    return read_polyline(element);
+  }
+  return {};
+}
+
+}  // namespace
+
+TriangleSurface read_surface(const SdfPlaces& places, const sdf::Geometry& geometry, WorldFiles& files,
+                             std::size_t most_triangles) {
+  sdf::ElementPtr element = geometry.Element();
+  TriangleSurface surface;
+  try {
+    surface = read_shape(places, geometry, files, most_triangles, element);
+  } catch (const description::DescriptionError& error) {
+    places.fail(element, error.what());
+  }
+  if (surface.triangles.empty()) return surface;
+  if (surface.triangles.size() > most_triangles)
+    places.fail(element, fmt::format("the world has too many triangles: only {} are left for this <{}>", most_triangles,
+                                     element->GetName()));
+  for (const Eigen::Vector3d& p : surface.vertices)
+    if (!(p.norm() <= kMaxCoordinate_m))
+      places.fail(element, fmt::format("a vertex is further than {} m away", kMaxCoordinate_m));
+  const TidySurface tidied = tidy(surface);
+  if (tidied.dropped > 0) places.skip(element, fmt::format("{} triangles without area are left out", tidied.dropped));
+  if (!tidied.windings_agree)
+    places.skip(element, "neighbouring triangles do not agree on which side of them is out; robots may fall through");
+  if (surface.triangles.empty()) places.fail(element, "no triangle has an area");
+  return surface;
+}
+
+}  // namespace kenaf::physics
