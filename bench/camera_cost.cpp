@@ -1,6 +1,7 @@
-// What a picture costs: processor time of each camera's picture, drawing and JPEG apart, in worlds of few faces and of
-// many, and whether two cameras at 30 pictures a second leave half a core.
-// By the thread's own time, so that it says the same on a machine that does other things too.
+// Cost of a picture: processor time of each camera's picture, drawing and JPEG apart, in worlds of few and of many
+// faces, and whether two cameras at 30 pictures a second leave half a core free. Measures thread CPU time, so that
+// other load on the machine does not change the result.
+//
 // Usage: camera_cost [pictures per camera and world, default 60] [world]... Status 1: a world's mean misses the limit.
 #include <fmt/format.h>
 #include <time.h>
@@ -31,8 +32,9 @@ struct Cost {
   double snapshot_s = 0, update_s = 0, draw_s = 0, jpeg_s = 0, bytes = 0, rays = 0;
 };
 
-// The robot drives from the world's start, and pictures are taken of it at the cameras' rate.
+// Mean cost of each camera's pictures while the robot drives from the world's start, at the cameras' rate.
 std::vector<Cost> measure(const std::string& world_name, int pictures) {
+  // A robot that drives forward, flippers up.
   std::vector<std::string> unsupported;
   physics::World world(physics::load_world(world_name, unsupported), {}, 1);
   const physics::RobotDescription robot = physics::load_robot("kenaf");
@@ -43,6 +45,7 @@ std::vector<Cost> measure(const std::string& world_name, int pictures) {
   for (robot::JointCommand& flipper : command.flipper) flipper.value = 0.6;
   world.set_command(id, command);
 
+  // Each stage of each picture is timed by itself; the first round, which allocates, is not counted.
   camera::SnapshotTaker taker;
   camera::WorldSnapshot snapshot;
   camera::Scene scene(world.description());
@@ -85,6 +88,8 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: camera_cost [pictures per camera and world, at least 1] [world]...\n");
     return 2;
   }
+
+  // A line for each camera, and their sum at the cameras' rate against the limit.
   std::vector<std::string> worlds(argv + std::min(argc, 2), argv + argc);
   if (worlds.empty()) worlds = {"flat", "step-200", "stairs", "step-field", "hills", "rubble-mesh"};
   const physics::RobotDescription robot = physics::load_robot("kenaf");

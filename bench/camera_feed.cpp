@@ -1,8 +1,8 @@
-// What live cameras cost, and how old their pictures are where they are read: a robot that drives, both its cameras, a
-// reader of the image server for each, on loopback.
-// 1. At speed 1: thread CPU time of what draws and of what sends, and each frame's age when its last byte is read.
-// 2. At speed 0: robot time per CPU second of the world's thread: without readers, with, without; the median of the
-// turns. Thread CPU time, so that it says the same on a machine that does other things too; ages need an idle one.
+// Cost of live cameras, and age of their pictures at the reader: a robot that drives, both its cameras, a reader of the
+// image server for each, on loopback.
+// 1. At speed 1: thread CPU time of drawing and of sending, and each frame's age when its last byte is read.
+// 2. At speed 0: robot time per CPU second of the world's thread without readers, with, without; the median of the
+// turns. Other load on the machine does not change thread CPU time; ages need an idle machine.
 // Usage: camera_feed [seconds at speed 1, default 20] [turns at speed 0, default 9] [world, default step-200]
 // Status 1: more than half a core, a median age above 50 ms, or a world that is slower by more than 5 %.
 #include <arpa/inet.h>
@@ -38,7 +38,7 @@ using Clock = std::chrono::steady_clock;
 
 namespace {
 
-// CPU time of this process' threads of that name; 1 ns of resolution.
+// CPU time of this process' threads of that name; resolution 1 ns.
 double cpu_of_threads_s(const std::string& name) {
   double sum_s = 0;
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
@@ -76,7 +76,7 @@ class Exposures {
         })) {}
   double age_ms(const std::string& camera, std::uint64_t number) {
     const Clock::time_point now = Clock::now();
-    for (;;) {  // the frame may have been read before this was told of it
+    for (;;) {  // the frame may be read before the feed has called the listener
       {
         const std::lock_guard lock(mutex_);
         const auto found = exposed_.find({camera, number});
@@ -97,7 +97,7 @@ struct Reading {
   std::uint64_t first = 0, last = 0, bytes = 0;
 };
 
-// Asks for frame after frame of a camera, as a client does.
+// Requests frame after frame of a camera, as a client does.
 class Reader {
  public:
   Reader(std::uint16_t port, std::string camera, Exposures& exposures)
@@ -106,7 +106,7 @@ class Reader {
     ending_ = true;
     thread_.join();
   }
-  // What was read since the last call.
+  // Returns what was read since the last call.
   Reading take() {
     const std::lock_guard lock(mutex_);
     return std::exchange(reading_, {});
@@ -124,6 +124,7 @@ class Reader {
 };
 
 void Reader::read(std::uint16_t port) {
+  // Connect and choose the camera ("V", length, name).
   const int descriptor = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -132,6 +133,7 @@ void Reader::read(std::uint16_t port) {
   const std::string view = "V" + std::string(1, static_cast<char>(camera_.size())) + camera_;
   bool fine = ::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
               ::send(descriptor, view.data(), view.size(), 0) > 0;
+  // Reads exactly `count` bytes; false at the end of the connection.
   const auto receive = [descriptor](std::uint8_t* to, std::size_t count) {
     while (count > 0) {
       const ssize_t got = ::recv(descriptor, to, count, 0);
@@ -141,6 +143,8 @@ void Reader::read(std::uint16_t port) {
     }
     return true;
   };
+
+  // Request after request: a header of type and big-endian size, then the picture.
   std::vector<std::uint8_t> bytes;
   while (fine && !ending_) {
     std::uint8_t header[5];
@@ -149,6 +153,8 @@ void Reader::read(std::uint16_t port) {
     bytes.resize(std::size_t{header[1]} << 24 | std::size_t{header[2]} << 16 | std::size_t{header[3]} << 8 | header[4]);
     fine = receive(bytes.data(), bytes.size());
     if (!fine || header[0] == 255 || bytes.size() < 200) continue;
+
+    // The JPEG's comment, 6 bytes in, names the frame; a frame that is sent again is not counted.
     const std::string start(bytes.begin() + 6, bytes.begin() + 200);
     unsigned long long number = 0;
     if (std::sscanf(start.c_str(), "kenaf-frame/1 number=%llu", &number) != 1) continue;
@@ -170,7 +176,7 @@ struct World {
       const world_server::OperatorId nobody{1};
       world_server::place_robot_by_hand(simulation, nobody, id);
       world_server::Session& session = *simulation.find_session(id);
-      // released, and told to turn on the spot: nobody has to repeat it
+      // Released, with a last command to turn on the spot: nobody has to repeat it.
       world_server::let_go(simulation, id, nobody);
       session.robot->command.track_speed_mps = {-0.1, 0.1};
       simulation.apply_command(session);
@@ -212,7 +218,7 @@ struct Readers {
 bool measure_pictures(const std::string& world_name, int seconds) {
   World world(world_name, 1);
   Readers readers(world);
-  std::this_thread::sleep_for(std::chrono::seconds(2));  // the scene is built, the first pictures allocate
+  std::this_thread::sleep_for(std::chrono::seconds(2));  // the scene is built, and the first pictures allocate
   readers.front.take();
   readers.top.take();
   const double draw_s = cpu_of_threads_s("kenaf-cameras"), send_s = cpu_of_threads_s("kenaf-images");
@@ -239,7 +245,7 @@ bool measure_pictures(const std::string& world_name, int seconds) {
   return fine;
 }
 
-// Robot time for each second of the world's thread's CPU time.
+// Robot time per CPU second of the world's thread.
 double real_time_factor(World& world) {
   const double cpu_s = cpu_of_thread_s(world.thread), time_s = world.time_s();
   std::this_thread::sleep_for(std::chrono::seconds(2));
@@ -247,10 +253,13 @@ double real_time_factor(World& world) {
 }
 
 bool measure_physics(const std::string& world_name, int turns) {
+  // One measurement to warm up.
   World world(world_name, 0);
   real_time_factor(world);
   std::vector<double> without, with, losses;
   std::uint64_t frames = 0;
+
+  // The loss of a turn compares with the mean of before and after, so that a drift of the machine's speed cancels.
   for (int turn = 0; turn < turns; ++turn) {
     without.push_back(real_time_factor(world));
     {
@@ -263,6 +272,8 @@ bool measure_physics(const std::string& world_name, int turns) {
     const double after = real_time_factor(world);
     losses.push_back(1 - with.back() / (0.5 * (without.back() + after)));
   }
+
+  // The median of the turns decides.
   const double loss = quantile(losses, 0.5);
   fmt::print(
       "{}, speed 0, {} turns: {:.1f} s of robot time per CPU second without readers, {:.1f} with: {:.1f} % less "

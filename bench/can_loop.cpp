@@ -1,11 +1,11 @@
-// The control loop of libkenaf_real on a bus: how regular its cycles are, how long the nodes take to answer, how many
-// cycles were late or lost.
+// The control loop of libkenaf_real on a bus: regularity of its cycles, answer time of the nodes, and the number of
+// late and lost cycles.
 //
 //   scripts/with-vcan.sh build/release/bin/can_loop [--interface vcan0] [--cycles 1000] [--period 0.01]
 //
 // Starts kenaf-candrives with ideal motors on the interface, opens the robot, commands both tracks in each cycle, and
 // prints by wall clock: the time between two cycles as the program sees them, and from SYNC to the last node's answer.
-// No limit: what it prints is the machine's.
+// No limit: the figures depend on the machine.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
   app.add_option("--period", period_s)->capture_default_str()->check(CLI::Range(0.001, 1.0));
   CLI11_PARSE(app, argc, argv);
 
+  // The drives on the bus, and the robot that runs on them.
   const kenaf::support::TemporaryFolder folder;
   const kenaf::support::Process drives({KENAF_BIN_DIR "/kenaf-candrives", "--interface", interface, "--ideal"},
                                        folder.path() / "drives.log");
@@ -57,6 +58,8 @@ int main(int argc, char** argv) {
   interface.copy(config.can_interface, sizeof config.can_interface - 1);
   if (const int code = hrt_kenaf_init_with(&config); code != HRT_OK) return fail("init", code);
 
+  // Cycles with a command each. The deviation from the period is of two returns of hrt_wait_cycle(); counters of late
+  // and lost cycles are taken from the first one on.
   std::vector<double> irregular_ms, answer_ms;
   hrt_state state = hrt_state_init();
   if (const int code = hrt_wait_cycle(&state); code != HRT_OK) return fail("wait_cycle", code);
@@ -70,6 +73,8 @@ int main(int argc, char** argv) {
     before = now;
     answer_ms.push_back(state.round_trip_ms);
   }
+
+  // Median, 99 % and maximum of both times.
   hrt_close();
   fmt::print("{} cycles of {:g} ms on {}{:>17} {:>9} {:>9}\n", cycles, 1e3 * period_s, interface, "median", "99 %",
              "max");

@@ -2,9 +2,9 @@
 //
 //   command_load [--seconds 60]
 //
-// A tap between relay and world server counts the DRIVE lines; every command carries another speed, so the tap also
-// sees that each of them came through. CPU and memory are the kernel's own account of the relay's process.
-// Exit status 1 where a command is missing, or the relay took 10 % of a core or 16 MiB or more.
+// A tap between relay and world server counts the DRIVE lines; every command has its own speed, so the tap also sees
+// that each of them came through. CPU and memory are the kernel's own account of the relay's process.
+// Exit status 1 if a command is missing, or the relay took at least 10 % of a core or 16 MiB.
 #include <fmt/format.h>
 #include <poll.h>
 
@@ -59,6 +59,7 @@ class Tap {
     for (int relay; (relay = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC)) >= 0;) pass(relay, world_port);
   }
   void pass(int relay, std::uint16_t world_port) {
+    // Bytes are passed on as they come, in both directions, until one end closes.
     lines_ = {};
     const int world = connected_socket(SOCK_STREAM, world_port);
     const int on = 1;
@@ -110,6 +111,7 @@ int main(int argc, char** argv) {
   app.add_option("--bin", bin, "Folder of kenaf-world and kenaf-relayd");
   CLI11_PARSE(app, argc, argv);
   try {
+    // World server, tap, relay and a client of the relay whose states are read by a thread.
     const TemporaryFolder folder;
     Process world({bin + "/kenaf-world", "--view", "off", "--cameras", "off", "--port", "0", "--port-file",
                    (folder.path() / "world").string()},
@@ -132,6 +134,8 @@ int main(int argc, char** argv) {
           frame = client.wait_for<kenaf::protocol::relay::State>([&](const auto&) { return true; }).robot.frame;
         }
       });
+
+      // A command each millisecond of wall-clock time, each with another speed.
       const double cpu_before = relay.cpu_s();
       const auto start = std::chrono::steady_clock::now();
       kenaf::protocol::relay::Command command{};
@@ -146,7 +150,7 @@ int main(int argc, char** argv) {
       const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       cpu_share = (relay.cpu_s() - cpu_before) / elapsed;
       resident = relay.resident_bytes();
-      std::this_thread::sleep_for(std::chrono::milliseconds(200));  // what is still on its way
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));  // for commands that are still on their way
       arrived = tap.distinct_speeds();
       done = true;
       listener.join();

@@ -1,5 +1,6 @@
-// How fast the physics runs: steps per second, real-time factor and contacts per step, on one core, by the thread's own
-// time, so that it says the same on a machine that does other things too.
+// Speed of the physics: steps per second, real-time factor and contacts per step, on one core. Measures thread CPU
+// time, so that other load on the machine does not change the result.
+//
 // Usage: physics_speed [robot-seconds per scene, default 20]
 #include <fmt/format.h>
 #include <time.h>
@@ -24,7 +25,7 @@ struct Case {
   double start_x_m = 0;  // beyond the world's own start pose
 };
 
-constexpr double kRound_s = 7;  // then the scene starts again: a climb takes about so long
+constexpr double kRound_s = 7;  // then the scene restarts; about the duration of a climb
 
 double thread_time_s() {
   timespec t{};
@@ -33,6 +34,7 @@ double thread_time_s() {
 }
 
 void measure(const Case& scene, double time_s) {
+  // The scene's world and robots, all with the same command.
   std::vector<std::string> unsupported;
   const WorldDescription description = load_world(scene.world, unsupported);
   World world(description, {}, 1);
@@ -48,6 +50,7 @@ void measure(const Case& scene, double time_s) {
     world.add_robot(robot, start.name, X_WB);
   }
 
+  // In rounds, so that the robots stay in the part of the world that is of interest; only the steps are timed.
   const double dt = world.settings().time_step_s;
   const auto steps = static_cast<long>(time_s / dt), round = static_cast<long>(kRound_s / dt);
   double contacts = 0, taken_s = 0;

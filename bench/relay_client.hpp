@@ -1,4 +1,4 @@
-// A commander of the relay without the library on top, for benchmarks that time the chain itself.
+// A client of the relay without the library on top, for benchmarks that time the chain itself.
 #pragma once
 
 #include <arpa/inet.h>
@@ -43,7 +43,7 @@ inline int connected_socket(int type, std::uint16_t port) {
   return fd;
 }
 
-// A user of the relay, without the library on top. One thread may send while another waits.
+// A client of the relay. Thread safety: one thread may send while another waits.
 class RelayClient {
  public:
   explicit RelayClient(std::uint16_t port) : fd_(connected_socket(SOCK_DGRAM, port)) {}
@@ -70,7 +70,7 @@ class RelayClient {
       if (const Kind* kind = std::get_if<Kind>(&datagram); kind != nullptr && accepts(*kind)) return *kind;
     }
   }
-  // Becomes the commander; the world server may still be starting behind the relay.
+  // Becomes the commander; retries while the world server behind the relay is still starting.
   void greet(bool lockstep) {
     const kenaf::protocol::relay::Hello hello{kSession, 0.01, 0.5, lockstep, false};
     for (int tries = 0; tries < 100; ++tries) {

@@ -1,14 +1,14 @@
-// How much the relay adds: round trips to the world server and back, through kenaf-relayd and through a bare
-// UDP-to-TCP forwarder, on the same loopback, in the same run, in turn.
+// Latency of the relay: round trips to the world server and back, through kenaf-relayd and through a bare UDP-to-TCP
+// forwarder, on the same loopback, in the same run, in turn.
 //
 //   round_trip [--rounds 8] [--count 2000]
 //
 // Two exchanges are timed, each with both:
 //   ping   PING, answered at once by the world server: the chain alone.
-//   cycle  a command that answers frame n in lock step until frame n + 1 has come: the chain, one control period of
-//          physics, and a whole frame of sensors back. The forwarder carries the same text that the relay makes of it.
+//   cycle  in lock step, from a command that answers frame n to frame n + 1: the chain, one control period of physics,
+//          and a whole frame of sensors back. The forwarder carries the same text that the relay makes of it.
 //
-// Exit status 1 where the relay's median is beyond 2 times, or its 99th percentile beyond 3 times, the forwarder's.
+// Exit status 1 if the relay's median exceeds 2 times, or its 99th percentile 3 times, the forwarder's.
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
@@ -41,7 +41,7 @@ using kenaf::support::wait_for_port;
 using Clock = std::chrono::steady_clock;
 using Samples = std::vector<double>;  // microseconds
 
-// The yardstick: one thread, no parsing, bytes from one socket to the other. A process of its own, as the relay is.
+// The reference: one thread, no parsing, bytes from one socket to the other. A process of its own, as the relay is.
 class BareForwarder {
  public:
   explicit BareForwarder(std::uint16_t world_port) {
@@ -217,12 +217,15 @@ using Measurement = Samples (*)(const std::string&, int);
 
 bool compare(const char* name, Measurement relay, Measurement forwarder, const std::string& bin, int rounds,
              int count) {
+  // Relay and forwarder in turn, so that both see the same load.
   Samples by_relay, by_forwarder;
   for (int round = 0; round < rounds; ++round) {
     const Samples a = relay(bin, count), b = forwarder(bin, count);
     by_relay.insert(by_relay.end(), a.begin(), a.end());
     by_forwarder.insert(by_forwarder.end(), b.begin(), b.end());
   }
+
+  // Quantiles of all samples against the limits of their ratio.
   bool within = true;
   for (const auto& [label, share, limit] : {std::tuple{"median", 0.5, 2.0}, std::tuple{"p99", 0.99, 3.0}}) {
     const double a = quantile(by_relay, share), b = quantile(by_forwarder, share);

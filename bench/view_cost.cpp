@@ -1,5 +1,5 @@
-// What the live view costs: filling a state on the world's thread, beside a step of the world; putting it into words on
-// the view's thread. Thread CPU time.
+// Cost of the live view in thread CPU time: filling a state on the world's thread, compared with a step of the world,
+// and formatting it on the view's thread.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <time.h>
@@ -31,6 +31,7 @@ int main() {
   spdlog::set_level(spdlog::level::warn);
   fmt::print("robots  step/us  state/us  words/us  bytes  states at 30 Hz of one core\n");
   for (const int robots : {1, 8, 64}) {
+    // A world with so many robots, then the time of a step, of a state and of its text.
     world_server::ServerOptions options;
     options.speed = 0;
     world_server::Simulation simulation(options);

@@ -1,4 +1,4 @@
-// Resident memory of the world server with 16 robots that all receive their sensors.
+// Resident memory of the world server with 16 robots, each of which gets its sensor readings.
 //
 //   world_memory
 //
@@ -23,6 +23,8 @@ int main(int argc, char** argv) {
                             (folder.path() / "world").string()},
                            folder.path() / "world.log");
     const std::uint16_t port = support::wait_for_port(folder.path() / "world", world);
+
+    // 16 robots in a grid, each with a connection, that turn in place.
     constexpr int kRobots = 16;
     std::vector<int> robots;
     for (int i = 0; i < kRobots; ++i) {

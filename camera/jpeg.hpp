@@ -17,9 +17,9 @@ class JpegEncoder {
   JpegEncoder(const JpegEncoder&) = delete;
   JpegEncoder& operator=(const JpegEncoder&) = delete;
 
-  // The bytes of a JPEG file (baseline, 4:2:0: colour at half the resolution); valid until the next call. `quality`: 1
-  // to 100, else std::invalid_argument. The buffer is used again; what TurboJPEG allocates for a picture (some 40
-  // blocks) it gives back.
+  // Returns the bytes of a JPEG file (baseline, 4:2:0: colour at half the resolution), valid until the next call.
+  // Throws std::invalid_argument unless `quality` is from 1 to 100. Reuses its buffer; TurboJPEG frees its own
+  // allocations for a picture (some 40 blocks).
   std::span<const std::uint8_t> encode(const Picture& picture, int quality);
 
  private:
@@ -27,7 +27,7 @@ class JpegEncoder {
   std::vector<std::uint8_t> buffer_;
 };
 
-// The picture of a JPEG file; std::runtime_error where it is none.
+// Decodes a JPEG file. Throws std::runtime_error if it is none.
 Picture decode_jpeg(std::span<const std::uint8_t> file);
 
 }  // namespace kenaf::camera

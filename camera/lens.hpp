@@ -1,4 +1,4 @@
-// A pinhole camera: where a point of the world is in the picture, and where a pixel looks.
+// A pinhole camera: projection of points into the picture, and rays through pixels.
 //
 // Camera frame C (REP 103, the body's convention, not the optical one): origin at the pinhole, x along the optical
 // axis, y left, z up. Picture: u to the right, v down, in pixels, from the upper left corner of the upper left pixel;
@@ -26,15 +26,15 @@ struct Pixel {
   double u, v;
 };
 
-// Of one unit of tangent: a point at (1, y, z) in C is at u = width / 2 - f y, v = height / 2 - f z.
+// The focal length f in pixels: a point at (1, y, z) in C is at u = width / 2 - f y, v = height / 2 - f z.
 double focal_length_px(const Lens& lens);
 
-// Where the picture, continued beyond its border, has the point. Empty: the point is behind the camera or in the plane
-// of the pinhole, where it has no picture.
+// Projects a point into the picture, continued beyond its border. Empty if the point is behind the camera or in the
+// pinhole's plane.
 std::optional<Pixel> project(const View& view, const Eigen::Vector3d& p_W);
 
-// Where a pixel looks, in W. Not of unit length: its component along the optical axis is 1, so that view.X_WC.p plus
-// `z` times it lies at depth `z`. project() takes every such point of z > 0 back to the pixel.
+// The ray through a pixel, in W. Not of unit length: its component along the optical axis is 1, so that view.X_WC.p
+// plus `z` times the ray is at depth `z`. project() maps every such point with z > 0 back to the pixel.
 Eigen::Vector3d ray(const View& view, Pixel pixel);
 
 // Whether a pixel lies in the picture.

@@ -12,7 +12,7 @@ namespace {
 
 const double kSmooth_cos = std::cos(35 * std::numbers::pi / 180);
 
-// For each vertex the first of those that lie in the same place: files often have one for each triangle.
+// For each vertex, the first one at the same place: files often have vertices of their own for each triangle.
 std::vector<std::uint32_t> merged(const std::vector<Eigen::Vector3d>& vertices) {
   const auto key = [&](std::uint32_t i) { return std::tuple(vertices[i].x(), vertices[i].y(), vertices[i].z()); };
   std::vector<std::uint32_t> order(vertices.size()), first(vertices.size());
@@ -36,13 +36,15 @@ std::vector<std::array<float, 3>> mesh_facing(const physics::TriangleMesh& mesh,
     area[i] = (p[b] - p[a]).cross(p[c] - p[a]).cast<float>();
     for (const std::uint32_t corner : triangles[i]) ++end[vertex[corner] + 1];
   }
-  // the triangles around each vertex, one list after the other
+
+  // The triangles around each vertex, one list after the other.
   std::partial_sum(end.begin(), end.end(), end.begin());
   std::vector<std::uint32_t> around(3 * triangles.size());
   std::vector<std::uint32_t> at(end.begin(), end.end() - 1);
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (const std::uint32_t corner : triangles[i]) around[at[vertex[corner]]++] = static_cast<std::uint32_t>(i);
 
+  // At each corner, the sum of the areas of the triangles that are inclined by less than 35 degrees.
   std::vector<std::array<float, 3>> facing(triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {

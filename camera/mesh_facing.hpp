@@ -1,4 +1,4 @@
-// How a mesh's surface faces the sun, smoothed: what is curved looks curved, and what has an edge keeps it.
+// Smoothed brightness of a mesh: curved surfaces look curved, and edges stay sharp.
 //
 // Thread safety: a pure function.
 #pragma once

@@ -15,13 +15,13 @@ double wave_integral(double x) {
   return part < 0.5 ? part : 1 - part;
 }
 
-// The integral from 0 to x of what is 1 within half a line's width of each line.
+// The integral from 0 to x of a function that is 1 within half a line's width of each line, else 0.
 double line_integral(double x) {
   const double count = std::floor(x / kLinePeriod), part = x - count * kLinePeriod;
   return count * kLineWidth + std::min(part, kLineWidth / 2) + std::max(0.0, part - (kLinePeriod - kLineWidth / 2));
 }
 
-// How much of a pattern is left where a footprint is so many of its periods.
+// The contrast that remains of a pattern for a footprint of so many of its periods.
 double kept(double periods) {
   return std::clamp((0.6 - periods) / 0.35, 0.0, 1.0);
 }
@@ -29,6 +29,7 @@ double kept(double periods) {
 }  // namespace
 
 Pattern::Pattern() : values_(static_cast<std::size_t>(kLevels) * kPhases) {
+  // The mean over a footprint is the difference of integrals over its width; faded towards the pattern's mean.
   for (int level = 0; level < kLevels; ++level) {
     const double width = std::exp2(kSmallest + (level + 0.5) / 4);
     for (int phase = 0; phase < kPhases; ++phase) {

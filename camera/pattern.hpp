@@ -1,9 +1,8 @@
-// The texture of all surfaces, already averaged over what a pixel sees of it, so that it does not flicker far away.
+// The texture of all surfaces, averaged in advance over a pixel's footprint, so that it does not flicker far away.
 //
-// Along each of the two texture coordinates the same pattern of period 1 is laid: a square wave (+1, then -1), which
-// the material multiplies with the other coordinate's into checks, and lines at each tenth. Both are kept averaged over
-// footprints from 1/512 to 2 periods, four to an octave, and fade out before a footprint is half a period, where they
-// would beat with the pixels.
+// Both texture coordinates have the same pattern of period 1: a square wave (+1, then -1), whose product with that of
+// the other coordinate makes checks, and lines at each tenth. Both are stored averaged over footprints from 1/512 to 2
+// periods, four to an octave, and fade out before a footprint reaches half a period, where they would alias.
 //
 // Thread safety: a value.
 #pragma once
@@ -22,7 +21,7 @@ class Pattern {
 
   struct Value {
     std::int8_t wave, line;
-  };  // wave: -127 to 127; line: 0 to 127, the share that lines cover
+  };  // wave: -127 to 127; line: 0 to 127, share covered by lines
 
   Pattern();
   Value at(int level, int phase) const { return values_[static_cast<std::size_t>(level * kPhases + phase)]; }

@@ -7,7 +7,7 @@ namespace kenaf::camera {
 
 namespace {
 
-constexpr float kBeyond_m = 1e-4f;  // a ray that passes through a surface goes on so far behind it
+constexpr float kBeyond_m = 1e-4f;  // a ray that passes through a surface continues this far behind it
 
 bool passes(FaceId face, const std::pair<FaceId, FaceId>& through) {
   return face != kNothing && face >= through.first && face < through.second;
@@ -34,6 +34,8 @@ void RangeScanner::scan(const Scene& scene, const RangeScan& request, std::vecto
     rays_.far[i] = static_cast<float>(request.max_range_m);
   }
   const auto through = request.ignored ? scene.faces_of(*request.ignored) : std::pair<FaceId, FaceId>{0, 0};
+
+  // Cast until no ray ends at the robot that is passed through: those that do continue behind the hit.
   for (bool again = true; again;) {
     scene.cast(rays_);
     again = false;
@@ -43,7 +45,7 @@ void RangeScanner::scan(const Scene& scene, const RangeScan& request, std::vecto
       rays_.far[i] = static_cast<float>(request.max_range_m);
       again = true;
     }
-    // what has met something else would meet it again, a little nearer or farther than where it ends
+    // Rays that met something else are cast again with full range, as rounding may place their hit beyond their end.
     for (std::size_t i = 0; again && i < count; ++i)
       if (rays_.face[i] != kNothing && !passes(rays_.face[i], through))
         rays_.far[i] = static_cast<float>(request.max_range_m);

@@ -1,4 +1,4 @@
-// A range scanner: rays in a fan, by the same ray caster as the pictures, many at once.
+// A range scanner: a fan of rays, cast together by the same ray caster as the pictures.
 //
 // Thread safety: none; one for each thread.
 #pragma once
@@ -20,8 +20,8 @@ struct RangeScan {
 
 class RangeScanner {
  public:
-  // The distance along each ray to the first surface; more than max_range_m (infinity): there is none so near. Within
-  // 0.1 mm and 1e-6 of the distance of the physics' own geometry, but for round parts of robots, which are polygons
+  // Sets `out` to the distance along each ray to the first surface, infinity if it is beyond max_range_m. Agrees with
+  // the physics' own geometry to 0.1 mm and 1e-6 of the distance, except for round parts of robots, which are polygons
   // here.
   void scan(const Scene& scene, const RangeScan& request, std::vector<double>& out);
 

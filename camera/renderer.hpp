@@ -1,6 +1,6 @@
 // The picture of a camera: visibility (which face each pixel shows), then shading (its colour).
 //
-// A camera has no body: it sees its own robot where geometry says so.
+// A camera has no body: it sees its own robot like any other object.
 //
 // Thread safety: none; one renderer for each thread. Several renderers may show one Scene at once.
 #pragma once
@@ -15,14 +15,14 @@
 namespace kenaf::camera {
 
 struct RenderSettings {
-  bool every_pixel = false;  // a ray through each pixel: nothing is missed, at several times the work
+  bool every_pixel = false;  // a ray through each pixel: misses nothing, at several times the cost
 };
 
 class Renderer {
  public:
   explicit Renderer(const RenderSettings& settings = {}) : settings_(settings) {}
 
-  // `out` is used again: after two pictures of a size another allocates nothing, where it shows no more than they did.
+  // Reuses `out`: after two pictures of a size, another one that shows no more than they did allocates nothing.
   void render(const Scene& scene, const View& view, Picture& out);
 
   std::size_t ray_count() const { return visibility_.ray_count(); }  // of the last picture

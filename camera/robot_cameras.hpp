@@ -1,4 +1,4 @@
-// Where a robot's cameras are, and what they see by. Which there are stands in its description ([[camera]]).
+// Poses and views of a robot's cameras, which its description lists ([[camera]]).
 //
 // Thread safety: pure functions.
 #pragma once
@@ -15,10 +15,10 @@ namespace kenaf::camera {
 // pitch).
 physics::Pose camera_pose(const RobotSnapshot& robot, const physics::CameraDescription& camera);
 
-// With the field of view as zoomed: clamped to what the camera can.
+// The view with the zoomed field of view, clamped to the camera's limits.
 View camera_view(const RobotSnapshot& robot, const physics::CameraDescription& camera, double field_of_view_rad);
 
-// The camera of that name; null: the robot has none.
+// The camera of that name, null if the robot has none.
 const physics::CameraDescription* find_camera(const physics::RobotDescription& robot, std::string_view name);
 
 }  // namespace kenaf::camera

@@ -56,7 +56,7 @@ void attach_triangles(RTCDevice device, RTCScene scene, unsigned id, const Verti
   rtcAttachGeometryByID(scene, geometry.get(), id);
 }
 
-// A rigid thing that moves, an instance in Embree.
+// A rigid body that moves, an instance in Embree.
 struct Part {
   Surface surface;
   Owned<RTCScene> scene;
@@ -81,6 +81,7 @@ struct PlacedRobot {
   FaceId first_face, end_face;
 };
 
+// A face in W. An affine f(p_L) = g . p_L + c becomes (R g) . p_W + c - (R g) . p_WL.
 PlacedFace placed(const Face& face, const physics::Pose& X_WL, const Vector3d& toward_sun_W) {
   const auto moved = [&](const Affine& f) {
     const Vector3d gradient = X_WL.q * f.gradient;
@@ -130,6 +131,7 @@ struct Scene::Implementation {
   std::vector<Sphere> bounds;
 
   void build_fixed() {
+    // All fixed boxes are one geometry. Faces are numbered: planes, boxes, then mesh after mesh.
     fixed.reset(rtcNewScene(device.get()));
     rtcSetSceneBuildQuality(fixed.get(), RTC_BUILD_QUALITY_MEDIUM);
     fixed_surface = {};
@@ -138,6 +140,8 @@ struct Scene::Implementation {
     boxes_first_face = static_cast<FaceId>(world.planes.size());
     FaceId next = boxes_first_face + static_cast<FaceId>(fixed_surface.faces.size());
     mesh_first_face.clear();
+
+    // Each mesh is a geometry of its own, with a face for each triangle.
     for (const physics::TriangleMesh& mesh : world.meshes) {
       const auto id = static_cast<unsigned>(1 + mesh_first_face.size());
       attach_triangles(device.get(), fixed.get(), id, mesh.vertices_W, mesh.triangles);
@@ -164,8 +168,10 @@ struct Scene::Implementation {
     parts.push_back(std::move(part));
   }
 
-  // After build_fixed(): faces are counted on from its own.
+  // Call after build_fixed(), whose faces are numbered first. Parts are in the order of the snapshot: loose boxes, then
+  // each robot's body and arms.
   void build_moving(const WorldSnapshot& snapshot) {
+    // An empty scene that is cheap to rebuild, as it is rebuilt for each picture.
     face_count = fixed_face_count;
     parts.clear();
     robots.clear();
@@ -174,6 +180,8 @@ struct Scene::Implementation {
     moving.reset(rtcNewScene(device.get()));
     rtcSetSceneFlags(moving.get(), RTC_SCENE_FLAG_DYNAMIC);
     rtcSetSceneBuildQuality(moving.get(), RTC_BUILD_QUALITY_LOW);
+
+    // Loose boxes, remembered to see whether a later snapshot has the same.
     for (const BoxSnapshot& box : snapshot.boxes) {
       if (box.fixed) continue;
       loose_boxes.push_back(box.id);
@@ -182,6 +190,8 @@ struct Scene::Implementation {
       add_box(surface, box.size_m, {}, Material::loose_box);
       add_part(std::move(surface));
     }
+
+    // Robots, each with the range of its faces.
     for (const RobotSnapshot& robot : snapshot.robots) {
       PlacedRobot placed_robot{robot.id, robot.description, face_count, face_count};
       add_part(body_surface(*robot.description));
@@ -228,6 +238,7 @@ struct Scene::Implementation {
   }
 
   void place_all(const WorldSnapshot& snapshot) {
+    // Poses in the order of build_moving(); a robot's belts get the travel of its tracks.
     auto part = parts.begin();
     for (const BoxSnapshot& box : snapshot.boxes)
       if (!box.fixed) place(*part++, box.X_WBox);
@@ -248,6 +259,9 @@ struct Scene::Implementation {
       bounds.push_back({placed_part.X_WL.p + placed_part.X_WL.q * placed_part.centre_L, placed_part.radius_m});
   }
 
+  // A triangle of a mesh: texture by x and y of W, and brightness interpolated between its corners. With e1, e2 from
+  // corner 0 and A = e1 x e2, the gradient of a value f given at the corners is
+  //   g = ((f1 - f0) e2 x A + (f2 - f0) A x e1) / |A|^2, so that g . e1 = f1 - f0 and g . e2 = f2 - f0.
   PlacedFace mesh_face(std::size_t mesh, std::size_t triangle) const {
     const physics::TriangleMesh& source = world.meshes[mesh];
     const auto& [a, b, c] = source.triangles[triangle];
@@ -301,7 +315,7 @@ RTCRayNp rays_for_embree(RayBatch& rays) {
   return out;
 }
 
-// A plane as floats, for rays by the thousand.
+// A plane in single precision, for rays by the thousand: height above it, and its change along the ray.
 struct FloatPlane {
   explicit FloatPlane(const physics::GroundPlane& plane)
       : normal((plane.X_WP.q * Vector3d::UnitZ()).cast<float>()),
@@ -340,12 +354,13 @@ void Scene::update(const WorldSnapshot& snapshot) {
     std::ranges::copy_if(snapshot.boxes, std::back_inserter(impl_->fixed_boxes), &BoxSnapshot::fixed);
     impl_->build_fixed();
   }
-  // faces of what moves are counted on from those of what is fixed
+  // Faces of moving parts are numbered after those of the fixed ones.
   if (!same_fixed || !impl_->same_moving(snapshot)) impl_->build_moving(snapshot);
   impl_->place_all(snapshot);
 }
 
 void Scene::cast(RayBatch& rays) const {
+  // Embree works on the arrays in place; the second scene only replaces hits that are farther.
   std::ranges::fill(rays.geometry, RTC_INVALID_GEOMETRY_ID);
   std::ranges::fill(rays.instance, RTC_INVALID_GEOMETRY_ID);
   RTCRayHitNp both{};
@@ -359,6 +374,8 @@ void Scene::cast(RayBatch& rays) const {
   const auto count = static_cast<unsigned>(rays.size());
   rtcIntersectNp(impl_->fixed.get(), &context, &both, count);
   if (!impl_->parts.empty()) rtcIntersectNp(impl_->moving.get(), &context, &both, count);
+
+  // Hits to faces, then the planes: n . (from + t along) = d at t = -height / climb.
   for (std::size_t i = 0; i < rays.size(); ++i) rays.face[i] = impl_->face_of_hit(rays, i);
   for (std::size_t p = 0; p < impl_->world.planes.size(); ++p) {
     const FloatPlane plane(impl_->world.planes[p]);
@@ -372,6 +389,7 @@ void Scene::cast(RayBatch& rays) const {
 }
 
 void Scene::cast_any(RayBatch& rays) const {
+  // Planes first: a ray that comes down through one is marked as Embree marks occluded rays, with far = -infinity.
   const RTCRayNp all = rays_for_embree(rays);
   RTCIntersectContext context = coherent();
   const auto count = static_cast<unsigned>(rays.size());
@@ -388,6 +406,7 @@ void Scene::cast_any(RayBatch& rays) const {
 }
 
 PlacedFace Scene::face(FaceId id) const {
+  // In the order of numbers: planes, fixed boxes, ...
   const Implementation& s = *impl_;
   if (id < s.world.planes.size()) {
     const physics::Pose& X_WP = s.world.planes[id].X_WP;
@@ -398,11 +417,15 @@ PlacedFace Scene::face(FaceId id) const {
   }
   const FaceId box_face = id - s.boxes_first_face;
   if (box_face < s.fixed_surface.faces.size()) return placed(s.fixed_surface.faces[box_face], {}, toward_sun_W_);
+
+  // ... meshes, by the last one that begins at or before the number, ...
   if (id < s.fixed_face_count) {
     const auto after = std::upper_bound(s.mesh_first_face.begin(), s.mesh_first_face.end(), id);
     const auto mesh = static_cast<std::size_t>(after - s.mesh_first_face.begin()) - 1;
     return s.mesh_face(mesh, id - s.mesh_first_face[mesh]);
   }
+
+  // ... and moving parts, likewise; a belt's texture moves with its track.
   const auto after = std::upper_bound(s.parts.begin(), s.parts.end(), id,
                                       [](FaceId face, const Part& part) { return face < part.first_face; });
   const Part& part = *(after - 1);

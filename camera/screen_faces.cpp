@@ -26,10 +26,13 @@ void ScreenFaces::begin(const Scene& scene, const View& view) {
 
 const ScreenFace& ScreenFaces::add(FaceId id) {
   const PlacedFace face = scene_->face(id);
-  // in the plane of a face nothing of it is seen; the number only has to stay one
+  // From within a face's plane nothing of it is seen: the number only has to stay finite.
   constexpr double kLeast_m = 1e-6;
   double height = face.distance - face.normal_W.dot(p_WC_);
   if (std::abs(height) < kLeast_m) height = kLeast_m;
+
+  // A ray p_WC + depth r meets the plane n . p = d where 1 / depth = n . r / height, height = d - n . p_WC: linear in
+  // (u, v), since r is. For f(p) = g . p + c, f / depth = f(p_WC) / depth + g . r is linear too.
   const Eigen::Vector3d q =
       Eigen::Vector3d(face.normal_W.dot(basis_[0]), face.normal_W.dot(basis_[1]), face.normal_W.dot(basis_[2])) /
       height;

@@ -1,4 +1,4 @@
-// Faces as a camera sees them: everything about a plane is a ratio of two functions that are linear in the picture.
+// Faces in the picture: every quantity on a plane is a ratio of two functions that are linear in the picture.
 //
 // With depth measured along the optical axis, 1 / depth of a plane's points is linear in u and v, and so is any affine
 // function of the point divided by the depth. So depth, texture coordinates and light of a pixel are exact from three
@@ -13,7 +13,7 @@
 
 namespace kenaf::camera {
 
-// A linear function in the picture.
+// A linear function of the picture's coordinates.
 struct Linear {
   float at_0, per_u, per_v;
   float operator()(float u, float v) const { return at_0 + per_u * u + per_v * v; }
@@ -37,7 +37,7 @@ struct ScreenFace {
 
 class ScreenFaces {
  public:
-  // A new picture. `scene` and its state stay until the next begin().
+  // Begins a new picture. `scene` must not change until the next begin().
   void begin(const Scene& scene, const View& view);
   const ScreenFace& at(FaceId id) {
     const std::uint32_t slot = slot_of_face_[id];

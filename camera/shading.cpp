@@ -11,8 +11,8 @@ namespace {
 
 struct Look {
   std::array<float, 3> rgb;
-  float checks, lines;  // how much brighter or darker they are than the rest
-  float edge = 0;       // how much darker edges are
+  float checks, lines;  // relative brightness added by them
+  float edge = 0;       // relative darkness of edges
 };
 
 constexpr std::array<Look, kMaterialCount> kLooks{{
@@ -28,17 +28,17 @@ constexpr std::array<Look, kMaterialCount> kLooks{{
     {{158, 162, 168}, 0, 0},              // drum
 }};
 constexpr std::array<float, 3> kSunlight{0.66f, 0.63f, 0.57f};
-constexpr std::array<float, 3> kSkylight{0.42f, 0.44f, 0.49f};  // on what looks up
+constexpr std::array<float, 3> kSkylight{0.42f, 0.44f, 0.49f};  // on faces that look up
 constexpr std::array<float, 3> kHorizon{206, 217, 226}, kZenith{96, 146, 206};
-constexpr float kHaze_m = 60;  // half faded
+constexpr float kHaze_m = 60;  // depth of half fading
 constexpr float kEdge_m = 0.012f;
 
 constexpr int kChunk = 64;
 using Numbers = std::array<float, kChunk>;
 using Colours = std::array<std::array<int, kChunk>, 3>;
 
-// Light that is there without the sun: least from below; a little more from the left and ahead, so that no two faces of
-// a box look the same in the shade.
+// Light without the sun: least from below, and a little more from the left and ahead, so that no two faces of a box
+// look the same in the shade.
 float skylight(const Eigen::Vector3f& normal_W) {
   return 0.82f + 0.16f * normal_W.z() + 0.07f * normal_W.x() + 0.04f * normal_W.y();
 }
@@ -52,7 +52,7 @@ void write(const Colours& colours, int count, std::uint8_t* rgb) {
     for (std::size_t k = 0; k < 3; ++k) *rgb++ = static_cast<std::uint8_t>(colours[k][i]);
 }
 
-// One row's piece of a face.
+// The part of one row that shows one face.
 struct Run {
   Run(const ScreenFace& f, PixelKey key, float v) : face(f), look(kLooks[static_cast<std::size_t>(f.material)]) {
     const auto row = [v](const Linear& linear) { return linear.at_0 + 0.5f * linear.per_u + v * linear.per_v; };
@@ -69,14 +69,16 @@ struct Run {
   std::array<float, 3> in_shade, by_sun;
 };
 
-// Of a chunk of a run.
+// Values at the pixels of a chunk of a run.
 struct Samples {
-  Numbers s, t, s_wide, t_wide;  // texture coordinates, and how much of them a pixel sees
+  Numbers s, t, s_wide, t_wide;  // texture coordinates, and a pixel's footprint in them
   Numbers facing, haze, bright;
   std::array<int, kChunk> s_phase, t_phase, s_level, t_level;
 };
 
 void sample(const Run& run, int first, int count, Samples& out) {
+  // A texture coordinate is a ratio S / q of linear functions, so its footprint is the sum of
+  // |dS/du - s dq/du| / q and the same by v. Haze is 1 / (1 + (kHaze_m / depth)^2).
   const ScreenFace& f = run.face;
   for (int i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -96,14 +98,14 @@ void sample(const Run& run, int first, int count, Samples& out) {
   }
 }
 
-// By the exponent and the two highest bits behind it.
+// Four levels to an octave: a float's exponent and the two highest bits of its mantissa.
 int level_of(float footprint) {
   constexpr int kFirst = (127 + Pattern::kSmallest) * 4;
   return std::min(Pattern::kLevels - 1, std::max(0, (std::bit_cast<int>(footprint) >> 21) - kFirst));
 }
 
 int phase_of(float coordinate) {
-  constexpr float kFar = 4096;  // periods: keeps the number positive where a pattern can still be seen
+  constexpr float kFar = 4096;  // periods: keeps the number positive wherever a pattern is still visible
   return static_cast<int>((std::min(kFar, std::max(-kFar, coordinate)) + kFar) * Pattern::kPhases) &
          (Pattern::kPhases - 1);
 }
@@ -141,12 +143,13 @@ void add_edges(const Run& run, int count, Samples& samples) {
   }
 }
 
+// Colour = (light in the shade + sunlight * facing) * texture, faded into the horizon; chunk by chunk.
 void shade_face(const Run& run, const Pattern& pattern, int first, int end, std::uint8_t* rgb) {
   Samples samples;
   Colours colours;
   for (; first < end; first += kChunk) {
     const int count = std::min(kChunk, end - first);
-    const int whole = (count + 3) & ~3;  // whole vectors: most runs are short
+    const int whole = (count + 3) & ~3;  // rounded up to whole vectors: most runs are short
     sample(run, first, whole, samples);
     if (run.look.checks != 0 || run.look.lines != 0) add_pattern(run.look, pattern, whole, samples);
     if (run.face.half_s > 0) add_edges(run, whole, samples);
@@ -189,6 +192,7 @@ void Shading::shade(const View& view, const KeyPicture& keys, ScreenFaces& faces
     const PixelKey* row = keys.row(y);
     std::uint8_t* rgb = &out.rgb[3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(y)];
     const float v = static_cast<float>(y) + 0.5f;
+    // Runs of pixels with one key.
     for (int first = 0; first < width;) {
       const PixelKey key = row[first];
       int end = first + 1;

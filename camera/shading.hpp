@@ -1,10 +1,9 @@
-// Colours: from which face each pixel shows to red, green and blue.
+// Colours: from the face that each pixel shows to red, green and blue.
 //
-// The light: a sun, its shadows hard, and a sky that lightens what looks up more. Far away everything fades into the
-// horizon's colour. Ground and meshes carry checks of 0.5 m and lines of 0.1 m, by which speed and distance are seen;
-// boxes lines of 0.1 m and a dark edge of 12 mm, so that steps stand out. All is averaged over a pixel (pattern.hpp),
-// but for the borders of faces and shadows, which are as sharp as the pixels. Thread safety: none; one for each
-// renderer.
+// Light: a sun with hard shadows, and a sky that is brighter on faces that look up. Far away everything fades into the
+// horizon's colour. Ground and meshes have checks of 0.5 m and lines of 0.1 m, which show speed and distance; boxes
+// have lines of 0.1 m and a dark edge of 12 mm, so that steps stand out. Textures are averaged over a pixel
+// (pattern.hpp); the borders of faces and shadows are not. Thread safety: none; one for each renderer.
 #pragma once
 
 #include "camera/pattern.hpp"
@@ -16,7 +15,7 @@ namespace kenaf::camera {
 
 class Shading {
  public:
-  // `out` takes the view's size. `faces` has begun this view.
+  // `out` gets the view's size. `faces` must have begun this view.
   void shade(const View& view, const KeyPicture& keys, ScreenFaces& faces, Picture& out) const;
 
  private:

@@ -1,7 +1,7 @@
-// What of a world can be seen at one moment: a plain value, so that pictures are made while the world steps on.
+// The visible state of a world at one moment: a plain value, so that pictures are made while the world steps on.
 //
 // Taken by the thread that owns the World; afterwards any thread may read it. Planes and meshes never move and are not
-// in it: they are in physics::WorldDescription. Boxes are, the fixed ones too, because World can move and remove any.
+// included: see physics::WorldDescription. All boxes are, since World can move and remove any of them.
 #pragma once
 
 #include <array>
@@ -18,9 +18,9 @@ struct RobotSnapshot {
   physics::RobotId id;
   std::shared_ptr<const physics::RobotDescription> description;  // shared by all snapshots of this robot
   std::string name;
-  physics::Pose X_WB;  // after a fault where it last was whole
+  physics::Pose X_WB;  // after a fault the last valid one
   std::array<double, robot::kFlipperCount> flipper_rad;
-  std::array<double, robot::kTrackCount> track_m;     // travel of the belts, so that they are seen to run
+  std::array<double, robot::kTrackCount> track_m;     // travel of the belts, which shows their motion
   std::vector<std::vector<double>> mission_link_rad;  // of each mission package, link 1 first
 };
 
@@ -28,7 +28,7 @@ struct BoxSnapshot {
   physics::BoxId id;
   Eigen::Vector3d size_m;
   physics::Pose X_WBox;
-  bool fixed;  // no mass: moves only when it is told to
+  bool fixed;  // no mass: moves only by World::move_box()
 };
 
 struct WorldSnapshot {
@@ -37,8 +37,8 @@ struct WorldSnapshot {
   std::vector<BoxSnapshot> boxes;
 };
 
-// Takes snapshots of one world. Costs some 1 us a robot and 0.2 us a box; what a snapshot holds is used again, and a
-// robot's description is copied once.
+// Takes snapshots of one world, at about 1 us a robot and 0.2 us a box. Reuses the snapshot's memory, and copies a
+// robot's description once.
 class SnapshotTaker {
  public:
   void take(const physics::World& world, WorldSnapshot& out);

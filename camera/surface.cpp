@@ -23,7 +23,7 @@ std::uint32_t add_vertex(Surface& surface, const Vector3d& p) {
   return static_cast<std::uint32_t>(surface.vertices.size() - 1);
 }
 
-// A convex face, its corners counter-clockwise as seen from outside.
+// Adds a convex face as a fan of triangles; corners are counter-clockwise as seen from outside.
 void add_polygon(Surface& surface, const std::vector<Vector3d>& corners, Face face) {
   face.distance = face.normal.dot(corners[0]);
   surface.faces.push_back(face);
@@ -50,7 +50,7 @@ struct BeltLoop {
   double width_m;
   Material side;
   robot::Track track;
-  double s_sign;  // -1: driving forward moves the belt along the outline's order; +1: against it; 0: it does not move
+  double s_sign;  // driving forward moves the belt -1: along the outline's order, +1: against it, 0: not at all
   std::vector<Wheel> wheels;
 };
 
@@ -76,11 +76,14 @@ void add_side(Surface& surface, const BeltLoop& belt, double left) {
 }
 
 void add_belt(Surface& surface, const BeltLoop& belt) {
+  // A whole number of lugs around the loop, about kLugSpacing_m apart.
   const physics::Outline& outline = belt.outline;
   const auto next = [&](std::size_t i) { return outline[(i + 1) % outline.size()]; };
   double length_m = 0;
   for (std::size_t i = 0; i < outline.size(); ++i) length_m += (next(i) - outline[i]).norm();
   const double per_m = std::max(1.0, std::round(length_m / kLugSpacing_m)) / length_m;
+
+  // A face for each piece of the outline; s goes on from piece to piece, 1 for each lug.
   double before_m = 0;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Vector2d along = next(i) - outline[i];
@@ -139,7 +142,7 @@ Surface body_surface(const physics::RobotDescription& robot) {
 Surface flipper_surface(const physics::RobotDescription& robot, robot::Flipper which) {
   const physics::FlipperDescription& flipper = robot.flipper.front();
   Surface surface;
-  // the upper run goes forward on both ends of the robot: toward the tip in front, toward the pivot behind
+  // The upper run moves forward on both ends of the robot: toward the tip in front, toward the pivot behind.
   const double s_sign = !flipper.belt_driven ? 0 : robot::is_front(which) ? 1 : -1;
   add_belt(surface, {physics::flipper_outline(flipper),
                      Vector3d::Zero(),

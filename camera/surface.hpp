@@ -1,7 +1,7 @@
-// What a part of the scene looks like from outside: triangles, gathered into plane faces that carry a texture.
+// The surface of a part of the scene: triangles, grouped into plane faces that carry a texture.
 //
-// A face is the unit of all that follows: two rays that hit the same face hit the same plane, whatever the triangles
-// are. Part frame L, metres. Thread safety: values and pure functions.
+// Everything else works on faces: two rays that hit the same face hit the same plane, whatever the triangles are. Part
+// frame L, metres. Thread safety: values and pure functions.
 #pragma once
 
 #include <array>
@@ -33,14 +33,14 @@ struct Affine {
   double operator()(const Eigen::Vector3d& p) const { return gradient.dot(p) + offset; }
 };
 
-// A plane face. Its texture has the coordinates s and t, and repeats where either grows by 1.
+// A plane face. Its texture has the coordinates s and t, each with a period of 1.
 struct Face {
   Eigen::Vector3d normal;  // unit, outward
   double distance;         // normal . p of its points
   Affine s, t;
   Material material;
   Eigen::Vector2d half{0, 0};  // of a box: |s| and |t| at its edges, which are drawn; 0: no edges
-  double s_per_track_m = 0;    // how far s moves when the belt of `track` does
+  double s_per_track_m = 0;    // change of s per metre of travel of `track`'s belt
   robot::Track track = robot::kLeft;
 };
 
@@ -54,14 +54,14 @@ struct Surface {
 // Adds a box around the pose. s and t of each face are metres from its middle; the texture's period is 1 m.
 void add_box(Surface& surface, const Eigen::Vector3d& size_m, const physics::Pose& X_LBox, Material material);
 
-// What of a robot is one rigid part: B with hull and both main tracks, and an arm, whose frame is at its pivot, x out
-// along the arm. Outlines are the physics' own (physics/robot_shapes.hpp); belts show a lug every 30 mm, wherever the
-// track's travel has taken it, and wheels stand 2 mm out of the sides so that ends and middle can be told apart: both
-// are for the eye, no description has them.
+// The rigid parts of a robot: B with hull and both main tracks, and an arm, whose frame is at its pivot, x out along
+// the arm. Outlines are the physics' own (physics/robot_shapes.hpp). Belts show a lug every 30 mm, which moves with the
+// track's travel, and wheels stand 2 mm out of the sides so that ends and middle can be told apart: both are
+// decoration, no description has them.
 Surface body_surface(const physics::RobotDescription& robot);
 Surface flipper_surface(const physics::RobotDescription& robot, robot::Flipper which);
 
-// Where the arm of a flipper is in B; 0: straight out along the body, positive: tip up.
+// Returns the pose of a flipper's arm in B; 0: straight out along the body, positive: tip up.
 physics::Pose flipper_pose(const physics::RobotDescription& robot, robot::Flipper which, double angle_rad);
 
 }  // namespace kenaf::camera

@@ -8,18 +8,19 @@ namespace kenaf::camera {
 
 namespace {
 
-constexpr std::size_t kBatch = 1024;  // what stays in the fast caches
+constexpr std::size_t kBatch = 1024;  // rays; fits the fast caches
 constexpr PixelKey kUnknown = 0xffffffff, kRequested = 0xfffffffe;
 constexpr double kSmall_px = 32;
-// Two triangles are one surface where either's plane, seen at the other's place, is as far within this share, and as
-// bright within this part of full light.
-constexpr float kSameDepth = 0.01f, kSameLight = 0.03f;  // over more than 4 pixels a fifth of the first
+// Two triangles are one surface if their planes have the same depth at a pixel, to within this share, and the same
+// brightness, to within this part of full light.
+constexpr float kSameDepth = 0.01f, kSameLight = 0.03f;  // in cells of more than 4 pixels a fifth of the first
 
 struct Corner {
   PixelKey key;
   float u, v;
 };
 
+// `nearness` is 1 / depth, affine over the picture for a plane, and facing / nearness is brightness.
 bool one_surface(const ScreenFace& a, const ScreenFace& b, const Corner& at, float same_depth) {
   const float qa = a.nearness(at.u, at.v), qb = b.nearness(at.u, at.v);
   if (!(std::abs(qa - qb) <= same_depth * qb)) return false;
@@ -31,7 +32,7 @@ bool one_smooth_mesh(const std::array<Corner, 4>& corners, float same_depth, Scr
     if (corner.key == kNothing || ((corner.key ^ corners[0].key) & kShade) != 0) return false;
     if (!faces.at(corner.key & ~kShade).of_mesh) return false;
   }
-  // the planes at two opposite corners, each at all others
+  // The planes of two opposite corners, compared with the others' at their corners.
   for (const Corner& a : {corners[0], corners[3]}) {
     for (const Corner& b : corners)
       if (a.key != b.key && !one_surface(faces.at(a.key & ~kShade), faces.at(b.key & ~kShade), b, same_depth))
@@ -45,11 +46,11 @@ bool is_lit_mesh(const KeyPicture& out, int x, int y, int size, ScreenFaces& fac
   const PixelKey* top = out.row(y);
   const PixelKey* bottom = out.row(y + size);
   for (const PixelKey key : {top[x], top[x + size], bottom[x], bottom[x + size]})
-    if (key >= kNothing || !faces.at(key).of_mesh) return false;  // shade is beyond kNothing
+    if (key >= kNothing || !faces.at(key).of_mesh) return false;  // keys in the shade are above kNothing
   return true;
 }
 
-// Fills the cell where its corners suffice to know it.
+// Fills the cell if its corners determine it: by their key, or on one smooth mesh each quarter by its corner's key.
 bool fill(KeyPicture& out, int x, int y, int size, ScreenFaces& faces) {
   const PixelKey* top = out.row(y);
   const PixelKey* bottom = out.row(y + size);
@@ -76,6 +77,7 @@ bool fill(KeyPicture& out, int x, int y, int size, ScreenFaces& faces) {
 }  // namespace
 
 void Visibility::mark_small(const Scene& scene, const View& view, int cell) {
+  // Cells that touch the picture of a small bounding sphere, f radius / depth in pixels, are cast pixel by pixel.
   const int rows = (view.lens.height + cell - 1) / cell;
   marked_columns_ = (view.lens.width + cell - 1) / cell;
   marked_.assign(static_cast<std::size_t>(marked_columns_) * static_cast<std::size_t>(rows), 0);
@@ -83,11 +85,11 @@ void Visibility::mark_small(const Scene& scene, const View& view, int cell) {
   const Eigen::Vector3d axis_W = view.X_WC.q * Eigen::Vector3d::UnitX();
   for (const Sphere& sphere : scene.bounds()) {
     const double depth_m = axis_W.dot(sphere.centre_W - view.X_WC.p);
-    if (!(depth_m > sphere.radius_m)) continue;  // a box that physics has lost is nowhere
+    if (!(depth_m > sphere.radius_m)) continue;  // also skips a box without a finite pose
     const double radius_px = f * sphere.radius_m / depth_m;
     if (2 * radius_px > kSmall_px) continue;
     const Pixel middle = *project(view, sphere.centre_W);
-    // what is hardly ahead of the camera's plane may be farther aside than an int counts
+    // Clamped before the cast: close to the camera's plane, positions exceed the range of an int.
     const auto first = [&](double at, int count) {
       return static_cast<int>(std::clamp((at - radius_px) / cell, 0.0, static_cast<double>(count)));
     };
@@ -113,10 +115,13 @@ void Visibility::request(int x, int y, bool mesh_is_lit, KeyPicture& out) {
 }
 
 void Visibility::cast_requested(const Scene& scene, const View& view, ScreenFaces& faces, KeyPicture& out) {
+  // Rays through pixel centres, (u + 0.5, v + 0.5): affine in u and v.
   const RayBasis basis(view);
   const Eigen::Vector3f from = view.X_WC.p.cast<float>();
   const Eigen::Vector3f at_0 = (basis.at_0 + 0.5 * basis.per_u + 0.5 * basis.per_v).cast<float>();
   const Eigen::Vector3f per_u = basis.per_u.cast<float>(), per_v = basis.per_v.cast<float>();
+
+  // Batch by batch: cast, then find out about the light and enter the keys.
   for (std::size_t start = 0; start < requested_.size(); start += kBatch) {
     const std::size_t count = std::min(kBatch, requested_.size() - start);
     const Request* requests = &requested_[start];
@@ -139,12 +144,14 @@ void Visibility::cast_requested(const Scene& scene, const View& view, ScreenFace
   requested_.clear();
 }
 
-// Enters the keys of the rays that were cast.
+// Enters the keys of the rays that were cast: the face, and whether it is in the shade.
 void Visibility::light(const Scene& scene, ScreenFaces& faces, const Request* requests, KeyPicture& out) {
   const Eigen::Vector3f toward_sun = scene.toward_sun_W().cast<float>();
   const std::size_t count = rays_.size();
   toward_sun_of_.clear();
   sun_rays_.resize(count);
+
+  // Faces that look away from the sun are in the shade; the others need a ray toward the sun, except on lit meshes.
   std::size_t lit = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const FaceId id = rays_.face[i];
@@ -157,7 +164,7 @@ void Visibility::light(const Scene& scene, ScreenFaces& faces, const Request* re
       continue;
     }
     if (face.of_mesh && requests[i].mesh_is_lit) continue;
-    // off the surface by what single precision may be wrong, and some
+    // Start off the surface by more than the error of single precision.
     const float t = rays_.far[i], off = 0.0005f + 1e-4f * t;
     sun_rays_.from_x[lit] = rays_.from_x[i] + t * rays_.along_x[i] + off * face.normal_W.x();
     sun_rays_.from_y[lit] = rays_.from_y[i] + t * rays_.along_y[i] + off * face.normal_W.y();
@@ -170,6 +177,8 @@ void Visibility::light(const Scene& scene, ScreenFaces& faces, const Request* re
     toward_sun_of_.push_back(static_cast<std::uint32_t>(i));
     ++lit;
   }
+
+  // A hit casts a shadow.
   sun_rays_.resize(lit);
   if (lit == 0) return;
   scene.cast_any(sun_rays_);
@@ -184,6 +193,8 @@ void Visibility::find(const Scene& scene, const View& view, int coarsest, Screen
   out.stride = columns * coarsest + 1;
   out.rows = rows * coarsest + 1;
   out.keys.assign(static_cast<std::size_t>(out.stride) * static_cast<std::size_t>(out.rows), kUnknown);
+
+  // The corners of the coarsest cells.
   ray_count_ = 0;
   if (coarsest > 1) mark_small(scene, view, coarsest);
   cells_.clear();
@@ -195,6 +206,8 @@ void Visibility::find(const Scene& scene, const View& view, int coarsest, Screen
     }
   }
   cast_requested(scene, view, faces, out);
+
+  // Cells that their corners do not determine are quartered; their new corners are cast together.
   for (int size = coarsest; size > 1; size /= 2) {
     const int half = size / 2;
     next_cells_.clear();

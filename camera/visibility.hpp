@@ -1,13 +1,13 @@
 // Which face each pixel shows, and whether the sun reaches it there.
 //
-// Rays are cast at the corners of cells of 8 x 8 pixels. Where all four meet one plane face, in the light or in the
-// shade alike, the cell shows that face; else it is quartered, down to the pixel. On a mesh it is enough that the four
-// triangles' planes and light are nearly those of one smooth surface; each pixel then takes the nearest corner's. Where
-// all four are in the light, what lies between them on the mesh is taken to be, too.
+// Rays are cast at the corners of cells of 8 x 8 pixels. If all four meet one plane face, all in the light or all in
+// the shade, the cell shows that face; else it is quartered, down to the pixel. On a mesh it suffices that planes and
+// light of the four triangles are nearly those of one smooth surface; each pixel then takes the nearest corner's. If
+// all four are in the light, the mesh between them is taken to be in the light too.
 //
-// A box or a part of a robot that looks smaller than 32 pixels could lie between the corners: what may show it is cast
-// pixel by pixel. What else is thinner than 8 pixels and shows at no corner is missed, shadows too. Before a step that
-// is no pixel or 5 of 307,200, before a step field 0.02 %; on hills 0.10 % differ by more than 8 of 255 levels.
+// A box or a part of a robot that looks smaller than 32 pixels could lie between the corners: cells that may show it
+// are cast pixel by pixel. Anything else thinner than 8 pixels that shows at no corner is missed, shadows too: before a
+// step 0 or 5 pixels of 307,200, before a step field 0.02 %; on hills 0.10 % differ by more than 8 of 255 levels.
 //
 // Thread safety: none; one for each renderer.
 #pragma once
@@ -19,11 +19,11 @@
 
 namespace kenaf::camera {
 
-// A FaceId, and this bit where the face is in the shade. kNothing: the sky.
+// A FaceId, with the bit kShade if the face is in the shade there. kNothing: the sky.
 using PixelKey = std::uint32_t;
 inline constexpr PixelKey kShade = 0x80000000;
 
-// Rows of pixel keys; longer and more than the picture's, so that its last cells are whole.
+// Rows of pixel keys; larger than the picture, so that its last cells are complete.
 struct KeyPicture {
   int stride = 0, rows = 0;
   std::vector<PixelKey> keys;
@@ -33,9 +33,9 @@ struct KeyPicture {
 
 class Visibility {
  public:
-  // `coarsest`: 8, or 1 for a ray through each pixel. `faces` has begun this scene and view.
+  // `coarsest`: 8, or 1 for a ray through each pixel. `faces` must have begun this scene and view.
   void find(const Scene& scene, const View& view, int coarsest, ScreenFaces& faces, KeyPicture& out);
-  // Rays of the last find(), those toward the sun among them.
+  // Number of rays of the last find(), including those toward the sun.
   std::size_t ray_count() const { return ray_count_; }
 
  private:
@@ -44,7 +44,7 @@ class Visibility {
   };
   struct Request {
     std::int16_t x, y;
-    bool mesh_is_lit;  // where it meets a mesh; else only a ray toward the sun can tell
+    bool mesh_is_lit;  // a mesh that it meets needs no ray toward the sun
   };
 
   void mark_small(const Scene& scene, const View& view, int cell);
@@ -55,9 +55,9 @@ class Visibility {
 
   std::vector<Cell> cells_, next_cells_;
   std::vector<Request> requested_;
-  std::vector<std::uint8_t> marked_;  // of each coarsest cell: it is cast pixel by pixel
+  std::vector<std::uint8_t> marked_;  // for each coarsest cell: cast it pixel by pixel
   int marked_columns_ = 0;
-  std::vector<std::uint32_t> toward_sun_of_;  // which ray of the batch each ray toward the sun belongs to
+  std::vector<std::uint32_t> toward_sun_of_;  // index in the batch of the ray that each ray toward the sun belongs to
   RayBatch rays_, sun_rays_;
   std::size_t ray_count_ = 0;
 };

@@ -1,4 +1,4 @@
-# Every library the project uses, all from Debian 12. docs/dependencies.md says what each is for.
+# Every library the project uses, all from Debian 12. docs/developing.md says what each is for.
 find_package(Threads REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)

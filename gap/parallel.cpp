@@ -29,7 +29,7 @@ void for_each_job(std::size_t count, unsigned threads, const std::function<void(
     for (std::size_t i = 1; i < std::min<std::size_t>(threads, count); ++i) try {
         others.emplace_back(work);
       } catch (const std::system_error&) {
-        break;  // no more threads are to be had: those that there are do it
+        break;  // no more threads available: the existing ones do the work
       }
     work();
   }

@@ -1,4 +1,4 @@
-// Many independent jobs on all cores.
+// Runs many independent jobs on all cores.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 
 namespace kenaf::gap {
 
-// Calls job(0) ... job(count - 1), each once, on at most `threads` threads (0: one a core), in no given order. After
-// a job throws, no further one starts; of what was thrown, that of the lowest index is thrown on.
+// Calls job(0) ... job(count - 1), each once, on at most `threads` threads (0: one per core), in unspecified order.
+// After a job throws, no further job starts; rethrows the exception of the lowest index.
 void for_each_job(std::size_t count, unsigned threads, const std::function<void(std::size_t)>& job);
 
 }  // namespace kenaf::gap

@@ -1,6 +1,6 @@
-// Random numbers: the same for a seed with every standard library, which its own distributions are not.
+// Random numbers that are the same for a seed with every standard library; std distributions are not.
 //
-// Thread safety: each function changes its engine alone.
+// Thread safety: each function modifies only its engine.
 #pragma once
 
 #include <cmath>
@@ -28,7 +28,7 @@ void shuffle(std::vector<T>& values, Random& random) {
   for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[below(random, i)]);
 }
 
-// A seed of its own for each number that it is mixed with.
+// Derives a separate seed for each value of `with`.
 inline std::uint64_t mixed(std::uint64_t seed, std::uint64_t with) {
   std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
                          static_cast<std::uint32_t>(with)};

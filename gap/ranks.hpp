@@ -1,7 +1,7 @@
-// Processes that make one diagnosis together, on one machine or on several.
+// Processes that compute one diagnosis together, on one or several machines.
 //
-// All of them run the same program on the same data and decide alike; only simulations are shared out between them.
-// So the result does not depend on how many there are, bit for bit, as long as their processors and libraries agree.
+// All run the same program on the same data and make the same decisions; only simulations are distributed. So the
+// result is bit-identical for any number of processes, provided that processors and libraries match.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,10 +12,9 @@ namespace kenaf::gap {
 
 struct Ranks {
   int rank = 0, count = 1;
-  // Each rank comes with those results[j] for which j % count is its rank, and leaves with all. All ranks call it
-  // together.
+  // Each rank passes the results[j] with j % count == rank and receives all. Collective: all ranks call it together.
   std::function<void(std::vector<Eigen::VectorXd>& results)> share;
-  // Whether it is true of any rank. All ranks call it together.
+  // Returns whether the argument is true on any rank. Collective.
   std::function<bool(bool)> any;
 };
 

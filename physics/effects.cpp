@@ -170,6 +170,7 @@ const EffectParameter* find_parameter(const EffectInfo& effect, std::string_view
 }
 
 void set_effect(Effects& effects, std::string_view assignment) {
+  // NAME:PARAMETER=VALUE
   const std::size_t colon = assignment.find(':'), equals = assignment.find('=');
   if (colon == assignment.npos || equals == assignment.npos || equals < colon)
     throw std::invalid_argument(
@@ -177,6 +178,8 @@ void set_effect(Effects& effects, std::string_view assignment) {
   const std::string_view name = assignment.substr(0, colon);
   const std::string_view parameter_name = assignment.substr(colon + 1, equals - colon - 1);
   const std::string_view number = assignment.substr(equals + 1);
+
+  // Both names must be in the catalogue; errors list what is.
   const EffectInfo* effect = find_effect(name);
   if (!effect)
     throw std::invalid_argument(fmt::format("effect \"{}\": there are {}", name, names_of(effect_catalogue())));
@@ -184,6 +187,8 @@ void set_effect(Effects& effects, std::string_view assignment) {
   if (!parameter)
     throw std::invalid_argument(
         fmt::format("effect {}: has no parameter \"{}\", but {}", name, parameter_name, names_of(effect->parameters)));
+
+  // A number, to its last character, within the parameter's range.
   double value = 0;
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (error != std::errc{} || end != number.data() + number.size())

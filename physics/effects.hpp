@@ -13,13 +13,13 @@
 
 namespace kenaf::physics {
 
-// Where between a command and a measurement an effect acts. The same number of seconds is another effect in each stage.
+// Where an effect acts between a command and a measurement. A delay of the same length is another effect in each stage.
 enum class Stage { command, drive, body, contact, terrain, sensor };
 std::string_view stage_name(Stage stage);
 
 // The value of every parameter. The physics reads these members; everything else goes through the catalogue.
 struct Effects {
-  // command: what becomes of a command before the drives get it
+  // command: between the command that was sent and the one that the drives get
   double command_delay_s = 0;
   double command_loss = 0;       // share of commands that do not arrive
   double command_gain = 1;       // of track speeds
@@ -54,8 +54,8 @@ struct Effects {
   double lug_height_scale = 1;
   // terrain
   double ground_compliance_scale = 1, ground_damping_scale = 1;
-  double obstacle_height_m = 0;    // what is not under the start is higher
-  double obstacle_position_m = 0;  // what is not under the start is further ahead (+x of the world)
+  double obstacle_height_m = 0;    // ground that is not under the start is higher
+  double obstacle_position_m = 0;  // ground that is not under the start is further ahead (+x of the world)
   double ground_slope_rad = 0;     // the whole world falls away forward (+) under level axes
   double ground_bank_rad = 0;      // the whole world falls away to the right (+)
   // sensor
@@ -71,8 +71,8 @@ struct Effects {
   double tracking_delay_s = 0;   // of the pose that motion capture or lidar reports; no sensor of the robot
   double tracking_scale = 1;     // of its x, y from the first pose on
   double tracked_point_forward_m = 0, tracked_point_left_m = 0;  // in B, of the point whose pose that is
-  double tracking_turn_rad = 0;                                  // of the heading that it reports against the body's
-  double clock_offset_s = 0;                                     // its clock is behind (+) that of the robot
+  double tracking_turn_rad = 0;                                  // of the reported heading against the body's
+  double clock_offset_s = 0;                                     // its clock is behind (+) the robot's
 
   bool operator==(const Effects&) const = default;
 };
@@ -91,14 +91,14 @@ struct EffectInfo {
   std::span<const EffectParameter> parameters;
 };
 
-// In the order of the stages.
+// All effects, in the order of the stages.
 std::span<const EffectInfo> effect_catalogue();
-// Null: there is none of that name.
+// Null if there is none of that name.
 const EffectInfo* find_effect(std::string_view name);
 const EffectParameter* find_parameter(const EffectInfo& effect, std::string_view name);
 
-// "command_delay:delay_s=0.05". Throws std::invalid_argument that says what is wrong and what there is: an unknown
-// effect or parameter, no number, out of range.
+// `assignment`: "command_delay:delay_s=0.05". Throws std::invalid_argument, with the alternatives, if the effect or
+// parameter is unknown or the value is no number or out of range.
 void set_effect(Effects& effects, std::string_view assignment);
 
 }  // namespace kenaf::physics

@@ -40,7 +40,7 @@ void take_bytes(png_structp png, png_bytep out, std::size_t count) {
 
 void ignore_warning(png_structp, png_const_charp) {}
 
-// libpng reports errors by longjmp: neither of these two functions has anything to destroy at its end.
+// libpng reports errors by longjmp, which skips destructors: these two functions have nothing to destroy.
 bool read_header(PngReader& reader) {
   if (setjmp(png_jmpbuf(reader.png))) return false;
   png_read_info(reader.png, reader.info);
@@ -56,6 +56,7 @@ bool read_pixels(PngReader& reader, png_bytepp rows) {
 }  // namespace
 
 GreyPicture read_grey_png(std::string_view png) {
+  // libpng reads from memory; chunks are limited, so that a small file cannot ask for much memory.
   PngReader reader;
   reader.left = png;
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, keep_error, ignore_warning);
@@ -67,6 +68,7 @@ GreyPicture read_grey_png(std::string_view png) {
   png_set_keep_unknown_chunks(reader.png, PNG_HANDLE_CHUNK_NEVER, nullptr, 0);
   if (!read_header(reader)) throw description::DescriptionError("is not a PNG picture: " + reader.error);
 
+  // Only grey without transparency, of a size that makes a surface.
   GreyPicture picture;
   picture.width = png_get_image_width(reader.png, reader.info);
   picture.height = png_get_image_height(reader.png, reader.info);
@@ -80,6 +82,7 @@ GreyPicture read_grey_png(std::string_view png) {
       (!wide && png_get_bit_depth(reader.png, reader.info) != 8))
     throw description::DescriptionError("is not a grey picture of 8 or 16 bits without transparency; save it as one");
 
+  // Rows of bytes, then values; PNG stores 16 bits big-endian.
   png_set_interlace_handling(reader.png);
   png_read_update_info(reader.png, reader.info);
   const std::size_t row_bytes = picture.width * (wide ? std::size_t{2} : std::size_t{1});
@@ -98,6 +101,8 @@ TriangleSurface height_map_surface(const GreyPicture& picture, const Eigen::Vect
                                    const Eigen::Vector3d& position_m) {
   const std::uint32_t width = picture.width, height = picture.height;
   const double brightest = std::max<double>(1, *std::ranges::max_element(picture.values));
+
+  // A vertex for each pixel.
   TriangleSurface surface;
   surface.vertices.reserve(picture.values.size());
   for (std::uint32_t row = 0; row < height; ++row) {
@@ -108,6 +113,8 @@ TriangleSurface height_map_surface(const GreyPicture& picture, const Eigen::Vect
       surface.vertices.emplace_back(position_m + share.cwiseProduct(size_m));
     }
   }
+
+  // Each square of four pixels is cut along its diagonal.
   surface.triangles.reserve(2 * std::size_t{width - 1} * (height - 1));
   for (std::uint32_t row = 0; row + 1 < height; ++row) {
     for (std::uint32_t column = 0; column + 1 < width; ++column) {

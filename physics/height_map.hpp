@@ -21,7 +21,7 @@ struct GreyPicture {
 };
 
 // The bytes of a PNG file with one grey channel of 8 or 16 bits, 2 to kMostPixelsASide pixels a side. Throws
-// DescriptionError with what is wrong, without a place.
+// DescriptionError, which says what is wrong but not where.
 GreyPicture read_grey_png(std::string_view png);
 
 // A surface of (width - 1) x (height - 1) squares, two triangles each, solid below: the picture's centre is at

@@ -29,7 +29,7 @@ std::string extension_of(MeshFormat format) {
   return format == MeshFormat::stl ? "stl" : format == MeshFormat::obj ? "obj" : "dae";
 }
 
-// All that assimp may open: the bytes at hand, under one name.
+// The only file that assimp can open: the given bytes, under one name.
 class OneFile final : public Assimp::IOSystem {
  public:
   OneFile(std::string_view bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {}
@@ -46,7 +46,7 @@ class OneFile final : public Assimp::IOSystem {
   std::string name_;
 };
 
-// The file's ending alone decides how it is read.
+// Removes all other loaders, so that the file's extension alone decides how it is read.
 void keep_only_loader(Assimp::Importer& importer, const std::string& extension) {
   for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
     Assimp::BaseImporter* const loader = importer.GetImporter(i);
@@ -58,15 +58,15 @@ void keep_only_loader(Assimp::Importer& importer, const std::string& extension) 
   }
 }
 
-// Assimp's Collada reader follows elements and instances of nodes by recursion, without a limit, takes anything with a
-// directory of a ZIP archive at its end for one, and believes accessors what they say of their arrays' lengths, and
-// skins what they say of their bones. Expat, which has limits, looks at the file first. Both must see the same: a
-// document type, whose entities and defaults only Expat knows, is refused.
+// Assimp's Collada reader recurses into elements and instances of nodes without a limit, takes any file with a ZIP
+// directory at its end for an archive, and trusts the array lengths in accessors and the bones in skins. Expat, which
+// has limits, checks the file first. Both must see the same content: a document type, whose entities and defaults only
+// Expat resolves, is refused.
 struct ColladaCheck {
   static constexpr int kMostNested = 100;
   struct Accessor {
     std::string array;
-    std::uint64_t reach;  // values of the array that it goes over
+    std::uint64_t reach;  // number of the array's values that it spans
     std::uint64_t stride;
     XML_Size line;
   };
@@ -85,7 +85,7 @@ std::string_view attribute(const XML_Char** attributes, std::string_view name) {
   return {};
 }
 
-// 32 bits, so that a count times a stride has room in 64.
+// At most 32 bits, so that a count times a stride fits into 64.
 std::uint64_t count_in(ColladaCheck& check, std::string_view text, std::uint32_t otherwise) {
   std::uint32_t count = otherwise;
   if (text.empty()) return count;
@@ -96,6 +96,7 @@ std::uint64_t count_in(ColladaCheck& check, std::string_view text, std::uint32_t
 }
 
 void collada_start(void* user, const XML_Char* element, const XML_Char** attributes) {
+  // Unsupported elements, and too deep nesting.
   auto& check = *static_cast<ColladaCheck*>(user);
   const std::string_view name = element;
   if (++check.depth > ColladaCheck::kMostNested) check.refusal = "has elements nested more than 100 deep";
@@ -104,9 +105,11 @@ void collada_start(void* user, const XML_Char* element, const XML_Char** attribu
   if (name == "instance_node")
     check.refusal =
         "has an <instance_node>, which is not supported; export the nodes themselves, or an OBJ or STL file";
+
+  // Arrays and accessors are collected, to be compared at the end of the file.
   const std::string_view count = attribute(attributes, "count");
   if (name.ends_with("_array")) {
-    // numbers are in a float_array alone; which of two of one id counts is assimp's to say
+    // Only a float_array holds numbers. If two have one id, assimp may use either: the shorter one counts.
     const std::uint64_t length = name == "float_array" ? count_in(check, count, 0) : 0;
     const auto [array, first] = check.array_lengths.try_emplace(std::string(attribute(attributes, "id")), length);
     if (!first) array->second = std::min(array->second, length);
@@ -116,7 +119,7 @@ void collada_start(void* user, const XML_Char* element, const XML_Char** attribu
     const std::uint64_t stride = count_in(check, attribute(attributes, "stride"), 1);
     std::string_view source = attribute(attributes, "source");
     if (source.starts_with('#')) source.remove_prefix(1);
-    // with a stride of 0 it still goes over one
+    // A stride of 0 still spans one value.
     const std::uint64_t reach = offset + std::max<std::uint64_t>(stride, 1) * count_in(check, count, 0);
     check.accessors.push_back({std::string(source), reach, stride, XML_GetCurrentLineNumber(check.parser)});
     check.in_accessor = true;
@@ -146,6 +149,8 @@ void check_collada(std::string_view bytes) {
   XML_SetUserData(parser.get(), &check);
   XML_SetElementHandler(parser.get(), collada_start, collada_end);
   XML_SetStartDoctypeDeclHandler(parser.get(), collada_document_type);
+
+  // A well-formed file: no accessor may span more than its array has.
   if (XML_Parse(parser.get(), bytes.data(), static_cast<int>(bytes.size()), 1) == XML_STATUS_OK) {
     for (const ColladaCheck::Accessor& accessor : check.accessors) {
       const auto array = check.array_lengths.find(accessor.array);
@@ -163,7 +168,7 @@ void check_collada(std::string_view bytes) {
                                                   XML_GetCurrentLineNumber(parser.get())));
 }
 
-// Assimp cuts the ears off a polygon one by one, and looks at all of its corners for each.
+// Assimp's ear clipping takes quadratic time or more in the corners of a polygon.
 void check_polygons(const aiScene& scene) {
   constexpr unsigned kMostCorners = 500;
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
@@ -186,6 +191,7 @@ class Collector {
   Collector(const aiScene& scene, const MeshPart& part, std::size_t most_triangles)
       : scene_(scene), part_(part), most_triangles_(most_triangles) {}
 
+  // Visits nodes depth first, without recursion; below a node of the wanted name all meshes count.
   MeshContent collect() {
     struct Entry {
       const aiNode* node;
@@ -215,12 +221,14 @@ class Collector {
 
   void append(const aiMesh& mesh, const Eigen::Affine3d& X_FileNode) {
     std::vector<Eigen::Vector3d>& vertices = content_.surface.vertices;
-    // lines and points too, and what is left of polygons that could not be cut: instances multiply them
+    // Limits also for lines, points and the rest of polygons that could not be triangulated: instances multiply them.
     constexpr std::size_t kCorners = 3;
     if (mesh.mNumFaces > most_triangles_ - content_.surface.triangles.size() - content_.other_faces ||
         mesh.mNumVertices > kCorners * most_triangles_ - vertices.size())
       throw description::DescriptionError(
           fmt::format("has more triangles than the {} that are left for this world", most_triangles_));
+
+    // Vertices in the file's frame, then triangles; a node that mirrors turns their winding round.
     const std::size_t first = vertices.size();
     const bool mirrored = X_FileNode.linear().determinant() < 0;
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
@@ -273,7 +281,7 @@ MeshContent read_mesh(std::string_view bytes, MeshFormat format, const MeshPart&
   try {
     Assimp::Importer importer;
     keep_only_loader(importer, extension);
-    importer.SetIOHandler(new OneFile(bytes, name));  // which it deletes
+    importer.SetIOHandler(new OneFile(bytes, name));  // the importer deletes it
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
     const aiScene* scene = importer.ReadFile(name, 0);
     if (scene) {

@@ -1,4 +1,4 @@
-// Reproducible noise: a generator of its own for each sensor of each robot, seeded by world seed and names.
+// Reproducible noise: each sensor of each robot has its own generator, seeded by world seed and names.
 #pragma once
 
 #include <cstdint>

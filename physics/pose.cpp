@@ -8,7 +8,7 @@ namespace kenaf::physics {
 Eigen::Vector3d roll_pitch_yaw(const Eigen::Quaterniond& q_WB) {
   const Eigen::Matrix3d R_WB = q_WB.toRotationMatrix();
   const double pitch = std::asin(std::clamp(-R_WB(2, 0), -1.0, 1.0));
-  // nose straight up or down: roll and yaw turn about the same axis, all of it is called yaw
+  // Nose straight up or down: roll and yaw turn about the same axis, and all of the turn counts as yaw.
   if (std::hypot(R_WB(2, 1), R_WB(2, 2)) < 1e-9) return {0, pitch, std::atan2(-R_WB(0, 1), R_WB(1, 1))};
   return {std::atan2(R_WB(2, 1), R_WB(2, 2)), pitch, std::atan2(R_WB(1, 0), R_WB(0, 0))};
 }

@@ -1,4 +1,4 @@
-// What belts and flippers do whatever they are told: as measured on a robot, so that its drives play no part. SI units.
+// Prescribed motion of belts and flippers, as measured on a robot: replaces commands and drives. SI units.
 //
 // Thread safety: a value.
 #pragma once

@@ -1,4 +1,4 @@
-// What sensors report. SI units, radians; frames of REP 103; roll, pitch, yaw as physics/pose.hpp defines them.
+// Sensor readings. SI units, radians; frames of REP 103; roll, pitch, yaw as physics/pose.hpp defines them.
 #pragma once
 
 #include <Eigen/Core>
@@ -57,7 +57,7 @@ using Reading =
 
 struct SensorSample {
   std::size_t sensor;  // index into RobotDescription::sensors
-  double t_s;          // when it was measured: robot time, before the sensor's delay
+  double t_s;          // time of the measurement: robot time, before the sensor's delay
   Reading reading;
 };
 

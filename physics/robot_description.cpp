@@ -40,7 +40,7 @@ BodyDescription read_body(TomlReader table) {
       .inertia_kgm2 = table.vector3("inertia_kgm2", kPositive),
       .friction = table.number("friction", kFriction),
   };
-  // no rigid body has a moment larger than the sum of the two others
+  // No rigid body has a moment of inertia larger than the sum of the two others.
   const Eigen::Vector3d& I = body.inertia_kgm2;
   if (2 * I.maxCoeff() > I.sum() * (1 + 1e-9))
     table.fail("inertia_kgm2", "belongs to no rigid body: one moment is larger than the sum of the two others");
@@ -95,7 +95,7 @@ FlipperDescription read_flipper(TomlReader table) {
       .start_angle_rad = table.number("start_angle_rad"),
       .belt_driven = table.boolean("belt_driven"),
   };
-  // else one drum is within the other, and the belt has no straight run
+  // Otherwise one drum would lie within the other, and the belt would have no straight run.
   if (flipper.length_m <= std::abs(flipper.pivot_radius_m - flipper.tip_radius_m))
     table.fail("length_m", "must be more than the difference of pivot_radius_m and tip_radius_m");
   if (flipper.start_angle_rad < flipper.min_angle_rad || flipper.start_angle_rad > flipper.max_angle_rad)
@@ -133,6 +133,7 @@ Pose read_mount(TomlReader& table) {
 }
 
 SensorDescription read_sensor(TomlReader& table) {
+  // Type and name.
   SensorDescription sensor{};
   const std::string type = table.text("type");
   const auto found = std::find(kTypeNames.begin(), kTypeNames.end(), type);
@@ -142,6 +143,8 @@ SensorDescription read_sensor(TomlReader& table) {
   sensor.name = table.text("name");
   if (sensor.name.empty() || sensor.name.find_first_of("{} \t\r\n") != std::string::npos)
     table.fail("name", "must not be empty nor hold blanks or braces");
+
+  // Place, timing and errors; which of the errors apply depends on the type.
   sensor.X_BS = read_mount(table);
   sensor.period_s = table.number_or("period_s", 0, {.min = 0, .max = 3600});
   sensor.delay_s = table.number_or("delay_s", 0, kMaxDelay);
@@ -153,6 +156,8 @@ SensorDescription read_sensor(TomlReader& table) {
   sensor.noise_v = table.number_or("noise_v", 0, kNotNegative);
   sensor.bias_rad = table.number_or("bias_rad", 0, kNotNegative);
   sensor.bias_radps = table.number_or("bias_radps", 0, kNotNegative);
+
+  // Ray sensors: range and field of view; the resolution bounds the number of rays.
   if (sensor.type == SensorType::sonar || sensor.type == SensorType::range_scanner) {
     sensor.min_range_m = table.number("min_range_m", kNotNegative);
     sensor.max_range_m = table.number("max_range_m", kPositive);
@@ -184,7 +189,7 @@ MissionPackageDescription read_mission_package(TomlReader& table) {
 }
 
 CameraDescription read_camera(TomlReader& table, const std::vector<MissionPackageDescription>& packages) {
-  // 170 degrees: beyond, a plane picture is all border
+  // Beyond 170 degrees, a plane picture is all border.
   constexpr Range kFieldOfView{.min = 0.01, .max = 170 * pi / 180};
   CameraDescription camera{};
   camera.name = table.text("name");
@@ -265,6 +270,7 @@ RobotDescription parse_robot(std::string_view toml_text, const std::string& name
   }
   robot.battery = read_battery(file.table("battery"));
 
+  // Lists; names are unique within each.
   std::set<std::string> names;
   for (TomlReader& table : file.tables("sensor")) {
     robot.sensors.push_back(read_sensor(table));
@@ -295,7 +301,7 @@ RobotDescription load_robot(const std::string& name_or_path) {
 std::string robot_name_for_class(std::string_view usarsim_class) {
   std::string name(usarsim_class.substr(usarsim_class.rfind('.') + 1));  // npos + 1 is 0
   for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  // a name, not a path: what a stranger sends never leaves share/robots/
+  // Accepts names only, no paths: a remote client cannot reach files outside share/robots/.
   const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
     return std::isalnum(c) || c == '_' || c == '-';
   });

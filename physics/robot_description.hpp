@@ -1,4 +1,4 @@
-// What a robot is: a plain value, read from a TOML file in robots/. docs/robot-description.md lists every key.
+// Description of a robot: a plain value, read from a TOML file in share/robots/. docs/descriptions.md lists every key.
 //
 // Body frame B: origin at the body's geometric centre, x forward, y left, z up. SI units, radians.
 //
@@ -38,20 +38,20 @@ struct TrackDescription {
   Eigen::Vector3d p_BT_m;  // centre of the LEFT track; the right one is its mirror image
   double friction_along;   // rolling direction
   double friction_across;
-  int pieces;           // of the belly with contacts of their own; they spread the load along it
-  double lug_height_m;  // what of the belt's profile catches behind an edge
+  int pieces;           // number of pieces of the belly with contacts of their own, which spread the load along it
+  double lug_height_m;  // height of the belt's profile that catches behind an edge
 
   bool operator==(const TrackDescription&) const = default;
 };
 
 struct TrackDriveDescription {
-  double sprocket_radius_m;  // turns spin into surface speed
+  double sprocket_radius_m;  // surface speed per spin
   double max_speed_mps;
   double max_force_n;                // at the belt, at standstill
   double time_constant_s;            // of the closed speed loop
   double moving_mass_kg;             // belt, sprocket, gear and rotor, as felt at the belt
   double encoder_counts_per_radian;  // of the sprocket
-  double amperes_per_newton;         // motor current for a belt force
+  double amperes_per_newton;         // motor current per belt force
   double idle_amperes;
 
   bool operator==(const TrackDriveDescription&) const = default;
@@ -87,7 +87,7 @@ struct FlipperServoDescription {
 struct BatteryDescription {
   double open_circuit_v;
   double internal_resistance_ohm;
-  double capacity_s;  // what USARSim reports as {Battery}: seconds left, counted down
+  double capacity_s;  // USARSim's {Battery} at the start: seconds left, counted down
 
   bool operator==(const BatteryDescription&) const = default;
 };
@@ -112,10 +112,10 @@ std::string_view usarsim_type_name(SensorType type);
 struct SensorDescription {
   SensorType type;
   std::string name;  // unique on the robot
-  Pose X_BS;         // where it is mounted
+  Pose X_BS;         // its mount
   double period_s;   // 0: at every output of its connection
-  double delay_s;    // age of what it reports
-  // 1-sigma, white, per sample, and a constant bias drawn once for each robot. In the reading's own units.
+  double delay_s;    // age of the reported state
+  // Sigma of white noise per sample, and of a constant bias drawn once for each robot. In the reading's own units.
   double noise_m = 0, noise_rad = 0, noise_radps = 0, noise_mps2 = 0, noise_a = 0, noise_v = 0;
   double bias_rad = 0, bias_radps = 0;
   // Ray sensors only.
@@ -137,28 +137,28 @@ struct MissionPackageDescription {
   bool operator==(const MissionPackageDescription&) const = default;
 };
 
-// What takes pictures (camera/). Frame C: x along the optical axis, y left, z up.
+// A camera (camera/). Frame C: x along the optical axis, y left, z up.
 struct CameraDescription {
   std::string name;                                     // unique among the robot's cameras
   std::optional<std::size_t> mission_package;           // index of the mount that turns it, which has one link or two
-  Pose X_BC;                                            // where it is fixed on the body, if it is on no package
+  Pose X_BC;                                            // its mount on the body, if it is on no package
   int width, height;                                    // pixels
   double field_of_view_rad;                             // horizontal, as it starts
   double min_field_of_view_rad, max_field_of_view_rad;  // of its zoom
   double rate_hz;                                       // pictures a second
-  double latency_s;                                     // from the moment that a picture shows until it can be sent
+  double latency_s;                                     // from exposure until the picture can be sent
   int jpeg_quality;                                     // 1 to 100
 
   bool operator==(const CameraDescription&) const = default;
 };
 
-// What an asymmetry multiplies on one side: half of it is more on the left, half of it is less on the right.
+// Factor of an asymmetry on one side: 1 + half of it on the left, 1 - half of it on the right.
 inline double side_factor(robot::Track side, double asymmetry) {
   return 1 + (side == robot::kLeft ? 0.5 : -0.5) * asymmetry;
 }
 
 struct RobotDescription {
-  std::string name;           // as its file is called
+  std::string name;           // stem of its file's name
   std::string usarsim_class;  // "USARBot.Kenaf"
   BodyDescription body;
   TrackDescription track;
@@ -174,16 +174,17 @@ struct RobotDescription {
   bool has_flippers() const { return !flipper.empty(); }
   double total_mass_kg() const;
   double track_gauge_m() const;                    // between the tracks' centre planes
-  double encoder_factor(robot::Track side) const;  // what its encoder reports of a metre
+  double encoder_factor(robot::Track side) const;  // metres that its encoder reports per metre
 
   bool operator==(const RobotDescription&) const = default;
 };
 
-// A shipped name ("kenaf") or a path of a TOML file. Throws DescriptionError.
+// Loads a shipped robot ("kenaf") or a TOML file by its path. Throws DescriptionError.
 RobotDescription load_robot(const std::string& name_or_path);
 RobotDescription parse_robot(std::string_view toml_text, const std::string& name_for_errors);
 
-// The shipped description for a USARSim class name such as "USARBot.P2DX" or "usarbot.kenaf"; empty: there is none.
+// Returns the name of the shipped description for a USARSim class such as "USARBot.P2DX" or "usarbot.kenaf"; empty if
+// there is none.
 std::string robot_name_for_class(std::string_view usarsim_class);
 
 }  // namespace kenaf::physics

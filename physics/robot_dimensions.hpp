@@ -1,4 +1,4 @@
-// What a picture of a robot needs of its description. SI units, radians, body frame B.
+// The part of a robot's description that a picture of it needs. SI units, radians, body frame B.
 //
 // Thread safety: values and a pure function.
 #pragma once
@@ -9,7 +9,7 @@
 
 namespace kenaf::physics {
 
-// The outlines of a robot, and what its drives can do.
+// Dimensions of a robot, and limits of its drives.
 struct RobotDimensions {
   Eigen::Vector3d body_size_m{0, 0, 0};
   double track_length_m = 0, track_radius_m = 0, track_width_m = 0;

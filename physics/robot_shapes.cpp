@@ -10,7 +10,7 @@ namespace {
 using std::numbers::pi;
 constexpr int kTrackArcSegments = 16;  // of a half circle: 0.3 mm between chord and arc at a radius of 65 mm
 constexpr double kFlipperArcStep = pi / 12;
-// Bullet rounds what touches within a margin. Small, because the edge of a step decides whether a robot climbs it.
+// Bullet rounds shapes by a margin. Small, because the edge of a step decides whether a robot climbs it.
 constexpr double kMargin_m = 0.001;
 
 void add_arc(Outline& outline, const Eigen::Vector2d& center, double radius, double from, double to, int segments) {
@@ -31,7 +31,7 @@ Outline track_outline(const TrackDescription& track) {
 }
 
 Outline flipper_outline(const FlipperDescription& flipper) {
-  // the belt's straight runs touch both drums where their normals stand at this angle
+  // Angle of the straight runs' normals: cos lean = (r_pivot - r_tip) / length for a tangent of both drums.
   const double lean =
       std::acos(std::clamp((flipper.pivot_radius_m - flipper.tip_radius_m) / flipper.length_m, -1.0, 1.0));
   const int tip_segments = std::max(2, static_cast<int>(std::lround(2 * lean / kFlipperArcStep)));

@@ -1,4 +1,4 @@
-// The shipped worlds of one measure, at any measure: what a search for the highest step that is climbed varies.
+// The shipped worlds with one obstacle, at any size: for searches such as the highest step that is climbed.
 //
 // Thread safety: pure functions.
 #pragma once

@@ -12,7 +12,8 @@ namespace {
 constexpr double kChordError_m = 1e-3;
 constexpr int kFewestSegments = 12, kMostSegments = 256;
 
-// Around a whole circle, so that chords stay within `error_m` of it; in fours, so that it is as wide as it should be.
+// Number of segments of a circle whose chords are within `error_m` of it: a segment's half angle a has
+// r (1 - cos a) <= error. A multiple of four, so that the polygon has the circle's full width along x and y.
 int segments(double radius_m, double error_m) {
   if (error_m >= radius_m) return kFewestSegments;
   const double quarter = std::ceil(std::numbers::pi / std::acos(1 - error_m / radius_m) / 4);
@@ -23,7 +24,8 @@ std::uint32_t index(std::size_t i) {
   return static_cast<std::uint32_t>(i);
 }
 
-// Turns a profile of (radius, z), from the bottom of the axis to its top, about z.
+// Revolves a profile of (radius, z), from the bottom to the top of the axis, about z. A point on the axis is one
+// vertex.
 TriangleSurface revolved(const std::vector<Eigen::Vector2d>& profile, int around) {
   TriangleSurface surface;
   const auto n = static_cast<std::size_t>(around);
@@ -66,7 +68,7 @@ TriangleSurface cylinder_surface(double radius_m, double length_m) {
 }
 
 TriangleSurface capsule_surface(double radius_m, double length_m) {
-  // the errors along and across the meridians add up
+  // The errors along and across the meridians add up.
   const int around = segments(radius_m, kChordError_m / 2);
   const int quarter = around / 4;
   std::vector<Eigen::Vector2d> profile;

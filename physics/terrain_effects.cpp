@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kThinnest_m = 0.001;
 
-// Whether the vertical line through `p_W` meets the box.
+// Whether the vertical line through `p_W` meets the box: clips the line against the box's three slabs.
 bool is_above_or_below(const Box& box, const Eigen::Vector3d& p_W) {
   const Eigen::Quaterniond q_BoxW = box.X_WBox.q.conjugate();
   const Eigen::Vector3d from = q_BoxW * (p_W - box.X_WBox.p), along = q_BoxW * Eigen::Vector3d::UnitZ();
@@ -27,6 +27,7 @@ bool is_above_or_below(const Box& box, const Eigen::Vector3d& p_W) {
   return low <= high;
 }
 
+// The same for a mesh: `p_W` lies within a triangle, seen from above.
 bool is_above_or_below(const TriangleMesh& mesh, const Eigen::Vector3d& p_W) {
   const auto side = [&p_W](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     return (b.x() - a.x()) * (p_W.y() - a.y()) - (b.y() - a.y()) * (p_W.x() - a.x());
@@ -45,7 +46,7 @@ bool is_under_a_start(const Obstacle& obstacle, const WorldDescription& world) {
                              [&](const StartPose& start) { return is_above_or_below(obstacle, start.X_WB.p); });
 }
 
-// Moves the face that looks most upward so that its height over any place changes by `height_m`.
+// Moves the uppermost face so that its height over any place changes by `height_m`: by height_m n_z along its normal.
 void raise_top(Box& box, double height_m) {
   const Eigen::Matrix3d R = box.X_WBox.q.toRotationMatrix();
   Eigen::Index axis = 0;
@@ -83,7 +84,7 @@ WorldDescription with_terrain_effects(WorldDescription world, const Effects& eff
       for (Eigen::Vector3d& p : mesh.vertices_W) p += shift;
     }
   }
-  // a world that lies turned by this under a gravity that stays
+  // The world turned under a fixed gravity is gravity turned the other way.
   if (effects.ground_slope_rad != 0 || effects.ground_bank_rad != 0)
     world.gravity_W_mps2 =
         rotation_from({effects.ground_bank_rad, effects.ground_slope_rad, 0}).conjugate() * world.gravity_W_mps2;

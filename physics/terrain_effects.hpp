@@ -1,4 +1,4 @@
-// The terrain stage's effects on a world's geometry and on its gravity. Pure; what makes a World for a robot calls it.
+// Effects of the terrain stage on a world's geometry and gravity. Pure; called before a World is made for a robot.
 #pragma once
 
 #include "physics/effects.hpp"
@@ -6,13 +6,13 @@
 
 namespace kenaf::physics {
 
-// The world as `effects` have it:
-// - obstacle_height raises the upper face of every fixed box, and all of a mesh but its lowest points. What would be
-//   lowered below its own bottom keeps 1 mm. A loose box is lifted with what it may stand on, never lowered: it falls.
+// Returns the world with `effects`:
+// - obstacle_height raises the upper face of every fixed box, and all of a mesh but its lowest points; at least 1 mm of
+//   height remains. A loose box is lifted with the box it may stand on, but never lowered: it falls.
 // - obstacle_position moves every box and mesh along the world's x.
 // - ground_slope and ground_bank turn gravity; the geometry stays.
-// Planes never change, nor does a fixed box or mesh that has a start pose's x, y within its outline seen from above:
-// the robot starts on it. So of a trench between two boxes the far one moves, and the trench gets wider.
+// Planes never change, nor does a fixed box or mesh below a start pose (x, y within its outline seen from above), since
+// the robot starts on it. So for a trench between two boxes the far one moves, and the trench gets wider.
 WorldDescription with_terrain_effects(WorldDescription world, const Effects& effects);
 
 }  // namespace kenaf::physics

@@ -11,6 +11,7 @@ namespace {
 constexpr double kLeastHeight_m = 1e-6;
 
 void join_vertices(TriangleSurface& surface) {
+  // Sorted by coordinates, vertices at one place are neighbours: each gets the first of them.
   const std::vector<Eigen::Vector3d>& v = surface.vertices;
   std::vector<std::uint32_t> order(v.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -21,6 +22,7 @@ void join_vertices(TriangleSurface& surface) {
   for (std::size_t i = 0; i < order.size(); ++i)
     first_alike[order[i]] = i > 0 && v[order[i]] == v[order[i - 1]] ? first_alike[order[i - 1]] : order[i];
 
+  // Renumber in the order of use; vertices that no triangle uses are dropped.
   constexpr auto kUnused = static_cast<std::uint32_t>(-1);
   std::vector<std::uint32_t> new_index(v.size(), kUnused);
   std::vector<Eigen::Vector3d> kept;
@@ -38,7 +40,7 @@ void join_vertices(TriangleSurface& surface) {
 }
 
 void examine_edges(const TriangleSurface& surface, TidySurface& tidied) {
-  // (low vertex, high vertex) and whether the triangle goes upward along it
+  // Each triangle's edges as (low vertex, high vertex), with whether the triangle runs upward along it.
   std::vector<std::pair<std::array<std::uint32_t, 2>, bool>> edges;
   edges.reserve(3 * surface.triangles.size());
   for (const auto& t : surface.triangles) {
@@ -47,6 +49,9 @@ void examine_edges(const TriangleSurface& surface, TidySurface& tidied) {
       edges.push_back({{std::min(a, b), std::max(a, b)}, a < b});
     }
   }
+
+  // Sorted, the entries of one edge are neighbours. It is closed if as many run upward as downward; two that run the
+  // same way are triangles of opposite winding.
   std::ranges::sort(edges);
   tidied.closed = !edges.empty();
   for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
@@ -57,6 +62,7 @@ void examine_edges(const TriangleSurface& surface, TidySurface& tidied) {
   }
 }
 
+// Height over the longest side, |(b - a) x (c - a)| / longest, is at most kLeastHeight_m.
 bool too_thin(const TriangleSurface& surface, const std::array<std::uint32_t, 3>& t) {
   const Eigen::Vector3d &a = surface.vertices[t[0]], &b = surface.vertices[t[1]], &c = surface.vertices[t[2]];
   const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
@@ -67,6 +73,7 @@ bool too_thin(const TriangleSurface& surface, const std::array<std::uint32_t, 3>
 
 double volume_m3(const TriangleSurface& surface) {
   if (surface.vertices.empty()) return 0;
+  // Sum of the tetrahedra from one point: V = sum a . (b x c) / 6. A vertex as that point keeps the rounding small.
   const Eigen::Vector3d& o = surface.vertices.front();
   double six_volumes = 0;
   for (const auto& t : surface.triangles) {
@@ -81,7 +88,7 @@ TidySurface tidy(TriangleSurface& surface) {
   join_vertices(surface);
   const auto pinched = [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; };
   tidied.dropped = std::erase_if(surface.triangles, pinched);
-  // before more of them go: a thin triangle may be all that closes a crack
+  // Before thin triangles are dropped: one of them may be all that closes a crack.
   examine_edges(surface, tidied);
   if (tidied.closed && volume_m3(surface) < 0)
     for (auto& t : surface.triangles) std::swap(t[1], t[2]);

@@ -1,4 +1,4 @@
-// Triangles in a frame of their own: what a mesh file, a height map or a shape is before it stands in a world.
+// Triangles in a frame of their own: a mesh file, a height map or a shape before it is placed in a world.
 // SI units. Thread safety: values and pure functions.
 #pragma once
 
@@ -26,7 +26,7 @@ struct TidySurface {
 // closed surface so that their normals point outward. The vertices must be finite, the indices within range.
 TidySurface tidy(TriangleSurface& surface);
 
-// The signed volume that a closed surface encloses, more than 0 where its normals point outward.
+// Returns the signed volume that a closed surface encloses, positive if its normals point outward.
 double volume_m3(const TriangleSurface& surface);
 
 }  // namespace kenaf::physics

@@ -31,15 +31,15 @@ struct RobotEntry {
   };
   std::vector<std::vector<MissionLink>> mission;
   std::string fault;
-  RobotTruth last_whole{};  // before the fault
-  DriveCurrents currents;   // 0 after it
+  RobotTruth last_whole{};  // the last one before the fault
+  DriveCurrents currents;   // 0 after the fault
 };
 
 bool is_number(const Pose& X) {
   return X.p.allFinite() && X.q.coeffs().allFinite();
 }
 
-// What no robot on tracks does.
+// Beyond these limits a robot's simulation counts as failed.
 constexpr double kFastest_mps = 50, kFastest_radps = 500, kLowest_m = -100, kFurthest_m = 1e5;
 
 std::string fault_of(const RobotTruth& truth, double t_s) {
@@ -61,9 +61,9 @@ struct World::Implementation {
   PhysicsSettings settings;
   std::uint64_t seed;
   std::uint64_t steps = 0;
-  std::uint32_t next_id = 1;  // robots and boxes share it, so that reset() can add them in their order again
+  std::uint32_t next_id = 1;  // shared by robots and boxes, so that reset() can add them again in their order
   std::unique_ptr<Scene> scene;
-  std::map<RobotId, RobotEntry> robots;  // after the scene: they leave it before it ends
+  std::map<RobotId, RobotEntry> robots;  // declared after the scene, which they leave before it is destroyed
   std::map<BoxId, Box> boxes;
   std::vector<Eigen::Vector3d> touches;
 
@@ -75,6 +75,7 @@ struct World::Implementation {
     return found->second;
   }
 
+  // Model, sensors and mission packages, as at the start; then placed, with a first sample for the sensors.
   void build_robot(RobotId id, RobotEntry& entry, const Pose& X_WB) {
     entry.model = std::make_unique<RobotModel>(entry.description, entry.name, seed, settings.time_step_s, id,
                                                scene->dynamics(), scene->solver());
@@ -95,7 +96,7 @@ struct World::Implementation {
     record(id, entry);
   }
 
-  // Before anything else can touch what is no number. Its drives are dead: no sensor reads a speed or a current.
+  // Called before anything else can touch an invalid pose. The drives are dead: sensors read no speeds or currents.
   static void stop_at_fault(RobotEntry& entry) {
     entry.model->leave_dynamics();
     RobotTruth& truth = entry.last_whole;
@@ -105,6 +106,7 @@ struct World::Implementation {
     truth.flipper_radps = truth.flipper_nm = {};
   }
 
+  // The robot's truth, faults and currents after a step, and its sample for the sensors.
   void record(RobotId id, RobotEntry& entry) {
     const RobotModel& model = *entry.model;
     const double dt = settings.time_step_s;
@@ -130,20 +132,22 @@ struct World::Implementation {
     entry.sensors->record(truth, time_s(), entry.currents.track_a, entry.currents.flipper_a, touches);
   }
 
-  // Loose ones that a robot which is no number has touched begin anew.
+  // Puts loose boxes whose poses a faulty robot has made invalid back to their first poses.
   void put_back_boxes() {
     for (const auto& [id, box] : boxes)
       if (!is_number(scene->box_pose(id))) scene->move_box(id, box.X_WBox);
   }
 
   void build() {
-    // robots let go of the old scene before it goes
+    // Robots leave the old scene before it is destroyed.
     for (auto& [id, entry] : robots) {
       entry.sensors.reset();
       entry.model.reset();
     }
     scene = std::make_unique<Scene>(description, settings);
     steps = 0;
+
+    // Boxes and robots in the order in which they were added, so that Bullet's order is the same again.
     auto box = boxes.begin();
     auto robot = robots.begin();
     while (box != boxes.end() || robot != robots.end()) {
@@ -264,7 +268,7 @@ void World::teleport(RobotId id, const Pose& X_WB) {
   check_pose(X_WB, "teleport");
   RobotEntry& entry = impl_->robot(id);
   const Pose X_WB_unit{X_WB.p, X_WB.q.normalized()};
-  // after a fault nothing of the robot's state can be trusted to be a number
+  // After a fault none of the robot's state can be trusted to be finite.
   if (!entry.fault.empty()) return impl_->build_robot(id, entry, X_WB_unit);
   impl_->scene->place_free(*entry.model, X_WB_unit, false);
   entry.sensors->forget_motion();
@@ -281,7 +285,7 @@ void World::set_in_motion(RobotId id, const RobotMotion& motion, const robot::Co
     throw std::invalid_argument("set_in_motion: the command is not finite");
   if (!entry.fault.empty()) return;
   entry.model->set_in_motion(motion, command);
-  entry.sensors->forget_motion();  // it did not get there by accelerating
+  entry.sensors->forget_motion();  // the jump in speed is no acceleration
   impl_->record(id, entry);
 }
 

@@ -15,7 +15,7 @@ namespace kenaf::physics {
 namespace {
 
 constexpr double kMaxFriction = 10;
-// All that Bullet's tree of a mesh can number; with it, a world takes some hundreds of MB.
+// The limit of the indices of Bullet's tree of a mesh; a world of that size takes some hundreds of MB.
 constexpr std::size_t kMostTriangles = std::size_t{1} << 21U;
 
 struct Reader {
@@ -25,7 +25,7 @@ struct Reader {
   std::size_t triangles_left = kMostTriangles;
 };
 
-// `relative_to` empty: the frame of the element's parent.
+// `relative_to` empty: relative to the element's parent.
 Pose resolved_pose(const Reader& reader, const sdf::SemanticPose& semantic, const sdf::ElementPtr& element,
                    const std::string& relative_to) {
   ignition::math::Pose3d pose;
@@ -50,9 +50,10 @@ double friction_of(const Reader& reader, const sdf::Collision& collision) {
   return mu;
 }
 
-// `mass_kg` 0: of a static model.
+// `mass_kg` is 0 for a static model.
 void read_collision(Reader& reader, const sdf::Collision& collision, const Pose& X_WLink, const std::string& name,
                     double mass_kg) {
+  // One shape in each collision; of models that move only boxes are simulated.
   const SdfPlaces& places = reader.places;
   const Pose X_WC = compose(X_WLink, resolved_pose(reader, collision.SemanticPose(), collision.Element(), ""));
   const sdf::Geometry& geometry = *collision.Geom();
@@ -63,6 +64,7 @@ void read_collision(Reader& reader, const sdf::Collision& collision, const Pose&
   if (mass_kg > 0 && !geometry.BoxShape())
     return places.skip(shape, fmt::format("a <{}> of a model that is not <static> is not simulated", shape->GetName()));
 
+  // A plane gets its normal as z axis, a box stays a box, everything else becomes triangles in W.
   if (const sdf::Plane* plane = geometry.PlaneShape()) {
     const auto n = plane->Normal();
     const Eigen::Vector3d normal(n.X(), n.Y(), n.Z());
@@ -84,11 +86,13 @@ void read_collision(Reader& reader, const sdf::Collision& collision, const Pose&
   }
 }
 
-// Poses of a model's parts are relative to `X_WParent`, the outer model's; a static model's inner ones are static too.
+// `X_WParent` is the pose of the outer model; models within a static one are static too.
 void read_model(Reader& reader, const sdf::Model& model, const Pose& X_WParent, const std::string& parent_frame,
                 const std::string& prefix, bool within_static) {
   const Pose X_WM = compose(X_WParent, resolved_pose(reader, model.SemanticPose(), model.Element(), parent_frame));
   const std::string name = prefix + model.Name();
+
+  // A model that moves must be one body with one shape.
   const bool fixed = within_static || model.Static();
   const bool one_body =
       model.LinkCount() == 1 && model.LinkByIndex(0)->CollisionCount() == 1 && model.ModelCount() == 0;
@@ -97,6 +101,8 @@ void read_model(Reader& reader, const sdf::Model& model, const Pose& X_WParent, 
                               fmt::format("model \"{}\" is not <static> and more than one body with one <collision>: "
                                           "it is left out",
                                           name));
+
+  // Links with their collisions, then inner models. A static model has no mass.
   for (std::uint64_t l = 0; l < model.LinkCount(); ++l) {
     const sdf::Link& link = *model.LinkByIndex(l);
     const Pose X_WL = compose(X_WM, resolved_pose(reader, link.SemanticPose(), link.Element(), "__model__"));
@@ -140,14 +146,15 @@ WorldDescription read_world(Reader& reader, const sdf::World& world) {
 
 WorldDescription parse_world(std::string_view sdf_text, const std::string& name_for_errors,
                              const std::filesystem::path& folder, std::vector<std::string>& unsupported) {
-  sdf::Console::Instance()->SetQuiet(true);  // its messages come back as errors below
+  sdf::Console::Instance()->SetQuiet(true);  // its messages are returned as errors below
   sdf::ParserConfig config;
   config.SetWarningsPolicy(sdf::EnforcementPolicy::ERR);
   config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::ERR);
   config.SetDeprecatedElementsPolicy(sdf::EnforcementPolicy::LOG);
-  // libsdformat opens no other file; what a world names is read by WorldFiles
+  // libsdformat opens no other file: WorldFiles reads those that a world refers to.
   config.SetFindCallback([](const std::string&) { return std::string(); });
 
+  // Unknown elements and includes are listed; all other errors are thrown.
   Reader reader{{name_for_errors, unsupported}, WorldFiles(folder)};
   sdf::Root root;
   for (const sdf::Error& error : root.LoadSdfString(std::string(sdf_text), config)) {

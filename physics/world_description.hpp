@@ -1,4 +1,4 @@
-// What a world is: ground, boxes and start poses, read from an SDF file in share/worlds/ through libsdformat.
+// Description of a world: ground, boxes and start poses, read from an SDF file in share/worlds/ by libsdformat.
 // World frame W: x forward, y left, z up. SI units. Thread safety: a value.
 #pragma once
 
@@ -37,7 +37,7 @@ struct TriangleMesh {
 };
 
 struct StartPose {
-  std::string name;  // "PlayerStart_0" where the file names none
+  std::string name;  // "PlayerStart_0" if the file has none
   Pose X_WB;
 };
 
@@ -50,12 +50,12 @@ struct WorldDescription {
   std::vector<StartPose> start_poses;  // SDF frames attached to the world whose name begins with "start"; at least one
 };
 
-// A shipped name ("flat") or the path of an SDF file. Throws DescriptionError ("file:line: what is wrong"); what SDF
-// has and this simulator does not is listed in `unsupported`, an element a line, rather than dropped in silence. Meshes
-// and height maps are looked up in the SDF file's own folder and below it, nowhere else; a world may have 2^21
-// triangles and 64 MiB of files.
+// Loads a shipped world ("flat") or an SDF file by its path. Throws DescriptionError ("file:line: what is wrong").
+// Unsupported SDF elements are listed in `unsupported`, one line each, rather than dropped in silence. Meshes and
+// height maps are looked up in the SDF file's own folder and below it, nowhere else; a world may have 2^21 triangles
+// and 64 MiB of files.
 WorldDescription load_world(const std::string& name_or_path, std::vector<std::string>& unsupported);
-// `folder`: where the files that the text names are; empty: it may name none.
+// `folder` holds the files that the text refers to; empty: it may not refer to any.
 WorldDescription parse_world(std::string_view sdf_text, const std::string& name_for_errors,
                              const std::filesystem::path& folder, std::vector<std::string>& unsupported);
 

@@ -1,4 +1,4 @@
-// The values that a world takes and gives: its settings, names for robots and boxes, and how a robot stands and moves.
+// Values of a world's interface: settings, identifiers of robots and boxes, and states of a robot.
 // SI units; frame W: x forward, y left, z up; B: the robot's body.
 //
 // Thread safety: values.
@@ -15,8 +15,8 @@ namespace kenaf::physics {
 
 struct PhysicsSettings {
   double time_step_s = 0.001;
-  int solver_iterations = 10;  // started from the last step; more changes a turn in place by less than 0.01 %
-  // Of one contact point: the give of rubber and ground, which shares a load between the points of a track.
+  int solver_iterations = 10;  // warm-started; more change a turn in place by less than 0.01 %
+  // Compliance of rubber and ground at one contact point, which distributes a load over the points of a track.
   double contact_stiffness_npm = 2e5;
   double contact_damping_nspm = 1000;
 
@@ -27,7 +27,7 @@ struct PhysicsSettings {
 enum class RobotId : std::uint32_t {};
 enum class BoxId : std::uint32_t {};
 
-// The exact state of a robot, without sensors in between.
+// The exact state of a robot, without sensors.
 struct RobotTruth {
   Pose X_WB;
   Eigen::Vector3d v_WB_mps, w_WB_radps;  // of the body frame's origin, in W
@@ -38,13 +38,13 @@ struct RobotTruth {
   double battery_v, battery_left_s;
 };
 
-// How a robot moves, as a rigid body on belts that run.
+// Motion of a robot as a rigid body on running belts.
 struct RobotMotion {
   Eigen::Vector3d v_WB_mps{0, 0, 0}, w_WB_radps{0, 0, 0};  // of the body frame's origin, in W; flippers move with it
   std::array<double, robot::kTrackCount> track_mps{};
 };
 
-// What the motors take, as the drives' own measurement would say it without noise.
+// Motor currents, as the drives would measure them without noise.
 struct DriveCurrents {
   std::array<double, robot::kTrackCount> track_a{};
   std::array<double, robot::kFlipperCount> flipper_a{};

@@ -16,7 +16,7 @@ double reachable_angle(double wanted_rad, double present_rad, double min_rad, do
   constexpr double kTurn_rad = 2 * std::numbers::pi, kRounding_rad = 1e-9;
   const double wanted = wrap_angle(wanted_rad);
 
-  // of the equal angles within the limits the nearest
+  // The nearest of the equivalent angles within the limits.
   double best = 0, best_distance = std::numeric_limits<double>::infinity();
   const double first = wanted + kTurn_rad * std::ceil((min_rad - wanted) / kTurn_rad - kRounding_rad);
   for (double angle = first; angle <= max_rad + kRounding_rad; angle += kTurn_rad) {
@@ -27,6 +27,7 @@ double reachable_angle(double wanted_rad, double present_rad, double min_rad, do
   }
   if (std::isfinite(best_distance)) return best;
 
+  // None is within them: the nearer limit, as a direction.
   const double to_min = std::abs(wrap_angle(wanted - min_rad)), to_max = std::abs(wrap_angle(wanted - max_rad));
   return to_min < to_max ? min_rad : max_rad;
 }

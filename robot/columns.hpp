@@ -1,6 +1,6 @@
-// The columns of a recorded run: one row of a table for each, from which recorders, diagnosis, report, playback and the
-// page docs/run-format.md have them. A new channel is a row here, and where its value comes from: hrt/recorder.cpp for
-// the robot, rollout/run_recorder.cpp for the simulator.
+// The columns of a recorded run: a table with a row for each, used by recorders, diagnosis, report, playback and the
+// page docs/run-format.md. A new channel needs a row here, and a source of its values: hrt/recorder.cpp for the robot,
+// rollout/run_recorder.cpp for the simulator.
 //
 // Thread safety: constants and pure functions.
 #pragma once
@@ -11,8 +11,8 @@
 
 namespace kenaf::robot {
 
-// What a column is a part of: the columns of one quantity stand side by side, in the order of robot/parts.hpp or of x,
-// y, z.
+// The quantity of which a column is a part. Columns of one quantity are adjacent, in the order of robot/parts.hpp or of
+// x, y, z.
 enum class Quantity {
   time,
   track_command,
@@ -34,31 +34,31 @@ enum class Quantity {
   late_commands,
 };
 
-// Where on the way from command to sensor it is seen.
+// Stage between command and sensor at which a quantity is observed.
 enum class Seen { drive, body, sensor };
 
-// Compared between robot and simulation by the diagnosis.
+// How the diagnosis compares a column between robot and simulation.
 struct Comparison {
   Seen seen = Seen::drive;
-  double resolution = 0;  // finer than this no difference counts, in the column's unit (chosen); 0: it is not compared
-  std::string_view kind{};  // columns of one kind share the size of what no effect explains: "track speed"
-  bool level = false;       // says little where the nose points up or down: small turns of the body turn it far
+  double resolution = 0;    // smaller differences do not count, in the column's unit (chosen); 0: not compared
+  std::string_view kind{};  // columns of one kind share the size of the unexplained residual: "track speed"
+  bool level = false;       // ill-conditioned with the nose up or down: small turns of the body change it much
 };
 
 struct Column {
   std::string_view name;  // ends with its unit: "track_left_mps"
-  std::string_view unit;  // as people write it: "m/s"
+  std::string_view unit;  // for people: "m/s"
   Quantity quantity;
   bool by_robot = true;      // whether the library records it
   bool by_simulator = true;  // whether the simulator does
-  bool wraps = false;        // an angle that begins anew at pi
+  bool wraps = false;        // an angle that wraps at pi
   Comparison comparison{};
 
   constexpr bool is_compared() const { return comparison.resolution > 0; }
 };
 
-// Acceleration is not compared. Between contacts it says what posture and gyro say, and at a contact it is a spike
-// whose height depends on the contact's stiffness and the sensor's bandwidth, which nobody knows.
+// Acceleration is not compared. Between contacts it adds nothing to posture and gyro, and at a contact it is a spike
+// whose height depends on the contact's stiffness and the sensor's bandwidth, which are unknown.
 namespace column_table {
 
 inline constexpr bool kByBoth = true, kWraps = true, kLevel = true;
@@ -121,7 +121,7 @@ inline constexpr Column kAll[] = {
     asked("acc_x_mps2", "m/s^2", acceleration),
     asked("acc_y_mps2", "m/s^2", acceleration),
     asked("acc_z_mps2", "m/s^2", acceleration),
-    // beyond the format: what the robot's own posture sensor says, and how the cycle went
+    // Beyond the format: the robot's own posture sensor, and the state of the cycle.
     of_robot("posture_roll_rad", "rad", posture, kWraps),
     of_robot("posture_pitch_rad", "rad", posture, kWraps),
     of_robot("posture_yaw_rad", "rad", posture, kWraps),
@@ -132,7 +132,7 @@ inline constexpr Column kAll[] = {
 
 }  // namespace column_table
 
-// In the order in which they are recorded.
+// All columns, in the order in which they are recorded.
 constexpr std::span<const Column> columns() {
   return column_table::kAll;
 }

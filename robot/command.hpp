@@ -1,4 +1,4 @@
-// What a robot can be told to do. SI units; frames of REP 103: x forward, y left, z up.
+// Commands to a robot. SI units; frames of REP 103: x forward, y left, z up.
 //
 // Thread safety: values.
 #pragma once

@@ -1,5 +1,5 @@
-// The parts of a robot that move: two tracks and four flippers, and the order in which all arrays have them.
-// A flipper's angle is 0 straight out along the body and positive with its tip up, for all four. Radians.
+// The moving parts of a robot, two tracks and four flippers, in the order of all arrays. A flipper's angle is 0
+// straight out along the body and positive with its tip up, for all four. Radians.
 //
 // Thread safety: constants and pure functions.
 #pragma once

@@ -1,5 +1,4 @@
-// What is measured of a robot in one cycle, whoever measured it: the real robot's library, or the relay of a simulated
-// one.
+// The measured state of a robot in one cycle, from the real robot's library or from the relay of a simulated one.
 //
 // SI and radians; world W and body B are x forward, y left, z up (REP 103). Angles of a pose are the intrinsic z-y-x
 // angles roll, pitch, yaw; pitch is positive nose down.
@@ -14,7 +13,7 @@
 
 namespace kenaf::robot {
 
-// What a State holds that was measured. A value whose bit is missing is 0 and means nothing.
+// Which fields of a State were measured. A field without its bit is 0 and has no meaning.
 enum StateField : std::uint32_t {
   kHasPosture = 1u << 0,      // posture_rad: the robot's own posture sensor
   kHasEncoders = 1u << 1,     // track_m, track_mps
@@ -25,22 +24,21 @@ enum StateField : std::uint32_t {
   kHasGroundTruth = 1u << 6,  // p_WB_m, orientation_rad: only a simulator knows it
 };
 
-// A StateField so many places further up: its sensor said nothing since the State before, and the value is the last
-// one.
+// A StateField shifted left by this: its sensor reported nothing since the State before, and the value is the last one.
 inline constexpr int kHeldShift = 16;
 
 constexpr std::uint32_t held(std::uint32_t fields) {
   return fields << kHeldShift;
 }
 
-// Known, and not only held.
+// Measured since the State before, not only held.
 constexpr bool is_new(std::uint32_t fields, StateField field) {
   return (fields & field) != 0 && (fields & held(field)) == 0;
 }
 
 struct State {
-  std::uint32_t frame;          // starts at 1, one more for each cycle of a session: a gap is a lost State
-  std::uint32_t late_commands;  // of this session, those that arrived after the frame they were meant for
+  std::uint32_t frame;          // from 1, one more for each cycle of a session: a gap is a lost State
+  std::uint32_t late_commands;  // commands of this session that arrived after the frame they were meant for
   std::uint32_t fields;         // StateField bits, and held() ones
   bool stopped_by_silence;      // the robot was stopped because no command came in time
   double robot_time_s;

@@ -42,6 +42,7 @@ std::size_t Driver::next_phase(const physics::Pose& X_WB) {
 std::optional<robot::Command> Driver::command(double t_s, const physics::Pose& X_WB) {
   if (!manoeuvre_.timed.empty()) return timed_command(t_s);
 
+  // The turn since the phase began, through full turns; phases that end here follow each other at once.
   const double yaw_rad = physics::roll_pitch_yaw(X_WB.q).z();
   if (last_yaw_rad_) turned_rad_ += robot::wrap_angle(yaw_rad - *last_yaw_rad_);
   last_yaw_rad_ = yaw_rad;
@@ -52,6 +53,7 @@ std::optional<robot::Command> Driver::command(double t_s, const physics::Pose& X
   }
   if (phase_ == manoeuvre_.phases.size()) return std::nullopt;
 
+  // The phase's command; flippers that it does not state stay as before.
   const Phase& phase = manoeuvre_.phases[phase_];
   command_.track_speed_mps = phase.track_mps;
   for (std::size_t i = 0; phase.flipper_rad && i < command_.flipper.size(); ++i)

@@ -1,6 +1,6 @@
-// The operator of a manoeuvre: from posture, place and time to the next command.
+// The operator of a manoeuvre: from posture, position and time to the next command.
 //
-// Knows no simulator; the same operator could watch a robot. Thread safety: a value.
+// Independent of any simulator: it could drive a real robot too. Thread safety: a value.
 #pragma once
 
 #include <optional>
@@ -16,14 +16,14 @@ class Driver {
   // `manoeuvre` must outlive this. `flipper_rad`: where the flippers are at the start.
   Driver(const Manoeuvre& manoeuvre, const std::array<double, robot::kFlipperCount>& flipper_rad);
 
-  // What to command from `t_s` on, which never goes back; empty: the manoeuvre is over, the command before holds. A
-  // phase ends at the first call at which its end holds, and the next one begins with it, or the last one where
-  // the next one is given up.
+  // Returns the command from `t_s` on, which must not decrease; empty if the manoeuvre is over, and the last command
+  // holds. A phase ends at the first call at which its end condition holds; the next one begins then, or the last one
+  // if the next one is given up.
   std::optional<robot::Command> command(double t_s, const physics::Pose& X_WB);
 
-  // When a replay's next command is due; infinity otherwise: phases are as quick as they are asked.
+  // When a replay's next command is due; infinity for phases, which react at each call.
   double next_due_s() const;
-  // Of the phase that runs now; as many as there are when the manoeuvre is over.
+  // Index of the present phase; their number when the manoeuvre is over.
   std::size_t phase() const { return phase_; }
   // Whether a phase was given up.
   bool gave_up() const { return gave_up_; }
@@ -41,7 +41,7 @@ class Driver {
   std::optional<double> last_yaw_rad_;
 };
 
-// Whether the manoeuvre's own measure is met with the robot at `X_WB`; false without one.
+// Whether the robot at `X_WB` meets the manoeuvre's success criterion; false without one.
 bool succeeded(const Manoeuvre& manoeuvre, const physics::Pose& X_WB);
 
 }  // namespace kenaf::rollout

@@ -107,7 +107,7 @@ Manoeuvre read_manoeuvre(TomlReader& table, const std::vector<Phase>& shared_pha
   return manoeuvre;
 }
 
-// A replay of a dataset's run is one more repeat of what it repeats, in the same world.
+// A replay of a dataset's run counts as one more repeat of that run's manoeuvre, in the same world.
 void name_as_dataset_does(Manoeuvre& replay, const fs::path& run_file) {
   const fs::path folder = run_file.parent_path();
   if (!fs::exists(folder / "dataset.toml")) return;
@@ -156,6 +156,7 @@ std::vector<Manoeuvre> shipped_manoeuvres() {
 }
 
 Manoeuvre load_manoeuvre(const std::string& name) {
+  // A recorded run.
   for (const auto& [prefix, make] : {std::pair{kReplay, &replay_of}, {kReplayMeasured, &replay_measured_of}}) {
     if (!name.starts_with(prefix)) continue;
     const fs::path path = name.substr(prefix.size());
@@ -164,6 +165,8 @@ Manoeuvre load_manoeuvre(const std::string& name) {
     name_as_dataset_does(replay, path);
     return replay;
   }
+
+  // A file, which must hold one manoeuvre.
   if (name.find('/') != name.npos || name.ends_with(".toml")) {
     const std::vector<Manoeuvre> all = read_file(name);
     if (all.size() > 1)
@@ -171,6 +174,8 @@ Manoeuvre load_manoeuvre(const std::string& name) {
           fmt::format("{}: holds {} manoeuvres; give the path of a file that holds one", name, all.size()));
     return all.front();
   }
+
+  // A shipped one; the error lists them.
   const std::vector<Manoeuvre> all = shipped_manoeuvres();
   const auto found = std::ranges::find(all, name, &Manoeuvre::name);
   if (found != all.end()) return *found;

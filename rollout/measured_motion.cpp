@@ -14,8 +14,8 @@
 namespace kenaf::rollout {
 namespace {
 
-constexpr double kTravelCounts_s = 0.1;  // over so long a speed is held to its travel
-constexpr double kMeanSpeed_s = 0.05;    // of travel alone
+constexpr double kTravelCounts_s = 0.1;  // interval over which speed is held to travel
+constexpr double kMeanSpeed_s = 0.05;    // interval of mean speeds from travel alone
 constexpr double kShare_m = 0.05;
 constexpr double kCubic_s = 0.25, kBeyond_sigma = 4;
 constexpr Eigen::Index kFewestPoses = 8;
@@ -38,7 +38,7 @@ TimeSeries without_full_turns(TimeSeries angle) {
   return angle;
 }
 
-// The integral of a series from its first point on.
+// The integral of a series from its first point on: trapezoids, exact for linear pieces.
 class Integral {
  public:
   explicit Integral(const TimeSeries& series) : series_(series) {
@@ -86,8 +86,13 @@ TimeSeries held_to_travel(const TimeSeries& speed, const TimeSeries& travel) {
     out.t_s.push_back(t_s);
     out.value.push_back(value);
   };
+
+  // Before travel begins, the speed as it is.
   std::size_t i = 0;  // the next point of `speed`
   for (; i < speed.t_s.size() && speed.t_s[i] < travel.t_s[at.front()]; ++i) add(speed.t_s[i], speed.value[i]);
+
+  // Between two knots a constant is added: (travel - integral of the speed) / duration. Both ends become points of
+  // their own, so the series may jump there.
   for (std::size_t k = 1; k < at.size(); ++k) {
     const double from_s = travel.t_s[at[k - 1]], to_s = travel.t_s[at[k]];
     const double missing_m = travel.value[at[k]] - travel.value[at[k - 1]] - (distance.to(to_s) - distance.to(from_s));
@@ -97,6 +102,8 @@ TimeSeries held_to_travel(const TimeSeries& speed, const TimeSeries& travel) {
       if (speed.t_s[i] > from_s) add(speed.t_s[i], speed.value[i] + more_mps);
     add(to_s, speed.at(to_s) + more_mps);
   }
+
+  // After travel ends, the speed as it is.
   for (; i < speed.t_s.size(); ++i) add(speed.t_s[i], speed.value[i]);
   return out;
 }
@@ -132,7 +139,8 @@ Poses first_poses(const runs::Run& run, double time_s) {
   return poses;
 }
 
-// Least squares for k in b = constant + k a, of all columns together; empty where a spreads over less than `least`.
+// Least squares fit of k in b = constant + k a, k common to all columns: sum (a - mean) b / sum (a - mean)^2. Empty if
+// the range of a is below `least`.
 std::optional<double> slope(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double least) {
   const Eigen::MatrixXd from_mean = a.rowwise() - a.colwise().mean();
   const Eigen::RowVectorXd spread = a.colwise().maxCoeff() - a.colwise().minCoeff();
@@ -140,13 +148,17 @@ std::optional<double> slope(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, 
   return from_mean.cwiseProduct(b).sum() / from_mean.squaredNorm();
 }
 
-// From tracks to body: yaw goes with what the right track went more than the left one, and position with the mean of
-// their ways along the measured yaw.
+// Fits the body's motion to that of the tracks: yaw = c + k (right - left), and position = c + share * path, where path
+// follows the mean of both tracks along the measured yaw. The start's rates are those of the tracks in the first row,
+// times k and share.
 StartMotion motion_of_tracks(const MeasuredMotion& measured, const Poses& poses,
                              const std::array<double, robot::kTrackCount>& track_mps) {
   StartMotion motion{.track_mps = track_mps, .forward_mps = {}, .yaw_radps = {}};
   const auto n = static_cast<Eigen::Index>(poses.t_s.size());
   if (n < 2) return motion;
+
+  // For each pose: how far apart the tracks went, the yaw, the path and the position. The path's steps go along the
+  // mean of the yaw before and after.
   const Integral left(measured.track_mps[robot::kLeft]), right(measured.track_mps[robot::kRight]);
   Eigen::MatrixXd apart_m(n, 1), yaw_rad(n, 1), way_m(n, 2), p_m(n, 2);
   double s_before_m = 0, yaw_before_rad = 0;
@@ -164,6 +176,8 @@ StartMotion motion_of_tracks(const MeasuredMotion& measured, const Poses& poses,
     s_before_m = s_m;
     yaw_before_rad = poses.yaw_rad[k];
   }
+
+  // The slopes; without one the rate stays unknown.
   if (const auto radpm = slope(apart_m, yaw_rad, kShare_m))
     motion.yaw_radps = *radpm * (track_mps[robot::kRight] - track_mps[robot::kLeft]);
   if (const auto share = slope(way_m, p_m, kShare_m))
@@ -171,9 +185,12 @@ StartMotion motion_of_tracks(const MeasuredMotion& measured, const Poses& poses,
   return motion;
 }
 
+// Without tracks: slopes at t = 0 of cubics c0 + c1 t + c2 t^2 + c3 t^3 through the first poses, forward and yaw.
 std::optional<StartMotion> motion_of_poses(const Poses& poses) {
   const auto n = static_cast<Eigen::Index>(poses.t_s.size());
   if (n < kFewestPoses) return std::nullopt;
+
+  // Forward is along the first pose's heading.
   Eigen::MatrixXd powers(n, 4), where(n, 2);
   const double cos0 = std::cos(poses.yaw_rad[0]), sin0 = std::sin(poses.yaw_rad[0]);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -182,6 +199,9 @@ std::optional<StartMotion> motion_of_poses(const Poses& poses) {
     powers.row(i) << 1, t, t * t, t * t * t;
     where.row(i) << cos0 * poses.x_m[k] + sin0 * poses.y_m[k], poses.yaw_rad[k];
   }
+
+  // Ordinary least squares: c = (P^T P)^-1 P^T y; variance of c1 = residual sum of squares / (n - 4) * (P^T P)^-1_11.
+  // A slope counts if it is beyond kBeyond_sigma and fast enough.
   const Eigen::Matrix4d covariance = (powers.transpose() * powers).inverse();
   const Eigen::MatrixXd fit = covariance * powers.transpose() * where;
   const Eigen::MatrixXd rest = where - powers * fit;

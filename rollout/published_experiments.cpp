@@ -26,6 +26,7 @@ std::string manoeuvre_name(const PublishedExperiment& experiment) {
 
 physics::RobotDescription robot_of_the_experiments() {
   physics::RobotDescription robot = physics::load_robot("kenaf");
+  // The centre of mass of the whole robot 15 mm behind its centre; flippers straight out balance each other.
   robot.body.p_BBcm_m.x() = -0.015 * robot.total_mass_kg() / robot.body.mass_kg;
   return robot;
 }
@@ -33,6 +34,7 @@ physics::RobotDescription robot_of_the_experiments() {
 RollOut attempt(Obstacle obstacle, double size_m, const physics::RobotDescription& robot, double time_step_s) {
   const bool step = obstacle == Obstacle::step;
   Manoeuvre manoeuvre = load_manoeuvre(step ? "step-300-flippers" : "trench-300");
+  // The robot must end up as much higher as the step is.
   if (step) *manoeuvre.success->z_above_m += size_m - 0.3;
   return roll_out(robot, step ? physics::step_world(size_m) : physics::trench_world(size_m), manoeuvre,
                   {.physics = {.time_step_s = time_step_s}, .noise_scale = 0});

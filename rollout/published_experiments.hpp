@@ -1,5 +1,5 @@
 // The published evaluation's 12 experiments (SSRR 2008, Table I): seven steps, five trenches, each with its outcome in
-// the published simulation and in reality. docs/table1.md says what of it is known and what is inferred or chosen.
+// the published simulation and in reality. docs/table1.md says what is known, and what is inferred or chosen.
 //
 // Thread safety: pure functions; any number at once.
 #pragma once
@@ -16,7 +16,7 @@ enum class Obstacle { step, trench };
 struct PublishedExperiment {
   Obstacle obstacle;
   int size_mm;           // height of the step, width of the trench
-  bool simulated, real;  // published outcomes: it was passed
+  bool simulated, real;  // published outcomes: whether it was passed
 };
 // Steps first, each from small to large.
 std::span<const PublishedExperiment> published_experiments();

@@ -23,7 +23,7 @@ double at_start(const runs::Run& run, std::string_view name, const std::string& 
   return *value;
 }
 
-// Of all flippers or of none.
+// The first angles of all flippers, measured or else commanded; empty if one has neither.
 std::optional<std::array<double, robot::kFlipperCount>> flippers_at_start(const runs::Run& run) {
   std::array<double, robot::kFlipperCount> angles{};
   for (std::size_t i = 0; i < robot::kFlipperNames.size(); ++i) {
@@ -41,6 +41,8 @@ Manoeuvre replay(const runs::Run& run, const std::string& file) {
     throw runs::RunFileError(fmt::format("{}: lasts more than {} s", file, kLongestManoeuvre_s));
   const std::array<Column, robot::kTrackCount> tracks{run.column("cmd_track_left_mps"),
                                                       run.column("cmd_track_right_mps")};
+
+  // The start.
   Manoeuvre replay;
   replay.name = file;
   replay.start = {.x_m = at_start(run, "x_m", file),
@@ -50,8 +52,9 @@ Manoeuvre replay(const runs::Run& run, const std::string& file) {
                   .flipper_rad = flippers_at_start(run),
                   .motion = motion_at_start(run)};
 
+  // The commands, row by row; an empty cell repeats the one before.
   std::array<Column, robot::kFlipperCount> flippers;
-  robot::Command command;  // stands until the first one
+  robot::Command command;  // at rest until the first one
   for (std::size_t i = 0; i < flippers.size(); ++i) {
     flippers[i] = run.column(fmt::format("cmd_flipper_{}_rad", robot::kFlipperNames[i]));
     if (replay.start->flipper_rad) command.flipper[i].value = (*replay.start->flipper_rad)[i];

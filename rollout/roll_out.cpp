@@ -20,11 +20,11 @@ using physics::RobotId;
 using physics::World;
 using FlipperAngles = std::array<double, robot::kFlipperCount>;
 
-constexpr double kSettle_s = 0.5;  // a robot that is put down stands still after that
-constexpr double kFold_s = 5;      // flippers get from anywhere to anywhere in that
+constexpr double kSettle_s = 0.5;  // a robot that is put down stands still after this time
+constexpr double kFold_s = 5;      // flippers reach any angle from any other in this time
 constexpr double kStill_radps = 0.005;
 constexpr double kMisplaced_m = 1e-5, kMisplaced_rad = 1e-5;
-constexpr double kInTheAir_m = 0.01;  // a recorded start that is higher than this above the ground is a drop
+constexpr double kInTheAir_m = 0.01;  // a recorded start higher than this above the settled robot is a drop
 
 std::uint64_t steps_per_sample(const RollOutOptions& options) {
   const double ratio = options.sample_period_s / options.physics.time_step_s;
@@ -54,7 +54,7 @@ Pose start_pose(const physics::WorldDescription& world, const Manoeuvre& manoeuv
   return physics::compose(X_WB, {{x, y, 0}, physics::rotation_from({0, 0, yaw})});
 }
 
-// One robot in a world, what it is told, and what its simulation costs.
+// One robot in a world, with its prescribed motion and the number of contacts.
 struct Scene {
   World world;
   std::uint64_t per_sample;
@@ -66,11 +66,11 @@ struct Scene {
     world.step();
     contacts += world.contact_count();
   }
-  // A command at every sample, as in the run: one alone might get lost.
+  // Sends the command at every sample, as in a run: a single one might be lost.
   void hold(const robot::Command& command, double time_s) {
     for (const double end_s = world.time_s() + time_s; world.time_s() < end_s;) {
       world.set_command(robot, command);
-      world.prescribe(robot, held);  // a teleport ended it
+      world.prescribe(robot, held);  // a teleport ends it
       for (std::uint64_t i = 0; i < per_sample; ++i) step();
     }
   }
@@ -80,7 +80,8 @@ struct Scene {
   }
 };
 
-// From where a robot must be put down to come to rest at X_WB, if put down there it came to rest at X_WB_settled.
+// Returns the pose from which a robot settles at X_WB, given that from X_WB it settled at X_WB_settled: first order,
+// the miss is added to the aim.
 Pose aimed_off(const Pose& X_WB, const Pose& X_WB_settled) {
   const auto yaw = [](const Pose& X) { return physics::roll_pitch_yaw(X.q).z(); };
   const Eigen::Vector3d miss = X_WB.p - X_WB_settled.p;
@@ -92,19 +93,24 @@ bool apart(const Pose& X_WB, const Pose& other) {
   return (other.p - X_WB.p).norm() > kMisplaced_m || other.q.angularDistance(X_WB.q) > kMisplaced_rad;
 }
 
-// At rest, joints included; where it has settled.
+// Puts the robot down with its flippers at their angles, and returns the pose in which it has settled.
 Pose put_down(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, const FlipperAngles& flippers,
               const Pose& X_WB) {
+  // Flippers that are all alike can start at their angle.
   const bool alike = std::ranges::count(flippers, flippers.front()) == std::ssize(flippers);
   if (robot.has_flippers() && alike)
     robot.flipper.front().start_angle_rad =
         std::clamp(flippers.front(), robot.flipper.front().min_angle_rad, robot.flipper.front().max_angle_rad);
+
+  // Placed with belts held still and measured flippers held at their first angles.
   scene.robot = scene.world.add_robot(robot, "robot", X_WB);
   if (manoeuvre.measured) {
     scene.held = actual_motion(*manoeuvre.measured, 0, robot, report_delays(robot));
     for (std::optional<double>& speed : scene.held.track_mps)
       if (speed) speed = 0;
   }
+
+  // Flippers at different angles have to be driven there first; then the robot is put down again.
   robot::Command rest;
   for (std::size_t i = 0; i < flippers.size(); ++i) rest.flipper[i] = {robot::JointMode::angle, flippers[i]};
   if (robot.has_flippers() && !alike) {
@@ -116,12 +122,12 @@ Pose put_down(Scene& scene, RobotDescription robot, const Manoeuvre& manoeuvre, 
   return scene.world.truth(scene.robot).X_WB;
 }
 
-// At rest at the start pose, sensors counting from here.
+// Puts the robot at rest at the start pose, and resets its sensors.
 void put_at_start(Scene& scene, const RobotDescription& robot, const Manoeuvre& manoeuvre,
                   const FlipperAngles& flippers, const Pose& X_WB) {
   Pose X_WB_settled = put_down(scene, robot, manoeuvre, flippers, X_WB);
-  // A recorded start is where the robot stood. One that comes down on its flippers moves by millimetres; and how it is
-  // put down decides which forces friction holds, so it is put down anew, and not moved.
+  // A recorded start is where the robot stood at rest. A robot that comes down on its flippers moves by millimetres; it
+  // is then put down again, not moved, since the way it is put down decides which forces friction holds.
   const Pose X_WB_aim = manoeuvre.start ? aimed_off(X_WB, X_WB_settled) : X_WB;
   if (apart(X_WB, X_WB_aim)) {
     scene.world.remove_robot(scene.robot);
@@ -129,6 +135,8 @@ void put_at_start(Scene& scene, const RobotDescription& robot, const Manoeuvre& 
     scene.contacts = 0;
     X_WB_settled = put_down(scene, robot, manoeuvre, flippers, X_WB_aim);
   }
+
+  // A start in the air: by the manoeuvre, or by a recorded height.
   double lift_m = manoeuvre.start_lift_m;
   if (manoeuvre.start && manoeuvre.start->z_m && *manoeuvre.start->z_m > X_WB_settled.p.z() + kInTheAir_m)
     lift_m = *manoeuvre.start->z_m - X_WB_settled.p.z();
@@ -136,7 +144,8 @@ void put_at_start(Scene& scene, const RobotDescription& robot, const Manoeuvre& 
   for (std::size_t i = 0; i < robot.sensors.size(); ++i) scene.world.reset_sensor(scene.robot, i);
 }
 
-// The settled robot moves from here on as the run did.
+// Sets the settled robot in motion as at the start of the run. With known tracks, missing rates are those without slip,
+// and yaw is limited to between none and that; with known rates, the tracks are those without slip.
 void set_in_motion(Scene& scene, const RobotDescription& robot, const StartMotion& motion,
                    const robot::Command& command) {
   const double gauge_m = robot.track_gauge_m();
@@ -173,6 +182,7 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
   Scene scene{World(physics::with_terrain_effects(world, robot.effects), options.physics, options.seed), per_sample};
   put_at_start(scene, measured, manoeuvre, flippers, start_pose(world, manoeuvre, options));
 
+  // Operator, recorder, and a recorded run's motion at its start.
   RollOut out;
   RunRecorder recorder(measured, options);
   Driver driver(manoeuvre, flippers);
@@ -180,6 +190,8 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
   if (manoeuvre.start && manoeuvre.start->motion)
     set_in_motion(scene, robot, *manoeuvre.start->motion,
                   manoeuvre.timed.empty() ? command : manoeuvre.timed.front().command);
+
+  // At each sample, and when a replay's command is due: the next command, and a row; then a step.
   std::vector<physics::SensorSample> samples;
   for (std::uint64_t step = 0;; ++step) {
     const double t_s = static_cast<double>(step) * options.physics.time_step_s;
@@ -193,7 +205,7 @@ RollOut roll_out(const RobotDescription& robot, const physics::WorldDescription&
       if (sample) {
         samples.clear();
         scene.world.read_sensors(scene.robot, samples);
-        // nine decimals: 0.29, not 29 * 0.01
+        // Nine decimals: 0.29, not 29 * 0.01.
         recorder.add(std::round(t_s * 1e9) / 1e9, command, out.end, samples);
       }
       out.fault = scene.world.fault(scene.robot);

@@ -25,7 +25,7 @@ bool has(const RobotDescription& robot, SensorType type) {
   return sensor_of(robot, type) != nullptr;
 }
 
-// What is rounded to steps is evenly distributed over one.
+// Sigma of a quantity that is rounded to steps: the rounding error is uniform over one step, sigma = step / sqrt(12).
 double with_rounding(double sigma, double step) {
   return std::hypot(sigma, step / std::sqrt(12.0));
 }
@@ -55,6 +55,8 @@ std::map<std::string, double> column_noise(const RobotDescription& nominal, cons
     for (const robot::Column& column : robot::columns_of(quantity))
       if (sigma > 0) noise.emplace(column.name, sigma);
   };
+
+  // Motion capture, posture and inertial sensors.
   add(options.mocap_noise_m * options.noise_scale, position);
   add(options.mocap_noise_rad * options.noise_scale, yaw);
   if (const auto* ins = sensor_of(robot, SensorType::ins)) add(ins->noise_rad, tilt);
@@ -62,6 +64,8 @@ std::map<std::string, double> column_noise(const RobotDescription& nominal, cons
     add(imu->noise_radps, turn_rate);
     add(imu->noise_mps2, acceleration);
   }
+
+  // Track sensors measure the sprocket: noise at the belt is multiplied by its radius. Counts and steps are rounded.
   const double radius_m = robot.drive.sprocket_radius_m;
   if (const auto* tachometer = sensor_of(robot, SensorType::tachometer))
     add(tachometer->noise_radps * radius_m, track_speed);
@@ -90,6 +94,7 @@ RunRecorder::RunRecorder(const RobotDescription& robot, const RollOutOptions& op
       mocap_noise_(options.seed, "world", "motion capture"),
       tracking_(robot.effects),
       clock_offset_s_(robot.effects.clock_offset_s) {
+  // The columns in the order of the format, those that the robot measures.
   using enum robot::Quantity;
   const bool flippers = robot.has_flippers(), drives = has(robot, SensorType::drives);
   const bool imu = has(robot, SensorType::imu);
@@ -154,12 +159,15 @@ void RunRecorder::put_reading(const physics::DrivesReading& reading) {
 
 void RunRecorder::add(double t_s, const robot::Command& command, const physics::RobotTruth& truth,
                       std::span<const physics::SensorSample> samples) {
+  // A cell without a reading stays empty.
   for (auto& column : run_.values) column.push_back(std::numeric_limits<double>::quiet_NaN());
   put(time_, {t_s});
   put(cmd_track_, {command.track_speed_mps[robot::kLeft], command.track_speed_mps[robot::kRight]});
   const auto& flipper = command.flipper;
   put(cmd_flipper_, {flipper[robot::kFrontLeft].value, flipper[robot::kFrontRight].value,
                      flipper[robot::kRearLeft].value, flipper[robot::kRearRight].value});
+
+  // The pose as motion capture reports it; its noise is drawn now and added in take(), after the clock's shift.
   const TrackedPose tracked = tracking_.report(t_s, {truth.X_WB.p, physics::roll_pitch_yaw(truth.X_WB.q).z()});
   put(position_, {tracked.p_WB_m.x(), tracked.p_WB_m.y(), tracked.p_WB_m.z()});
   put(yaw_, {tracked.yaw_rad});

@@ -13,7 +13,7 @@
 
 namespace kenaf::rollout {
 
-// `robot` with the sensors that a run has columns for alone, the first of each type, and all noise scaled.
+// Returns `robot` with only the sensors that a run has columns for, the first of each type, and all noise scaled.
 physics::RobotDescription instrumented(physics::RobotDescription robot, double noise_scale);
 
 class RunRecorder {
@@ -23,11 +23,11 @@ class RunRecorder {
 
   void add(double t_s, const robot::Command& command, const physics::RobotTruth& truth,
            std::span<const physics::SensorSample> samples);
-  // What was added; the recorder is empty then.
+  // Returns the rows that were added and empties the recorder.
   runs::Run take();
 
  private:
-  // Columns side by side, found by the first one; none where the robot does not measure them.
+  // Adjacent columns, by the first one; none if the robot does not measure them.
   struct Group {
     std::size_t first = 0, count = 0;
   };
@@ -53,7 +53,7 @@ class RunRecorder {
     Eigen::Vector3d p_m;
     double yaw_rad;
   };
-  std::vector<PoseNoise> pose_noise_;  // of each row: it has nothing to do with when the pose was
+  std::vector<PoseNoise> pose_noise_;  // of each row; added last, since it does not depend on the pose's time
   runs::Run run_;
   Group time_, cmd_track_, cmd_flipper_, track_speed_, track_travel_, flipper_, track_current_, flipper_current_,
       battery_, position_, tilt_, yaw_, gyro_, acceleration_;

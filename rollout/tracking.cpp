@@ -29,11 +29,11 @@ TrackedPose Tracking::report(double t_s, const TrackedPose& pose) {
     past_.push_back({t_s, pose});
     reported = pose_at(t_s - delay_s_);
   }
-  // The run began where the point was reported to be, so the point's way counts from there.
+  // The start is where the point was reported, so only its motion since then counts: (R(yaw) - R(yaw_0)) p_BP.
   if (!p_BP_m_.isZero(0))
     reported.p_WB_m.head<2>() += turned(p_BP_m_, reported.yaw_rad) - turned(p_BP_m_, start_.yaw_rad);
-  // The run began at the reported heading, which is to the left of the true one: what the robot drove lies to the right
-  // of what it drives here.
+  // The run started at the reported heading, to the left of the true one by turn_rad_, so the reported path is turned
+  // to the right by that angle about the start.
   if (turn_rad_ != 0)
     reported.p_WB_m.head<2>() =
         start_.p_WB_m.head<2>() + turned((reported.p_WB_m - start_.p_WB_m).head<2>(), -turn_rad_);

@@ -1,4 +1,4 @@
-// What motion capture or lidar makes of the robot's pose before noise: the effects tracking_*, tracked_point_* and
+// The robot's pose as motion capture or lidar reports it, without noise: the effects tracking_*, tracked_point_* and
 // clock_offset.
 //
 // Thread safety: none; one thread owns a Tracking.
@@ -22,9 +22,9 @@ class Tracking {
  public:
   explicit Tracking(const physics::Effects& effects);
 
-  // The pose that is reported when the true one is `pose`; the first call's is the start. Times rise. At neutral
-  // effects the true pose, to the last bit. The clock's offset is not in it, which may need poses that are still to
-  // come: delayed().
+  // Returns the reported pose for the true one; the first call sets the start. Times must increase. With neutral
+  // effects returns the true pose, to the last bit. The clock's offset is not included, as it may need later poses: see
+  // delayed().
   TrackedPose report(double t_s, const TrackedPose& pose);
 
  private:
@@ -38,13 +38,12 @@ class Tracking {
   Eigen::Vector2d p_BP_m_;  // the tracked point
   double turn_rad_, scale_;
   TrackedPose start_{{0, 0, 0}, 0};
-  std::deque<Sample> past_;  // from the last one that is older than the delay on
+  std::deque<Sample> past_;  // begins with the newest sample that is older than the delay
   bool started_ = false;
 };
 
-// Each value of `values` as it was `late_s` before its time, or will be, if that is below 0: on the straight line
-// between two of them; beyond the ends the first and the last one stand. Of angles the line is the short way. `t_s`
-// rises.
+// Returns `values` delayed by `late_s`, advanced if that is negative: interpolated linearly, angles the short way;
+// beyond the ends, the first and the last value are held. `t_s` must increase.
 std::vector<double> delayed(std::span<const double> t_s, std::span<const double> values, double late_s, bool angles);
 
 }  // namespace kenaf::rollout

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing of the Debian 12 packages that Kenaf needs. docs/dependencies.md says what each is for.
+# Installs what is missing of the Debian 12 packages that Kenaf needs. docs/developing.md says what each is for.
 #
 #   scripts/install-dependencies.sh          to build, test and package
 #   scripts/install-dependencies.sh build    only to build, install and package, and to run the demo

@@ -13,7 +13,7 @@
 # direct: a network namespace of its own on this kernel. kvm, tcg: a small virtual machine with Debian's kernel, by the
 # processor or emulated, that sees this machine's files under the same paths, read-only but for DIR and a copy of /tmp
 # that is dropped at the end. Either way the command is root there, has the environment and the working directory of
-# the caller, and no network but loopback and the bus. docs/can-bus.md tells more.
+# the caller, and no network but loopback and the bus. docs/can-tools.md tells more.
 #
 # Exit status: the command's; 124: stopped by --timeout; 125: the bus or the machine could not be made.
 set -uo pipefail

@@ -25,7 +25,7 @@ double fall_error_m(const Engine& engine) {
   return -runner->pose().p.z() - kGravity / 2;
 }
 
-// Relative: how far a block slides in 1 s down 30 degrees with a friction coefficient of 0.3.
+// Relative error of a block's slide of 1 s down 30 degrees, mu = 0.3: g (sin a - mu cos a) t^2 / 2.
 double slide_error(const Engine& engine) {
   constexpr double kSlope = std::numbers::pi / 6, kMu = 0.3;
   EngineScene scene;
@@ -38,7 +38,7 @@ double slide_error(const Engine& engine) {
   return way_m / (kGravity * (std::sin(kSlope) - kMu * std::cos(kSlope)) / 2) - 1;
 }
 
-// The robot with its belts stopped on 20 degrees, far below its angle of friction: it must stay.
+// Displacement in 10 s of the robot with stopped belts on 20 degrees, far below its friction angle: should be 0.
 double creep_m(const Engine& engine, const RobotDescription& robot) {
   const EngineScene scene = on_plane(robot, std::numbers::pi / 9);
   const auto runner = engine.build(scene);
@@ -66,8 +66,9 @@ double sink_m(const Engine& engine, const RobotDescription& robot) {
   return belly_height_m(robot) - runner->pose().p.z();
 }
 
-// Yaw rate of two belts that run against each other, each with its load spread evenly over its straight run and
-// isotropic Coulomb friction: the rate at which the friction's moment about the middle is zero. Any coefficient.
+// Yaw rate w of two belts that run against each other, each with its load spread evenly over its straight run and
+// isotropic Coulomb friction: the w at which friction's moment about the middle vanishes, for any coefficient.
+// The slip at (x, y) is (u - w y, w x), so w solves: integral of (y (u - w y) - x (w x)) / |slip| = 0. By bisection.
 double turn_rate_radps(const TrackDescription& track, double speed_mps) {
   constexpr int kCells = 60;
   const double half_m = track.length_m / 2 - track.end_radius_m;

@@ -1,4 +1,4 @@
-// How far an engine is from closed forms, at the time step that it is timed at.
+// Errors of an engine against closed forms, at the time step at which it is timed.
 #pragma once
 
 #include <vector>
@@ -11,9 +11,9 @@ struct AccuracyFigure {
   const char* name;  // also the CSV's column, unit included
   const char* what;
   const char* format;  // of a table's cell
-  double tolerance;    // of the project's own tests of this closed form
+  double tolerance;    // in the project's own tests of this closed form
 };
-// Errors; 0 is right, the sign says which way.
+// Signed errors; 0 is exact.
 const std::vector<AccuracyFigure>& accuracy_figures();
 
 // In the order of accuracy_figures().

@@ -1,5 +1,5 @@
 // Kenaf's physics beside MuJoCo's and ODE's: the same robot on the same terrain at the same time step, in one run.
-// docs/performance.md says what each engine is given. Status 1 where a limit is missed.
+// docs/performance.md describes each engine's settings. Status 1 if a limit is missed.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -47,7 +47,7 @@ void print_accuracy(const std::vector<Engine>& engines, const std::vector<std::v
   for (const AccuracyFigure& figure : accuracy_figures()) fmt::print("  {}: {}\n", figure.name, figure.what);
 }
 
-// The first engine is the measure of the others. Says where it is slower or less accurate than it shall be.
+// Compares the first engine with the others; prints where it is slower or less accurate than required.
 bool holds_limits(const std::vector<EngineScene>& scenes, const std::vector<Engine>& engines,
                   const std::vector<std::vector<Speed>>& speeds, const std::vector<std::vector<double>>& accuracy) {
   bool holds = true;
@@ -75,12 +75,15 @@ bool holds_limits(const std::vector<EngineScene>& scenes, const std::vector<Engi
 std::string csv_of(const Machine& machine, const std::vector<EngineScene>& scenes, const std::vector<Engine>& engines,
                    const std::vector<std::vector<Speed>>& speeds, const std::vector<std::vector<double>>& accuracy,
                    const EngineScene& scaled, const Scaling& scaling) {
+  // The header; accuracy has a column for each figure.
   std::string out =
       "processor,cores,compiler,scene,engine,version,setting,threads,time_step_s,steps_per_s,real_time_factor,"
       "contacts_per_step,cpu_us_per_step,wall_us_per_step,kenaf_times_as_fast,end_x_m,end_z_m";
   for (const AccuracyFigure& figure : accuracy_figures()) out += fmt::format(",{}", figure.name);
   out += "\n";
   const std::string where = fmt::format("\"{}\",{},\"{}\"", machine.processor, machine.cores, machine.compiler);
+
+  // A row for each scene and engine, on one thread, with the engine's accuracy.
   for (std::size_t s = 0; s < scenes.size(); ++s)
     for (std::size_t e = 0; e < engines.size(); ++e) {
       const Speed& speed = speeds[s][e];
@@ -92,6 +95,8 @@ std::string csv_of(const Machine& machine, const std::vector<EngineScene>& scene
       for (const double error : accuracy[e]) out += fmt::format(",{:.4f}", error);
       out += "\n";
     }
+
+  // Two rows for one and two threads with a world each; times per step are those of each thread.
   for (const auto& [threads, rates] : {std::pair(1, scaling.one), std::pair(2, scaling.all)}) {
     out +=
         fmt::format("{},\"{}, a world each\",{},{},\"{}\",{},{},{:.0f},{:.2f},,{:.3f},{:.3f},,,", where, scaled.name,
@@ -122,6 +127,7 @@ int main(int argc, char** argv) try {
       ->check(CLI::Range(1, 1000));
   CLI11_PARSE(app, argc, argv);
 
+  // Kenaf's engines first: they are the reference.
   const Machine machine = this_machine();
   std::vector<Engine> engines = kenaf_engines();
   for (const auto& more : {mujoco_engines(), ode_engines()}) engines.insert(engines.end(), more.begin(), more.end());
@@ -129,6 +135,7 @@ int main(int argc, char** argv) try {
   fmt::print("Kenaf {}, MuJoCo {}, ODE {}; medians of {} runs, thread time on one core\n", engines.front().version,
              mujoco_engines().front().version, engines.back().version, repeats);
 
+  // Speed in each scene, then accuracy.
   const std::vector<EngineScene> scenes = climbs();
   std::vector<std::vector<Speed>> speeds;
   for (const EngineScene& scene : scenes) {
@@ -140,6 +147,7 @@ int main(int argc, char** argv) try {
   for (const Engine& engine : engines) accuracy.push_back(measure_accuracy(engine));
   print_accuracy(engines, accuracy);
 
+  // Two worlds on two cores, then all limits.
   const Scaling scaling = measure_scaling(scenes[2], engines[0], 2, repeats);
   fmt::print(
       "\ntwo cores, a world each ({}): {:.2f} times the steps/s of one by wall clock, {:.2f} by thread time; {} of {} "

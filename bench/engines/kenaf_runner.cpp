@@ -9,7 +9,7 @@ using namespace physics;
 
 constexpr std::size_t kStepsBetweenReadings = 10;  // a connection's output period of 10 ms
 
-// As a user drives it: World, and its sensors read when their periods have passed.
+// Kenaf as a user runs it: World, with sensors read when their periods have passed.
 class KenafRunner : public Runner {
  public:
   KenafRunner(const EngineScene& scene, bool with_sensors)

@@ -12,7 +12,7 @@ struct Machine {
 };
 Machine this_machine();
 
-// Keeps the calling thread on the n-th core that the process may use. false: not allowed, it runs where it will.
+// Pins the calling thread to the n-th core that the process may use. Returns false if that is not allowed.
 bool pin_to_core(unsigned n);
 
 struct Clocks {

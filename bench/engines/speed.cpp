@@ -21,7 +21,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// A thread each on a core of its own, started at once; what each took.
+// Runs threads on a core each, started together. Returns the time that each took.
 std::vector<Clocks> run_together(const EngineScene& scene, const Engine& engine, unsigned threads) {
   const long steps = steps_of(scene);
   std::vector<Clocks> taken(threads);
@@ -53,12 +53,15 @@ Rates medians(const std::vector<Rates>& rates) {
 }  // namespace
 
 std::vector<Speed> measure_speeds(const EngineScene& scene, const std::vector<Engine>& engines, int repeats) {
+  // Results of each engine, one for each run.
   pin_to_core(0);
   struct Times {
     std::vector<double> cpu_us, wall_us, slower;
   };
   std::vector<Times> times(engines.size());
   std::vector<Speed> speeds(engines.size());
+
+  // One run of an engine; building it is not timed.
   const long steps = steps_of(scene);
   const auto run = [&](std::size_t e) {
     const auto runner = engines[e].build(scene);
@@ -75,12 +78,16 @@ std::vector<Speed> measure_speeds(const EngineScene& scene, const std::vector<En
     speeds[e].contacts_per_step = static_cast<double>(contacts) / n;
     speeds[e].end = runner->pose();
   };
+
+  // Each engine directly after the reference, so that a drift of the core's speed cancels in their ratio.
   for (int repeat = 0; repeat < repeats; ++repeat)
     for (std::size_t e = 0; e < engines.size(); ++e) {
       run(0);
       if (e > 0) run(e);
       times[e].slower.push_back(times[e].cpu_us.back() / times[0].cpu_us.back());
     }
+
+  // Medians over the repeats.
   for (std::size_t e = 0; e < engines.size(); ++e) {
     speeds[e].cpu_us_per_step = median(times[e].cpu_us);
     speeds[e].wall_us_per_step = median(times[e].wall_us);
@@ -90,12 +97,15 @@ std::vector<Speed> measure_speeds(const EngineScene& scene, const std::vector<En
 }
 
 Scaling measure_scaling(const EngineScene& scene, const Engine& engine, unsigned threads, int pairs) {
+  // A thread is undisturbed if its wall-clock time is hardly longer than its CPU time.
   constexpr double kDisturbed = 1.02;
   constexpr double kPatience_s = 60;
   struct Pair {
     Rates one, all;
     Rates times() const { return {all.by_wall / one.by_wall, all.by_cpu / one.by_cpu}; }
   };
+
+  // Pairs, one thread and then all, until enough are undisturbed or patience ends; after a disturbed one, a pause.
   std::vector<Pair> measured, undisturbed;
   const double begun_s = read_clocks().wall_s;
   while (static_cast<int>(undisturbed.size()) < pairs && read_clocks().wall_s - begun_s < kPatience_s) {
@@ -116,6 +126,8 @@ Scaling measure_scaling(const EngineScene& scene, const Engine& engine, unsigned
     else
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
+
+  // Medians over the undisturbed pairs, or over all if there is none.
   std::vector<Rates> times, ones, alls;
   for (const Pair& pair : undisturbed.empty() ? measured : undisturbed) {
     times.push_back(pair.times());

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Of an install prefix, a library is in lib/ or, on Debian, in lib/x86_64-linux-gnu/.
+// An install prefix has its libraries in lib/ or, on Debian, in lib/x86_64-linux-gnu/.
 constexpr int kDepthOfLibraries = 2;
 
 // The shared library or program that holds this code.
@@ -30,7 +30,7 @@ std::vector<fs::path> data_roots() {
   if (const fs::path program = fs::read_symlink("/proc/self/exe", ignored); !program.empty()) {
     roots.push_back(program.parent_path().parent_path() / "share" / "kenaf");
   }
-  // libkenaf_real in a user's program, which may be anywhere
+  // For libkenaf_real in a user's program, which may be anywhere.
   if (const fs::path library = fs::weakly_canonical(own_file(), ignored); !library.empty()) {
     fs::path prefix = library.parent_path();
     for (int up = 0; up < kDepthOfLibraries; ++up) {

@@ -1,4 +1,4 @@
-// What is wrong with a robot's, world's or manoeuvre's description, with file, line and column in its text.
+// An error in a robot's, world's or manoeuvre's description, with file, line and column in its text.
 #pragma once
 
 #include <stdexcept>

@@ -38,7 +38,7 @@ DescriptionFile read_description_file(std::string_view kind, const std::string& 
     throw DescriptionError(
         fmt::format("{}: cannot be read: {}", path.string(), std::generic_category().message(errno)));
   std::ostringstream text;
-  if (in) text << in.rdbuf();  // an empty file has nothing to be read
+  if (in) text << in.rdbuf();  // false for an empty file
   return {path.string(), text.str()};
 }
 

@@ -1,4 +1,4 @@
-// Finds and reads the file of a robot's or a world's description. Thread safety: as data_files.hpp.
+// Finds and reads the file of a robot's, world's or manoeuvre's description. Thread safety: as data_files.hpp.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@ struct DescriptionFile {
   std::string text;
 };
 
-// `kind` is "robot" or "world": the file is looked for in its folder, `kind` + "s", as find_data_file() does it.
-// Throws DescriptionError where there is no such file or it cannot be read.
+// `kind` is "robot", "world" or "manoeuvre": find_data_file() looks in the folder `kind` + "s". Throws DescriptionError
+// if there is no such file or it cannot be read.
 DescriptionFile read_description_file(std::string_view kind, const std::string& name_or_path,
                                       std::string_view extension);
 

@@ -1,5 +1,5 @@
-// Reads a TOML table completely: each key once, with its unit's range, and no key left over. What is wrong is said
-// with file, line and column. Thread safety: parse_toml is pure; a TomlReader belongs to one thread.
+// Reads a TOML table completely: each key with its range, and no key left over. Errors are DescriptionErrors with file,
+// line and column. Thread safety: parse_toml is pure; a TomlReader belongs to one thread.
 #pragma once
 
 #include <toml++/toml.h>
@@ -16,13 +16,13 @@ namespace kenaf::description {
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  bool open_min = false;  // min itself is out
+  bool open_min = false;  // min itself is excluded
 };
 inline constexpr Range kAny{};
 inline constexpr Range kNotNegative{.min = 0};
 inline constexpr Range kPositive{.min = 0, .open_min = true};
 
-// Throws DescriptionError where `text` is no TOML.
+// Throws DescriptionError if `text` is no TOML.
 toml::table parse_toml(std::string_view text, const std::string& file);
 
 class TomlReader {
@@ -40,11 +40,11 @@ class TomlReader {
   Eigen::Vector3d vector3(std::string_view key, Range range = kAny);
   Eigen::Vector3d vector3_or(std::string_view key, const Eigen::Vector3d& fallback);
   TomlReader table(std::string_view key);
-  std::vector<TomlReader> tables(std::string_view key);  // an array of tables; empty where the key is missing
+  std::vector<TomlReader> tables(std::string_view key);  // an array of tables; empty if the key is missing
 
-  // Whatever the key holds, it is another reader's.
+  // Ignores the key, which another reader reads.
   void leave(std::string_view key) { read_.emplace_back(key); }
-  // Throws where the file holds a key that was not read.
+  // Throws if the table has a key that was not read.
   void finish() const;
   [[noreturn]] void fail(std::string_view key, const std::string& what) const;
 

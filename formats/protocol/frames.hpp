@@ -3,7 +3,7 @@
 // The two frames differ by half a turn about x: y and z change sign, and with them pitch and yaw. Roll keeps its sign.
 //   REP 103: roll + right side down, pitch + nose down, yaw + counter-clockwise seen from above
 //   USARSim: roll + right side down, pitch + nose up,   yaw + clockwise seen from above
-// The same map leads there and back; the two names say which border is crossed.
+// The map is its own inverse; the two names state the direction.
 // Angles: radians, roll, pitch, yaw. Thread safety: pure functions.
 #pragma once
 

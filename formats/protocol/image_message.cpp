@@ -16,7 +16,7 @@ std::uint32_t big_endian_16(std::span<const std::uint8_t> bytes) {
   return std::uint32_t{bytes[0]} << 8 | bytes[1];
 }
 
-// Takes `key=` and what follows up to a blank from the begin of `text`.
+// Takes `key=` and the value up to a blank from the front of `text`.
 std::optional<std::string_view> take_value(std::string_view& text, std::string_view key) {
   if (!text.starts_with(key) || !text.substr(key.size()).starts_with('=')) return std::nullopt;
   text.remove_prefix(key.size() + 1);
@@ -42,7 +42,7 @@ std::optional<FrameNote> parse_note(std::string_view text) {
     return std::nullopt;
   const auto is_time = [](double value) { return std::isfinite(value) && value >= 0; };
   if (!is_time(note.robot_time_s) || !is_time(note.age_ms)) return std::nullopt;
-  // a robot's name may hold blanks, a camera's does not
+  // A robot's name may contain blanks, a camera's does not.
   constexpr std::string_view kRobot = "robot=", kCamera = " camera=";
   const std::size_t camera = text.rfind(kCamera);
   if (!text.starts_with(kRobot) || camera == std::string_view::npos || camera < kRobot.size()) return std::nullopt;
@@ -66,6 +66,7 @@ std::array<std::uint8_t, kHeaderBytes> answer_header(std::uint8_t type, std::uin
 }
 
 bool AnswerReader::take(std::span<const std::uint8_t>& bytes) {
+  // The header, byte by byte, as a piece of the stream may end within it; checked once it is complete.
   while (header_count_ < kHeaderBytes) {
     if (bytes.empty()) return false;
     header_[header_count_++] = bytes.front();
@@ -80,6 +81,8 @@ bool AnswerReader::take(std::span<const std::uint8_t>& bytes) {
     if (size_ > kMaxAnswerBytes)
       throw std::runtime_error("an answer of " + std::to_string(size_) + " bytes, which is more than a picture has");
   }
+
+  // The data.
   const std::size_t count = std::min(bytes.size(), size_ - answer.data.size());
   answer.data.insert(answer.data.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
   bytes = bytes.subspan(count);

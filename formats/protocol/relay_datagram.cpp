@@ -22,7 +22,7 @@ constexpr std::uint8_t kFlipperMaskBits = (1u << robot::kFlipperCount) - 1;
 constexpr std::uint32_t kEveryField = (robot::kHasGroundTruth << 1) - 1;
 constexpr std::uint32_t kStateFieldBits = kEveryField | robot::held(kEveryField);
 
-// What happened, beside what was measured: bits on the wire.
+// Events: bits on the wire.
 constexpr std::uint32_t kWorldServerLost = 1u << 0, kStoppedBySilence = 1u << 1, kWorldPaused = 1u << 2;
 constexpr std::uint32_t kStateEventBits = kWorldServerLost | kStoppedBySilence | kWorldPaused;
 
@@ -121,7 +121,7 @@ class Writer {
   std::size_t used_ = 0;
 };
 
-// Keeps the first error; what is read after it is 0.
+// Keeps the first error. Integers read beyond the end are 0.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}

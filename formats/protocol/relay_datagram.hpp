@@ -1,5 +1,5 @@
 // The datagrams between libkenaf_sim and relayd: their contents as plain structs, and the two pure functions that
-// turn them into bytes and back. docs/relay-protocol.md is the page for people; this header is its contract in code.
+// turn them into bytes and back. docs/relay-protocol.md describes the protocol.
 //
 // Frames and units: SI and radians; world W and body B are x forward, y left, z up (REP 103). Angles of a pose are the
 // intrinsic z-y-x angles roll, pitch, yaw; pitch is positive nose down. Flippers: robot/parts.hpp.
@@ -24,7 +24,7 @@ inline constexpr std::uint8_t kVersion = 1;
 inline constexpr std::size_t kMaxDatagramBytes = 512;
 inline constexpr std::size_t kMaxReasonBytes = 200;
 
-// Asks to become the commander of the robot. Answered by Welcome or Refused. Sent again until one of them arrives.
+// Asks to become the commander of the robot. Resent until Welcome or Refused arrives.
 struct Hello {
   std::uint64_t session;     // chosen at random by the commander, never 0
   double period_s;           // robot time between two States, 0.001 to 1
@@ -54,23 +54,23 @@ struct Refused {
   std::size_t text_length;
 };
 
-// What the robot shall do from the frame after `frame` on. Complete and absolute: only the newest matters, so a lost
-// or doubled Command changes nothing but latency. Sent again every few milliseconds until a State acknowledges it.
+// The command from the frame after `frame` on. Complete and absolute: only the newest matters, so a lost or doubled
+// Command affects latency only. Resent every few milliseconds until a State acknowledges it.
 struct Command {
   std::uint64_t session;
   std::uint32_t sequence;  // starts at 1, one more for each new Command; a resent Command keeps its sequence
   std::uint32_t frame;     // the State this answers; 0 before the first
   std::array<double, robot::kTrackCount> track_speed_mps;
-  std::uint8_t flipper_mask;  // bit i: flipper_rad[i] is commanded; the others keep what they were told last
+  std::uint8_t flipper_mask;  // bit i: flipper_rad[i] is commanded; the others keep their last command
   std::array<double, robot::kFlipperCount> flipper_rad;
 };
 
-// What was measured, and how the session is. stopped_by_silence: no Command came within command_timeout_s.
+// Measurements and the state of the session. stopped_by_silence: no Command came within command_timeout_s.
 struct State {
   std::uint64_t session;
   std::uint32_t acknowledged;  // sequence of the newest Command handed to the world server, 0 = none
   bool world_server_lost;      // the connection to the world server broke; the session is over
-  bool world_paused;           // robot time stands still on request of somebody else
+  bool world_paused;           // another client has stopped robot time
   robot::State robot;
 };
 
@@ -94,7 +94,7 @@ using Datagram = std::variant<Hello, Welcome, Refused, Command, State, Bye, Ping
 
 enum class DecodeError : std::uint8_t {
   none = 0,
-  too_short,  // shorter than the header, or than its kind needs
+  too_short,  // shorter than the header or its kind
   too_long,   // bytes left over after the last field
   bad_magic,
   bad_version,
@@ -110,8 +110,8 @@ std::string_view describe(DecodeError error);
 // Writes `datagram` into `out` and returns the bytes used; `out` holds at least kMaxDatagramBytes.
 std::size_t encode(const Datagram& datagram, std::span<std::byte> out);
 
-// Reads one datagram. On an error `out` is unchanged. Checks form, not ranges: that a speed is one the robot can
-// drive is for the relay to judge.
+// Reads one datagram. On an error `out` is unchanged. Checks form, not ranges: the relay checks whether the robot can
+// drive a speed.
 DecodeError decode(std::span<const std::byte> bytes, Datagram& out);
 
 }  // namespace kenaf::protocol::relay

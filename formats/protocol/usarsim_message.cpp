@@ -8,9 +8,9 @@ namespace kenaf::protocol::usarsim {
 
 namespace {
 
-// NUL is among the blanks because C clients send their strings with it.
+// NUL is among the blanks because C clients send their strings' terminators.
 constexpr std::string_view kBlanks{" \t\v\f\r\n\0", 7};
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // what .NET writes before its first line
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // .NET writes it before its first line
 
 char lower(char c) {
   return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -34,7 +34,7 @@ std::optional<double> read_number(std::string_view text) {
   return value;
 }
 
-// The same, where the one comma in `text` is the decimal sign.
+// The same with a comma as decimal sign.
 std::optional<double> read_decimal_comma(std::string_view text) {
   std::array<char, 64> copy;
   if (text.size() > copy.size() || text.find('.') != std::string_view::npos) return std::nullopt;
@@ -42,8 +42,8 @@ std::optional<double> read_decimal_comma(std::string_view text) {
   return read_number({copy.data(), text.size()});  // a second comma has become a second point: no number
 }
 
-// The next number's text of a list in which blanks, one comma, or both stand between two numbers. nullopt: two commas
-// without a number between, or one at an end of the list.
+// Takes the text of the next number of a list separated by blanks, one comma, or both. Returns nullopt for two commas
+// without a number between them, or a comma at an end of the list.
 std::optional<std::string_view> next_list_item(std::string_view& rest) {
   const std::size_t end = std::min(rest.size(), rest.find_first_of(" \t\v\f\r\n,"));
   const std::string_view item = rest.substr(0, end);
@@ -66,7 +66,7 @@ bool read_blank_separated(std::string_view text, std::span<double> out) {
   return trim(text).empty();
 }
 
-// "4,5,1,9,1,8" for three numbers: twice as many whole numbers as asked for, written where the decimal sign is a comma.
+// "4,5,1,9,1,8" for three numbers with decimal commas: twice as many whole numbers as expected.
 bool read_comma_pairs(std::string_view text, std::span<double> out) {
   if (text.find('.') != std::string_view::npos) return false;
   text = trim(text);
@@ -144,6 +144,7 @@ ParseError parse_message(std::string_view line, MessageView& out) {
   if (line.empty()) return ParseError::empty;
   if (line.starts_with('{')) return ParseError::no_type;
 
+  // The type up to the first brace, then groups; only white space may stand between them.
   const std::size_t type_end = std::min(line.size(), line.find('{'));
   out.type = trim(line.substr(0, type_end));
   line.remove_prefix(type_end);
@@ -205,10 +206,12 @@ std::string_view next_word(std::string_view& rest) {
 }
 
 bool LineSplitter::push(std::string_view bytes) {
+  // Lines that were taken are dropped.
   buffer_.erase(0, read_);
   line_start_ -= read_;
   read_ = 0;
 
+  // Each piece up to a CR or LF is appended; empty lines, as between CR and LF, are skipped, and too long ones dropped.
   bool whole = true;
   while (!bytes.empty()) {
     const std::size_t end = bytes.find_first_of("\r\n");
@@ -329,6 +332,8 @@ void append_number(std::string& out, double value, NumberFormat format) {
   } else {
     last = std::to_chars(first, first + digits.size(), value, std::chars_format::fixed, decimals).ptr;
   }
+
+  // No negative zero; a truncated number is filled up with zeros.
   const std::string_view text(first, static_cast<std::size_t>(last - first));
   const bool negative_zero = text.starts_with('-') && text.find_first_not_of("-0.") == std::string_view::npos;
   out += negative_zero ? text.substr(1) : text;

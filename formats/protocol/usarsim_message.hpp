@@ -4,11 +4,11 @@
 //   group   := '{' key [value] '}'        value: the rest of the group, trimmed; it may hold further key value pairs,
 //                                         as UT2004 writes `{Name ECLeft Tick 0}`
 //
-// Reading is lenient, as real clients need it: types and keys compare without case, white space is optional, numbers
-// of a vector are separated by commas or blanks, a decimal comma is understood where it cannot be a separator.
+// Reading is lenient, for existing clients: types and keys ignore case, white space is optional, numbers of a vector
+// are separated by commas or blanks, and a decimal comma is accepted where it cannot be a separator.
 // Sources: the UT2004 and UDK USARSim servers and the clients listed in docs/world-server-protocol.md.
 //
-// Thread safety: values and pure functions. A MessageView refers to the line it was read from and lives no longer.
+// Thread safety: values and pure functions. A MessageView refers to the line it was read from, which must outlive it.
 #pragma once
 
 #include <array>
@@ -36,10 +36,10 @@ struct MessageView {
 
   std::span<const Group> all() const { return {groups.data(), group_count}; }
 
-  // The value of the first group whose key matches without case.
+  // The value of the first group with this key, ignoring case.
   std::optional<std::string_view> find(std::string_view key) const;
 
-  // True where the type matches without case.
+  // Whether the type matches, ignoring case.
   bool is(std::string_view expected_type) const;
 };
 
@@ -53,29 +53,31 @@ enum class ParseError : std::uint8_t {
 };
 std::string_view describe(ParseError error);
 
-// Reads one line without its EOL. On an error `out` holds what was read up to there.
+// Reads one line without its EOL. On an error `out` holds the part before it.
 ParseError parse_message(std::string_view line, MessageView& out);
 
 bool equal_ignoring_case(std::string_view a, std::string_view b);
 
-// The whole text as one finite number; white space around it is allowed, "1,5" reads as 1.5.
+// Reads the whole text as one finite number, with optional white space around it; "1,5" is 1.5.
 std::optional<double> parse_number(std::string_view text);
 // "true", "True", "1", "yes" and their opposites.
 std::optional<bool> parse_bool(std::string_view text);
-// Exactly `out.size()` numbers, separated by commas or blanks. Where that does not give the count, commas are taken for
-// decimal signs: "4,5 1,9 1,8" and "4,5,1,9,1,8" read as three numbers. False leaves `out` unspecified.
+// Reads exactly `out.size()` numbers, separated by commas or blanks. If that does not give the count, commas are taken
+// as decimal signs: "4,5 1,9 1,8" and "4,5,1,9,1,8" are three numbers. If it returns false, `out` is unspecified.
 bool parse_numbers(std::string_view text, std::span<double> out);
-// Any count up to `out.size()`, further ones are counted but not stored; nullopt if one of them is no number.
+// Reads any count of numbers and returns it; those beyond `out.size()` are not stored. Returns nullopt if one of them
+// is no number.
 std::optional<std::size_t> parse_number_list(std::string_view text, std::span<double> out);
 
-// The next white-space separated word of `rest`, which is shortened by it; "" at the end.
+// Removes the next word, delimited by white space, from `rest` and returns it; "" at the end.
 std::string_view next_word(std::string_view& rest);
 
-// Cuts a TCP byte stream into lines. One for each connection. Holds an unfinished line and the lines not yet taken:
-// take all of them after each push(), and it never holds more than kMaxLineBytes beside the bytes of that push.
+// Splits the TCP byte stream of one connection into lines. Holds an unfinished line and the lines not yet taken: if all
+// are taken after each push(), it never holds more than kMaxLineBytes plus the bytes of that push.
 class LineSplitter {
  public:
-  // Appends received bytes. False: a line grew beyond kMaxLineBytes; it is dropped up to its end, later lines survive.
+  // Appends received bytes. Returns false if a line exceeds kMaxLineBytes: it is dropped up to its end, later ones are
+  // kept.
   bool push(std::string_view bytes);
   // The next complete, non-empty line, or nullopt. Valid until the next call of push().
   std::optional<std::string_view> next();
@@ -84,20 +86,20 @@ class LineSplitter {
 
  private:
   std::string buffer_;
-  std::size_t read_ = 0;        // before it: taken
-  std::size_t line_start_ = 0;  // from it on: the unfinished line
+  std::size_t read_ = 0;        // end of the lines that were taken
+  std::size_t line_start_ = 0;  // start of the unfinished line
   bool dropping_ = false;
   std::uint64_t dropped_lines_ = 0;
 };
 
-// How numbers are written. The two historic dialects differ in it, and a connection may ask for more digits.
+// Format of numbers. The two historic dialects differ in it, and a connection may ask for more digits.
 struct NumberFormat {
   int decimals = 4;
   bool truncate = false;  // cut off (UDK) instead of rounding (UT2004)
 };
-constexpr NumberFormat kExactNumber{12, false};  // of what Kenaf's own programs send
+constexpr NumberFormat kExactNumber{12, false};  // for Kenaf's own programs
 
-// Appends messages to a buffer that keeps its capacity, so that a steady stream allocates nothing.
+// Appends messages to a buffer that keeps its capacity, so that a steady stream does not allocate.
 class MessageWriter {
  public:
   explicit MessageWriter(std::string& out) : out_(out) {}
@@ -121,7 +123,7 @@ class MessageWriter {
   std::string& out_;
 };
 
-// Appends `value` as `format` says, without exponent, "-0.00" written as "0.00"; NaN and infinity as 0.
+// Appends `value` in `format`, without exponent; "-0.00" becomes "0.00", NaN and infinity become 0.
 void append_number(std::string& out, double value, NumberFormat format);
 
 }  // namespace kenaf::protocol::usarsim

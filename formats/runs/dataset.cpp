@@ -96,7 +96,7 @@ std::vector<DatasetRun> read_runs(const TableReader& reader, const toml::table& 
   return runs;
 }
 
-// A basic string of TOML. (toml++'s own formatter chooses literal strings, which cannot hold every text.)
+// A basic string of TOML. (toml++'s own formatter chooses literal strings, which cannot represent every text.)
 std::string as_toml(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -140,6 +140,7 @@ Dataset read_dataset(const fs::path& folder) {
 }
 
 Dataset parse_dataset(std::string_view toml_text, std::string_view name_for_errors) {
+  // Syntax errors get the same form as all others: file:line:column.
   toml::table root;
   try {
     root = toml::parse(toml_text, name_for_errors);
@@ -148,11 +149,15 @@ Dataset parse_dataset(std::string_view toml_text, std::string_view name_for_erro
     throw RunFileError(std::string(name_for_errors) + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) +
                        ": " + std::string(error.description()));
   }
+
+  // The format first: the keys of another one mean nothing here.
   const TableReader reader(root, name_for_errors);
   if (const std::string format = reader.text("format"); format != kFormat) {
     reader.fail(*reader.find("format"),
                 "format is '" + format + "', this program reads '" + std::string(kFormat) + "'");
   }
+
+  // Keys of the dataset, then its tables.
   Dataset dataset;
   dataset.source = reader.text("source");
   if (dataset.source != "real" && dataset.source != "sim") {
@@ -180,7 +185,7 @@ void write_dataset(const fs::path& folder, const Dataset& dataset) {
   for (const auto& [column, sigma] : dataset.noise) line(as_toml_key(column), as_toml(sigma));
   for (const DatasetRun& run : dataset.runs) text += run_entry(run);
   const fs::path file = folder / kFileName;
-  parse_dataset(text, file.string());  // what cannot be read back is not written
+  parse_dataset(text, file.string());  // throws if it could not be read back
 
   std::error_code error;
   fs::create_directories(folder, error);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kTimeColumn = "t_s";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets write it
-// Bounds of memory, chosen: 2^24 values are 134 MB.
+// Limits of memory, chosen: 2^24 values are 134 MB.
 constexpr std::size_t kMostValues = std::size_t{1} << 24, kLongestLine = std::size_t{1} << 20;
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
@@ -28,7 +28,7 @@ struct Cell {
   std::size_t column;     // of its first character in the line, from 1
 };
 
-// Where in the text an error is.
+// Line of an error in the text.
 struct Place {
   std::string_view file;
   std::size_t line;
@@ -73,7 +73,7 @@ std::optional<double> finite_number(std::string_view text) {
   return value;
 }
 
-// The index of the time column. Throws where the header is none.
+// Returns the index of the time column. Throws RunFileError if the header is invalid.
 std::size_t check_columns(const std::vector<Cell>& cells, const Place& place) {
   std::set<std::string_view> names;
   for (const Cell& cell : cells) {
@@ -103,7 +103,7 @@ void check_time(double time_s, double last_time_s, std::size_t column, const Pla
   if (time_s <= last_time_s) fail(place, column, "t_s does not grow from the row before");
 }
 
-// Reads a run from its text piece by piece, so that no more of a long file is held than its values.
+// Reads a run from its text piece by piece, so that of a long file only the values are held in memory.
 class RunReader {
  public:
   explicit RunReader(std::string_view name_for_errors) : place_{name_for_errors, 0} {}
@@ -133,12 +133,13 @@ class RunReader {
       if (first_blank_ != 0) refuse_blank();
       has_header_ ? take_row(line) : take_header(line);
     } else if (first_blank_ == 0) {
-      first_blank_ = place_.line;  // of those at the end, or one too many
+      first_blank_ = place_.line;  // allowed at the end of the file only
       blank_ = line;
     }
     begun_.clear();
   }
 
+  // A blank line before another line is refused with the error of a row or header without cells.
   void refuse_blank() {
     place_.line = first_blank_;
     has_header_ ? take_row(blank_) : take_header(blank_);
@@ -171,8 +172,8 @@ class RunReader {
     last_time_s_ = time_s;
   }
 
-  Place place_;        // the line taken last; 0: none yet
-  std::string begun_;  // a line whose end has not come
+  Place place_;        // the last line taken; 0: none yet
+  std::string begun_;  // a line whose end has not come yet
   bool has_header_ = false;
   std::size_t first_blank_ = 0, time_column_ = 0;
   std::string blank_;

@@ -17,9 +17,9 @@
 
 namespace kenaf::runs {
 
-inline constexpr double kSameTime_s = 1e-9;  // apart: sample times are multiples of a step that is no binary fraction
+inline constexpr double kSameTime_s = 1e-9;  // tolerance: sample times are multiples of no binary fraction
 
-// What is wrong with a file, with file, line and column (both from 1) in its text.
+// An error in a file, with file, line and column (both from 1) in its text.
 class RunFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -31,34 +31,35 @@ struct Run {
   std::vector<std::vector<double>> values;  // values[column][row]
 
   std::size_t row_count() const { return values.empty() ? 0 : values.front().size(); }
-  // The values of a column, or an empty span where the run does not have it.
+  // The values of a column, or an empty span if the run does not have it.
   std::span<const double> column(std::string_view name) const;
 };
 
 // Whether a column has any cell that is not NaN.
 bool any_measured(std::span<const double> column);
 
-// Reads a run. Throws RunFileError: no such file, no t_s, times not strictly increasing, a cell that is no finite
-// number, a row with another count of cells, a column named twice or not at all, more than 2^24 values (an hour of 40
-// columns at 100 Hz is less). Unknown columns are kept. However long the file, memory is bounded by its values.
+// Reads a run. Throws RunFileError if there is no such file or no t_s, times do not strictly increase, a cell is no
+// finite number, a row has another count of cells, a column is named twice or not at all, or there are more than 2^24
+// values (an hour of 40 columns at 100 Hz has fewer). Unknown columns are kept. Memory is bounded by the values, not by
+// the file.
 Run read_run(const std::filesystem::path& file);
 Run parse_run(std::string_view text, std::string_view name_for_errors);
 
-// Writes a run row by row, aside in `<file>.part`; finish() renames it, so that `file` is whole or absent.
+// Writes a run row by row to `<file>.part`, which finish() renames, so that `file` is complete or absent.
 // All numbers are written with enough digits to read back the same double.
 class RunWriter {
  public:
-  // Throws RunFileError where the file cannot be made, or read_run() would refuse its columns.
+  // Throws RunFileError if the file cannot be created, or read_run() would refuse its columns.
   RunWriter(std::filesystem::path file, std::vector<std::string> columns);
   ~RunWriter();  // without finish(): the part file stays for inspection
   RunWriter(const RunWriter&) = delete;
   RunWriter& operator=(const RunWriter&) = delete;
 
-  // One value for each column; NaN writes an empty cell. Throws RunFileError where the file cannot be written, or
-  // read_run() would refuse the row: another count of values, infinity, a time not after the row before; a refused row
-  // is left out and the next may follow. A row is with the operating system when this returns.
+  // Writes one value for each column; NaN makes an empty cell. Throws RunFileError if the file cannot be written, or
+  // read_run() would refuse the row: another count of values, infinity, a time not after the row before. A refused row
+  // is left out, and the next may follow. When this returns, the operating system has the row.
   void add_row(std::span<const double> row);
-  // Throws RunFileError where the file is not whole or cannot be renamed. Doing it again does nothing.
+  // Throws RunFileError if the file is incomplete or cannot be renamed. A second call does nothing.
   void finish();
 
  private:
@@ -71,7 +72,7 @@ class RunWriter {
   int descriptor_ = -1;
 };
 
-// All of a run, by a RunWriter.
+// Writes a whole run by a RunWriter.
 void write_run(const std::filesystem::path& file, const Run& run);
 
 }  // namespace kenaf::runs

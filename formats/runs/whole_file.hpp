@@ -1,4 +1,4 @@
-// Files that are whole or absent: written aside in `<file>.part`, then renamed.
+// Files that are complete or absent: written to `<file>.part`, then renamed.
 //
 // Thread safety: any thread; one writer of a file at a time, since two would share its part file.
 #pragma once
@@ -10,11 +10,11 @@
 
 namespace kenaf::runs {
 
-// Replaces `file` by `bytes`, or leaves it as it was, with no part file beside it, and throws RunFileError. Its folder
-// must exist.
+// Replaces the content of `file` by `bytes`. Throws RunFileError if that fails; `file` is unchanged then, and no part
+// file remains. Its folder must exist.
 void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
 
-// All bytes of a file. Throws RunFileError where it cannot be read.
+// Returns all bytes of a file. Throws RunFileError if it cannot be read.
 std::string read_whole_file(const std::filesystem::path& file);
 
 // The same piece by piece, in order.

@@ -25,7 +25,7 @@ std::vector<Candidate> leave_out(std::vector<Candidate> all, std::span<const std
     if (same == kept.end())
       kept.push_back(std::move(candidate));
     else if (same->whole == 0)
-      same->whole = same->neutral != 0 ? same->neutral : candidate.whole;  // a ratio, or an offset
+      same->whole = same->neutral != 0 ? same->neutral : candidate.whole;  // a ratio; else an offset
   }
   return kept;
 }

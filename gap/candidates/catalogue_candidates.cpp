@@ -16,7 +16,7 @@ using physics::RobotDescription;
 
 constexpr double kLongestLag_s = 2, kLongestDelay_s = 0.6;
 
-// The effects whose names begin so, of a parameter in that unit. What is not here has the catalogue's range.
+// The search range of effects with this prefix and this unit. All others have the catalogue's range.
 struct RangeOfEffect {
   std::string_view effect, unit;
   SearchRange (*range)(const RobotDescription&);
@@ -26,12 +26,12 @@ double length_m(const RobotDescription& robot) {
   return robot.track.length_m;
 }
 
-// Sideways a robot is as long as its tracks are apart: a centre of mass farther out would be over one of them.
+// Limited by the track gauge: a centre of mass farther out would be above one track.
 double sideways_m(const RobotDescription& robot) {
   return std::min(0.15 * length_m(robot), 0.25 * robot.track_gauge_m());
 }
 
-// With this much more in the battery, motors that are stalled have a sixth of the voltage left.
+// With this additional battery resistance, stalled motors have a sixth of the voltage left: R I = 5 (V - R I).
 double sagging_ohm(const RobotDescription& robot) {
   const double stalled_a = 2 * robot.drive.amperes_per_newton * robot.drive.max_force_n;
   return stalled_a > 0 ? 5 * robot.battery.open_circuit_v / stalled_a : std::numeric_limits<double>::infinity();
@@ -65,7 +65,7 @@ constexpr RangeOfEffect kRangesOfEffects[] = {
      [](const RobotDescription& robot) {
        return SearchRange{0, sagging_ohm(robot)};
      }},
-    // the torque on an arm goes with mass times length
+    // the torque on an arm scales with mass times length
     {"flipper_compliance", "rad/(N m)",
      [](const RobotDescription& robot) {
        return SearchRange{0, 0.58 / (robot.total_mass_kg() * length_m(robot))};
@@ -82,7 +82,7 @@ constexpr RangeOfEffect kRangesOfEffects[] = {
      [](const RobotDescription& robot) {
        return SearchRange{-0.09 * length_m(robot), 0.15 * length_m(robot)};
      }},
-    // half of a belt's surface speed at the fastest
+    // half of the belt's surface speed at full speed
     {"slip_with_speed", "s/m",
      [](const RobotDescription& robot) {
        return SearchRange{0, 0.5 / robot.drive.max_speed_mps};
@@ -153,7 +153,7 @@ std::vector<Candidate> catalogue_candidates(const RobotDescription& robot, bool 
   std::vector<Candidate> candidates;
   for (const EffectInfo& effect : physics::effect_catalogue()) {
     if (!can_show(robot, effect, has_obstacles)) continue;
-    // an effect is one number to be found: each of its parameters is a candidate of its own
+    // each parameter of an effect is a candidate of its own
     for (const EffectParameter& parameter : effect.parameters)
       candidates.push_back(candidate_of(effect, parameter, robot));
   }

@@ -15,10 +15,9 @@ using physics::RobotDescription;
 using physics::Stage;
 
 constexpr double kLongestConstant_s = 2, kLongestReport_s = 0.6;
-// A sensor that is described as reporting at once is late by a few parts in a hundred of this: by a sample of 200 Hz
-// (chosen).
+// A sensor described as having no delay is late by a few per cent of this: by one sample at 200 Hz (chosen).
 constexpr double kUsualReport_s = 0.2;
-constexpr double kJustInside = 0.99;  // where a limit itself is out
+constexpr double kJustInside = 0.99;  // for limits that are excluded
 
 struct DescribedNumber {
   std::string_view key, unit;
@@ -33,19 +32,19 @@ SearchRange doubled(const RobotDescription&, double value) {
   return half_to_twice(value);
 }
 
-// Numbers that a description often only guesses, as no data sheet of the whole robot states them.
+// Numbers that a description often only guesses because the robot's data sheet does not state them.
 SearchRange tenfold(const RobotDescription&, double value) {
   return {value / 10, value * 5};
 }
 
-// Moments: those that a rigid body can have with the two others as they are.
+// Moments of inertia possible for a rigid body with the two others given: |I_a - I_b| <= I <= I_a + I_b.
 template <int axis>
 SearchRange moment(const RobotDescription& robot, double value) {
   const double a = robot.body.inertia_kgm2[(axis + 1) % 3], b = robot.body.inertia_kgm2[(axis + 2) % 3];
   return within(half_to_twice(value), {std::abs(a - b), a + b});
 }
 
-// A fixed part of the track's length to both sides.
+// A fixed fraction of the track's length to both sides.
 SearchRange along(const RobotDescription& robot, double value) {
   return {value - 0.15 * robot.track.length_m, value + 0.15 * robot.track.length_m};
 }
@@ -56,12 +55,12 @@ SearchRange across(const RobotDescription& robot, double value) {
   const double reach = std::min(0.15 * robot.track.length_m, 0.25 * robot.track_gauge_m());
   return {value - reach, value + reach};
 }
-// Half of an end's radius: beyond, the hull would be on the ground or high above it.
+// Half of the end radius: beyond it the hull would touch the ground or be far above it.
 SearchRange height(const RobotDescription& robot, double value) {
   return {value - robot.track.end_radius_m / 2, value + robot.track.end_radius_m / 2};
 }
 
-// Of two numbers of which one is the larger, each may go up to half way to the other, so that both may at once.
+// Two numbers with a fixed order may each go half way to the other, so that both can do so at once.
 double between_length_and_ends_m(const RobotDescription& robot) {
   return robot.track.length_m / 2 + robot.track.end_radius_m;
 }
@@ -97,7 +96,7 @@ SearchRange hull_height(const RobotDescription& robot, double value) {
   return within(half_to_twice(value), {0, 2 * (robot.track.end_radius_m - robot.track.p_BT_m.z())});
 }
 
-// The drums differ in radius by less than the arm is long, at the far ends of all three ranges too.
+// The arm stays longer than the difference of the drum radii, even with all three numbers at the ends of their ranges.
 double slack_m(const physics::FlipperDescription& flipper) {
   return flipper.length_m - std::abs(flipper.pivot_radius_m - flipper.tip_radius_m);
 }
@@ -112,7 +111,7 @@ SearchRange pivot_ahead(const RobotDescription& robot, double value) {
   return within(half_to_twice(value), along(robot, value));
 }
 
-// Up to 3 % of an end's radius, and a robot without lugs may have some.
+// Up to 3 % of the end radius at least, so a robot described without lugs may have some.
 SearchRange lugs(const RobotDescription& robot, double value) {
   return {0, std::max(3 * value, 0.03 * robot.track.end_radius_m)};
 }
@@ -122,7 +121,7 @@ SearchRange time_constant(const RobotDescription&, double value) {
 SearchRange report_delay(const RobotDescription&, double value) {
   return {0, std::max(kLongestReport_s, value)};
 }
-// A voltage that falls to a sixth while both tracks are stalled; where the description has no currents, 5 ohm.
+// The voltage falls to a sixth while both tracks are stalled; 5 ohm if the description has no currents.
 SearchRange resistance(const RobotDescription& robot, double value) {
   const double stalled_a = 2 * robot.drive.amperes_per_newton * robot.drive.max_force_n;
   const double more_ohm = stalled_a > 0 ? std::min(5.0, 5 * robot.battery.open_circuit_v / stalled_a) : 5;
@@ -180,7 +179,7 @@ constexpr DescribedNumber kDescribed[] = {
     {"servo.amperes_per_nm", "A/(N m)", Stage::drive, "the flipper servos' current for a torque", doubled},
 };
 
-// Of the sensors that are recorded; what one of another name, or a second one, reports is in no run.
+// Empty for sensor types that runs do not record. A second sensor of a type is not recorded either.
 std::string_view delayed(physics::SensorType type) {
   switch (type) {
     case physics::SensorType::ins:
@@ -205,18 +204,18 @@ std::string last_word(const std::string& key) {
   return key.substr(key.rfind('.') + 1);
 }
 
-// Effects of friction move the flippers' belts, too.
+// Effects of friction also change the flippers' belts.
 bool does_more(std::string_view effect, const RobotDescription& robot) {
   return effect.starts_with("friction_") && robot.has_flippers();
 }
-// An effect does the same only if there is one, and it moves nothing else.
+// An effect is equivalent only if it exists and changes nothing else.
 bool does_the_same(std::string_view effect, const RobotDescription& robot) {
   if (does_more(effect, robot)) return false;
   if (effect == "lug_height" && robot.track.lug_height_m == 0) return false;
   return effect.starts_with("track.") || physics::find_effect(effect) != nullptr;
 }
 
-// Nothing where there is no range: of a number that is 0 half and twice are 0.
+// Adds nothing if the range is empty: half and twice of 0 are 0.
 void add_candidate(std::vector<Candidate>& candidates, const DescribedNumber& described, const std::string& key,
                    const RobotDescription& robot) {
   const std::optional<RobotNumber> number = find_robot_number(robot, key);

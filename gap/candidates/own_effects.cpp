@@ -21,7 +21,7 @@ constexpr Stage kStages[] = {Stage::command, Stage::drive, Stage::body, Stage::c
 
 struct OwnMove {
   RobotNumber number;
-  double add = 0, scale = 0;  // for one unit of the parameter away from neutral
+  double add = 0, scale = 0;  // per unit of the parameter from neutral
 };
 
 bool is_plain_name(std::string_view name) {
@@ -52,7 +52,7 @@ Stage read_stage(description::TomlReader& table) {
   table.fail("stage", fmt::format("is \"{}\", but must be one of {}", name, fmt::join(names, ", ")));
 }
 
-// The keys of the robot that begin as `key` does, up to its first point; where there are none, their tables.
+// The robot's keys in the same table as `key`; if there are none, the names of its tables.
 std::string keys_like(std::string_view key, const RobotDescription& robot) {
   const std::string_view table = key.substr(0, key.find_first_of(".["));
   std::vector<std::string> keys;
@@ -82,7 +82,7 @@ OwnMove read_move(description::TomlReader& table, const RobotDescription& robot)
 
 std::vector<OwnMove> read_moves(description::TomlReader& table, const RobotDescription& robot) {
   std::vector<OwnMove> moves;
-  std::set<std::string> keys;  // in the file: a number moved twice would not move in a straight line
+  std::set<std::string> keys;  // as in the file: a number moved twice would not move linearly
   for (description::TomlReader& move : table.tables("moves")) {
     moves.push_back(read_move(move, robot));
     if (!keys.insert(moves.back().number.written_as).second) move.fail("key", "is moved by this effect already");
@@ -93,7 +93,7 @@ std::vector<OwnMove> read_moves(description::TomlReader& table, const RobotDescr
   return moves;
 }
 
-// What moves in a straight line is within its limits all along if it is at both ends.
+// A number that moves linearly is within its limits everywhere if it is at both ends.
 void check_end(const description::TomlReader& table, std::string_view end, double value, const Candidate& candidate,
                RobotDescription robot) {
   candidate.set(robot, value);
@@ -103,6 +103,7 @@ void check_end(const description::TomlReader& table, std::string_view end, doubl
 
 Candidate read_effect(description::TomlReader& table, const RobotDescription& robot) {
   Candidate candidate;
+  // its description, range and moves
   candidate.name = candidate.effect = read_name(table, "name");
   if (physics::find_effect(candidate.name)) table.fail("name", "is the name of an effect of the catalogue");
   candidate.summary = read_line(table, "summary");
@@ -118,12 +119,16 @@ Candidate read_effect(description::TomlReader& table, const RobotDescription& ro
   const std::vector<OwnMove> moves = read_moves(table, robot);
   table.finish();
   for (const OwnMove& move : moves) candidate.keys.push_back(move.number.written_as);
+
+  // each number x becomes x (1 + scale by) + add by, with by = value - neutral
   candidate.set = [moves, neutral = candidate.neutral](RobotDescription& varied, double value) {
     if (value == neutral) return;  // -0 + 0 would not be -0
     const double by = value - neutral;
     for (const OwnMove& move : moves)
       move.number.set(varied, move.number.get(varied) * (1 + move.scale * by) + move.add * by);
   };
+
+  // both ends have to be valid robots
   check_end(table, "min", candidate.min, candidate, robot);
   check_end(table, "max", candidate.max, candidate, robot);
   return candidate;
@@ -132,7 +137,7 @@ Candidate read_effect(description::TomlReader& table, const RobotDescription& ro
 }  // namespace
 
 std::vector<Candidate> read_own_effects(const std::filesystem::path& file, const RobotDescription& robot) {
-  // a path, never a name that is looked for where the project's own files are
+  // always a path, never a name that is searched for among the project's files
   const std::filesystem::path path = file.has_parent_path() ? file : "." / file;
   const description::DescriptionFile read = description::read_description_file("effect", path.string(), ".toml");
   return parse_own_effects(read.text, file.string(), robot);

@@ -29,7 +29,7 @@ constexpr NumberRange kMaxAngleRange{.min = 0, .max = 2 * std::numbers::pi};
 
 constexpr int kNoVector = -1;
 
-// A member of a part of the description; of a vector, the component of that index.
+// A member of a section of the description; for a vector, its component `index`.
 template <auto member, int index>
 auto& number_in(auto& part) {
   if constexpr (index == kNoVector)
@@ -38,7 +38,7 @@ auto& number_in(auto& part) {
     return (part.*member)[index];
 }
 
-// Of a robot, constant or not.
+// Works on const and non-const robots.
 template <auto section, auto member, int index>
 struct InSection {
   static auto& of(auto& robot) { return number_in<member, index>(robot.*section); }
@@ -143,7 +143,7 @@ void add_derived(std::vector<RobotNumber>& numbers) {
                      [](RobotDescription& robot, double value) { robot.track.p_BT_m.y() = value / 2; }});
   numbers.push_back({"track.contact_length_m", "track.length_m", kAboveZero, contact_length_m,
                      [](RobotDescription& robot, double value) {
-                       // what was taken off, added again, is not always the same bits
+                       // subtracting and adding again does not always restore the same bits
                        if (value != contact_length_m(robot))
                          robot.track.length_m = value + 2 * robot.track.end_radius_m;
                      }});

@@ -17,29 +17,29 @@ namespace kenaf::gap::candidates {
 struct NumberRange {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  bool open_min = false;  // min itself is out
+  bool open_min = false;  // min itself is excluded
 };
 
-// Keys are written as in the file: "drive.max_force_n", "body.center_of_mass_m[2]", "effects.command_gain.gain"; of a
-// sensor with its name, "sensor[INS].delay_s". Two are derived, for what a robot is measured by:
+// Keys are written as in the file: "drive.max_force_n", "body.center_of_mass_m[2]", "effects.command_gain.gain";
+// sensors by name, "sensor[INS].delay_s". Two are derived, as a robot is usually measured by them:
 // - "track.separation_m", between the centre planes of the tracks: twice the y of left_center_m;
 // - "track.contact_length_m", of the flat belly: length_m less both end radii. The ends keep their radius.
 struct RobotNumber {
   std::string key;
-  std::string written_as;  // the key in the file that has it; `key` itself, but of a derived one
-  NumberRange range;       // what parse_robot() accepts of this number by itself
+  std::string written_as;  // the key in the file; differs from `key` for derived numbers only
+  NumberRange range;       // the values that parse_robot() accepts for this number alone
   std::function<double(const physics::RobotDescription&)> get;
-  std::function<void(physics::RobotDescription&, double)> set;  // to what get() returns: changes no bit
+  std::function<void(physics::RobotDescription&, double)> set;  // setting the value that get() returns changes no bit
 };
 
-// Of this robot: no flipper's without flippers. Not among them: whole numbers, noise, cameras, ray sensors, [can], and
-// command_loss, which is chance.
+// All numbers of this robot. Excluded: flippers if it has none, integers, noise, cameras, ray sensors, [can], and
+// command_loss, which is random.
 std::vector<RobotNumber> robot_numbers(const physics::RobotDescription& robot);
-// Empty: this robot has no such number.
+// Returns nothing if this robot has no such number.
 std::optional<RobotNumber> find_robot_number(const physics::RobotDescription& robot, std::string_view key);
 
-// Why parse_robot() would refuse this robot's numbers, each or together: "track.length_m is 0.1, but must be more than
-// twice track.end_radius_m". Empty: it would not.
+// Why parse_robot() would reject this robot's numbers, individually or together: "track.length_m is 0.1, but must be
+// more than twice track.end_radius_m". Empty if it would accept them.
 std::string why_impossible(const physics::RobotDescription& robot);
 
 }  // namespace kenaf::gap::candidates

@@ -1,4 +1,4 @@
-// Where to search for a number. Thread safety: values and pure functions.
+// Search ranges of numbers. Thread safety: values and pure functions.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ inline SearchRange half_to_twice(double value) {
 inline SearchRange within(SearchRange range, SearchRange limits) {
   return {std::max(range.min, limits.min), std::min(range.max, limits.max)};
 }
-// The smallest range that has all of `range`, and `value`.
+// The smallest range that contains `range` and `value`.
 inline SearchRange with(SearchRange range, double value) {
   return {std::min(range.min, value), std::max(range.max, value)};
 }

@@ -17,7 +17,7 @@ namespace {
 
 using physics::RobotDescription;
 
-// Where a number is in a file: tables within tables, or the [[sensor]] of a name; a key; the place in a list.
+// The location of a number in a file: nested tables, or the [[sensor]] of a name; a key; the index in an array.
 struct TomlPlace {
   std::vector<std::string> tables;
   std::string sensor, key;
@@ -28,7 +28,7 @@ TomlPlace place_of(std::string_view written_as) {
   constexpr std::string_view kSensor = "sensor[";
   TomlPlace place;
   if (written_as.starts_with(kSensor)) {
-    const std::size_t end = written_as.rfind("].");  // a sensor's name may have both in it
+    const std::size_t end = written_as.rfind("].");  // a sensor's name may contain both
     place.sensor = written_as.substr(kSensor.size(), end - kSensor.size());
     place.key = written_as.substr(end + 2);
     return place;
@@ -36,14 +36,14 @@ TomlPlace place_of(std::string_view written_as) {
   for (std::size_t point; (point = written_as.find('.')) != written_as.npos; written_as.remove_prefix(point + 1))
     place.tables.emplace_back(written_as.substr(0, point));
   if (const std::size_t bracket = written_as.find('['); bracket != written_as.npos) {
-    place.index = static_cast<std::size_t>(written_as[bracket + 1] - '0');  // of three at most
+    place.index = static_cast<std::size_t>(written_as[bracket + 1] - '0');  // at most three elements
     written_as = written_as.substr(0, bracket);
   }
   place.key = written_as;
   return place;
 }
 
-// Null: there is none.
+// Returns null if there is none.
 toml::table* table_at(toml::table& root, const TomlPlace& place) {
   if (!place.sensor.empty()) {
     for (toml::node& sensor : *root["sensor"].as_array())
@@ -74,13 +74,13 @@ void set_number(toml::table& root, const TomlPlace& place, double value) {
     table->insert_or_assign(place.key, value);
 }
 
-// A whole number in TOML is of another type.
+// Integers are a different type in TOML.
 std::string as_float(double value) {
   const std::string text = fmt::format("{}", value);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
-// In bytes; a column is counted in code points.
+// Offset in bytes; TOML columns count code points.
 std::size_t offset_of(const std::string& text, toml::source_position at) {
   std::size_t offset = 0;
   for (toml::source_index line = 1; line < at.line; ++line) offset = text.find('\n', offset) + 1;
@@ -119,7 +119,7 @@ std::string with_number(const std::string& text, const std::string& written_as, 
   const std::string result = edited(text, root, place, value);
   set_number(root, place, value);
   if (reads_as_table(result, root)) return result;
-  std::ostringstream out;  // an inline table, which nothing can be added to from below, or dotted keys
+  std::ostringstream out;  // an inline table, which cannot be extended, or dotted keys
   out << root << '\n';
   return out.str();
 }

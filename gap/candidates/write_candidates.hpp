@@ -1,4 +1,4 @@
-// A robot's TOML file with what was found. Thread safety: a pure function.
+// Writes fitted values into a robot's TOML file. Thread safety: a pure function.
 #pragma once
 
 #include <span>
@@ -10,13 +10,12 @@
 
 namespace kenaf::gap::candidates {
 
-// The text of the robot that the candidates make, one after the other, of the robot of `toml_text`, for which they were
-// made: parse_robot() of the one gives the bits of the other. What does not change stays as it is written, with all
-// comments: numbers are replaced where they stand, a key that was not there is added to its table, effects are added as
-// tables at the end. (Only where that cannot be, as with an inline `effects`, is the file written anew, without
-// comments.)
+// Returns `toml_text` with the candidates applied in order; they must have been made for its robot. parse_robot() of
+// the result equals the robot after set(), bit by bit. All other text and all comments stay: numbers are replaced in
+// place, missing keys are added to their table, effects as tables at the end. (Only if that is impossible, as with an
+// inline `effects`, the file is rewritten without comments.)
 //
-// Throws DescriptionError where `toml_text` is no robot, or the values together make none.
+// Throws DescriptionError if `toml_text` is not a valid robot, or the values together make an invalid one.
 std::string robot_toml_with(const std::string& toml_text, std::span<const std::pair<Candidate, double>> values);
 
 }  // namespace kenaf::gap::candidates

@@ -13,7 +13,7 @@
 namespace kenaf::gap::challenge {
 namespace {
 
-// Nearly every draw is a robot; so many in a row that are none would be a fault of this program.
+// Nearly every draw is a valid robot; so many invalid ones in a row would be a fault of this program.
 constexpr int kDraws = 20;
 
 // track.contact_length_m moves what track.length_m does; one of them is enough.
@@ -41,7 +41,7 @@ Background draw_background(const physics::RobotDescription& robot, std::uint64_t
     for (const candidates::Candidate& number : candidates) {
       if (is_derived(number)) continue;
       const double part = uniform(random, -kBackgroundOff, kBackgroundOff);
-      // drawn for all, so that the others stay what they are whatever is left out
+      // Drawn for all numbers, so that those in `without` do not change the others.
       if (std::ranges::count(without, number.name) > 0) continue;
       const double value = number.present + part * number.whole;
       background.numbers.push_back({number.name, std::clamp(value, number.min, number.max)});

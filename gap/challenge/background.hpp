@@ -1,4 +1,4 @@
-// The background of the imperfect challenge: a robot of which every number of the description is a little off.
+// The background of the imperfect challenge: a robot whose description is a little off in every number.
 //
 // Thread safety: values and pure functions; deterministic for a seed.
 #pragma once
@@ -12,8 +12,8 @@
 
 namespace kenaf::gap::challenge {
 
-// Of its value to either side; of a number whose value is 0, of Candidate::whole (chosen: as well as a
-// robot is known that was built from drawings and weighed).
+// Largest deviation to either side, as a share of the value; of Candidate::whole if the value is 0 (chosen: the
+// accuracy to which a robot is known that was built from drawings and weighed).
 inline constexpr double kBackgroundOff = 0.03;
 
 struct BackgroundNumber {
@@ -23,15 +23,15 @@ struct BackgroundNumber {
 
 struct Background {
   std::vector<BackgroundNumber> numbers;
-  double floors = 0;  // how large the gap by it alone is; known once the case is made
+  double floors = 0;  // size of the gap by it alone; known once the case is made
 };
 
-// Each number of the description off by its own part of kBackgroundOff, evenly drawn, but for `without` and for those
-// by which others move as well. Never a robot that parse_robot() would refuse.
+// Moves each number of the description by up to kBackgroundOff, drawn evenly, except those in `without` and those that
+// duplicate another. The robot is always one that parse_robot() accepts.
 Background draw_background(const physics::RobotDescription& robot, std::uint64_t seed,
                            std::span<const std::string> without);
 
-// Throws std::runtime_error where the robot has no such number, or is refused with these.
+// Throws std::runtime_error if the robot lacks one of the numbers or is invalid with them.
 physics::RobotDescription with_background(physics::RobotDescription robot, const Background& background);
 
 }  // namespace kenaf::gap::challenge

@@ -21,7 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Noise that remembers itself, on top of the white one: pose estimates are filtered.
+// Adds coloured noise to the white noise of the pose, as pose estimates are filtered: a first-order autoregressive
+// process w(k+1) = a w(k) + sqrt(1 - a^2) n(k), a = exp(-period / memory), of stationary variance 1, times sigma.
 void add_coloured_noise(runs::Run& run, const CasePlan& plan, std::uint64_t seed) {
   if (plan.noise_memory_s == 0) return;
   std::mt19937_64 random(seed);
@@ -42,7 +43,7 @@ void add_coloured_noise(runs::Run& run, const CasePlan& plan, std::uint64_t seed
     }
 }
 
-// Whole counts, as a sensor reports them.
+// Rounds to whole counts, as a sensor reports them.
 void count(runs::Run& run, double count_scale) {
   if (count_scale == 0) return;
   for (const diagnose::Channel& channel : diagnose::diagnosis_channels())
@@ -73,6 +74,7 @@ runs::Run make_run(const CasePlan& plan, const physics::RobotDescription& robot,
   options.start_scatter_m = rollout::kUsualScatter_m;
   options.start_scatter_rad = rollout::kUsualScatter_rad;
 
+  // Another engine moves the body of an exact run; the noise is that of the run in Kenaf's own engine.
   rollout::RollOutOptions exact = options;
   exact.noise_scale = exact.mocap_noise_m = exact.mocap_noise_rad = 0;
   const auto driven_as = [&](const rollout::Manoeuvre& driven) {
@@ -81,6 +83,8 @@ runs::Run make_run(const CasePlan& plan, const physics::RobotDescription& robot,
     return engines::with_body_of(plan.engine, robot, world, rollout::roll_out(robot, world, driven, exact).run, run);
   };
 
+  // A deviation of the commands: the robot obeys the changed commands of a replay, and the log has those that were
+  // sent.
   runs::Run run;
   if (is_of_commands(plan.foreign)) {
     const runs::Run asked = rollout::roll_out(robot, world, manoeuvre, exact).run;
@@ -94,6 +98,8 @@ runs::Run make_run(const CasePlan& plan, const physics::RobotDescription& robot,
   } else {
     run = driven_as(manoeuvre);
   }
+
+  // Deviations of the sensors, then noise and resolution.
   record_foreign(run, plan.foreign, plan.foreign_amount);
   add_coloured_noise(run, plan, mixed(seed, 1));
   count(run, plan.count_scale);

@@ -1,6 +1,6 @@
-// The robot of a case, and its runs.
+// The robots of a case and their runs.
 //
-// Thread safety: pure functions, but for the files they write. Deterministic for a plan, on any number of threads.
+// Thread safety: pure functions, except for the files they write. Deterministic for a plan, on any number of threads.
 #pragma once
 
 #include <atomic>
@@ -14,12 +14,12 @@
 
 namespace kenaf::gap::challenge {
 
-// The "real" robot: background, number and effects, as the plan has them.
+// Returns the "real" robot, with background, number and effects of the plan.
 physics::RobotDescription hidden_robot(const CasePlan& plan);
-// The same before its last change: of the background alone.
+// Returns the robot before its last change, with the background alone.
 physics::RobotDescription robot_before(const CasePlan& plan);
-// The nominal robot with its hidden effects at the values that a model needs for the same (value_in_model); those named
-// in `without` are left out.
+// Returns the nominal robot with the hidden effects at the values that a model needs for them (value_in_model), except
+// those named in `without`.
 physics::RobotDescription hidden_robot_in_model(const CasePlan& plan, const std::vector<std::string>& without = {});
 
 struct RunsToWrite {
@@ -28,8 +28,8 @@ struct RunsToWrite {
   int repeats;
   std::uint64_t seed;
 };
-// A dataset of `robot` with the contacts, the noise and the foreign deviation of a plan. Throws Stopped soon after
-// `stop`, if there is one, is true.
+// Writes a dataset of `robot` with the contacts, the noise and the foreign deviation of a plan. Throws Stopped soon
+// after `stop` becomes true; it may be null.
 void write_case_runs(const CasePlan& plan, const physics::RobotDescription& robot, const RunsToWrite& runs,
                      const std::filesystem::path& folder, unsigned jobs, const std::atomic<bool>* stop);
 

@@ -39,7 +39,7 @@ CaseScale::CaseScale(const CasePlan& plan, unsigned jobs, const std::atomic<bool
   background_ = shifts_of(runs_, robot_, diagnose::Fidelity::coarse);
   background_floors_ = rms(floors_, background_) / floor_rms_;
   if (plan.engine.empty()) return;
-  // the same runs with the same noise as the other engine has them: what these differ by is background, too
+  // The same runs with the same noise in the other engine: their difference is background, too.
   TemporaryFolder folder;
   const ComparedRuns in_engine(written(folder.path, plan, jobs, stop), jobs, stop);
   background_floors_ = rms(floors_, background_ - (runs_.residuals - in_engine.residuals)) / floor_rms_;
@@ -75,7 +75,7 @@ Differences CaseScale::shift_of(const physics::RobotDescription& robot) {
   return shifts_of(runs_, robot, diagnose::Fidelity::coarse) - background_;
 }
 
-// Where belts and flippers turn as they were measured, commands play no part.
+// The shift in each stage's own replay. In a replay of measured belts and flippers commands play no part.
 Differences CaseScale::shift_of_foreign(const std::string& foreign, double amount) {
   const diagnose::Observations& observed = runs_.observations;
   Differences shifts;
@@ -86,6 +86,8 @@ Differences CaseScale::shift_of_foreign(const std::string& foreign, double amoun
       diagnose::check_goes_on(stop_);
       const diagnose::StageFeatures& features = runs_.features.of(passage)[r];
       if (features.bins.empty()) return;
+
+      // The stage's values with the deviation less those without, both without noise.
       const diagnose::Observation& run = observed.runs[r];
       const auto values = [&](double of_it) {
         const bool by_commands = passage == diagnose::Passage::command_to_drive || !run.measured;

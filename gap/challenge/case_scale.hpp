@@ -1,6 +1,6 @@
-// How large gaps look in the runs of a case.
+// Measures the size of gaps in the runs of a case.
 //
-// Thread safety: one thread at a time; calculates with as many as it is given. Deterministic.
+// Thread safety: one thread at a time; calculates on as many as it is given. Deterministic.
 #pragma once
 
 #include <atomic>
@@ -13,29 +13,29 @@
 namespace kenaf::gap::challenge {
 
 struct Size {
-  double floors = 0;            // rms over all channels, over that of repeats of a robot without gap
+  double floors = 0;            // rms over all channels, relative to that of repeats of a robot without gap
   double times_background = 0;  // 0 without a background
 
   double planned_as(const CasePlan& plan) const { return plan.is_sized_by_background() ? times_background : floors; }
 };
 
-// Of the manoeuvres of a plan, driven by a robot in which nothing is hidden.
+// Sizes in the manoeuvres of a plan, driven by a robot that hides nothing.
 class CaseScale {
  public:
-  // Throws Stopped soon after `stop`, if there is one, is true, as all others do.
+  // Throws Stopped soon after `stop` becomes true, as all other functions do; it may be null.
   CaseScale(const CasePlan& plan, unsigned jobs, const std::atomic<bool>* stop);
 
   double background_floors() const { return background_floors_; }
-  // Of what effects do to the robot of the background.
+  // Sizes of effects, a number or a deviation on the robot of the background.
   Size size_of(const physics::Effects& effects);
   Size size_of_number(const std::string& key, double value);
   Size size_of_foreign(const std::string& foreign, double amount);
-  // Of what is hidden outside the catalogue.
+  // The look-alike of the plan's effect outside the catalogue.
   LookAlike look_alike_of(const CasePlan& plan);
 
  private:
   Size size_of(const Differences& shifts) const;
-  // Of a robot that is the background's but for what is hidden.
+  // Shift of a robot that has the background and the hidden effect, less the background's.
   Differences shift_of(const physics::RobotDescription& robot);
   Differences shift_of_foreign(const std::string& foreign, double amount);
 
@@ -46,7 +46,7 @@ class CaseScale {
   ComparedRuns runs_;
   Floors floors_;
   double floor_rms_ = 1;
-  Differences background_;  // what it shifts, coarsely
+  Differences background_;  // the background's shift, by coarse simulation
   double background_floors_ = 0;
 };
 

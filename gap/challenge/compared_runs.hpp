@@ -1,5 +1,5 @@
-// The runs of a dataset beside what the nominal robot makes of them, as a diagnosis compares them: stage by stage, each
-// in its own replay.
+// The runs of a dataset compared with their simulation by the nominal robot, as a diagnosis does it: stage by stage,
+// each in its own replay.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,16 +15,15 @@
 
 namespace kenaf::gap::challenge {
 
-// The stages that together compare each channel once. What the third one, body to sensor, compares is the gyro once
-// more.
+// The stages that together compare each channel once. The third one, body to sensor, compares the gyro once more.
 inline constexpr std::array kEachChannelOnce{diagnose::Passage::command_to_drive, diagnose::Passage::drive_to_body};
 
-// Of each of kEachChannelOnce: what its values differ by, of each run.
+// Differences of the values of each stage of kEachChannelOnce, for each run.
 using Differences = std::array<diagnose::Shift, kEachChannelOnce.size()>;
 using Floors = std::array<diagnose::NoiseFloor, kEachChannelOnce.size()>;
 
 struct ComparedRuns {
-  // Reads and simulates; throws as observe() does, and Stopped as the predictor does. Deterministic, on any number of
+  // Reads and simulates. Throws as observe() does, and Stopped as the predictor does. Deterministic, on any number of
   // threads.
   ComparedRuns(const std::filesystem::path& dataset, unsigned threads, const std::atomic<bool>* stop = nullptr);
   ComparedRuns(const ComparedRuns&) = delete;  // `predictor` refers to the others
@@ -39,14 +38,14 @@ struct ComparedRuns {
 
 Differences operator-(Differences a, const Differences& b);
 
-// Noise, and what the simulation leaves open around a model, as the diagnosis has them.
+// The floors of the diagnosis: noise, and what the simulation leaves open around a model.
 Floors floors_around(ComparedRuns& runs, const diagnose::Variation& model);
-// What a robot does differently from the nominal one.
+// The shifts of a robot against the nominal one.
 Differences shifts_of(ComparedRuns& runs, const physics::RobotDescription& robot, diagnose::Fidelity fidelity);
 
-// In units of noise, over all bins of all stages together.
+// Root mean square in units of noise, over all bins of all stages together.
 double rms(const Floors& floors, const Differences& differences);
-// The same of what repeats differ by; 1 without repeats. `residuals`: measured minus what a model says.
+// The same for the differences between repeats; 1 without repeats. `residuals`: measured minus a model's values.
 double rms_of_repeats(const ComparedRuns& runs, const Floors& floors, const Differences& residuals);
 
 }  // namespace kenaf::gap::challenge

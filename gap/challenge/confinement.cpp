@@ -24,7 +24,7 @@ long version() {
   return ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
 }
 
-// All that this version knows to forbid. docs.kernel.org/userspace-api/landlock.html
+// All accesses that this version can forbid. docs.kernel.org/userspace-api/landlock.html
 std::uint64_t all_access() {
   std::uint64_t access = (LANDLOCK_ACCESS_FS_MAKE_SYM << 1) - 1;
   if (version() >= 2) access |= LANDLOCK_ACCESS_FS_REFER;
@@ -45,6 +45,7 @@ Confinement::Confinement(const std::vector<fs::path>& read, const std::vector<fs
   attributes.handled_access_fs = all;
   ruleset_ = static_cast<int>(::syscall(SYS_landlock_create_ruleset, &attributes, sizeof attributes, 0));
   if (ruleset_ < 0) return;
+  // Everything is forbidden but these rules. A rule for a single file may not have the accesses of folders.
   const auto allow = [&](const fs::path& path, std::uint64_t access) {
     landlock_path_beneath_attr rule{};
     rule.parent_fd = ::open(path.c_str(), O_PATH | O_CLOEXEC);

@@ -1,4 +1,4 @@
-// A process that may touch only some files, by Linux' Landlock (Linux 5.13 and later, where it is switched on).
+// Confines a process to some files, by Landlock (Linux 5.13 and later, if enabled).
 #pragma once
 
 #include <filesystem>
@@ -6,19 +6,19 @@
 
 namespace kenaf::gap::challenge {
 
-// Made by the process that starts another one, which then puts itself under it.
+// Created by a process that starts another one, which then enters it.
 class Confinement {
  public:
-  // Files below `read` may be read and executed, below `write` also made, written and removed; no others. Those that do
-  // not exist are left out. Where the kernel cannot confine, confines() is false.
+  // Allows to read and execute files below `read`, to create, write and remove them below `write` too, and nothing
+  // else. Ignores paths that do not exist. confines() is false if the kernel cannot confine.
   Confinement(const std::vector<std::filesystem::path>& read, const std::vector<std::filesystem::path>& write);
   ~Confinement();
   Confinement(const Confinement&) = delete;
   Confinement& operator=(const Confinement&) = delete;
 
   bool confines() const { return ruleset_ >= 0; }
-  // Confines the calling thread and all that it starts, for good; after fork() it may be called at once. False: it
-  // could not be done.
+  // Confines the calling thread and all that it starts, for good. May be called directly after fork(). Returns false if
+  // it fails.
   bool enter() const;
 
  private:

@@ -27,13 +27,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kCannotStart = 126;  // as a shell's
+constexpr int kCannotStart = 126;  // as shells use it
 
 std::runtime_error failed(const std::string& what) {
   return std::runtime_error(fmt::format("{}: {}", what, std::generic_category().message(errno)));
 }
 
-// Closed at its end.
+// A file descriptor that closes itself.
 struct Descriptor {
   int value;
   ~Descriptor() {
@@ -61,6 +61,8 @@ pid_t start(const CaseToDiagnose& one, int program) {
   const Descriptor out{::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)};
   const Descriptor in{::open("/dev/null", O_RDONLY | O_CLOEXEC)};
   if (out.value < 0 || in.value < 0) throw failed(log.string());
+
+  // All that the child needs is allocated before fork().
   std::vector<std::string> arguments{"kenaf-gap",         "diagnose",  one.data.string(), "--out",
                                      one.report.string(), "--no-next", "--jobs",          "1"};
   if (!one.without.empty()) {
@@ -81,7 +83,7 @@ pid_t start(const CaseToDiagnose& one, int program) {
   const pid_t process = ::fork();
   if (process < 0) throw failed("no process can be started");
   if (process > 0) return process;
-  ::setpgid(0, 0);  // a terminal's interrupt is for this program alone, which ends the others
+  ::setpgid(0, 0);  // a terminal's interrupt reaches only this program, which ends the others
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ::dup2(in.value, STDIN_FILENO);
   ::dup2(out.value, STDOUT_FILENO);
@@ -95,10 +97,10 @@ pid_t start(const CaseToDiagnose& one, int program) {
 
 void diagnose_cases(const std::vector<CaseToDiagnose>& cases, unsigned at_once, const std::atomic<bool>& stop,
                     const std::function<void(std::size_t, bool)>& ended) {
-  // held open, so that all cases are diagnosed by the same program even if another one is installed meanwhile
+  // Held open, so that the same program diagnoses all cases even if another one is installed meanwhile.
   const Descriptor program{::open("/proc/self/exe", O_PATH | O_CLOEXEC)};
   if (program.value < 0) throw failed("/proc/self/exe");
-  std::signal(SIGCHLD, SIG_DFL);  // who started this may have had it ignored, and then no process could be waited for
+  std::signal(SIGCHLD, SIG_DFL);  // if it was inherited as ignored, no child could be waited for
   if (at_once == 0) at_once = std::max(1U, std::thread::hardware_concurrency());
   std::map<pid_t, std::size_t> running;
   const auto end_all = [&] {

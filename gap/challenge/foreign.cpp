@@ -14,20 +14,21 @@ std::vector<double>* column_of(runs::Run& run, std::string_view name) {
   return nullptr;
 }
 
-// A first-order lag of what `value_of` picks of each command, from `at_start` on.
+// Applies a first-order lag to the value that `value_of` picks of each command, from `at_start` on:
+// y += (u - y) (1 - exp(-dt / lag)).
 template <class ValueOf>
 void follow_late(rollout::Manoeuvre& replay, double lag_s, double at_start, ValueOf&& value_of) {
   double followed = at_start, last_s = 0;
   for (rollout::TimedCommand& timed : replay.timed) {
     double& value = value_of(timed.command);
-    // with no lag, what was asked to the last bit
+    // Without lag the command stays the same to the last bit.
     followed = lag_s > 0 ? followed + (value - followed) * -std::expm1(-(timed.t_s - last_s) / lag_s) : value;
     last_s = timed.t_s;
     value = followed;
   }
 }
 
-// Of the right track, for a fifth of a second in every 1.3, which is no multiple of anything a manoeuvre does.
+// The right track cuts out for 0.2 s in every 1.3 s, which is no multiple of any period of a manoeuvre.
 constexpr double kCutOutEvery_s = 1.3, kCutOut_s = 0.2;
 
 void cut_out(rollout::Manoeuvre& replay, double share) {
@@ -36,9 +37,9 @@ void cut_out(rollout::Manoeuvre& replay, double share) {
       timed.command.track_speed_mps[robot::kRight] *= 1 - share;
 }
 
-constexpr double kHunt_s = 1.1;      // a period, which is no multiple of anything a manoeuvre does
-constexpr double kFade_s = 10;       // until the drives have lost all that they lose
-constexpr double kOfRate_sprad = 1;  // of the gyro: at 1 rad/s it tells half
+constexpr double kHunt_s = 1.1;      // period, no multiple of any period of a manoeuvre
+constexpr double kFade_s = 10;       // time after which the drives fade no more
+constexpr double kOfRate_sprad = 1;  // the gyro reports half of 1 rad/s, with amount 1
 
 template <class FactorAt>
 void multiply_speeds(rollout::Manoeuvre& replay, FactorAt&& factor_at) {

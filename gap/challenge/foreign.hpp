@@ -1,4 +1,4 @@
-// Deviations that no candidate of a diagnosis is: what they do to commands, or to what is measured of the robot.
+// Deviations that no candidate of a diagnosis describes, and their effect on commands or measurements.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -10,12 +10,12 @@
 
 namespace kenaf::gap::challenge {
 
-// `amount`: 0 changes nothing, 1 is as much as is credible.
+// `amount`: 0 changes nothing, 1 is the largest credible deviation.
 
-// What of the commands of a replay arrives, of one that changes commands at all.
+// Whether a deviation changes commands; obey_foreign() changes those of a replay to the ones that the robot obeys.
 bool is_of_commands(std::string_view foreign);
 void obey_foreign(rollout::Manoeuvre& replay, std::string_view foreign, double amount);
-// What is recorded of a run.
+// Changes the recorded columns of a run.
 void record_foreign(runs::Run& run, std::string_view foreign, double amount);
 
 }  // namespace kenaf::gap::challenge

@@ -32,7 +32,8 @@ std::vector<Names> claims_of(const ReadStage& stage) {
   return claims;
 }
 
-// All sets of hidden effects, as bits, for which the claims of a stage can stand, each for another one that it has.
+// All sets of hidden effects, as bits, for which the claims of a stage can stand, each for a different one that it
+// contains. Empty if the claims cannot all stand.
 std::vector<unsigned> ways_to_stand(const std::vector<Names>& claims, const Names& hidden) {
   std::vector<unsigned> ways{0};
   for (const Names& claim : claims) {
@@ -45,8 +46,8 @@ std::vector<unsigned> ways_to_stand(const std::vector<Names>& claims, const Name
   return ways;
 }
 
-// Whether each hidden effect can have a claim. `all_stand`: and each claim a hidden effect; else those that have none
-// of them are passed over.
+// Whether each hidden effect can have a claim. With `all_stand` each claim must also stand for a hidden effect;
+// without, claims that contain none of them are ignored.
 bool is_covered(const ReadReport& report, const Names& hidden, bool all_stand) {
   std::vector<unsigned> covered{0};
   for (const ReadStage& stage : report.stages) {
@@ -55,6 +56,8 @@ bool is_covered(const ReadReport& report, const Names& hidden, bool all_stand) {
       std::erase_if(claims, [&](const Names& claim) {
         return std::ranges::none_of(hidden, [&](const std::string& name) { return has(claim, name); });
       });
+
+    // The union of what the stages so far and this one can cover.
     std::vector<unsigned> next;
     for (const unsigned before : covered)
       for (const unsigned way : ways_to_stand(claims, hidden)) next.push_back(before | way);
@@ -65,7 +68,8 @@ bool is_covered(const ReadReport& report, const Names& hidden, bool all_stand) {
   return std::ranges::count(covered, (1U << hidden.size()) - 1) > 0;
 }
 
-// Of the stage in which the effect explains most; where the key has no shares, of the one that holds most of the gap.
+// The table of the stage in which the effect explains most; without shares in the key, of the stage with most of the
+// gap.
 const ReadTable& table_for(const ReadReport& report, const HiddenEffect& hidden) {
   const auto most = std::ranges::max_element(hidden.shares, {}, &StageShare::share);
   if (most == hidden.shares.end()) return report.table;
@@ -90,6 +94,7 @@ std::string reported_name(const std::string& effect, const std::string& paramete
 
 Judgement judge(const CasePlan& plan, const std::optional<ReadReport>& report) {
   Judgement result;
+  // Facts of the plan alone, which hold without a report, too.
   result.is_small = is_small(plan);
   const bool in_catalogue = !plan.effects.empty() && !is_outside(plan.stratum);
   for (const HiddenEffect& hidden : plan.effects)
@@ -98,6 +103,7 @@ Judgement judge(const CasePlan& plan, const std::optional<ReadReport>& report) {
   result.can_be_told_apart = is_outside(plan.stratum) && plan.look_alike.angle_deg >= diagnose::kToldApart_deg;
   if (!report) return result;
 
+  // How each hidden effect was found.
   for (const std::string& name : report->named)
     result.names_wrong |= !has(result.hidden, name) && !has(result.hidden, same_effect(name));
   for (std::size_t i = 0; i < result.hidden.size(); ++i) {
@@ -109,6 +115,8 @@ Judgement judge(const CasePlan& plan, const std::optional<ReadReport>& report) {
     else if (result.names_wrong)
       result.found[i] = Found::wrong;
   }
+
+  // Right: by its claims, its names or its verdict, depending on the stratum.
   if (in_catalogue) {
     result.right = is_covered(*report, result.hidden, true);
     result.all_found = is_covered(*report, result.hidden, false);
@@ -117,6 +125,7 @@ Judgement judge(const CasePlan& plan, const std::optional<ReadReport>& report) {
   } else {
     result.right = report->verdict == (is_outside(plan.stratum) ? "unknown" : "none");
   }
+
   if (result.hidden.size() == 1) {
     result.named_alone = result.right && result.found.front() == Found::named && report->ambiguous_sets.empty();
     result.can_be_told_apart = stands_apart(table_for(*report, plan.effects.front()), result.hidden.front());

@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "kenaf-gap-key/1";
 constexpr std::string_view kBeginning = "{\n \"format\"";  // of each key's text
-// Beyond these nobody scores a case within his lifetime.
+// Limits beyond which scoring a case would never end.
 constexpr int kMostRepeats = 100, kMostIterations = 1000;
 constexpr double kShortestStep_s = 1e-5, kLongestStep_s = 0.01;
 
@@ -32,6 +32,7 @@ Json background_json(const Background& background) {
 }
 
 Json case_json(const SealedCase& sealed) {
+  // Members that a stratum or the exact challenge does not have are left out.
   const CasePlan& plan = sealed.plan;
   Json json{{"name", plan.name}, {"stratum", stratum_name(plan.stratum)}, {"effects", Json::array()}};
   for (const HiddenEffect& hidden : plan.effects) {
@@ -72,7 +73,7 @@ Json case_json(const SealedCase& sealed) {
   return json;
 }
 
-// Throws where a case does not hide what its stratum says.
+// Throws if a case does not hide what its stratum says, or has values that no challenge plans.
 void check(const CasePlan& plan) {
   const Stratum stratum = plan.stratum;
   const bool hides_one = stratum == Stratum::single || stratum == Stratum::withheld;
@@ -91,7 +92,7 @@ void check(const CasePlan& plan) {
       throw std::runtime_error(fmt::format("{} hides {}:{} = {}, which is out of its range", plan.name, hidden.effect,
                                            hidden.parameter, hidden.value));
   }
-  // throws where it makes no robot
+  // Throws if background, number and effects do not make a valid robot.
   hidden_robot(plan);
   if (!plan.longest_s.empty() && plan.longest_s.size() != plan.manoeuvres.size())
     throw std::runtime_error(fmt::format("{} does not say of each manoeuvre when it is cut off", plan.name));
@@ -103,6 +104,7 @@ void check(const CasePlan& plan) {
 }
 
 SealedCase case_of(const Json& json) {
+  // Reads what case_json() writes; members that not every case has may be missing.
   SealedCase sealed;
   CasePlan& plan = sealed.plan;
   json.at("name").get_to(plan.name);
@@ -157,9 +159,9 @@ unsigned char byte_of(std::string_view two_digits) {
   return byte;
 }
 
-// Its own inverse.
+// XORs the bytes with a keystream of SHA-256 over (stream, seed, block number), 32 bytes a block. Its own inverse.
 std::string with_keystream(std::string bytes, std::uint64_t seed, std::string_view of = "key") {
-  std::string block;  // 64 hexadecimal digits, of which each byte takes two
+  std::string block;  // 64 hexadecimal digits, two for each byte
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const std::size_t in_block = i % 32;
     if (in_block == 0) block = sha256(fmt::format("{} of a kenaf-gap challenge, seed {}, block {}", of, seed, i / 32));
@@ -183,7 +185,7 @@ std::string from_digits(std::string_view text) {
 fs::path made_case_file(const fs::path& folder, const std::string& name) {
   return folder / (name + ".enciphered");
 }
-// A stream of its own for each: two texts under one stream would give each other away.
+// Each text has a stream of its own: two texts under one stream would reveal each other.
 std::string made_case_stream(const std::string& name, std::size_t cases, ChallengeKind kind) {
   return fmt::format("{} of {}{}", name, cases,
                      kind == ChallengeKind::exact ? "" : fmt::format(" {}", kind_name(kind)));
@@ -194,7 +196,7 @@ std::string made_case_stream(const std::string& name, std::size_t cases, Challen
 bool is_sealed_dataset(const fs::path& dataset, const SealedCase& sealed) try {
   return sha256_of_dataset(dataset) == sealed.data_sha256;
 } catch (const std::exception&) {
-  return false;  // none, or not all of it
+  return false;  // missing or incomplete
 }
 
 std::string key_text(const ChallengeKey& key) {
@@ -251,7 +253,7 @@ std::optional<SealedCase> made_case(const fs::path& folder, const std::string& n
   if (!is_sealed_dataset(folder / name, key.cases[0])) return std::nullopt;
   return key.cases[0];
 } catch (const std::exception&) {
-  return std::nullopt;  // what is there is damaged, and can be made again
+  return std::nullopt;  // damaged; the case can be made again
 }
 
 std::optional<ChallengeKey> sealed_key(const fs::path& folder, std::uint64_t seed) try {
@@ -260,14 +262,14 @@ std::optional<ChallengeKey> sealed_key(const fs::path& folder, std::uint64_t see
   if (runs::read_whole_file(folder / "commitment.txt") != commitment_text(text)) return std::nullopt;
   return read_key(text);
 } catch (const std::exception&) {
-  return std::nullopt;  // what is there is damaged, and all of it can be made again
+  return std::nullopt;  // damaged; all cases can be made again
 }
 
 bool is_sealed_by_another(const fs::path& folder, std::uint64_t seed) try {
   const fs::path file = folder / "key.enciphered";
   return fs::exists(file) && !deciphered(runs::read_whole_file(file), seed).starts_with(kBeginning);
 } catch (const std::exception&) {
-  return false;  // damaged, and by that nobody's
+  return false;  // damaged, so no seed opens it
 }
 
 ChallengeKey open_key(const fs::path& folder) {

@@ -1,11 +1,11 @@
-// What is hidden in the cases of a challenge, and how it is sealed: the key is in no file until all cases are
-// diagnosed, but its hash is, so that it cannot become another one. Enciphered with the seed it is there, so that a
-// challenge that was interrupted need not make its cases again.
+// The key of a challenge, which says what its cases hide, and how it is sealed. Until all cases are diagnosed only its
+// hash is in a plain file, so that it cannot be exchanged; the key itself is enciphered with the seed, so that an
+// interrupted challenge need not make its cases again.
 //
-// The key holds a salt of 256 bits, without which its hash could be found by trying what may be hidden. The salt is
-// made from the challenge's seed, so that a challenge that was interrupted has the same key when it goes on.
+// The key holds a salt of 256 bits, without which it could be found from its hash by trial. The salt is made from the
+// challenge's seed, so that an interrupted challenge has the same key when it is resumed.
 //
-// Thread safety: values; functions that touch files only those that they are given.
+// Thread safety: values; functions touch only the files that they are given.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct SealedCase {
   std::string data_sha256;  // of its dataset
 };
 
-// Whether this folder holds that dataset, all of it and as it was sealed.
+// Whether this folder holds that dataset, complete and as it was sealed.
 bool is_sealed_dataset(const std::filesystem::path& dataset, const SealedCase& sealed);
 
 struct ChallengeKey {
@@ -32,36 +32,36 @@ struct ChallengeKey {
   ChallengeKind kind = ChallengeKind::exact;
 };
 
-// key.json, of the format kenaf-gap-key/1. The same key gives the same bytes.
+// Returns key.json, in the format kenaf-gap-key/1. The same key gives the same bytes.
 std::string key_text(const ChallengeKey& key);
-// Throws std::runtime_error in words where it is none.
+// Throws std::runtime_error with words for the user if the text is not a key.
 ChallengeKey read_key(const std::string& text);
 
-// commitment.txt, which `sha256sum --check` reads.
+// Returns commitment.txt, which `sha256sum --check` reads.
 std::string commitment_text(const std::string& key_text);
 
-// key.enciphered: what only who has the seed can read; with another one it is noise. Each is the other's inverse.
-// By SHA-256 in counter mode. std::runtime_error where a text was never enciphered.
+// key.enciphered, readable only with the seed; with another one deciphered() returns noise. The two are inverses of
+// each other, by SHA-256 in counter mode. Throws std::runtime_error if a text was never enciphered.
 std::string enciphered(const std::string& key_text, std::uint64_t seed);
 std::string deciphered(const std::string& text, std::uint64_t seed);
 
-// A case beside its data in CASES while the others are made, enciphered with the seed, so that a challenge that is
-// interrupted then need not make it again: CASES/NAME.enciphered. `cases`: how many the challenge has, for the same
-// seed plans others for another number, and for another kind of challenge.
+// Writes the key of a case beside its data while the others are made, enciphered with the seed, so that an interrupted
+// challenge need not make it again: FOLDER/NAME.enciphered. `cases` is the number of cases of the challenge: for
+// another number, as for another kind, the same seed plans other cases.
 void keep_made_case(const std::filesystem::path& folder, const SealedCase& sealed, std::uint64_t seed,
                     std::size_t cases, ChallengeKind kind = ChallengeKind::exact);
-// Nothing where there is none, where seed, number or kind are others, or where its data are no longer what was made.
+// Reads it back. Empty if there is none, seed, number or kind differ, or its data have changed.
 std::optional<SealedCase> made_case(const std::filesystem::path& folder, const std::string& name, std::uint64_t seed,
                                     std::size_t cases, ChallengeKind kind = ChallengeKind::exact);
 
-// The key of a challenge that was interrupted after its cases were made; nothing where it was not, where the seed is
-// another one, or where key or commitment is no longer what was sealed.
+// Returns the key of a challenge that was interrupted after its cases were made. Empty if there is none, the seed
+// differs, or key or commitment have changed.
 std::optional<ChallengeKey> sealed_key(const std::filesystem::path& folder, std::uint64_t seed);
-// Whether a challenge was sealed there with another seed, so that this one could not go on with it.
+// Whether a challenge was sealed there with another seed, so that this one cannot resume it.
 bool is_sealed_by_another(const std::filesystem::path& folder, std::uint64_t seed);
 
-// Reads DIR/key.json. Throws std::runtime_error in words where it is not there yet, is not the one that
-// DIR/commitment.txt was made from, or the data of a case that is there is no longer that which was diagnosed.
+// Reads DIR/key.json. Throws std::runtime_error with words for the user if it does not exist yet, is not the one that
+// DIR/commitment.txt was made from, or the data of a case differ from those that were diagnosed.
 ChallengeKey open_key(const std::filesystem::path& folder);
 
 std::filesystem::path case_folder(const std::filesystem::path& folder, const std::string& name);    // DIR/cases/NAME

@@ -15,13 +15,13 @@
 namespace kenaf::gap::challenge {
 namespace {
 
-// Those that a first look shows to be nearest get whole curves; of them the nearest get points where they fit best, so
-// often (chosen: the nearest one hardly moves after that).
+// The candidates nearest by a first look get whole curves; the nearest of these get points where they fit best, in
+// kRounds rounds (chosen: the nearest one hardly moves after that).
 constexpr std::size_t kFollowed = 12, kRefined = 4;
 constexpr int kRounds = 2;
 
 struct Near {
-  double left;  // of the squared length of what is hidden
+  double left;  // of the squared length of the hidden shift
   std::size_t candidate;
   double value;
 };
@@ -49,7 +49,7 @@ class Stage {
     possible_ = diagnose::candidates_of(passage, candidates, drives_measured);
   }
 
-  // Best first.
+  // Returns the candidates, the nearest first: first look, whole curves of the best ones, then refinement.
   std::vector<Near> nearest() {
     diagnose::add_first_look(curves_, data_, possible_, simulate_);
     std::vector<std::size_t> followed;
@@ -92,7 +92,7 @@ class Stage {
   std::vector<std::size_t> possible_;
 };
 
-// In which nobody could overlook it.
+// Whether the shift cannot be overlooked in a stage.
 bool shows(const diagnose::StageData& data) {
   const auto bins = static_cast<double>(diagnose::bin_count(data));
   return bins > 0 && diagnose::gap_in_noise(data) >= diagnose::DecisionSettings().negligible * std::sqrt(bins);
@@ -114,6 +114,8 @@ LookAlike look_alike(ComparedRuns& runs, const Floors& floors, const Differences
     const std::vector<Near> ranking = stage.nearest();
     const double all = stage.hidden_squared();
     if (ranking.empty() || !(all > 0)) continue;
+
+    // The candidate leaves left / all = sin^2(angle) of the squared length.
     const double angle_deg =
         std::asin(std::sqrt(std::clamp(ranking.front().left / all, 0.0, 1.0))) * 180 / std::numbers::pi;
     if (nearest.effect.empty() || angle_deg < nearest.angle_deg)

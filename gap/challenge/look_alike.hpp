@@ -1,7 +1,6 @@
-// What stays in the catalogue and looks most like something that is not in it.
+// Finds the effect in the catalogue that looks most like a hidden one outside it.
 //
-// Where a case's runs cannot tell the two apart, no diagnosis of them could say `unknown` with reason:
-// docs/gap-challenge.md.
+// If the runs of a case cannot tell the two apart, no diagnosis could say `unknown` with reason: docs/gap-challenge.md.
 #pragma once
 
 #include <span>
@@ -12,10 +11,10 @@
 
 namespace kenaf::gap::challenge {
 
-// `hidden`: what it shifts, without noise. In each stage in which it shows, the single candidate that comes nearest to
-// it at the best of all its values, by coarse simulations, in units of the noise of `floors`; of these stages the one
-// in which that is nearest of all, for a stage is diagnosed without the others. 90 degrees where none explains any of
-// it. `without`: names that the diagnosis leaves out. Deterministic.
+// Fits `hidden`, the shift of the hidden effect without noise, by each single candidate at the best of its values, in
+// each stage in which it shows, by coarse simulations and in units of the noise of `floors`. Returns the nearest
+// candidate of the stage in which the two are most alike, because each stage is diagnosed by itself; 90 degrees if no
+// candidate explains any of it. `without`: names that the diagnosis leaves out. Deterministic.
 LookAlike look_alike(ComparedRuns& runs, const Floors& floors, const Differences& hidden,
                      std::span<const std::string> without);
 

@@ -24,20 +24,22 @@ double present_value(const std::string& key) {
 }
 
 constexpr int kTries = 14;
-constexpr double kNarrow = 1.5;  // ratio of the ends of a bracket in which a power law is trusted
+constexpr double kNarrow = 1.5;  // ratio of a bracket's ends below which a power law is trusted
 constexpr double kSmallestShare = 1e-5, kCloseEnough = 1.05;
-constexpr double kSmallestPlay = 0.01;  // 3 mrad of backlash: of less there is little but the give of the teeth
+constexpr double kSmallestPlay = 0.01;  // 3 mrad of backlash: below, only the give of the teeth remains
 constexpr double kCloseToPlanned = 0.9;
 
-// The share of the way at which `size_at` is as large as `wanted`, or up to kCloseEnough of it larger, and its size
-// there; all of the way where it is not reached. By ratios: effects of a thousandth of their range can be seen.
+// Searches the share of the way at which `size_at` is `wanted`, or up to kCloseEnough times that, and returns it with
+// the size there; the whole way if the size is not reached. Works with ratios, since a thousandth of an effect's range
+// may be visible.
 template <class SizeAt>
 std::pair<double, double> share_for(double wanted, double smallest_share, SizeAt&& size_at) {
   const double most = size_at(1);
   if (!(most > wanted)) return {1, most};
   double below = smallest_share, above = 1, size = most, size_below = 0;
   for (int i = 0; i < kTries && size > kCloseEnough * wanted; ++i) {
-    // as a power of the share, where that leads inside; in turn with halving, for sizes that jump
+    // Interpolates size = c share^p between the ends of the bracket: p = ln(size / size_below) / ln(above / below), if
+    // that leads inside; alternates with geometric halving, for sizes that jump.
     const double aim = std::sqrt(kCloseEnough) * wanted;
     const double power = size_below > 0 ? std::log(size / size_below) / std::log(above / below) : 1;
     const double by_power = above * std::pow(aim / size, 1 / power);
@@ -53,12 +55,11 @@ std::pair<double, double> share_for(double wanted, double smallest_share, SizeAt
 }
 
 struct Sized {
-  double of_planned = -1;  // its size over what was planned
+  double of_planned = -1;  // reached size / planned size
   double value = 0;
 };
 
-// The value at which something is as large as planned. Where it cannot be so large to one side of neutral, it is sought
-// on the other one.
+// Searches the value with the planned size. If it cannot be reached on one side of neutral, tries the other.
 template <class FurthestAt, class SizeAt>
 Sized sized(double planned, double neutral, double smallest_share, bool upward_first, FurthestAt&& furthest_at,
             SizeAt&& size_at) {
@@ -73,7 +74,7 @@ Sized sized(double planned, double neutral, double smallest_share, bool upward_f
   return best;
 }
 
-// Sets value and size of an effect; returns its size over what was planned.
+// Sets value and size of an effect; returns reached size / planned size.
 double size_effect(const CasePlan& plan, HiddenEffect& hidden, CaseScale& scale, bool upward_first) {
   const physics::EffectParameter& parameter = parameter_of(hidden);
   const double planned = plan.is_sized_by_background() ? hidden.times_background : hidden.floors;
@@ -94,6 +95,7 @@ double size_effect(const CasePlan& plan, HiddenEffect& hidden, CaseScale& scale,
   return result.of_planned;
 }
 
+// Likewise for the hidden number of the description.
 double size_number(CasePlan& plan, CaseScale& scale, bool upward_first) {
   HiddenNumber& number = plan.number;
   const auto size_at = [&](double value) { return scale.size_of_number(number.key, value); };
@@ -108,6 +110,7 @@ double size_number(CasePlan& plan, CaseScale& scale, bool upward_first) {
   return result.of_planned;
 }
 
+// Likewise for the foreign deviation, whose amount goes from 0 to 1.
 double size_foreign(CasePlan& plan, CaseScale& scale) {
   const double planned = plan.is_sized_by_background() ? plan.foreign_times_background : plan.foreign_floors;
   const auto [amount, size] = share_for(
@@ -124,11 +127,15 @@ double size_foreign(CasePlan& plan, CaseScale& scale) {
 void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs, const std::atomic<bool>* stop) {
   Random random(mixed(plan.seed, 1));
   const bool upward = (random() & 1) != 0;
+
+  // Tries manoeuvres until the planned size is reached and, outside the catalogue, nothing in it looks alike; keeps the
+  // best.
   CasePlan best = plan;
   double best_size = -1;
   for (CaseRuns& runs : runs_to_choose_from(plan)) {
     if (plan.stratum == Stratum::none && !plan.is_imperfect()) break;
     if (std::ranges::count(runs.manoeuvres, plan.unseen) > 0) continue;
+    // The size of whatever is hidden, in these manoeuvres; of two effects the one that falls short more counts.
     CasePlan candidate = plan;
     candidate.manoeuvres = std::move(runs.manoeuvres);
     candidate.longest_s = std::move(runs.longest_s);
@@ -139,6 +146,8 @@ void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs, const std:
       reached = std::min(reached, size_effect(candidate, hidden, scale, upward));
     if (!plan.number.key.empty()) reached = size_number(candidate, scale, upward);
     if (!plan.foreign.empty()) reached = size_foreign(candidate, scale);
+
+    // Larger is better, up to nearly the planned size; then less alike.
     const double size = std::min(reached, kCloseToPlanned);
     if (size < best_size) continue;
     if (is_outside(plan.stratum)) candidate.look_alike = scale.look_alike_of(candidate);
@@ -148,9 +157,10 @@ void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs, const std:
     if (size == kCloseToPlanned && (!is_outside(plan.stratum) || best.look_alike.angle_deg >= diagnose::kToldApart_deg))
       break;
   }
+
   plan = best;
   make_again(plan, folder, jobs, stop);
-  // of what the diagnosis cannot name nobody asks, and since a baseline the background is no part of the gap
+  // No shares of what the diagnosis cannot name; since a baseline the background is no part of the gap.
   const bool has_shares = plan.stratum == Stratum::single || plan.stratum == Stratum::pair;
   if (plan.is_imperfect() && has_shares) set_true_shares(plan, folder, jobs, stop);
 }

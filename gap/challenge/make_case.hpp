@@ -1,5 +1,5 @@
-// Makes the data of a case: effects of the size that is planned, and runs of a robot that has them.
-// Deterministic for a plan, on any number of threads.
+// Makes the data of a case: effects of the planned size, and runs of a robot that has them. Deterministic for a plan,
+// on any number of threads.
 #pragma once
 
 #include <atomic>
@@ -9,20 +9,20 @@
 
 namespace kenaf::gap::challenge {
 
-// Writes the dataset to `folder`, which must not exist, as that of a real robot, and of a baseline the runs of before
-// to its kBeforeFolder: the same robot without its effect, with noise and start poses of its own. Sets what `plan` has
-// only then: values, sizes, shares. Where these manoeuvres cannot show an effect as large as planned, they are
-// exchanged for others that can; where none can, the effect is as large as they show it. So they are where they cannot
-// tell what is outside the catalogue from what is in it: `look_alike` says how far apart the two are in the end. Throws
-// Stopped soon after `stop`, if there is one, is true; what is in `folder` by then is to be thrown away.
+// Writes the dataset to `folder`, which must not exist, as that of a real robot; for a baseline also the earlier runs
+// to its kBeforeFolder: the same robot without its effect, with noise and start poses of their own. Sets the values,
+// sizes and shares in `plan`. If the planned manoeuvres cannot show an effect of the planned size, or cannot tell an
+// effect outside the catalogue from those in it, they are exchanged for others that can. If none can, the effect is as
+// large as they show it, and `look_alike` says how far apart the two are. Throws Stopped soon after `stop` becomes true
+// (it may be null); then the contents of `folder` must be discarded.
 void make_case(CasePlan& plan, const std::filesystem::path& folder, unsigned jobs,
                const std::atomic<bool>* stop = nullptr);
 
-// Writes the data of a case whose plan make_case() has completed once more: the same files. Else as make_case().
+// Writes the same files once more for a plan that make_case() has completed. Otherwise as make_case().
 void make_again(const CasePlan& plan, const std::filesystem::path& folder, unsigned jobs,
                 const std::atomic<bool>* stop = nullptr);
 
-// Runs of the same robot in the manoeuvre that the dataset does not have.
+// Writes runs of the same robot in the manoeuvre that the dataset does not have.
 void make_unseen(const CasePlan& plan, const std::filesystem::path& folder, unsigned jobs);
 
 }  // namespace kenaf::gap::challenge

@@ -22,29 +22,29 @@ constexpr std::string_view kStratumNames[] = {"none",     "single",  "pair",    
                                               "withheld", "foreign", "withheld-number",
                                               "baseline"};
 
-// What share of the cases a stratum has.
+// A stratum and its share of the cases.
 struct StratumShare {
   Stratum stratum;
   double share;
 };
-// Singles and withheld ones are 78 of 150 cases together: each of 56 effects has a turn in one of them. Each effect
-// once in both would take 216 cases, nearly half as much time again, to say the same.
+// Singles and withheld ones are together 78 of 150 cases, so that each of 56 effects has a turn in one of the two. Each
+// effect once in both would take 216 cases and nearly half as much time again, for the same result.
 constexpr StratumShare kExact[] = {{Stratum::none, 0.3},
                                    {Stratum::single, 0.26},
                                    {Stratum::pair, 0.11},
                                    {Stratum::withheld, 0.26},
                                    {Stratum::foreign, 0.07}};
-// Of 150 cases 36 are background alone: of fewer than 34 one wrong name would be more than 3 %.
+// 36 of 150 cases are background alone: with fewer than 34 one wrong name would be more than 3 %.
 constexpr StratumShare kImperfect[] = {
     {Stratum::none, 0.24},    {Stratum::single, 0.30},          {Stratum::pair, 0.13},    {Stratum::withheld, 0.10},
     {Stratum::foreign, 0.07}, {Stratum::withheld_number, 0.06}, {Stratum::baseline, 0.10}};
 constexpr double kRounding = 1e-6;
-constexpr int kRangeHalvings = 10;  // of the way to a number's end, until it makes a robot
-constexpr double kFurthest = 0.95;  // of the way to the end of a parameter's range
+constexpr int kRangeHalvings = 10;  // of the way to the end of a number's range, until it makes a valid robot
+constexpr double kFurthest = 0.95;  // share of the way to the end of a parameter's range
 
-// Sizes beside the background. Pairs are asked for where both dominate; singles also show how large one has to be.
+// Sizes relative to the background. Both effects of a pair dominate; singles also show how large an effect must be.
 constexpr double kSmallestTimes = 1, kSmallestTimesOfPair = 3, kLargestTimes = 6;
-// Since a baseline, in floors: what is there before and after cancels, only noise does not.
+// Sizes since a baseline, in floors: the background cancels, noise does not.
 constexpr double kSmallestChange_floors = 3, kLargestChange_floors = 10;
 constexpr double kNothingChanged = 0.3;  // share of the baselines
 
@@ -52,7 +52,8 @@ struct Named {
   std::string effect, parameter;
 };
 
-// Each parameter once in a turn, each turn in another order. Chance has no size that could be fitted.
+// Gives each parameter once in a round, each round in another order. Leaves out random effects, which have no size that
+// could be set.
 class Turns {
  public:
   Turns(Random& random, ChallengeKind kind) : random_(random), kind_(kind) {}
@@ -86,7 +87,8 @@ std::vector<Stratum> strata(std::size_t cases, std::span<const StratumShare> sha
   return result;
 }
 
-// What a value of the "real" side is multiplied by, to be one of the model's contacts.
+// Factor from a value on the "real" side to the one that does the same with the model's contacts: the ground's give
+// divides the stiffness, k_real / c_real = k_model / c, its factor multiplies the damping, d_real s_real = d_model s.
 double scale_in_model(const CasePlan& plan, const physics::EffectParameter& parameter) {
   const physics::PhysicsSettings usual;
   if (parameter.value == &physics::Effects::ground_compliance_scale)
@@ -96,7 +98,7 @@ double scale_in_model(const CasePlan& plan, const physics::EffectParameter& para
   return 1;
 }
 
-// Sets of manoeuvres that a case may have.
+// The sets of manoeuvres of the exact challenge; every challenge takes the unseen manoeuvre from one of them.
 const std::vector<std::vector<std::string>>& manoeuvre_sets() {
   static const std::vector<std::vector<std::string>> sets{
       {"straight", "speed-steps", "turn-in-place", "step-150-flippers"},
@@ -107,17 +109,17 @@ const std::vector<std::vector<std::string>>& manoeuvre_sets() {
   return sets;
 }
 
-// Of which the runs of the imperfect challenge are: short, and either few with a repeat or some that nobody repeated,
-// as logs of real robots are.
+// The manoeuvres of the imperfect challenge. As logs of real robots, its runs are short, and either few with a repeat
+// or more without one.
 constexpr std::string_view kShortRuns[] = {"speed-steps",       "random-speeds", "square",     "arc",
                                            "straight",          "turn-in-place", "ramp",       "step-100",
                                            "step-150-flippers", "tilted-box",    "trench-150", "flipper-sweep"};
-// Of these, what another engine does as belts do (rollout/engines/body_in_engine.hpp).
+// Those of them that another engine drives as belts do (rollout/engines/body_in_engine.hpp).
 constexpr std::string_view kRunsInEngine[] = {"speed-steps",       "straight",   "ramp",       "step-100",
                                               "step-150-flippers", "tilted-box", "trench-150", "flipper-sweep"};
 constexpr std::size_t kFewestUnrepeated = 5, kMostUnrepeated = 8, kFewestRepeated = 3, kMostRepeated = 4;
 constexpr double kShortest_s = 3, kLongest_s = 7;
-constexpr std::size_t kOtherShortRuns = 4;  // to choose from, where an effect does not show
+constexpr std::size_t kOtherShortRuns = 4;  // to choose from if an effect does not show
 
 CaseRuns short_runs(int repeats, std::span<const std::string_view> from, Random& random) {
   const std::size_t fewest = repeats == 1 ? kFewestUnrepeated : kFewestRepeated,
@@ -147,7 +149,7 @@ void choose_runs(CasePlan& plan, ChallengeKind kind, Random& random) {
   const auto& other = manoeuvre_sets()[below(random, manoeuvre_sets().size())];
   const auto unseen = std::ranges::find_if(
       other, [&](const std::string& name) { return std::ranges::count(plan.manoeuvres, name) == 0; });
-  // "hills" is in no set, "drop" is no short run
+  // "hills" is in no set, "drop" is not a short run
   plan.unseen = unseen != other.end() ? *unseen : kind == ChallengeKind::exact ? "hills" : "drop";
 }
 
@@ -200,6 +202,8 @@ double furthest_value(const CasePlan& plan, const physics::EffectParameter& para
   double min = parameter.min, max = parameter.max;
   for (const candidates::Candidate& candidate : candidates)
     if (&parameter_of({candidate.effect, candidate.parameter}) == &parameter) min = candidate.min, max = candidate.max;
+
+  // Both the value and value * scale must lie in the range.
   const double end = upward ? std::min(max, max / scale) : std::max(min, min / scale);
   return parameter.neutral + kFurthest * (end - parameter.neutral);
 }
@@ -207,6 +211,7 @@ double furthest_value(const CasePlan& plan, const physics::EffectParameter& para
 double furthest_value_of_number(const CasePlan& plan, bool upward) {
   const candidates::Candidate& number =
       *std::ranges::find(challenged_numbers(), plan.number.key, &candidates::Candidate::name);
+  // From the end of the range half way back to the present value, until the robot is valid.
   physics::RobotDescription robot = with_background(physics::load_robot(kChallengedRobot), plan.background);
   double value = number.present + kFurthest * ((upward ? number.max : number.min) - number.present);
   for (int halving = 0; halving < kRangeHalvings; ++halving) {
@@ -241,6 +246,8 @@ std::vector<ForeignEffect> foreign_effects() {
 }
 
 std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, ChallengeKind kind) {
+  // The draws have a fixed order, so that a seed always gives the same cases. Singles and withheld ones share one round
+  // of turns; pairs and baselines have rounds of their own.
   const bool imperfect = is_imperfect(kind);
   Random random(seed);
   Turns turns(random, kind), pairs(random, kind), changes(random, kind);
@@ -248,6 +255,7 @@ std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, Chal
   const std::vector<ForeignEffect> foreign = foreign_effects();
   std::vector<CasePlan> plans;
   for (const Stratum stratum : strata(cases, imperfect ? std::span<const StratumShare>(kImperfect) : kExact, random)) {
+    // The hidden effect, number or deviation of the stratum: which, and how large in floors or times the background.
     CasePlan plan;
     plan.name = fmt::format("case-{:03}", plans.size());
     plan.stratum = stratum;
@@ -289,6 +297,8 @@ std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, Chal
       plan.number.times_background = uniform(random, kSmallestTimes, kLargestTimes);
     }
     if (stratum == Stratum::baseline && uniform(random, 0, 1) >= kNothingChanged) hide(changes, 0, 0);
+
+    // Differences from the model besides: runs, physics settings, noise, resolution.
     choose_runs(plan, kind, random);
     plan.physics.time_step_s *= 0.5;
     plan.physics.solver_iterations *= 2;
@@ -297,6 +307,8 @@ std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, Chal
     plan.noise_scale = log_uniform(random, 0.7, 1.5);
     plan.noise_memory_s = !imperfect && uniform(random, 0, 1) < 0.5 ? 0 : log_uniform(random, 0.02, 0.2);
     if (imperfect) plan.count_scale = log_uniform(random, 0.5, 2);
+
+    // The background moves every number except those that do the same as what is hidden, whose value it would shift.
     plan.seed = random();
     if (imperfect) {
       std::vector<std::string> without;

@@ -1,9 +1,9 @@
-// What the cases of a challenge are: which effects are hidden in them, how large, in which manoeuvres, and how the
-// "real" side differs from the model besides, so that a fit is no tautology.
+// Plans the cases of a challenge: which effects are hidden in them, how large, in which manoeuvres, and how the "real"
+// side differs from the model besides, so that a fit is no tautology.
 //
-// There are two challenges. In the exact one the model with the hidden effects is right but for contacts and noise. In
-// the imperfect one it never is, as with a real robot: every number of the description is a little off, a background to
-// what is hidden. In those of another engine that engine moves the body besides, so that contacts are others, too.
+// There are two challenges. In the exact one the model with the hidden effects is right except for contacts and noise.
+// In the imperfect one it never is, as with a real robot: every number of the description is a little off, as a
+// background to the hidden effects. With another engine, that engine also moves the body, so that contacts differ, too.
 //
 // Thread safety: pure functions; deterministic for a seed.
 #pragma once
@@ -20,30 +20,30 @@
 namespace kenaf::gap::challenge {
 
 inline constexpr const char* kChallengedRobot = "kenaf";
-// In a case's folder, the dataset of the robot as it was before.
+// Subfolder of a case with the dataset of the robot before the change.
 inline constexpr const char* kBeforeFolder = "before";
 
 enum class ChallengeKind { exact, imperfect, mujoco, ode };
 std::string_view kind_name(ChallengeKind kind);
 ChallengeKind challenge_kind_of(std::string_view name);  // throws std::invalid_argument
 bool is_imperfect(ChallengeKind kind);
-// Which other engine moves the "real" bodies (rollout/engines/body_in_engine.hpp); empty: none.
+// Returns the other engine that moves the "real" bodies (rollout/engines/body_in_engine.hpp); empty: none.
 std::string_view engine_of(ChallengeKind kind);
 
 enum class Stratum {
-  none,             // nothing hidden but the background, where there is one
+  none,             // nothing hidden except the background, if there is one
   single,           // one effect of the catalogue
-  pair,             // two
-  withheld,         // one, and the diagnosis has a catalogue without it
-  foreign,          // something that the catalogue never had
-  withheld_number,  // one number of the description, and the diagnosis does not search for it
-  baseline,         // one effect, or nothing, since runs of before that the diagnosis has as well
+  pair,             // two effects
+  withheld,         // one effect, which the catalogue of the diagnosis lacks
+  foreign,          // a deviation that the catalogue never had
+  withheld_number,  // one number of the description, for which the diagnosis does not search
+  baseline,         // one effect, or nothing, since earlier runs that the diagnosis also has
 };
 std::string_view stratum_name(Stratum stratum);
-bool is_outside(Stratum stratum);           // withheld or foreign: the diagnosis' catalogue does not have it
+bool is_outside(Stratum stratum);           // withheld or foreign: the catalogue of the diagnosis lacks it
 Stratum stratum_of(std::string_view name);  // throws std::invalid_argument
 
-// How much of the squared gap an effect explains in one stage.
+// Share of the squared gap that an effect explains in one stage.
 struct StageShare {
   std::string stage;  // "command to drive"
   double share = 0;
@@ -51,22 +51,22 @@ struct StageShare {
 
 struct HiddenEffect {
   std::string effect, parameter;
-  double floors = 0;                 // size: how large the gap by it alone is, in noise floors, over all channels
-  double value = 0;                  // that makes it so large; known once the case is made
-  double times_background = 0;       // size beside the background's, of the imperfect challenge
-  std::vector<StageShare> shares{};  // of the stages that show it; likewise, known once the case is made
+  double floors = 0;                 // size: the gap by it alone, over all channels, in noise floors
+  double value = 0;                  // that gives this size; known once the case is made
+  double times_background = 0;       // size relative to the background's, in the imperfect challenge
+  std::vector<StageShare> shares{};  // in the stages that show it; known once the case is made
 };
 
 struct HiddenNumber {
   std::string key;  // "drive.max_force_n"; empty: none is hidden
   double value = 0;
-  double floors = 0, times_background = 0;  // as of an effect
+  double floors = 0, times_background = 0;  // as in HiddenEffect
 };
 
-// The effect of a diagnosis' catalogue that looks most like what is hidden and not in it.
+// The effect in the catalogue of a diagnosis that looks most like the hidden one outside it.
 struct LookAlike {
   std::string effect;     // as reports name it
-  double angle_deg = 90;  // between what the two shift, 0 (the same) to 90 (nothing in common)
+  double angle_deg = 90;  // between the shifts of the two, 0 (the same) to 90 (nothing in common)
 };
 
 struct CasePlan {
@@ -76,47 +76,46 @@ struct CasePlan {
   std::string foreign;  // one of foreign_effects(), or empty
   double foreign_floors = 0, foreign_amount = 0, foreign_times_background = 0;
   HiddenNumber number;                  // of the description
-  LookAlike look_alike;                 // of what is withheld or foreign; known once the case is made
-  Background background;                // of the imperfect challenge; else no numbers
+  LookAlike look_alike;                 // for withheld and foreign strata; known once the case is made
+  Background background;                // of the imperfect challenge; otherwise without numbers
   std::vector<std::string> manoeuvres;  // of the dataset
-  std::vector<double> longest_s;        // after which each of its runs is cut off; empty: none is
-  std::string unseen;                   // another one, to try the diagnosis' robot.toml on
+  std::vector<double> longest_s;        // times after which its runs are cut off; empty: none is
+  std::string unseen;                   // another manoeuvre, to try the diagnosis' robot.toml on
   int repeats = 2;
-  std::string engine;                          // that moves the "real" body; empty: Kenaf's own
+  std::string engine;                          // moves the "real" body; empty: Kenaf's own
   physics::PhysicsSettings physics;            // of the "real" side
   double noise_scale = 1, noise_memory_s = 0;  // of the pose; 0: white
-  double count_scale = 0;  // columns are whole counts of so many times their resolution; 0: they are not
+  double count_scale = 0;  // columns are whole counts of this many times their resolution; 0: not quantized
   std::uint64_t seed = 0;
 
   bool is_imperfect() const { return !background.numbers.empty(); }
-  // Else by noise floors: also where runs of before have the same background, so that it cancels.
+  // Otherwise sized by noise floors, also if earlier runs have the same background, so that it cancels.
   bool is_sized_by_background() const { return is_imperfect() && stratum != Stratum::baseline; }
 };
 
-// Of the catalogue, which must have it: a plan hides nothing else, and a key that is read is checked for it.
+// Returns the parameter in the catalogue, which must have it: plans hide nothing else, and keys are checked for it.
 const physics::EffectParameter& parameter_of(const HiddenEffect& hidden);
 
-// The value that a model with the simulator's own contacts needs for the same: the give of the ground and its damping
-// multiply those of the "real" side's contacts, which are others.
+// Returns the value that has the same effect in a model with the simulator's own contacts: ground compliance and
+// damping scale the contacts of the "real" side, which differ from the model's.
 double value_in_model(const CasePlan& plan, const HiddenEffect& hidden);
 
-// The furthest value from neutral that a case may hide: within the range of a diagnosis' candidate on the "real" side
-// and in the model, for a diagnosis cannot find what is beyond.
+// Returns the furthest value from neutral that a case may hide. It is within the range of a diagnosis' candidate both
+// on the "real" side and in the model, because no diagnosis can find a value beyond.
 double furthest_value(const CasePlan& plan, const physics::EffectParameter& parameter, bool upward);
-// Likewise of the hidden number of the description; with it the robot of the background is one that its description
-// allows.
+// Likewise for the hidden number of the description; the robot with background and this value is a valid one.
 double furthest_value_of_number(const CasePlan& plan, bool upward);
 
-// Shares of strata, and sizes, are those of docs/gap-challenge.md. Of singles and withheld ones together each effect of
-// the catalogue has its turn; pairs and foreign ones are drawn by chance. In an order that says nothing.
+// Plans cases with the shares of strata and the sizes of docs/gap-challenge.md. Each effect of the catalogue has its
+// turn among singles and withheld ones together; pairs and foreign ones are drawn by chance. The order is random.
 std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, ChallengeKind kind = ChallengeKind::exact);
 
-// Manoeuvres of a case and when they are cut off, for when an effect does not show in those it was given: all that this
-// kind of case may have, its own first.
+// Manoeuvres of a case and when they are cut off.
 struct CaseRuns {
   std::vector<std::string> manoeuvres;
   std::vector<double> longest_s;
 };
+// Returns all that this kind of case may have, its own first, in case an effect does not show in those.
 std::vector<CaseRuns> runs_to_choose_from(const CasePlan& plan);
 
 struct ForeignEffect {

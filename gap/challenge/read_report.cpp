@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Null stands for what JSON has no number for.
+// Null stands for values that JSON cannot express.
 double number(const Json& json) {
   return json.is_null() ? std::numeric_limits<double>::quiet_NaN() : json.get<double>();
 }
@@ -30,7 +30,7 @@ ReadTable table_of(const Json& json) {
   return table;
 }
 
-// Verdict, names, sets, effects, shrink and table stand in version 1 at the top, in version 2 in each stage.
+// Verdict, names, sets, effects, shrink and table are at the top level in version 1, in each stage in version 2.
 ReadStage stage_of(const Json& json, std::string name) {
   ReadStage stage;
   stage.stage = std::move(name);
@@ -64,7 +64,7 @@ ReadReport report_of(const std::string& report_json) try {
     report.complete = json.value("complete", false);
     for (const Json& stage : json.at("stages")) report.stages.push_back(stage_of(stage, stage.at("stage")));
   } else {
-    report.complete = report.verdict != "unknown";  // what was not explained whole had no names
+    report.complete = report.verdict != "unknown";  // version 1 named nothing if it could not explain the whole gap
     report.stages.push_back(stage_of(json, ""));
   }
   if (json.contains("isolability")) report.table = table_of(json["isolability"]);

@@ -1,4 +1,4 @@
-// What a report.json says, as far as it is scored.
+// Reads the scored parts of a report.json.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -24,7 +24,7 @@ struct ReadTable {
 };
 
 struct ReadStage {
-  std::string stage;    // "command to drive"; empty of a report of version 1, which tells all stages as one
+  std::string stage;    // "command to drive"; empty for a report of version 1, which has all stages as one
   std::string verdict;  // "none", "named", "ambiguous", "unknown"
   std::vector<std::string> named;
   std::vector<std::vector<std::string>> ambiguous_sets;
@@ -39,13 +39,14 @@ struct ReadReport {
   std::vector<std::vector<std::string>> ambiguous_sets;  // likewise
   bool complete = false;
   std::vector<ReadStage> stages;
-  bool interrupted = false;  // then its verdict is none that counts
+  bool interrupted = false;  // then its verdict does not count
   ReadTable table;           // of the stage that holds most of the gap
 };
 
-// Throws std::runtime_error in words where it is none of the formats kenaf-gap-report/1 and kenaf-gap-report/2.
+// Throws std::runtime_error with words for the user if it has neither format kenaf-gap-report/1 nor
+// kenaf-gap-report/2.
 ReadReport report_of(const std::string& report_json);
-// Nothing where there is no such file, as of a diagnosis that failed, or it is what an interrupted one left.
+// Empty if there is no such file, as after a failed diagnosis, or an interrupted one wrote it.
 std::optional<ReadReport> read_report(const std::filesystem::path& report_json);
 
 }  // namespace kenaf::gap::challenge

@@ -10,7 +10,7 @@ namespace kenaf::gap::challenge {
 namespace {
 
 constexpr double kShrinkWithin = 0.05;
-// Beside a gap that is hardly there, a share of it says nothing (chosen).
+// The share of a smaller gap tells nothing (chosen).
 constexpr double kGapToShrink = 1.5;  // floors
 
 bool is_large(const Shrinks& shrinks) {
@@ -46,6 +46,7 @@ bool is_imperfect(const std::vector<ScoredCase>& cases) {
 
 std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
   if (is_imperfect(cases)) return figures_of_imperfect(cases);
+  // Counts the cases of each figure. Wrong names and intervals count at all sizes, everything else only of large ones.
   Count singles, alone, pairs, outside, outside_apart, none, wrong, wrong_apart, covered, close, close_unseen;
   std::vector<double> heldout, unseen, off;
   for (const ScoredCase& scored : cases) {
@@ -64,6 +65,8 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
     if (stratum == Stratum::pair) pairs.add(judgement.right);
     if (is_outside(stratum)) outside.add(judgement.right);
     if (is_outside(stratum) && judgement.can_be_told_apart) outside_apart.add(judgement.right);
+
+    // Shrinks are compared where there is a gap to shrink.
     for (const Shrinks& s : scored.shrinks.heldout) {
       if (!is_large(s)) continue;
       heldout.push_back(s.report - s.hidden);
@@ -74,6 +77,8 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
       close_unseen.add(std::abs(unseen.back()) <= kShrinkWithin);
     }
   }
+
+  // The figures with targets, then those without.
   return {
       share_figure("single_found", "singles named alone, or in the one ambiguity set", ">= 95 %", singles, 0.95, 1),
       share_figure("single_named", "singles that can be told apart, named alone", ">= 90 %", alone, 0.90, 1),
@@ -100,7 +105,7 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
 std::vector<EffectScore> scores_by_effect(const std::vector<ScoredCase>& cases) {
   std::map<std::string, EffectScore> scores;
   for (const ScoredCase& scored : cases) {
-    if (scored.sealed.plan.stratum == Stratum::baseline) continue;  // another question: they have figures of their own
+    if (scored.sealed.plan.stratum == Stratum::baseline) continue;  // have figures of their own
     const Judgement judgement = judge(scored.sealed.plan, scored.report);
     for (std::size_t i = 0; i < judgement.hidden.size(); ++i) {
       EffectScore& score = scores[judgement.hidden[i]];
@@ -145,7 +150,7 @@ std::vector<OutsideScore> scores_outside(const std::vector<ScoredCase>& cases) {
 }
 
 std::vector<SizeScore> scores_by_size(const std::vector<ScoredCase>& cases) {
-  // sizes are made up to a twentieth larger than planned, and smaller ones where a larger one cannot be
+  // Sizes are up to a twentieth larger than planned, and smaller where the planned one cannot be reached.
   std::vector<SizeScore> scores{{0, 0.5}, {0.5, 1}, {1, 2}, {2, 3.5}, {3.5, 5.25}};
   if (is_imperfect(cases)) scores = {{0, 1}, {1, 2}, {2, 3}, {3, 4.5}, {4.5, 6.3}};
   for (const ScoredCase& scored : cases) {

@@ -1,4 +1,4 @@
-// The score of a challenge: its figures beside their targets, and what went wrong where.
+// The score of a challenge: its figures with their targets, and the cases that went wrong.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -22,33 +22,32 @@ struct ScoredCase {
   CaseShrinks shrinks;
 };
 
-// The 95 % interval of a hidden effect that a report names, beside what is hidden, as a model has it (value_in_model).
+// The 95 % interval of a hidden effect that a report names, and the hidden value in the model (value_in_model).
 struct ScoredInterval {
   std::string name;  // as reports name it
   double hidden, value, from, to;
 
   bool holds() const { return from <= hidden && hidden <= to; }
-  // How far beside the value what is hidden lies, in half widths of the interval: of that side, as ranges cut intervals
-  // off.
+  // Distance of the hidden value from the reported one, in half widths of the interval on that side: ranges may cut
+  // one side off.
   double off() const;
 };
 std::vector<ScoredInterval> scored_intervals(const ScoredCase& scored);
 
-// What a report says that a hidden effect explains of a stage's gap, beside what it does.
+// The share of a stage's gap that a hidden effect explains, as stated in the report and in truth.
 struct ScoredShare {
   std::string name, stage;
   double stated, truth;
 };
-// Of the imperfect challenge, of effects that are named or in a set.
+// In the imperfect challenge, for effects that are named or in a set.
 std::vector<ScoredShare> scored_shares(const ScoredCase& scored);
 
-// Each target of the challenge, and after them what has none. Of the imperfect challenge others than of the exact one.
+// Returns the figures that have targets, then those that have none. The imperfect challenge has its own.
 std::vector<Figure> figures(const std::vector<ScoredCase>& cases);
 bool is_imperfect(const std::vector<ScoredCase>& cases);
 std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases);
 
-// Of one effect, over all cases that hide it and leave it in the catalogue; of one that is withheld or foreign, by
-// verdict.
+// One effect over all cases that hide it and leave it in the catalogue.
 struct EffectScore {
   std::string name;
   std::size_t hidden = 0, named = 0, ambiguous = 0, missed = 0, wrong = 0;
@@ -56,6 +55,7 @@ struct EffectScore {
 };
 std::vector<EffectScore> scores_by_effect(const std::vector<ScoredCase>& cases);
 
+// One withheld or foreign effect, by verdict.
 struct OutsideScore {
   std::string name;  // "without mass" or a foreign effect's
   std::size_t cases = 0, unknown = 0, none = 0, ambiguous = 0, named = 0;
@@ -70,7 +70,7 @@ struct SizeScore {
 std::vector<SizeScore> scores_by_size(const std::vector<ScoredCase>& cases);
 
 std::string score_markdown(const std::vector<ScoredCase>& cases);
-// Of the format kenaf-gap-score/1, docs/gap-challenge.md.
+// Returns the score in the format kenaf-gap-score/1, docs/gap-challenge.md.
 std::string score_json(const std::vector<ScoredCase>& cases);
 
 }  // namespace kenaf::gap::challenge

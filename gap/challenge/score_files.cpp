@@ -132,6 +132,7 @@ Json case_json(const ScoredCase& scored) {
 }  // namespace
 
 std::string score_markdown(const std::vector<ScoredCase>& cases) {
+  // The figures.
   const bool imperfect = is_imperfect(cases);
   std::string text = imperfect ? "Effects dominate where they are at least 3 times as large as the background.\n\n"
                                : "Singles, pairs, withheld and foreign ones count in the figures where what is hidden "
@@ -147,6 +148,8 @@ std::string score_markdown(const std::vector<ScoredCase>& cases) {
           value_text(figure, figure.value), value_text(figure, figure.from), value_text(figure, figure.to),
           figure.target, met_text(figure));
   }
+
+  // Tables by size, by effect, and by verdict for effects outside the catalogue.
   text += fmt::format(
       "\n### Singles by size\n\n| {} | cases | gap seen | found | named alone | wrong name "
       "|\n|---|---|---|---|---|---|\n",
@@ -167,6 +170,8 @@ std::string score_markdown(const std::vector<ScoredCase>& cases) {
   for (const OutsideScore& outside : scores_outside(cases))
     text += fmt::format("| {} | {} | {} | {} | {} | {} |\n", outside.name, outside.cases, outside.unknown, outside.none,
                         outside.ambiguous, outside.named);
+
+  // Single cases: wrong reports, missed intervals, and small effects that need not be found.
   text += "\n### Reports that are not right\n\n" + case_rows(cases, false);
   text += "\n### Intervals that do not hold what is hidden\n\n" + interval_rows(cases);
   text += imperfect ? "\n### Smaller than 3 times the background and called none: no error\n\n"

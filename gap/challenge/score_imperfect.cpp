@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kShareWithin = 0.10;
 
-// In which stage a report has this effect, by name or in a set.
+// Whether a stage of a report has this effect, by name or in a set.
 bool claims(const ReadStage& stage, const std::string& name) {
   return std::ranges::count(stage.named, name) > 0 ||
          std::ranges::any_of(stage.ambiguous_sets,
@@ -35,6 +35,7 @@ std::vector<ScoredShare> scored_shares(const ScoredCase& scored) {
 }
 
 std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
+  // Counts the cases of each figure; wrong names, shares and intervals count at all sizes.
   Count found, alone, named_apart, pairs, wrong, quiet, no_set, outside, outside_apart, share, covered;
   Count since, since_named, since_none;
   std::vector<double> off;
@@ -42,7 +43,7 @@ std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
     const Judgement judgement = judge(scored.sealed.plan, scored.report);
     const Stratum stratum = scored.sealed.plan.stratum;
     wrong.add(judgement.names_wrong);
-    // a diagnosis that failed says nothing wrong, but nothing right either
+    // A diagnosis that failed is never right.
     if (stratum == Stratum::none) {
       quiet.add(judgement.right);
       no_set.add(judgement.right && scored.report->ambiguous_sets.empty());
@@ -55,6 +56,8 @@ std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
       covered.add(interval.holds());
       off.push_back(interval.off());
     }
+
+    // Below, only effects that dominate, and changes that are surely seen.
     if (judgement.is_small) continue;
     if (stratum == Stratum::baseline) {
       since.add(judgement.right);
@@ -69,6 +72,8 @@ std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
     }
     if (stratum == Stratum::pair) pairs.add(judgement.all_found);
   }
+
+  // The figures with targets, then those without.
   return {
       share_figure("dominating_found", "dominating effects named, alone or in a set", ">= 90 %", found, 0.90, 1),
       share_figure("dominating_named", "dominating effects that can be told apart, named alone", ">= 80 %", named_apart,

@@ -23,6 +23,7 @@ void make_missing_data(const fs::path& folder, const ChallengeKey& key, unsigned
     if (!is_sealed_dataset(case_folder(folder, sealed.plan.name), sealed)) missing.push_back(&sealed);
   std::mutex mutex;
   std::size_t made = 0;
+  // Each is made beside its place, and gets there only if it is what was sealed.
   for_each_job(missing.size(), jobs, [&](std::size_t i) {
     diagnose::check_goes_on(stop);
     const fs::path data = case_folder(folder, missing[i]->plan.name), part = data.string() + ".part";

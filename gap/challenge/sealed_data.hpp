@@ -1,7 +1,7 @@
-// The data of a challenge's cases, made again from its key where they are not there.
+// Makes missing data of a challenge's cases again from its key.
 //
-// The key has what was sought when the cases were made: values, amounts, manoeuvres. To make their runs again takes
-// seconds a case where seeking takes minutes, and does not hang on the last bit of what was sought.
+// The key has the results of the search by which the cases were made: values, amounts, manoeuvres. Making their runs
+// again takes seconds a case, where the search takes minutes, and does not depend on the last bit of the search.
 // Deterministic, on any number of threads.
 #pragma once
 
@@ -14,10 +14,10 @@
 
 namespace kenaf::gap::challenge {
 
-// Makes each dataset of `key` that is not in DIR/cases as it was sealed; others are left alone. After each it tells
-// `progress` how many of the missing ones are made. Throws std::runtime_error where what is made is not what was
-// sealed, by another version of the program or another kind of machine: no dataset is replaced by it. Throws Stopped
-// soon after `stop`, if there is one, is true; what was made by then stays.
+// Makes each dataset of `key` that DIR/cases does not have as it was sealed; others are left alone. Calls `progress`
+// after each with the number of missing ones made so far. Throws std::runtime_error if the result differs from what was
+// sealed, by another version of the program or on another kind of machine; it then replaces no dataset. Throws Stopped
+// soon after `stop` becomes true (it may be null); the datasets made by then stay.
 void make_missing_data(const std::filesystem::path& folder, const ChallengeKey& key, unsigned jobs,
                        const std::atomic<bool>* stop,
                        const std::function<void(std::size_t made, std::size_t missing)>& progress);

@@ -1,6 +1,6 @@
-// SHA-256 (FIPS 180-4), by which a challenge's key is committed to before it is shown.
+// SHA-256 (FIPS 180-4), which commits to a challenge's key before it is shown.
 //
-// Thread safety: pure functions, but for what they read.
+// Thread safety: pure functions, except for the files they read.
 #pragma once
 
 #include <filesystem>
@@ -12,9 +12,8 @@ namespace kenaf::gap::challenge {
 // 64 hexadecimal digits, as sha256sum prints them.
 std::string sha256(std::string_view bytes);
 
-// Of a dataset: of its dataset.toml and the runs that are in it, in order, and where one of before is in it
-// (kBeforeFolder), of that likewise. Throws runs::RunFileError where one cannot be
-// read.
+// Hash of a dataset: of its dataset.toml and its runs, in order, then likewise of the earlier dataset in it
+// (kBeforeFolder), if there is one. Throws runs::RunFileError if a file cannot be read.
 std::string sha256_of_dataset(const std::filesystem::path& folder);
 
 }  // namespace kenaf::gap::challenge

@@ -21,7 +21,7 @@ Shrinks shrinks_of(const Squares& squares) {
   const std::vector<double> weights = diagnose::kind_weights(squares.before, squares.repeats);
   Shrinks result;
   result.before = diagnose::weighted_rms(squares.before, weights);
-  // without repeats the noise is all that is known of what must stay
+  // Without repeats only the noise is known to remain.
   const double of_repeats = diagnose::weighted_rms(squares.repeats, weights);
   result.floor = std::min(of_repeats > 0 ? of_repeats : 1.0, result.before);
   result.report = diagnose::shrink(result.before, diagnose::weighted_rms(squares.report, weights), result.floor);
@@ -34,11 +34,14 @@ Shrinks shrinks_of(const Squares& squares) {
 ShrinksOfRuns shrinks_on(const std::filesystem::path& dataset, const physics::RobotDescription& report,
                          const physics::RobotDescription& hidden, unsigned threads) {
   ComparedRuns runs(dataset, threads);
+  // The noise floor around the true model, and what each robot leaves of the gap.
   diagnose::Variation model = runs.predictor.unvaried();
   model.robot = hidden;
   const Floors floors = floors_around(runs, model);
   const Differences by_report = runs.residuals - shifts_of(runs, report, diagnose::Fidelity::every_run);
   const Differences by_hidden = runs.residuals - shifts_of(runs, hidden, diagnose::Fidelity::every_run);
+
+  // Each stage by itself; then all stages together, which keep their own kinds of channels.
   ShrinksOfRuns result;
   Squares together;
   for (std::size_t s = 0; s < kEachChannelOnce.size(); ++s) {

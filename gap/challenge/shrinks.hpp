@@ -1,4 +1,4 @@
-// How far the gap of runs shrinks with what a report found, beside how far it shrinks with what was hidden.
+// Measures how far the gap of runs shrinks with the findings of a report and with the hidden effects.
 #pragma once
 
 #include <array>
@@ -18,15 +18,15 @@ struct Shrinks {
 
 struct ShrinksOfRuns {
   std::array<Shrinks, kEachChannelOnce.size()> of_stage;  // each in its own replay
-  Shrinks together;                                       // each kind of channels of each stage by its own gap
+  Shrinks together;                                       // each kind of channels of each stage weighted by its own gap
 };
 
-// Of all runs of a dataset, by the diagnosis' own simulation, floor and measure (gap_size.hpp); the floor is that of
-// the model with the hidden effects. Deterministic, on any number of threads. Throws as observe() does.
+// Measures all runs of a dataset by the diagnosis' own simulation, floor and measure (gap_size.hpp); the floor is that
+// of the model with the hidden effects. Deterministic, on any number of threads. Throws as observe() does.
 ShrinksOfRuns shrinks_on(const std::filesystem::path& dataset, const physics::RobotDescription& report,
                          const physics::RobotDescription& hidden, unsigned threads);
 
-// Of one case; nothing where it was not measured.
+// The shrinks of one case; empty if not measured.
 struct CaseShrinks {
   std::vector<Shrinks>
       heldout;  // of each stage in which the report names something; `report` is its figure, of held-out runs

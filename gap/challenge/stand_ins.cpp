@@ -10,12 +10,12 @@ struct StandIn {
   std::string_view effect, other;
 };
 constexpr StandIn kStandIns[] = {
-    // two small first-order lags in a row lag like one of their sum
+    // two small first-order lags in series act like one of their sum
     {"drive_lag", "drive.time_constant_s"},
-    // the effect is of the flippers' belts too, but these are off the ground most of the time
+    // the effect also acts on the flippers' belts, but these are off the ground most of the time
     {"friction_along", "track.friction_along"},
     {"friction_across", "track.friction_across"},
-    // a pose that is reported late has a clock that is behind, for all that a log shows
+    // in a log, a pose reported late cannot be distinguished from a clock that is behind
     {"tracking_delay", "clock_offset"},
     {"clock_offset", "tracking_delay"},
 };

@@ -1,6 +1,6 @@
-// Which names a diagnosis may not have either, where a challenge withholds an effect: those that do the same, so nearly
-// that no runs tell them apart. What does exactly the same the diagnosis leaves out by itself (Candidate::same_as).
-// Used by the challenge alone: a diagnosis with both says which ones it cannot tell apart.
+// The names that a diagnosis must lack, too, if a challenge withholds an effect: those of candidates so similar that no
+// runs tell them apart. Candidates that are exactly the same the diagnosis leaves out by itself (Candidate::same_as).
+// Used by the challenge only: a diagnosis with both reports that it cannot tell them apart.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -14,19 +14,19 @@
 
 namespace kenaf::gap::challenge {
 
-// Names of candidates, for --without: what is withheld in a case, and what stands in for it. Empty in all other strata.
+// Returns names of candidates for --without: the withheld ones of a case and their stand-ins. Empty in other strata.
 std::vector<std::string> withheld_names(const CasePlan& plan);
 
-// The numbers of the description that do what this effect does, or nearly: a background has none of them moved, as the
-// value of the effect would not be the hidden one then.
+// Returns the numbers of the description that do the same as this effect, or nearly. A background does not move them,
+// because the effect's value would then not be the hidden one.
 std::vector<std::string> numbers_like(std::string_view effect);
 
-// Of the challenged robot's description.
+// Returns the numbers of the challenged robot's description.
 const std::vector<candidates::Candidate>& challenged_numbers();
-// The numbers of the description that no effect does the same as, or nearly: what withheld_number hides.
+// Returns those that no effect resembles: withheld_number hides one of them.
 std::vector<std::string> numbers_like_nothing_else();
 
-// An effect of the catalogue where that does the same as the named number of the description; else the name itself.
+// Returns the effect of the catalogue that does the same as the named number of the description; otherwise the name.
 std::string same_effect(const std::string& name);
 
 }  // namespace kenaf::gap::challenge

@@ -1,4 +1,4 @@
-// A folder that is gone when it is no longer needed.
+// A temporary folder that removes itself.
 #pragma once
 
 #include <filesystem>
@@ -6,7 +6,7 @@
 namespace kenaf::gap::challenge {
 
 struct TemporaryFolder {
-  TemporaryFolder();  // throws std::runtime_error where none can be made
+  TemporaryFolder();  // throws std::runtime_error if it cannot be created
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;

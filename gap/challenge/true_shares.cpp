@@ -24,6 +24,7 @@ class StageGap {
       : runs_(runs), passage_(passage), features_(runs.features.of(passage)) {
     for (std::size_t r = 0; r < features_.size(); ++r)
       residuals_.push_back(features_[r].measured - runs.predictor.nominal(passage)[r]);
+    // The floor, the gap before, and what remains of it with the true model, weighted by kind of channel.
     if (!is_measured()) return;
     diagnose::Variation model = runs_.predictor.unvaried();
     model.robot = truth;
@@ -47,7 +48,7 @@ class StageGap {
   double explained_by(const physics::RobotDescription& robot) {
     return explained(difference(residuals_, shift(robot)));
   }
-  // Whether anybody could see what these two do differently.
+  // Whether the difference of these two robots is visible in the stage.
   bool shows(const physics::RobotDescription& a, const physics::RobotDescription& b) {
     return floor_.rms(difference(shift(a), shift(b))) >= diagnose::DecisionSettings().negligible;
   }
@@ -82,6 +83,7 @@ void set_true_shares(CasePlan& plan, const std::filesystem::path& dataset, unsig
   ComparedRuns runs(dataset, jobs, stop);
   const physics::RobotDescription truth = hidden_robot_in_model(plan);
   for (HiddenEffect& hidden : plan.effects) hidden.shares.clear();
+  // share = explained by all effects - explained by the others
   for (const diagnose::Passage passage : diagnose::kPassages) {
     StageGap gap(runs, passage, truth);
     if (!gap.is_measured()) continue;

@@ -1,4 +1,5 @@
-// kenaf-gap challenge: cases with something hidden in them, sealed, and diagnosed by processes that cannot know it.
+// kenaf-gap challenge: makes and seals cases with hidden effects, and has them diagnosed by processes that cannot know
+// these.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/prctl.h>
@@ -40,7 +41,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMostCases = 10000;
-constexpr double kMakingShare = 0.3, kMakingAgainShare = 0.03;  // of the time, for the time left
+constexpr double kMakingShare = 0.3, kMakingAgainShare = 0.03;  // of the total time, to estimate the time left
 
 struct Options {
   std::string out;
@@ -54,7 +55,7 @@ struct Options {
     if (!engine.empty()) return challenge::challenge_kind_of(engine);
     return imperfect ? challenge::ChallengeKind::imperfect : challenge::ChallengeKind::exact;
   }
-  // As on the command line.
+  // The option on the command line that gives this kind.
   std::string_view kind_option() const { return option_of(kind()); }
   static std::string_view option_of(challenge::ChallengeKind kind) {
     constexpr std::string_view kOptions[] = {"", " --imperfect", " --engine mujoco", " --engine ode"};
@@ -69,7 +70,7 @@ std::uint64_t seed_from_system() {
   return seed;
 }
 
-// Also one that was interrupted before its cases were sealed.
+// Whether the folder holds a challenge, also one that was interrupted before its cases were sealed.
 bool is_challenge(const fs::path& folder) {
   return fs::exists(folder / "commitment.txt") || fs::exists(folder / "cases.part");
 }
@@ -87,7 +88,7 @@ void check_folder(const fs::path& folder, bool seed_given) {
 class Teller {
  public:
   explicit Teller(std::size_t cases) : cases_(static_cast<double>(cases)) {}
-  // `before`: by who was here before, as with diagnosed().
+  // `before`: by an earlier, interrupted program; also in diagnosed().
   void made(bool before) {
     const std::lock_guard lock(mutex_);
     ++made_;
@@ -119,12 +120,13 @@ class Teller {
   double cases_, made_ = 0, diagnosed_ = 0;
 };
 
-// The data of all cases, but those that were made before; returns their key.
+// Makes the data of all cases that were not made before; returns the key.
 challenge::ChallengeKey make_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller,
                                    const std::atomic<bool>& stop) {
   challenge::ChallengeKey key{seed, {}, options.kind()};
   for (challenge::CasePlan& plan : challenge::plan_challenge(options.cases, seed, key.kind))
     key.cases.push_back({std::move(plan), {}});
+  // A case whose key and data are complete is kept; any other is made from scratch.
   for_each_job(key.cases.size(), options.jobs, [&](std::size_t i) {
     if (stop) throw diagnose::Stopped();
     challenge::SealedCase& sealed = key.cases[i];
@@ -144,7 +146,7 @@ challenge::ChallengeKey make_cases(const Options& options, std::uint64_t seed, c
   return key;
 }
 
-// Of a folder of cases, all that belongs to none.
+// Removes everything from a folder of cases that belongs to none.
 void remove_all_but_cases(const fs::path& folder, const challenge::ChallengeKey& key) {
   std::vector<fs::path> others;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
@@ -154,7 +156,7 @@ void remove_all_but_cases(const fs::path& folder, const challenge::ChallengeKey&
   for (const fs::path& other : others) fs::remove_all(other);
 }
 
-// Cases that somebody was making with another seed or number are not thrown away for a slip of the finger.
+// Throws if the folder holds cases of another seed or number, which must not be lost by a typing error.
 void check_same_cases(const fs::path& folder, const Options& options, std::uint64_t seed) {
   bool any = false;
   for (const challenge::CasePlan& plan : challenge::plan_challenge(options.cases, seed, options.kind())) {
@@ -167,8 +169,7 @@ void check_same_cases(const fs::path& folder, const Options& options, std::uint6
         folder.string()));
 }
 
-// Cases and commitment; those that are there already are kept, and of a sealed challenge the others are made from its
-// key.
+// Makes cases and commitment. Existing cases are kept; missing ones of a sealed challenge are made from its key.
 challenge::ChallengeKey seal_cases(const Options& options, std::uint64_t seed, const fs::path& folder, Teller& teller,
                                    const std::atomic<bool>& stop) {
   if (auto key = challenge::sealed_key(folder, seed)) {
@@ -184,14 +185,19 @@ challenge::ChallengeKey seal_cases(const Options& options, std::uint64_t seed, c
     teller.all_were_made();
     return *std::move(key);
   }
+
   if (challenge::is_sealed_by_another(folder, seed))
     throw std::runtime_error(
         fmt::format("{}: is sealed with another --seed; give that one, or another folder", folder.string()));
+
+  // Makes the cases in a folder that gets its final name only when they are sealed.
   const fs::path part = folder / "cases.part";
   fs::create_directories(part);
   check_same_cases(part, options, seed);
   challenge::ChallengeKey key = make_cases(options, seed, part, teller, stop);
   remove_all_but_cases(part, key);
+
+  // A commitment that exists already must be that of these cases.
   const std::string text = challenge::key_text(key), commitment = challenge::commitment_text(text);
   if (fs::exists(folder / "commitment.txt") && runs::read_whole_file(folder / "commitment.txt") != commitment) {
     fs::remove_all(part);
@@ -200,7 +206,7 @@ challenge::ChallengeKey seal_cases(const Options& options, std::uint64_t seed, c
                     "numbers would",
                     folder.string(), options.cases, seed));
   }
-  // before "cases.part" goes, by which the folder is known for a challenge till then
+  // Written before "cases.part" goes, which marks the folder as a challenge until then.
   runs::write_whole_file(folder / "commitment.txt", commitment);
   runs::write_whole_file(folder / "key.enciphered", challenge::enciphered(text, seed));
   fs::remove_all(folder / "cases");
@@ -211,16 +217,17 @@ challenge::ChallengeKey seal_cases(const Options& options, std::uint64_t seed, c
 bool is_diagnosed(const challenge::CaseToDiagnose& one) try {
   return challenge::read_report(one.report / "report.json").has_value();
 } catch (const std::exception&) {
-  return false;  // what is there is damaged
+  return false;  // damaged
 }
 
-// Returns how many cases could be diagnosed.
+// Makes, seals and diagnoses the cases; returns how many could be diagnosed.
 std::size_t run(const Options& options, std::uint64_t seed) {
   const std::atomic<bool>& stop = interruption();
   const fs::path folder = fs::absolute(options.out).lexically_normal();
   Teller teller(options.cases);
   const challenge::ChallengeKey key = seal_cases(options, seed, folder, teller, stop);
 
+  // Cases without a valid report are left to diagnose; each is told only what it may know.
   std::vector<challenge::CaseToDiagnose> left;
   std::vector<std::string> names;
   for (const challenge::SealedCase& sealed : key.cases) {
@@ -239,6 +246,8 @@ std::size_t run(const Options& options, std::uint64_t seed) {
       names.push_back(plan.name);
     }
   }
+
+  // Diagnoses them; a process that succeeds must also have left a valid report.
   if (!challenge::can_confine())
     std::fputs("this kernel has no Landlock: the diagnosis has no key, but could read files beside its case\n", stderr);
   std::size_t diagnosed = key.cases.size() - left.size();
@@ -247,6 +256,8 @@ std::size_t run(const Options& options, std::uint64_t seed) {
     teller.diagnosed(names[i], could, false);
     diagnosed += could ? 1 : 0;
   });
+
+  // Only now the key is published.
   if (stop) throw diagnose::Stopped();
   if (diagnosed == 0)
     throw std::runtime_error(
@@ -283,13 +294,16 @@ void add_challenge_command(CLI::App& program) {
   command->add_option("--jobs", options->jobs, "cases at once; 0: one a core")
       ->check(whole_number(kMostJobs))
       ->capture_default_str();
+
   command->callback([options] {
     if (options->out.empty()) throw CLI::RequiredError("--out");
     if (options->cases == 0) throw CLI::ValidationError("--cases", "0 cases are no challenge");
+
     check_folder(options->out, options->seed.has_value());
     ::prctl(PR_SET_DUMPABLE, 0);  // no other process of this user may read the key out of this one's memory
+
     const std::uint64_t seed = options->seed ? *options->seed : seed_from_system();
-    // Told only where it ends early: without the seed nobody could go on.
+    // The seed is revealed only if the program ends early: without it nobody could resume the challenge.
     const auto goes_on = [&](const std::string& why) {
       return std::runtime_error(fmt::format("{}; `kenaf-gap challenge --out {} --cases {} --seed {}{}` goes on with it",
                                             why, options->out, options->cases, seed, options->kind_option()));

@@ -1,4 +1,4 @@
-// kenaf-gap check: is a dataset what it says it is?
+// kenaf-gap check: checks that a dataset is plausible.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -22,10 +22,12 @@ void print(const std::vector<logs::Finding>& findings) {
                 logs::in_words(finding).c_str());
 }
 
-// One run in memory at a time, however many there are. Throws where something is refused.
+// Checks a dataset with one run in memory at a time. Throws if something is refused.
 void check(const std::filesystem::path& folder) {
   const runs::Dataset dataset = runs::read_dataset(folder);
   const physics::RobotDescription robot = physics::load_robot(runs::resolve_beside(folder, dataset.robot, ".toml"));
+
+  // Findings are printed and counted as they come.
   std::vector<std::vector<std::string>> columns;
   std::size_t refused = 0, warned = 0;
   logs::KnownRuns known_runs;
@@ -36,6 +38,8 @@ void check(const std::filesystem::path& folder) {
     for (const logs::Finding& finding : findings)
       ++(finding.severity == logs::Finding::Severity::refuse ? refused : warned);
   };
+
+  // Each run by itself; copies even of runs with a fault.
   for (const runs::DatasetRun& entry : dataset.runs) {
     const runs::Run run = runs::read_run(folder / entry.file);
     columns.push_back(run.columns);
@@ -46,9 +50,12 @@ void check(const std::filesystem::path& folder) {
     take(found);
     lifted.look_at(run, robot.track_gauge_m());
   }
+
+  // Findings over all runs.
   take(held.findings());
   if (const auto finding = lifted.finding()) take({*finding});
   take(logs::check_noise(dataset, columns));
+
   const std::string counts =
       fmt::format("{} runs; findings: {} refused, {} warned of", dataset.runs.size(), refused, warned);
   if (refused > 0) throw std::runtime_error(fmt::format("{}: {}", folder.string(), counts));

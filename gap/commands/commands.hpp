@@ -1,5 +1,5 @@
-// The subcommands of kenaf-gap. Each declares itself, its options and what it does; what it does throws where the input
-// is bad, in words for the user, which the program prints before it ends with status 2.
+// The subcommands of kenaf-gap. Each function declares its command, options and action. The action throws if the input
+// is invalid, with words for the user, which the program prints before it ends with status 2.
 #pragma once
 
 #include <stdexcept>
@@ -14,7 +14,7 @@ struct Ranks;
 
 namespace kenaf::gap::commands {
 
-// Everything was done as asked, but runs are no use: status 1.
+// Everything was done as asked, but some runs are useless: status 1.
 struct RunsWentWrong : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -23,7 +23,7 @@ void add_challenge_command(CLI::App& program);
 void add_check_command(CLI::App& program);
 void add_compare_command(CLI::App& program);
 void add_dataset_command(CLI::App& program);
-// `ranks`: processes that do it together; the first one writes and prints.
+// `ranks`: processes that share the work; the first one writes and prints.
 void add_diagnose_command(CLI::App& program, const Ranks& ranks);
 void add_effects_command(CLI::App& program);
 void add_manoeuvres_command(CLI::App& program);

@@ -1,4 +1,4 @@
-// kenaf-gap compare: how far two datasets are apart, run by run.
+// kenaf-gap compare: compares two datasets run by run.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -16,6 +16,7 @@ void add_compare_command(CLI::App& program) {
     std::string real, sim, out;
     compare::CompareOptions compare;
   };
+  // Shared with the callback, which runs after this function has returned.
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       program.add_subcommand("compare", "aligns two datasets run by run and reports the errors per frame");
@@ -35,6 +36,7 @@ void add_compare_command(CLI::App& program) {
                    "match no frames that are farther than this from an even course of time")
       ->check(number_in(1e-3, 1e9))
       ->type_name("SECONDS");
+
   command->callback([options] {
     for (const auto& [name, text] :
          {std::pair{"REAL", &options->real}, {"SIM", &options->sim}, {"--out", &options->out}})

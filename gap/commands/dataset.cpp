@@ -1,4 +1,4 @@
-// kenaf-gap dataset: a dataset from recorded runs.
+// kenaf-gap dataset: makes a dataset of recorded runs.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,7 +11,7 @@
 namespace kenaf::gap::commands {
 namespace {
 
-// "FILE", or "NAME=FILE" with a manoeuvre of its own.
+// Parses "FILE", or "NAME=FILE" with a manoeuvre of its own. A file whose name has a '=' is a file.
 datasets::RecordedRun run_from(const std::string& text, const std::string& manoeuvre) {
   const std::size_t equals = text.find('=');
   if (equals == text.npos || std::filesystem::exists(text)) {
@@ -31,6 +31,7 @@ void add_dataset_command(CLI::App& program) {
     std::string manoeuvre;
     datasets::CollectRequest request;
   };
+  // Shared with the callback, which runs after this function has returned.
   const auto options = std::make_shared<Options>();
   datasets::CollectRequest& request = options->request;
   CLI::App* command = program.add_subcommand("dataset", "makes a dataset of recorded runs, or adds them to one");
@@ -46,10 +47,13 @@ void add_dataset_command(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--description", request.description, "free text, for a new dataset");
   command->add_flag("--unchecked", request.unchecked, "take runs too that the checks refuse");
+
   command->callback([options] {
     datasets::CollectRequest& asked = options->request;
     if (options->runs.empty()) throw CLI::RequiredError("RUN");
     if (asked.out.empty()) throw CLI::RequiredError("--out");
+
+    // Collects the runs, prints all findings, and fails if one refuses a run.
     asked.runs.clear();
     for (const std::string& text : options->runs) asked.runs.push_back(run_from(text, options->manoeuvre));
     const datasets::CollectedDataset result = datasets::collect_dataset(asked);
@@ -58,6 +62,7 @@ void add_dataset_command(CLI::App& program) {
                    logs::in_words(finding).c_str());
     if (result.refused)
       throw std::runtime_error("nothing was written; where a run is right all the same, give --unchecked");
+
     for (std::size_t i = 0; i < result.runs.size(); ++i)
       std::printf("%s: %s, from %s\n", result.runs[i].file.c_str(), result.runs[i].manoeuvre.c_str(),
                   asked.runs[i].file.c_str());

@@ -1,4 +1,4 @@
-// kenaf-gap diagnose: where simulation and runs part, which effect causes it, how far the gap shrinks with it.
+// kenaf-gap diagnose: where simulation and runs differ, which effect causes it, how far the gap shrinks with it.
 #include <CLI/CLI.hpp>
 #include <cstdint>
 #include <cstdio>
@@ -19,6 +19,7 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
     std::string dataset, out;
     diagnose::DiagnosisOptions diagnosis;
   };
+  // Shared with the callback, which runs after this function has returned.
   const auto options = std::make_shared<Options>();
   diagnose::DiagnosisOptions& diagnosis = options->diagnosis;
   diagnosis.ranks = ranks;
@@ -49,9 +50,12 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
   command->add_option("--seed", diagnosis.seed, "of resampling")
       ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str();
+
   command->callback([options] {
     for (const auto& [name, text] : {std::pair{"DATASET", &options->dataset}, {"--out", &options->out}})
       if (text->empty()) throw CLI::RequiredError(name);
+
+    // Only the first of several processes reports. It checks where it will write before anything long starts.
     options->diagnosis.stop = &interruption();
     const bool reports = options->diagnosis.ranks.rank == 0;
     if (reports)
@@ -64,6 +68,7 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
       if (!options->diagnosis.against.empty())
         diagnose::check_is_other_folder(options->out, options->diagnosis.against);
     }
+
     const diagnose::Diagnosis result = diagnose::diagnose_dataset(options->dataset, options->diagnosis);
     if (!reports) return;
     if (!result.interrupted.empty()) clear_progress_line();

@@ -1,4 +1,4 @@
-// kenaf-gap effects: the catalogue of effects, or what a diagnosis of one robot looks for.
+// kenaf-gap effects: prints the catalogue of effects, or what a diagnosis of one robot looks for.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -93,7 +93,7 @@ void add_effects_command(CLI::App& program) {
     if (robot.empty()) {
       text = json ? as_json() : as_text();
     } else {
-      const bool has_obstacles = true;  // whatever a world shows
+      const bool has_obstacles = true;  // as in a world that has them
       const std::vector<candidates::Candidate> candidates =
           candidates::all_candidates(physics::load_robot(robot), has_obstacles);
       text = json ? as_json(candidates) : as_text(candidates, robot);

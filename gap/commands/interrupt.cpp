@@ -5,7 +5,7 @@
 namespace kenaf::gap::commands {
 namespace {
 
-std::atomic<bool> interrupted = false;  // what a signal handler may write is global
+std::atomic<bool> interrupted = false;  // global, as signal handlers need it
 
 void interrupt(int signal) {
   interrupted = true;

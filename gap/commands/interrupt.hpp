@@ -1,12 +1,12 @@
-// Ctrl-C while something long runs: it shall end by itself, with what it has.
+// Ctrl-C during a long command, which is to end by itself with the results so far.
 #pragma once
 
 #include <atomic>
 
 namespace kenaf::gap::commands {
 
-// From now on a first SIGINT, SIGTERM or SIGHUP sets this; a second one ends the program at once. Thread safety: call
-// it from one.
+// Returns a flag that a first SIGINT, SIGTERM or SIGHUP sets from now on; a second one ends the program at once. Call
+// from one thread only.
 const std::atomic<bool>& interruption();
 
 }  // namespace kenaf::gap::commands

@@ -1,4 +1,4 @@
-// kenaf-gap manoeuvres: what ships to be driven.
+// kenaf-gap manoeuvres: lists the shipped manoeuvres.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

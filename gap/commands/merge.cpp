@@ -1,4 +1,4 @@
-// kenaf-gap merge: motion capture's pose into a run that the robot recorded.
+// kenaf-gap merge: merges the pose from motion capture into a run that the robot recorded.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -45,6 +45,7 @@ void add_merge_command(CLI::App& program) {
     logs::MergeOptions merge;
     bool force = false;
   };
+  // Shared with the callback, which runs after this function has returned.
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
       "merge", "puts motion capture's pose into a recorded run and says how far the clocks are apart");
@@ -72,13 +73,17 @@ void add_merge_command(CLI::App& program) {
       ->check(number_in(-1e12, 1e12))
       ->type_name("SECONDS");
   command->add_flag("--force", options->force, "replace the file to write where it is there");
+
   command->callback([options] {
+    // Required options, and an output file that must not exist.
     for (const auto& [name, text] :
          {std::pair{"RUN", &options->run}, {"MOCAP", &options->capture}, {"--out", &options->out}})
       if (text->empty()) throw CLI::RequiredError(name);
     if (!options->force && std::filesystem::exists(options->out))
       throw std::runtime_error(
           fmt::format("{}: is there already; give another file, or --force to replace it", options->out));
+
+    // Merges; errors get the names of the files, which the merge does not know.
     const runs::Run run = runs::read_run(options->run);
     const logs::LengthUnit unit = options->units == "mm" ? logs::LengthUnit::millimetres : logs::LengthUnit::metres;
     const logs::MotionCapture capture =
@@ -95,6 +100,7 @@ void add_merge_command(CLI::App& program) {
         throw std::runtime_error(fmt::format("{}: {}", options->run, error.what()));
       }
     }();
+
     runs::write_run(options->out, merged.run);
     print(merged);
   });

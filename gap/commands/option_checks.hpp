@@ -1,5 +1,5 @@
-// Checks of options' texts, for CLI::Option::check(), where CLI11 would take what is none: "-1" wraps around to a large
-// unsigned number, "010" is eight, "nan" lies in every range.
+// Checks of option texts, for CLI::Option::check(), that refuse what CLI11 accepts: it wraps "-1" around to a large
+// unsigned number, reads "010" as eight and finds "nan" in every range.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace kenaf::gap::commands {
 
-constexpr std::uint64_t kMostJobs = 1000;  // that an option --jobs takes
+constexpr std::uint64_t kMostJobs = 1000;  // largest value of an option --jobs
 
-// Gives what is wrong with a text, in words; empty: nothing.
+// Returns what is wrong with a text, in words; empty: nothing.
 using OptionCheck = std::function<std::string(const std::string&)>;
 
 OptionCheck whole_number(std::uint64_t max);  // from 0

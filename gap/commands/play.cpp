@@ -1,4 +1,4 @@
-// kenaf-gap play: recorded runs beside their simulations, in a browser.
+// kenaf-gap play: shows recorded runs beside their simulations in a browser.
 #include <pthread.h>
 #include <signal.h>
 
@@ -14,7 +14,7 @@
 namespace kenaf::gap::commands {
 namespace {
 
-// Of this thread and those that it starts: none is interrupted, and one waits.
+// Blocks the signals in this thread and those that it starts: none is interrupted, and one waits for them.
 sigset_t block_signals_to_end() {
   sigset_t signals;
   sigemptyset(&signals);
@@ -27,7 +27,7 @@ sigset_t block_signals_to_end() {
 void wait_for(const sigset_t& signals) {
   int signal = 0;
   sigwait(&signals, &signal);
-  // a second one ends the program at once, whatever is still being simulated
+  // A second signal ends the program at once, whatever is still being simulated.
   pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
 }
 
@@ -38,6 +38,7 @@ void add_play_command(CLI::App& program) {
     playback::PlaybackRequest request;
     std::string view = "127.0.0.1:8080", token;
   };
+  // Shared with the callback, which runs after this function has returned.
   const auto options = std::make_shared<Options>();
   playback::PlaybackRequest& request = options->request;
   CLI::App* command = program.add_subcommand("play", "plays recorded runs in a browser, beside their simulations");
@@ -53,13 +54,17 @@ void add_play_command(CLI::App& program) {
   command
       ->add_option("--view-token", options->token, "what a browser must know; where it is not on loopback one is made")
       ->type_name("TOKEN");
+
   command->callback([options] {
     if (options->request.runs.empty()) throw CLI::RequiredError("RUNS");
+
     live::ViewOptions view = live::parse_view_options(options->view);
     if (!view.on) throw std::invalid_argument("--view off: there is nothing to do; give ADDRESS:PORT");
     view.token = live::parse_view_token(options->token);
     playback::Playback playback = playback::load_playback(options->request);
     for (const std::string& note : playback.notes) std::fprintf(stderr, "kenaf-gap: %s\n", note.c_str());
+
+    // Signals are blocked before the server starts its threads, which inherit that.
     const sigset_t signals = block_signals_to_end();
     const playback::PlaybackServer server(std::move(playback), view);
     std::printf("%s\nControl-C ends it\n", server.url().c_str());

@@ -9,7 +9,7 @@ namespace kenaf::gap::commands {
 namespace {
 
 constexpr auto kBetween = std::chrono::milliseconds(300);
-constexpr double kToTell = 0.05;  // of what there was to do
+constexpr double kToTell = 0.05;  // least share of the work for an estimate
 
 std::string in_words(double seconds) {
   if (seconds < 120) return fmt::format("{:.0f} s", seconds);

@@ -1,4 +1,4 @@
-// How far a long command is, on standard error: one line that is written over a few times a second, on a terminal only.
+// The progress of a long command on standard error: one line, rewritten a few times a second, on a terminal only.
 #pragma once
 
 #include <chrono>
@@ -9,9 +9,9 @@ namespace kenaf::gap::commands {
 
 class ProgressLine {
  public:
-  // `done`: share of everything, 0 to 1; at 1 the line goes away.
+  // `done`: share of the whole, 0 to 1; at 1 the line is erased.
   void show(std::string_view doing, double done);
-  // That much was there already, and took none of the time by which the time left is reckoned.
+  // Declares the share `done` as done before, so that the estimate of the time left ignores it.
   void skip(double done);
   bool on_terminal() const { return terminal_; }
 
@@ -24,10 +24,10 @@ class ProgressLine {
   double skipped_ = 0;
 };
 
-// Takes away a line that is not finished, before something else is said.
+// Erases an unfinished line before other output.
 void clear_progress_line();
 
-// ", about 5 min left" after `passed_s` in which it came from `from` to `done`; empty where that is too little to tell.
+// Returns ", about 5 min left" after progress from `from` to `done` in `passed_s`; empty if that is too little to tell.
 std::string time_left(double from, double done, double passed_s);
 
 }  // namespace kenaf::gap::commands

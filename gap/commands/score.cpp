@@ -1,4 +1,4 @@
-// kenaf-gap score: the reports of a challenge beside its key.
+// kenaf-gap score: compares the reports of a challenge with its key.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,13 +25,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDataShare = 0.2;  // of the time, for the time left, where no data are there
+constexpr double kDataShare = 0.2;  // of the total time if all data are missing, to estimate the time left
 
-// Where a report has a corrected robot, and the truth is in the catalogue, so that both can be simulated.
+// Measures a case whose report has a corrected robot and whose hidden effects are in the catalogue, so that both can be
+// simulated; empty for others.
 challenge::CaseShrinks measure_shrinks(const fs::path& folder, const challenge::ScoredCase& scored) {
   const challenge::CasePlan& plan = scored.sealed.plan;
   const fs::path file = challenge::report_folder(folder, plan.name) / "robot.toml";
-  // beside a background the true effects are not all of the truth: the score has their shares of the gap instead
+  // With a background the hidden effects are not the whole truth; the score has their shares of the gap instead.
   if (challenge::judge(plan, scored.report).hidden.empty() || plan.is_imperfect() || !scored.report ||
       !fs::exists(file))
     return {};
@@ -40,7 +41,7 @@ challenge::CaseShrinks measure_shrinks(const fs::path& folder, const challenge::
   challenge::CaseShrinks shrinks;
   const challenge::ShrinksOfRuns own =
       challenge::shrinks_on(challenge::case_folder(folder, plan.name), report, hidden, 1);
-  // a report of version 1 has one figure for all stages together, measured otherwise
+  // A report of version 1 has one figure for all stages together, measured in another way.
   for (std::size_t s = 0; s < challenge::kEachChannelOnce.size(); ++s)
     for (const challenge::ReadStage& stage : scored.report->stages) {
       if (stage.stage != diagnose::passage_name(challenge::kEachChannelOnce[s])) continue;
@@ -62,6 +63,7 @@ void add_score_command(CLI::App& program) {
     bool shrinks = true;
     unsigned jobs = 0;
   };
+  // Shared with the callback, which runs after this function has returned.
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("score", "compares the reports of a challenge with its key");
   command->add_option("DIR", options->folder, "the folder of a challenge that is finished; required")->type_name("");
@@ -69,11 +71,16 @@ void add_score_command(CLI::App& program) {
   command->add_option("--jobs", options->jobs, "threads; 0: one a core")
       ->check(whole_number(kMostJobs))
       ->capture_default_str();
+
   command->callback([options] {
     if (options->folder.empty()) throw CLI::RequiredError("DIR");
+
+    // Checks key and folder before anything is calculated.
     const fs::path folder = options->folder;
     challenge::ChallengeKey key = challenge::open_key(folder);
     datasets::check_can_write(folder);
+
+    // The shrinks need the cases' data; missing ones are made again.
     ProgressLine line;
     std::mutex mutex;
     double done = 0;
@@ -82,6 +89,8 @@ void add_score_command(CLI::App& program) {
         line.show("making data again", kDataShare * static_cast<double>(made) / static_cast<double>(missing));
       });
     line.skip(kDataShare);
+
+    // Reads the reports and measures their shrinks.
     std::vector<challenge::ScoredCase> cases;
     for (challenge::SealedCase& sealed : key.cases) {
       std::optional<challenge::ReadReport> report =
@@ -95,6 +104,7 @@ void add_score_command(CLI::App& program) {
         line.show("simulating what was named, and what was hidden",
                   kDataShare + (1 - kDataShare) * ++done / static_cast<double>(cases.size()));
       });
+
     const std::string text = challenge::score_markdown(cases);
     std::fputs(text.c_str(), stdout);
     runs::write_whole_file(folder / "score.json", challenge::score_json(cases));

@@ -1,4 +1,4 @@
-// kenaf-gap simulate: runs of the simulator, as a dataset.
+// kenaf-gap simulate: simulates runs and writes them as a dataset.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint64_t kMostRepeats = 100000;
 
-// Throws RunsWentWrong where a run has a fault.
+// Throws RunsWentWrong if a run has a fault.
 void print(const datasets::SimulatedDataset& dataset) {
   std::size_t faults = 0;
   for (const std::string& warning : dataset.warnings)
@@ -48,6 +48,8 @@ void add_simulate_command(CLI::App& program) {
     datasets::SimulationRequest request;
     std::vector<std::string> physics;
   };
+  // Shared with the callback, which runs after this function has returned. Options that may be repeated take one word
+  // each time.
   const auto options = std::make_shared<Options>();
   datasets::SimulationRequest& request = options->request;
   const auto one_word_each = [](CLI::Option* option, const char* type) {
@@ -86,6 +88,7 @@ void add_simulate_command(CLI::App& program) {
   command->add_option("--out", request.out, "folder of the dataset; must be empty or not there; required")
       ->type_name("DIR");
   command->add_flag("--force", request.force, "write into a folder that is not empty; replaces files of the same name");
+
   command->callback([options] {
     if (options->request.manoeuvres.empty()) throw CLI::RequiredError("--manoeuvre");
     if (options->request.out.empty()) throw CLI::RequiredError("--out");

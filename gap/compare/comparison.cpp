@@ -72,6 +72,8 @@ Comparison compare_datasets(const fs::path& real_folder, const fs::path& sim_fol
     const runs::DatasetRun& run = (is_real ? comparison.real : comparison.sim).runs[index];
     comparison.left_out.push_back({is_real ? "real" : "sim", run.file, run.manoeuvre, std::move(why)});
   };
+
+  // Runs are paired by manoeuvre and repeat. Where one of a pair cannot be compared, both are left out with a reason.
   const RunPairs pairs = pair_runs(comparison.real, comparison.sim);
   for (const RunPair& pair : pairs.pairs) {
     const runs::DatasetRun &real = comparison.real.runs[pair.real], &sim = comparison.sim.runs[pair.sim];
@@ -84,6 +86,8 @@ Comparison compare_datasets(const fs::path& real_folder, const fs::path& sim_fol
       leave_out(false, pair.sim, why(sim_frames, real.file));
       continue;
     }
+
+    // The simulated run is moved to the real one's start, then matched frame by frame.
     ComparedRun run{real.manoeuvre,
                     pair.repeat,
                     real.file,
@@ -99,6 +103,7 @@ Comparison compare_datasets(const fs::path& real_folder, const fs::path& sim_fol
     match(run, options);
     comparison.runs.push_back(std::move(run));
   }
+
   for (const LeftOutRun& run : pairs.left_out) leave_out(run.side == LeftOutRun::Side::real, run.index, run.why);
   if (comparison.runs.empty()) throw std::runtime_error(nothing_left(comparison));
   return comparison;

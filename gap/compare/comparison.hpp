@@ -1,4 +1,4 @@
-// Two datasets compared run by run.
+// Compares two datasets run by run.
 //
 // Thread safety: values and a function without state.
 #pragma once
@@ -18,7 +18,7 @@ namespace kenaf::gap::compare {
 struct CompareOptions {
   bool align_start = true;       // move each simulated run to the start of its real one
   double start_s = 0;            // the start is the mean over this time; 0: the first frame
-  std::optional<double> band_s;  // how far from an even course of time frames may be matched, in simulated time
+  std::optional<double> band_s;  // how far matched frames may be from an even course of time, in simulated time
 };
 
 struct ComparedRun {
@@ -27,7 +27,7 @@ struct ComparedRun {
   std::string real_file, sim_file;    // as the datasets name them
   std::string real_world, sim_world;  // names or paths as load_world() takes them
   std::vector<PoseFrame> real, sim;   // sim as aligned
-  StartOffset start_offset;           // by which sim was moved; zero without CompareOptions::align_start
+  StartOffset start_offset;           // offset by which sim was moved; zero without CompareOptions::align_start
   Matching matching;
   RunErrors errors;
 };
@@ -46,22 +46,22 @@ struct Comparison {
   std::vector<LeftOut> left_out;
 };
 
-// Throws runs::RunFileError with file, line and column where a dataset or a run in it is bad, std::runtime_error where
-// nothing is left to compare or a run is too long to be matched without a band.
+// Throws runs::RunFileError with file, line and column if a dataset or one of its runs is invalid; std::runtime_error
+// if nothing is left to compare or a run is too long to be matched without a band.
 Comparison compare_datasets(const std::filesystem::path& real_folder, const std::filesystem::path& sim_folder,
                             const CompareOptions& options);
 
-// The errors of all runs of one manoeuvre taken together, every real frame counting once.
+// The errors over all runs of one manoeuvre; every real frame counts once.
 struct ManoeuvreErrors {
   std::string manoeuvre;
   std::vector<std::size_t> runs;  // indices in Comparison::runs
   ErrorSummary matched, same_time;
 };
 
-// In the order in which the manoeuvres first occur.
+// Returns the manoeuvres in the order in which they first occur.
 std::vector<ManoeuvreErrors> by_manoeuvre(const Comparison& comparison);
 
-// Of all runs.
+// Returns the errors over all runs.
 ManoeuvreErrors over_all(const Comparison& comparison);
 
 }  // namespace kenaf::gap::compare

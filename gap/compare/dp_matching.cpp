@@ -9,9 +9,9 @@ namespace kenaf::gap::compare {
 
 namespace {
 
-enum class Step : std::uint8_t { both, real, sim };  // which index grew
+enum class Step : std::uint8_t { both, real, sim };  // the index that grew
 
-// The simulated frames that one real frame is weighed against.
+// The simulated frames with which one real frame is compared.
 struct Row {
   std::size_t first, last;
   bool has(std::size_t sim) const { return first <= sim && sim <= last; }
@@ -23,7 +23,7 @@ class Window {
   Window(std::size_t real_count, std::size_t sim_count, std::optional<std::size_t> band)
       : last_sim_(sim_count - 1),
         slope_(real_count > 1 ? static_cast<double>(sim_count - 1) / static_cast<double>(real_count - 1) : 0),
-        // Rows that are one slope apart must touch; a single real frame needs them all.
+        // Rows shift by the slope from one to the next and must touch; a single real frame needs all simulated ones.
         half_width_(real_count > 1 && band ? std::max({static_cast<double>(*band), std::ceil(slope_), 1.0})
                                            : static_cast<double>(sim_count)) {}
 
@@ -55,7 +55,9 @@ Matching match_paths(std::span<const Eigen::Vector2d> real, std::span<const Eige
   constexpr double kNoWay = std::numeric_limits<double>::infinity();
   const Window window(real.size(), sim.size(), band);
 
-  // The cheapest cost of reaching a pair needs only the row before; the steps are kept to find the way back.
+  // The least cost of reaching pair (i, j) with distance d is
+  //   g(i, j) = min(g(i-1, j-1) + 2 d, g(i-1, j) + d, g(i, j-1) + d),  g(0, 0) = 2 d.
+  // It needs only the row before; the steps taken are kept for the way back.
   std::vector<Step> steps(cells);
   std::vector<std::size_t> row_begins(real.size());
   std::vector<double> before(sim.size(), kNoWay), here(sim.size(), kNoWay);
@@ -77,6 +79,7 @@ Matching match_paths(std::span<const Eigen::Vector2d> real, std::span<const Eige
     std::swap(before, here);
   }
 
+  // From the last pair the steps lead back to the first.
   Matching matching;
   matching.cost_m = before[sim.size() - 1] / static_cast<double>(real.size() + sim.size());
   std::size_t i = real.size() - 1, j = sim.size() - 1;

@@ -22,14 +22,14 @@ using plot::Point;
 using plot::Stroke;
 
 constexpr std::size_t kJoinedPairs = 60;
-// What is shown around the paths of the body's centre: the robot is about 0.5 m long, its centre 0.1 m above ground.
+// Margins around the paths of the body's centre: the robot is about 0.5 m long, its centre 0.1 m above ground.
 constexpr double kAround_m = 0.2, kBelow_m = 0.2;
-constexpr double kAside_m = 0.1;  // less than that beside a line along x is seen better in numbers
+constexpr double kAside_m = 0.1;  // smaller deviations from a line along x are clearer as numbers
 constexpr double kTimeHeight_px = 270;
 constexpr std::size_t kColumns = 900;  // of a line over time: no more detail can be seen
 const Point kBreak{std::numeric_limits<double>::quiet_NaN(), 0};
 
-// About kJoinedPairs of the matched pairs, evenly over the real run, at `x_m` and `height`.
+// Lines that join about kJoinedPairs of the matched pairs, evenly over the real run, at `x_m` and `height`.
 Line joined_pairs(const ComparedRun& run, double PoseFrame::*height) {
   Line line{{}, Ink::faint, Stroke::hair, "matched frames"};
   const std::size_t every = std::max<std::size_t>(1, run.real.size() / kJoinedPairs);
@@ -107,7 +107,7 @@ Chart path_figure(const ComparedRun& run, const physics::WorldDescription* world
   chart.title = "Paths of the body's centre in the vertical plane, to scale";
   chart.y_label = "z (m)";
   chart.include = {bounds.min() - Point(kAround_m, kBelow_m), bounds.max() + Point(kAround_m, kAround_m / 2)};
-  // The view may grow to keep its scale; the section reaches beyond whatever it grows to.
+  // The view may grow to keep its scale; the section reaches beyond it in any case.
   const double beyond_m = 10 * (1 + bounds.sizes().maxCoeff());
   const double y_m = std::isnan(run.real.front().y_m) ? 0 : run.real.front().y_m;
   if (world != nullptr)

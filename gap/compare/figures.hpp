@@ -12,11 +12,11 @@
 
 namespace kenaf::gap::compare {
 
-// To scale, with the world's section behind; `world` may be null.
+// Side view, to scale, with the world's section behind; `world` may be null.
 plot::Chart path_figure(const ComparedRun& run, const physics::WorldDescription* world, double width_px);
-// Seen from above, to scale. Nothing where the robots stay near a line along x, or y was not measured.
+// Top view, to scale. Empty if the robots stay near a line along x or y was not measured.
 std::optional<plot::Chart> plan_figure(const ComparedRun& run, double width_px);
-// The simulated pitch stands at the time of the real frame that it is matched with.
+// Draws the simulated pitch at the time of the real frame that it is matched with.
 plot::Chart pitch_figure(const ComparedRun& run, double width_px);
 plot::Chart position_error_figure(const ComparedRun& run, double width_px);
 plot::Chart angle_error_figure(const ComparedRun& run, double width_px);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// Every quantity of an error with its summary.
+// Calls `action` with each quantity of an error and its summary.
 template <typename Error, typename Action>
 void for_each_quantity(const Error& error, ErrorSummary& summary, const Action& action) {
   action(summary.position_m, error.position_m);
@@ -78,6 +78,7 @@ std::vector<double> pair_weights(const std::vector<FramePair>& pairs) {
 
 RunErrors run_errors(const std::vector<PoseFrame>& real, const std::vector<PoseFrame>& sim,
                      const std::vector<FramePair>& pairs) {
+  // Matched: a pair counts with its weight, in the summary and in the mean of its real frame.
   RunErrors errors{{}, {}, {}, {}, frame_error(real.back(), sim.back())};
   const std::vector<double> weights = pair_weights(pairs);
   errors.matched.assign(real.size(), FrameError{});
@@ -92,6 +93,8 @@ RunErrors run_errors(const std::vector<PoseFrame>& real, const std::vector<PoseF
     mean.yaw_rad += weights[k] * std::abs(error.yaw_rad);
     mean.time_s += weights[k] * error.time_s;
   }
+
+  // Same time: against the interpolated simulated pose.
   for (const PoseFrame& frame : real) {
     errors.same_time.push_back(frame_error(frame, pose_at(sim, frame.t_s)));
     errors.same_time.back().time_s = kUnknown;

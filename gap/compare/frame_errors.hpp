@@ -1,9 +1,9 @@
-// How far a simulated run is from a real one: per frame of the real run, and summed up.
+// The errors of a simulated run against a real one: per frame of the real run, and summarized.
 //
-// Two comparisons stand beside each other. *Matched*: with the simulated frames that DP matching gives; it compares
-// paths and hides delays. *Same time*: with the simulated pose at the real frame's own time; it shows them.
+// There are two comparisons. *Matched*: with the simulated frames of the DP matching; it compares paths and hides
+// delays. *Same time*: with the simulated pose at the real frame's own time; it shows delays.
 //
-// Errors are simulated less real; angles wrapped to [-pi, pi]. NaN: one of the two was not measured.
+// Errors are simulated less real; angles are wrapped to [-pi, pi]. NaN: one of the two was not measured.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -21,19 +21,19 @@ struct FrameError {
   double position_m;  // the norm of the difference of (x, z), never negative
   double y_m;
   double roll_rad, pitch_rad, yaw_rad;
-  double time_s;  // how much later the simulated frame is; NaN where they were compared at the same time
+  double time_s;  // how much later the simulated frame is; NaN if compared at the same time
 };
 
 FrameError frame_error(const PoseFrame& real, const PoseFrame& sim);
 
-// Of the sizes (absolute values) of an error. All NaN where there was none.
+// Summary of the absolute values of an error. All figures are NaN if there were none.
 class Summary {
  public:
-  // An error that is NaN is not counted.
+  // Ignores an error that is NaN.
   void add(double error, double weight = 1);
   void add(const Summary& other);
 
-  double weight() const { return weight_; }  // frames
+  double weight() const { return weight_; }  // number of frames
   double mean() const;
   double rms() const;
   double max() const;
@@ -49,18 +49,18 @@ struct ErrorSummary {
 };
 
 struct RunErrors {
-  // A frame of the real run that is in several pairs has the mean of their errors' sizes here.
-  std::vector<FrameError> matched;    // one for each real frame; sizes, but time_s with its sign
-  std::vector<FrameError> same_time;  // one for each real frame; all NaN outside of the simulated run's time
-  // Every real frame counts once: the pairs that it is in share its weight.
+  // A real frame in several pairs has the mean of their absolute errors.
+  std::vector<FrameError> matched;    // one for each real frame; absolute values, but time_s with its sign
+  std::vector<FrameError> same_time;  // one for each real frame; all NaN outside the simulated run's time
+  // Every real frame counts once: the pairs that contain it share its weight.
   ErrorSummary matched_summary, same_time_summary;
-  FrameError at_end;  // of the last pair, the two ends
+  FrameError at_end;  // between the two last frames
 };
 
 RunErrors run_errors(const std::vector<PoseFrame>& real, const std::vector<PoseFrame>& sim,
                      const std::vector<FramePair>& pairs);
 
-// For each pair the share of its real frame: one over the number of pairs that the frame is in.
+// Returns the weight of each pair: one over the number of pairs that contain its real frame.
 std::vector<double> pair_weights(const std::vector<FramePair>& pairs);
 
 }  // namespace kenaf::gap::compare

@@ -27,6 +27,9 @@ RunPairs pair_runs(const runs::Dataset& real, const runs::Dataset& sim) {
     const auto found = repeats.find(manoeuvre);
     return found == repeats.end() ? std::size_t{0} : found->second.size();
   };
+
+  // Each real run takes the simulated one of the same repeat, if there is one; then the simulated runs beyond the last
+  // real repeat are left over.
   RunPairs result;
   std::map<std::string, std::size_t> seen;
   for (std::size_t i = 0; i < real.runs.size(); ++i) {
@@ -38,6 +41,7 @@ RunPairs pair_runs(const runs::Dataset& real, const runs::Dataset& sim) {
       result.left_out.push_back({LeftOutRun::Side::real, i, why_alone(manoeuvre, "simulated", others)});
     }
   }
+
   seen.clear();
   for (std::size_t i = 0; i < sim.runs.size(); ++i) {
     const std::string& manoeuvre = sim.runs[i].manoeuvre;

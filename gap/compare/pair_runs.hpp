@@ -1,4 +1,4 @@
-// Which run of one dataset is compared with which of the other.
+// Pairs the runs of two datasets for comparison.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +25,9 @@ struct RunPairs {
   std::vector<LeftOutRun> left_out;
 };
 
-// The k-th repeat of a manoeuvre belongs to the k-th of the other dataset, in the order in which the datasets list
-// them. Runs without a manoeuvre's name count as one manoeuvre. What has no counterpart is left out, with the reason.
+// Pairs the k-th repeat of a manoeuvre with the k-th of the other dataset, in the order in which the datasets list
+// them. Runs without a manoeuvre's name count as one manoeuvre. Runs without a counterpart are left out, with the
+// reason.
 RunPairs pair_runs(const runs::Dataset& real, const runs::Dataset& sim);
 
 }  // namespace kenaf::gap::compare

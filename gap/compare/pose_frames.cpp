@@ -18,7 +18,8 @@ double between(double from, double to, double share, Kind kind) {
   return from + share * (kind == Kind::angle ? wrapped(to - from) : to - from);
 }
 
-// The values of a column at the rows of `frames`, interpolated where that row has none.
+// Sets a member of all frames from a column, interpolated if the frame's row has no value; NaN beyond its first and
+// last value.
 void fill(std::vector<PoseFrame>& frames, double PoseFrame::*member, std::span<const double> t_s,
           std::span<const double> column, Kind kind) {
   std::vector<std::size_t> measured;
@@ -92,6 +93,7 @@ PoseFrames pose_frames(const runs::Run& run) {
   }
   if (const std::string impossible = find_impossible(run); !impossible.empty()) return {{}, impossible};
 
+  // The frames, then their other quantities, as far as they were measured.
   PoseFrames result;
   for (std::size_t row = 0; row < t_s.size(); ++row) {
     if (std::isnan(x_m[row]) || std::isnan(z_m[row])) continue;
@@ -143,11 +145,13 @@ StartOffset align_start(const std::vector<PoseFrame>& real, std::vector<PoseFram
                      to.has_heading() && from.has_heading()};
   if (!offset.turned) offset.yaw_rad = 0;
   if (std::isnan(offset.y_m)) offset.y_m = 0;
+
+  // p' = p_start + Rz(yaw) (p - p_start) + shift
   const double c = std::cos(offset.yaw_rad), s = std::sin(offset.yaw_rad);
   for (PoseFrame& frame : sim) {
     if (offset.turned) {
       const double x = frame.x_m - from.x_m, y = frame.y_m - from.y_m;
-      frame.x_m = from.x_m + c * x - (std::isnan(y) ? 0 : s * y);  // y not known: as if straight ahead of the start
+      frame.x_m = from.x_m + c * x - (std::isnan(y) ? 0 : s * y);  // unknown y: as that of the start
       frame.y_m = from.y_m + s * x + c * y;
       frame.yaw_rad += offset.yaw_rad;
     }

@@ -1,4 +1,4 @@
-// The files of a report but the page: JSON and CSV.
+// The files of a report other than the page: JSON and CSV.
 #include <fmt/format.h>
 
 #include <array>

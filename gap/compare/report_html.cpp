@@ -20,7 +20,7 @@ namespace {
 using plot::escaped;
 
 constexpr double kWide_px = 1100, kHalf_px = 540;
-constexpr std::size_t kMostDrawn = 50;  // runs: no browser opens the figures of thousands
+constexpr std::size_t kMostDrawn = 50;  // runs: browsers cannot show the figures of thousands
 
 constexpr std::string_view kPageStyle = R"(body { background: var(--paper); color: var(--ink); max-width: 1100px;
   margin: 24px auto; padding: 0 16px; font: 15px/1.45 system-ui, "DejaVu Sans", "Liberation Sans", Arial, sans-serif; }
@@ -38,13 +38,13 @@ tr.sum td { font-weight: 600; }
 @media print { h2 { break-before: page; } svg.chart { break-inside: avoid; } }
 )";
 
-// The worlds of the real runs, each loaded once; empty where one does not load, with the reason in `notes`.
+// The worlds of the real runs, each loaded once; null if one does not load, with the reason in `notes`.
 class Worlds {
  public:
   const physics::WorldDescription* find(const std::string& name) {
     auto [entry, is_new] = worlds_.try_emplace(name);
     if (is_new) {
-      std::vector<std::string> unsupported;  // of no interest for a picture
+      std::vector<std::string> unsupported;  // irrelevant for a picture
       try {
         entry->second = physics::load_world(name, unsupported);
       } catch (const description::DescriptionError& error) {
@@ -64,7 +64,7 @@ std::string cells(const Summary& summary, double scale, int decimals) {
                      number(scale * summary.rms(), decimals), number(scale * summary.max(), decimals));
 }
 
-// Of many runs those with the largest mean errors, in the order of the comparison.
+// The runs to draw: if there are too many, those with the largest mean errors, in the order of the comparison.
 std::vector<std::size_t> drawn_runs(const Comparison& comparison) {
   std::vector<std::size_t> runs(comparison.runs.size());
   std::iota(runs.begin(), runs.end(), 0);
@@ -166,6 +166,7 @@ std::string dataset_line(std::string_view which, const runs::Dataset& dataset, c
 }  // namespace
 
 std::string comparison_html(const Comparison& comparison) {
+  // The sections come first, because they load the worlds and collect notes on them.
   Worlds worlds;
   std::string sections;
   const std::vector<std::size_t> drawn = drawn_runs(comparison);
@@ -174,6 +175,7 @@ std::string comparison_html(const Comparison& comparison) {
                             drawn.size());
   for (const std::size_t run : drawn) sections += run_section(comparison, run, worlds);
 
+  // Head, datasets, explanation and notes, then the tables and sections.
   std::string html = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>Real and simulated "

@@ -1,4 +1,4 @@
-// How a report writes its numbers, and the rows of its summary: what text and page share.
+// The number format of a report and the rows of its summary, shared by text and page.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@ namespace kenaf::gap::compare {
 
 inline constexpr double kMillimetres = 1e3, kDegrees = 57.29577951308232;
 
-// With so many decimals; "-" where not known.
+// Formats with the given number of decimals; "-" if unknown.
 std::string number(double value, int decimals);
 
-// "step-200-flippers" or "step-200-flippers #2" where the manoeuvre has repeats; "run-003.csv" where it has no name.
+// "step-200-flippers", "step-200-flippers #2" if the manoeuvre has repeats, "run-003.csv" if it has no name.
 std::string run_title(const Comparison& comparison, std::size_t run);
 
 struct SummaryRow {
@@ -23,7 +23,8 @@ struct SummaryRow {
   ErrorSummary matched, same_time;
 };
 
-// Each run; after the last of a manoeuvre that has several the manoeuvre; where there are several manoeuvres, all.
+// Returns a row for each run, one after the last run of a manoeuvre with several runs, and one for all runs if there
+// are several manoeuvres.
 std::vector<SummaryRow> summary_rows(const Comparison& comparison);
 
 }  // namespace kenaf::gap::compare

@@ -1,4 +1,4 @@
-// The summary for the terminal, and what it shares with the page.
+// The summary for the terminal, and the parts that it shares with the page.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -60,6 +60,7 @@ std::vector<SummaryRow> summary_rows(const Comparison& comparison) {
                                 manoeuvre.runs.size()),
                     0, manoeuvre.matched, manoeuvre.same_time});
   }
+
   if (manoeuvres.size() > 1) {
     const ManoeuvreErrors all = over_all(comparison);
     rows.push_back({SummaryRow::Kind::all, "all " + plural(all.runs.size(), "run"), 0, all.matched, all.same_time});
@@ -69,7 +70,7 @@ std::vector<SummaryRow> summary_rows(const Comparison& comparison) {
 
 std::string comparison_text(const Comparison& comparison) {
   std::vector<SummaryRow> rows = summary_rows(comparison);
-  // Where not all fit: what sums up; then as many as fit.
+  // Too many rows: drops runs that their manoeuvre's row sums up, then rows from the end except the last, all runs.
   if (rows.size() > kMostRows) {
     std::erase_if(rows, [&](const SummaryRow& row) {
       const bool alone =
@@ -81,6 +82,7 @@ std::string comparison_text(const Comparison& comparison) {
   const std::size_t left_away = rows.size() > kMostRows ? rows.size() - kMostRows : 0;
   if (left_away > 0) rows.erase(rows.end() - 1 - static_cast<std::ptrdiff_t>(left_away), rows.end() - 1);
 
+  // Two lines of head, then the rows and the runs that were left out.
   std::size_t width = 12;
   for (const SummaryRow& row : rows) width = std::max(width, row.title.size());
   std::string text = fmt::format("{:<{}}{:>21} {:>21} {:>7}  {:>14}\n", "matched frames", width, "position, mm",

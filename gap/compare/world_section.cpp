@@ -13,14 +13,14 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Polygon = std::vector<Vector2d>;
 
-// Where the line from a to b meets the plane y = y_m, if a is on one side and b on the other or on the plane.
+// Adds the point where the line from a to b meets the plane y = y_m, if one end is below y_m and the other is not.
 void add_crossing(const Vector3d& a, const Vector3d& b, double y_m, std::vector<Vector2d>& points) {
   if ((a.y() < y_m) == (b.y() < y_m)) return;
   const Vector3d p = a + (y_m - a.y()) / (b.y() - a.y()) * (b - a);
   points.emplace_back(p.x(), p.z());
 }
 
-// The corners of a convex outline in order around their middle.
+// Orders the corners of a convex outline by their bearing from the middle.
 Polygon in_order(Polygon corners) {
   Vector2d middle = Vector2d::Zero();
   for (const Vector2d& corner : corners) middle += corner / static_cast<double>(corners.size());
@@ -37,6 +37,7 @@ Polygon box_section(const physics::Box& box, double y_m) {
   }
   Polygon outline;
   for (unsigned i = 0; i < 8; ++i) {
+    // The bits of a corner's index are its sides; an edge sets one more bit.
     for (const unsigned axis : {1u, 2u, 4u}) {
       if ((i & axis) == 0) add_crossing(corners[i], corners[i | axis], y_m, outline);
     }
@@ -44,7 +45,8 @@ Polygon box_section(const physics::Box& box, double y_m) {
   return in_order(std::move(outline));
 }
 
-// What of a convex outline lies where f(p) = a + b . p <= 0 (Sutherland and Hodgman's clipping by one line).
+// The part of a convex outline where f(p) = a + b . p <= 0 (Sutherland and Hodgman's clipping by one line). An edge
+// from p to q crosses f = 0 at p + f(p) / (f(p) - f(q)) (q - p).
 Polygon clipped(const Polygon& outline, double a, const Vector2d& b) {
   Polygon inside;
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -57,6 +59,7 @@ Polygon clipped(const Polygon& outline, double a, const Vector2d& b) {
 }
 
 Polygon plane_section(const physics::GroundPlane& plane, double y_m, const Vector2d& low, const Vector2d& high) {
+  // Solid is where n . (p - p_0) <= 0; with y fixed that is a half plane in (x, z).
   const Vector3d normal = plane.X_WP.q * Vector3d::UnitZ();
   const Polygon all{low, {high.x(), low.y()}, high, {low.x(), high.y()}};
   return clipped(all, normal.y() * y_m - normal.dot(plane.X_WP.p), {normal.x(), normal.z()});
@@ -74,6 +77,7 @@ WorldSection world_section(const physics::WorldDescription& world, double y_m, c
   for (const physics::Box& box : world.boxes) {
     if (box.mass_kg == 0) add(box_section(box, y_m));
   }
+  // A triangle that crosses the plane gives the line between its two crossings.
   for (const physics::TriangleMesh& mesh : world.meshes) {
     for (const auto& corners : mesh.triangles) {
       Polygon ends;

@@ -1,4 +1,4 @@
-// What of a world is met by a vertical plane along x: the ground that a path in (x, z) is drawn against.
+// The section of a world by a vertical plane along x: the ground that a path in (x, z) is drawn against.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,12 +15,12 @@ struct WorldSection {
   std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> surfaces;  // lines of meshes
 };
 
-// The section at `y_m`, of fixed boxes, of planes from low.x to high.x and down to low.z, and of meshes. Boxes that can
-// move are left out. low < high in both.
+// Returns the section at `y_m` of fixed boxes, of planes from low.x to high.x and down to low.z, and of meshes. Movable
+// boxes are left out. low < high in both coordinates.
 WorldSection world_section(const physics::WorldDescription& world, double y_m, const Eigen::Vector2d& low,
                            const Eigen::Vector2d& high);
 
-// Puts that section behind what a chart in (x, z) shows.
+// Draws that section behind the contents of a chart in (x, z).
 void draw_section(plot::Chart& chart, const physics::WorldDescription& world, double y_m, const Eigen::Vector2d& low,
                   const Eigen::Vector2d& high);
 

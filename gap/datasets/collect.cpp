@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kUnfinished = ".part";  // ends the name of a copy that is not whole
+constexpr const char* kUnfinished = ".part";  // suffix of an incomplete copy
 
-// "run.csv", or "run-2.csv" where that is taken in the folder or among `names`.
+// "run.csv", or "run-2.csv" if that is taken in the folder or among `names`.
 std::string free_name(const fs::path& file, const fs::path& folder, std::set<std::string>& names) {
   std::string name = file.filename().string();
   for (int k = 2; names.contains(name) || fs::exists(folder / name) || fs::exists(folder / (name + kUnfinished)); ++k)
@@ -40,8 +40,8 @@ std::string world_of(const CollectRequest& request, const RecordedRun& run,
                   run.file.string(), run.manoeuvre));
 }
 
-// Asked for by the dataset's name of it, or by a path to the same description. A file here that has that name may have
-// been changed since it was copied.
+// Whether the requested robot is that of the dataset: by the dataset's name of it, or by a path to the same
+// description. An existing file of that name is compared, as it may have changed since it was copied.
 bool is_robot_of(const runs::Dataset& dataset, const CollectRequest& request) {
   const fs::path asked = request.robot;
   const bool is_path = asked.extension() == ".toml";
@@ -50,7 +50,7 @@ bool is_robot_of(const runs::Dataset& dataset, const CollectRequest& request) {
          runs::read_whole_file(asked) == runs::read_whole_file(request.out / dataset.robot);
 }
 
-// Copies that go away again unless they are kept.
+// Copies of files that are removed again unless they are kept.
 class Copies {
  public:
   ~Copies() {
@@ -84,6 +84,8 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
   std::optional<runs::Dataset> there;
   if (fs::exists(request.out / "dataset.toml")) there = runs::read_dataset(request.out);
   result.extended = there.has_value();
+
+  // An existing dataset must have the same robot and source.
   if (there && !request.robot.empty() && !is_robot_of(*there, request))
     throw std::invalid_argument(fmt::format("{}: its robot is '{}', not '{}'; give another folder with --out",
                                             request.out.string(),
@@ -92,6 +94,7 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
     throw std::invalid_argument(
         fmt::format("{}: its source is '{}', not '{}'", request.out.string(), there->source, request.source));
 
+  // All runs are checked before anything is written.
   const std::string asked_robot = request.robot.empty() ? "kenaf" : request.robot;
   const physics::RobotDescription robot =
       physics::load_robot(there ? runs::resolve_beside(request.out, there->robot, ".toml") : asked_robot);
@@ -102,8 +105,9 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
   result.refused = logs::any_refused(result.findings) && !request.unchecked;
   if (result.refused) return result;
 
+  // All worlds must load.
   const std::vector<rollout::Manoeuvre> shipped = rollout::shipped_manoeuvres();
-  // What the dataset calls its world is a name beside it, not one from here.
+  // The dataset's name of its world is relative to its folder, not to the working directory.
   const auto lies_there = [&](const std::string& world) {
     return there && request.world.empty() && world == there->world;
   };
@@ -112,9 +116,10 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
     worlds.push_back(world_of(request, run, shipped, there));
     if (lies_there(worlds.back())) continue;
     std::vector<std::string> what_is_not_simulated;
-    physics::load_world(worlds.back(), what_is_not_simulated);  // or it says why not
+    physics::load_world(worlds.back(), what_is_not_simulated);  // throws if it does not load
   }
 
+  // A new dataset is made in a folder of its own; an existing one gets copies that an error removes again.
   std::optional<PartFolder> whole;
   if (!there) whole.emplace(request.out, false);
   const fs::path folder = there ? request.out : whole->path();
@@ -126,6 +131,8 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
                                                 .description = request.description,
                                                 .noise = {},
                                                 .runs = {}};
+
+  // Runs and worlds are copied, then dataset.toml names them.
   std::set<std::string> names;
   Copies copies;
   for (std::size_t i = 0; i < request.runs.size(); ++i) {

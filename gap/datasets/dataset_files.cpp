@@ -21,9 +21,9 @@ namespace fs = std::filesystem;
   throw std::runtime_error(fmt::format("{}: {}: {}", folder.string(), what, std::generic_category().message(error)));
 }
 
-constexpr std::string_view kPartFolder = ".part-";  // begins the name of what is not whole
+constexpr std::string_view kPartFolder = ".part-";  // prefix of an incomplete folder's name
 
-// But for what a program left that was killed.
+// Whether the folder is empty except for what a killed program left.
 bool holds_nothing(const fs::path& folder) {
   return std::ranges::all_of(fs::directory_iterator(folder), [](const fs::directory_entry& entry) {
     return entry.path().filename().string().starts_with(kPartFolder);
@@ -49,12 +49,13 @@ PartFolder::PartFolder(const fs::path& out, bool force, std::string_view otherwi
   const bool is_there = fs::exists(status);
   if (is_there && !force && !holds_nothing(out))
     throw std::runtime_error(fmt::format("{}: is not empty; give another folder{}", out.string(), otherwise));
+
   fs::path whole = fs::absolute(out).lexically_normal();
   if (!whole.has_filename()) whole = whole.parent_path();  // "runs/" is "runs"
   out_ = whole;
   if (!is_there) fs::create_directories(out_.parent_path(), error);
   if (error) fail(out, "cannot be made", error.value());
-  // Within a folder that is there, which may be a link, a mount point, or where somebody's shell is.
+  // An existing folder gets the new one inside: it may be a link, a mount point or a working directory.
   std::string name = fmt::format("{}{}XXXXXX", is_there ? (out_ / "").string() : out_.string(), kPartFolder);
   if (::mkdtemp(name.data()) == nullptr) fail(out, "cannot be made", errno);
   part_ = name;
@@ -87,10 +88,14 @@ Descriptions::Descriptions(fs::path folder, std::string extension)
 std::string Descriptions::add(const std::string& name_or_path) {
   const bool path = name_or_path.find('/') != name_or_path.npos || name_or_path.ends_with(extension_);
   if (!path) return name_or_path;
+
+  // A file keeps its name; one that refers to other files cannot be copied and gets its full path.
   const auto [known, is_new] = names_.try_emplace(name_or_path, fs::path(name_or_path).stem().string() + extension_);
   if (!is_new) return known->second;
   const std::string text = runs::read_whole_file(name_or_path);
   if (text.find("<uri>") != text.npos) return known->second = fs::absolute(name_or_path).lexically_normal();
+
+  // A file of that name in the folder must have the same contents.
   const fs::path copy = folder_ / known->second;
   const bool there = fs::exists(copy);
   if (known->second == "dataset.toml" || (there && runs::read_whole_file(copy) != text))

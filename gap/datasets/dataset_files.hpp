@@ -1,4 +1,4 @@
-// How a dataset gets onto the disk: all of it or nothing, descriptions that are files with it.
+// Writes a dataset to disk, all of it or nothing, with the descriptions that are files.
 #pragma once
 
 #include <filesystem>
@@ -9,39 +9,39 @@
 
 namespace kenaf::gap::datasets {
 
-// Throws std::runtime_error in words where nothing can be written into `folder`, or it cannot be made. For asking
-// before something long is calculated; makes nothing.
+// Throws std::runtime_error with words for the user if `folder` cannot be written into or created. To be called before
+// a long calculation; creates nothing.
 void check_can_write(const std::filesystem::path& folder);
 
-// A folder beside `out`, or within it where it is there, that becomes `out` when it is whole, and goes away when it
-// never gets so.
+// A folder beside `out`, or within it if it exists, that becomes `out` when it is complete and is removed if it is
+// never completed.
 class PartFolder {
  public:
-  // Throws std::exception in words: no folder can be there, or `out` is one that is not empty and `force` is not set;
-  // `otherwise` says what to do then but take another folder.
+  // Throws std::exception with words for the user if the folder cannot be created, or `out` is not empty and `force` is
+  // not set; `otherwise` then names what to do other than take another folder.
   PartFolder(const std::filesystem::path& out, bool force, std::string_view otherwise = {});
   ~PartFolder();
   PartFolder(const PartFolder&) = delete;
   PartFolder& operator=(const PartFolder&) = delete;
 
   const std::filesystem::path& path() const { return part_; }
-  // Replaces files of the same names where `out` holds some. dataset.toml comes last, so that it never names a run that
-  // is not there.
+  // Replaces files of the same names in `out`. dataset.toml comes last, so that it never names a missing run.
   void finish();
 
  private:
   std::filesystem::path out_, part_;
 };
 
-// What a dataset calls a description: a shipped name, or the copy of a file that it keeps beside dataset.toml. A world
-// of meshes or height maps stays where they are, under its full path.
+// The names of descriptions in a dataset: a shipped name, or the copy of a file beside dataset.toml. A world with
+// meshes or height maps is not copied, but named by its full path.
 class Descriptions {
  public:
   Descriptions(std::filesystem::path folder, std::string extension);
 
-  // Copies a file into the folder, once. Throws where a file with other contents has its name there.
+  // Copies a file into the folder, once, and returns its name. Throws if a file with other contents has that name
+  // there.
   std::string add(const std::string& name_or_path);
-  const std::vector<std::filesystem::path>& made() const { return made_; }  // the copies that were not there before
+  const std::vector<std::filesystem::path>& made() const { return made_; }  // the copies that are new
 
  private:
   std::filesystem::path folder_;

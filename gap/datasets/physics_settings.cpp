@@ -17,6 +17,7 @@ void set_physics(physics::PhysicsSettings& settings, std::string_view assignment
   const std::size_t equals = assignment.find('=');
   const std::string_view key = assignment.substr(0, equals);
   const std::string_view number = equals == assignment.npos ? "" : assignment.substr(equals + 1);
+  // Parses the number and checks its range.
   const auto value_in = [&](double min, double max) {
     double value = 0;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);

@@ -1,4 +1,4 @@
-// Physics settings from a command line, so that two sides of a comparison need not share them.
+// Physics settings from a command line, so that the two sides of a comparison can differ in them.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace kenaf::gap::datasets {
 
-// "KEY=VALUE", KEY a member of PhysicsSettings: time_step_s, solver_iterations, contact_stiffness_npm,
-// contact_damping_nspm. Throws std::invalid_argument that says what is wrong and what there is.
+// Applies "KEY=VALUE", with a member of PhysicsSettings as KEY: time_step_s, solver_iterations, contact_stiffness_npm,
+// contact_damping_nspm. Throws std::invalid_argument that says what is wrong and which keys exist.
 void set_physics(physics::PhysicsSettings& settings, std::string_view assignment);
 std::string physics_text(const physics::PhysicsSettings& settings);  // "time_step_s=0.001 ..."
 

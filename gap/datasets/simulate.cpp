@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kMostRuns = 100000;
 
-// FNV-1a, http://www.isthe.com/chongo/tech/comp/fnv/, of everything that a run's noise depends on.
+// FNV-1a hash (http://www.isthe.com/chongo/tech/comp/fnv/) of everything that a run's noise depends on.
 std::uint64_t seed_of(std::uint64_t seed, const std::string& manoeuvre, int repeat) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const char c : fmt::format("{} {} {}", seed, repeat, manoeuvre))
@@ -43,12 +43,15 @@ struct Asked {
 }  // namespace
 
 SimulatedDataset simulate_dataset(const SimulationRequest& request) {
+  // Checks the request.
   if (request.manoeuvres.empty()) throw std::invalid_argument("no manoeuvre; kenaf-gap manoeuvres lists them");
   if (request.repeats < 1 || std::ssize(request.manoeuvres) > kMostRuns / request.repeats)
     throw std::invalid_argument(fmt::format("repeats must be at least 1, and all runs together at most {}", kMostRuns));
   for (const double scale : {request.noise_scale, request.scatter_scale})
     if (!(scale >= 0 && scale <= kLargestScale))
       throw std::invalid_argument(fmt::format("noise and scatter must be from 0 to {}", kLargestScale));
+
+  // The robot with its effects; the stated noise is that of the nominal one.
   const physics::RobotDescription nominal = physics::load_robot(request.robot);
   physics::RobotDescription robot = nominal;
   for (const std::string& effect : request.effects) physics::set_effect(robot.effects, effect);
@@ -59,6 +62,7 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
   options.start_scatter_m = rollout::kUsualScatter_m * request.scatter_scale;
   options.start_scatter_rad = rollout::kUsualScatter_rad * request.scatter_scale;
 
+  // The manoeuvres with their worlds, each world loaded once. The map does not move its elements.
   SimulatedDataset result;
   std::map<std::string, physics::WorldDescription> worlds;
   std::vector<Asked> asked;
@@ -72,6 +76,7 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
     asked.push_back({name, std::move(manoeuvre), &world->second});
   }
 
+  // The dataset's table of runs, with copies of the descriptions that are files.
   PartFolder folder(request.out, request.force, ", or --force to write into it");
   Descriptions robots(folder.path(), ".toml"), world_files(folder.path(), ".sdf");
   runs::Dataset dataset{.source = "sim",
@@ -87,6 +92,8 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
     dataset.runs.push_back(
         {fmt::format("run-{:03}.csv", i), manoeuvre.name, world == dataset.world ? std::string() : world});
   }
+
+  // Each run has its own seed and its own elements to write, so that the jobs are independent.
   result.runs.resize(dataset.runs.size());
   for_each_job(dataset.runs.size(), request.jobs, [&](std::size_t i) {
     const Asked& of = asked[i / repeats];
@@ -103,6 +110,7 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
            .fault = out.fault};
     dataset.runs[i].fault = out.fault;
   });
+
   runs::write_dataset(folder.path(), dataset);
   folder.finish();
   return result;

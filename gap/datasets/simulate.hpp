@@ -1,7 +1,7 @@
-// Runs of the simulator as a dataset: any number of manoeuvres and repeats, on all cores.
+// Simulates a dataset: any number of manoeuvres and repeats, on all cores.
 //
-// Deterministic: the same request gives the same bytes, whatever the number of threads, and run k of a manoeuvre does
-// not depend on what else is asked.
+// Deterministic: the same request gives the same bytes for any number of threads, and run k of a manoeuvre does not
+// depend on the rest of the request.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct SimulationRequest {
   std::string robot = "kenaf";          // shipped name or TOML file
   std::string world;                    // shipped name or SDF file; empty: each manoeuvre's own
   std::vector<std::string> manoeuvres;  // as rollout::load_manoeuvre() takes them
-  std::vector<std::string> effects;     // "NAME:PARAMETER=VALUE", over those of the robot's file
+  std::vector<std::string> effects;     // "NAME:PARAMETER=VALUE"; override those of the robot's file
   physics::PhysicsSettings physics;
   int repeats = 1;           // of each manoeuvre
   double noise_scale = 1;    // of all sensors
@@ -34,19 +34,19 @@ struct SimulationRequest {
 struct SimulatedRun {
   std::string file, manoeuvre;
   double duration_s = 0;
-  std::optional<bool> succeeded;  // by the manoeuvre's own measure, where it has one
-  bool gave_up = false;           // the operator did: rollout::RollOut
-  std::string fault;              // why it ended early; empty: it did not
+  std::optional<bool> succeeded;  // by the manoeuvre's own criterion, if it has one
+  bool gave_up = false;           // by the operator: rollout::RollOut
+  std::string fault;              // why the run ended early; empty: it did not
 };
 
 struct SimulatedDataset {
-  std::vector<SimulatedRun> runs;     // in the order asked for, repeats of a manoeuvre side by side
-  std::vector<std::string> warnings;  // what of a world the simulator does not do
+  std::vector<SimulatedRun> runs;     // in the order requested, repeats of a manoeuvre side by side
+  std::vector<std::string> warnings;  // features of worlds that the simulator does not support
 };
 
-// Writes the dataset to `out`: all of it or, where it throws, nothing. A run whose simulation went wrong is written as
-// far as it came, and marked with its fault in dataset.toml. Throws std::exception with words for the user:
-// bad input, or `out` holds something and `force` is not set.
+// Writes the dataset to `out`: all of it or, if it throws, nothing. A run whose simulation went wrong is written up to
+// that point and marked with its fault in dataset.toml. Throws std::exception with words for the user if the input is
+// invalid, or `out` is not empty and `force` is not set.
 SimulatedDataset simulate_dataset(const SimulationRequest& request);
 
 }  // namespace kenaf::gap::datasets

@@ -16,12 +16,12 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// One stage of one run can be compared only where both are replays of the same kind.
+// A stage of two runs can be compared only if both are replays of the same kind.
 bool seen_alike(const Observation& a, const Observation& b) {
   return a.measured.has_value() == b.measured.has_value();
 }
 
-// Both datasets' runs as one, the baseline's last, without names: a manoeuvre may be called otherwise in each.
+// The runs of both datasets, the baseline's last, without names, as manoeuvre names may differ.
 Observations joined(const Observations& now, Observations before) {
   Observations both;
   both.runs = now.runs;
@@ -36,7 +36,7 @@ Observations joined(const Observations& now, Observations before) {
   return both;
 }
 
-// A stage's difference from the simulation, averaged over the baseline's runs that repeat one.
+// A stage's residual, averaged over the baseline's runs that repeat a run.
 struct MeanResidual {
   double sum = 0, runs = 0;
 };
@@ -77,7 +77,7 @@ Baseline observe_baseline(const std::filesystem::path& folder, Observations& now
       joined(now, observe(folder, now.robot_name, world, std::numeric_limits<std::size_t>::max()));
   const std::size_t count = now.runs.size();
 
-  // of each group the baseline's runs, for each of the new ones
+  // for each new run, the baseline's runs of its group
   std::vector<std::vector<std::size_t>> of_run(count);
   for (const std::vector<std::size_t>& group : repeats_of(both))
     for (const std::size_t r : group)
@@ -86,7 +86,7 @@ Baseline observe_baseline(const std::filesystem::path& folder, Observations& now
           of_run[r].push_back(other - count);
 
   Baseline baseline;
-  std::map<std::size_t, std::size_t> kept;  // number in `both`, less `count`, to number in the baseline
+  std::map<std::size_t, std::size_t> kept;  // index in `both`, less `count`, to index in the baseline
   std::vector<Observation> runs;
   for (std::size_t r = 0; r < count; ++r) {
     if (of_run[r].empty()) {

@@ -13,7 +13,7 @@ namespace {
 // All chosen.
 constexpr std::size_t kMostCurves = 24, kMostOfKind = 3;
 constexpr double kMatters = 0.01, kMattersInKind = 0.2;  // of the squared gap
-constexpr double kLeastGain = 4;                         // of chi squared: two sigma
+constexpr double kLeastGain = 4;                         // of chi-squared: two sigma
 
 struct Explained {
   double share;
@@ -23,7 +23,7 @@ struct Explained {
 // Inner products of one point's shift with itself and with the gap.
 struct AlongGap {
   double squares = 0, along = 0;
-  // Of a gap with so many squares, what the shift explains at the size that suits it.
+  // The share of a squared gap `gap` that the shift explains at its best amount: along^2 / squares / gap.
   double share_of(double gap) const { return squares > 0 && gap > 0 ? along * along / squares / gap : 0; }
 };
 
@@ -36,7 +36,7 @@ void add_best(std::vector<Explained> explained, std::size_t most, std::vector<st
   chosen.insert(chosen.end(), best.begin(), best.end());
 }
 
-// What `share` says of each simulated point, where it is at least `least`.
+// `share` of each simulated point, if at least `least`.
 std::vector<Explained> explained_by_points(const EffectCurves& curves, std::span<const std::size_t> looked_at,
                                            double least, const std::function<double(int column)>& share) {
   std::vector<Explained> explained;
@@ -79,6 +79,8 @@ std::vector<std::size_t> candidates_that_matter(const StageData& data, const Eff
                                                 std::span<const std::size_t> looked_at,
                                                 const Discrepancies& discrepancies) {
   std::vector<std::size_t> matter;
+  // a shift s, scaled freely, explains (s'C^-1 r)^2 / (s'C^-1 s) of the gap r'C^-1 r; C: covariance with the
+  // discrepancies
   const Products products = products_of(whiteners_of(data, discrepancies), curves.shifts, residuals_of(data));
   add_best(
       explained_by_points(curves, looked_at, std::max(kMatters, kLeastGain / products.gap_gap),
@@ -87,15 +89,21 @@ std::vector<std::size_t> candidates_that_matter(const StageData& data, const Eff
                                 products.gap_gap);
                           }),
       kMostCurves, matter);
+
+  // the same for each kind of channels, with C as noise alone
   for (std::size_t kind = 0; kind < kind_count(); ++kind) {
     const double gap = squared_gap_in_noise(data, kind);
     add_best(explained_by_points(curves, looked_at, kMattersInKind,
                                  [&](int column) { return in_noise(data, curves, kind, column).share_of(gap); }),
              kMostOfKind, matter);
   }
+
+  // those that act only far out (a dead band), which no linear step shows
   const double gap = gap_in_noise(data);
   for (const std::size_t c : looked_at)
     if (is_bent(curves, data, c, gap)) matter.push_back(c);
+
+  // each once, in order
   std::ranges::sort(matter);
   const auto again = std::ranges::unique(matter);
   matter.erase(again.begin(), again.end());

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-// Sums of bins that share a channel and a stretch, over the root of how many they are.
+// For bins that share a channel and a stretch: their sum over the root of their number.
 std::vector<double> cells_of(const std::vector<Bin>& bins, double span_s, const VectorXd& white, double stretch_s,
                              const VectorXd* count) {
   std::map<std::pair<std::size_t, std::size_t>, std::pair<double, double>> sums;
@@ -58,7 +58,7 @@ double inflation_from_repeats(const std::vector<StageFeatures>& features, const 
       squares.push_back(z * z);
   }
   if (squares.empty()) return 1;
-  // the largest are events; the mean of the lower 95 % of squares of a standard normal is 0.759
+  // the largest are events; the mean of the smallest 95 % of squared standard normals is 0.759
   std::ranges::sort(squares);
   squares.resize(std::max<std::size_t>(1, squares.size() * 95 / 100));
   double sum = 0;

@@ -21,7 +21,7 @@ double shift_product(const Products& p, int i, int j) {
   return i < 0 || j < 0 ? 0 : p.shift_shift(i, j);
 }
 
-// left = constant - 2 linear . s + s . square s for shares s of the segments, each in [0, 1]
+// squared residual = constant - 2 linear . s + s . square s for shares s of the segments, each in [0, 1]
 struct Quadratic {
   double constant;
   double linear[2];
@@ -32,12 +32,12 @@ struct Quadratic {
   }
 };
 
-// Of one term along a line, clamped to the segment.
+// Optimum of one term, clamped to the segment: linear / square.
 double best_share(double linear, double square) {
   return square > 0 ? std::clamp(linear / square, 0.0, 1.0) : 0;
 }
 
-// Of a segment that jumps, the end that suits better.
+// For a segment that jumps, the better end.
 double best_share_of(const Segment& segment, const Quadratic& q) {
   if (segment.jumps()) return q.at(1, 0) < q.at(0, 0) ? 1 : 0;
   return best_share(q.linear[0], q.square[0][0]);
@@ -67,6 +67,7 @@ Products products_of(const std::vector<GroupWhitener>& whiteners, const std::vec
 
 OnCurve at_value(const std::vector<EffectCurve>& curves, std::size_t curve, double value) {
   const std::vector<CurvePoint>& points = curves[curve].points;
+  // the segment around the value; beyond an end of the curve the outermost one, extrapolated
   auto above = std::ranges::lower_bound(points, value, {}, &CurvePoint::value);
   if (above == points.begin()) ++above;
   if (above == points.end()) --above;
@@ -74,7 +75,7 @@ OnCurve at_value(const std::vector<EffectCurve>& curves, std::size_t curve, doub
   const double share = (value - segment.a.value) / (segment.b.value - segment.a.value);
   if (!segment.jumps()) return on_segment(curve, segment, share);
 
-  // the segment before or behind the jump
+  // the segment before or after the jump
   if (share < 0.5 && above - 1 != points.begin()) {
     const Segment before{*(above - 2), *(above - 1)};
     if (!before.jumps()) return on_segment(curve, before, 1);
@@ -90,6 +91,7 @@ CurveFit fit_one(const Products& p, const std::vector<EffectCurve>& curves, std:
   CurveFit best{{}, std::numeric_limits<double>::infinity()};
   const std::vector<CurvePoint>& points = curves[curve].points;
   for (std::size_t i = 1; i < points.size(); ++i) {
+    // on a segment a + s (b - a): |gap|^2 - 2 s (gap - a).(b - a) + s^2 |b - a|^2, with the optimum clamped to [0, 1]
     const Segment segment{points[i - 1], points[i]};
     const int a = segment.a.column, b = segment.b.column;
     const double aa = shift_product(p, a, a), ab = shift_product(p, a, b), bb = shift_product(p, b, b);
@@ -123,6 +125,8 @@ CurveFit fit_two(const Products& p, const std::vector<EffectCurve>& curves, std:
       const Quadratic q{p.gap_gap - 2 * o_gap + oo,
                         {gap_product(p, b) - gap_product(p, a) - oe, gap_product(p, d) - gap_product(p, c) - of},
                         {{dots(b, a, b, a), ef}, {ef, dots(d, c, d, c)}}};
+
+      // keeps the better of this and the best so far; a fit at a jump gets the slope beyond it
       const auto consider = [&](double share_s, double share_t) {
         const double left = q.at(share_s, share_t);
         if (left >= best.left) return;
@@ -130,6 +134,8 @@ CurveFit fit_two(const Products& p, const std::vector<EffectCurve>& curves, std:
         for (OnCurve& place : best.places)
           if ((&place == &best.places.front() ? s : t).jumps()) place = at_value(curves, place.curve, place.value);
       };
+
+      // on a jump only its ends are allowed; the other effect is optimal given each end
       if (s.jumps() || t.jumps()) {
         for (const double end : kEnds)
           if (s.jumps() && t.jumps())
@@ -140,6 +146,8 @@ CurveFit fit_two(const Products& p, const std::vector<EffectCurve>& curves, std:
             consider(best_share(q.linear[0] - ef * end, q.square[0][0]), end);
         continue;
       }
+
+      // the stationary point of both shares, if it is inside the square
       const double determinant = q.square[0][0] * q.square[1][1] - ef * ef;
       if (determinant > 1e-12 * q.square[0][0] * q.square[1][1]) {
         const double inner_s = (q.linear[0] * q.square[1][1] - q.linear[1] * ef) / determinant;
@@ -149,6 +157,8 @@ CurveFit fit_two(const Products& p, const std::vector<EffectCurve>& curves, std:
           continue;
         }
       }
+
+      // else the optimum is on an edge: one share fixed at an end, the other optimal given it
       for (const double edge : kEnds) {
         consider(best_share(q.linear[0] - ef * edge, q.square[0][0]), edge);
         consider(edge, best_share(q.linear[1] - ef * edge, q.square[1][1]));
@@ -159,14 +169,20 @@ CurveFit fit_two(const Products& p, const std::vector<EffectCurve>& curves, std:
 
 CurveFit fit_together(const Products& p, const std::vector<EffectCurve>& curves, std::span<const std::size_t> effects) {
   constexpr int kMostTurns = 50;
-  constexpr double kGained = 1e-6;  // share of what is left that a turn must gain to be followed by another one
+  constexpr double kGained = 1e-6;  // share of the squared residual that a round must gain to be followed by another
+
+  // exact for one and two effects
   if (effects.size() == 1) return fit_one(p, curves, effects[0]);
   CurveFit fit = fit_two(p, curves, effects[0], effects[1]);
   if (effects.size() == 2) return fit;
+
+  // a start for more: each further effect fitted to the residual of the ones before
   for (std::size_t e = 2; e < effects.size(); ++e) {
     fit.places.push_back(fit_one(without_places(p, fit.places), curves, effects[e]).places.front());
     fit.left = left_with(p, fit.places);
   }
+
+  // pairs in turn, the others fixed, until a whole round gains next to nothing
   for (int turn = 0; turn < kMostTurns; ++turn) {
     const double before = fit.left;
     for (std::size_t a = 0; a < effects.size(); ++a)

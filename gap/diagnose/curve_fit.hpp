@@ -1,7 +1,7 @@
-// Least squares on effect curves: the values of effects, alone or together, that explain most of a gap.
+// Least squares on effect curves: the values of one or more effects that explain most of a gap.
 //
-// Only inner products are needed.
-// Effects are taken to add: that holds for small ones, and is corrected where a fit is confirmed by simulation.
+// Only inner products are needed. Effects are assumed to add, which holds for small ones; simulation corrects the sum
+// where a fit is confirmed.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -15,46 +15,47 @@
 
 namespace kenaf::gap::diagnose {
 
-// Inner products of all columns of the curves, and of what they are fitted to.
+// Inner products of all columns of the curves with each other and with the target.
 struct Products {
   double gap_gap = 0;
   Eigen::VectorXd shift_gap;
   Eigen::MatrixXd shift_shift;
 };
-// `target`: what is to be explained, of each group.
+// `target`: the residual to be explained, for each group.
 Products products_of(const std::vector<GroupWhitener>& whiteners, const std::vector<Eigen::MatrixXd>& shifts,
                      const GroupVectors& target);
 
-// A place on a curve, as weights of at most two of its columns.
+// A point on a curve, as weights of at most two of its columns.
 struct OnCurve {
   std::size_t curve;
   double value;  // of the parameter
   std::array<int, 2> column{-1, -1};
   std::array<double, 2> weight{0, 0};
-  double segment = 1;  // by how much the value grows from the first column to the second
+  double segment = 1;  // increase of the value from the first column to the second
 };
-// Of a value where the curve jumps, the nearer end of the jump, with the slope beyond it (none between two jumps).
+// For a value inside a jump of the curve, returns the nearer end of the jump, with the slope beyond it (none between
+// two jumps).
 OnCurve at_value(const std::vector<EffectCurve>& curves, std::size_t curve, double value);
 
 struct CurveFit {
-  std::vector<OnCurve> places;  // one for each effect that is fitted, in the order asked
-  double left = 0;              // squared length of what is not explained
+  std::vector<OnCurve> places;  // one per fitted effect, in the order of the request
+  double left = 0;              // squared length of the residual
 };
-// Of a curve that jumps the fits are at an end of the jump or elsewhere, never between.
+// Fits are never inside a jump of a curve.
 CurveFit fit_one(const Products& products, const std::vector<EffectCurve>& curves, std::size_t curve);
 CurveFit fit_two(const Products& products, const std::vector<EffectCurve>& curves, std::size_t first,
                  std::size_t second);
-// Any number of effects: the optimum of one and of two; of more, from where the first two fit, two at a time in turn
-// until nothing is gained.
+// Any number of effects. Exact optimum for one or two; for more, starts from the fit of the first two and optimises
+// pairs in turn until nothing is gained.
 CurveFit fit_together(const Products& products, const std::vector<EffectCurve>& curves,
                       std::span<const std::size_t> effects);
 
-// Squared length of what is left with effects at given places.
+// Squared length of the residual with effects at the given places.
 double left_with(const Products& products, std::span<const OnCurve> places);
-// The products of that rest of the gap.
+// The products of that residual.
 Products without_places(const Products& products, std::span<const OnCurve> places);
 
-// The shift at given places, of a group whose points' shifts are the columns; of all groups.
+// The shift at given places: for one group, whose points' shifts are the columns; for all groups.
 Eigen::VectorXd shift_at(const Eigen::MatrixXd& shifts, std::span<const OnCurve> places);
 GroupVectors shift_of(const EffectCurves& curves, std::span<const OnCurve> places);
 Settings settings_of(std::span<const OnCurve> places);

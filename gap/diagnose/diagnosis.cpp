@@ -29,8 +29,8 @@ std::vector<double> stated_noise(const runs::Dataset& dataset) {
   return stated;
 }
 
-// Catalogue, numbers of the description and effects of one's own, without those left out; of candidates that do the
-// same, the first.
+// Catalogue, numbers of the description and user-defined effects, without those left out; of equivalent candidates the
+// first.
 std::vector<candidates::Candidate> candidates_for(const Observations& observations, const DiagnosisOptions& options) {
   const physics::RobotDescription& robot = observations.robot;
   std::vector<candidates::Candidate> all = candidates::all_candidates(robot, has_obstacles(observations));
@@ -51,7 +51,7 @@ std::vector<candidates::Candidate> candidates_for(const Observations& observatio
   return result;
 }
 
-// Tells how far a diagnosis is: a stage's share of the time is known before, how many roll-outs it takes is not.
+// Reports progress: a stage's share of the time is known beforehand, its number of roll-outs is not.
 class ProgressReport {
  public:
   explicit ProgressReport(const std::function<void(const Progress&)>& tell) : tell_(tell) {}
@@ -83,7 +83,7 @@ void conclude(Diagnosis& d) {
       d.largest_stage = s;
 }
 
-// The robot with a stage's best model; and with each of its values moved a tenth of the way back to the nominal robot.
+// The robot with `settings`, and with each of their values moved a tenth of the way back to nominal.
 RivalModel rival_model(const Diagnosis& d, const Settings& settings) {
   constexpr double kMoved = 0.1;
   RivalModel rival{with_settings(d.observations.robot, d.candidates, settings), {}};
@@ -101,7 +101,7 @@ struct OpenModel {
   std::size_t candidate;
 };
 
-// Rivals of the effect that has most of them, each in its place; the best single effects where nothing is named.
+// Models with each rival of the effect that has most of them; the best single effects if nothing is named.
 std::vector<OpenModel> open_models(const StageDiagnosis& stage) {
   constexpr std::size_t kMostRivals = 4;
   std::vector<OpenModel> models;
@@ -138,7 +138,7 @@ void propose_next(Diagnosis& d) {
   }
   if (rivals.size() < 2) return;
 
-  // a bin of what is left counts as noise: the discrepancy of its kind on top of the noise of its channel
+  // the discrepancy counts as noise of a bin, added in squares to that of its channel
   ProposalOptions options{std::vector<double>(diagnosis_channels().size(), 0), d.options.span_s};
   for (const StageDiagnosis& stage : d.stages)
     for (std::size_t c = 0; c < options.sigma_of_channel.size(); ++c)
@@ -150,7 +150,7 @@ void propose_next(Diagnosis& d) {
   d.told_apart = std::move(candidates);
 }
 
-// Simulates the baseline's runs and takes off what they differ by.
+// Simulates the baseline's runs and subtracts their residuals.
 void take_off(const Baseline& baseline, Diagnosis& d, const DiagnosisOptions& options) {
   const ComparedFeatures before = compared_features(baseline.observations, options.span_s);
   Predictor predictor(baseline.observations, before, repeats_of(baseline.observations), options.jobs, options.stop,
@@ -182,7 +182,7 @@ Verdict whole_verdict(const std::vector<StageDiagnosis>& stages) {
 }
 
 namespace {
-// Sensors show little of a description's numbers: these are off by as much as the stages before say.
+// Sensors hardly show errors of the description's numbers: the estimate of earlier stages is used if it is larger.
 void widen_intervals(std::vector<StageDiagnosis>& stages, const std::vector<PreparedStage>& prepared,
                      Predictor& predictor, std::uint64_t seed) {
   double numbers_off = 0;
@@ -199,6 +199,8 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
   d.options = options;
   d.options.progress = {};
   d.options.stop = nullptr;
+
+  // what is compared: runs, candidates, features, and which runs repeat each other
   d.observations = observe(folder, options.robot, options.world, options.most_runs);
   std::optional<Baseline> baseline;
   if (!options.against.empty()) baseline = observe_baseline(options.against, d.observations, options.world);
@@ -211,6 +213,7 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
   d.repeats = repeats_of(d.observations);
   d.same_orders = same_orders_of(d.observations);
 
+  // one simulator for all stages, so that stages which share a replay share its roll-outs
   ProgressReport progress(options.progress);
   Predictor predictor(d.observations, d.features, d.repeats, options.jobs, options.stop, options.ranks,
                       [&](std::size_t roll_outs) { progress.update(roll_outs); });
@@ -218,9 +221,12 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
   StageOptions stage_options{options.decision, options.stretch_s, options.seed};
   stage_options.decision.search.threads = options.jobs;
   try {
+    // the nominal robot first: every residual and every shift is relative to it
     progress.begin("simulating the nominal robot", 0, 0.02, 2 * runs, 0);
     if (baseline) take_off(*baseline, d, options);
     predictor.simulate_nominal();
+
+    // each stage by itself; stages that no run measures are skipped
     std::vector<PreparedStage> prepared;
     for (const Passage passage : kPassages) {
       const auto number = static_cast<double>(passage);
@@ -233,6 +239,8 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
       d.stages.push_back(diagnose_stage(stage, predictor, stage_options));
       prepared.push_back(std::move(stage));
     }
+
+    // then all stages together: contradictions between them, interval widths, the verdict, and what to drive next
     settle_by_other_stages(d.stages, prepared, predictor, stage_options);
     widen_intervals(d.stages, prepared, predictor, options.seed);
     conclude(d);
@@ -240,6 +248,7 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
     if (options.propose_next && options.ranks.rank == 0) propose_next(d);
     progress.begin("done", 1, 1, 1, predictor.roll_outs());
   } catch (const Stopped&) {
+    // stopped: finished stages are kept, but there is no verdict
     d.interrupted = progress.doing();
     d.verdict = Verdict::unknown;
   }
@@ -249,7 +258,7 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
 
 Settings corrections(const Diagnosis& d) {
   const bool is_named = d.verdict == Verdict::named || d.verdict == Verdict::ambiguous;
-  // narrowest beside its value wins
+  // the interval narrowest relative to its value wins
   std::map<std::size_t, std::pair<double, double>> best;  // candidate: relative width, value
   for (const StageDiagnosis& stage : d.stages)
     for (const NamedEffect& effect : stage.decision.effects) {

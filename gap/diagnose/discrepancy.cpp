@@ -29,7 +29,8 @@ double minus_two_log_likelihood(std::span<const SeriesOfKind> series, const Disc
 
 SeriesWhitener::SeriesWhitener(std::span<const double> t_s, const Eigen::Ref<const Eigen::VectorXd>& variance,
                                const Discrepancy& discrepancy) {
-  // Kalman filter of the process: P is the variance of the prediction, S that of the innovation
+  // Kalman filter of the process, f = exp(-dt / memory): prediction variance p = f^2 known + sigma^2 (1 - f^2),
+  // innovation variance p + noise, gain k = p / (p + noise), known = (1 - k) p
   const double process = discrepancy.sigma * discrepancy.sigma;
   double known = process;  // variance after the update
   steps_.reserve(t_s.size());
@@ -58,6 +59,7 @@ void SeriesWhitener::whiten(Eigen::Ref<Eigen::MatrixXd> series) const {
 }
 
 Discrepancy most_likely_discrepancy(std::span<const SeriesOfKind> series) {
+  // the scale of the series, and its smallest noise
   double squares = 0, noise = std::numeric_limits<double>::infinity(), bins = 0;
   for (const SeriesOfKind& one : series) {
     squares += one.value.squaredNorm();
@@ -67,9 +69,11 @@ Discrepancy most_likely_discrepancy(std::span<const SeriesOfKind> series) {
   Discrepancy best;
   if (bins == 0 || squares == 0) return best;
   double least = minus_two_log_likelihood(series, best);
-  // from what cannot be seen beneath the noise to more than there is
+  // from invisible beneath the noise to more than the residuals
   const double from = std::log(0.03 * std::sqrt(noise)), to = std::log(10 * std::sqrt(squares / bins));
   if (!(from < to)) return best;
+
+  // for each memory the best sigma; sigma 0 stays if nothing is likelier
   for (const double memory_s : kMemories_s) {
     const auto at = [&](double log_sigma) { return minus_two_log_likelihood(series, {std::exp(log_sigma), memory_s}); };
     const auto [log_sigma, value] = golden_section(from, to, kSections, at);

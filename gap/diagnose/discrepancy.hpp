@@ -1,5 +1,5 @@
-// The discrepancy of a model: what it leaves unexplained beyond noise (Kennedy and O'Hagan 2001; Brynjarsdottir and
-// O'Hagan 2014). It is coherent in time, differs from run to run, and its size is estimated together with the effects.
+// The discrepancy of a model: its residual beyond noise (Kennedy and O'Hagan 2001; Brynjarsdottir and O'Hagan 2014). It
+// is coherent in time, differs from run to run, and its size is estimated together with the effects.
 //
 // In each channel it is an Ornstein-Uhlenbeck process, a stationary Gaussian process with the covariance
 // sigma^2 exp(-|dt| / memory). That process is Markov, so that a Kalman filter turns a series of n bins into n
@@ -15,17 +15,17 @@
 
 namespace kenaf::gap::diagnose {
 
-// Of one kind of channels. sigma in the unit of the channel, at least 0; memory_s > 0.
+// Discrepancy of one kind of channels. sigma >= 0 in the unit of the channel; memory_s > 0.
 struct Discrepancy {
   double sigma = 0;
   double memory_s = 1;
 };
 
-// Turns series with independent noise and a discrepancy into independent numbers of variance 1: the inverse of a
-// Cholesky factor of their covariance, without forming it.
+// Transforms series with independent noise and a discrepancy into independent numbers of variance 1: applies the
+// inverse Cholesky factor of their covariance without forming it.
 class SeriesWhitener {
  public:
-  // `t_s`: of each bin, increasing. `variance`: of its noise, above 0.
+  // `t_s`: time of each bin, increasing. `variance`: its noise variance, > 0.
   SeriesWhitener(std::span<const double> t_s, const Eigen::Ref<const Eigen::VectorXd>& variance,
                  const Discrepancy& discrepancy);
   // In place; each column is a series, one row a bin.
@@ -40,15 +40,15 @@ class SeriesWhitener {
   double log_determinant_ = 0;
 };
 
-// Several series of one kind, each with its own times.
+// One series of a kind of channels, with its own times.
 struct SeriesOfKind {
   std::vector<double> t_s;
   Eigen::VectorXd variance, value;
-  // Parts of the log-likelihood that this series counts for; 1 but where runs are weighted.
+  // Weight of this series in the log-likelihood; 1 unless runs are weighted.
   double weight = 1;
 };
-// The discrepancy that makes `series` most likely, of one kind of channels: maximum likelihood over sigma for each of a
-// few memories from 0.25 to 16 s. sigma is 0 where noise alone explains them as well.
+// Maximum-likelihood discrepancy of one kind of channels: over sigma, for each of a few memories from 0.25 to 16 s.
+// sigma is 0 if noise alone explains `series` as well.
 Discrepancy most_likely_discrepancy(std::span<const SeriesOfKind> series);
 
 }  // namespace kenaf::gap::diagnose

@@ -8,21 +8,21 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// Parts of the way from neutral to an end of the range.
+// Fractions of the way from neutral to an end of the range.
 constexpr double kSpread[] = {0.25, 1};
-// Of Candidate::whole: as far as numbers of a description are off that was made with care (chosen).
+// Relative error of numbers in a careful description, as a fraction of Candidate::whole (chosen).
 constexpr double kOrdinarilyOff = 0.02;
 
 constexpr double kRoughReach = 2;
 
-// Times the length that a straight line has: through the inner one of two points at the outer one, through the outer
-// one at the inner one.
+// Ratio of a length to that of a straight line: at the outer of two points for a line through the inner one, and vice
+// versa.
 constexpr double kBent = 2;
 constexpr int kHalvings = 4;
 constexpr double kInward = 0.25;  // of the way from neutral to the innermost point
 
-// A straight line between an exact point and a rough one near it would lead anywhere. But the ends of a curve stay:
-// without them no fit could go beyond the exact point.
+// A line between an exact point and a rough one near it has an arbitrary slope. The ends of a curve stay: without them
+// no fit could go beyond the exact point.
 void forget_rough_points(EffectCurve& curve, double present, double exact_value) {
   const double reach = kRoughReach * (exact_value - present);
   const double first = curve.points.front().value, last = curve.points.back().value;
@@ -40,7 +40,7 @@ double length_of_column(const EffectCurves& curves, const StageData& data, int c
   return std::sqrt(squares);
 }
 
-// Half way between neighbours to one side of the present value between which a bent curve becomes longer than `length`.
+// Midpoints of neighbours on one side of the present value between which a bent curve becomes longer than `length`.
 std::vector<Setting> halves_of_bends(const EffectCurves& curves, const StageData& data, std::size_t c, double length) {
   std::vector<Setting> halves;
   const std::vector<CurvePoint>& points = curves.curves[c].points;
@@ -58,8 +58,8 @@ std::vector<Setting> halves_of_bends(const EffectCurves& curves, const StageData
   return halves;
 }
 
-// Nearer to the present value than the innermost one of the points on a side, where that is longer than `length` and
-// the next one not as much longer as it is farther out: what the effect does all at once comes before.
+// Points inside the innermost point of a side, if that is longer than `length` and the next one not proportionally
+// longer: then the effect jumps before the innermost point.
 void add_inner(const EffectCurves& curves, const StageData& data, std::size_t c, double length,
                std::vector<Setting>& inner) {
   const std::vector<CurvePoint>& points = curves.curves[c].points;
@@ -78,7 +78,7 @@ void add_inner(const EffectCurves& curves, const StageData& data, std::size_t c,
   }
 }
 
-// Parts of the way from the present value to each end.
+// Points at fractions `parts` of the way from the present value to each end.
 std::vector<Setting> parts_of_ranges(const EffectCurves& curves, std::span<const std::size_t> chosen,
                                      std::span<const double> parts) {
   std::vector<Setting> points;
@@ -93,8 +93,8 @@ std::vector<Setting> parts_of_ranges(const EffectCurves& curves, std::span<const
   return points;
 }
 
-// The end of the range on each side of the present value where what was seen so far leads nowhere: straight on to the
-// end it stays shorter than the gap. A side that was not looked at goes by the other one.
+// Ends of the range on sides of the present value where the curve, extrapolated to the end, stays shorter than the gap.
+// A side without points uses the other side.
 std::vector<Setting> ends_of_short_sides(const EffectCurves& curves, const StageData& data,
                                          std::span<const std::size_t> chosen) {
   const double gap = gap_in_noise(data);
@@ -102,6 +102,7 @@ std::vector<Setting> ends_of_short_sides(const EffectCurves& curves, const Stage
   for (const std::size_t c : chosen) {
     const candidates::Candidate& candidate = curves.candidates[c];
     const std::vector<CurvePoint>& points = curves.curves[c].points;
+    // per side of the present value, the largest length of a shift per unit of value
     const auto side_of = [&](double value) { return value > candidate.present ? 1 : 0; };
     std::optional<double> length_by_value[2];
     for (const CurvePoint& point : points) {
@@ -110,6 +111,8 @@ std::vector<Setting> ends_of_short_sides(const EffectCurves& curves, const Stage
       std::optional<double>& longest = length_by_value[side_of(point.value)];
       longest = std::max(longest.value_or(0), by_value);
     }
+
+    // extrapolated to the end of the range: length = largest ratio * distance
     for (const double end : {candidate.min, candidate.max}) {
       const std::optional<double> seen =
           length_by_value[side_of(end)] ? length_by_value[side_of(end)] : length_by_value[1 - side_of(end)];
@@ -121,7 +124,7 @@ std::vector<Setting> ends_of_short_sides(const EffectCurves& curves, const Stage
   return ends;
 }
 
-// The upper end of the range; the lower one where there is nothing above.
+// The upper end of the range; the lower one if there is no range above.
 double end_of_range(const candidates::Candidate& candidate) {
   return candidate.max > candidate.present ? candidate.max : candidate.min;
 }
@@ -185,7 +188,7 @@ void add_first_look(EffectCurves& curves, const StageData& data, std::span<const
     const double end = end_of_range(candidate);
     points.push_back({c, candidate.present + kSpread[0] * (end - candidate.present)});
     if (candidate.whole > 0) points.push_back({c, ordinarily_off(candidate)});
-    // what begins from some value on (drives that stall) shows only farther out, and hides what is on the other side
+    // an effect with a threshold (drives that stall) shows only farther out, and hides the other side
     if (!both_ways)
       points.push_back({c, end});
     else if (candidate.whole == 0)

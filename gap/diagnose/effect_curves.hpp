@@ -1,7 +1,7 @@
-// What each candidate would do to the observed runs of a stage, along its range: a curve through the space of all bins,
-// known at some values and straight between them. All fits are made on these curves, without further roll-outs.
+// The effect of each candidate on the observed runs of a stage along its range: a curve in the space of all bins, known
+// at some values and linear in between. Fits use these curves and need no further roll-outs.
 //
-// Thread safety: values and pure functions, apart from what the simulator does.
+// Thread safety: values and pure functions, except that the simulator runs.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,16 +19,16 @@ namespace kenaf::gap::diagnose {
 struct CurvePoint {
   double value;  // of the candidate
   int column;    // of EffectCurves::shifts; -1: the present value, which shifts nothing
-  bool exact;    // was simulated at the full rate, not with twice the time step
-  // The effect does at once, somewhere between the point before and this one, what the two differ by: a command that is
-  // faster than a dead band or not. What is between them is at neither place.
+  bool exact;    // simulated at the full rate, not with twice the time step
+  // The effect jumps somewhere between the previous point and this one, as when a command exceeds a dead band. Values
+  // in between are never interpolated.
   bool jump = false;
 };
 
 struct EffectCurve {
   std::size_t candidate;           // its number
   std::vector<CurvePoint> points;  // by value
-  // The largest length of the curve, in noise: below 1 these runs do not show the effect at any size.
+  // Largest length of the curve, in units of noise: below 1 these runs show the effect at no size.
   double visible = 0;
 };
 
@@ -45,50 +45,48 @@ struct Setting {
 };
 using Settings = std::vector<Setting>;  // together in one robot
 
-// What a search asks of the simulator: what the groups shift by each of these settings.
+// The interface of a search to the simulator: returns the groups' shifts for each of the settings.
 using Simulate = std::function<std::vector<GroupVectors>(std::span<const Settings>, Fidelity)>;
 
-// A number of the description that is off as far as such numbers ordinarily are; the present value of what is no
-// number.
+// The value of a number of the description with an ordinary error; the present value of other candidates.
 double ordinarily_off(const candidates::Candidate& candidate);
 
-// No points but the present ones.
+// Curves with their present points only.
 EffectCurves empty_curves(const StageData& data, std::span<const candidates::Candidate> candidates);
 
-// For a first look: one point near the present value of each of `chosen`; of an effect that goes one way alone also the
-// end of its range, of one that goes both ways one to the other side; of a number of the description instead one as
-// near as such numbers ordinarily are off. Where that leads nowhere, as straight on to an end of the range it stays
-// shorter than the gap, the end as well: a servo's torque suffices down to half of it.
+// First look: adds one point near the present value of each of `chosen`; for one-sided effects also the end of the
+// range, for two-sided ones a point on the other side, for numbers of the description instead one at an ordinary error.
+// If the curve, extrapolated to an end of the range, stays shorter than the gap, adds that end, too: a servo's torque
+// may suffice down to half of it.
 void add_first_look(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                     const Simulate& simulate);
-// Simulates points spread over the range of each of `chosen`, denser near the present value, where there are none.
+// Simulates points spread over the range of each of `chosen`, denser near the present value, where it has none.
 void add_spread(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                 const Simulate& simulate);
-// A curve that moves little up to a value and much beyond it (drives that stall) is halved, up to four times, where it
-// becomes as long as the gap: between points that are far apart a straight line hides where it goes. One that has done
-// nearly all by its innermost point (drives that stall before it) gets points nearer to neutral, up to four, each a
-// quarter of the way to the one before.
+// Bisects, up to four times, curves that shift little up to a value and much beyond it (drives that stall), where they
+// become as long as the gap: a line between distant points would hide the bend. Curves that have shifted nearly all by
+// their innermost point get points nearer to neutral, up to four, each at a quarter of the way to the previous one.
 void follow_bends(EffectCurves& curves, const StageData& data, std::span<const std::size_t> chosen,
                   const Simulate& simulate);
 
-// Leaves the curves of others than `kept` their present points alone: no search finds them.
+// Reduces all curves except `kept` to their present points, so that no search finds them.
 void forget_all_but(EffectCurves& curves, std::span<const std::size_t> kept);
 
-// Whether a curve moves little up to one of its points and is longer than `length` at the next: what it does between
-// them is not known yet (commands below a dead band).
+// Whether a curve shifts little up to one of its points and is longer than `length` at the next, so that its course in
+// between is unknown (commands below a dead band).
 bool is_bent(const EffectCurves& curves, const StageData& data, std::size_t candidate, double length);
 
-// Simulates points and adds them. One that is there at the same value is replaced.
+// Simulates points and adds them. Replaces existing points at the same values.
 void add_points(EffectCurves& curves, const StageData& data, std::span<const Setting> points, Fidelity fidelity,
                 const Simulate& simulate);
-// The same where the shifts of each point are known already.
+// The same with known shifts of each point.
 void insert_points(EffectCurves& curves, const StageData& data, std::span<const Setting> points,
                    const std::vector<GroupVectors>& shifts, Fidelity fidelity);
 
-// Length of a difference in noise alone: the root of the sum over bins of its square over their variance.
+// Length of a difference in units of noise: sqrt(sum over bins of difference^2 / variance); and its square.
 double squares_in_noise(const StageData& data, const GroupVectors& difference);
 double length_in_noise(const StageData& data, const GroupVectors& difference);
-// Likewise, of what the nominal robot leaves.
+// Likewise for the residual of the nominal robot.
 double gap_in_noise(const StageData& data);
 
 }  // namespace kenaf::gap::diagnose

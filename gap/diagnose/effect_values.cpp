@@ -16,9 +16,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Manoeuvres that differ no more than this probability allows are taken to agree.
+// p value of Cochran's Q above which manoeuvres are taken to agree.
 constexpr double kAgree = 0.05;
-// Share of a curve's segment below which two places are one.
+// Two places closer than this share of a curve's segment are one.
 constexpr double kSamePlace = 1e-6;
 
 MatrixXd slopes_of_group(const StandingModel& standing, std::size_t group) {
@@ -34,13 +34,13 @@ MatrixXd slopes_of_group(const StandingModel& standing, std::size_t group) {
   return result;
 }
 
-// What one manoeuvre says of one value, the others held.
+// One manoeuvre's own estimate of one value, with the others fixed.
 struct OwnValue {
   double offset, information;  // from the common value; 1 / variance
 };
 
-// Where on its curve one manoeuvre wants an effect, `rest` being what the model leaves of it, whitened. Not along the
-// slope: where an effect has done all it can, that leads far out of the range.
+// One manoeuvre's own optimum on an effect's curve; `rest`: the model's whitened residual. Not along the slope, which
+// would lead far out of the range where an effect saturates.
 OwnValue own_value(const EffectCurves& curves, const OnCurve& place, const MatrixXd& shifts,
                    const GroupWhitener& whitener, const VectorXd& rest) {
   // the points of this curve alone, whitened
@@ -53,7 +53,7 @@ OwnValue own_value(const EffectCurves& curves, const OnCurve& place, const Matri
   }
   white = whitener(std::move(white));
 
-  // the best place, and what is known of it from how far it is to there
+  // the best place, and its information from the distance to it
   const std::vector<EffectCurve> alone{std::move(curve)};
   const OnCurve common = at_value(alone, 0, place.value);
   const VectorXd target = rest + shift_at(white, {&common, 1});
@@ -67,7 +67,8 @@ OwnValue own_value(const EffectCurves& curves, const OnCurve& place, const Matri
                       (common.segment * common.segment)};
 }
 
-// By `sigma`, but not beyond a jump of the curve; beside one its whole segment, as the jump may be anywhere in it.
+// +-kHalfWidth sigma, but not beyond a jump of the curve; next to a jump its whole segment, as the jump may be anywhere
+// in it.
 Interval interval_of(const EffectCurve& curve, const candidates::Candidate& candidate, double value, double sigma) {
   Interval interval{value, std::max(candidate.min, value - kHalfWidth * sigma),
                     std::min(candidate.max, value + kHalfWidth * sigma)};
@@ -80,12 +81,13 @@ Interval interval_of(const EffectCurve& curve, const candidates::Candidate& cand
   return interval;
 }
 
-// Spread between manoeuvres by the method of moments, and the variance of the mean with it.
+// Spread between manoeuvres by the method of moments, and the resulting variance of the mean.
 struct RandomEffect {
   double spread = 0, p_agree = 1, variance_of_mean = 0;
 };
 
 RandomEffect random_effect(const std::vector<OwnValue>& own) {
+  // weighted mean and Cochran's Q = sum w (x - mean)^2, w = 1 / variance
   double weights = 0, squares = 0, sum = 0;
   for (const auto& [offset, information] : own) {
     weights += information, squares += information * information, sum += information * offset;
@@ -95,11 +97,14 @@ RandomEffect random_effect(const std::vector<OwnValue>& own) {
   const double mean = sum / weights;
   double q = 0;
   for (const auto& [offset, information] : own) q += information * (offset - mean) * (offset - mean);
-  // manoeuvres that say next to nothing are no degrees of freedom: their effective number; but beside one that says all
-  // they count as one together, or the least of a misfit in them would be a spread of the value
+  // the effective number of manoeuvres, as those with little information are no degrees of freedom; at least two, or
+  // tiny misfits beside one dominant manoeuvre would count as spread
   const double manoeuvres = std::max(2.0, weights * weights / squares);
   const double freedom = manoeuvres - 1;
   result.p_agree = p_of_squares(q, freedom);
+
+  // DerSimonian and Laird: spread^2 = (Q - freedom) / (W (1 - 1 / n_eff)), W = sum w, n_eff = W^2 / sum w^2; with the
+  // spread, each manoeuvre has the weight 1 / (1 / w + spread^2)
   const double variance = std::max(0.0, (q - freedom) / (weights * (1 - 1 / manoeuvres)));
   if (result.p_agree < kAgree) result.spread = std::sqrt(variance);
   double with_spread = 0;
@@ -126,7 +131,7 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
   const MatrixXd information = inner_products(whiteners, columns);
   const MatrixXd covariance = information.completeOrthogonalDecomposition().pseudoInverse();
 
-  // what each manoeuvre says by itself of each value, with what all share at its most likely amounts
+  // each manoeuvre's own estimate of each value, with shared shapes at their most likely amounts
   std::vector<std::vector<OwnValue>> own(model.places.size());
   const GroupVectors residual = rest_of(data, model);
   const std::vector<VectorXd> rest = whitened_rest(data, residual, model.likelihood.discrepancies);
@@ -134,6 +139,7 @@ std::vector<EffectValue> effect_values(const StageData& data, const StandingMode
     for (std::size_t e = 0; e < model.places.size(); ++e)
       own[e].push_back(own_value(standing.curves, model.places[e], standing.curves.shifts[g], whiteners[g], rest[g]));
 
+  // per effect the interval by the larger of both standard errors, and its trend
   const GroupVectors left = without_open_shapes(data, residual, model.likelihood.discrepancies);
   std::vector<EffectValue> values;
   for (std::size_t e = 0; e < model.places.size(); ++e) {

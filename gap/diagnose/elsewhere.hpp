@@ -1,5 +1,5 @@
-// What other stages say of a stage's candidates: the same robot drove in all of them, so what one names is no surprise
-// in another, and what one speaks against is no cause in another.
+// Findings of other stages about a stage's candidates: the same robot drove in all of them, so what one names is
+// plausible in another, and what one refutes is no cause in another.
 //
 // Thread safety: values.
 #pragma once
@@ -14,13 +14,13 @@
 
 namespace kenaf::gap::diagnose {
 
-// An effect that another stage names, alone.
+// An effect that another stage names without rivals.
 struct NamedElsewhere {
   std::size_t candidate;
   Interval value;
 };
 
-// A candidate that another stage sees: at the value that this one gives it, more would be left there.
+// A candidate that would increase the residual of another stage at the value that this stage gives it.
 struct RefutedElsewhere {
   std::size_t candidate;
   Passage by;
@@ -30,7 +30,7 @@ struct Elsewhere {
   std::vector<NamedElsewhere> named{};
   std::vector<RefutedElsewhere> refuted{};
 
-  // The stage that does, if any.
+  // Returns the stage that refutes the candidate, if any.
   std::optional<Passage> refutes(std::size_t candidate) const {
     const auto found = std::ranges::find(refuted, candidate, &RefutedElsewhere::candidate);
     return found == refuted.end() ? std::nullopt : std::optional(found->by);

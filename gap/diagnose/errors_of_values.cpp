@@ -14,11 +14,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Chosen: so many tell a standard error to a quarter of itself.
+// Chosen: this many give a standard error to a quarter of itself.
 constexpr int kRobots = 8;
-constexpr double kOfRobots = 2.306;  // as kHalfWidth, of Student's t with kRobots degrees of freedom
+constexpr double kOfRobots = 2.306;  // like kHalfWidth, for Student's t with kRobots degrees of freedom
 
-// Of the numbers alone; uniform, as a tolerance is.
+// Errors of the numbers alone; uniform, like a tolerance.
 Settings drawn(std::span<const candidates::Candidate> candidates, const NumbersOff& numbers, Random& random) {
   const double most = std::numbers::sqrt3 * numbers.sigma;
   Settings settings;
@@ -35,7 +35,7 @@ Settings with(Settings settings, const Settings& more) {
   return settings;
 }
 
-// Of each group, in columns: by how much each robot that is drawn differs from the model's.
+// For each group, in columns: the difference of each drawn robot from the model's.
 std::vector<MatrixXd> differences_of_robots(const StageData& data, const StandingModel& standing,
                                             const NumbersOff& numbers, const Simulate& simulate, std::uint64_t seed) {
   const Settings model = settings_of(standing.model.places);
@@ -61,7 +61,7 @@ std::vector<MatrixXd> differences_of_robots(const StageData& data, const Standin
   return differences;
 }
 
-// Side by side, of each group.
+// Concatenates the columns of each group.
 std::vector<MatrixXd> beside(std::vector<MatrixXd> left, const std::vector<MatrixXd>& right) {
   for (std::size_t g = 0; g < left.size(); ++g) {
     const Index count = left[g].cols();
@@ -79,7 +79,7 @@ VectorXd errors_of_values(const StageData& data, const StandingModel& standing, 
   std::vector<MatrixXd> number_shapes;
   for (const StageGroup& group : data.groups) number_shapes.push_back(discrepancies.numbers_off * group.number_shapes);
 
-  // generalised least squares are linear: what each difference makes of the values
+  // generalised least squares is linear: the error of the values from each difference
   const std::vector<MatrixXd> slope = slopes(data, standing);
   const Index values = slope.front().cols(), shapes = number_shapes.front().cols();
   const MatrixXd products = inner_products(
@@ -89,7 +89,7 @@ VectorXd errors_of_values(const StageData& data, const StandingModel& standing, 
   const MatrixXd of_shapes = covariance * products.block(0, values, values, shapes);
   const MatrixXd of_robots = covariance * products.topRightCorner(values, kRobots);
 
-  // the covariance has the straight lines of the numbers in it, for which the robots stand now
+  // the covariance includes the numbers' linear shifts, which the robots replace here
   constexpr double kFew = kOfRobots / kHalfWidth;
   const VectorXd of_noise = covariance.diagonal() - of_shapes.rowwise().squaredNorm();
   const VectorXd of_numbers = kFew * kFew * of_robots.rowwise().squaredNorm() / kRobots;

@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kResamplings = 400;
-// Squared shift in noise, below which data say nothing of an effect: two sigma.
+// Squared shift in noise below which data do not show an effect: two sigma.
 constexpr double kHardlySeen = 4;
 
 using Places = std::vector<std::size_t>;
@@ -28,7 +28,7 @@ double quantile(std::vector<double>& values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
-// By how much each effect should lessen the deviance of these data, the others fitted again, if the model is right.
+// Expected reduction of these data's deviance by each effect, with the others refitted, if the model is right.
 VectorXd evidence_expected(const StageData& data, const StandingModel& standing) {
   const MatrixXd information =
       inner_products(whiteners_of(data, standing.model.likelihood.discrepancies), slopes(data, standing));
@@ -37,7 +37,7 @@ VectorXd evidence_expected(const StageData& data, const StandingModel& standing)
     std::vector<Index> others;
     for (Index i = 0; i < expected.size(); ++i)
       if (i != e) others.push_back(i);
-    // what is left of the effect's direction when the others take up what they can (Schur complement)
+    // the effect's direction orthogonal to the others (Schur complement)
     double taken_up = 0;
     if (!others.empty()) {
       const VectorXd shared = information(others, e);
@@ -59,7 +59,7 @@ Model refit(const StageData& data, const StandingModel& standing, const GroupVec
   return fit_model(data, standing.curves, effects_of(standing.model), beyond, standing.model.likelihood.discrepancies);
 }
 
-// Of each effect, whether it is above the noise of these data at all.
+// For each effect, whether these data show it above noise.
 std::vector<bool> seen_in(const StageData& data, const StandingModel& standing) {
   std::vector<bool> seen;
   for (const OnCurve& place : standing.model.places)
@@ -67,7 +67,8 @@ std::vector<bool> seen_in(const StageData& data, const StandingModel& standing) 
   return seen;
 }
 
-// The model fitted to these data. What they do not see keeps its value: what chance makes of it foretells nothing.
+// The model fitted to these data. Effects that they do not show keep their values: a value fitted to noise predicts
+// nothing.
 Model refit_seen(const StageData& data, const StandingModel& standing, const std::vector<bool>& seen,
                  const GroupVectors& beyond) {
   const std::vector<OnCurve>& places = standing.model.places;
@@ -92,7 +93,7 @@ Model refit_seen(const StageData& data, const StandingModel& standing, const std
   return model;
 }
 
-// Of the mean of a group's used runs, as NoiseFloor::whiteners are of one run.
+// Like NoiseFloor::whiteners, for the mean of a group's used runs.
 std::vector<Whitener> whiteners_of_means(const StageData& data) {
   std::vector<Whitener> whiteners;
   for (const StageGroup& group : data.groups) {
@@ -103,7 +104,7 @@ std::vector<Whitener> whiteners_of_means(const StageData& data) {
   return whiteners;
 }
 
-// Squares of what a model leaves of the used runs' means, by kind.
+// Squared residuals of the used runs' means, by kind.
 KindSquares squares_of_groups(const StageData& data, const std::vector<Whitener>& whiteners, const GroupVectors& rest) {
   KindSquares squares{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
@@ -125,7 +126,7 @@ KindSquares& operator+=(KindSquares& sum, const KindSquares& more) {
   return sum;
 }
 
-// What a model leaves: of the stage's kinds, by its effects alone, and with numbers that are a little off.
+// A model's squared residuals by kind: with its effects alone, and with errors of the description's numbers.
 struct Left {
   KindSquares by_effects, with_numbers;
 };
@@ -135,8 +136,8 @@ Left& operator+=(Left& sum, const Left& more) {
   return sum;
 }
 
-// Of a model, with numbers as they most likely are in the data that are fitted. All models have the whole one's
-// discrepancies: without an effect numbers would be taken to be off far enough to do what it does.
+// Residuals of a model, with the numbers' most likely errors in the fitted data. All models use the whole one's
+// discrepancies: estimated without an effect, the numbers' errors would grow until they replace it.
 Left left_in(const StageData& tested, const std::vector<Whitener>& whiteners, const StageData& fitted,
              const Model& model) {
   GroupVectors rest = rest_of(tested, model);
@@ -147,7 +148,7 @@ Left left_in(const StageData& tested, const std::vector<Whitener>& whiteners, co
   return left;
 }
 
-// The model without some effects, the others at its values.
+// The model without some effects, the others at their values.
 Model others_of(const StandingModel& standing, const Model& model, const Places& without) {
   Model others;
   for (std::size_t i = 0; i < model.places.size(); ++i)
@@ -159,17 +160,16 @@ Model others_of(const StandingModel& standing, const Model& model, const Places&
   return others;
 }
 
-// What models leave of all that is held out.
+// Residuals of models on all held-out data.
 struct LeftOfFolds {
   KindSquares nominal;
   Left whole;
-  // Of each set of effects without which the model is asked for: the others fitted again, or at the whole model's
-  // values.
+  // For each set of effects to leave out: the others refitted, or at the whole model's values.
   struct Without {
     Left fitted, held;
   };
   std::vector<Without> without;
-  std::vector<VectorXd> shown;          // of each fold, evidence_expected() of the others
+  std::vector<VectorXd> shown;          // for each fold, evidence_expected() of the others
   std::vector<std::vector<bool>> seen;  // likewise, seen_in()
 
   LeftOfFolds& operator+=(const LeftOfFolds& more) {
@@ -185,13 +185,13 @@ struct LeftOfFolds {
   }
 };
 
-// `held`: of each of `left_out`, where it was simulated.
+// `held`: simulated model for each of `left_out`, if there is one.
 LeftOfFolds left_of_folds(const StageView& view, Passage passage, const StandingModel& standing, const Folds& folds,
                           std::span<const Places> left_out, const std::vector<Model>& held, unsigned threads) {
   const GroupVectors beyond = beyond_curves(standing.curves, standing.model);
-  // What a model without an effect can do at its best is fitted to all: of runs that show another effect little, it
-  // would take that one to be what it lacks, and lose both where it is tested. All have the whole model's
-  // discrepancies: estimated anew, these could do what another effect does, and that would be gone, too.
+  // Models without an effect are fitted to all runs, i.e. at their best: fitted to runs that hardly show another
+  // effect, one would use that as a substitute and lose both in the test. All use the whole model's discrepancies: new
+  // estimates could absorb another effect, too.
   const StageData all_data = data_of(view, passage, {});
   std::vector<Model> models_without(left_out.size());
   for_each_job(left_out.size(), threads,
@@ -219,7 +219,7 @@ LeftOfFolds left_of_folds(const StageView& view, Passage passage, const Standing
   return sum;
 }
 
-// What the whole model takes off the stage, and what it does more than without each of `left_out`, in that order.
+// Shares of the whole model in the stage, and its advantage over the models without each of `left_out`, in that order.
 struct SharesWithout {
   double model;
   std::vector<HeldOutShares::OfEffect> left_out;
@@ -229,7 +229,7 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
                              std::span<const Places> left_out, const std::vector<Model>& held, unsigned threads) {
   const LeftOfFolds left = left_of_folds(view, passage, standing, folds, left_out, held, threads);
 
-  // of the stage each kind by its own gap; of a kind alone by its rms
+  // in the stage each kind is weighted by its own gap; a single kind by its rms
   const KindSquares& before = left.nominal;
   const KindSquares noise{std::vector<double>(kind_count(), 0), std::vector<double>(kind_count(), 0)};
   const std::vector<double> weights = kind_weights(before, noise);
@@ -243,8 +243,8 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
 
   SharesWithout shares{of_stage(left.whole.by_effects), {}};
   for (std::size_t s = 0; s < left_out.size(); ++s) {
-    // More than either model without it: others fitted to what they cannot do may lose what they did. Others that leave
-    // more than there was, as they stand beside what is not there, explain nothing.
+    // Advantage over the better model without it, as a refit of the others may lose what they explained. Others whose
+    // residual exceeds the original gap explain nothing.
     const auto more_than_without = [&](const auto& explained) {
       const LeftOfFolds::Without& without = left.without[s];
       const double by_others = std::max({0.0, explained(without.fitted), explained(without.held)});
@@ -257,7 +257,7 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
     share.shown_by_others = std::numeric_limits<double>::infinity();
     for (const VectorXd& of_fold : left.shown)
       share.shown_by_others = std::min(share.shown_by_others, of_fold[static_cast<Index>(left_out[s].front())]);
-    // most of all that is there, noise included: of a gap hardly larger than noise chance takes off all
+    // largest share of everything, including noise: chance may remove all of a gap hardly above noise
     double most = -std::numeric_limits<double>::infinity();
     for (std::size_t kind = 0; kind < weights.size(); ++kind) {
       if (before.bins[kind] == 0 || weights[kind] == 0) continue;
@@ -269,7 +269,7 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
       share.kind = kind;
       share.model_of_kind = of_kind(left.whole, kind);
     }
-    // a value that the others do not see, they do not foretell
+    // other runs do not predict a value that they do not show
     const auto is_seen = [&](const std::vector<bool>& of_fold) {
       return std::ranges::all_of(left_out[s], [&](std::size_t place) { return of_fold[place]; });
     };
@@ -283,6 +283,7 @@ SharesWithout shares_without(const StageView& view, Passage passage, const Stand
 
 GapMeasure measure_gap(const StageView& view, const std::vector<VectorXd>& after,
                        const std::vector<VectorXd>& deviations, std::uint64_t seed) {
+  // weights by each kind's own gap, the same before and after
   const std::vector<StageFeatures>& features = *view.features;
   const KindSquares before = squares_by_kind(features, *view.floor, *view.residuals);
   const KindSquares repeats = squares_by_kind(features, *view.floor, deviations);
@@ -290,7 +291,7 @@ GapMeasure measure_gap(const StageView& view, const std::vector<VectorXd>& after
   GapMeasure gap;
   gap.before = weighted_rms(before, weights);
   gap.after = weighted_rms(squares_by_kind(features, *view.floor, after), weights);
-  // without repeats the noise is all that is known of what must stay
+  // without repeats, noise is the only known floor
   const double of_repeats = weighted_rms(repeats, weights);
   gap.floor = std::min(of_repeats > 0 ? of_repeats : 1.0, gap.before);
   gap.shrink.value = shrink(gap.before, gap.after, gap.floor);
@@ -309,6 +310,8 @@ GapMeasure measure_gap(const StageView& view, const std::vector<VectorXd>& after
     shrinks.push_back(shrink(drawn_before, drawn_after, gap.floor));
     shares.push_back(explained_share(drawn_before, drawn_after, gap.floor));
   }
+
+  // 95 % quantiles, which always include the value itself
   const auto widen = [](Interval& interval, std::vector<double>& drawn) {
     if (drawn.empty()) drawn.push_back(interval.value);
     interval.from = std::min(interval.value, quantile(drawn, 0.025));
@@ -325,11 +328,12 @@ std::vector<RunPart> halves_of_runs_alone(const StageView& view, Passage passage
   const StageData data = data_of(view, passage, {});
   for (std::size_t g = 0; g < data.groups.size(); ++g) {
     const StageGroup& group = data.groups[g];
+    // only single runs whose absence hides an effect
     if (group.runs.size() > 1) continue;
     const std::size_t run = group.runs.front();
     if (evidence_expected(data_of(view, passage, UsedParts::without({run})), standing).minCoeff() >= evidence) continue;
 
-    // bins are channel by channel: what the model shifts by the time
+    // bins are ordered by channel: sum the model's squared shift by time
     std::map<double, double> squares;
     double sum = 0, half = 0;
     for (std::size_t b = 0; b < group.bins.size(); ++b) {
@@ -338,6 +342,8 @@ std::vector<RunPart> halves_of_runs_alone(const StageView& view, Passage passage
       squares[group.t_s[b]] += square;
       sum += square;
     }
+
+    // the first half ends where half of the sum is reached
     for (const auto& [t_s, square] : squares) {
       half += square;
       if (half < sum / 2) continue;

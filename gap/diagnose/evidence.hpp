@@ -1,4 +1,4 @@
-// What a model is worth on runs that it was not fitted to.
+// Performance of a model on runs that it was not fitted to.
 //
 // Thread safety: values and pure functions; deterministic for a seed.
 #pragma once
@@ -16,7 +16,7 @@
 
 namespace kenaf::gap::diagnose {
 
-// What a stage is measured with.
+// The data of a stage.
 struct StageView {
   const std::vector<StageFeatures>* features;
   const std::vector<std::vector<std::size_t>>* repeats;
@@ -24,25 +24,25 @@ struct StageView {
   const NoiseFloor* floor;
 };
 
-// The gap on runs held out of the fit, in units of noise. NaN: not measured.
+// The gap on held-out runs, in units of noise. NaN: not measured.
 struct GapMeasure {
   static constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
   double before = kNotMeasured, after = kNotMeasured, floor = kNotMeasured;
   Interval shrink{kNotMeasured, kNotMeasured, kNotMeasured};
   Interval explains{kNotMeasured, kNotMeasured, kNotMeasured};
 };
-// `after`: what a model leaves of each run; intervals from resampling groups of repeats. `repeats_rest`: what repeats
-// differ by, of each run, empty without repeats.
+// `after`: a model's residual of each run; intervals from resampling groups of repeats. `deviations`: of each run from
+// the mean of its repeats, empty without repeats.
 GapMeasure measure_gap(const StageView& view, const std::vector<Eigen::VectorXd>& after,
                        const std::vector<Eigen::VectorXd>& deviations, std::uint64_t seed);
 
-// Of each run that is the only one of its manoeuvre and without which the others do not show some effect, as that
-// should gain less than `evidence` there: its first half, up to where half of what the model shifts in it is over.
+// For each run that is the only one of its manoeuvre, and without which some effect should gain less than `evidence` on
+// the others: its first half, which ends where half of the model's squared shift is reached.
 std::vector<RunPart> halves_of_runs_alone(const StageView& view, Passage passage, const StandingModel& standing,
                                           double evidence);
 
-// The places of a model fitted without the parts of each fold, for every run of each of its parts, in the order of
-// time. A single fold holds nothing out.
+// The places of a model fitted without each fold, by run, for each of its parts, in the order of time. A single fold
+// holds nothing out.
 struct PlacesOfPart {
   RunPart part;
   std::vector<OnCurve> places;
@@ -51,41 +51,41 @@ std::vector<std::vector<PlacesOfPart>> places_held_out(const StageView& view, Pa
                                                        const StandingModel& standing, const Folds& folds,
                                                        unsigned threads);
 
-// Shares of the squared gap that a model takes off, each of its effects and sets of them: with them, fitted to the runs
-// that are not held out, less without them, the others as they are or fitted again to all runs, whichever takes off
-// more. By curves, on runs held out; at most 1.
+// Shares of the squared gap, on held-out runs, that a model, each of its effects, and sets of them remove: share of the
+// model fitted to the other runs, less that without the effects, whose others keep their values or are refitted to all
+// runs, whichever removes more. From curves; at most 1.
 //
-// `beyond_numbers`, `of_kind` and `model_of_kind` have numbers of the description that are a little off in either
-// model, as the runs that are fitted to have them: what these explain as well is no share of an effect's.
+// `beyond_numbers`, `of_kind` and `model_of_kind` include errors of the description's numbers in both models, as
+// estimated from the fitted runs: an effect gets no credit for what these explain as well.
 struct HeldOutShares {
-  // Of the stage, and of the kind of channels in which the effect takes off most.
+  // Shares in the stage, and in the kind of channels in which the effect removes most.
   struct OfEffect {
     double of_stage = 0, beyond_numbers = 0, of_kind = 0;
     std::size_t kind = 0;
-    double model_of_kind = 0;  // what the whole model takes off there
-    // Deviance that the effect should take off the runs that are fitted to, if the model is right; of the fold where it
-    // is least. Little: only the runs held out show the effect, and no others can foretell it.
+    double model_of_kind = 0;  // share of the whole model there
+    // Expected deviance gain of the effect on the fitted runs, if the model is right; the smallest of all folds. If
+    // small, only the held-out runs show the effect, and the others cannot predict it.
     double shown_by_others = 0;
-    double model_of_stage = 0;  // what the whole model takes off the stage, as of_stage is measured
+    double model_of_stage = 0;  // share of the whole model in the stage, measured like of_stage
   };
   std::vector<OfEffect> effects;  // in the order of the model's places
-  // What several effects take off together, which none of them may do alone, as each takes up what the others leave.
+  // Share of several effects together; each alone may remove little, as the others compensate for it.
   struct OfSet {
     std::vector<std::size_t> places;  // two or more, ascending
     OfEffect share;
   };
-  std::vector<OfSet> sets{};  // those of interest, small ones first; shares_of_sets_held_out()
+  std::vector<OfSet> sets{};  // sets of interest, small ones first; shares_of_sets_held_out()
   double model = 0;           // of the stage
 };
 //
-// `without_each`: as simulated, of the model without each of its effects, the others at its values; empty: as the
-// curves add up.
+// `without_each`: simulated models without each of the effects, the others at their values; empty: from the sum of
+// curves.
 HeldOutShares shares_held_out(const StageView& view, Passage passage, const StandingModel& standing,
                               const std::vector<Model>& without_each, const Folds& folds, unsigned threads);
 
 // Every set of two and more of these places, small ones first.
 std::vector<std::vector<std::size_t>> sets_small_first(std::span<const std::size_t> places);
-// `without_sets`: as without_each, of the model without each of the sets.
+// `without_sets`: like without_each, for each of the sets.
 std::vector<HeldOutShares::OfSet> shares_of_sets_held_out(const StageView& view, Passage passage,
                                                           const StandingModel& standing,
                                                           std::span<const std::vector<std::size_t>> sets,

@@ -11,10 +11,10 @@ namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-// 74 degrees: beyond, a turn of the body turns roll and yaw by four times as much and more (chosen).
+// 74 degrees: beyond it a rotation of the body changes roll and yaw by four times as much or more (chosen).
 constexpr double kUpright_rad = 1.3;
 
-// Rows in which the nose points up or down, by the last pitch that was measured.
+// Rows in which the nose points up or down, by the latest measured pitch.
 std::vector<bool> upright_rows(const runs::Run& measured) {
   std::vector<bool> upright(measured.row_count(), false);
   const std::span<const double> pitch_rad = measured.column("pitch_rad");
@@ -35,6 +35,7 @@ FeatureMap::FeatureMap(const runs::Run& measured, double span_s, std::span<const
   const std::vector<bool> upright = upright_rows(measured);
   std::vector<double> means;
   for (std::size_t c = 0; c < diagnosis_channels().size(); ++c) {
+    // the channel's measured samples, without those in which it says little
     const Channel& channel = diagnosis_channels()[c];
     if (std::ranges::find(left_out, channel.column) != left_out.end()) continue;
     const std::span<const double> column = measured.column(channel.column);
@@ -45,10 +46,12 @@ FeatureMap::FeatureMap(const runs::Run& measured, double span_s, std::span<const
       series.value.push_back(column[i]);
     }
     if (series.t_s.empty()) continue;
+
+    // sums by span, in the order of time
     if (channel.angle) unwrap(series.value);
     series.interval_s = series.t_s.size() > 1 ? logs::median_step(series.t_s, series.value) : 0;
     for (std::size_t i = 0; i < series.t_s.size(); ++i) {
-      // a time on a border belongs to the later span, whatever its last bit
+      // a time on a border belongs to the later span, despite rounding
       const auto span = static_cast<std::size_t>(series.t_s[i] / span_s + 1e-6);
       if (bins_.empty() || bins_.back().channel != c || bins_.back().span != span) {
         bins_.push_back({c, span, 0});
@@ -59,12 +62,14 @@ FeatureMap::FeatureMap(const runs::Run& measured, double span_s, std::span<const
     }
     series_.push_back(std::move(series));
   }
+
   measured_ = Eigen::Map<const Eigen::VectorXd>(means.data(), static_cast<Eigen::Index>(means.size()));
   for (std::size_t b = 0; b < bins_.size(); ++b)
     measured_[static_cast<Eigen::Index>(b)] /= static_cast<double>(bins_[b].samples);
 }
 
 std::vector<double> FeatureMap::simulated_at(const runs::Run& simulated, const Series& series, double late) const {
+  // the samples that have a value, with time from the run's start
   const Channel& channel = diagnosis_channels()[series.channel];
   const std::span<const double> time = simulated.column("t_s"), column = simulated.column(channel.column);
   std::vector<double> t_s, value, result(series.t_s.size(), 0.0);
@@ -74,11 +79,15 @@ std::vector<double> FeatureMap::simulated_at(const runs::Run& simulated, const S
     value.push_back(column[i]);
   }
   if (t_s.empty()) return result;
+
+  // angles are continued past +-pi, on the turn on which the measured one starts
   if (channel.angle) {
     unwrap(value);
     const double turns = std::round((series.value.front() - value.front()) / kTurn);
     for (double& angle : value) angle += kTurn * turns;
   }
+
+  // linear interpolation at the times at which samples were taken; constant beyond both ends
   std::size_t next = 0;
   for (std::size_t i = 0; i < result.size(); ++i) {
     const double taken_s = series.t_s[i] - late * series.interval_s;

@@ -1,4 +1,4 @@
-// Which runs, or parts of runs, are held out of a fit together.
+// Folds of cross-validation: which runs, or parts of runs, are held out of a fit together.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -12,9 +12,9 @@
 
 namespace kenaf::gap::diagnose {
 
-// A run from one time to another, since its start: all of it, where nothing else is said.
+// A run between two times since its start; by default all of it.
 struct RunPart {
-  // Not explicit: a run is the whole of it.
+  // Not explicit: a run converts to the whole of it.
   RunPart(std::size_t of_run, double from = 0, double to = std::numeric_limits<double>::infinity())
       : run(of_run), from_s(from), to_s(to) {}
   std::size_t run;
@@ -24,25 +24,24 @@ struct RunPart {
   bool operator==(const RunPart&) const = default;
 };
 
-// Parts that are held out together: all parts of all folds together are every run once.
+// Parts that are held out together. All folds together contain every run once.
 using Fold = std::vector<RunPart>;
 using Folds = std::vector<Fold>;
 
-// Runs dealt out in turn, manoeuvre by manoeuvre, to as many folds as the most repeated one has runs, at most five:
-// repeats of a manoeuvre are in different folds. Where nothing is repeated, to as many folds as there are manoeuvres,
-// at most five.
+// Distributes the repeats of each manoeuvre over different folds: as many folds as the most repeated manoeuvre has
+// runs, at most five. Without repeats, as many as there are manoeuvres, at most five.
 Folds folds_by_repeat(const std::vector<std::vector<std::size_t>>& repeats);
-// All repeats of a manoeuvre together, dealt out to at most five folds.
+// Keeps all repeats of a manoeuvre together, in at most five folds.
 Folds folds_by_manoeuvre(const Observations& observations);
-// Of each of the runs of `first_halves`, that half in the first fold and the other one in the second, in place of the
-// run. A single fold stays as it is.
+// Replaces each run of `first_halves` by that half in the first fold and the other half in the second. A single fold is
+// returned unchanged.
 Folds with_halves(Folds folds, std::span<const RunPart> first_halves);
 
-// What of each run a fit uses; empty: all of all.
+// The parts of each run that a fit uses; by default everything.
 class UsedParts {
  public:
   UsedParts() = default;
-  // What `fold` holds, or all but that.
+  // The parts in `fold`, or everything else.
   static UsedParts of(const Fold& fold) { return {fold, true}; }
   static UsedParts without(const Fold& fold) { return {fold, false}; }
   bool holds(std::size_t run, double t_s) const;

@@ -29,7 +29,7 @@ std::vector<double> kind_weights(const KindSquares& before, const KindSquares& f
   for (std::size_t k = 0; k < weights.size(); ++k) {
     if (before.bins[k] == 0) continue;
     const double mean = before.sum[k] / before.bins[k];
-    // what is smaller than noise is no gap, however alike repeats are: many bins of it would hide a kind that has one
+    // differences below noise are no gap, even if repeats agree better: many such bins would hide a kind with a gap
     const double of_floor = std::max(1.0, floor.bins[k] > 0 ? floor.sum[k] / floor.bins[k] : 1);
     if (mean > of_floor) weights[k] = (mean - of_floor) / (mean * mean);
   }

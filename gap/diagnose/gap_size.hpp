@@ -1,9 +1,8 @@
-// How large a gap is, and which share of it a model takes away.
+// The size of a gap, and the share of it that a model removes.
 //
-// A gap is measured in units of noise, and each kind of channels counts by the share of its own gap: a voltage that is
-// off by 300 times its noise must not hide track speeds that are off by 20 times theirs. Kind k with n_k bins of mean
-// square B_k, of which F_k is noise and spread of repeats, has the weight (B_k - F_k) / B_k^2 for each bin, so that far
-// above the noise a bin counts 1 / B_k, and a kind without a gap does not count.
+// A gap is measured in units of noise, and each kind of channels is weighted by its own gap: a voltage error of 300
+// noise units must not hide track speed errors of 20. A bin of kind k with mean square B_k, of which F_k is noise and
+// spread of repeats, has the weight (B_k - F_k) / B_k^2: about 1 / B_k far above the noise, and 0 without a gap.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -16,23 +15,23 @@
 
 namespace kenaf::gap::diagnose {
 
-// Of each kind of channels.
+// Sums over each kind of channels.
 struct KindSquares {
-  std::vector<double> sum;  // of squares, in units of noise
+  std::vector<double> sum;  // sum of squares, in units of noise
   std::vector<double> bins;
 };
-// Of differences of each run, whitened; runs whose weight is 0 left out; `weights` empty: all count once.
+// Squares of each run's whitened differences. `weights`: of runs, 0 to leave one out; empty: all 1.
 KindSquares squares_by_kind(const std::vector<StageFeatures>& features, const NoiseFloor& floor,
                             const std::vector<Eigen::VectorXd>& differences, const std::vector<double>& weights = {});
 
-// The weight of a bin of each kind. `floor`: of repeats or noise. All 1 where no kind has a gap.
+// The weight of a bin of each kind. `floor`: of repeats or noise. All 1 if no kind has a gap.
 std::vector<double> kind_weights(const KindSquares& before, const KindSquares& floor);
 
-// Root of the weighted mean square: in units of noise.
+// Root of the weighted mean square, in units of noise.
 double weighted_rms(const KindSquares& squares, const std::vector<double>& kind_weights);
 
-// Share of the squared gap beyond `floor` that is gone, all rms: at most 1; below 0 where it grew. 0 where there is no
-// gap.
+// Explained share of the squared gap beyond `floor`; all arguments are rms. At most 1, negative if the gap grew, 0
+// without a gap.
 double explained_share(double before, double after, double floor);
 // 1 - (after - floor) / (before - floor), likewise.
 double shrink(double before, double after, double floor);

@@ -8,9 +8,9 @@
 
 namespace kenaf::gap::diagnose {
 
-// Where within [low, high] `function` is least, and its value there: the better of the last two that were tried.
-// `sections`: evaluations after the first two, each of which leaves 0.618 of the interval. A local minimum where there
-// are several.
+// Returns the location of the minimum of `function` in [low, high] and its value: the better of the last two
+// evaluations. `sections`: evaluations after the first two, each of which reduces the interval to 0.618. Finds a local
+// minimum if there are several.
 template <class Function>
 std::pair<double, double> golden_section(double low, double high, int sections, Function&& function) {
   constexpr double kPart = std::numbers::phi - 1;

@@ -10,9 +10,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kVisible = 3;  // in noise: shorter shifts have no direction to speak of
+constexpr double kVisible = 3;  // in noise: shorter shifts have no meaningful direction
 
-// The point nearest to neutral that is long enough to have a direction; the longest one where none is.
+// The point nearest to neutral that is long enough to have a direction; else the longest one.
 int direction_column(const EffectCurve& curve, const VectorXd& length) {
   int best = -1;
   for (const CurvePoint& point : curve.points) {

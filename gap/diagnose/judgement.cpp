@@ -7,7 +7,7 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// Effects stand in for each other where together they take off more than so many times what each does alone (chosen).
+// Effects substitute for each other if together they explain more than this multiple of their single shares (chosen).
 constexpr double kCommon = 2;
 
 constexpr HeldOutShares::OfEffect kNotHeldOut{
@@ -17,7 +17,7 @@ bool is_lack_of_share(Doubt doubt) {
   return doubt == Doubt::not_held_out || doubt == Doubt::trifle;
 }
 
-// Of the stage's whole gap, and of what numbers that are a little off leave of it.
+// Shares of the stage's whole gap, and of what errors of the description's numbers leave of it.
 bool takes_off_enough(const HeldOutShares::OfEffect& share, const DecisionSettings& settings) {
   return share.of_stage >= settings.stage_share && share.beyond_numbers >= settings.stage_share;
 }
@@ -26,11 +26,11 @@ double change_by(const NamedEffect& effect, const candidates::Candidate& candida
   return std::abs(effect.value.value.value - candidate.present);
 }
 
-// Effects that stand in for each other, as a lag and a ramp do: without one the others take up most of it, without all
-// of them the gap is there. They are named as a set, the smallest that takes off enough.
+// Effects that substitute for each other, like a lag and a ramp: without one the others explain most of it, without all
+// of them the gap remains. They are named as a set, the smallest that explains enough.
 void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutShares::OfSet>& sets,
                   const std::vector<HeldOutShares::OfSet>& sets_by_manoeuvre, const DecisionSettings& settings) {
-  // how much is whose is not known, so manoeuvres, and parts of them, may disagree on it
+  // their individual shares are unknown, so manoeuvres, and parts of them, may disagree on these
   const auto lacks_share = [&](std::size_t place) {
     const std::vector<Doubt>& doubts = effects[place].doubts;
     return std::ranges::any_of(doubts, is_lack_of_share) && std::ranges::all_of(doubts, [](Doubt doubt) {
@@ -38,6 +38,8 @@ void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutSh
            });
   };
   const auto is_named = [&](std::size_t place) { return effects[place].doubts.empty(); };
+
+  // an effect is in one set at most
   const auto may_join = [&](std::size_t place) {
     return effects[place].partners.empty() && (lacks_share(place) || is_named(place));
   };
@@ -46,6 +48,8 @@ void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutSh
     for (const std::size_t place : places) alone += std::max(0.0, effects[place].share.of_stage);
     return together.of_stage > kCommon * alone;
   };
+
+  // small sets first: the weaker of both shares has to suffice
   for (std::size_t s = 0; s < sets.size(); ++s) {
     const std::vector<std::size_t>& places = sets[s].places;
     if (!std::ranges::all_of(places, may_join) || std::ranges::none_of(places, lacks_share)) continue;
@@ -55,8 +59,10 @@ void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutSh
     if (share.of_kind < settings.effect_share || !takes_off_enough(share, settings) ||
         share.model_of_kind < settings.model_share)
       continue;
-    // one that has a name by itself is in a set only with what it stands in for
+    // an effect with a name of its own joins only sets whose members substitute for it
     if (std::ranges::any_of(places, is_named) && !stand_in(places, share)) continue;
+
+    // its members are named, as each other's partners and rivals
     for (const std::size_t place : places) {
       NamedEffect& effect = effects[place];
       effect.doubts.clear();
@@ -91,8 +97,10 @@ void judge(StageDecision& d, std::span<const candidates::Candidate> candidates, 
     NamedEffect& effect = d.effects[i];
     effect.share = shares.effects[i];
     effect.share_by_manoeuvre = shares_by_manoeuvre.effects[i];
-    // an effect that one manoeuvre alone shows is held out by repeats alone
+    // an effect that a single manoeuvre shows can only be held out by repeats
     if (effect.share_by_manoeuvre.shown_by_others < settings.evidence) effect.share_by_manoeuvre = kNotHeldOut;
+
+    // the smaller share counts; fmin ignores one that is NaN
     const auto least = [&](auto member) { return std::fmin(effect.share.*member, effect.share_by_manoeuvre.*member); };
     if (effect.at_bound) effect.doubts.push_back(Doubt::end_of_range);
     const double change = change_by(effect, candidates[effect.candidate]);
@@ -107,6 +115,8 @@ void judge(StageDecision& d, std::span<const candidates::Candidate> candidates, 
       effect.doubts.push_back(Doubt::trifle);
     if (!(least(&Share::model_of_kind) >= settings.model_share)) effect.doubts.push_back(Doubt::little_explained);
   }
+
+  // then sets, and the verdict from what has a name
   name_in_sets(d.effects, shares.sets, shares_by_manoeuvre.sets, settings);
   bool any_named = false, any_rival = false;
   for (const NamedEffect& effect : d.effects) {

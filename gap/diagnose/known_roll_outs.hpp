@@ -1,5 +1,5 @@
-// What the simulator has said already: two stages are compared in one replay, models share what is open around them,
-// and two fits may ask for one point. Nothing of that is simulated twice.
+// Cache of roll-outs, so that nothing is simulated twice: two stages share a replay, models share their open shapes,
+// and two fits may request the same point.
 //
 // Thread safety: a value.
 #pragma once
@@ -16,25 +16,25 @@
 
 namespace kenaf::gap::diagnose {
 
-// What a run is driven with again.
+// What drives the simulated robot.
 enum class Replay { commands, belts };
 
 struct RollOut {
   Replay replay;
   std::size_t run;
-  std::size_t variation;  // its number
+  std::size_t variation;  // its number, of number_of()
   auto operator<=>(const RollOut&) const = default;
 };
 
-using StageValues = std::array<Eigen::VectorXd, kPassages.size()>;  // of the stages that are compared in the replay
+using StageValues = std::array<Eigen::VectorXd, kPassages.size()>;  // for the stages compared in the replay
 
 class KnownRollOuts {
  public:
-  // The same for the same variation, until forget().
+  // Equal variations have equal numbers, until forget().
   std::size_t number_of(const Variation& variation);
   const Variation& variation(std::size_t number) const { return variations_[number]; }
 
-  // Null: not known.
+  // Null if unknown.
   const StageValues* find(const RollOut& roll_out) const;
   void add(const RollOut& roll_out, StageValues values);
 

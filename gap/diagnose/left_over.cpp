@@ -18,9 +18,9 @@ using Eigen::VectorXd;
 
 constexpr std::size_t kMostPoints = 400;
 constexpr double kAlikeSides =
-    0.25;  // by which slopes of both tracks differ at most (chosen: half of what a repair would be)
+    0.25;  // largest relative difference of both tracks' slopes (chosen: half of what a repair would change)
 
-// A term that was said, with what comparing both tracks needs.
+// A described term, with the data for comparing both tracks.
 struct Said {
   Dependence dependence;
   Quantity quantity;
@@ -33,7 +33,7 @@ std::string name_on(const LeftOverCandidate& on, std::string_view channel) {
   return of_itself ? fmt::format("{} {}", on.name, channel) : std::string(on.name);
 }
 
-// Evenly drawn from all rows.
+// Drawn evenly from all rows.
 std::vector<std::array<double, 2>> points_of(const VectorXd& x, const VectorXd& y) {
   std::vector<std::array<double, 2>> points;
   const auto count = static_cast<std::size_t>(x.size()), kept = std::min(count, kMostPoints);
@@ -53,7 +53,7 @@ Dependence dependence_of(const LeftOverRows& rows, const LeftOverFit& fit, const
   d.on_unit =
       on.kind == Regressor::delay || on.kind == Regressor::lag ? fmt::format("{} / s", d.unit) : std::string(on.unit);
   if (on.kind == Regressor::constant) {
-    // nothing to draw it over but the quantity itself
+    // drawn over the quantity itself
     d.intercept = term.slope;
     d.slope = 0;
     d.on_unit = d.unit;
@@ -89,7 +89,7 @@ double share_of(const Said* said) {
   return said == nullptr ? 0 : said->dependence.share;
 }
 
-// Of both tracks, in one sentence.
+// Joins the terms of both tracks in one sentence.
 Said of_each_track(const Said& left, const Said& right) {
   Said both = left.dependence.share < right.dependence.share ? left : right;
   constexpr std::string_view kEach = "speed of each track";
@@ -98,9 +98,10 @@ Said of_each_track(const Said& left, const Said& right) {
   return both;
 }
 
-// The same is seen in each track and in their mean and difference. It is told of the pair in which it takes more; of
-// tracks that are not alike, or of which one has it alone, of each by itself.
+// A cause shows in each track and in their mean and difference. It is described for the pair with the larger share; for
+// each track separately if they differ or only one has it.
 std::vector<Said> without_doubles(const std::vector<Said>& all) {
+  // the term of that quantity which says the same, if any
   const auto find = [&](Quantity quantity, const Said& like) {
     const auto found = std::ranges::find_if(
         all, [&](const Said& said) { return said.quantity == quantity && is_same_kind(said, like); });
@@ -108,17 +109,22 @@ std::vector<Said> without_doubles(const std::vector<Said>& all) {
   };
   std::vector<Said> kept;
   for (const Said& said : all) {
+    // only terms about tracks have doubles
     const bool of_side = said.quantity == Quantity::left_track || said.quantity == Quantity::right_track;
     const bool of_both = said.quantity == Quantity::track_mean || said.quantity == Quantity::track_difference;
     if (!of_side && !of_both) {
       kept.push_back(said);
       continue;
     }
+
+    // keep the pair with the larger sum of shares; where they are about equal, that of single tracks
     const Said *left = find(Quantity::left_track, said), *right = find(Quantity::right_track, said);
     const Said *mean = find(Quantity::track_mean, said), *difference = find(Quantity::track_difference, said);
     const double by_side = share_of(left) + share_of(right), by_both = share_of(mean) + share_of(difference);
     const bool alike = left != nullptr && right != nullptr && is_alike(*left, *right);
     if (of_side != (by_side >= by_both - 2 * kClearlyMore)) continue;
+
+    // tracks that agree share one sentence, in the place of the left one
     if (of_both || !alike)
       kept.push_back(said);
     else if (&said == left)

@@ -14,15 +14,13 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kMostTerms = 3, kMostHeldOutFolds = 10;  // chosen: ten as Hastie et al. recommend
-constexpr std::size_t kLeastRows = 12;                         // chosen: fewer tell nothing about four numbers
-constexpr double kBeyondNoise = 0.1;                           // of the noise's energy, that has to be left (chosen)
-constexpr double kSameCause =
-    0.5;  // correlation with a candidate that does not hold (chosen: a quarter of its variance)
-constexpr double kSameNumbers = 0.8;  // with one that is chosen (chosen: the rest is less than half of it)
+constexpr std::size_t kLeastRows = 12;                         // chosen: fewer are too few for four numbers
+constexpr double kBeyondNoise = 0.1;                           // of the noise's energy, minimum residual (chosen)
+constexpr double kSameCause = 0.5;    // correlation with a rejected candidate (chosen: a quarter of its variance)
+constexpr double kSameNumbers = 0.8;  // with a selected one (chosen: the rest is less than half of it)
 constexpr double kSameSign = 0.95;    // of the draws of the bootstrap (chosen)
 constexpr std::size_t kDraws = 200;   // chosen: enough to tell 95 from 90 %
-// Of the seconds behind a late term those of its own parameter: with another share it is no delay, lag or limit
-// (chosen).
+// Range of a late term's lateness over its own parameter: outside it is no delay, lag or limit (chosen).
 constexpr double kLeastOfLate = 0.5, kMostOfLate = 1.6;
 
 MatrixXd columns_of(const LeftOverRows& rows, const std::vector<std::size_t>& terms) {
@@ -58,7 +56,7 @@ class LeftOverSelection {
   }
 
  private:
-  // Terms that take more than there is beyond noise say that there is less noise: then they take all of it together.
+  // If terms explain more than the residual beyond noise, the noise is overestimated: scales them to a sum of 1.
   static void limit_shares(LeftOverFit& fit) {
     double sum = fit.by_run ? fit.by_run->share : 0;
     for (const LeftOverTerm& term : fit.terms) sum += term.share;
@@ -73,6 +71,7 @@ class LeftOverSelection {
     std::vector<bool> barred(rows_.candidates.size(), false);
     VectorXd losses = held_out_losses({});
     while (terms.size() < kMostTerms) {
+      // the best candidate, and its share on held-out units
       const auto best = best_candidate(barred, losses);
       if (!best) break;
       std::vector<std::size_t> with = chosen_;
@@ -81,29 +80,34 @@ class LeftOverSelection {
       const double share = (losses - left).sum() / beyond_;
       barred[*best] = true;
       if (share < kLeastTold) break;
+
+      // a chance gain or an unstable sign: neither this one nor its look-alikes
       if (!is_no_chance(losses - left) || !has_one_sign(with)) {
         bar_alike(barred, *best, kSameCause);
         continue;
       }
+
+      // accepted; similar candidates are barred from now on
       chosen_ = with;
       losses = left;
       terms.push_back({*best, share, 0});
       bar_alike(barred, *best, kSameNumbers);
-      // a second lateness would tell the first one's shape, not another cause
+      // a second lateness would only correct the shape of the first
       if (is_late(rows_.candidates[*best].kind))
         for (std::size_t c = 0; c < barred.size(); ++c) barred[c] = barred[c] || is_late(rows_.candidates[c].kind);
     }
     return terms;
   }
 
-  // What does not hold is not to come back under another name, nor the difference of two that are nearly the same.
+  // Bars collinear candidates: a rejected term must not return under another name, nor the difference of two similar
+  // ones.
   void bar_alike(std::vector<bool>& barred, std::size_t candidate, double correlation) const {
     const VectorXd x = rows_.x.col(static_cast<Index>(candidate)).normalized();
     for (std::size_t c = 0; c < barred.size(); ++c)
       if (std::abs(x.dot(rows_.x.col(static_cast<Index>(c)).normalized())) > correlation) barred[c] = true;
   }
 
-  // The one that leaves least; of kinds that leave about as much the first.
+  // The candidate with the least loss; among kinds with about equal losses the first.
   std::optional<std::size_t> best_candidate(const std::vector<bool>& barred, const VectorXd& before) const {
     std::map<Regressor, std::pair<double, std::size_t>> best_of_kind;
     for (std::size_t c = 0; c < rows_.candidates.size(); ++c) {
@@ -139,7 +143,7 @@ class LeftOverSelection {
     return robust_.losses(residual);
   }
 
-  // A delay, lag or limit of about what its parameter says, beside the share that is measured at all.
+  // Whether each delay, lag or limit agrees with its parameter, given the fraction that is measured at all.
   bool is_plausible(const std::vector<std::size_t>& with) const {
     if (std::ranges::none_of(with, [&](std::size_t c) { return is_late(rows_.candidates[c].kind); })) return true;
     const MatrixXd x = columns_of(rows_, with);
@@ -162,11 +166,14 @@ class LeftOverSelection {
     return is_above_chance(by_unit);
   }
 
-  // Of the last term's slope, in draws of as many units with replacement.
+  // Whether the last term's slope has one sign in a bootstrap over units.
   bool has_one_sign(const std::vector<std::size_t>& with) const {
+    // the robust fit to all rows, whose weights every draw keeps
     const MatrixXd x = columns_of(rows_, with);
     const VectorXd slopes = robust_slopes(x, rows_.error, robust_, VectorXd::Ones(x.rows()));
     const VectorXd weights = robust_.row_weights(rows_.error - x * slopes);
+
+    // per unit u its part of the normal equations: A_u = X_u' W_u X_u, b_u = X_u' W_u y_u
     std::vector<MatrixXd> square(units_, MatrixXd::Zero(x.cols(), x.cols()));
     std::vector<VectorXd> right(units_, VectorXd::Zero(x.cols()));
     for (std::size_t i = 0; i < unit_.size(); ++i) {
@@ -174,6 +181,8 @@ class LeftOverSelection {
       square[unit_[i]] += weights[row] * x.row(row).transpose() * x.row(row);
       right[unit_[i]] += weights[row] * rows_.error[row] * x.row(row).transpose();
     }
+
+    // a draw solves (sum of A_u) slopes = sum of b_u over the drawn units; count slopes with the fit's sign
     std::mt19937_64 random(1);
     std::size_t same = 0;
     for (std::size_t draw = 0; draw < kDraws; ++draw) {
@@ -202,7 +211,7 @@ class LeftOverSelection {
 
 std::vector<std::size_t> held_out_together(const LeftOverRows& rows, std::span<const std::size_t> group_of_run) {
   constexpr std::size_t kLeastGroups = 4;
-  constexpr double kStretches = 12, kShortest_s = 1;  // chosen: ten folds of them, longer than what is lagged about
+  constexpr double kStretches = 12, kShortest_s = 1;  // chosen: ten folds of them, longer than usual lags
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> number;
   std::map<std::size_t, double> duration;  // of each run
   std::map<std::size_t, std::size_t> groups;

@@ -9,7 +9,7 @@ namespace {
 
 using R = Regressor;
 
-// What a dependence on `on` comes of; empty names fill up.
+// Causes of a dependence on `on`, padded with empty names.
 struct Cause {
   Regressor on;
   std::array<std::string_view, 5> look_at;
@@ -79,7 +79,7 @@ constexpr Cause kOfYawRate[] = {{R::simulated, {"track.separation_m", "track.con
                                 {R::acceleration, {"com_left", "friction_asymmetry"}},
                                 {R::load, {"friction_asymmetry", "com_left"}}};
 
-// A gyro has faults of its own; otherwise as the pose.
+// A gyro has its own errors; otherwise as the pose.
 constexpr Cause kOfGyro[] = {
     {R::simulated, {"track.separation_m", "track.contact_length_m", "friction_across", "gyro_scale"}},
     {R::delay, {"gyro_delay", "clock_offset", "command_delay", "drive_lag"}},
@@ -110,7 +110,7 @@ constexpr Cause kOfHeight[] = {{R::constant, {"obstacle_height", "ground_complia
 
 struct Causes {
   std::span<const Cause> of_term;
-  std::array<std::string_view, 5> of_runs;  // what differs from run to run
+  std::array<std::string_view, 5> of_runs;  // causes that differ from run to run
 };
 
 Causes causes_of(Quantity quantity) {

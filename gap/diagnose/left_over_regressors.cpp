@@ -10,10 +10,10 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kStandsStill = 0.05;  // of the quantity's rms: less has no direction (chosen)
-constexpr double kNearlyAll = 0.9;     // of the rows, in which a regressor has to be known (chosen)
+constexpr double kStandsStill = 0.05;  // of the quantity's rms: smaller values have no sign (chosen)
+constexpr double kNearlyAll = 0.9;     // of the rows: a regressor has to be known in these (chosen)
 
-// Steps of the square root of 2: a slope that is free makes up for what lies between (chosen).
+// Steps of sqrt(2): the free slope compensates for values in between (chosen).
 std::vector<double> steps(double from, double to) {
   std::vector<double> values;
   for (double value = from; value < to * 1.01; value *= std::sqrt(2.0)) values.push_back(value);
@@ -27,7 +27,7 @@ bool is_track(Quantity quantity) {
 bool is_turning(Quantity quantity) {
   return quantity == Quantity::yaw_rate || quantity == Quantity::gyro;
 }
-// Of which a share or a delay means something.
+// Quantities for which a fraction or a delay is meaningful.
 bool is_motion(Quantity quantity) {
   return is_track(quantity) || is_turning(quantity) || quantity == Quantity::forward ||
          quantity == Quantity::sideways || quantity == Quantity::current;
@@ -42,7 +42,7 @@ std::vector<LeftOverCandidate> regressors_for(const QuantityInfo& info) {
   const auto add = [&](Regressor kind, std::string_view name, std::string_view unit, double parameter = 0) {
     all.push_back({kind, parameter, name, unit});
   };
-  // 0.05 to 1.6 s, and limits from a slow crawl to what no drive notices (chosen)
+  // 0.05 to 1.6 s, and limits from very slow to imperceptible (chosen)
   if (is_motion(q) || is_angle(q)) {
     add(Regressor::simulated, "simulated", info.unit);
     for (const double delay_s : steps(0.05, 1.6)) add(Regressor::delay, "change of the simulated", "", delay_s);
@@ -55,7 +55,7 @@ std::vector<LeftOverCandidate> regressors_for(const QuantityInfo& info) {
   if (is_motion(q)) add(Regressor::direction, "direction", "");
   if (is_track(q)) add(Regressor::command, "commanded speed", "m/s");
   if (!is_track(q) && q != Quantity::forward) add(Regressor::speed, "speed", "m/s");
-  // a rate that was measured has the noise of a quantity that was made of the same
+  // a measured rate shares its noise with a quantity derived from the same channel
   if (!is_turning(q) && q != Quantity::track_difference) add(Regressor::turn, "turn rate", "rad/s");
   add(Regressor::turn_size, "size of the turn rate", "rad/s");
   if (!is_track(q)) add(Regressor::acceleration, "forward acceleration", "m/s2");
@@ -67,8 +67,8 @@ std::vector<LeftOverCandidate> regressors_for(const QuantityInfo& info) {
   return all;
 }
 
-// A simulated quantity by span, with what it was when the run began: half a span before the middle of the first one, in
-// which a step at the start is all but over.
+// A simulated quantity by span, with its value at the start of the run: half a span before the middle of the first one,
+// in which a step at the start is nearly complete.
 struct CourseOfBins {
   VectorXd values;
   double start, span_s;
@@ -77,7 +77,7 @@ struct CourseOfBins {
   double apart_s(Index i) const { return i == 0 ? span_s / 2 : span_s; }
 };
 
-// In a steady state before the run, as the other ones below.
+// Assumes a steady state before the run, like the functions below.
 VectorXd delayed(const CourseOfBins& course, double delay_s) {
   VectorXd result(course.values.size());
   for (Index i = 0; i < result.size(); ++i) {
@@ -90,14 +90,15 @@ VectorXd delayed(const CourseOfBins& course, double delay_s) {
   return result;
 }
 
-// A first-order lag of what is straight between spans.
+// First-order lag of a piecewise linear input of slope m: the distance d = input - output evolves as
+// m lag + exp(-dt / lag) (d0 - m lag).
 VectorXd lagged(const CourseOfBins& course, double lag_s) {
   VectorXd result(course.values.size());
-  double behind = 0;  // the input less the lagged one
+  double behind = 0;  // input minus output
   for (Index i = 0; i < result.size(); ++i) {
     const double apart_s = course.apart_s(i), decay = std::exp(-apart_s / lag_s);
     const double slope = (course.values[i] - course.before(i)) / apart_s;
-    // of a straight input the lag follows at a distance of slope * lag
+    // a linear input is followed at a distance of slope * lag
     behind = slope * lag_s + decay * (behind - slope * lag_s);
     result[i] = course.values[i] - behind;
   }
@@ -115,7 +116,7 @@ VectorXd limited(const CourseOfBins& course, double limit) {
   return result;
 }
 
-// What was measured in one run, by span; empty where it was not.
+// Measurements of one run, by span; empty if not measured.
 struct Measured {
   VectorXd left_mps, right_mps, speed_mps, turn_radps, load_a, pitch_rad, x_m, y_m, command_left, command_right;
 };
@@ -148,7 +149,7 @@ VectorXd command_of(const Measured& m, Quantity quantity) {
                                                                  : VectorXd();
 }
 
-// What the quantity was when the run began, where the simulation began too; NaN where that was not measured.
+// The measured initial value of the quantity, where the simulation also started; NaN if not measured.
 double at_start(const LeftOverRun& run, Quantity quantity) {
   const auto first = [&](std::string_view column) {
     const auto values = run.observation->run.column(column);
@@ -173,11 +174,12 @@ double at_start(const LeftOverRun& run, Quantity quantity) {
   }
 }
 
-// A column of one run; empty where it was not measured there.
+// A regressor's column for one run; empty if it was not measured there.
 VectorXd regressor_of(const LeftOverCandidate& candidate, const LeftOverRun& run, const Measured& m,
                       const QuantityInfo& info, const CourseOfBins& course) {
   const VectorXd& simulated = course.values;
   const double span_s = run.features->span_s();
+  // delay and lag are per second of their parameter, so that a slope is minus the lateness
   switch (candidate.kind) {
     case Regressor::simulated:
     case Regressor::direction:  // rows_of() makes it one once it knows all runs
@@ -218,7 +220,7 @@ bool is_about_mean(Regressor kind) {
   return kind == Regressor::time || kind == Regressor::place_x || kind == Regressor::place_y;
 }
 
-// Drops what is known too seldom or never changes; what is unknown elsewhere says nothing there.
+// Drops regressors that are rarely known or constant; unknown values of the others have no influence.
 void keep_useful(LeftOverRows& rows) {
   std::vector<LeftOverCandidate> kept;
   Index next = 0;
@@ -234,7 +236,7 @@ void keep_useful(LeftOverRows& rows) {
     const double mean = known.select(column, 0.0).sum() / count;
     const double spread = std::sqrt(known.select(column.array() - mean, 0.0).square().sum() / count);
     if (kind != Regressor::constant && !(spread > 1e-9 * std::max(1.0, std::abs(mean)))) continue;
-    // a place or a time is counted from its mean: 0 is nowhere in particular
+    // places and times are centred: their 0 has no meaning
     const VectorXd from_zero = is_about_mean(kind) ? VectorXd(column.array() - mean) : column;
     rows.x.col(next++) = known.select(from_zero, 0.0);
     kept.push_back(rows.candidates[c]);
@@ -263,6 +265,7 @@ LeftOverRows rows_of(std::span<const LeftOverRun> runs, const QuantityInfo& quan
   std::vector<double> error, sigma, simulated, speed, time;
   std::vector<VectorXd> regressors;  // one for each row
   for (std::size_t r = 0; r < runs.size(); ++r) {
+    // the regressors of the whole run, as late ones need its course
     const QuantitySeries series = series_of(runs[r], quantity.quantity);
     if (series.measured.size() == 0) continue;
     const Measured measured = measured_in(runs[r]);
@@ -271,6 +274,8 @@ LeftOverRows rows_of(std::span<const LeftOverRun> runs, const QuantityInfo& quan
     std::vector<VectorXd> columns;
     for (const LeftOverCandidate& candidate : rows.candidates)
       columns.push_back(regressor_of(candidate, runs[r], measured, quantity, course));
+
+    // one row per span in which the quantity and its noise are known
     const bool has_speed = measured.speed_mps.size() > 0;
     for (Index i = 0; i < series.measured.size(); ++i) {
       const double left = series.measured[i] - series.simulated[i];
@@ -288,6 +293,8 @@ LeftOverRows rows_of(std::span<const LeftOverRun> runs, const QuantityInfo& quan
       regressors.push_back(std::move(row));
     }
   }
+
+  // as vectors and one matrix, with useful regressors only
   const auto vector_of = [](const std::vector<double>& values) {
     return VectorXd(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
   };

@@ -12,11 +12,11 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int kReweightings = 5;  // chosen: weights hardly change after it
-// Rows count linearly beyond so many times the rms of all, which is taken without the largest twentieth but never as
-// less than half of that with it (chosen: a step's transient must not pass for an outlier, a jump of the pose must).
+constexpr int kReweightings = 5;  // chosen: weights hardly change afterwards
+// Losses are linear beyond this multiple of the rms, taken without the largest 5 %, but at least half of the rms with
+// them (chosen: a step's transient is no outlier, a jump of the pose is).
 constexpr double kRowClip = 4, kTrimmedRows = 0.05, kLeastOfRms = 0.5;
-// A run whose rms is beyond twice the median's counts as one with twice (chosen). Of fewer runs none is usual.
+// A run whose rms exceeds twice the median's counts as if at twice (chosen). Fewer runs have no typical rms.
 constexpr double kRunClip = 2;
 constexpr std::size_t kLeastUsualRuns = 5;
 constexpr double kStandardErrors = 2;  // chosen: is_above_chance()
@@ -33,6 +33,7 @@ VectorXd RobustRows::losses(const VectorXd& residual) const {
 }
 
 RobustRows robust_for(const LeftOverRows& rows) {
+  // rms of each run, and the usual one: the median, at least the noise
   const auto count = static_cast<std::size_t>(rows.error.size());
   std::vector<double> squares(count), sum(rows.runs, 0), size(rows.runs, 0), rms;
   for (std::size_t i = 0; i < count; ++i) {
@@ -44,12 +45,16 @@ RobustRows robust_for(const LeftOverRows& rows) {
     if (size[r] > 0) rms.push_back(std::sqrt(sum[r] / size[r]));
   const double noise = std::sqrt(rows.sigma.squaredNorm() / static_cast<double>(count));
   const double usual = std::max(noise, quantile_of(rms, 0.5));
+
+  // a run with an rms beyond 2 usual gets the weight (2 usual / rms)^2, so that its squares count as at 2 usual
   RobustRows robust{VectorXd::Ones(rows.error.size()), 0};
   if (rms.size() >= kLeastUsualRuns)
     for (std::size_t i = 0; i < count; ++i) {
       const double most = kRunClip * usual, of_run = std::sqrt(sum[rows.run[i]] / size[rows.run[i]]);
       if (of_run > most) robust.of_run[static_cast<Index>(i)] = std::pow(most / of_run, 2);
     }
+
+  // clip = 4 max(noise, rms without the largest 5 %, half of the rms with them)
   for (std::size_t i = 0; i < count; ++i) squares[i] *= robust.of_run[static_cast<Index>(i)];
   std::ranges::sort(squares);
   const auto kept = static_cast<std::size_t>(std::ceil(static_cast<double>(count) * (1 - kTrimmedRows)));

@@ -9,21 +9,21 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr std::size_t kLeastRunsApart = 5;  // chosen: of fewer there is no middle 80 %
+constexpr std::size_t kLeastRunsApart = 5;  // chosen: fewer have no middle 80 %
 
-// Products of one base with what is left, of each run.
+// Products of one base with itself and with the residual, for each run.
 struct RunSums {
   VectorXd square, product;
 };
 
-constexpr double kBlock_s = 1.5, kApart_s = 0.5;  // chosen: a rate reaches half a second
+constexpr double kBlock_s = 1.5, kApart_s = 0.5;  // chosen: a rate spans half a second
 constexpr std::size_t kBlockFolds = 4;            // chosen
 
 std::size_t block_fold(double time_s) {
   return static_cast<std::size_t>(std::max(0.0, time_s) / kBlock_s) % kBlockFolds;
 }
 
-// Of rows that are neither in `held_out` nor close to it; of all rows where it is no fold.
+// Sums over rows neither in nor close to fold `held_out`; over all rows if it is no fold.
 RunSums run_sums(const LeftOverRows& rows, const VectorXd& base, const VectorXd& rest, const VectorXd& weights,
                  std::size_t held_out) {
   RunSums sums{VectorXd::Zero(static_cast<Index>(rows.runs)), VectorXd::Zero(static_cast<Index>(rows.runs))};
@@ -38,8 +38,9 @@ RunSums run_sums(const LeftOverRows& rows, const VectorXd& base, const VectorXd&
   return sums;
 }
 
-// A random effect: each run's own slope, drawn to 0 by as much as it is noise (empirical Bayes by moments).
+// Random effect: each run's own slope, shrunk towards 0 according to its noise (empirical Bayes by moments).
 VectorXd shrunken(const RunSums& sums, double variance) {
+  // method of moments: spread^2 = max(0, sum b_r^2 A_r - n variance) / sum A_r, b_r = B_r / A_r the slope of run r
   double of_slopes = 0, of_noise = 0, runs = 0;
   for (Index r = 0; r < sums.square.size(); ++r) {
     if (sums.square[r] <= 0) continue;
@@ -48,6 +49,8 @@ VectorXd shrunken(const RunSums& sums, double variance) {
     runs += sums.square[r];
   }
   const double spread = runs > 0 ? std::max(0.0, of_slopes - of_noise) / runs : 0;
+
+  // posterior mean: B_r / (A_r + variance / spread^2)
   VectorXd slopes = VectorXd::Zero(sums.square.size());
   for (Index r = 0; r < slopes.size(); ++r)
     if (sums.square[r] > 0 && spread > 0) slopes[r] = sums.product[r] / (sums.square[r] + variance / spread);
@@ -62,9 +65,12 @@ std::optional<RunFactor> run_factor(const LeftOverRows& rows, const LeftOverFit&
   const double variance = before.sum() / std::max(1e-300, robust.of_run.sum());
   std::optional<RunFactor> best;
   for (std::size_t c = 0; c < rows.candidates.size(); ++c) {
+    // a factor on the simulated quantity, or an offset
     const Regressor kind = rows.candidates[c].kind;
     if (kind != Regressor::simulated && kind != Regressor::constant) continue;
     const VectorXd base = rows.x.col(static_cast<Index>(c));
+
+    // held-out residuals: the slopes of a block of time from the other blocks of the same run
     VectorXd residual = fit.rest;
     for (std::size_t fold = 0; fold < kBlockFolds; ++fold) {
       const VectorXd slopes = shrunken(run_sums(rows, base, fit.rest, fit.weights, fold), variance);
@@ -72,6 +78,8 @@ std::optional<RunFactor> run_factor(const LeftOverRows& rows, const LeftOverFit&
         if (const auto row = static_cast<Index>(i); block_fold(rows.time_s[row]) == fold)
           residual[row] -= slopes[static_cast<Index>(rows.run[i])] * base[row];
     }
+
+    // gains by run, for runs that show the base at all
     const VectorXd gains = before - robust.losses(residual);
     std::vector<double> by_run(rows.runs, 0), of_runs, usual, values;
     for (std::size_t i = 0; i < rows.run.size(); ++i) by_run[rows.run[i]] += gains[static_cast<Index>(i)];
@@ -81,14 +89,18 @@ std::optional<RunFactor> run_factor(const LeftOverRows& rows, const LeftOverFit&
         of_runs.push_back(by_run[r]);
         usual.push_back(sums.square[static_cast<Index>(r)]);
       }
+
+    // needs enough runs, a reportable share beyond chance, and a clear advantage over the other kind
     const double share = gains.sum() / beyond;
     if (of_runs.size() < kLeastRunsApart || share < kLeastTold || !is_above_chance(of_runs)) continue;
     if (best && share < best->share + kClearlyMore) continue;
+
+    // each run's own value, including what all runs share by the terms, and its quantiles
     best = RunFactor{kind == Regressor::simulated, share, 0, 0, 0, {}};
     double common = best->of_simulated ? 1 : 0;
     for (const LeftOverTerm& term : fit.terms)
       if (rows.candidates[term.candidate].kind == kind) common += term.slope;
-    // a run that hardly moved has no factor
+    // a run with hardly any motion has no factor
     const double enough = quantile_of(usual, 0.5) / 4;
     for (std::size_t r = 0; r < rows.runs; ++r) {
       const auto run = static_cast<Index>(r);

@@ -15,8 +15,8 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kUnknownValue = std::numeric_limits<double>::quiet_NaN();
-// Each way, at least, and at most twice as much: a shorter one is mostly the pose's noise, a longer one blurs a turn
-// (chosen).
+// Reach of a rate to each side, at most twice as much: shorter ones mostly show the pose's noise, longer ones blur
+// turns (chosen).
 constexpr double kReach_s = 0.25;
 
 constexpr QuantityInfo kQuantities[] = {{Quantity::track_mean, "track speed", "m/s", true},
@@ -38,7 +38,7 @@ QuantitySeries unknown_series(Index spans) {
           VectorXd::Constant(spans, kUnknownValue)};
 }
 
-// A channel as it is; nothing where it has no bin.
+// A channel as it is; nothing if it has no bin.
 std::optional<QuantitySeries> channel_series(const LeftOverRun& run, std::string_view column) {
   QuantitySeries series = unknown_series(span_count(run));
   bool known = false;
@@ -54,7 +54,7 @@ std::optional<QuantitySeries> channel_series(const LeftOverRun& run, std::string
   return known ? std::optional(std::move(series)) : std::nullopt;
 }
 
-// by_left times the left one plus by_right times the right one.
+// by_left * left + by_right * right.
 QuantitySeries of_both_tracks(const LeftOverRun& run, std::string_view left_column, std::string_view right_column,
                               double by_left, double by_right) {
   const auto left = channel_series(run, left_column), right = channel_series(run, right_column);
@@ -64,7 +64,7 @@ QuantitySeries of_both_tracks(const LeftOverRun& run, std::string_view left_colu
           ((by_left * left->sigma).array().square() + (by_right * right->sigma).array().square()).sqrt()};
 }
 
-// The spans about `at` between which a rate is taken; nothing where they are too far apart.
+// The spans around `at` between which a rate is taken; nothing if they are too far apart.
 std::optional<std::pair<Index, Index>> ends_of_rate(const VectorXd& values, Index at, double span_s) {
   const auto reach = std::max<Index>(1, static_cast<Index>(std::lround(kReach_s / span_s)));
   const auto known = [&](Index step) -> std::optional<Index> {
@@ -79,18 +79,20 @@ std::optional<std::pair<Index, Index>> ends_of_rate(const VectorXd& values, Inde
   return std::pair(*before, *after);
 }
 
-// The body's velocity in its own frame, along x or along y; the chord of an arc points along the mean of its headings.
+// The body's velocity in its own frame, along x or y; the chord of an arc has the mean of the headings at its ends.
 QuantitySeries velocity(const LeftOverRun& run, bool sideways) {
   const auto x = channel_series(run, "x_m"), y = channel_series(run, "y_m"), yaw = channel_series(run, "yaw_rad");
   if (!x || !y || !yaw) return {};
   const double span_s = run.features->span_s();
-  const VectorXd together = x->measured + y->measured + yaw->measured;  // NaN where one of them is
+  const VectorXd together = x->measured + y->measured + yaw->measured;  // NaN if any of them is
   QuantitySeries series = unknown_series(together.size());
   for (Index i = 0; i < together.size(); ++i) {
     const auto ends = ends_of_rate(together, i, span_s);
     if (!ends) continue;
     const auto [a, b] = *ends;
     const double duration_s = static_cast<double>(b - a) * span_s;
+
+    // displacement rotated by the mean heading, over the duration
     const auto in_body = [&](const VectorXd& of_x, const VectorXd& of_y, const VectorXd& of_yaw) {
       const double heading = (of_yaw[a] + of_yaw[b]) / 2, dx = of_x[b] - of_x[a], dy = of_y[b] - of_y[a];
       const double ahead = std::cos(heading) * dx + std::sin(heading) * dy;
@@ -99,6 +101,8 @@ QuantitySeries velocity(const LeftOverRun& run, bool sideways) {
     };
     const auto [ahead, left] = in_body(x->measured, y->measured, yaw->measured);
     const auto [ahead_sim, left_sim] = in_body(x->simulated, y->simulated, yaw->simulated);
+
+    // noise: that of both positions, and heading noise times the perpendicular velocity
     const double of_place =
         std::hypot(x->sigma[a], x->sigma[b], std::hypot(y->sigma[a], y->sigma[b])) / std::sqrt(2.0) / duration_s;
     const double of_heading = std::hypot(yaw->sigma[a], yaw->sigma[b]) / 2 * (sideways ? ahead : left);
@@ -139,6 +143,7 @@ Index span_count(const LeftOverRun& run) {
 }
 
 QuantitySeries series_of(const LeftOverRun& run, Quantity quantity) {
+  // one line per quantity; those of both tracks combine two channels, speeds and yaw rate come from the pose
   const auto channel = [&](std::string_view column) { return channel_series(run, column).value_or(QuantitySeries{}); };
   switch (quantity) {
     case Quantity::track_mean:

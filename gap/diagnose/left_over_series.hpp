@@ -1,4 +1,4 @@
-// The quantities in which a left-over is told: rates of the body in place of its pose, both tracks as mean and
+// The quantities in which residuals are described: rates of the body instead of its pose, both tracks as mean and
 // difference.
 //
 // Thread safety: values and pure functions.
@@ -19,7 +19,7 @@ enum class Quantity {
   right_track,
   current,  // mean of the tracks' motors
   battery,
-  forward,  // in the body's frame, from the pose
+  forward,  // in the body frame, from the pose
   sideways,
   yaw_rate,  // from the pose
   gyro,
@@ -31,27 +31,27 @@ enum class Quantity {
 struct QuantityInfo {
   Quantity quantity;
   std::string_view name, unit;
-  bool drive;  // seen between command and drive
+  bool drive;  // between command and drive
 };
 std::span<const QuantityInfo> left_over_quantities();
 
-// One quantity of one run: a value for each span from the run's start on, NaN where it was not measured.
+// One quantity of one run: a value for each span from the start of the run, NaN where it was not measured.
 struct QuantitySeries {
   Eigen::VectorXd measured, simulated, sigma;
 };
-// Empty where it was measured nowhere in the run.
+// Empty if it was measured nowhere in the run.
 QuantitySeries series_of(const LeftOverRun& run, Quantity quantity);
 
-// The mean of a measured column over each span; empty where there is no such column.
+// The mean of a measured column over each span; empty without such a column.
 Eigen::VectorXd column_by_span(const LeftOverRun& run, std::string_view column);
 
-// As many spans as the run has.
+// The number of spans of the run.
 Eigen::Index span_count(const LeftOverRun& run);
 
-// Without NaN: linear between known values, the nearest one beyond them; 0 where none is known.
+// Replaces NaN: linear between known values, constant beyond them; 0 if none is known.
 Eigen::VectorXd filled(const Eigen::VectorXd& values);
 
-// Change for each second, over half a second or a little more; NaN at the ends and beside gaps.
+// Rate of change per second, over half a second or slightly more; NaN at the ends and next to gaps.
 Eigen::VectorXd rate_of(const Eigen::VectorXd& values, double span_s);
 
 }  // namespace kenaf::gap::diagnose

@@ -12,17 +12,18 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Two numbers are the same in words where they differ by less than a quarter of what is told, or a twentieth (chosen).
+// Two numbers count as equal if they differ by less than a quarter of the described slope, or by less than 0.05
+// (chosen).
 constexpr double kSameShare = 0.25, kSameRatio = 0.05;
-constexpr double kOneSided = 1.0 / 3;                  // of one side's slope: less is none (chosen)
+constexpr double kOneSided = 1.0 / 3;                  // of the other side's slope: smaller ones count as none (chosen)
 constexpr double kNearlyEvery = 0.9, kMost = 2.0 / 3;  // of the runs (chosen)
-constexpr double kSpeedsDiffer = 1.5;  // between the tenths of rows at either end: else there is one speed (chosen)
+constexpr double kSpeedsDiffer = 1.5;  // ratio of the 90 % and 10 % quantiles: below it there is one speed (chosen)
 
 bool turns(Quantity quantity) {
   return quantity == Quantity::yaw_rate || quantity == Quantity::gyro;
 }
 
-// A term with its rows, over which parts are compared.
+// A term with its rows, for comparing subsets.
 struct TermRows {
   const LeftOverRows& rows;
   VectorXd x, y;
@@ -30,14 +31,14 @@ struct TermRows {
   double slope;
 
   std::size_t size() const { return rows.run.size(); }
-  // Of the rows that matter and for which `holds`.
+  // Slope over the rows for which `holds`.
   template <class Holds>
   double slope_where(Holds&& holds) const {
     std::vector<bool> chosen(size());
     for (std::size_t i = 0; i < size(); ++i) chosen[i] = holds(static_cast<Index>(i));
     return slope_through_zero(x, y, weights, chosen);
   }
-  // Share of the sum of squares of x.
+  // Their share in the sum of squares of x.
   template <class Holds>
   double part_where(Holds&& holds) const {
     double part = 0;
@@ -51,8 +52,7 @@ TermRows rows_of_term(const LeftOverRows& rows, const LeftOverFit& fit, const Le
   return {rows, rows.x.col(static_cast<Index>(term.candidate)), left_to(rows, fit, term), fit.weights, term.slope};
 }
 
-// The same with what the size of the simulated quantity was told to do: to each side it is a part of the measured
-// share.
+// The same plus the term of the quantity's absolute value: on each side it is part of the measured fraction.
 TermRows with_size(const LeftOverRows& rows, const LeftOverFit& fit, const TermRows& term) {
   TermRows result = term;
   for (const LeftOverTerm& other : fit.terms)
@@ -61,7 +61,7 @@ TermRows with_size(const LeftOverRows& rows, const LeftOverFit& fit, const TermR
   return result;
 }
 
-// Of the runs that show it, the share whose own slope has the term's sign.
+// Share of the runs that show the term whose own slope has the term's sign.
 double share_of_runs(const TermRows& term) {
   std::vector<double> square(term.rows.runs, 0), product(term.rows.runs, 0), shown;
   for (std::size_t i = 0; i < term.size(); ++i) {
@@ -95,7 +95,7 @@ bool told_alike(double a, double b, double told) {
   return std::abs(a - b) <= std::max(kSameRatio, kSameShare * std::abs(told));
 }
 
-// To which side it turns.
+// Compares both directions of motion.
 std::string by_side(const TermRows& term) {
   const auto left = [&](Index i) { return term.x[i] > 0; };
   const auto right = [&](Index i) { return term.x[i] < 0; };
@@ -113,7 +113,7 @@ std::string at_speeds(const TermRows& term) {
   const auto matters = [&](Index i) { return std::abs(term.x[i]) > rms / 2 && std::isfinite(term.rows.speed_mps[i]); };
   for (Index i = 0; i < term.x.size(); ++i)
     if (matters(i)) speeds.push_back(term.rows.speed_mps[i]);
-  if (speeds.size() < 8) return "";  // chosen: halves of fewer have no slope
+  if (speeds.size() < 8) return "";  // chosen: too few for a slope of each half
   if (quantile_of(speeds, 0.9) < kSpeedsDiffer * quantile_of(speeds, 0.1)) return "";
   const double middle = quantile_of(speeds, 0.5);
   const double slow = term.slope_where([&](Index i) { return matters(i) && term.rows.speed_mps[i] <= middle; });
@@ -123,7 +123,7 @@ std::string at_speeds(const TermRows& term) {
                      1 + fast);
 }
 
-// A change by which the simulated quantity grows or shrinks in size.
+// Compares changes that increase and decrease the simulated quantity's absolute value.
 std::string while_changing(const TermRows& term) {
   const auto grows = [&](Index i) { return term.x[i] * term.rows.simulated[i] > 0; };
   const auto shrinks = [&](Index i) { return term.x[i] * term.rows.simulated[i] < 0; };
@@ -142,6 +142,7 @@ std::string sentence(const TermRows& term, const LeftOverFit& fit, const LeftOve
   const LeftOverCandidate& on = term.rows.candidates[of.candidate];
   const std::string_view unit = term.rows.quantity.unit;
   const double late = lateness(term.rows, fit.terms, of), slope = term.slope;
+  // by kind of regressor; a slope s of the simulated quantity itself means that 1 + s of it was measured
   switch (on.kind) {
     case Regressor::simulated:
       return fmt::format("measured {:.2f} of the simulated{}{}{}", 1 + slope, in_runs(term),

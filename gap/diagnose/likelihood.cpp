@@ -16,19 +16,18 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Sizes are estimated in turns until none changes by more than this part of itself (chosen: as exact as each one is).
+// Sizes are estimated alternately until the relative change is below this (chosen: the precision of each).
 constexpr double kSameSize = 0.03;
 constexpr int kMostTurns = 20;
-// A shape shorter than this, in standard deviations, leaves nothing open.
+// Shapes shorter than this, in standard deviations, are negligible.
 constexpr double kNoShape = 1e-3;
-// How far numbers of a description are off: from what cannot be seen to as far as they are where somebody measured and
-// weighed the robot (chosen). Golden section over the logarithm, to 3 %.
+// Relative errors of a description's numbers: from invisible to those of a measured and weighed robot (chosen). Golden
+// section over the logarithm, to 3 %.
 constexpr double kLeastOff = 1e-4, kMostOff = 0.025;
 constexpr int kSectionsOfOff = 11;
-// All numbers together, as the length of what each is off by: twelve that are as far off as numbers are reach beyond
-// this once in a thousand times.
+// Limit of the length of the vector of all errors: twelve errors of kMostOff exceed it once in a thousand times.
 constexpr double kFarthestOff = 0.143;
-// What is beyond is no number that is a little off (DecisionSettings::ordinary).
+// A larger error is no small error (DecisionSettings::ordinary).
 constexpr double kOrdinary_sigma = 3;
 constexpr double kNoneOff = 1e-8;
 constexpr int kHalvingsOfOff = 20;
@@ -56,7 +55,7 @@ SharedProducts shared_products(const std::vector<GroupWhitener>& whiteners, cons
   return products;
 }
 
-// The last `numbers` shapes `part` times as large.
+// Scales the last `numbers` shapes by `part`.
 SharedProducts with_numbers_off(SharedProducts products, Index numbers, double part) {
   VectorXd scale = VectorXd::Ones(products.residual.size());
   scale.tail(numbers).setConstant(part);
@@ -65,10 +64,10 @@ SharedProducts with_numbers_off(SharedProducts products, Index numbers, double p
   return products;
 }
 
-// Amounts of shared shapes, N(0, 1) before anything was measured.
+// Amounts of shared shapes, with the prior N(0, 1).
 struct Amounts {
   VectorXd most_likely;
-  // With all amounts integrated out; less than with none.
+  // With all amounts integrated out, minus the values without shared shapes.
   double log_determinant = 0, chi_squared = 0;
   double deviance() const { return log_determinant + chi_squared; }
 };
@@ -83,7 +82,7 @@ Amounts amounts_of(const SharedProducts& products) {
   return amounts;
 }
 
-// Of one group, each with the amount of 1 sigma.
+// Shared shapes of one group, each at 1 sigma.
 MatrixXd shared_shapes(const StageGroup& group, double numbers_off) {
   if (numbers_off == 0) return group.shared_shapes;
   MatrixXd shapes(group.shared_shapes.rows(), group.shared_shapes.cols() + group.number_shapes.cols());
@@ -100,7 +99,7 @@ bool has_settled(const Discrepancies& before, const Discrepancies& now) {
   return is_about(before.numbers_off, now.numbers_off);
 }
 
-// How far off the numbers of the description most likely are; `whole`: of numbers that are off by all of themselves.
+// Most likely relative error of the description's numbers; `whole`: products for relative errors of 1.
 double most_likely_numbers_off(const SharedProducts& whole, Index numbers) {
   if (numbers == 0) return 0;
   const auto deviance = [&](double off) { return amounts_of(with_numbers_off(whole, numbers, off)).deviance(); };
@@ -109,8 +108,8 @@ double most_likely_numbers_off(const SharedProducts& whole, Index numbers) {
   return least < deviance(0) ? std::exp(log_off) : 0;
 }
 
-// `off`, or as much less as it takes to have all numbers together no farther off than they ever are: a number that is
-// off by a half is none of many that are a little off.
+// Reduces `off` until the length of all numbers' errors is within kFarthestOff: an error of a half is no member of a
+// population of small errors.
 double within_reach(const SharedProducts& whole, Index numbers, double off) {
   const auto reach = [&](double at) {
     return at * amounts_of(with_numbers_off(whole, numbers, at)).most_likely.tail(numbers).norm();
@@ -124,13 +123,13 @@ double within_reach(const SharedProducts& whole, Index numbers, double off) {
   return std::exp(within);
 }
 
-// Of all shared shapes, in their sigmas.
+// Amounts of all shared shapes, in their sigmas.
 VectorXd most_likely_amounts(const StageData& data, const GroupVectors& residual, const Discrepancies& discrepancies) {
   const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
   return amounts_of(shared_products(whiteners, whitened(whiteners, residual))).most_likely;
 }
 
-// S S' by unit vectors and their squared lengths; directions along which nothing is open are left out.
+// Eigenvectors and eigenvalues of S S', without negligible ones.
 std::pair<MatrixXd, VectorXd> directions_of(const MatrixXd& shapes) {
   if (shapes.cols() == 0) return {shapes, VectorXd()};
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(shapes.transpose() * shapes);
@@ -142,8 +141,7 @@ std::pair<MatrixXd, VectorXd> directions_of(const MatrixXd& shapes) {
           squares.tail(count)};
 }
 
-// The amounts of local shapes that a residual makes most likely, taken off it: what noise and discrepancy are left
-// with.
+// Subtracts local shapes at their most likely amounts from a residual; noise and discrepancy remain.
 VectorXd without_local_shapes(const StageGroup& group, const Discrepancies& discrepancies, VectorXd residual) {
   MatrixXd columns(residual.size(), group.local_shapes.cols() + 1);
   columns << group.local_shapes, residual;
@@ -195,7 +193,7 @@ GroupWhitener::GroupWhitener(const StageGroup& group, const Discrepancies& discr
   MatrixXd shapes = group.local_shapes;
   for (const Part& part : parts_) part.whitener.whiten(shapes.middleRows(part.first, part.count));
 
-  // covariance in whitened units: 1 + S S'; along its direction u_i the variance is 1 + s_i^2
+  // covariance in whitened units: 1 + S S'; along its eigenvector u_i the variance is 1 + s_i^2
   VectorXd squares;
   std::tie(directions_, squares) = directions_of(shapes);
   shrink_ = 1 - (1 + squares.array()).rsqrt();
@@ -253,13 +251,13 @@ Likelihood likelihood_of(const StageData& data, const GroupVectors& residual, co
   Discrepancies discrepancies = start;
   for (int round = 0; round < kMostTurns; ++round) {
     const Discrepancies before = discrepancies;
-    // numbers first, which are the same in all groups
+    // first the numbers' errors, which are the same in all groups
     discrepancies.numbers_off = 1;
     const std::vector<GroupWhitener> whiteners = whiteners_of(data, discrepancies);
     const SharedProducts whole = shared_products(whiteners, whitened(whiteners, residual));
     discrepancies.numbers_off = within_reach(whole, numbers, most_likely_numbers_off(whole, numbers));
 
-    // then open shapes at their most likely amounts, and the discrepancies that make the rest most likely
+    // then open shapes at their most likely amounts, and the most likely discrepancies of the rest
     VectorXd amounts = amounts_of(with_numbers_off(whole, numbers, discrepancies.numbers_off)).most_likely;
     amounts.tail(numbers) *= discrepancies.numbers_off;
     GroupVectors rest;

@@ -15,7 +15,7 @@ constexpr double kFallWithin_s = 0.5;
 constexpr double kHalfImpact_s = 0.02;
 constexpr double kLevel = 1e-9;  // of a plane's normal
 
-// How far rows are apart; runs without noise have one at each multiple.
+// Number of rows in a time; rows of runs without noise are equidistant.
 std::size_t rows_in(double time_s, std::span<const double> time) {
   if (time.size() < 2) return 1;
   return static_cast<std::size_t>(std::max(1.0, std::round(time_s / (time[1] - time[0]))));
@@ -32,15 +32,14 @@ double largest_tilt_of(std::span<const double> roll_rad, std::span<const double>
 double fall_of(const runs::Run& run) {
   const auto x = run.column("x_m"), y = run.column("y_m"), z = run.column("z_m"), yaw = run.column("yaw_rad"),
              pitch = run.column("pitch_rad");
-  // Where the body would be had it only ever moved the way it points; the rest of its height is what it fell or was
-  // lifted.
+  // Height minus the part explained by driving along the body's x axis: what it fell or was lifted.
   std::vector<double> beyond(z.size(), 0.0);
   for (std::size_t i = 1; i < z.size(); ++i) {
     const double ahead_m = (x[i] - x[i - 1]) * std::cos(yaw[i]) + (y[i] - y[i - 1]) * std::sin(yaw[i]);
     const double slope = -std::tan(std::clamp(pitch[i], -1.3, 1.3));
     beyond[i] = beyond[i - 1] + (z[i] - z[i - 1]) - ahead_m * slope;
   }
-  // A climb with the nose up may lift the body less than its nose promises: only what went down has fallen.
+  // A climb may lift the body less than its pitch suggests: only a loss of height is a fall.
   const std::size_t within = rows_in(kFallWithin_s, run.column("t_s"));
   double fall_m = 0;
   for (std::size_t i = 0; i < z.size(); ++i)

@@ -1,8 +1,8 @@
-// What a manoeuvre may do to the robot that drives it, and how manoeuvres are put in order by that: a tool that exists
-// so that robots do not break proposes the gentlest one that does what is wanted.
+// The risk of a manoeuvre for the robot that drives it, and the order of manoeuvres by risk: the tool proposes the
+// gentlest manoeuvre that serves the purpose.
 //
-// All of it is as simulated. How hard a landing is depends on give that nobody has measured, so the figures put
-// manoeuvres in order; they are no guarantee.
+// All figures are simulated. The force of a landing depends on unknown compliance, so the figures rank manoeuvres; they
+// are no guarantee.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -15,49 +15,49 @@ namespace kenaf::gap::diagnose {
 
 struct Risk {
   double largest_tilt_rad = 0;  // between the body's z axis and up, 0 to pi
-  // The largest drop of the body's centre within 0.5 s, without what it lost by driving the way its nose or its tail
-  // points: down a slope on its tracks nothing falls.
+  // The largest drop of the body's centre within 0.5 s, excluding height lost by driving along its longitudinal axis: a
+  // robot on its tracks on a slope does not fall.
   double fall_m = 0;
-  // The largest upward acceleration of the body's centre, a mean over 40 ms, gravity not counted; standing: 0. What is
-  // shorter depends on the stiffness of contacts, which nobody knows.
+  // The largest upward acceleration of the body's centre, averaged over 40 ms, without gravity; standing: 0. Shorter
+  // peaks depend on the unknown contact stiffness.
   double impact_mps2 = 0;
-  double current_share = 0;  // largest current of any motor over that of the same motor stalled; 0 without currents
-  bool stuck = false;        // it did not end where the manoeuvre's own measure wants it, or its operator gave up
+  double current_share = 0;  // largest ratio of a motor's current to its stall current; 0 without currents
+  bool stuck = false;        // it missed the manoeuvre's own goal, or its operator gave up
   bool fails = false;        // it turned over (beyond 90 degrees), or the simulation had a fault
 
   bool operator==(const Risk&) const = default;
 };
 
-// The worse of both in each figure.
+// The worse of both for each figure.
 Risk worst_of(const Risk& a, const Risk& b);
 
-// By how much a manoeuvre asks of a robot, gentlest first.
+// Classes of manoeuvres by the demands on the robot, gentlest first.
 enum class Gentleness {
-  flat_driving,    // on level ground, flippers stay where they are: at worst it drives against a wall
+  flat_driving,    // on level ground with fixed flippers: at worst it drives against a wall
   flat_flippers,   // on level ground, flippers move
-  low_obstacle,    // over obstacles, none of what makes the next class
-  falls_or_tilts,  // beyond one of the limits below, let fall on purpose, or stuck on an obstacle
+  low_obstacle,    // over obstacles, without anything of the next class
+  falls_or_tilts,  // beyond one of the limits below, dropped on purpose, or stuck on an obstacle
   fails,           // Risk::fails
 };
 
-// Beyond one of these a manoeuvre is no gentle one (all chosen, so that the ramp of 20 degrees and a step of 50 mm are
-// gentle, a trench of 300 mm is not).
+// Limits of a gentle manoeuvre (all chosen, so that the ramp of 20 degrees and a step of 50 mm are gentle, a trench of
+// 300 mm is not).
 inline constexpr double kLargeTilt_rad = 0.44;       // 25 degrees: stairs have 23
 inline constexpr double kFall_m = 0.03;              // half the radius of a track's end wheel
-inline constexpr double kImpact_mps2 = 2 * 9.80665;  // presses three times as hard as standing
+inline constexpr double kImpact_mps2 = 2 * 9.80665;  // three times the contact force of standing
 
-// The robot as its motion is judged: with exact posture and current sensors, whatever it carries, and none of the
-// effects on sensors, which move nothing. It moves as `robot` does.
+// The robot for rating its motion: with exact posture and current sensors and without effects on sensors, which do not
+// change the motion. Moves like `robot`.
 physics::RobotDescription with_exact_sensors(physics::RobotDescription robot);
 
-// Of `manoeuvre` driven by with_exact_sensors(), without noise, rows of 10 ms. `nominal`: whose motors' stall currents
-// count.
+// `roll_out`: of `manoeuvre`, driven by with_exact_sensors(), without noise, in rows of 10 ms. `nominal`: provides the
+// stall currents.
 Risk risk_of(const rollout::RollOut& roll_out, const rollout::Manoeuvre& manoeuvre,
              const physics::RobotDescription& nominal);
 
-// Level planes and nothing else.
+// Whether it has level planes only.
 bool is_level(const physics::WorldDescription& world);
-// Whether flippers are told to go elsewhere than where they are at the start.
+// Whether flippers are commanded away from their start angles.
 bool moves_flippers(const rollout::Manoeuvre& manoeuvre);
 Gentleness gentleness(const rollout::Manoeuvre& manoeuvre, bool level_ground, const Risk& risk);
 

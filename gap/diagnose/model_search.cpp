@@ -10,19 +10,19 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// Of the way from the present value: a curve is known on either side of a fit at these factors, so that its bend there
-// is.
+// Factors on the distance from the present value at which a curve is simulated on either side of a fit, to capture its
+// bend.
 constexpr double kBracket = 1.3, kExactBracket = 1.15;
 constexpr double kNear = 0.3;       // of the way to one of these
-constexpr double kSettled = 0.005;  // of the value: a fit that moves less has nothing to learn from another point
-constexpr int kFitRounds = 2;       // values and discrepancies in turn
-constexpr double kMostBehind = 30;  // deviance by which a finalist may be worse, if that is more than `near`
+constexpr double kSettled = 0.005;  // of the value: a fit that moves less gains nothing from another point
+constexpr int kFitRounds = 2;       // alternating values and discrepancies
+constexpr double kMostBehind = 30;  // deviance tolerance of a finalist, if larger than `near`
 
-// The columns of some effects alone, and curves that know them by their new numbers.
+// The columns of some effects, and curves with the new column numbers.
 struct Selection {
   std::vector<EffectCurve> curves;
   std::vector<Eigen::MatrixXd> shifts;
-  std::vector<int> column;  // in the whole, of each of the selection's
+  std::vector<int> column;  // original column of each selected one
 };
 
 Selection selected(const EffectCurves& curves, std::span<const std::size_t> effects) {
@@ -64,7 +64,7 @@ std::vector<Model> fit_all(const StageData& data, const EffectCurves& curves, st
   return models;
 }
 
-// How many of the first ones are near enough to the best one to overtake it.
+// The number of leading models close enough to overtake the best one.
 std::size_t near_best(std::span<const Model> sorted, double nominal_deviance, const SearchSettings& settings) {
   if (sorted.empty()) return 0;
   const double best = sorted.front().deviance();
@@ -74,7 +74,7 @@ std::size_t near_best(std::span<const Model> sorted, double nominal_deviance, co
   return count;
 }
 
-// The fitted value and one on either side of it, where the curve has no point near them.
+// The fitted value and one on either side of it, unless the curve has a point near them.
 std::vector<Setting> points_around(const EffectCurves& curves, const OnCurve& place, double bracket, bool exact) {
   const candidates::Candidate& candidate = curves.candidates[place.curve];
   const std::vector<CurvePoint>& points = curves.curves[place.curve].points;
@@ -92,14 +92,14 @@ std::vector<Setting> points_around(const EffectCurves& curves, const OnCurve& pl
   return result;
 }
 
-// Simulates a model at its values, and keeps it if that is better than what was simulated before.
+// Keeps a simulated model if it is better than the ones before.
 void keep_better(Model& best, const StageData& data, const Model& fitted, GroupVectors shift) {
   Model simulated{fitted.places, std::move(shift), true, {}};
   simulated.likelihood = likelihood_of(data, rest_of(data, simulated), fitted.likelihood.discrepancies);
   if (!best.exact || simulated.deviance() < best.deviance()) best = std::move(simulated);
 }
 
-// At the end of what is known of its curve, where its range goes on.
+// Whether it is at the end of the known curve, but not of the range.
 bool ends_early(const EffectCurves& curves, const OnCurve& place) {
   const candidates::Candidate& candidate = curves.candidates[place.curve];
   const std::vector<CurvePoint>& points = curves.curves[place.curve].points;
@@ -107,8 +107,8 @@ bool ends_early(const EffectCurves& curves, const OnCurve& place) {
          (place.value >= points.back().value && points.back().value < candidate.max);
 }
 
-// Curves over the whole range for effects that fit best where theirs ends early: one that did not matter beneath the
-// nominal discrepancy may well matter beside another effect. Whether there were any.
+// Extends curves over the whole range for effects that fit best at a premature end: one that did not matter beneath the
+// nominal discrepancy may matter beside another effect. Returns whether there were any.
 bool follow_early_ends(EffectCurves& curves, const StageData& data, std::span<const Model> fitted,
                        const Simulate& simulate) {
   std::set<std::size_t> early;
@@ -127,7 +127,7 @@ struct Contender {
   Model fitted, best;
 };
 
-// Simulates each contender where it fits, and fits it again with what the sum of curves lacked.
+// Simulates each contender at its fit, and refits it with the interaction that the sum of curves lacked.
 void simulate_sets(std::vector<Contender>& contenders, const StageData& data, const EffectCurves& curves,
                    const Simulate& simulate, Fidelity fidelity, unsigned threads) {
   std::vector<Settings> asked;
@@ -217,7 +217,7 @@ struct FittedCurves {
   }
 };
 
-// By generalised least squares.
+// Fits by generalised least squares.
 void fit_places(const StageData& data, const FittedCurves& fitted, const Discrepancies& discrepancies, Model& model) {
   const Products products = products_of(whiteners_of(data, discrepancies), fitted.selection.shifts, fitted.target);
   model.places.clear();
@@ -251,8 +251,7 @@ Model fit_model(const StageData& data, const EffectCurves& curves, std::span<con
     return model;
   };
 
-  // where discrepancies, or numbers that are a little off, already take up what an effect does, it is not there: noise
-  // alone leaves it to the effect
+  // discrepancies or numbers' errors that already absorb an effect hide it; with noise alone they cannot
   Model best = fitted_from(start);
   Model plain = fitted_from(no_discrepancy());
   return plain.deviance() < best.deviance() ? plain : best;
@@ -267,7 +266,7 @@ std::vector<Model> search_singles(const StageData& data, EffectCurves& curves, c
   std::vector<Model> models = fit_all(data, curves, sets, {}, start, settings.threads);
   sort_by_deviance(models);
 
-  // the first ones with points where they fit
+  // the leading ones with points at their fits
   const auto worth_it = [&](std::size_t most) {
     std::size_t count = 0;
     while (count < std::min(most, models.size()) && nominal - models[count].deviance() >= settings.worth) ++count;
@@ -304,7 +303,7 @@ std::vector<Model> search_singles(const StageData& data, EffectCurves& curves, c
   }
   for (std::size_t i = 0; i < finalists; ++i) {
     models[i] = contenders[i].fitted;
-    models[i].exact = true;  // between points that were simulated and next to each other
+    models[i].exact = true;  // between adjacent simulated points
   }
   sort_by_deviance(models);
   return models;
@@ -332,10 +331,10 @@ std::vector<Model> search_sets(const StageData& data, EffectCurves& curves, cons
                                const Simulate& simulate, const SearchSettings& settings, std::vector<EffectSet> sets) {
   const Discrepancies& start = than.likelihood.discrepancies;
   const double to_beat = than.deviance() - by;
-  // effects that act on each other do so in a larger set, too
+  // interactions of effects persist in a larger set
   const GroupVectors beyond = beyond_curves(curves, than);
 
-  // all sets by what they leave beneath the same discrepancies
+  // all sets by their residuals under the same discrepancies
   const Products products = products_of(whiteners_of(data, start), curves.shifts, less(residuals_of(data), beyond));
   std::vector<double> left(sets.size());
   for_each_job(sets.size(), settings.threads,
@@ -345,7 +344,7 @@ std::vector<Model> search_sets(const StageData& data, EffectCurves& curves, cons
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return left[i]; });
   order.resize(std::min(order.size(), settings.first_sets));
 
-  // the first ones each with their own
+  // the leading ones with discrepancies of their own
   std::vector<EffectSet> first;
   for (const std::size_t i : order) first.push_back(std::move(sets[i]));
   std::vector<Model> models = fit_all(data, curves, first, beyond, start, settings.threads);

@@ -19,10 +19,10 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-constexpr double kLongestProposed_s = 40;  // chosen: what takes longer is driven in parts
-constexpr std::size_t kWanted = 3;         // that suffice, for a report to name
+constexpr double kLongestProposed_s = 40;  // chosen: longer ones are driven in parts
+constexpr std::size_t kWanted = 3;         // sufficient manoeuvres for a report
 constexpr std::size_t kBatch = 3;          // manoeuvres at a time, whatever the threads
-constexpr double kNothing = 1;             // standard deviations: less is no separation to speak of
+constexpr double kNothing = 1;             // standard deviations: less is no meaningful separation
 
 rollout::RollOutOptions without_noise() {
   rollout::RollOutOptions options;
@@ -30,14 +30,14 @@ rollout::RollOutOptions without_noise() {
   return options;
 }
 
-// The simulator with another time step: what that changes it does not know.
+// The simulator with another time step: the difference is its own uncertainty.
 rollout::RollOutOptions coarse() {
   rollout::RollOutOptions options = without_noise();
   options.physics.time_step_s *= 2;
   return options;
 }
 
-// One manoeuvre and what the nominal robot does in it.
+// One manoeuvre and the nominal robot's motion in it.
 struct ManoeuvreToTry {
   rollout::Manoeuvre manoeuvre;
   physics::WorldDescription world;
@@ -79,8 +79,8 @@ class Proposer {
     for (const RivalModel& rival : rivals) models_.push_back({&rival.fitted, true});
   }
 
-  // Tries `candidates` class by class up to `roughest`, as the nominal robot drives them, and leaves those that are
-  // rougher. Whether one suffices that is as gentle as its class.
+  // Tries `candidates` class by class up to `roughest`, as driven by the nominal robot, and leaves rougher ones in the
+  // list. Returns whether one suffices that is as gentle as its class.
   bool try_up_to(Gentleness roughest, std::vector<ManoeuvreToTry>& candidates) {
     drive_nominal(candidates);
     std::erase_if(candidates,
@@ -114,7 +114,7 @@ class Proposer {
   }
 
  private:
-  // What it found to suffice that is as gentle as `asked` or gentler: rivals may have made a candidate rougher than it
+  // Number of sufficient manoeuvres at least as gentle as `asked`: rivals may have made a candidate rougher than it
   // was.
   std::size_t sufficient(Gentleness asked) const {
     return static_cast<std::size_t>(std::ranges::count_if(proposed_, [asked](const ProposedManoeuvre& proposed) {
@@ -130,7 +130,7 @@ class Proposer {
     for_each_job(candidates.size(), options_.threads, [&](std::size_t i) {
       check_goes_on(options_.stop);
       ManoeuvreToTry& candidate = candidates[i];
-      if (candidate.plain.row_count() > 0) return;  // it was before
+      if (candidate.plain.row_count() > 0) return;  // driven before
       rollout::RollOut out = driven(nominal_, candidate);
       candidate.risk = risk_of(out, candidate.manoeuvre, nominal_);
       candidate.plain = std::move(out.run);
@@ -151,7 +151,7 @@ class Proposer {
     double score = 0;
   };
 
-  // A few candidates side by side.
+  // Tries a few candidates in parallel.
   void try_batch(std::span<const ManoeuvreToTry> batch) {
     std::vector<Trial> trials;
     for (const ManoeuvreToTry& candidate : batch)
@@ -162,8 +162,8 @@ class Proposer {
     const std::size_t rivals = rivals_.size(), first_coarse = first_moved_.back();
     for_each_job(trials.size() * rivals, options_.threads,
                  [&](std::size_t job) { replay(trials[job / rivals], first_coarse + job % rivals); });
-    // Rivals that are too close before either changes its values only come closer: that is known at a sixth of the
-    // cost, as a difference hardly changes with the time step.
+    // Refitting values only brings rivals closer, so those too close before are excluded, at a sixth of the cost: a
+    // coarse time step suffices, as it hardly changes a difference.
     std::vector<Trial*> promising;
     for (Trial& trial : trials) {
       trial.score = least_separation(trial, false);
@@ -215,7 +215,7 @@ class Proposer {
     proposed_.push_back(std::move(proposed));
   }
 
-  // `changing`: values may change, and what the time step leaves open is no difference; else all is coarse.
+  // `changing`: refits values and discounts differences within the time step's uncertainty; else everything is coarse.
   double least_separation(const Trial& trial, bool changing) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t a = 0; a < rivals_.size(); ++a)
@@ -248,7 +248,7 @@ class Proposer {
     return separation(per_sigma.cwiseProduct(difference), per_sigma.asDiagonal() * free);
   }
 
-  // The first span in which two models tilt so differently that what follows is another story; without one: none.
+  // The first span in which two models' tilts differ too much to compare what follows; the maximum if there is none.
   static std::size_t first_other_outcome(const Eigen::VectorXd& difference, const FeatureMap& map) {
     std::size_t first = std::numeric_limits<std::size_t>::max();
     for (std::size_t i = 0; i < map.bins().size(); ++i) {
@@ -298,7 +298,7 @@ std::vector<ProposedManoeuvre> propose_manoeuvres(const physics::RobotDescriptio
   flat.erase(rough.begin(), rough.end());
   Proposer proposer(nominal, rivals, options);
   if (!proposer.try_up_to(Gentleness::flat_flippers, flat)) {
-    std::ranges::move(flat, std::back_inserter(others));  // at which this robot falls or tilts, flat as the ground is
+    std::ranges::move(flat, std::back_inserter(others));  // in which this robot falls or tilts on level ground
     proposer.try_up_to(Gentleness::falls_or_tilts, others);
   }
   return proposer.take();

@@ -14,11 +14,11 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kMadToSigma = 1.4826;
-// Of the largest squares, which are events, not noise. What is left is not made larger for their absence, as for a
-// Gaussian: repeats differ mostly by a slow wander, which is alike in all bins.
+// Share of the largest squares, which are events, not noise. The rest is not corrected for their absence, as for a
+// Gaussian: repeats differ mostly by a slow drift, which is similar in all bins.
 constexpr double kTrimmed = 0.05;
 
-// A sample was taken at any time since the one before it: 1 sigma of an even distribution, in parts of its width.
+// A sample was taken at any time since the previous one: 1 sigma of a uniform distribution, as a fraction of its width.
 const double kClockError = 1 / std::sqrt(12.0);
 
 double median(std::vector<double>& values) {
@@ -27,7 +27,7 @@ double median(std::vector<double>& values) {
   return *middle;
 }
 
-// Of bins in a row a second difference leaves what changes slowly out, and with it most of a gap.
+// Second differences of consecutive bins suppress slow changes, and with them most of a gap.
 void add_second_differences(const StageFeatures& features, const VectorXd& values, const std::vector<bool>& known,
                             std::vector<std::vector<double>>& by_channel) {
   const std::vector<Bin>& bins = features.bins;
@@ -39,7 +39,7 @@ void add_second_differences(const StageFeatures& features, const VectorXd& value
   }
 }
 
-// The most samples that a bin of each channel has.
+// The largest number of samples in a bin of each channel.
 std::vector<std::size_t> full_bins(const std::vector<StageFeatures>& features) {
   std::vector<std::size_t> full(diagnosis_channels().size(), 0);
   for (const StageFeatures& map : features)
@@ -47,7 +47,7 @@ std::vector<std::size_t> full_bins(const std::vector<StageFeatures>& features) {
   return full;
 }
 
-// Of any run.
+// Channels that any run measured.
 std::vector<std::size_t> measured_channels(const std::vector<StageFeatures>& features) {
   std::set<std::size_t> channels;
   for (const StageFeatures& run : features)
@@ -76,8 +76,8 @@ VectorXd sigma_of_bins(const StageFeatures& features, const std::vector<double>&
   return result;
 }
 
-// What repeats differ by, beyond noise from bin to bin: slow wander, and events that are not quite at the same time.
-// Variances of each channel, whitened; 0 where nothing is known.
+// Spread of repeats beyond noise between bins: slow drift, and events at slightly different times. Whitened variance of
+// each channel; 0 if unknown.
 using Spreads = std::vector<double>;
 
 std::vector<Spreads> spreads_of_groups(const std::vector<StageFeatures>& features,
@@ -86,6 +86,7 @@ std::vector<Spreads> spreads_of_groups(const std::vector<StageFeatures>& feature
                                        const std::vector<std::vector<std::size_t>>& groups) {
   std::vector<Spreads> spreads;
   for (const std::vector<std::size_t>& group : groups) {
+    // whitened squared deviations by channel, in bins that several repeats have; 1 on average for noise alone
     std::vector<std::vector<double>> squares(diagnosis_channels().size());
     for (const std::size_t r : group) {
       if (deviations[r].size() == 0) continue;
@@ -94,6 +95,8 @@ std::vector<Spreads> spreads_of_groups(const std::vector<StageFeatures>& feature
         if (shared[r][b])
           squares[features[r].bins[b].channel].push_back(white[static_cast<Index>(b)] * white[static_cast<Index>(b)]);
     }
+
+    // per channel their mean without the largest 5 %, which are events
     spreads.emplace_back(squares.size(), 0.0);
     for (std::size_t c = 0; c < squares.size(); ++c) {
       if (squares[c].empty()) continue;
@@ -107,7 +110,7 @@ std::vector<Spreads> spreads_of_groups(const std::vector<StageFeatures>& feature
   return spreads;
 }
 
-// The median of all groups that know one.
+// The median over all groups with a known spread.
 Spreads usual_spread(const std::vector<Spreads>& spreads) {
   Spreads usual(diagnosis_channels().size(), 0);
   for (std::size_t c = 0; c < usual.size(); ++c) {
@@ -148,6 +151,7 @@ double NoiseFloor::rms(const std::vector<VectorXd>& differences) const {
 NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::vector<VectorXd>& residuals,
                        const std::vector<std::vector<std::size_t>>& repeats, const std::vector<OpenShapes>& open,
                        std::span<const double> stated) {
+  // deviations between repeats, the bins that several of them have, and the samples of a full bin
   const std::size_t channels = diagnosis_channels().size();
   const auto deviations = deviations_from_repeats(features, residuals, repeats);
   const std::vector<std::size_t> full = full_bins(features);
@@ -156,6 +160,9 @@ NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::ve
                    std::vector<Whitener>(features.size()), false};
   floor.noise_of_bin = floor.sigma_of_bin;
   floor.open = open;
+
+  // |x0 - 2 x1 + x2| / sqrt(6) has the noise's sigma, and slow changes cancel in it: of deviations from repeats,
+  // else of the residuals themselves
   std::vector<std::vector<double>> jumps(channels);
   for (std::size_t r = 0; r < features.size(); ++r) {
     floor.from_repeats |= deviations[r].size() > 0;
@@ -164,6 +171,9 @@ NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::ve
     else
       add_second_differences(features[r], residuals[r], std::vector<bool>(features[r].bins.size(), true), jumps);
   }
+
+  // sigma of a full bin: as stated for n samples / sqrt(n), if no repeats tell; else 1.4826 median, at least a
+  // resolution
   const auto noise_of = [&](std::size_t c) {
     const bool is_stated = !floor.from_repeats && !stated.empty() && stated[c] > 0;
     if (is_stated) return stated[c] / std::sqrt(static_cast<double>(full[c]));
@@ -172,6 +182,7 @@ NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::ve
   for (std::size_t c = 0; c < channels; ++c)
     if (full[c] > 0) floor.sigma[c] = std::max(diagnosis_channels()[c].resolution, noise_of(c));
 
+  // sigma of each bin: noise, scaled by sqrt(full / samples), and roughness, added in squares
   std::vector<std::vector<double>> sigma_of_run(features.size(), floor.sigma);
   const auto whiten = [&] {
     for (std::size_t r = 0; r < features.size(); ++r) {
@@ -181,6 +192,9 @@ NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::ve
     }
   };
   whiten();
+
+  // repeats differ by more than noise between bins: scale sigma by the root of the group's spread, at least the usual
+  // one, and never below 1
   if (!floor.from_repeats) return floor;
   const std::vector<Spreads> spreads = spreads_of_groups(features, floor.whiteners, deviations, shared, repeats);
   const Spreads usual = usual_spread(spreads);
@@ -218,8 +232,8 @@ NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShape
 
 std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, Predictor& predictor, Passage passage,
                                     const Variation& model, double start_sigma_m, double start_sigma_rad) {
-  constexpr std::size_t kOfStart = 3, kOpen = 7;  // after those of the start, numbers of the simulator
-  // the model itself, with each open number varied both ways, and with samples that are late
+  constexpr std::size_t kOfStart = 3, kOpen = 7;  // start pose first, then numbers of the simulator
+  // the model with each open number varied both ways, with late samples, and unchanged
   std::vector<Variation> variations(2 * kOpen + 2, model);
   variations[2 * kOpen].samples_late = kClockError;
   for (const bool minus : {false, true}) {
@@ -242,7 +256,7 @@ std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, 
     const auto channels = std::ssize(measured);
     OpenShapes run{Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOfStart) + 2 * channels),
                    Eigen::MatrixXd::Zero(size, 2 * static_cast<Index>(kOpen - kOfStart)), VectorXd::Zero(size)};
-    // one count more or less of a sensor lasts as long as the robot rolls on, and its clock's error as long as the log
+    // one count of a sensor persists while the robot rolls on, and its clock's error for the whole log
     const VectorXd late = shifts[2 * kOpen][r] - shifts.back()[r];
     for (Index b = 0; b < size; ++b) {
       const std::size_t channel = features[r].bins[static_cast<std::size_t>(b)].channel;
@@ -250,7 +264,8 @@ std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, 
       run.local(b, place) = diagnosis_channels()[channel].resolution;
       run.local(b, place + channels) = late[b];
     }
-    // odd and even part of what each variation shifts
+    // odd and even part of the shifts: (plus - minus) / 2 and (plus + minus) / 2; even parts add to the roughness in
+    // squares
     for (std::size_t i = 0; i < kOpen; ++i) {
       const VectorXd plus = shifts[i][r] - shifts.back()[r], minus = shifts[i + kOpen][r] - shifts.back()[r];
       const VectorXd even = (plus + minus) / 2;

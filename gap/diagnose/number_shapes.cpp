@@ -10,10 +10,9 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Chosen: what more directions add is a few per cent of what numbers shift.
+// Chosen: more directions add a few per cent of the numbers' shifts.
 constexpr Index kMostDirections = 12;
-// Length in noise, of numbers off by all of themselves, below which nobody sees a direction where they are off by a few
-// per cent.
+// Length in noise, for relative errors of 1, below which a direction is invisible at errors of a few per cent.
 constexpr double kVisibleDirection = 3;
 
 const CurvePoint* nearest_to_present(const EffectCurve& curve, double present) {
@@ -25,7 +24,7 @@ const CurvePoint* nearest_to_present(const EffectCurve& curve, double present) {
   return nearest;
 }
 
-// `settings` with a number that is ordinarily off from what they have, and by how much it is.
+// `settings` with an ordinary error of one number, and the size of that error.
 struct SlightlyOff {
   Settings settings;
   double by;
@@ -42,7 +41,7 @@ SlightlyOff slightly_off(const candidates::Candidate& candidate, std::size_t num
   return {std::move(settings), fits ? step : -step};
 }
 
-// Of each group, what each number shifts beside `settings`, off by all of itself.
+// For each group, the shift of each number beside `settings`, for a relative error of 1.
 std::vector<MatrixXd> shifts_beside(const StageData& data, std::span<const candidates::Candidate> candidates,
                                     std::span<const std::size_t> numbers, const Settings& settings,
                                     const Simulate& simulate) {
@@ -63,8 +62,8 @@ std::vector<MatrixXd> shifts_beside(const StageData& data, std::span<const candi
   return shifts;
 }
 
-// The principal directions of what all numbers shift together. `shifts`: of each group; of each number, off by all of
-// itself, a column.
+// The principal directions of the shifts of all numbers. `shifts`: for each group, one column per number, for a
+// relative error of 1.
 std::vector<MatrixXd> principal_directions(const StageData& data, std::vector<MatrixXd> shifts) {
   const Index numbers = shifts.empty() ? 0 : shifts.front().cols();
   if (numbers == 0) return shifts;
@@ -74,7 +73,7 @@ std::vector<MatrixXd> principal_directions(const StageData& data, std::vector<Ma
     products.noalias() += white.transpose() * white;
   }
 
-  // of the covariance of all shifts, in units of noise
+  // eigenvectors of the covariance of all shifts, in units of noise
   const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(products);
   Index count = 0;
   while (count < std::min(kMostDirections, numbers) &&

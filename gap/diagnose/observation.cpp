@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr double kMoves_mps = 1e-6, kShortest_s = 0.5;
 
-// Rows until the robot is told to move.
+// Rows before the first command to move.
 std::size_t resting_rows(const rollout::Manoeuvre& replay) {
   const auto moves = [&](const rollout::TimedCommand& timed) {
     for (const double speed_mps : timed.command.track_speed_mps)
@@ -41,7 +41,7 @@ double as_it_is(double difference) {
   return difference;
 }
 
-// The mean of the first `rows`, from a first value on, the difference to which may have to be wrapped.
+// The mean of the first `rows`, relative to `first`; `wrap` wraps differences of angles.
 double mean_of_first(std::span<const double> column, std::size_t rows, double first, double (*wrap)(double)) {
   double sum = 0;
   int count = 0;
@@ -50,8 +50,8 @@ double mean_of_first(std::span<const double> column, std::size_t rows, double fi
   return count > 0 ? first + sum / count : first;
 }
 
-// A log's single first pose has the whole noise of its sensor; the rows before the first order have less together,
-// unless the robot was rolling when the log began.
+// The first pose of a log has the full noise of its sensor; the mean of the rows before the first command has less,
+// unless the robot was rolling at the start.
 void start_at_mean(const Observation& observation, rollout::Manoeuvre& replay) {
   rollout::Start& start = *replay.start;
   if (start.motion) return;
@@ -88,7 +88,7 @@ void empty_repeats(runs::Run& run, const std::string& name) {
   for (const std::size_t row : held->repeats) run.values[column][row] = std::nan("");
 }
 
-// Empties the columns of dead sensors, and cells that only repeat a value. Throws where something is certainly wrong.
+// Clears the columns of dead sensors, and cells that only repeat a value. Throws if something is certainly wrong.
 void check(runs::Run& run, const std::string& file, const fs::path& folder, logs::HeldInRuns& held,
            Observations& result) {
   std::vector<logs::Finding> found = logs::check_run(run, file, &result.robot);
@@ -105,14 +105,15 @@ void check(runs::Run& run, const std::string& file, const fs::path& folder, logs
   }
 }
 
-// At most `most` of them, from every manoeuvre as many as possible, spread over the dataset.
+// At most `most` runs, evenly from all manoeuvres, spread over the dataset.
 std::vector<runs::DatasetRun> drawn_evenly(const std::vector<runs::DatasetRun>& all, std::size_t most) {
   if (all.size() <= most) return all;
   std::map<std::pair<std::string, std::string>, std::vector<std::size_t>> of_manoeuvre;
   for (std::size_t i = 0; i < all.size(); ++i) of_manoeuvre[{all[i].manoeuvre, all[i].world}].push_back(i);
   std::vector<std::vector<std::size_t>> groups;
   for (auto& [name, runs] : of_manoeuvre) groups.push_back(std::move(runs));
-  if (groups.size() > most) {  // no room for all manoeuvres: one run of as many, spread over their names
+  // more manoeuvres than runs: one run of each of `most` manoeuvres, spread over their names
+  if (groups.size() > most) {
     std::vector<std::vector<std::size_t>> kept;
     for (std::size_t i = 0; i < most; ++i) kept.push_back(std::move(groups[i * groups.size() / most]));
     groups = std::move(kept);
@@ -162,6 +163,7 @@ Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const s
 Observations observe(const fs::path& folder, const std::string& robot, const std::string& world,
                      std::size_t most_runs) {
   Observations result;
+  // the dataset, its robot, and the runs that are used of it
   result.dataset = runs::read_dataset(folder);
   result.robot_name = robot.empty() ? runs::resolve_beside(folder, result.dataset.robot, ".toml") : robot;
   result.robot = physics::load_robot(result.robot_name);
@@ -169,12 +171,15 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
   if (entries.size() < result.dataset.runs.size())
     result.warnings.push_back(fmt::format("{} of {} runs are used, drawn evenly from all manoeuvres", entries.size(),
                                           result.dataset.runs.size()));
+
+  // each usable run with its replays; faulty, copied and too short ones are left out, worlds are loaded once
   std::map<std::string, std::size_t> worlds;
   logs::KnownRuns known_runs;
   std::vector<logs::Finding> copies;
   logs::HeldInRuns held;
   logs::LiftedRobot lifted;
   for (const runs::DatasetRun& entry : entries) {
+    // unusable: failed simulations and copies
     if (!entry.fault.empty()) {
       result.warnings.push_back(fmt::format("{}: its simulation went wrong; left out", entry.file));
       continue;
@@ -185,6 +190,8 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
       copies.push_back(*copy);
       continue;
     }
+
+    // its commands, without implausible values
     check(observation.run, entry.file, folder, held, result);
     count_time_from_zero(observation.run);
     const std::string path = (folder / entry.file).string();
@@ -193,30 +200,42 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
       result.warnings.push_back(fmt::format("{}: lasts less than {} s; left out", entry.file, kShortest_s));
       continue;
     }
+
+    // its world, by the name that resolves it
     const std::string name =
         !world.empty() ? world
                        : runs::resolve_beside(folder, entry.world.empty() ? result.dataset.world : entry.world, ".sdf");
     const auto [known, is_new] = worlds.try_emplace(name, result.worlds.size());
     if (is_new) result.worlds.push_back(physics::load_world(name, result.warnings));
+
+    // its replays
     observation.world = known->second;
     prepare_replays(observation, path);
     lifted.look_at(observation.run, result.robot.track_gauge_m());
     result.runs.push_back(std::move(observation));
   }
+
+  // a robot lifted off the ground shows nothing of the body's motion: only its drives are compared
   if (const auto finding = lifted.finding()) {
     for (Observation& observation : result.runs) logs::forget_body(observation.run);
     result.warnings.push_back(in_words(*finding) + " (the drives alone are compared)");
   }
+
+  // findings that concern several runs, once each
   for (const logs::Finding& finding : held.findings())
     result.warnings.push_back(in_words(finding) + " (repeats left out)");
   if (!copies.empty())
     result.warnings.push_back(
         in_words(copies.front()) +
         (copies.size() == 1 ? " (left out)" : fmt::format(" (left out, as {} more)", copies.size() - 1)));
+
+  // without a usable run the first warning says why
   if (result.runs.empty())
     throw runs::RunFileError(fmt::format("{}: none of its {} runs can be used{}", folder.string(),
                                          result.dataset.runs.size(),
                                          result.warnings.empty() ? "" : "; the first one: " + result.warnings.front()));
+
+  // warn of stated noise that cannot be right, and of channels that the described robot has no sensor for
   std::vector<std::vector<std::string>> columns;
   for (const Observation& run : result.runs) columns.push_back(run.run.columns);
   for (const logs::Finding& finding : logs::check_noise(result.dataset, columns))

@@ -7,10 +7,10 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// A stage that names nothing new has heard the others.
+// Rounds in which each stage is reconsidered with the findings of the others.
 constexpr int kMostHearings = 2;
 
-// What a stage leaves of the gap.
+// The residual of a stage.
 struct LeftThere {
   double deviance, squares;
 };
@@ -22,7 +22,7 @@ LeftThere left_by(const StageDecision& decision, const GroupVectors& shift) {
           squares_in_noise(decision.data, without_shared_shapes(decision.data, rest, likelihood.discrepancies))};
 }
 
-// Whether `decision` has more left with one effect, whichever of its values it has, beside its best model and alone.
+// Whether the residual of `decision` grows with one effect at each of `values`, beside its best model and alone.
 bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<const Setting> values,
              const DecisionSettings& settings) {
   for (const Settings& beside : {settings_of(decision.best.model.places), Settings{}}) {
@@ -43,8 +43,8 @@ bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<
   return true;
 }
 
-// The value that a stage gives an effect or its rival, and both ends of its interval: a rival is known as well as the
-// effect in whose place it is, in parts of what it changes.
+// The value of an effect or its rival, and both ends of its interval: a rival has the relative uncertainty of the
+// effect that it replaces.
 std::vector<Setting> values_of(const NamedEffect& effect, const Setting& setting,
                                std::span<const candidates::Candidate> candidates) {
   const Interval& own = effect.value.value;
@@ -58,7 +58,7 @@ std::vector<Setting> values_of(const NamedEffect& effect, const Setting& setting
   return values;
 }
 
-// What the other stages than `s` name, alone.
+// Effects that stages other than `s` name without rivals.
 std::vector<NamedElsewhere> named_elsewhere(const std::vector<StageDiagnosis>& stages, std::size_t s) {
   std::vector<NamedElsewhere> named;
   for (std::size_t other = 0; other < stages.size(); ++other)
@@ -68,7 +68,7 @@ std::vector<NamedElsewhere> named_elsewhere(const std::vector<StageDiagnosis>& s
   return named;
 }
 
-// Of what stage `s` names and of its rivals, those that another stage refutes.
+// The effects of stage `s` and their rivals that another stage refutes.
 std::vector<RefutedElsewhere> refuted_elsewhere(const std::vector<StageDiagnosis>& stages, std::size_t s,
                                                 const std::vector<PreparedStage>& prepared, Predictor& predictor,
                                                 const DecisionSettings& settings) {
@@ -90,7 +90,7 @@ std::vector<RefutedElsewhere> refuted_elsewhere(const std::vector<StageDiagnosis
   return refuted;
 }
 
-// Whether a stage would decide otherwise.
+// Whether a stage may decide differently.
 bool concerns(const StageDecision& decision, std::span<const candidates::Candidate> candidates,
               const Elsewhere& elsewhere) {
   for (std::size_t e = 0; e < decision.effects.size(); ++e) {

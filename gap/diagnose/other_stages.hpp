@@ -1,6 +1,6 @@
-// Stages hear each other: the same robot drove in all of them.
+// Reconciles the decisions of stages: the same robot drove in all of them.
 //
-// Thread safety: pure functions apart from what the predictor does. Deterministic.
+// Thread safety: pure functions, except that the predictor runs. Deterministic.
 #pragma once
 
 #include <vector>
@@ -9,9 +9,8 @@
 
 namespace kenaf::gap::diagnose {
 
-// A stage is decided again where another one names a rival of what it names, or would see what it names, or a rival of
-// it, and refutes it: with it there, beside the other's best model and alone, the other has more left. `prepared`: of
-// each of `stages`.
+// Decides a stage again if another one names a rival of one of its effects, or refutes the effect or a rival: with it,
+// beside the other's best model and alone, the other's residual grows. `prepared`: one per stage.
 void settle_by_other_stages(std::vector<StageDiagnosis>& stages, const std::vector<PreparedStage>& prepared,
                             Predictor& predictor, const StageOptions& options);
 

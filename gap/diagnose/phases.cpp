@@ -14,15 +14,15 @@ using Column = std::span<const double>;
 
 constexpr double kStep_s = 0.05, kShortestPhase_s = 0.1;
 constexpr double kBeltMoves_mps = 0.01;
-constexpr double kTurns = 0.3;              // of the larger belt's speed, by which the belts differ
+constexpr double kTurns = 0.3;              // difference of the belts' speeds over the larger one
 constexpr double kSettling_s = 0.3;         // after a command has changed
 constexpr double kFlipperMoves_rad = 0.02;  // from its command
-constexpr double kInclined_rad = 0.06;      // against the pitch at the start
+constexpr double kInclined_rad = 0.06;      // relative to the pitch at the start
 constexpr double kTips_radps = 0.6;
 constexpr double kFalls_mps = 0.25;  // of height lost
 constexpr double kLands_s = 0.4;     // after a tip or a fall
 
-// A column on an even grid of times, the last measured value holding.
+// A column on a regular time grid, holding the last measured value.
 std::vector<double> on_grid(Column time, Column column, std::size_t count) {
   std::vector<double> result(count, std::numeric_limits<double>::quiet_NaN());
   if (column.empty()) return result;
@@ -36,7 +36,7 @@ std::vector<double> on_grid(Column time, Column column, std::size_t count) {
   return result;
 }
 
-// Central difference over two steps each way, which noise of the pose survives; 0 where unknown.
+// Central difference over two steps to each side, robust against the pose's noise; 0 if unknown.
 double rate(const std::vector<double>& values, std::size_t i) {
   const std::size_t a = i < 2 ? 0 : i - 2, b = std::min(i + 2, values.size() - 1);
   const double difference = values[b] - values[a];
@@ -50,7 +50,7 @@ double or_zero(double value) {
 struct Signals {
   std::vector<double> left_mps, right_mps, x_m, y_m, z_m, pitch_rad;
   std::vector<bool> changed;   // a track command, within kSettling_s
-  std::vector<bool> flippers;  // one is on its way
+  std::vector<bool> flippers;  // one is moving
 };
 
 Signals signals_of(const Observation& observation, std::size_t count) {
@@ -65,7 +65,7 @@ Signals signals_of(const Observation& observation, std::size_t count) {
             grid("pitch_rad"),
             std::vector<bool>(count, false),
             std::vector<bool>(count, false)};
-  // an order to go with which the log begins is a change, unless the belts are about as fast as it says
+  // an initial command to move is a change, unless the belts already have half of its speed or more
   const auto obeyed = [&](double asked_mps, std::string_view track) {
     return !(std::abs(grid(track).front()) < std::abs(asked_mps) / 2);
   };
@@ -115,7 +115,7 @@ std::vector<PhaseSpan> phases_of(const Observation& observation) {
     upset_s = name == "tip" || name == "fall" ? 0 : upset_s + kStep_s;
     const double from_s = static_cast<double>(i) * kStep_s;
     if (spans.empty() || spans.back().name != name) {
-      // the first touch of what is then climbed
+      // the first contact with what is climbed next
       if (name == "climb" && !spans.empty() && (spans.back().name == "cruise" || spans.back().name == "speed change")) {
         const double contact_s = std::max(spans.back().from_s, from_s - 2 * kStep_s);
         spans.back().to_s = contact_s;
@@ -127,7 +127,7 @@ std::vector<PhaseSpan> phases_of(const Observation& observation) {
     }
     spans.back().to_s = std::max(spans.back().to_s, std::min(from_s + kStep_s, duration_s));
   }
-  // what is too short belongs to the phase before it, or as the first one to that after it
+  // too short phases are merged into the previous one, or the next one at the start
   std::vector<PhaseSpan> result;
   for (const PhaseSpan& span : spans) {
     if (!result.empty() && (span.to_s - span.from_s < kShortestPhase_s || span.name == result.back().name))

@@ -17,7 +17,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
-// Time steps: a shift, the difference of two simulations with the same step, hardly changes.
+// Factor on the time step: it hardly changes a shift, the difference of two simulations with equal steps.
 constexpr double kCoarse = 2;
 constexpr std::size_t kMostKnown_bytes = std::size_t{256} << 20;
 }  // namespace
@@ -61,7 +61,7 @@ std::vector<VectorXd> Predictor::all_of(std::size_t count, const std::function<V
   const std::thread::id asking = std::this_thread::get_id();
   std::atomic<std::size_t> done = 0;
   for_each_job(own, threads_, [&](std::size_t i) {
-    // one rank alone may end at once; of several all end together
+    // a single rank may stop at once; several must stop together
     if (ranks == 1) check_goes_on(stop_);
     results[rank + i * ranks] = job(rank + i * ranks);
     done += ranks;
@@ -144,6 +144,7 @@ StageValues Predictor::by_stage(Replay replay, std::size_t run, const VectorXd& 
 
 std::vector<VectorXd> Predictor::values_of(std::span<const Asked> asked, std::span<const Variation> variations,
                                            Passage passage) {
+  // a variation is known by its number; the cache is emptied when too large
   if (known_.bytes() > kMostKnown_bytes) known_.forget();
   std::vector<std::size_t> numbers;
   for (const Variation& variation : variations) numbers.push_back(known_.number_of(variation));
@@ -152,7 +153,7 @@ std::vector<VectorXd> Predictor::values_of(std::span<const Asked> asked, std::sp
   };
   const auto is_measured = [&](std::size_t run) { return !features_.of(passage)[run].bins.empty(); };
 
-  // what is not known yet, each once
+  // unknown roll-outs, each once
   std::set<RollOut> unknown;
   for (const Asked& one : asked)
     if (is_measured(one.run) && known_.find(roll_out_of(one)) == nullptr) unknown.insert(roll_out_of(one));
@@ -163,6 +164,7 @@ std::vector<VectorXd> Predictor::values_of(std::span<const Asked> asked, std::sp
   for (std::size_t i = 0; i < jobs.size(); ++i)
     known_.add(jobs[i], by_stage(jobs[i].replay, jobs[i].run, simulated[i]));
 
+  // the stage's part of each roll-out
   std::vector<VectorXd> values(asked.size());
   for (std::size_t i = 0; i < asked.size(); ++i)
     if (is_measured(asked[i].run)) values[i] = (*known_.find(roll_out_of(asked[i])))[static_cast<std::size_t>(passage)];
@@ -177,7 +179,7 @@ std::vector<VectorXd> Predictor::values_of_all(std::span<const std::size_t> of_r
   return values_of(asked, variations, passage);
 }
 
-// Bins at times that the other run does not have keep what the last one before them has: a run that lasts longer rests.
+// Bins at times that the other run lacks hold the last shift before them: a longer run ends at rest.
 VectorXd Predictor::alike(Passage passage, std::size_t from, const VectorXd& shift, std::size_t to) const {
   if (from == to) return shift;
   const std::vector<Bin>&from_bins = features_.of(passage)[from].bins, &to_bins = features_.of(passage)[to].bins;

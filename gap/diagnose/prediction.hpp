@@ -1,6 +1,6 @@
-// What the simulator says of the observed runs: the same motion from the same place, with the nominal robot or another.
+// Simulations of the observed runs: the same motion from the same start, with the nominal robot or a varied one.
 //
-// Deterministic, on any number of threads and of processes.
+// Deterministic on any number of threads and processes.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,21 +19,21 @@
 
 namespace kenaf::gap::diagnose {
 
-// Shifts of a stage's values, varied minus nominal, of every run.
+// Shifts of a stage's values, varied minus nominal, for every run.
 using Shift = std::vector<Eigen::VectorXd>;
 
 enum class Fidelity {
   every_run,  // each run is simulated
-  fine,       // one run of each group of repeats is; the others shift alike, at the same times
+  fine,       // one run of each group of repeats is; the others are given the same shifts at the same times
   coarse,     // the same with twice the time step
 };
 
-// Thrown by a simulation that was asked to stop.
+// Thrown by a simulation when it is stopped.
 struct Stopped {};
-// Throws it if `stop`, if there is one, is set.
+// Throws Stopped if `stop` is given and set.
 void check_goes_on(const std::atomic<bool>* stop);
 
-// What of the runs is compared: of each run a map, and of each stage and run what the stage compares.
+// The features of all runs: a map for each run, and for each stage and run the features that the stage compares.
 struct ComparedFeatures {
   std::vector<FeatureMap> maps;
   std::array<std::vector<StageFeatures>, kPassages.size()> of_stage;
@@ -43,25 +43,25 @@ ComparedFeatures compared_features(const Observations& observations, double span
 
 class Predictor {
  public:
-  // Both must outlive this. Once `stop`, if there is one, is true, simulations throw Stopped. `progress`, if any, is
-  // called between simulations with how many are done, by the thread that asked for them.
+  // `observations` and `features` must outlive this. Once `stop`, if given, is true, simulations throw Stopped.
+  // `progress`, if given, is called between simulations with their number so far, on the calling thread.
   Predictor(const Observations& observations, const ComparedFeatures& features,
             std::vector<std::vector<std::size_t>> repeats, unsigned threads, const std::atomic<bool>* stop = nullptr,
             Ranks ranks = {}, std::function<void(std::size_t)> progress = {});
 
-  // All runs once, of each stage that some run measures; comes first.
+  // Simulates all runs once for each stage that some run measures. Must be called first.
   void simulate_nominal();
   const std::vector<Eigen::VectorXd>& nominal(Passage passage) const;
   const std::vector<std::vector<std::size_t>>& repeats() const { return repeats_; }
   Variation unvaried() const { return {observations_.robot, {}}; }
 
-  // Of each variation. Empty vectors for runs that do not measure the stage.
+  // Shifts for each variation. Empty vectors for runs that do not measure the stage.
   std::vector<Shift> shifts(std::span<const Variation> variations, Passage passage, Fidelity fidelity);
-  // Run r alone with variation r of `variations`, one for each run.
+  // Shift of run r with variation r of `variations`, one for each run.
   Shift shift_of_each(std::span<const Variation> variations, Passage passage);
-  // One run alone, without noise, as a run: its commands replayed.
+  // Simulates one run without noise by replaying its commands.
   runs::Run simulate(std::size_t run, const Variation& variation) const;
-  // The features of every run's map, in the replay of a stage, run r with variation r of `variations`.
+  // The features of every run's map in the replay of a stage, for run r with variation r of `variations`.
   std::vector<Eigen::VectorXd> features_of_each(std::span<const Variation> variations, Passage passage);
 
   std::size_t roll_outs() const { return roll_outs_; }
@@ -70,22 +70,22 @@ class Predictor {
   runs::Run simulate(const rollout::Manoeuvre& replay, std::size_t run, const Variation& variation) const;
   Replay replay_of(Passage passage, std::size_t run) const;
   runs::Run simulate_in(Replay replay, std::size_t run, const Variation& variation) const;
-  // Values of all stages that are compared in the replay, one after another.
+  // Values of all stages that are compared in the replay, concatenated.
   Eigen::VectorXd values_in(Replay replay, std::size_t run, const Variation& variation) const;
   StageValues by_stage(Replay replay, std::size_t run, const Eigen::VectorXd& values) const;
-  // A run with a variation, by its place among those that are given with it.
+  // A run with a variation, given by its index.
   struct Asked {
     std::size_t run, variation;
   };
   std::vector<Eigen::VectorXd> values_of(std::span<const Asked> asked, std::span<const Variation> variations,
                                          Passage passage);
-  // Each run with each variation, the runs of a variation one after another.
+  // Each run with each variation, grouped by variation.
   std::vector<Eigen::VectorXd> values_of_all(std::span<const std::size_t> of_runs,
                                              std::span<const Variation> variations, Passage passage);
-  // job(0) ... job(count - 1), by all ranks and threads together.
+  // job(0) ... job(count - 1), distributed over all ranks and threads.
   std::vector<Eigen::VectorXd> all_of(std::size_t count, const std::function<Eigen::VectorXd(std::size_t)>& job);
   std::vector<Shift> shifts_of_groups(std::span<const Variation> variations, Passage passage, Fidelity fidelity);
-  // Of each group's representative, with a multiple of the time step.
+  // Simulates each group's representative with a multiple of the time step.
   std::vector<Eigen::VectorXd> simulate_groups(std::span<const Variation> variations, Passage passage,
                                                double time_steps);
   Eigen::VectorXd alike(Passage passage, std::size_t from, const Eigen::VectorXd& shift, std::size_t to) const;

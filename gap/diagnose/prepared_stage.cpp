@@ -11,7 +11,7 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// One point of each candidate that may act in the stage.
+// First points of each candidate that may act in the stage.
 EffectCurves first_look(const StageData& data, std::span<const candidates::Candidate> candidates,
                         std::span<const std::size_t> possible, const Simulate& simulate) {
   EffectCurves curves = empty_curves(data, candidates);
@@ -19,7 +19,7 @@ EffectCurves first_look(const StageData& data, std::span<const candidates::Candi
   return curves;
 }
 
-// After the first look, whole curves of the candidates that can matter.
+// After the first look, complete curves of the candidates that can matter.
 void follow_those_that_matter(EffectCurves& curves, const StageData& data, std::span<const std::size_t> possible,
                               const Simulate& simulate) {
   const std::vector<std::size_t> matter =
@@ -71,20 +71,20 @@ PreparedStage prepare_stage(const StageInput& input, std::span<const candidates:
       std::ranges::all_of(input.observations->runs, [](const Observation& run) { return run.measured.has_value(); });
   stage.possible = candidates_of(input.passage, candidates, drives_measured);
 
-  // noise, and what the simulation leaves open around the nominal model
+  // noise, and the simulation's open shapes around the nominal model
   NoiseFloor& floor = stage.nominal.floor;
   floor =
       noise_floor(features, stage.residuals, *input.same_orders, open_around(stage, predictor, {}), input.stated_noise);
   stage.nominal.data = data_in(stage, floor);
 
-  // a first look at all; numbers that are a little off are so in a baseline, too
+  // a first look at all candidates; errors of the description's numbers are the same in a baseline
   const Simulate simulate = simulator_of(stage, predictor);
   stage.curves = first_look(stage.nominal.data, candidates, stage.possible, simulate);
   if (!has_baseline(features)) floor.number_shapes = number_shapes(stage.nominal.data, stage.curves, stage.possible);
   stage.nominal.shapes_of_all_numbers = floor.number_shapes;
   stage.nominal.data = data_in(stage, floor);
 
-  // whole curves of those that can matter
+  // complete curves of those that can matter
   const std::vector<std::size_t> distinct =
       without_same_parts(stage.nominal.data, candidates, stage.possible, simulate);
   forget_all_but(stage.curves, distinct);

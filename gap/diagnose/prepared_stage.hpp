@@ -1,7 +1,6 @@
-// A stage with all that is simulated of it before anything is decided: what each candidate does, as far as it can
-// matter.
+// A stage with all simulations that precede its decision: the effects of all candidates that can matter.
 //
-// Thread safety: pure functions apart from what the predictor does.
+// Thread safety: pure functions, except that the predictor runs.
 #pragma once
 
 #include <span>
@@ -11,7 +10,7 @@
 
 namespace kenaf::gap::diagnose {
 
-// What the diagnosis of a stage starts from.
+// The input of a stage's diagnosis.
 struct StageInput {
   Passage passage;
   const Observations* observations;
@@ -19,28 +18,28 @@ struct StageInput {
   const std::vector<StageFeatures>* features;
   const std::vector<std::vector<std::size_t>>* repeats;      // same commands
   const std::vector<std::vector<std::size_t>>* same_orders;  // same_orders_of()
-  std::vector<double> stated_noise;                          // of diagnosis_channels(), 0: nobody stated one
+  std::vector<double> stated_noise;                          // for each of diagnosis_channels(), 0: not stated
 };
 
-// A stage with what is simulated of it before anything is decided.
+// A stage with all simulations that precede its decision.
 struct PreparedStage {
   StageInput input;
   std::span<const candidates::Candidate> candidates;  // must outlive this
   std::vector<std::size_t> possible;                  // candidates_of()
   std::vector<Eigen::VectorXd> residuals;
-  StageAround nominal;  // no data where no run measures the stage
-  EffectCurves curves;  // of those that can matter, over their range
+  StageAround nominal;  // no data if no run measures the stage
+  EffectCurves curves;  // of candidates that can matter, over their range
 };
 PreparedStage prepare_stage(const StageInput& input, std::span<const candidates::Candidate> candidates,
                             Predictor& predictor);
 
-// Simulates settings in a stage. Both must outlive it.
+// Returns a function that simulates settings in a stage. Both arguments must outlive it.
 Simulate simulator_of(const PreparedStage& stage, Predictor& predictor);
-// The robot that is simulated with these settings.
+// The variation that is simulated with these settings.
 Variation varied(const PreparedStage& stage, const Predictor& predictor, const Settings& settings);
-// What the simulation leaves open around that robot.
+// The simulation's open shapes around that robot.
 std::vector<OpenShapes> open_around(const PreparedStage& stage, Predictor& predictor, const Settings& settings);
-// What the stage's runs show beyond the floor.
+// The stage's residuals with this noise floor.
 StageData data_in(const PreparedStage& stage, const NoiseFloor& floor);
 bool has_baseline(const std::vector<StageFeatures>& features);
 

@@ -13,10 +13,10 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// Chosen: an operator decides that much earlier or later in a repeat, and a log's numbers are rounded that much; in the
-// rest of the time he may have done otherwise.
+// Tolerances between repeats (chosen): time of an operator's command, relative rounding of a log's numbers, and share
+// of the time with other commands.
 constexpr double kSooner_s = 0.5, kRounded = 0.02, kOtherwise = 0.1;
-// Chosen: more than the noise of a speed at rest, less than another motion. Of the largest speed commanded.
+// Share of the largest commanded speed (chosen: more than the noise of a speed at rest, less than another motion).
 constexpr double kMovesOtherwise = 0.25;
 
 using Timed = std::vector<rollout::TimedCommand>;
@@ -42,12 +42,12 @@ bool alike(const robot::Command& a, const robot::Command& b, const Largest& larg
   return true;
 }
 
-// For how long `b` has no command about then that is like that of `a`; after the end of the shorter one nothing counts.
+// Total time for which `b` has no similar command near the time of that of `a`, up to the end of the shorter one.
 double otherwise_s(const Timed& a, const Timed& b, const Largest& largest) {
   const double end_s = std::min(a.back().t_s, b.back().t_s);
   double sum_s = 0;
   for (std::size_t i = 0; i + 1 < a.size() && a[i].t_s < end_s; ++i) {
-    // with the command that is in force when the time about then begins
+    // including the command in force at the start of that window
     auto near = std::ranges::upper_bound(b, a[i].t_s - kSooner_s, {}, &rollout::TimedCommand::t_s);
     if (near != b.begin()) --near;
     bool found = false;
@@ -65,7 +65,7 @@ Largest largest_of(const Observation& a, const Observation& b) {
   return largest;
 }
 
-// Both tracks, or where they were not measured the body's speed twice.
+// Both tracks' speeds, or the body's speed for both if they were not measured.
 std::array<double, robot::kTrackCount> speeds_at_start(const Observation& observation) {
   const auto& start = observation.replay.start;
   if (!start || !start->motion) return {};
@@ -89,7 +89,7 @@ bool same_commands(const Observation& a, const Observation& b) {
   return otherwise_s(one, two, largest) <= allowed_s && otherwise_s(two, one, largest) <= allowed_s;
 }
 
-// Each order once, whatever its duration.
+// The sequence of distinct commands, regardless of duration.
 std::vector<robot::Command> orders_of(const Timed& commands, const Largest& largest) {
   std::vector<robot::Command> orders;
   for (const rollout::TimedCommand& timed : commands)
@@ -154,12 +154,15 @@ std::vector<VectorXd> deviations_from_repeats(const std::vector<StageFeatures>& 
   std::vector<VectorXd> result(residuals.size());
   for (const std::vector<std::size_t>& group : repeats) {
     if (group.size() < 2) continue;
+    // sums over the group's runs by channel and span
     std::map<std::pair<std::size_t, std::size_t>, Sum> sums;
     const auto each_bin = [&](auto&& use) {
       for (const std::size_t r : group)
         for (std::size_t b = 0; b < features[r].bins.size(); ++b)
           use(r, static_cast<Index>(b), sums[{features[r].bins[b].channel, features[r].bins[b].span}]);
     };
+
+    // x - mean of n has the variance (n - 1) / n of one run: scaled by sqrt(n / (n - 1))
     for (const std::size_t r : group) result[r] = VectorXd::Zero(residuals[r].size());
     each_bin([&](std::size_t r, Index b, Sum& sum) { sum.value += residuals[r][b], ++sum.count; });
     each_bin([&](std::size_t r, Index b, Sum& sum) {

@@ -1,4 +1,4 @@
-// Which runs repeat each other.
+// Finds runs that repeat each other.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -12,25 +12,25 @@
 
 namespace kenaf::gap::diagnose {
 
-// Runs that share a manoeuvre, a world, the speed with which they begin, and their commands, which need not be the same
-// at every time: an operator decides by what he sees. In the order in which each first comes. A dataset that calls all
-// of its runs by one name although each has commands of its own has as many groups as runs.
+// Groups runs with the same manoeuvre, world, initial speed, and commands, whose times may differ slightly as operators
+// react to what they see. In the order of first occurrence. A dataset that gives one name to runs with different
+// commands has as many groups as runs.
 std::vector<std::vector<std::size_t>> repeats_of(const Observations& observations);
 
-// The same, and with them the runs of that manoeuvre in which the operator gave the same orders at other times, or left
-// one out: he saw another outcome. How such runs differ is spread, as between repeats.
+// The same, plus runs of the manoeuvre in which the operator gave the same commands at other times, or omitted some,
+// because the outcome differed. Their differences count as spread, like those of repeats.
 std::vector<std::vector<std::size_t>> same_orders_of(const Observations& observations);
 
-// The run of a group whose duration is the middle one.
+// The run of a group with the median duration.
 std::size_t representative(const Observations& observations, const std::vector<std::size_t>& group);
 
-// How each run deviates from the mean of its repeats, by bins at the same time; scaled so that its variance is that of
-// one run. Empty for a run without repeats; 0 where one repeat alone goes on.
+// Deviation of each run from the mean of its repeats, by bins at the same time, scaled to the variance of one run.
+// Empty for a run without repeats; 0 in bins that one repeat alone has.
 std::vector<Eigen::VectorXd> deviations_from_repeats(const std::vector<StageFeatures>& features,
                                                      const std::vector<Eigen::VectorXd>& residuals,
                                                      const std::vector<std::vector<std::size_t>>& repeats);
 
-// The bins of a group's runs that more than one of them has.
+// For each run, which of its bins at least one of its repeats also has.
 std::vector<std::vector<bool>> shared_bins(const std::vector<StageFeatures>& features,
                                            const std::vector<std::vector<std::size_t>>& repeats);
 

@@ -1,7 +1,7 @@
-// What a diagnosis is told by: one screen of text, report.json (docs/gap-report.md), report.html, and the robot with
-// what was found.
+// The reports of a diagnosis: one screen of text, report.json (docs/gap-report.md), report.html, and the corrected
+// robot description.
 //
-// Thread safety: pure functions, but for write_diagnosis().
+// Thread safety: pure functions, except write_diagnosis().
 #pragma once
 
 #include <filesystem>
@@ -12,33 +12,32 @@
 
 namespace kenaf::gap::diagnose {
 
-// At most 40 lines of about 100 columns, unless names are long; the first one is the verdict.
+// At most 40 lines of about 100 columns, unless names are long; the first line is the verdict.
 std::string diagnosis_text(const Diagnosis& diagnosis);
-// Of the format kenaf-gap-report/2.
+// In the format kenaf-gap-report/2.
 std::string diagnosis_json(const Diagnosis& diagnosis);
-// A page without scripts or anything that is not in it.
+// A self-contained page without scripts.
 std::string diagnosis_html(const Diagnosis& diagnosis);
 
-// The nominal description with corrections() in it, and in comments at its top what it does not contain. Comments of
-// the description stay as far as robot_toml_with() keeps them.
+// The nominal description with corrections(), preceded by comments on what it does not contain. Comments of the
+// description stay as far as robot_toml_with() keeps them.
 struct RobotFile {
-  std::string name;  // "robot.toml" where an effect is named, else "robot.candidate.toml"; empty: there is none
+  std::string name;  // "robot.toml" if an effect is named, else "robot.candidate.toml"; empty: no file
   std::string text;
-  std::string fault;  // why there is none although there are corrections: together they make no robot
+  std::string fault;  // why there is no file in spite of corrections: together they make an invalid robot
 };
 RobotFile robot_file(const Diagnosis& diagnosis);
 
-// Throw std::runtime_error in words where reports in `out` would replace what they are about, that is a dataset or the
-// description `robot` (empty: the dataset's), or a robot's file that no diagnosis wrote. For asking before something
-// long is calculated.
+// Throw std::runtime_error if reports in `out` would overwrite their inputs, i.e. a dataset or the description `robot`
+// (empty: the dataset's), or a robot file that no diagnosis wrote. Call these before long calculations.
 void check_is_other_folder(const std::filesystem::path& out, const std::filesystem::path& dataset);
 void check_keeps_inputs(const std::filesystem::path& out, const std::filesystem::path& dataset,
                         const std::string& robot);
 
-// Writes report.json, report.html and the robot's file, if any, into `folder`, each whole or not at all; returns where
-// the page is. Robots' files of a diagnosis before are removed where this one does not write them. Where this one was
-// interrupted, they stay, and so do reports of a complete one: then these are report.partial.json and
-// report.partial.html. Throws std::runtime_error where that cannot be done.
+// Writes report.json, report.html and the robot's file, if any, atomically into `folder`; returns the path of the page.
+// Removes robot files of an earlier diagnosis that this one does not write. If this one was interrupted, keeps them and
+// the reports of a complete one: then writes report.partial.json and report.partial.html. Throws std::runtime_error on
+// failure.
 std::filesystem::path write_diagnosis(const Diagnosis& diagnosis, const std::filesystem::path& folder);
 
 }  // namespace kenaf::gap::diagnose

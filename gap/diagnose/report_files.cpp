@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char *kPage = "report.html", *kReport = "report.json";
 constexpr const char* kRobotFiles[] = {"robot.toml", "robot.candidate.toml"};
-// Of a diagnosis that was interrupted where a complete one's are.
+// Reports of an interrupted diagnosis in a folder with complete ones.
 constexpr const char *kPartialPage = "report.partial.html", *kPartialReport = "report.partial.json";
 
 bool has_complete_report(const fs::path& folder) {
@@ -70,7 +70,7 @@ fs::path write_diagnosis(const Diagnosis& d, const fs::path& folder) {
   runs::write_whole_file(folder / kPage, diagnosis_html(d));
   const RobotFile robot = robot_file(d);
   if (!robot.name.empty()) runs::write_whole_file(folder / robot.name, robot.text);
-  for (const char* other : kRobotFiles)  // of a diagnosis before, which they would belie
+  for (const char* other : kRobotFiles)  // of an earlier diagnosis, which would contradict this one
     if (d.interrupted.empty() && other != robot.name) fs::remove(folder / other, error);
   runs::write_whole_file(folder / kReport, diagnosis_json(d));
   for (const char* partial : {kPartialPage, kPartialReport}) fs::remove(folder / partial, error);

@@ -1,4 +1,4 @@
-// The page of a diagnosis: one file that opens offline.
+// The page of a diagnosis: one self-contained file.
 #include <fmt/format.h>
 
 #include "gap/diagnose/page/sections.hpp"

@@ -72,6 +72,7 @@ Json where_json(const Diagnosis& d, std::optional<std::size_t> main) {
 Json effect_json(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect) {
   const candidates::Candidate& candidate = d.candidates[effect.candidate];
   const Interval& value = effect.value.value;
+  // keys are documented in docs/gap-report.md
   return {
       {"name", candidate.effect},
       {"parameters",
@@ -118,7 +119,7 @@ Json si_json(const std::vector<double>& values) {
   return result;
 }
 
-// `stage`: null where none was diagnosed.
+// `stage`: null if none was diagnosed.
 Json gap_json(const Diagnosis& d, const StageDiagnosis* stage) {
   const GapMeasure unknown, &gap = stage ? stage->gap : unknown,
                             &by_manoeuvre = stage ? stage->gap_by_manoeuvre : unknown;
@@ -154,7 +155,7 @@ Json left_json(const StageDiagnosis& stage) {
   return left;
 }
 
-// `stage`: null where none was diagnosed.
+// `stage`: null if none was diagnosed.
 Json isolability_json(const Diagnosis& d, const StageDiagnosis* stage) {
   Json json{{"effects", Json::array()}, {"angle_deg", Json::array()}};
   if (!stage) return json;
@@ -190,7 +191,7 @@ Json stage_json(const Diagnosis& d, std::size_t s) {
   return json;
 }
 
-// Of the stage that holds most of the gap; where there is none, of the first.
+// Figures of the stage with most of the gap, or of the first if there is no gap. `stage`: null without stages.
 void add_main_stage(Json& json, const Diagnosis& d, const StageDiagnosis* stage) {
   json["gap"] = gap_json(d, stage);
   json["ranking"] = stage ? ranking_json(d, *stage) : Json::array();

@@ -1,4 +1,4 @@
-// The robot with what was found, and what of the gap it does not contain.
+// The corrected robot description, with comments on the part of the gap that it does not contain.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kCommentColumns = 100;
 
-// A name may hold any bytes, a comment in TOML may not.
+// Names may contain any bytes, TOML comments may not.
 std::string as_comment(std::string_view text) {
   std::string line(text);
   for (char& c : line)
@@ -25,7 +25,7 @@ std::string as_comment(std::string_view text) {
   return "# " + wrapped(line, kCommentColumns - 2, "#   ") + "\n";
 }
 
-// Which of the corrections of one candidate a file has, from the stage whose value it is.
+// One correction in the file, with the stage that its value comes from.
 std::string contained(const Diagnosis& d, const Setting& setting) {
   std::vector<std::string> stages;
   std::string words = value_name(d.candidates[setting.candidate]);
@@ -40,11 +40,14 @@ std::string contained(const Diagnosis& d, const Setting& setting) {
 }
 
 std::string top_of_file(const Diagnosis& d, const Settings& corrections, bool is_named) {
+  // what the file contains
   std::string text = as_comment(
       is_named ? "This description has the effects that a diagnosis of runs named:"
                : "A CANDIDATE: a diagnosis of runs named no effect. This description has what explains most of "
                  "the gap, which may be something else:");
   for (const Setting& setting : corrections) text += as_comment(contained(d, setting));
+
+  // what it does not contain: choices left open, the difference of a baseline
   std::vector<std::string> lacks;
   for (const AmbiguousSet& set : names_found(d).ambiguous_sets)
     lacks.push_back(
@@ -52,6 +55,8 @@ std::string top_of_file(const Diagnosis& d, const Settings& corrections, bool is
   if (!d.options.against.empty())
     lacks.push_back(fmt::format("- what {} differs from the simulation by: only the change since then was looked for",
                                 d.options.against.string()));
+
+  // by stage: a gap without a name, effects without a name, and what the model leaves
   for (const std::size_t s : stages_with_gap(d)) {
     const StageDiagnosis& stage = d.stages[s];
     if (is_named && names_found(stage).empty())
@@ -67,6 +72,8 @@ std::string top_of_file(const Diagnosis& d, const Settings& corrections, bool is
     if (!stage.left_over.empty()) left += "; " + stage.left_over.front().words;
     lacks.push_back(std::move(left));
   }
+
+  // as one block of comments
   if (lacks.empty()) return text + as_comment("What these runs show beside that is within noise and spread.") + "\n";
   text += as_comment("It does not contain:");
   for (const std::string& line : lacks) text += as_comment(line);

@@ -42,6 +42,7 @@ std::string first_line(const Diagnosis& d) {
 }
 
 void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
+  // the stage, its share of the gap and its size before and after
   const StageDiagnosis& stage = d.stages[s];
   std::string name = from_to(stage.passage);
   name.front() = 'F';
@@ -50,6 +51,8 @@ void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
     return;
   }
   screen.add(fmt::format("{}: {} of the whole gap; {}", name, percent(share_of_gap(d, s)), gap_in_words(d, stage)));
+
+  // one line per effect: value, what it takes off or why it has no name, partners, rivals
   for (const NamedEffect& effect : stage.decision.effects) {
     const candidates::Candidate& candidate = d.candidates[effect.candidate];
     std::string line = "  " + value_in_words(candidate, effect.value);
@@ -64,6 +67,8 @@ void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
       line += fmt::format("; as good: {}", enumeration(candidate_names(d, std::span(effect.rivals).subspan(1)), "or"));
     screen.add(line, "    ");
   }
+
+  // what is left, with the strongest dependence and what to look at
   std::string left = left_in_words(stage);
   if (!stage.left_over.empty() && !stage.decision.complete) {
     const Dependence& first = stage.left_over.front();
@@ -71,6 +76,8 @@ void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
     if (!first.look_at.empty()) left += fmt::format("; look at {}", enumeration(first.look_at, "or"));
   }
   screen.add("  " + left, "  ");
+
+  // without a model, the candidates that explain most alone
   if (stage.decision.effects.empty())
     if (const std::vector<std::string> alone = best_alone(d, stage); !alone.empty())
       screen.add(fmt::format("  alone, of the gap: {}", fmt::join(alone, ", ")));

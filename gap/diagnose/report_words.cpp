@@ -28,7 +28,7 @@ std::string only(double share) {
   return share >= 0.0005 ? "only " + percent(share) : "nothing";
 }
 
-// Of the effects with a name together: of the whole model where it has no other ones.
+// Share of all named effects together: the whole model's if it has no others.
 double explained_by_names(const StageDiagnosis& stage) {
   if (all_are_named(stage)) return explained(stage);
   double sum = 0;
@@ -94,7 +94,7 @@ NamesFound names_found(const StageDiagnosis& stage) {
   for (const NamedEffect& effect : stage.decision.effects) {
     if (!effect.doubts.empty()) continue;
     const std::size_t place = static_cast<std::size_t>(&effect - stage.decision.effects.data());
-    if (!effect.partners.empty() && effect.partners.front() < place) continue;  // one set, which has all
+    if (!effect.partners.empty() && effect.partners.front() < place) continue;  // already listed with its set
     if (effect.rivals.size() > 1)
       names.ambiguous_sets.push_back({effect.rivals, !effect.partners.empty()});
     else
@@ -145,7 +145,7 @@ std::vector<std::size_t> stages_with_gap(const Diagnosis& d) {
   for (std::size_t s = 0; s < d.stages.size(); ++s)
     if (d.stages[s].decision.verdict != Verdict::none) stages.push_back(s);
   std::ranges::stable_sort(stages, std::ranges::greater{}, [&](std::size_t s) { return share_of_gap(d, s); });
-  if (d.largest_stage)  // of two as large, the one that the diagnosis chose
+  if (d.largest_stage)  // if two are equal, the one that the diagnosis chose
     if (const auto largest = std::ranges::find(stages, *d.largest_stage); largest != stages.end())
       std::rotate(stages.begin(), largest, largest + 1);
   return stages;
@@ -182,7 +182,7 @@ Interval explained_interval(const StageDiagnosis& stage) {
 }
 
 namespace {
-// Effects take off parts of what the whole model does; that was simulated, the parts are by curves.
+// An effect's part of the whole model's share: the latter was simulated, the parts come from curves.
 double part_of_explained(const StageDiagnosis& stage, const HeldOutShares::OfEffect& share) {
   if (std::isnan(share.of_stage)) return share.of_stage;
   if (share.model_of_stage <= 0) return 0;
@@ -231,7 +231,7 @@ std::string headline(const Diagnosis& d) {
   if (named.empty()) return fmt::format("There is a gap {}, and no effect is named for it", enumeration(unnamed));
   if (!unnamed.empty()) named.push_back(fmt::format("no effect is named for the gap {}", enumeration(unnamed, "or")));
   std::string words = fmt::format("{}", fmt::join(named, "; "));
-  if (words.starts_with("one of ")) words.front() = 'O';  // a name stays as it is
+  if (words.starts_with("one of ")) words.front() = 'O';  // names keep their case
   return words;
 }
 
@@ -262,6 +262,7 @@ std::string value_in_words(const candidates::Candidate& candidate, const EffectV
 std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& effect) {
   const candidates::Candidate& candidate = d.candidates[effect.candidate];
   std::vector<std::string> words;
+  // one clause per doubt with its figure; of shares, the smaller of repeats and manoeuvres held out
   for (const Doubt doubt : effect.doubts) switch (doubt) {
       case Doubt::end_of_range:
         words.push_back(fmt::format("its value is at the end of its range ({} to {}{})", figure(candidate.min),

@@ -10,18 +10,18 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// At the angle below which two effects cannot be told apart, the one that is not there leaves this share of what the
-// other one accounts for.
+// At the angle below which two effects cannot be distinguished, the wrong one leaves this share of the squares that the
+// right one explains: sin^2 of the angle.
 const double kAlike = std::pow(std::sin(kToldApart_deg / 180 * std::numbers::pi), 2);
-// Vuong's test: standard errors by which the best model must be better than a rival over manoeuvres (one-sided 95 %),
-// from as many manoeuvres on.
+// Vuong's test: standard errors by which the best model must beat a rival over manoeuvres (one-sided 95 %), and the
+// minimum number of manoeuvres.
 constexpr double kBetter_sigma = 1.64;
 constexpr std::size_t kFewestGroups = 4;
-// Rivals that are tried by simulation, for each effect, and how often each.
+// Rivals simulated for each effect, and simulations of each.
 constexpr std::size_t kMostRivals = 4;
 constexpr int kRivalRounds = 2;
 
-// Whether manoeuvres bear out that `best` is better than `rival` (Vuong 1989, over groups of repeats).
+// Whether `best` is significantly better than `rival` over groups of repeats (Vuong 1989).
 bool is_borne_out(const StageData& data, const Model& best, const Model& rival) {
   const std::vector<double> a = deviance_of_groups(data, rest_of(data, best), best.likelihood.discrepancies),
                             b = deviance_of_groups(data, rest_of(data, rival), rival.likelihood.discrepancies);
@@ -33,14 +33,14 @@ bool is_borne_out(const StageData& data, const Model& best, const Model& rival) 
   return sum > kBetter_sigma * std::sqrt(variance);
 }
 
-// What rivals of one effect of the best model are measured by.
+// The comparison of one effect of the best model with its rivals.
 struct Contest {
   const StageData& data;
   const Model& best;
   std::size_t place;    // of the effect
-  double accounted;     // squares that it takes off
-  EffectCurves curves;  // of the others where they stand, of rivals as they are alone
-  // What the best model shifts beyond their sum: what effects do to each other they do with a rival, too.
+  double accounted;     // squares that it explains
+  EffectCurves curves;  // of the other effects beside one another, of rivals alone
+  // The best model's shift minus their sum: the interaction is assumed to be the same with a rival.
   GroupVectors beyond;
   const DecisionSettings& settings;
 };
@@ -71,7 +71,7 @@ Model fitted_in(const Contest& contest, const EffectSet& set, const GroupVectors
   return fit_model(contest.data, contest.curves, set, beyond, contest.best.likelihood.discrepancies);
 }
 
-// Models with a rival in the effect's place that may do as well, by curves; best first.
+// Models with a rival in the effect's place that may fit as well, from curves; best first.
 std::vector<Model> rivals_on_curves(const Contest& contest) {
   const auto& [data, best, place, accounted, curves, beyond, settings] = contest;
   std::vector<EffectSet> sets;
@@ -92,8 +92,8 @@ std::vector<Model> rivals_on_curves(const Contest& contest) {
   return models;
 }
 
-// Whether a rival takes the effect's place, so that without the effect all is as well, or beside it the effect gains
-// nothing; one that does otherwise explains something else.
+// Whether a rival substitutes for the effect: the fit is as good without the effect, or the effect gains nothing beside
+// the rival. Otherwise the rival explains something else.
 bool takes_its_place(const Contest& contest, const Model& rival) {
   if (rival.deviance() - contest.best.deviance() < contest.settings.rival_evidence) return true;
   EffectSet both = effects_of(rival);
@@ -110,7 +110,7 @@ std::vector<Settings> rivals_of(const StageData& data, const EffectCurves& curve
   std::vector<Settings> rivals{settings_of(contest.best.places)};
   for (Model fitted : rivals_on_curves(contest)) {
     if (!takes_its_place(contest, fitted)) continue;
-    // by simulation, and by another one where it fits with what the sum of curves lacked
+    // simulates it, and again at its refit with the interaction that the sum of curves lacked
     for (int round = 0; round < kRivalRounds; ++round) {
       const Settings asked = settings_of(fitted.places);
       const Model simulated = simulated_model(data, contest.curves, simulate, asked, fitted);

@@ -1,6 +1,6 @@
-// Candidates that do as well as one effect of a best model, in its place.
+// Candidates that explain as much as one effect of a best model in its place.
 //
-// Thread safety: pure functions apart from what the simulator does. Deterministic.
+// Thread safety: pure functions, except that the simulator runs. Deterministic.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace kenaf::gap::diagnose {
 
-// Models with a rival in the place of one effect, the best model itself first. `curves`: of all candidates, as they are
-// alone. `without`: the best model without the effect.
+// Models with a rival in the place of one effect, the best model itself first. `curves`: of all candidates alone.
+// `without`: the best model without the effect.
 std::vector<Settings> rivals_of(const StageData& data, const EffectCurves& curves, const StandingModel& standing,
                                 std::size_t place, const Model& without, const Simulate& simulate,
                                 const DecisionSettings& settings);

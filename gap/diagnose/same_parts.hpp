@@ -1,8 +1,8 @@
-// An effect and a number that is a part of what it changes (Candidate::part_of): the friction of all belts, and that of
-// the main tracks. Where these runs do not show a difference, as where flippers stay off the ground, the part is no
-// rival of the whole; one of them is enough.
+// Equivalence of an effect and a number that is a part of it (Candidate::part_of): the friction of all belts, and that
+// of the main tracks. If these runs show no difference, as when flippers stay off the ground, the part is dropped
+// rather than treated as a rival of the whole.
 //
-// Thread safety: a pure function, apart from what the simulator does.
+// Thread safety: a pure function, except that the simulator runs.
 #pragma once
 
 #include <span>
@@ -12,8 +12,8 @@
 
 namespace kenaf::gap::diagnose {
 
-// `possible` without the parts that shift these runs as their wholes do, by the same factor, to 1 % of the shift. Two
-// simulations for each part, of a quarter of the whole's range.
+// Returns `possible` without the parts that shift these runs like their wholes at the same factor, to 1 % of the shift.
+// Simulates part and whole once each, at a quarter of the whole's range.
 std::vector<std::size_t> without_same_parts(const StageData& data, std::span<const candidates::Candidate> candidates,
                                             std::span<const std::size_t> possible, const Simulate& simulate);
 

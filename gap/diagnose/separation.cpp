@@ -14,7 +14,7 @@ constexpr double kFitSettled = 1e-6;  // standard deviations, of all bins togeth
 double separation(const Eigen::VectorXd& difference, const Eigen::MatrixXd& free) {
   Eigen::VectorXd left = difference;
   if (free.cols() > 0 && free.rows() > 0) {
-    // Iteratively reweighted least squares: a bin beyond the bend weighs as much less as it is further out.
+    // Iteratively reweighted least squares with Huber's weights: kOfOneBin / |residual| beyond the threshold.
     Eigen::VectorXd root_weight = Eigen::VectorXd::Ones(difference.size());
     for (int round = 0; round < kAtMostRounds; ++round) {
       const Eigen::MatrixXd weighted = root_weight.asDiagonal() * free;

@@ -1,5 +1,5 @@
-// By how much what two models predict of a run differs, after either may change its values, with no bin counting for
-// much.
+// Separation of two models' predictions for a run after refitting the values of both, with a limited contribution of
+// each bin.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -8,19 +8,18 @@
 
 namespace kenaf::gap::diagnose {
 
-// What one bin may count at most, in standard deviations (chosen: noise reaches it in one bin of 370). A robot that
-// tips in one model and not in the other is apart by thousands in a few bins, at a time that nobody can foretell; so it
-// takes (6 / 3)^2 = 4 bins at the least to be apart by 6.
+// Largest contribution of one bin, in standard deviations (chosen: noise reaches it in one bin of 370). A robot that
+// tips in one model only differs by thousands in a few bins, at an unpredictable time; so a separation of 6 takes at
+// least (6 / 3)^2 = 4 bins.
 inline constexpr double kOfOneBin = 3;
 
-// `difference`: of the two models, bin by bin, in standard deviations. `free`: a column for each direction in which a
-// change of a value of one of them moves the difference, to first order and however far; may have no columns or columns
-// of 0, and need not be independent. Finite.
+// `difference`: between the two models, bin by bin, in standard deviations. `free`: one column per value of either
+// model, the first-order change of the difference, with unbounded amount; may have no columns or zero columns, and need
+// not have full rank. Finite.
 //
-// The amounts of the columns are those that leave the least sum of Huber's losses with the bend at kOfOneBin, which is
-// convex and does not run after a few bins that are far out; the result is the root of the sum of squares of what is
-// left, of each bin at most kOfOneBin. Where nothing is left that large this is the length of what is orthogonal to the
-// columns.
+// The amounts of the columns minimise the sum of Huber's losses with threshold kOfOneBin, which is convex and
+// insensitive to a few outliers; the result is the root of the sum of squared residuals, each limited to kOfOneBin.
+// Without residuals that large it is the length of the component orthogonal to the columns.
 double separation(const Eigen::VectorXd& difference, const Eigen::MatrixXd& free);
 
 }  // namespace kenaf::gap::diagnose

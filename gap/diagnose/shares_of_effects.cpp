@@ -8,7 +8,7 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// The model without each of these sets of its effects, the others at its values.
+// The model without each of these sets of its effects, the others at their values.
 std::vector<Model> simulated_without(const Model& model, const Simulate& simulate,
                                      std::span<const std::vector<std::size_t>> sets) {
   std::vector<Model> without;
@@ -38,7 +38,7 @@ SharesOfEffects shares_of_effects(const StageView& view, Passage passage, const 
   SharesOfEffects shares{shares_held_out(view, passage, best, without_each, by_repeat, threads),
                          shares_held_out(view, passage, best, without_each, by_manoeuvre, threads)};
 
-  // by curves, and once more those that would take off enough, as simulated
+  // from curves, and again by simulation for those that would explain enough
   const auto of_sets = [&](std::span<const std::vector<std::size_t>> sets, const std::vector<Model>& without,
                            const Folds& folds) {
     return shares_of_sets_held_out(view, passage, best, sets, without, folds, threads);

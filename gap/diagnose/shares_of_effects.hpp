@@ -1,6 +1,6 @@
-// What each effect of a stage's best model takes off on runs held out, with the model without it as it simulates.
+// Shares of each effect of a stage's best model on held-out runs, with simulations of the model without it.
 //
-// Thread safety: pure functions apart from what the simulator does.
+// Thread safety: pure functions, except that the simulator runs.
 #pragma once
 
 #include "gap/diagnose/decision_settings.hpp"
@@ -8,8 +8,8 @@
 
 namespace kenaf::gap::diagnose {
 
-// Groups of repeats held out, and whole manoeuvres. Sets where an effect takes off too little alone: all of them by
-// curves, and those that take off enough then as simulated.
+// With repeats held out, and with whole manoeuvres held out. If an effect explains too little alone, also sets: all
+// from curves, and those that explain enough then by simulation.
 struct SharesOfEffects {
   HeldOutShares of_repeats, of_manoeuvres;
 };

@@ -9,27 +9,27 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// How far to either side, of the way from neutral: so far that it shifts by several floors, for two simulations of what
-// is rough differ by up to two, and a slope that is mostly roughness makes a value look surer than it is. Chosen.
+// Distance to either side, as a fraction of that from neutral, for a shift of several floors (chosen): rough
+// simulations differ by up to two floors, and a slope that is mostly roughness underestimates the value's error.
 constexpr double kNearest = 0.1, kFarthest = 0.5, kShifted_floors = 6;
-// A side that shifts by as many times more than that is round a bend: it is sought nearer.
+// A side that shifts more than this multiple of that is beyond a bend: a nearer one is tried.
 constexpr double kRoundABend = 2;
 constexpr int kTries = 4;
-// One that is so near after all tries, and still shifts by this part of all that the effect does, is beyond a jump.
+// If the nearest side still shifts by this share of the effect's whole shift, it is beyond a jump.
 constexpr double kJump = 1.0 / 3;
-// Where it does no more, it shifts less than this; how near its next jump is found.
+// A side with a smaller shift is flat; bisections to find the end of the flat part.
 constexpr double kSame_floors = 1;
 constexpr int kHalvingsToNext = 6;
-constexpr double kStraightTo = 0.5;  // of the way from neutral: a curve has to come back to what it is there
+constexpr double kStraightTo = 0.5;  // of the way from neutral, where the curve has to return to its own shape
 constexpr int kMostRounds = 3;
-constexpr double kGained = 0.5;  // deviance that a round must gain to be followed by another one
+constexpr double kGained = 0.5;  // deviance that a round must gain to be followed by another
 
 struct Known {
   double value;
   GroupVectors shift;
 };
 
-// On the straight line through two points.
+// On the line through two points.
 Known on_line(const Known& a, const Known& b, double value) {
   const double share = (value - a.value) / (b.value - a.value);
   Known result{value, a.shift};
@@ -37,14 +37,14 @@ Known on_line(const Known& a, const Known& b, double value) {
   return result;
 }
 
-// The model with one of its values a share of the way from neutral nearer to it, or farther out.
+// The model with one of its values moved towards or away from neutral by a share of its distance.
 struct Side {
   std::size_t place;
   bool outward;
   double share;
   double value = 0;
-  GroupVectors shift{};  // of the model here
-  bool jumps = false;    // between here and the model, or the side that is nearer
+  GroupVectors shift{};  // of the model at this side
+  bool jumps = false;    // between this side and the model, or the next nearer side
 };
 
 double value_at(const EffectCurves& curves, const Model& model, const Side& side) {
@@ -60,7 +60,7 @@ GroupVectors difference(const GroupVectors& a, const GroupVectors& b) {
   return result;
 }
 
-// Where a side shifts nothing: as far as that holds, by halves, and what is next there.
+// For a side without a shift: finds by bisection how far that holds, and the point after it.
 void look_beyond_flat(const StageData& data, const EffectCurves& curves, const Simulate& simulate, const Model& model,
                       double length, Side& flat, std::vector<Side>& more) {
   const candidates::Candidate& candidate = curves.candidates[model.places[flat.place].curve];
@@ -71,12 +71,16 @@ void look_beyond_flat(const StageData& data, const EffectCurves& curves, const S
     asked.front()[flat.place].value = value;
     return Side{flat.place, flat.outward, 0, value, simulate(asked, Fidelity::every_run).front()};
   };
+
+  // the end of the range, or neutral; if that is flat too, there is nothing to find
   const double end = model.places[flat.place].value > candidate.present ? candidate.max : candidate.min;
   Side next = simulated_at(flat.outward ? end : candidate.present);
   if (moved_by(next) <= kSame_floors) {
     if (flat.outward) flat = std::move(next);
     return;
   }
+
+  // bisection between the flat point and the next one
   for (int i = 0; i < kHalvingsToNext; ++i) {
     Side between = simulated_at((flat.value + next.value) / 2);
     Side& replaced = moved_by(between) <= kSame_floors ? flat : next;
@@ -86,9 +90,10 @@ void look_beyond_flat(const StageData& data, const EffectCurves& curves, const S
   more.push_back(std::move(next));
 }
 
-// Both sides of each value, but for the outer one of a value at the end of its range.
+// Both sides of each value, except the outer side of a value at the end of its range.
 std::vector<Side> to_either_side(const StageData& data, const EffectCurves& curves, const Simulate& simulate,
                                  const Model& model) {
+  // the first distance from the effect's mean slope: kShifted_floors over its length
   std::vector<Side> sides;
   std::vector<double> lengths;  // of each effect alone
   for (std::size_t i = 0; i < model.places.size(); ++i) {
@@ -98,6 +103,9 @@ std::vector<Side> to_either_side(const StageData& data, const EffectCurves& curv
       if (value_at(curves, model, side) != model.places[i].value) sides.push_back(side);
     }
   }
+
+  // simulates all sides at once; those that shift too much are beyond a bend and move nearer, by the factor
+  // sqrt(expected shift / shift)
   std::vector<std::size_t> to_seek(sides.size());
   std::iota(to_seek.begin(), to_seek.end(), std::size_t{0});
   for (int i = 0; i < kTries && !to_seek.empty(); ++i) {
@@ -123,13 +131,14 @@ std::vector<Side> to_either_side(const StageData& data, const EffectCurves& curv
     to_seek = std::move(bent);
   }
 
+  // sides without a shift get the next point that has one
   std::vector<Side> next;
   for (Side& side : sides) look_beyond_flat(data, curves, simulate, model, lengths[side.place], side, next);
   std::ranges::move(next, std::back_inserter(sides));
   return sides;
 }
 
-// What the effect shifts on top of the others, where it stands, to either side, and straight on from there.
+// The additional shift of an effect beside the others: at its value, on either side, and extrapolated from there.
 std::vector<Known> beside_others(const EffectCurves& curves, const Model& model, std::size_t place,
                                  const std::vector<Side>& sides) {
   const candidates::Candidate& candidate = curves.candidates[model.places[place].curve];
@@ -140,7 +149,7 @@ std::vector<Known> beside_others(const EffectCurves& curves, const Model& model,
   for (const bool outward : {false, true}) {
     std::vector<Known> way{here};
     bool jumps = false;               // the last one
-    for (const Side& side : sides) {  // of one direction, the nearer first
+    for (const Side& side : sides) {  // of one direction, nearer ones first
       if (side.place != place || side.outward != outward || side.value == present) continue;
       way.push_back({side.value, here.shift});
       for (std::size_t g = 0; g < here.shift.size(); ++g) way.back().shift[g] += side.shift[g] - model.shift[g];
@@ -157,15 +166,16 @@ std::vector<Known> beside_others(const EffectCurves& curves, const Model& model,
   return points;
 }
 
-// Between a point and the one next to it on the way to `from`.
+// Marks a jump between a point and its neighbour towards `from`.
 void mark_jump(EffectCurve& curve, double from, double value) {
   const auto point = std::ranges::find(curve.points, value, &CurvePoint::value);
   (value > from ? point : point + 1)->jump = true;
 }
 
-// Points of the curves where the model's effects stand, instead of those that they have alone on this side of neutral.
+// Replaces the points of the effects' own curves on this side of neutral by those beside the model's other effects.
 void stand(const StageData& data, EffectCurves& curves, const Simulate& simulate, Model& model) {
   const std::vector<Side> sides = to_either_side(data, curves, simulate, model);
+  // points beside the other effects
   std::vector<Setting> points;
   std::vector<GroupVectors> shifts;
   for (std::size_t i = 0; i < model.places.size(); ++i)
@@ -173,6 +183,8 @@ void stand(const StageData& data, EffectCurves& curves, const Simulate& simulate
       points.push_back({model.places[i].curve, known.value});
       shifts.push_back(std::move(known.shift));
     }
+
+  // replace the effect's own ones on that side, with their jumps
   for (const OnCurve& place : model.places) {
     const double present = curves.candidates[place.curve].present;
     std::erase_if(curves.curves[place.curve].points,
@@ -191,8 +203,9 @@ StandingModel fit_side_by_side(const StageData& data, EffectCurves curves, const
   const auto is_present = [&](const OnCurve& place) { return place.value == curves.candidates[place.curve].present; };
   const EffectSet effects = effects_of(model);
   for (int round = 0; round < kMostRounds; ++round) {
-    // one that is not there has no side to stand on
+    // an effect at its present value has no sides
     if (std::ranges::any_of(model.places, is_present)) break;
+    // refits on the new curves, then simulates; kept only if the deviance falls
     stand(data, curves, simulate, model);
     Model better = fit_model(data, curves, effects, beyond_curves(curves, model), model.likelihood.discrepancies);
     const std::vector<Settings> asked{settings_of(better.places)};

@@ -1,12 +1,11 @@
-// Effects beside one another: a robot that is heavier and whose mass is higher up tips elsewhere, and what a little
-// more of one does to it there is not what it does to the nominal robot. One alone may bend between neutral and where
-// it stands, too: play of 0.03 degrees does nearly as much as play of 0.2.
+// Effects in combination, linearised at the fitted values: a heavier robot with a higher centre of mass tips elsewhere,
+// so its derivatives differ from the nominal robot's. A single effect may be nonlinear, too: play of 0.03 degrees does
+// nearly as much as play of 0.2.
 //
-// The search adds what each effect does alone and corrects the sum by simulation at one place. That finds which effects
-// they are; for their values, for whether manoeuvres agree on them and for their intervals it takes the slopes where
-// they stand.
+// The search adds the shifts of single effects and corrects the sum by simulation at one point. That finds the effects;
+// their values, agreement between manoeuvres and intervals need the derivatives at the fitted values.
 //
-// Thread safety: pure functions apart from what the simulator does.
+// Thread safety: pure functions, except that the simulator runs.
 #pragma once
 
 #include "gap/diagnose/model_search.hpp"
@@ -15,19 +14,19 @@ namespace kenaf::gap::diagnose {
 
 struct StandingModel {
   Model model;
-  // All curves; those of its effects are known where they stand, beside the others: every run simulated at its values
-  // and a tenth to a half of the way from neutral to either side of each, as far as it takes to see more than roughness
-  // (less where it bends there), and straight on from there to half of the way and to the end of the range.
+  // All curves; those of its effects are taken beside the others: every run is simulated at the fitted values, and for
+  // each value a tenth to a half of the way from neutral to either side, far enough to exceed roughness (less at a
+  // bend); extrapolated linearly from there to half of the way and to the end of the range.
   EffectCurves curves;
 };
 
-// `model` fitted again by what its effects do where they stand, beside one another; never worse than it was. A model
-// with an effect at its present value stays as it is.
+// Refits `model` with the curves of its effects beside one another; never worse than before. A model with an effect at
+// its present value is returned unchanged.
 StandingModel fit_side_by_side(const StageData& data, EffectCurves curves, const Simulate& simulate, Model model);
 
-// The model without the effects at `places`, the others fitted again to `data`, where they stand.
+// The model without the effects at `places`, the others refitted to `data` on the same curves.
 Model fit_without(const StageData& data, const StandingModel& standing, std::span<const std::size_t> places);
-// With the whole model's discrepancies.
+// The same with the whole model's discrepancies.
 Model values_without(const StageData& data, const StandingModel& standing, std::span<const std::size_t> places);
 
 }  // namespace kenaf::gap::diagnose

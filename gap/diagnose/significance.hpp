@@ -5,11 +5,11 @@
 
 namespace kenaf::gap::diagnose {
 
-// Chance that a sum of `freedom` squared standard normals is larger (Wilson and Hilferty 1931: to 0.001 from three on);
-// 1 without freedom.
+// Tail probability of chi-squared with `freedom` degrees of freedom (Wilson and Hilferty 1931: to 0.001 from three on);
+// 1 for no freedom.
 double p_of_squares(double sum, double freedom);
 
-// Chance that the largest of `count` squared standard normals, however they depend on each other, is larger
+// Bound on the probability that the largest of `count` squared standard normals, dependent or not, is larger
 // (Bonferroni).
 double p_of_largest_square(double square, double count);
 

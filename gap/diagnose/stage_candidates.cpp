@@ -5,14 +5,14 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// Whether drives report otherwise with it; the other sensors see the body.
+// Whether it changes the drives' sensors; the other sensors measure the body.
 bool is_of_drives_sensors(const candidates::Candidate& candidate) {
   return std::ranges::any_of(candidate.keys, [](const std::string& key) {
     return key.starts_with("effects.encoder") || key.starts_with("sensor[");
   });
 }
 
-// Whether it is of a drive, but where the drive's own encoder does not see it.
+// Whether it belongs to a drive, but behind its encoder.
 bool is_behind_encoders(const candidates::Candidate& candidate) {
   return std::ranges::any_of(candidate.keys, [](const std::string& key) {
     return key.starts_with("effects.flipper_backlash") || key.starts_with("effects.flipper_compliance");

@@ -1,4 +1,4 @@
-// Which candidates can act in which stage, and a robot with some of them.
+// Candidates that can act in a stage, and robots with some of them.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -11,8 +11,8 @@
 
 namespace kenaf::gap::diagnose {
 
-// The candidates that can act in a stage; the others cannot, whatever their value. `drives_measured`: every run
-// measured its tracks, so that the body is seen in a replay of these.
+// The candidates that can act in a stage at some value. `drives_measured`: every run measured its tracks, so that the
+// body is compared in a replay of these.
 std::vector<std::size_t> candidates_of(Passage passage, std::span<const candidates::Candidate> candidates,
                                        bool drives_measured);
 

@@ -13,19 +13,22 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Variance of a bin that no used run has: beside any noise in any unit.
+// Variance of a bin without a used run: huge compared with any noise in any unit.
 constexpr double kNotMeasured = 1e12;
-// Share of the numerics' standard deviation by which they may differ from one group to another (chosen): a shape is
-// linear in them to about that.
+// Share of the numerics' standard deviation that is separate in each group (chosen): shapes are linear in them to about
+// that.
 constexpr double kNumericsOfRun = 0.3;
 
-// The bins of all runs of a group, and where in them each run's own are.
+// The bins of all runs of a group, and the index in them of each run's bins.
 StageGroup bins_of_group(const std::vector<StageFeatures>& features, std::vector<std::size_t> runs,
                          const UsedParts& used) {
+  // the union of all runs' bins; the map sorts them by channel, then by time
   StageGroup group{std::move(runs), {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   std::map<std::pair<std::size_t, std::size_t>, Index> place;
   for (const std::size_t r : group.runs)
     for (const Bin& bin : features[r].bins) place[{bin.channel, bin.span}] = 0;
+
+  // number them in that order, with each channel's range and each bin's middle time
   for (auto& [key, index] : place) {
     const auto [channel, span] = key;
     index = std::ssize(group.bins);
@@ -35,6 +38,8 @@ StageGroup bins_of_group(const std::vector<StageFeatures>& features, std::vector
     group.bins.push_back({channel, span, 0});
     group.t_s.push_back((static_cast<double>(span) + 0.5) * features[group.runs.front()].span_s);
   }
+
+  // the group's index of each run's bin, and how many used runs have each bin
   group.count = VectorXd::Zero(std::ssize(group.bins));
   for (const std::size_t r : group.runs) {
     group.bin_of.emplace_back();
@@ -48,7 +53,7 @@ StageGroup bins_of_group(const std::vector<StageFeatures>& features, std::vector
   return group;
 }
 
-// Columns of each run's matrix, averaged over the used runs that have a bin; 0 where none has.
+// Each run's matrix, averaged for each bin over the used runs that have it; 0 if none has.
 template <class MatrixOfRun>
 MatrixXd mean_over_runs(const StageGroup& group, Index columns, const UsedParts& used, MatrixOfRun&& matrix_of) {
   MatrixXd sum = MatrixXd::Zero(std::ssize(group.bins), columns);
@@ -80,20 +85,20 @@ StageData stage_data(Passage passage, const std::vector<StageFeatures>& features
     VectorXd one_run = group.count.cwiseMax(1).cwiseInverse();
     group.residual = mean_over_runs(group, 1, used, [&](std::size_t r) -> const VectorXd& { return residuals[r]; });
 
-    // of a difference of two means, that of both
+    // variances of two independent means add
     const bool has_baseline = features[group.runs.front()].baseline_runs.size() > 0;
     if (has_baseline)
       one_run += VectorXd(mean_over_runs(group, 1, {}, [&](std::size_t r) {
                    return features[r].baseline_runs;
                  })).cwiseInverse();
 
-    // noise is independent from run to run: the variance of a mean of n is that of one over n
+    // noise is independent between runs: the variance of a mean of n is 1 / n of that of one
     const MatrixXd variance =
         mean_over_runs(group, 1, used, [&](std::size_t r) { return VectorXd(floor.sigma_of_bin[r].array().square()); });
     group.variance = (group.count.array() > 0).select(variance.cwiseProduct(one_run), kNotMeasured);
 
-    // so are start poses and counts; the simulator's numbers are the same in all runs, but for what is not linear in
-    // them: against a baseline nothing else is left of them
+    // so are start poses and counts; the simulator's numbers are the same in all runs, except for nonlinear effects:
+    // only these remain against a baseline
     const std::size_t any = group.runs.front();
     const MatrixXd local = mean_over_runs(group, floor.open[any].local.cols(), used,
                                           [&](std::size_t r) -> const MatrixXd& { return floor.open[r].local; });

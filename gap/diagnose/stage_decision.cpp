@@ -12,18 +12,18 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// Of what a gap has beyond numbers that are a little off, so much must a model take off before the simulation's open
-// shapes are taken around it (chosen): around one that does not fit, the simulation may leave anything open.
+// Share of the gap beyond numbers' errors that a model must explain before the simulation's open shapes are taken
+// around it (chosen): around a model that does not fit, they are arbitrary.
 constexpr double kFits = 0.5;
 
-// Whether what a model leaves is more than noise and spread of repeats leave.
+// Tests of a model's residual against noise and spread of repeats.
 struct Chance {
-  double p_cells = 1;      // that noise leaves as much, in as many places
-  double p_effect = 1;     // that in noise some effect would explain as much as a given one does
-  double improvement = 0;  // what that one explains, in noise alone
+  double p_cells = 1;      // p value of the residual energy in all cells
+  double p_effect = 1;     // p value of the improvement by one more effect, the best of many
+  double improvement = 0;  // squares that this effect explains, in units of noise
 };
 
-// `with`: the model with one effect more, if there is one.
+// `with`: the model with one more effect, if any.
 Chance chance_of(const StageData& data, const Model& model, const Model* with, const EffectCurves& curves,
                  const GapTest& test, const DecisionSettings& settings) {
   Chance chance;
@@ -39,14 +39,14 @@ Chance chance_of(const StageData& data, const Model& model, const Model* with, c
   return chance;
 }
 
-// In many places at once, or so large that somebody would see it.
+// A significant excess in many cells, or an improvement large enough to be visible.
 bool is_gap(const Chance& chance, const StageData& data, const DecisionSettings& settings) {
   const double negligible = settings.negligible * settings.negligible * static_cast<double>(bin_count(data));
   return chance.p_cells <= settings.false_alarm / 2 ||
          (chance.p_effect <= settings.false_alarm / 2 && chance.improvement >= negligible);
 }
 
-// Fitted again, all of them, in other data.
+// Refits all models to other data.
 void fit_again(std::vector<Model>& models, const StageData& data, const EffectCurves& curves, unsigned threads) {
   for_each_job(models.size(), threads, [&](std::size_t i) {
     const bool exact = models[i].exact;
@@ -56,7 +56,7 @@ void fit_again(std::vector<Model>& models, const StageData& data, const EffectCu
   std::ranges::stable_sort(models, {}, [](const Model& model) { return model.deviance(); });
 }
 
-// The best set of effects, each of which gains what evidence asks for, as long as there is a gap.
+// The best set of effects, each with sufficient evidence, as long as there is a gap.
 Model take_effects(const StageData& data, EffectCurves& curves, const std::vector<Model>& singles,
                    const Simulate& simulate, const GapTest& test, const DecisionSettings& settings) {
   Model best = singles.front();
@@ -71,7 +71,7 @@ Model take_effects(const StageData& data, EffectCurves& curves, const std::vecto
   return best;
 }
 
-// Without effects that gain too little where they stand, the weakest first.
+// Removes effects with insufficient evidence beside the others, weakest first.
 StandingModel without_weak_effects(const StageData& data, const EffectCurves& curves, const Simulate& simulate,
                                    StandingModel best, const DecisionSettings& settings) {
   while (best.model.places.size() > 1) {
@@ -85,7 +85,7 @@ StandingModel without_weak_effects(const StageData& data, const EffectCurves& cu
   return best;
 }
 
-// The value at an end of the range, of an effect that would go on there.
+// Whether the value is at an end of the range and would go beyond it.
 bool is_at_bound(const StageData& data, const StandingModel& standing, std::size_t place, double margin) {
   constexpr double kAtBound = 1e-3, kInside = 0.9;  // of the range, of the way from the present value
   const OnCurve& at = standing.model.places[place];
@@ -93,7 +93,7 @@ bool is_at_bound(const StageData& data, const StandingModel& standing, std::size
   const double same = kAtBound * (candidate.max - candidate.min);
   const auto is_end = [&](double end) { return end != candidate.neutral && std::abs(at.value - end) < same; };
   if (!is_end(candidate.min) && !is_end(candidate.max)) return false;
-  // one that does no more by then fits as well inside
+  // a saturated effect fits as well inside the range
   std::vector<OnCurve> inside = standing.model.places;
   inside[place] =
       at_value(standing.curves.curves, at.curve, candidate.present + kInside * (at.value - candidate.present));
@@ -105,7 +105,7 @@ bool is_at_bound(const StageData& data, const StandingModel& standing, std::size
          standing.model.deviance() + margin;
 }
 
-// Values, evidence and rivals of the best model's effects.
+// Sets values, evidence and rivals of the best model's effects.
 void describe_effects(StageDecision& d, const EffectCurves& curves, const Simulate& simulate,
                       const DecisionSettings& settings) {
   d.effects.clear();
@@ -124,8 +124,8 @@ void describe_effects(StageDecision& d, const EffectCurves& curves, const Simula
   }
 }
 
-// The rival of an effect that takes its place, as other stages have it: the first that one names, or that none refutes
-// where one refutes the effect.
+// The rival that replaces an effect because of other stages: the first that one names, or if one refutes the effect,
+// the first that none refutes.
 std::optional<std::size_t> rival_in_place(const StageDecision& d, std::size_t effect,
                                           std::span<const candidates::Candidate> candidates,
                                           const Elsewhere& elsewhere) {
@@ -136,7 +136,7 @@ std::optional<std::size_t> rival_in_place(const StageDecision& d, std::size_t ef
   return std::nullopt;
 }
 
-// Rivals of an effect that another stage has settled, or refutes, are none.
+// Drops rivals that another stage refutes, and all if another stage has settled the effect.
 void strike_rivals(StageDecision& d, std::size_t effect, std::span<const candidates::Candidate> candidates,
                    const Elsewhere& elsewhere) {
   std::vector<Settings>& models = d.models_of_rivals[effect];
@@ -148,7 +148,7 @@ void strike_rivals(StageDecision& d, std::size_t effect, std::span<const candida
   for (const Settings& model : models) rivals.push_back(model[effect].candidate);
 }
 
-// The best model's effects, of rivals those that other stages allow, and what is left.
+// Describes the best model's effects, the rivals that other stages allow, and the residual.
 void describe(StageDecision& d, const EffectCurves& curves, const Simulate& simulate, const GapTest& test,
               const DecisionSettings& settings, const Elsewhere& elsewhere) {
   describe_effects(d, curves, simulate, settings);
@@ -192,7 +192,7 @@ std::optional<std::size_t> settled_elsewhere(const StageDecision& decision, std:
     for (const NamedElsewhere& other : elsewhere) {
       const Setting& rival = decision.models_of_rivals[effect][r][effect];
       if (rival.candidate != other.candidate) continue;
-      // a rival is known as well as the effect that it stands for, in parts of what it changes
+      // a rival has the relative uncertainty of the effect that it replaces
       const double half =
           (own.to - own.from) / 2 / change * std::abs(rival.value - candidates[rival.candidate].present);
       const double apart = std::abs(rival.value - other.value.value);
@@ -204,6 +204,7 @@ std::optional<std::size_t> settled_elsewhere(const StageDecision& decision, std:
 StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known, const Simulate& simulate,
                            const Around& around, const GapTest& test, const DecisionSettings& settings,
                            const Elsewhere& elsewhere) {
+  // the nominal model and the best single effects
   EffectCurves curves = known;
   StageDecision d;
   take(d, nominal);
@@ -213,7 +214,7 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
   d.singles = search_singles(d.data, curves, without.likelihood.discrepancies, simulate, settings.search);
   d.best.curves = curves;
 
-  // what is beyond chance
+  // whether the gap is beyond chance
   const auto has_gap = [&] {
     const Chance chance = chance_of(d.data, nominal_model(d.data), d.singles.empty() ? nullptr : &d.singles.front(),
                                     curves, test, settings);
@@ -225,7 +226,7 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
   d.verdict = Verdict::unknown;
   if (d.singles.empty() || d.nominal_deviance - d.singles.front().deviance() < settings.evidence) return d;
 
-  // what the simulation leaves open is taken around a model that fits, no longer around the nominal one
+  // open shapes are taken around a model that fits, instead of the nominal one
   const auto left_by = [&](const Model& model) {
     return squares_in_noise(d.data,
                             without_shared_shapes(d.data, rest_of(d.data, model), model.likelihood.discrepancies));
@@ -244,7 +245,7 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
     }
   }
 
-  // effects as long as each gains evidence, fitted where they stand
+  // adds effects while each gains evidence, then refits them beside one another
   Model chosen = take_effects(d.data, curves, d.singles, simulate, test, settings);
   if (chosen.places.size() > 1 && look_around(chosen))
     chosen.likelihood = likelihood_of(d.data, rest_of(d.data, chosen), chosen.likelihood.discrepancies);

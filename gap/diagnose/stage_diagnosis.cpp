@@ -39,13 +39,13 @@ std::vector<VectorXd> less_shift(std::vector<VectorXd> a, const std::vector<Vect
   return a;
 }
 
-// Of a run less the mean of its baseline's, over that of a run; of each bin.
+// Noise of a run minus its baseline's mean, relative to that of one run, for each bin: sqrt(1 + 1 / n).
 VectorXd noise_of_difference(const StageFeatures& run) {
   if (run.baseline_runs.size() == 0) return VectorXd::Ones(std::ssize(run.bins));
   return (1 + run.baseline_runs.array().inverse()).sqrt();
 }
 
-// The bins of one part of a run, from `other`.
+// Copies the bins of one part of a run from `other`.
 void take_part(VectorXd& of_run, const VectorXd& other, const RunPart& part, const StageFeatures& run) {
   for (std::size_t b = 0; b < run.bins.size(); ++b)
     if (const auto i = static_cast<Eigen::Index>(b);
@@ -53,7 +53,7 @@ void take_part(VectorXd& of_run, const VectorXd& other, const RunPart& part, con
       of_run[i] = other[i];
 }
 
-// What is left with the best model, regressed on what was measured.
+// The best model's residual, regressed on measured quantities.
 std::vector<Dependence> left_over_of(const StageInput& input, Predictor& predictor, const Variation& best,
                                      const NoiseFloor& floor) {
   const std::vector<Variation> of_runs(input.observations->runs.size(), best);
@@ -76,8 +76,8 @@ std::vector<Dependence> left_over_of(const StageInput& input, Predictor& predict
   return describe_left_over(runs, input.passage == Passage::command_to_drive);
 }
 
-// What the best model is worth, the runs of each fold simulated with the values of the others, and so which names it
-// gets.
+// Cross-validates the best model by simulating the runs of each fold with the values fitted to the others, and judges
+// its names.
 void weigh(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor, const StageOptions& options) {
   const StageInput& input = prepared.input;
   const std::vector<StageFeatures>& features = *input.features;
@@ -86,6 +86,8 @@ void weigh(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& pred
   NoiseFloor floor = decision.floor;
   floor.number_shapes = decision.shapes_of_all_numbers;
   const StageView view{&features, input.repeats, &stage.residuals, &floor};
+
+  // simulated residuals of each run with its fold's values; for halved runs the later half has other values
   const auto left_by = [&](const std::vector<std::vector<PlacesOfPart>>& places) {
     const bool any_halves = std::ranges::any_of(places, [](const auto& of_run) { return of_run.size() > 1; });
     std::vector<VectorXd> left(features.size());
@@ -104,26 +106,32 @@ void weigh(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& pred
     }
     return left;
   };
+
+  // the folds
   const unsigned threads = options.decision.search.threads;
   const Folds by_manoeuvre = folds_by_manoeuvre(*input.observations);
   Folds by_repeat = folds_by_repeat(*input.repeats);
-  // what one run alone shows can be held out only half by half
+  // an effect that one run alone shows can only be held out by halves
   if (!best.places.empty())
     by_repeat = with_halves(std::move(by_repeat),
                             halves_of_runs_alone(view, input.passage, decision.best, options.decision.evidence));
   stage.left = stage.residuals;
   if (!best.places.empty())
     stage.left = left_by(places_held_out(view, input.passage, decision.best, by_repeat, threads));
-  // around a model: where the nominal robot falls in one repeat and not in the other, the real one need not
+  // around the model: the nominal robot may fall in only one of two repeats where the real one does not
   std::vector<VectorXd> spread = deviations_from_repeats(features, stage.left, *input.same_orders);
   for (std::size_t r = 0; r < spread.size(); ++r)
     if (spread[r].size() > 0) spread[r].array() *= noise_of_difference(features[r]).array();
+
+  // the gap with repeats held out, and with manoeuvres held out if that differs
   stage.gap = measure_gap(view, stage.left, spread, options.seed);
   stage.gap_by_manoeuvre = stage.gap;
   if (!best.places.empty() && by_manoeuvre.size() > 1 && by_manoeuvre != by_repeat)
     stage.gap_by_manoeuvre =
         measure_gap(view, left_by(places_held_out(view, input.passage, decision.best, by_manoeuvre, threads)), spread,
                     options.seed);
+
+  // the shares of each effect, and with them its name
   if (!decision.effects.empty()) {
     const SharesOfEffects shares =
         shares_of_effects(view, input.passage, decision.best, simulator_of(prepared, predictor), by_repeat,
@@ -132,7 +140,7 @@ void weigh(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& pred
   }
 }
 
-// Whether all that keeps an effect from a name is its value.
+// Whether only its value keeps an effect from a name.
 bool has_doubtful_value(const NamedEffect& effect) {
   constexpr std::array kOfValue{Doubt::end_of_range, Doubt::disagreement, Doubt::trend};
   return !effect.doubts.empty() &&
@@ -145,7 +153,7 @@ bool has_name(const StageDecision& decision, std::size_t candidate) {
   });
 }
 
-// What did as well as an effect in the place of which another one stands now does as well as that one.
+// Rivals of a replaced effect are also rivals of its replacement.
 void add_rivals(StageDecision& decision, std::size_t effect, const StageDecision& before) {
   std::vector<std::size_t>& rivals = decision.effects[effect].rivals;
   for (const Settings& model : before.models_of_rivals[effect]) {
@@ -203,7 +211,7 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
     return again;
   };
 
-  // of several that do as well, one whose value nothing speaks against
+  // among rivals, one whose value is not in doubt
   const auto rival_with_name = [&]() -> std::optional<StageDiagnosis> {
     for (std::size_t e = 0; e < stage.decision.effects.size(); ++e) {
       if (!has_doubtful_value(stage.decision.effects[e])) continue;
@@ -219,7 +227,7 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   };
   if (std::optional<StageDiagnosis> again = rival_with_name()) stage = std::move(*again);
 
-  // those alone that have a name, unless they need the others to stand out
+  // only the named effects, unless they need the others to be significant
   const std::vector<std::size_t> named = places_with_name(stage.decision);
   if (!named.empty() && named.size() < stage.decision.effects.size()) {
     StageDiagnosis alone = decided_again(with_effects_alone(stage.decision, named));
@@ -228,17 +236,17 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
   const StageDecision& decision = stage.decision;
   const Model& best = decision.best.model;
 
-  // what is beyond chance, but of a size that nobody would see, and has no name, is no gap
+  // a significant but invisibly small difference without a name is no gap
   const double seen = stage.gap.before * stage.gap.before - stage.gap.floor * stage.gap.floor;
   if (decision.verdict == Verdict::unknown && seen < options.decision.negligible * options.decision.negligible)
     stage.decision.verdict = Verdict::none;
 
-  // what is left, in words
+  // the residual, in words
   if (decision.verdict != Verdict::none && !decision.complete && input.passage != Passage::body_to_sensor)
     stage.left_over =
         left_over_of(input, predictor, varied(prepared, predictor, settings_of(best.places)), decision.floor);
 
-  // where it is, and what each effect does alone
+  // where the gap is, and the share of each effect alone
   stage.before_si = rms_si(features, stage.residuals);
   stage.after_si = rms_si(features, stage.left);
   const Coherence coherence(features, *input.repeats, options.stretch_s);
@@ -258,7 +266,7 @@ void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predi
                      std::uint64_t seed) {
   StageDecision& decision = stage.decision;
   if (decision.effects.empty() || numbers_off == 0) return;
-  // the body turns a gyro though nobody blames it for what the gyro says of the posture
+  // effects on the body turn a gyro, too, although they cannot cause its difference from the posture
   std::vector<std::size_t> of_all_stages(prepared.candidates.size());
   std::iota(of_all_stages.begin(), of_all_stages.end(), std::size_t{0});
   const EffectSet valued = effects_of(decision.best.model);

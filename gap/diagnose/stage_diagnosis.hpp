@@ -1,6 +1,6 @@
-// One stage between command and sensor, from its residuals to a verdict with its evidence.
+// Diagnosis of one stage between command and sensor, from its residuals to a verdict with its evidence.
 //
-// Thread safety: pure functions apart from what the predictor does. Deterministic for a seed.
+// Thread safety: pure functions, except that the predictor runs. Deterministic for a seed.
 #pragma once
 
 #include <cstdint>
@@ -25,34 +25,32 @@ struct StageOptions {
 struct SingleEvidence {
   std::size_t candidate;
   double value;
-  double evidence;  // deviance that it gains over the nominal model
+  double evidence;  // deviance gain over the nominal model
   double explains;  // share of the squared gap, on the runs it was fitted to
 };
 
 struct StageDiagnosis {
   Passage passage = Passage::command_to_drive;
-  std::vector<Eigen::VectorXd>
-      residuals;  // measured minus nominal, of each run; empty where it does not measure the stage
+  std::vector<Eigen::VectorXd> residuals;  // measured minus nominal, by run; empty if it does not measure the stage
   NoiseFloor nominal_floor;
   StageDecision decision;
-  GapMeasure gap;               // with the best model, on runs held out
-  GapMeasure gap_by_manoeuvre;  // with all repeats of a manoeuvre held out together, where there are several
+  GapMeasure gap;               // with the best model, on held-out runs
+  GapMeasure gap_by_manoeuvre;  // with all repeats of a manoeuvre held out together, if there are several manoeuvres
   std::vector<double> before_si, after_si;  // rms of each of diagnosis_channels(); NaN: not measured
-  std::vector<Eigen::VectorXd> left;        // what the model fitted to other runs leaves of each run
+  std::vector<Eigen::VectorXd> left;        // residual of each run with the model fitted to other runs
   GapPlaces where, where_left;
   Isolability isolability;
   std::vector<SingleEvidence> ranking;  // best first
-  std::vector<Dependence> left_over;    // what is left goes with these, largest share first; none where it is complete
+  std::vector<Dependence> left_over;    // dependences of the residual, largest share first; none if complete
 
   bool is_measured() const { return !decision.data.groups.empty(); }
 };
 
-// `elsewhere`: what other stages say (stage_decision.hpp).
+// `elsewhere`: findings of other stages (stage_decision.hpp).
 StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predictor, const StageOptions& options,
                               const Elsewhere& elsewhere = {});
 
-// Intervals as wide as numbers of the description make them that are off, 1 sigma, by `numbers_off`
-// (errors_of_values.hpp).
+// Widens intervals for errors of the description's numbers of `numbers_off`, 1 sigma (errors_of_values.hpp).
 void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& predictor, double numbers_off,
                      std::uint64_t seed);
 

@@ -16,7 +16,8 @@ using Eigen::VectorXd;
 
 constexpr std::pair<std::string_view, std::string_view> kGyroOfAngle[] = {
     {"gyro_x_radps", "roll_rad"}, {"gyro_y_radps", "pitch_rad"}, {"gyro_z_radps", "yaw_rad"}};
-constexpr double kLevel_rad = 0.2;  // within it rates of roll, pitch and yaw are those of the gyro's axes, to 2 %
+// Within it the rates of roll, pitch and yaw equal those about the gyro's axes to 2 %.
+constexpr double kLevel_rad = 0.2;
 
 std::string_view column_of(const Bin& bin) {
   return diagnosis_channels()[bin.channel].column;
@@ -26,14 +27,14 @@ bool is_drive(const Bin& bin) {
   return diagnosis_channels()[bin.channel].seen == robot::Seen::drive;
 }
 
-// The angle that the gyro turned since the start, in the columns of the angles.
+// The gyro's rates integrated since the start, in the columns of the angles.
 runs::Run integrated(const runs::Run& run) {
   const auto time = run.column("t_s");
   runs::Run result{{"t_s"}, {{time.begin(), time.end()}}};
   for (const auto& [gyro, angle] : kGyroOfAngle) {
     const auto rate = run.column(gyro);
     if (rate.empty()) continue;
-    // trapezoids between the rows that have a rate
+    // trapezoidal rule between rows with a rate
     std::vector<double> turned(rate.size(), std::numeric_limits<double>::quiet_NaN());
     std::ptrdiff_t last = -1;
     for (std::ptrdiff_t i = 0; i < std::ssize(turned); ++i) {
@@ -49,12 +50,12 @@ runs::Run integrated(const runs::Run& run) {
   return result;
 }
 
-// A bin of a gyro, and the bins of its angle one span before and one after it.
+// A bin of a gyro channel, and the bins of its angle one span before and after it.
 struct RateBin {
   Index gyro, before, after;
 };
 
-// The bins of gyros whose rate the angles around them tell: where the robot is about level.
+// The gyro bins whose rate follows from the adjacent angles: where the robot is nearly level.
 std::vector<RateBin> rate_bins(const FeatureMap& map) {
   std::map<std::pair<std::string_view, std::size_t>, Index> place;
   for (std::size_t b = 0; b < map.bins().size(); ++b)
@@ -75,7 +76,7 @@ std::vector<RateBin> rate_bins(const FeatureMap& map) {
   return result;
 }
 
-// Rate by the gyro less rate by the angle, over the two spans around each bin.
+// Gyro rate minus rate of the angle, over the two spans around each bin.
 VectorXd gyro_against_angles(const FeatureMap& map, std::span<const RateBin> bins, const VectorXd& features,
                              const runs::Run& run) {
   const VectorXd turned = map.of(integrated(run));

@@ -1,10 +1,10 @@
-// What each stage between command and sensor compares. A stage is seen without the ones before it:
+// The features that each stage between command and sensor compares. A stage is isolated from the ones before it:
 //
 //   command to drive   the drives' channels, in a replay of the commands
 //   drive to body      pose and gyro, in a replay in which belts and flippers turn as they were measured
 //   body to sensor     how much faster the gyro says that the robot turns than its angles do, in the same replay
 //
-// Of a run that did not measure its tracks, the last two are seen in a replay of the commands.
+// If a run did not measure its tracks, the last two are compared in a replay of the commands.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -23,19 +23,18 @@ enum class Passage { command_to_drive, drive_to_body, body_to_sensor };
 inline constexpr std::array kPassages{Passage::command_to_drive, Passage::drive_to_body, Passage::body_to_sensor};
 std::string_view passage_name(Passage passage);  // "command to drive"
 
-// What of one run a stage compares. All vectors are in the order of `bins`: channel by channel, each in the order of
+// The features of one run in a stage. All vectors are in the order of `bins`: channel by channel, each in the order of
 // time.
 struct StageFeatures {
   std::vector<Bin> bins;             // none: this run does not measure the stage
   double span_s = 0;                 // of a bin
   Eigen::VectorXd measured;          // mean of each bin, in the unit of its channel
-  std::vector<Eigen::Index> rows{};  // of the bins in the run's FeatureMap
-  Eigen::VectorXd
-      baseline_runs{};  // of each bin, how many runs it is compared against (baseline.hpp); empty: no baseline
+  std::vector<Eigen::Index> rows{};  // indices of the bins in the run's FeatureMap
+  Eigen::VectorXd baseline_runs{};   // baseline runs of each bin (baseline.hpp); empty: no baseline
 };
 StageFeatures stage_features(Passage passage, const FeatureMap& map, const runs::Run& measured);
 
-// The same of a simulated run. `features`: FeatureMap::of() of it.
+// The same values for a simulated run. `features`: its FeatureMap::of().
 Eigen::VectorXd stage_values(Passage passage, const StageFeatures& stage, const FeatureMap& map,
                              const Eigen::VectorXd& features, const runs::Run& simulated);
 

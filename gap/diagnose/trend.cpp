@@ -13,14 +13,14 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-// What earlier and later halves of manoeuvres differ by is chance where that is more probable than this (chosen).
+// p value above which differences between halves of manoeuvres count as chance (chosen).
 constexpr double kNoTrend = 0.001;
 
-// An effect is held to explain a kind of channels where no more is left than it takes off, and to rest on it where it
-// takes off this share of what it does in the kind where it takes off most (chosen).
+// An effect explains a kind of channels if the residual there is smaller than its shift, and rests on it if its squared
+// shift is this share of that in the kind where it is largest (chosen).
 constexpr double kRestsOn = 0.1;
 
-// What the bins of some time say of a value: sums of what is left along the effect, and of the effect itself.
+// Sums over bins for the estimate left / effect of a value: of the residual along the effect, and of the effect itself.
 struct Along {
   double left = 0, effect = 0;
   Along& operator+=(const Along& more) {
@@ -30,13 +30,13 @@ struct Along {
   }
 };
 
-// What the later half of one manoeuvre wants more than the earlier one.
+// The later half's estimate minus the earlier half's in one manoeuvre.
 struct Trend {
   double difference, variance;
-  double information;  // of the value: squares of what the effect shifts, in noise
+  double information;  // of the value: squares of the effect's derivative, in noise
 };
 
-// The rms of trends, less noise, each as much as its manoeuvre says of the value: 0 where chance explains them.
+// Information-weighted rms of trends, without their noise variance; 0 if chance explains them.
 double rms_of(const std::vector<Trend>& trends) {
   double in_noise = 0, squares = 0, information = 0;
   for (const Trend& trend : trends) {
@@ -49,7 +49,7 @@ double rms_of(const std::vector<Trend>& trends) {
   return std::sqrt(std::max(0.0, squares / information));
 }
 
-// Of one series, in its group.
+// The trend in one series of a group: halves are parted at half of the effect's squared shift.
 std::optional<Trend> trend_in(const StageGroup& group, const Series& series, const Eigen::Ref<const VectorXd>& column,
                               const VectorXd& left) {
   const double all = (column.array().square() / group.variance.array()).segment(series.first, series.count).sum();
@@ -64,10 +64,10 @@ std::optional<Trend> trend_in(const StageGroup& group, const Series& series, con
                late.effect + early.effect};
 }
 
-// What all series of one kind say.
+// Trends and sums over all series of one kind.
 struct OfKind {
   std::vector<Trend> trends;
-  double left = 0, taken_off = 0;  // squares of what is left, and of what the effect shifts, in noise
+  double left = 0, taken_off = 0;  // squares of the residual and of the effect's shift, in noise
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Whether an effect has one value from the beginning of a manoeuvre to its end: what grows with the time has none.
+// Tests whether an effect has a constant value during a manoeuvre; one that grows with time does not.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -10,14 +10,14 @@
 
 namespace kenaf::gap::diagnose {
 
-// By how much the later part of a manoeuvre wants another value than the earlier one, each with half of what the effect
-// shifts in it: rms over manoeuvres beyond noise, each as much as it says of the value. Of the kinds of channels that
-// the effect explains and rests on, the one with the largest: a place that is reached late, as an obstacle is, tells
-// only of the mean on the way there, and more than all the ways. 0 where noise explains all.
+// Difference between the values fitted to the later and the earlier part of a manoeuvre, each with half of the effect's
+// squared shift: information-weighted rms over manoeuvres beyond noise, the largest over the kinds of channels that the
+// effect explains and rests on. (A position reached late, e.g. of an obstacle, shows only the mean on the way there,
+// yet outweighs the way itself.) 0 if noise explains it.
 //
-// `columns`: of each group, how all values shift it; the effect is column `effect`, `away` from its present value.
-// `left`: what the model leaves of each group, less open shapes. Noise alone, for a value that differs in the course of
-// time is what the discrepancy of a wrong effect looks like.
+// `columns`: derivatives by all values, for each group; the effect is column `effect`, `away` from its present value.
+// `left`: the model's residual for each group, without open shapes. Uses noise alone, as the discrepancy of a wrong
+// effect would absorb a drifting value.
 double trend(const StageData& data, const std::vector<Eigen::MatrixXd>& columns, Eigen::Index effect, double away,
              const GroupVectors& left);
 

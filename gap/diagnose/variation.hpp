@@ -1,4 +1,4 @@
-// How a simulation differs from the nominal one of a run.
+// Differences of a simulation from the nominal one of a run.
 //
 // Thread safety: a value.
 #pragma once
@@ -8,9 +8,8 @@
 
 namespace kenaf::gap::diagnose {
 
-// A robot and a simulator, how far from the observed start the robot is put down, and how much earlier than the log
-// says its samples were taken, in parts of the time since the one before (of the angles alone in the passage from body
-// to sensor).
+// Robot, simulator settings, offset from the observed start pose, and how much earlier than logged the samples were
+// taken, in sample intervals (for angles only in the passage from body to sensor).
 struct Variation {
   physics::RobotDescription robot;
   physics::PhysicsSettings physics;

@@ -53,16 +53,19 @@ std::vector<Cell> cells_that_stand_out(const NoiseFloor& floor, const Coherence&
 GapPlaces locate(const Observations& observations, const std::vector<StageFeatures>& features, const NoiseFloor& floor,
                  const std::vector<std::vector<std::size_t>>& repeats, const Coherence& coherence,
                  const std::vector<VectorXd>& residual) {
+  // total energy beyond chance
   const std::vector<Cell> cells = cells_that_stand_out(floor, coherence, residual);
   double total = 0;
   for (const Cell& cell : cells) total += beyond_chance(cell);
 
+  // shares of channels
   GapPlaces places{channels_of(features, floor, residual), {}, total};
   for (const Cell& cell : cells)
     if (total > 0) places.channels[cell.channel].share += beyond_chance(cell) / total;
   std::erase_if(places.channels, [](const ChannelGap& channel) { return channel.floor == 0; });
   std::ranges::stable_sort(places.channels, std::ranges::greater{}, &ChannelGap::share);
 
+  // shares of the phases of each group's representative
   for (std::size_t g = 0; g < repeats.size(); ++g) {
     const Observation& run = observations.runs[representative(observations, repeats[g])];
     std::vector<PhaseGap> phases;
@@ -70,7 +73,7 @@ GapPlaces locate(const Observations& observations, const std::vector<StageFeatur
       phases.push_back({run.manoeuvre, span.name, span.from_s, span.to_s, span.x_m, span.y_m, 0, g});
     for (const Cell& cell : cells) {
       if (cell.group != g || total == 0) continue;
-      // a stretch that spans two phases is shared between them by time
+      // a stretch across several phases is divided between them by time
       const double from_s = static_cast<double>(cell.stretch) * coherence.stretch_s();
       for (PhaseGap& phase : phases) {
         const double common_s = std::min(phase.to_s, from_s + coherence.stretch_s()) - std::max(phase.from_s, from_s);

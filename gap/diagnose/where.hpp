@@ -1,4 +1,4 @@
-// Where the gap is: which channels show it, and at which times and places of each manoeuvre.
+// Locates the gap: in which channels, and at which times and places of each manoeuvre.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -15,7 +15,7 @@ namespace kenaf::gap::diagnose {
 
 struct ChannelGap {
   std::size_t channel;  // of diagnosis_channels()
-  double rms, floor;    // of a bin's residual, and of its noise, in the channel's unit
+  double rms, floor;    // of the bins' residuals, and of their noise, in the channel's unit
   double share;         // of all that is beyond chance
 };
 
@@ -28,19 +28,19 @@ struct PhaseGap {
 };
 
 struct GapPlaces {
-  std::vector<ChannelGap> channels;  // that were measured, largest share first
+  std::vector<ChannelGap> channels;  // measured ones, largest share first
   std::vector<PhaseGap> phases;      // of one run of each group of repeats, largest share first
-  double beyond_chance = 0;          // what the shares are of: the sum over cells of squared floors
+  double beyond_chance = 0;          // total of the shares: sum over cells, in squared floors
 };
 
-// What of a cell is beyond chance, in squared floors.
+// The energy of a cell beyond chance, in squared floors.
 double beyond_chance(const Cell& cell);
-// A shape that is taken off, as an offset of one count, leaves its negative where nothing was. A cell counts as it
-// stands out with shapes taken off, or without, whichever is less.
+// Subtracting an open shape, such as an offset of one count, leaves its negative elsewhere. So a cell has the smaller
+// energy of those with and without shapes subtracted.
 std::vector<Cell> cells_that_stand_out(const NoiseFloor& floor, const Coherence& coherence,
                                        const std::vector<Eigen::VectorXd>& residual);
 
-// `residual` in the channels' units; both of every run.
+// `features` and `residual`: of every run, in the channels' units.
 GapPlaces locate(const Observations& observations, const std::vector<StageFeatures>& features, const NoiseFloor& floor,
                  const std::vector<std::vector<std::size_t>>& repeats, const Coherence& coherence,
                  const std::vector<Eigen::VectorXd>& residual);

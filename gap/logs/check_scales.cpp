@@ -1,4 +1,4 @@
-// Units, signs and time: quantities that should be the same up to slip, compared.
+// Checks of units, signs and time, by comparing quantities that should be equal up to slip.
 #include <array>
 #include <numbers>
 
@@ -8,16 +8,16 @@
 namespace kenaf::gap::logs {
 namespace {
 
-// Chosen. Quantities go together from this correlation on; a factor is one of units where no slip, gain or gear
-// explains it, and near the unit's own within what slip adds to it.
+// Chosen. Least correlation of quantities that go together; least factors that no slip, gain or gear explains, so that
+// they come from a wrong unit.
 constexpr double kTogether = 0.8, kLengthFactor = 20, kAngleFactor = 15;
 constexpr double kSameWay = 1.4;
 constexpr double kLeastMove_m = 0.1, kLeastTurn_rad = 0.2;
 constexpr double kDegreesInARadian = 180 / std::numbers::pi;
-constexpr double kDragged = 0.2;      // of the way that the other track is asked for
-constexpr double kMostSpeed_mps = 5;  // of a robot that is not known
-// A robot slides against its tracks on a slope alone. Elsewhere it goes as far as they do, or less for slip; when it
-// turns, far less.
+constexpr double kDragged = 0.2;      // share of the travel commanded to the other track
+constexpr double kMostSpeed_mps = 5;  // of an unknown robot
+// A robot slides against its tracks on slopes only. Elsewhere it goes as far as they do, or less because of slip; in
+// turns far less.
 constexpr double kLevel_rad = 0.1, kLeastGrip = 0.5, kLeastGripInTurns = 0.15, kMostGrip = 1.25;
 
 std::string length_unit(double factor) {
@@ -31,7 +31,7 @@ void RunChecks::check_clock() {
   const auto t_s = column("t_s");
   const double median_s = median_step(t_s, t_s);
 
-  // What adds up is slower than its rate by the unit of time.
+  // With t_s in another unit, an accumulated quantity changes more slowly than its rate says, by the unit's factor.
   std::vector<std::optional<Relation>> relations;
   if (median_s >= kCoarse_s) {
     for (const std::string side : kSides)
@@ -47,6 +47,7 @@ void RunChecks::check_clock() {
     }
     relations.push_back(relate(upright_angle("yaw_rad"), rate("gyro_z_radps")));
   }
+
   for (const auto& [per_second, name] : {std::pair{1e3, "milliseconds"}, {1e6, "microseconds"}})
     for (const auto& relation : relations)
       if (relation && relation->correlation >= kTogether &&
@@ -58,10 +59,12 @@ void RunChecks::check_clock() {
   if (median_s >= kCoarse_s)
     add(Severity::warn, "t_s",
         fmt::format("steps by {:.3g} s: too coarse to tell anything, if it is in seconds", median_s));
+
   if (std::abs(t_s.front()) > kEpoch_s)
     add(Severity::warn, "t_s", fmt::format("begins at {:.0f} s; it counts from the start of the run", t_s.front()),
         line(0));
 
+  // Gaps and odd steps, compared with the median step.
   std::size_t gaps = 0, first_gap = 0, odd = 0;
   double longest_s = 0;
   for (std::size_t i = 1; i < t_s.size(); ++i) {
@@ -71,6 +74,7 @@ void RunChecks::check_clock() {
     if (gaps++ == 0) first_gap = i;
     longest_s = std::max(longest_s, step_s);
   }
+
   if (gaps > 0)
     add(Severity::warn, "t_s",
         fmt::format(
@@ -121,6 +125,7 @@ void RunChecks::check_turned_sign(const std::string& name, const std::string& ot
 void RunChecks::check_against_tracks(const std::string& name, const std::optional<Relation>& relation,
                                      const std::optional<Relation>& on_level, double enough, double least_ratio,
                                      double most_ratio, const std::string& what_to_do) {
+  // Refused only where a turned sign is certain: on level ground, and about as far as the tracks.
   const auto against = [&](const std::optional<Relation>& one) {
     return one && one->correlation <= -kTogether && one->first >= enough && one->second >= 2 * kLeastMove_m;
   };
@@ -135,10 +140,11 @@ void RunChecks::check_against_tracks(const std::string& name, const std::optiona
                   relation->correlation, what_to_do));
 }
 
-// Slip and blocked robots only make the pose's way shorter.
+// Slip and a blocked robot only make the pose's path shorter than the tracks'.
 void RunChecks::check_pose_against_tracks() {
   const auto along = relate(forward(), belts(0.5, 0.5)), turning = relate(upright_angle("yaw_rad"), belts(-1, 1));
   const bool knows_slope = has("pitch_rad") || has("posture_pitch_rad");
+  // Lengths: the robot cannot be far beyond where its tracks carried it and where it may have slid.
   const double way_m = distance_of_belts(), farthest_m = farthest_from_start();
   constexpr double kSlide_m = 1;  // without its tracks: down a slope, off an edge
   if (farthest_m > kLengthFactor * (way_m + 0.1) && farthest_m > kLengthFactor * kSlide_m && has("cmd_track_left_mps"))
@@ -146,11 +152,13 @@ void RunChecks::check_pose_against_tracks() {
         fmt::format("looks like {} together with y_m: the robot is up to {:.4g} from its start, but its tracks went "
                     "{:.3g} m; columns are in metres",
                     length_unit(farthest_m / (way_m + 0.1)), farthest_m, way_m));
+  // Sign of the way forward.
   check_against_tracks("x_m", along, knows_slope ? relate(forward(kLevel_rad), belts(0.5, 0.5)) : along,
                        2 * kLeastMove_m, kLeastGrip, kMostGrip,
                        "x is forward at the start, and yaw the heading of the robot's front");
+  // Unit and sign of yaw: without slip, turn = (right - left) / gauge.
   if (turning && turning->correlation >= kTogether && robot_ != nullptr && !found("yaw_rad")) {
-    // Slip makes a robot turn less than its tracks say, never several times as much.
+    // With slip a robot turns less than its tracks say, never several times as much.
     const double turned = turning->ratio * robot_->track_gauge_m();
     if (turned > kAngleFactor && turning->first > kLeastTurn_rad * kDegreesInARadian / 4)
       add(Severity::refuse, "yaw_rad",
@@ -166,12 +174,14 @@ void RunChecks::check_pose_against_tracks() {
 }
 
 void RunChecks::check_scales() {
-  // a track that is asked for little beside the other one may be dragged by it, against its own command
+  // A track whose command is small beside the other's may be dragged by it, against its own command.
   double most_asked_m = 0;
   for (const std::string side : kSides) {
     const auto asked = rate("cmd_track_" + side + "_mps");
     if (const auto itself = relate(asked, asked)) most_asked_m = std::max(most_asked_m, itself->first);
   }
+
+  // Tracks: command, speed and travel of each side against each other.
   const double enough_asked_m = std::max(kLeastMove_m, kDragged * most_asked_m);
   for (const std::string side : kSides) {
     const std::string command = "cmd_track_" + side + "_mps", speed = "track_" + side + "_mps",
@@ -192,6 +202,8 @@ void RunChecks::check_scales() {
       check_turned_sign(travel, command, both, kLeastMove_m, kLeastMove_m, words);
     }
   }
+
+  // Sides exchanged: each track follows the other one's command.
   const auto crossed = [this](const std::string& side, const std::string& other_side) {
     const auto own = relate(rate("cmd_track_" + side + "_mps"), rate("track_" + side + "_mps"));
     const auto across = relate(rate("cmd_track_" + side + "_mps"), rate("track_" + other_side + "_mps"));
@@ -200,15 +212,19 @@ void RunChecks::check_scales() {
   if (crossed("left", "right") && crossed("right", "left") && !found("track_left_mps"))
     add(Severity::refuse, "track_left_mps",
         "follows cmd_track_right_mps, and track_right_mps the left one: left and right are exchanged");
+
+  // Flippers: angle against command, by value.
   for (const std::string_view flipper : robot::kFlipperNames) {
     const std::string angle = fmt::format("flipper_{}_rad", flipper), command = "cmd_" + angle;
     const auto relation = relate_values(command, angle);
     check_same_angle(command, angle, relation, kLeastTurn_rad);
-    // A servo too weak for its load lets the arm go the other way too, but not just as far.
+    // A servo too weak for its load lets the arm go the other way, too, but not as far.
     if (relation && std::abs(std::log(relation->ratio)) > std::log(kSameWay)) continue;
     check_turned_sign(angle, command, relation, kLeastTurn_rad, kLeastTurn_rad,
                       "0 is straight out along the body, tip up is positive, for all four flippers");
   }
+
+  // The pose's angles against the gyro.
   for (const auto& [angle, axis] : {std::pair{"yaw_rad", "z"}, {"pitch_rad", "y"}, {"roll_rad", "x"}}) {
     const std::string gyro = std::string("gyro_") + axis + "_radps";
     const auto relation = relate(upright_angle(angle), rate(gyro));
@@ -235,6 +251,7 @@ void RunChecks::check_ranges() {
       add(Severity::refuse, name, fmt::format("is {:.4g} {}", most, text), line_above(name, limit));
   };
 
+  // Speeds, angles, turn rates, voltage and currents that no robot has.
   const double most_mps = robot_ != nullptr ? robot_->drive.max_speed_mps : kMostSpeed_mps;
   for (const std::string name : {"cmd_track_left_mps", "cmd_track_right_mps", "track_left_mps", "track_right_mps"})
     refuse_above(
@@ -253,6 +270,7 @@ void RunChecks::check_ranges() {
   for (const std::string_view flipper : robot::kFlipperNames)
     refuse_above(fmt::format("flipper_{}_a", flipper), 1000, "A: it looks like milliamperes");
 
+  // Flippers against their limits: far beyond, the unit is wrong; somewhat beyond, a warning.
   if (robot_ != nullptr && robot_->has_flippers()) {
     const physics::FlipperDescription& limits = robot_->flipper.front();
     const double limit = std::max(std::abs(limits.min_angle_rad), std::abs(limits.max_angle_rad));
@@ -267,6 +285,7 @@ void RunChecks::check_ranges() {
       }
   }
 
+  // Accelerometer: the median of its norm should be about g.
   const auto x = column("acc_x_mps2"), y = column("acc_y_mps2"), z = column("acc_z_mps2");
   std::vector<double> norms;
   for (std::size_t i = 0; i < std::min({x.size(), y.size(), z.size()}); ++i)

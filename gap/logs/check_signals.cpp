@@ -1,4 +1,4 @@
-// Commands, sensors that say nothing, and the pose.
+// Checks of commands, of sensors that measure nothing, and of the pose.
 #include <array>
 #include <numbers>
 
@@ -12,10 +12,10 @@ namespace {
 // Chosen.
 constexpr double kMoves_m = 0.1, kCarries_m = 0.3, kSeen_m = 0.2, kTurns_rad = 0.3;
 constexpr std::size_t kFewestValues = 10;
-// A gyro's bias is no such turn, and slip no such difference of tracks; a gauge where no robot is known.
+// Turns larger than a gyro's bias and differences of tracks larger than slip cause; the gauge of an unknown robot.
 constexpr double kTurnWithin_s = 2, kTurnsByTracks_rad = 1, kWidest_m = 1;
 
-// The same number in all rows that have one, to the last bit: no sensor that works does that for long.
+// Whether all rows with a value have the same one, to the last bit. No sensor that works does that for long.
 bool constant(std::span<const double> column) {
   std::size_t count = 0;
   double first = 0;
@@ -36,16 +36,20 @@ double total_change(const Course& course) {
 }  // namespace
 
 void RunChecks::check_commands() {
+  // Without commands a run cannot be simulated.
   const bool tracks = has("cmd_track_left_mps") && has("cmd_track_right_mps");
   if (!tracks) {
     add(Severity::refuse, has("cmd_track_left_mps") ? "cmd_track_right_mps" : "cmd_track_left_mps",
         "is missing or empty: without what was commanded no run can be repeated in simulation");
     return;
   }
+
+  // Commands that are all zero contradict tracks that went somewhere; in a run at rest they only make it useless.
   const auto ever = [this](const std::string& name) {
     return std::ranges::any_of(column(name), [](double value) { return std::abs(value) > 0; });
   };
   if (ever("cmd_track_left_mps") || ever("cmd_track_right_mps")) return;
+
   const bool flippers_commanded = std::ranges::any_of(robot::kFlipperNames, [this](std::string_view flipper) {
     return range(column(fmt::format("cmd_flipper_{}_rad", flipper))) > 0;
   });
@@ -64,6 +68,7 @@ void RunChecks::check_commands() {
 
 bool RunChecks::turns() const {
   if (has("gyro_z_radps")) {
+    // Over a window of kTurnWithin_s a turn is larger than what the bias of a gyro adds up to.
     const Course turned = rate("gyro_z_radps");
     for (const double t_s : turned.t_s)
       if (std::abs(mean_rate(turned, t_s, kTurnWithin_s)) * kTurnWithin_s > kTurns_rad) return true;
@@ -75,6 +80,7 @@ bool RunChecks::turns() const {
 }
 
 void RunChecks::check_constants() {
+  // Tracks: speed and travel must change while they are commanded to; a constant command may give a constant speed.
   const bool pose_moves = farthest_from_start() > kSeen_m;
   for (const std::string side : kSides) {
     const double commanded_m = total_change(rate("cmd_track_" + side + "_mps"));
@@ -91,10 +97,13 @@ void RunChecks::check_constants() {
               commanded_m, pose_moves ? " and the robot moves" : "",
               other || pose_moves ? "; leave the cells empty" : ", or the track is blocked"));
     }
+
     if (const std::string name = "track_" + side + "_a"; constant(column(name)))
       add(Severity::dead, name,
           "never changes while the track is driven; leave the cells empty where it is not measured");
   }
+
+  // Flippers: an angle must follow its command.
   for (const std::string_view flipper : robot::kFlipperNames) {
     const std::string angle = fmt::format("flipper_{}_rad", flipper);
     if (const double commanded = range(column("cmd_" + angle)); commanded > kTurns_rad && constant(column(angle)))
@@ -102,6 +111,8 @@ void RunChecks::check_constants() {
           fmt::format("never changes, while {:.3g} rad are commanded: its encoder is dead, or the flipper is stuck",
                       commanded));
   }
+
+  // Pose and inertial sensors: something must change while the tracks carry the robot.
   const double way_m = distance_of_belts();
   if (way_m < kCarries_m) return;
   if (has("x_m") && constant(column("x_m")) && constant(column("y_m")))
@@ -117,6 +128,7 @@ void RunChecks::check_constants() {
     add(Severity::warn, "yaw_rad",
         "never changes while the robot drives: either the heading is not measured, and the column is to be left out, "
         "or it is written in steps larger than it changed");
+
   for (const std::string name :
        {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps", "acc_x_mps2", "acc_y_mps2", "acc_z_mps2"})
     if (constant(column(name)))
@@ -137,6 +149,8 @@ void RunChecks::check_held() {
 
 void RunChecks::check_pose() {
   const auto t_s = column("t_s"), x = column("x_m"), y = column("y_m"), z = column("z_m"), yaw = column("yaw_rad");
+
+  // A run needs a pose or at least its tracks.
   const bool tracks_measured = has("track_left_mps") || has("track_left_m");
   if (!has("x_m") || !has("y_m")) {
     add(tracks_measured ? Severity::warn : Severity::refuse, has("x_m") ? "y_m" : "x_m",
@@ -148,6 +162,7 @@ void RunChecks::check_pose() {
   }
   if (refused("x_m")) return;  // in another unit every step is a jump
 
+  // One pass over the rows looks for jumps of heading and place, and for times in which the pose is frozen.
   constexpr double kLate_s = 0.5, kStart_s = 0.3, kStill_mps = 0.1, kFrozen_s = 1, kFrozenBelts_m = 0.2;
   constexpr double kJump_m = 0.1, kFall_mps = 5, kJump_rad = 0.5, kTumble_radps = 15, kSpeeds = 5;
   const double most_mps = robot_ != nullptr ? robot_->drive.max_speed_mps : 1;
@@ -157,6 +172,7 @@ void RunChecks::check_pose() {
   double farthest_m = 0, longest_frozen_s = 0;
   std::optional<std::size_t> start, last, last_yaw, same_since;
   for (std::size_t i = 0; i < t_s.size(); ++i) {
+    // Heading, while the robot is upright: faster than any robot turns or tumbles.
     if (!stands[i]) last_yaw.reset();
     if (i < yaw.size() && !std::isnan(yaw[i]) && stands[i]) {
       const double dt_s = last_yaw ? t_s[i] - t_s[*last_yaw] : 0;
@@ -164,6 +180,8 @@ void RunChecks::check_pose() {
       if (turn > kJump_rad + kTumble_radps * dt_s && turns++ == 0) first_turn = i;
       last_yaw = i;
     }
+
+    // Place: faster than kSpeeds times its speed plus a fall.
     if (std::isnan(x[i] + y[i])) continue;
     if (!start) start = i;
     if (last) {
@@ -173,6 +191,8 @@ void RunChecks::check_pose() {
         if (jumps++ == 0) first_jump = i;
         farthest_m = std::max(farthest_m, way_m);
       }
+
+      // Frozen: the longest time at the very same place during which both belts went far.
       if (way_m > 0) same_since.reset();
       if (way_m == 0 && !same_since) same_since = *last;
       if (same_since && t_s[i] - t_s[*same_since] > std::max(longest_frozen_s, kFrozen_s)) {
@@ -187,6 +207,7 @@ void RunChecks::check_pose() {
     }
     last = i;
   }
+
   if (longest_frozen_s > 0)
     add(Severity::warn, "x_m",
         fmt::format(
@@ -207,6 +228,8 @@ void RunChecks::check_pose() {
                     "the cells there",
                     turns),
         line(first_turn));
+
+  // The run needs a first pose, near its first row, from which a simulation starts.
   if (!start)
     return add(tracks_measured ? Severity::warn : Severity::refuse, "x_m",
                "has a value in no row in which y_m has one: where the robot went is not known");
@@ -217,6 +240,8 @@ void RunChecks::check_pose() {
             "before it",
             t_s[*start]),
         line(*start));
+
+  // Without track speeds the run must start at rest, as its initial speed is unknown.
   if (!tracks_measured) {
     for (std::size_t i = *start; i < t_s.size() && t_s[i] <= t_s[*start] + kStart_s; ++i)
       if (t_s[i] - t_s[*start] > 0.5 * kStart_s &&

@@ -11,23 +11,23 @@
 namespace kenaf::gap::logs {
 namespace {
 
-// All of these are chosen.
-constexpr Eigen::Index kMostGridPoints = 8192;  // of either side; a longer log gets a coarser grid
+// All chosen.
+constexpr Eigen::Index kMostGridPoints = 8192;  // of either log; a longer one gets a coarser grid
 constexpr double kShortestOverlap_s = 1;
-constexpr double kTellsSomething = 0.5;         // r squared from which on a quantity counts
-constexpr double kFollows = 0.8, kAbsurd = 10;  // r squared and factor beyond the bounds that show a wrong unit
-constexpr double kRefuted = 2;                  // an offset is, where it leaves so many times the variance
-constexpr double kEnoughMotion = 0.2;           // of what the less moving side saw has to lie in the overlap
+constexpr double kTellsSomething = 0.5;         // least r squared of a quantity that counts
+constexpr double kFollows = 0.8, kAbsurd = 10;  // least r squared, and factor beyond the gain's bounds, of a wrong unit
+constexpr double kRefuted = 2;                  // an offset is refuted by this many times the residual variance
+constexpr double kEnoughMotion = 0.2;  // share of the motion, as the log with less of it saw it, in the overlap
 constexpr double kWidestPeak_s = 2, kLargestError_s = 0.25;
-constexpr double kCorrelatedOver_s = 2;  // residuals farther apart are taken as independent
-constexpr double kFinest_s = 1e-9;       // no clock tells less; courses that are the same leave no residual at all
+constexpr double kCorrelatedOver_s = 2;  // residuals farther apart count as independent
+constexpr double kFinest_s = 1e-9;       // least standard error: identical courses leave no residual at all
 constexpr Eigen::Index kMostFinePoints = 20000;
-constexpr double kBodyIsGoodEnough_s = 0.01;  // then what slips only compares
+constexpr double kBodyIsGoodEnough_s = 0.01;  // standard error with which quantities that slip are not needed
 
 using Eigen::ArrayXd;
 using Eigen::Index;
 
-// Rates on a grid; 0 where not known, and then the mask is 0.
+// Rates on a grid. Where a rate is unknown, value and mask are 0.
 struct Rates {
   ArrayXd value, known;
   double energy() const { return value.square().sum(); }
@@ -44,6 +44,7 @@ Rates rates_on(const Course& course, double first_s, double step_s, double windo
   return rates;
 }
 
+// A time grid of each log with a common step. A lag pairs robot point i with capture point i - lag.
 struct Grid {
   double window_s, step_s, robot_first_s, capture_first_s;
   Index robot_count, capture_count;
@@ -72,6 +73,8 @@ Grid grid_for(const std::vector<CourseSeenTwice>& courses) {
       longest_step_s = std::max(longest_step_s, median_step(side->t_s, side->value));
   }
   Grid grid{};
+
+  // The window is long enough for the slower log, and for a grid of at most kMostGridPoints.
   const double longest_s = std::max(robot.length_s(), capture.length_s());
   grid.window_s =
       std::max(comparing_window_s(longest_step_s), kStepsPerWindow * longest_s / static_cast<double>(kMostGridPoints));
@@ -83,7 +86,9 @@ Grid grid_for(const std::vector<CourseSeenTwice>& courses) {
   return grid;
 }
 
-// One quantity at one lag: the robot's rates a fitted by gain b.
+// One quantity at one lag: the robot's rates a fitted by the captured rates b times a gain g. Minimizing
+// S(g) = sum (a - g b)^2 gives g = sum(a b) / sum(b b), clamped to its bounds. With independent normal residuals the
+// log-likelihood over that of no relation (g = 0) is -n/2 log(S / sum(a a)) = -n/2 log(1 - r^2).
 struct Fit {
   double count = 0, robot_energy = 0, capture_energy = 0, gain = 0, squares = 0;
 
@@ -98,6 +103,8 @@ Fit fit_at(const Rates& robot, const Rates& capture, Index lag, double least_gai
   const Index count = std::min(robot.value.size() - i, capture.value.size() - j);
   const auto a = robot.value.segment(i, count), a_known = robot.known.segment(i, count);
   const auto b = capture.value.segment(j, count), b_known = capture.known.segment(j, count);
+
+  // The masks restrict all sums to points known in both logs; unknown rates are 0 in the products.
   Fit fit;
   fit.count = (a_known * b_known).sum();
   fit.robot_energy = (a.square() * b_known).sum();
@@ -116,10 +123,11 @@ struct Quantity {
 };
 
 struct Coarse {
-  Index best = 0;  // in fits
+  Index best = 0;  // index in fits
   double log_likelihood = 0;
 };
 
+// The lag of highest joint likelihood: log-likelihoods of the quantities add up. Fits of less than 1 s do not count.
 Coarse search(std::vector<Quantity>& quantities, const Grid& grid, bool any_gain) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
   Coarse coarse;
@@ -145,7 +153,7 @@ bool tells_something(const Quantity& quantity, Index k) {
   return at(quantity, k).r_squared() >= kTellsSomething;
 }
 
-// Enough of the motion lies in the overlap, measured by the side that saw less of it.
+// Whether enough of the motion lies in the overlap, measured by the log that saw less of it.
 bool moves_in_overlap(const Quantity& quantity, Index k) {
   const Fit& fit = at(quantity, k);
   const double all = std::min(quantity.robot.energy(), fit.gain * fit.gain * quantity.capture.energy());
@@ -171,6 +179,7 @@ std::string what_a_gain_means(const CourseSeenTwice& seen, double gain) {
   return words;
 }
 
+// Throws NoOffset, with the unit or sign that would explain it if the logs agree with an unbounded gain.
 [[noreturn]] void no_agreement(std::vector<Quantity>& quantities, const Grid& grid) {
   const Coarse any = search(quantities, grid, true);
   double best = 0;
@@ -184,7 +193,7 @@ std::string what_a_gain_means(const CourseSeenTwice& seen, double gain) {
   throw NoOffset(fmt::format("{} (correlation at most {:.2f}): are they of the same drive?", words, std::sqrt(best)));
 }
 
-// Throws where a quantity follows the other side's but for its sign, or a factor that only a unit explains.
+// Throws if the two rates of a quantity agree but for a sign, or a factor that only a wrong unit explains.
 void check_units(const std::vector<Quantity>& quantities, const Grid& grid, Index best) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
   for (const Quantity& quantity : quantities) {
@@ -195,8 +204,10 @@ void check_units(const std::vector<Quantity>& quantities, const Grid& grid, Inde
   }
 }
 
-// Throws where another offset explains the rates about as well, or too wide a range of them does.
+// Throws if another offset, or too wide a range of offsets, explains the rates about as well.
 void check_unique(const std::vector<Quantity>& quantities, const Grid& grid, Index best) {
+  // A lag is refuted by any telling quantity whose residual variance there is more than kRefuted times that at the best
+  // lag (at least a millionth of its mean square, for perfect fits), and also if its overlap has no motion.
   const auto refuted = [&](Index k) {
     bool moves = false;
     for (const Quantity& quantity : quantities) {
@@ -209,6 +220,8 @@ void check_unique(const std::vector<Quantity>& quantities, const Grid& grid, Ind
     }
     return !moves;
   };
+
+  // The interval of lags around the best one that are not refuted: how well the offset is determined.
   Index low = best, high = best;
   while (low > 0 && !refuted(low - 1)) --low;
   while (high + 1 < grid.lag_count() && !refuted(high + 1)) ++high;
@@ -217,6 +230,8 @@ void check_unique(const std::vector<Quantity>& quantities, const Grid& grid, Ind
         fmt::format("every offset from {:.2f} to {:.2f} s fits about as well: the robot hardly changes its "
                     "speed or direction where both logs overlap; start and stop within both of them",
                     grid.offset_s(grid.first_lag() + low), grid.offset_s(grid.first_lag() + high)));
+
+  // Beyond that interval any lag left is a second solution; the one with the longest overlap is reported.
   Index rival = -1;
   for (Index k = 0; k < grid.lag_count(); ++k)
     if ((k < low || k > high) && !refuted(k) &&
@@ -229,7 +244,8 @@ void check_unique(const std::vector<Quantity>& quantities, const Grid& grid, Ind
                     grid.offset_s(grid.first_lag() + best), grid.offset_s(grid.first_lag() + rival)));
 }
 
-// The sum over i of x(i) x(i + lag), weighted for lags up to `most` by Bartlett's triangle, both ways.
+// Newey and West's variance of the sum of x: sum over lags k from -most to most of w(k) sum_i x(i) x(i + k), with
+// Bartlett's weights w(k) = 1 - |k| / (most + 1), which keep it from becoming negative.
 double bartlett_sum(const ArrayXd& x, Index most) {
   double sum = x.square().sum();
   for (Index lag = 1; lag <= std::min(most, x.size() - 1); ++lag) {
@@ -239,7 +255,8 @@ double bartlett_sum(const ArrayXd& x, Index most) {
   return sum;
 }
 
-// The variance of the sum of j r, with r stationary.
+// The variance of sum_i j(i) r(i) for stationary r: sum over lags k of w(k) [sum_i j(i) j(i + k)] gamma(k), with the
+// autocovariance gamma(k) = sum_i r(i) r(i + k) / n and Bartlett's weights w(k).
 double stationary_variance(const ArrayXd& j, const ArrayXd& r, Index most) {
   const Index n = r.size();
   double sum = j.square().sum() * r.square().sum();
@@ -251,8 +268,12 @@ double stationary_variance(const ArrayXd& j, const ArrayXd& r, Index most) {
   return sum / static_cast<double>(n);
 }
 
-// Least squares of offset and gain from `start_s` on; empty where it leaves the neighbourhood or finds no motion.
+// Least squares for offset o and gain g in a(t) = g b(t - o) + r(t), by Gauss-Newton from `start_s` with the gain
+// eliminated: g = a'b / b'b. The Jacobian of r by the offset is dr/do = g db/dt, less its part along b, which a change
+// of the gain absorbs: j = g (db/dt - b (db/dt)'b / b'b). The step is -j'r / j'j.
+// Empty if it leaves the neighbourhood, finds no motion or fits badly.
 std::optional<QuantityOffset> refine(const CourseSeenTwice& seen, const Grid& grid, double start_s) {
+  // Evaluates at the robot's own sample step, at no more than kMostFinePoints times.
   const double window_s = grid.window_s;
   Span span;
   span.add(seen.robot);
@@ -260,10 +281,12 @@ std::optional<QuantityOffset> refine(const CourseSeenTwice& seen, const Grid& gr
   const double step_s =
       std::max(std::min(grid.step_s, sample_s), span.length_s() / static_cast<double>(kMostFinePoints));
   const auto count = static_cast<Index>(span.length_s() / step_s) + 1;
+
   double offset_s = start_s, gain = 0;
   ArrayXd residual, slope;
   double curvature = 0, correlation = 0;
   for (int iteration = 0; iteration < 30; ++iteration) {
+    // Both rates at the present offset, and the derivative of the captured one by central differences.
     std::vector<double> a, b, b_slope;
     for (Index i = 0; i < count; ++i) {
       const double t_s = span.first_s + static_cast<double>(i) * step_s, there_s = t_s - offset_s;
@@ -280,20 +303,25 @@ std::optional<QuantityOffset> refine(const CourseSeenTwice& seen, const Grid& gr
       return Eigen::Map<const ArrayXd>(v.data(), static_cast<Index>(v.size()));
     };
     const ArrayXd robot = as_array(a), capture = as_array(b), derivative = as_array(b_slope);
+
+    // Gain, residual r and Jacobian j.
     const double energy = capture.square().sum();
     if (!(energy > 0)) return std::nullopt;
     gain = (robot * capture).sum() / energy;
     correlation = gain * std::sqrt(energy / robot.square().sum());
     residual = robot - gain * capture;
-    // Of the residual by the offset, less what a change of the gain does as well.
     slope = gain * (derivative - capture * ((derivative * capture).sum() / energy));
     curvature = slope.square().sum();
     if (!(curvature > 0)) return std::nullopt;
+
+    // Steps are limited to half a window, within which the derivative holds; two windows away is another solution.
     const double change_s = -(slope * residual).sum() / curvature;
     offset_s += std::clamp(change_s, -0.5 * window_s, 0.5 * window_s);
     if (std::abs(offset_s - start_s) > 2 * window_s) return std::nullopt;
     if (std::abs(change_s) < 1e-7) break;
   }
+
+  // Var(o) = (j'j)^-2 Var(j'r), with the larger of the two estimates of Var(j'r).
   const auto most = std::min(static_cast<Index>(kCorrelatedOver_s / step_s), residual.size() / 4);
   const double variance = std::max(stationary_variance(slope, residual, most), bartlett_sum(slope * residual, most)) /
                           (curvature * curvature);
@@ -310,6 +338,7 @@ bool moves(const Course& course, double enough) {
 }  // namespace
 
 ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses) {
+  // Only quantities with samples on both sides; both sides must move.
   std::vector<CourseSeenTwice> usable;
   bool robot_moves = false, capture_moves = false;
   for (const CourseSeenTwice& course : courses) {
@@ -323,6 +352,7 @@ ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses) {
   if (!robot_moves) throw NoOffset("the robot does not move in the run");
   if (!capture_moves) throw NoOffset("the robot does not move in the motion capture");
 
+  // The coarse search: mean rates on a common grid, best lag over all quantities.
   const Grid grid = grid_for(usable);
   std::vector<Quantity> quantities;
   for (const CourseSeenTwice& seen : usable)
@@ -331,6 +361,8 @@ ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses) {
                           rates_on(seen.capture, grid.capture_first_s, grid.step_s, grid.window_s, grid.capture_count),
                           {}});
   const Coarse coarse = search(quantities, grid, false);
+
+  // Refuses a best lag without agreement or without motion in the overlap, one of several, and one by wrong units.
   const auto tells = [&](const Quantity& quantity) { return tells_something(quantity, coarse.best); };
   if (coarse.log_likelihood <= 0 || std::ranges::none_of(quantities, tells)) no_agreement(quantities, grid);
   if (std::ranges::none_of(quantities, [&](const Quantity& q) { return tells(q) && moves_in_overlap(q, coarse.best); }))
@@ -339,18 +371,23 @@ ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses) {
   check_unique(quantities, grid, coarse.best);
   check_units(quantities, grid, coarse.best);
 
+  // Each quantity refines the offset by itself.
   ClockOffset result;
   const double start_s = grid.offset_s(grid.first_lag() + coarse.best);
   for (const Quantity& quantity : quantities) {
     if (const auto refined = refine(*quantity.seen, grid, start_s)) result.quantities.push_back(*refined);
     result.overlap_s = std::max(result.overlap_s, at(quantity, coarse.best).count * grid.step_s);
   }
+
+  // Where the body's own turns determine the offset well, tracks do not count: belts lead the body.
   const auto slips = [&](const QuantityOffset& quantity) {
     return std::ranges::find(usable, quantity.name, &CourseSeenTwice::name)->slips;
   };
   const bool body_is_enough = std::ranges::any_of(result.quantities, [&](const QuantityOffset& quantity) {
     return !slips(quantity) && quantity.standard_error_s < kBodyIsGoodEnough_s;
   });
+
+  // The inverse-variance mean: o = sum(o_i / s_i^2) / sum(1 / s_i^2), with variance 1 / sum(1 / s_i^2).
   double weights = 0, sum = 0;
   result.from_tracks = true;
   for (QuantityOffset& quantity : result.quantities) {
@@ -363,6 +400,8 @@ ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses) {
   }
   if (!(weights > 0)) no_agreement(quantities, grid);
   result.offset_s = sum / weights;
+
+  // The Birge ratio sqrt(chi^2 / (n - 1)) widens the error where quantities disagree by more than their own errors.
   double chi_squared = 0, count = 0;
   for (const QuantityOffset& quantity : result.quantities) {
     if (!quantity.used) continue;

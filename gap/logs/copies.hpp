@@ -1,5 +1,5 @@
-// Runs that hold the same numbers as one before. A file that was copied is no repeat: taken for one, it would say that
-// robots repeat themselves to the last bit, and every difference from the simulation would be a gap.
+// Finds runs that hold the same numbers as an earlier one. A copied file is no repeat: taken for one, it would say that
+// robots repeat themselves to the last bit, and every difference from the simulation would count as a gap.
 //
 // Thread safety: a value; one thread at a time.
 #pragma once
@@ -16,8 +16,8 @@ namespace kenaf::gap::logs {
 
 class KnownRuns {
  public:
-  // A warning where a run before this one has the same columns and values, to the last bit; else nothing, and this one
-  // is known from then on. By hash: among 10,000 runs two others are taken for each other with a chance of 3e-12.
+  // Returns a warning if an earlier run has the same columns and values, to the last bit; otherwise remembers this one.
+  // Compares hashes: among 10,000 runs the probability of a false match is 3e-12.
   std::optional<Finding> copy(const runs::Run& run, const std::string& file);
 
  private:

@@ -7,10 +7,11 @@ namespace kenaf::gap::logs {
 namespace {
 
 // All chosen.
-constexpr double kManyCounts = 4;     // a change of more counts is no flicker of a sensor that stands
-constexpr std::size_t kFewest = 10;   // such changes
-constexpr std::size_t kHeldRows = 2;  // nine in ten of them come as many rows after the change before, or more
-// Half of them come within as many times that: what changes now and then, as a command does, is not held.
+constexpr double kManyCounts = 4;     // a change by more counts is no flicker of a sensor at rest
+constexpr std::size_t kFewest = 10;   // least number of such changes
+constexpr std::size_t kHeldRows = 2;  // nine in ten of them come at least this many rows after the change before
+// The median distance is at most this many times the 10 % quantile: a value that changes now and then, as a command, is
+// not held.
 constexpr std::size_t kRegular = 2;
 
 struct Change {
@@ -25,6 +26,7 @@ std::size_t quantile(const std::vector<std::size_t>& sorted, double share) {
 }  // namespace
 
 std::optional<HeldSamples> held_samples(std::span<const double> t_s, std::span<const double> values) {
+  // The repeats, and the changes with their distance from each other.
   HeldSamples held{0, {}};
   std::vector<Change> changes;
   std::size_t rows = 0;
@@ -38,7 +40,7 @@ std::optional<HeldSamples> held_samples(std::span<const double> t_s, std::span<c
   }
   if (changes.size() < kFewest || held.repeats.empty()) return std::nullopt;
 
-  // one count is the smallest change there is
+  // One count is taken as the smallest change in the column; only changes by many counts tell.
   const double count = std::ranges::min(changes, {}, &Change::size).size;
   std::vector<std::size_t> apart;
   std::vector<double> apart_s;
@@ -48,6 +50,8 @@ std::optional<HeldSamples> held_samples(std::span<const double> t_s, std::span<c
     apart_s.push_back(changes[i].t_s - changes[i - 1].t_s);
   }
   if (apart.size() < kFewest) return std::nullopt;
+
+  // Held: the large changes are at least kHeldRows apart, and evenly so.
   std::ranges::sort(apart);
   std::ranges::sort(apart_s);
   const std::size_t least = quantile(apart, 0.1), usual = quantile(apart, 0.5);

@@ -16,7 +16,7 @@ namespace {
 constexpr double kFar_m = 0.5, kStays = 0.15, kMostSway = 0.3;
 constexpr std::size_t kFewestRuns = 3;
 
-// Of an angle that may go round.
+// Range of an angle after unwrapping.
 double range_of_angle(std::span<const double> column) {
   std::vector<double> angles;
   for (const double angle : column) {
@@ -27,7 +27,7 @@ double range_of_angle(std::span<const double> column) {
   return range(angles);
 }
 
-// How far measured tracks go, the left one times `left` and the right one times `right`, from end to end.
+// Range of left * left track + right * right track, as measured by travel or else speed.
 double reach_of_tracks(const runs::Run& run, double left, double right) {
   for (const bool is_speed : {false, true}) {
     const char* unit = is_speed ? "mps" : "m";
@@ -49,6 +49,7 @@ void LiftedRobot::look_at(const runs::Run& run, double gauge_m) {
   if (!runs::any_measured(run.column("x_m")) || !runs::any_measured(run.column("y_m"))) return;
   const double belts_m = std::max(reach_of_tracks(run, 0.5, 0.5), reach_of_tracks(run, -0.5, 0.5));
   if (belts_m < kFar_m) return;
+  // The body's turn as the way that it takes at a track: half the gauge times the angle.
   const double turned_m = gauge_m / 2 * range_of_angle(run.column("yaw_rad"));
   const double body_m = std::max(std::hypot(range(run.column("x_m")), range(run.column("y_m"))), turned_m);
   if (body_m >= kMostSway * belts_m) goes_ = true;

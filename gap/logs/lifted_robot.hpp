@@ -1,4 +1,4 @@
-// A robot whose tracks turn in the air, or on a stand: its body says nothing of contact with the ground.
+// Detects a robot whose tracks turn in the air or on a stand, so that its body tells nothing about ground contact.
 //
 // Thread safety: a value.
 #pragma once
@@ -12,12 +12,12 @@ namespace kenaf::gap::logs {
 // Looks at the runs of one log, one after another.
 class LiftedRobot {
  public:
-  // `gauge_m`: between the tracks.
+  // `gauge_m`: distance between the tracks.
   void look_at(const runs::Run& run, double gauge_m);
-  // Where there are three runs or more in which the measured tracks would carry the robot 0.5 m or more, as a way or at
-  // the tracks in a turn, and the pose goes less than 30 % of that in every one, less than 15 % in all together
-  // (chosen): a robot on the ground that is blocked or spins in one run goes in another. Of the whole dataset; none of
-  // a robot without a pose.
+  // Returns a finding for the whole dataset if there are at least three runs in which the measured tracks would carry
+  // the robot 0.5 m or more, forward or at the tracks in a turn, and the pose goes less than 30 % of that in each run
+  // and less than 15 % in all together (chosen): a robot on the ground that is blocked or spins in one run moves in
+  // another. None without a pose.
   std::optional<Finding> finding() const;
 
  private:
@@ -27,7 +27,7 @@ class LiftedRobot {
   bool goes_ = false;
 };
 
-// What is not compared of a robot that is lifted: pose and everything else that the body does.
+// Empties the columns that are not compared of a lifted robot: pose and all other motion of the body.
 void forget_body(runs::Run& run);
 
 }  // namespace kenaf::gap::logs

@@ -21,7 +21,8 @@ double median_step_of(const MotionCapture& capture) {
   return median_step(t_s, t_s);
 }
 
-// Between the captured poses before and after `t_s`; empty outside of them and in a gap.
+// Interpolates between the captured poses a and b around `t_s`: p = p_a + s (p_b - p_a), and q by slerp, with
+// s = (t - t_a) / (t_b - t_a). Empty before the first pose, after the last one and in a gap.
 std::optional<CapturedPose> pose_between(const MotionCapture& capture, double t_s, double max_gap_s) {
   const auto after = std::ranges::lower_bound(capture.poses, t_s, {}, &CapturedPose::t_s);
   if (after == capture.poses.end()) return std::nullopt;
@@ -37,11 +38,14 @@ double yaw_of(const Eigen::Quaterniond& q) {
   return physics::roll_pitch_yaw(q).z();
 }
 
-// Turns and shifts all poses in the plane so that the first one, or the mean over the first `start_s`, is the origin.
+// Moves all poses in the plane so that the first one, or the mean over the first `start_s`, becomes the origin:
+// p' = Rz(-yaw_0) (p - p_0), q' = Rz(-yaw_0) q. p_0 has z = 0, so z, roll and pitch stay.
 void put_start_at_origin(std::vector<std::optional<CapturedPose>>& poses, double start_s) {
   const auto first = std::ranges::find_if(poses, [](const auto& pose) { return pose.has_value(); });
   if (first == poses.end()) return;
   const CapturedPose start = **first;
+
+  // The mean place, and the mean heading as the direction of the sum of heading vectors, which has no jump at pi.
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Vector2d heading = Eigen::Vector2d::Zero();
   double count = 0;
@@ -51,6 +55,7 @@ void put_start_at_origin(std::vector<std::optional<CapturedPose>>& poses, double
     heading += Eigen::Vector2d(std::cos(yaw_of(pose->q)), std::sin(yaw_of(pose->q)));
     ++count;
   }
+
   const Eigen::Vector3d origin(sum.x() / count, sum.y() / count, 0);
   const Eigen::Quaterniond back(Eigen::AngleAxisd(-std::atan2(heading.y(), heading.x()), Eigen::Vector3d::UnitZ()));
   for (auto& pose : poses) {
@@ -67,11 +72,14 @@ MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const M
   if (!t_s.empty() && !(std::abs(t_s.front()) <= kLatest_s && std::abs(t_s.back()) <= kLatest_s))
     throw runs::RunFileError(
         fmt::format("the run goes from {:.3g} to {:.3g} s, times that no robot has", t_s.front(), t_s.back()));
+
+  // The offset is given or estimated: capture time = run time - offset.
   MergedRun merged{run, {}, 0, 0, {}};
   merged.max_gap_s = options.max_gap_s.value_or(kLongestGapSteps * median_step_of(capture));
   merged.offset = options.offset_s ? ClockOffset{.offset_s = *options.offset_s, .quantities = {}}
                                    : estimate_clock_offset(courses_seen_twice(run, capture));
 
+  // The pose at each row's time, where there is one.
   std::vector<std::optional<CapturedPose>> poses;
   for (const double time_s : t_s)
     poses.push_back(pose_between(capture, time_s - merged.offset.offset_s, merged.max_gap_s));
@@ -80,13 +88,16 @@ MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const M
   if (merged.rows_with_pose == 0)
     throw runs::RunFileError(
         fmt::format("no row of the run lies between two captured poses at most {:.3g} s apart", merged.max_gap_s));
+
   if (!options.keep_frame) put_start_at_origin(poses, options.start_s);
 
+  // Columns that the capture did not measure stay as they are in the run.
   runs::Run& out = merged.run;
   const std::array<bool, 6> measured = {true, true, capture.has_z, capture.has_tilt, capture.has_tilt, true};
   for (std::size_t i = 0; i < kPoseColumns.size(); ++i) {
     if (!measured[i]) continue;
     const std::string name = kPoseColumns[i];
+    // A column of the run that holds values is kept under another name; merging twice is refused.
     auto found = std::ranges::find(out.columns, name);
     if (found != out.columns.end() && runs::any_measured(out.column(name))) {
       const std::string kept = "recorded_" + name;
@@ -99,11 +110,14 @@ MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const M
       merged.renamed.emplace_back(name, kept);
       found = out.columns.end();
     }
+
+    // A new column goes to the end; an empty one is filled in its place.
     if (found == out.columns.end()) {
       out.columns.push_back(name);
       out.values.emplace_back(t_s.size(), std::numeric_limits<double>::quiet_NaN());
       found = out.columns.end() - 1;
     }
+
     std::vector<double>& values = out.values[static_cast<std::size_t>(found - out.columns.begin())];
     for (std::size_t row = 0; row < poses.size(); ++row) {
       if (!poses[row]) continue;

@@ -1,4 +1,4 @@
-// Puts motion capture's pose into a run that the robot recorded. docs/logs.md describes it for users.
+// Merges the pose from motion capture into a run that the robot recorded. docs/logs.md describes it for users.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -14,29 +14,29 @@
 namespace kenaf::gap::logs {
 
 struct MergeOptions {
-  bool keep_frame = false;            // else the first merged pose is the origin in x, y and yaw; z stays
-  double start_s = 0;                 // the first pose is the mean over this time; 0: one pose
-  std::optional<double> offset_s{};   // known, not estimated
-  std::optional<double> max_gap_s{};  // a pose is only put between captured ones so near; empty: 2.5 median steps
+  bool keep_frame = false;            // otherwise the first merged pose becomes the origin in x, y and yaw; z stays
+  double start_s = 0;                 // the first pose is the mean over this time; 0: a single pose
+  std::optional<double> offset_s{};   // clock offset, if known; empty: estimated
+  std::optional<double> max_gap_s{};  // longest time between captured poses to interpolate; empty: 2.5 median steps
 };
 
 struct MergedRun {
   runs::Run run;       // columns of the run in order, then those of the pose
-  ClockOffset offset;  // no quantities: it was given
+  ClockOffset offset;  // without quantities if it was given
   double max_gap_s;
   std::size_t rows_with_pose;
   std::vector<std::pair<std::string, std::string>> renamed;  // columns that were replaced: old name, kept as
 };
 
-// What run and capture both measured, as estimate_clock_offset() compares it: turns about the body's axes from gyro,
-// posture sensor or the pose that the run has; travel of the tracks, and their difference where nothing else tells
+// Returns the quantities that run and capture both measured, for estimate_clock_offset(): turns about the body's axes
+// from gyro, posture sensor or the run's own pose; travel of the tracks, and their difference if nothing else measured
 // turns.
 std::vector<CourseSeenTwice> courses_seen_twice(const runs::Run& run, const MotionCapture& capture);
 
-// The run with x_m, y_m, z_m, roll_rad, pitch_rad, yaw_rad of the capture, as far as that measured them, at the run's
-// own times. A pose column of the run that holds values is kept as recorded_<name>.
-// Throws NoOffset; runs::RunFileError where no row of the run lies within the capture, recorded_<name> is there, or the
-// run's times are beyond kLatest_s.
+// Returns the run with x_m, y_m, z_m, roll_rad, pitch_rad and yaw_rad from the capture, as far as it measured them,
+// interpolated at the run's own times. A pose column of the run that holds values is kept as recorded_<name>.
+// Throws NoOffset; runs::RunFileError if no row of the run lies within the capture, recorded_<name> exists already, or
+// the run's times are beyond kLatest_s.
 MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const MergeOptions& options);
 
 }  // namespace kenaf::gap::logs

@@ -12,9 +12,9 @@
 namespace kenaf::gap::logs {
 namespace {
 
-// How far from 1 the norm of a quaternion may be that was written with few digits.
+// Tolerance of a quaternion's norm, which may have been written with few digits.
 constexpr double kNormTolerance = 0.01;
-// Beyond these no place and no angle of a robot lies, as with kLatest_s.
+// Largest absolute place and angle of a robot, as kLatest_s of its times.
 constexpr double kFarthest_m = 1e6, kLargest_rad = 1e6;
 
 class Table {
@@ -26,7 +26,7 @@ class Table {
   }
   bool has(const std::string& column) const { return !run_.column(column).empty(); }
 
-  // The column that is there under one of two names, as {values, factor into SI}.
+  // A column that may have one of two names; `factor` converts to SI.
   struct Column {
     std::span<const double> values;
     double factor = 1;
@@ -58,6 +58,7 @@ MotionCapture parse_motion_capture(std::string_view text, std::string_view name_
 MotionCapture motion_capture_of(const runs::Run& table, std::string_view name_for_errors, LengthUnit unit) {
   using Column = Table::Column;
   const Table in(table, name_for_errors);
+  // Finds the columns, whichever unit and form of rotation they have.
   const auto length = [&](const std::string& axis) {
     return in.either(axis + "_m", unit == LengthUnit::millimetres ? 1e-3 : 1, axis + "_mm", 1e-3);
   };
@@ -72,7 +73,7 @@ MotionCapture motion_capture_of(const runs::Run& table, std::string_view name_fo
     in.fail("neither yaw_rad nor qx, qy, qz, qw are there: without a heading the pose cannot be put into a run");
   if (roll.has_value() != pitch.has_value()) in.fail("of roll and pitch only one is there");
 
-  // The columns of a pose, in order; NaN in one: no measurement.
+  // The columns of a pose, in order; the rotation's come last.
   std::vector<Column> columns{x, y};
   if (z) columns.push_back(*z);
   const std::size_t rotation = columns.size();
@@ -87,6 +88,7 @@ MotionCapture motion_capture_of(const runs::Run& table, std::string_view name_fo
   const auto t_s = table.column("t_s");
   std::vector<double> cell(columns.size());
   for (std::size_t row = 0; row < t_s.size(); ++row) {
+    // A row in which any of them is empty is no measurement.
     bool measured = true;
     for (std::size_t i = 0; i < columns.size(); ++i) {
       cell[i] = columns[i].values[row] * columns[i].factor;
@@ -96,6 +98,8 @@ MotionCapture motion_capture_of(const runs::Run& table, std::string_view name_fo
     const auto refuse = [&](const std::string& what) {
       throw runs::RunFileError(fmt::format("{}:{}:1: {}", name_for_errors, row + 2, what));
     };
+
+    // Refuses values that no robot has, and a quaternion that is no rotation.
     CapturedPose pose{t_s[row], {cell[0], cell[1], z ? cell[2] : 0}, Eigen::Quaterniond::Identity()};
     if (std::abs(pose.t_s) > kLatest_s || pose.p_m.cwiseAbs().maxCoeff() > kFarthest_m)
       refuse("a time or place that no robot has");

@@ -82,6 +82,7 @@ std::vector<Finding> check_noise(const runs::Dataset& dataset,
 
 std::vector<Finding> check_plausibility(const runs::Dataset& dataset, std::span<const runs::Run> runs,
                                         const physics::RobotDescription* robot) {
+  // Each run by itself; then the findings that concern all runs.
   std::vector<std::vector<std::string>> columns;
   std::vector<Finding> findings;
   HeldInRuns held;

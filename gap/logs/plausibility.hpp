@@ -1,9 +1,9 @@
-// Is a log what it says it is? Units, signs, clocks, sensors that are dead, poses that jump: what the format cannot
-// refuse and a diagnosis would take for a difference between robot and simulator.
+// Checks that a log is plausible: units, signs, clocks, dead sensors, poses that jump. The format cannot refuse these,
+// and a diagnosis would take them for a difference between robot and simulator.
 //
-// What is certain is refused, what is likely is warned of, and of a sensor that is certainly dead the column alone is
-// no use; a log that is right has no finding. A robot that slips, falls or stands still is right, and so is one that
-// already moves in its first row.
+// A certain fault is refused, a likely one gives a warning, and of a sensor that is certainly dead only the column is
+// useless. A correct log has no finding, also if the robot slips, falls, stands still or already moves in its first
+// row.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -22,15 +22,14 @@ namespace kenaf::gap::logs {
 struct Finding {
   enum class Severity {
     warn,
-    held,  // rows repeat a value that came more rarely: a diagnosis takes the repeats for rows in which nothing was
-           // measured
-    dead,  // the column holds no measurement: a diagnosis takes it for one that was never measured
+    held,  // rows repeat a value that came more rarely: a diagnosis treats the repeats as not measured
+    dead,  // the column holds no measurement: a diagnosis treats it as never measured
     refuse,
   };
   Severity severity;
-  std::string file;    // as the dataset names it; "dataset.toml" where it is of all runs
-  std::size_t line;    // of the file, from 1, as read_run() counts; 0: of the whole column or file
-  std::string column;  // empty: of none alone
+  std::string file;    // as the dataset names it; "dataset.toml" if it concerns all runs
+  std::size_t line;    // in the file, from 1, as read_run() counts; 0: the whole column or file
+  std::string column;  // empty: no single one
   std::string text;    // what is wrong, and what to do
 };
 
@@ -38,8 +37,8 @@ struct Finding {
 std::string in_words(const Finding& finding);
 bool any_refused(std::span<const Finding> findings);
 
-// Takes those of Severity::held off what was found in a run, since all runs of a log have the same: one remains of each
-// column, which says in how many runs.
+// Collects the findings of Severity::held, which all runs of a log share: one remains for each column and says in how
+// many runs.
 class HeldInRuns {
  public:
   void take_off(std::vector<Finding>& found);
@@ -53,17 +52,17 @@ class HeldInRuns {
   std::vector<OfColumn> columns_;
 };
 
-// Of one run. `robot`: whose limits it has; null: not known, and fewer things are certain.
+// Checks one run against the limits of `robot`; null: unknown, and fewer findings are certain.
 std::vector<Finding> check_run(const runs::Run& run, const std::string& file, const physics::RobotDescription* robot);
 
-// Of one run, only whether its numbers are in the units that its columns say, as far as that shows without a robot.
+// Checks only whether the numbers of a run are in the units of its columns, as far as that shows without a robot.
 std::vector<Finding> check_units(const runs::Run& run, const std::string& file);
 
-// Of a dataset as a whole: its noise. `runs` as Dataset::runs lists them. Without those of check_run().
+// Checks the noise of a dataset, without check_run(). `columns_of_runs` in the order of Dataset::runs.
 std::vector<Finding> check_noise(const runs::Dataset& dataset,
                                  std::span<const std::vector<std::string>> columns_of_runs);
 
-// Both, of all runs but those with a fault.
+// check_run() of all runs without a fault, and check_noise().
 std::vector<Finding> check_plausibility(const runs::Dataset& dataset, std::span<const runs::Run> runs,
                                         const physics::RobotDescription* robot);
 

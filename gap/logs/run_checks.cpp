@@ -49,6 +49,8 @@ Course RunChecks::upright_angle(const std::string& name, double most_tilt_rad) c
   for (std::size_t i = 0; i < kept.size(); ++i)
     if (!stands[i]) kept[i] = std::numeric_limits<double>::quiet_NaN();
   Course course = course_of(t_s, kept, longest_gap_s(median_step(t_s, values)));
+
+  // Unwraps by the shorter way between samples.
   double before = course.value.empty() ? 0 : course.value.front();
   for (std::size_t i = 1; i < course.value.size(); ++i) {
     const double now = course.value[i];
@@ -73,6 +75,7 @@ Course RunChecks::forward(double most_tilt_rad) const {
     if (std::isnan(x[i] + y[i] + yaw[i]) || !stands[i]) continue;
     double sum = 0;
     if (!course.t_s.empty()) {
+      // The displacement along the heading half way between both rows.
       const double heading = yaw[last] + 0.5 * std::remainder(yaw[i] - yaw[last], 2 * std::numbers::pi);
       sum = course.value.back() + (x[i] - x[last]) * std::cos(heading) + (y[i] - y[last]) * std::sin(heading);
     }
@@ -101,10 +104,11 @@ Course RunChecks::belts(double left, double right) const {
 
 std::optional<Relation> RunChecks::relate(const Course& first, const Course& second) const {
   if (first.t_s.size() < 2 || second.t_s.size() < 2) return std::nullopt;
+  // The window is long enough for the slower of the two.
   const double step_of_slower = std::max(median_step(first.t_s, first.t_s), median_step(second.t_s, second.t_s));
   const double window_s = comparing_window_s(step_of_slower), step_s = window_s / kStepsPerWindow;
   double aa = 0, bb = 0, ab = 0, sum_a = 0, sum_b = 0, count = 0;
-  // At times that have a sample: however far a clock has jumped, there are no more of them.
+  // Only at times that have a sample, so that a jump of the clock does not add any.
   double next_s = first.t_s.front();
   for (const double t_s : first.t_s) {
     if (t_s < next_s) continue;
@@ -118,6 +122,8 @@ std::optional<Relation> RunChecks::relate(const Course& first, const Course& sec
     sum_b += std::abs(b) * step_s;
     ++count;
   }
+
+  // ratio = sqrt(sum aa / sum bb), correlation = sum ab / sqrt(sum aa sum bb)
   if (count < kFewestPoints || !(aa > 0) || !(bb > 0)) return std::nullopt;
   return Relation{std::sqrt(aa / bb), ab / std::sqrt(aa * bb), sum_a, sum_b};
 }
@@ -131,12 +137,14 @@ std::optional<Relation> RunChecks::relate_values(const std::string& name, const 
     if (!std::isnan(x[i])) last_x = x[i];
     if (!std::isnan(y[i])) last_y = y[i];
     if (std::isnan(last_x + last_y)) continue;
+    // Sums are taken about the first values, so that a large offset does not cost digits.
     if (count++ == 0) first_x = last_x, first_y = last_y;
     const double a = last_x - first_x, b = last_y - first_y;
     sum_x += a, sum_y += b, xx += a * a, yy += b * b, xy += a * b;
     least_x = std::min(least_x, a), most_x = std::max(most_x, a);
     least_y = std::min(least_y, b), most_y = std::max(most_y, b);
   }
+  // About the means: sum (x - mean)^2 = sum xx - (sum x)^2 / n.
   xx -= sum_x * sum_x / count, yy -= sum_y * sum_y / count, xy -= sum_x * sum_y / count;
   if (!(count > 1) || !(xx > 0) || !(yy > 0)) return std::nullopt;
   return Relation{std::sqrt(xx / yy), xy / std::sqrt(xx * yy), most_x - least_x, most_y - least_y};

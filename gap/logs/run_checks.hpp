@@ -1,4 +1,4 @@
-// What the checks of plausibility.hpp share: one run with its robot's limits, and the findings so far.
+// Shared by the checks of plausibility.hpp: one run with its robot's limits, and the findings so far.
 #pragma once
 
 #include <fmt/format.h>
@@ -17,11 +17,11 @@ namespace kenaf::gap::logs {
 inline constexpr std::array<const char*, 2> kSides = {"left", "right"};  // as in the columns of tracks
 inline constexpr double kUpright_rad = 1;                                // chosen
 
-// How two quantities go together that should be the same: their mean rates over windows of 0.2 s or more.
+// How well two quantities that should be equal go together, by their mean rates over windows of 0.2 s or more.
 struct Relation {
   double ratio;          // of their root mean squares
-  double correlation;    // about zero
-  double first, second;  // how far each went in all: the sum of sizes of its changes
+  double correlation;    // without subtracting means
+  double first, second;  // total variation of each: the sum of the sizes of its changes
 };
 
 class RunChecks {
@@ -29,9 +29,9 @@ class RunChecks {
   RunChecks(const runs::Run& run, std::string file, const physics::RobotDescription* robot)
       : run_(run), file_(std::move(file)), robot_(robot) {}
 
-  void check_clock();   // before the scales, which it must come before: false time falsifies all rates
+  void check_clock();   // must precede check_scales(): false times falsify all rates
   void check_scales();  // units and signs of quantities that go together
-  void check_ranges();  // values that nothing has
+  void check_ranges();  // impossible values
   void check_commands();
   void check_constants();
   void check_held();
@@ -47,23 +47,24 @@ class RunChecks {
   void add(Severity severity, const std::string& name, const std::string& text, std::size_t at_line = 0) {
     findings_.push_back({severity, file_, at_line, name, text});
   }
-  bool found(const std::string& name) const;  // something is said of it already
+  bool found(const std::string& name) const;  // has a finding already
   bool refused(const std::string& name) const;
 
-  Course adding(const std::string& name) const;  // of a column that adds up: travel, an angle
-  // Of roll, pitch or yaw, unwrapped, where the robot is upright: near pitch pi/2 yaw jumps, and upside down all turn.
+  Course adding(const std::string& name) const;  // of an accumulated column: travel, an angle
+  // Unwrapped roll, pitch or yaw while the robot is upright: near pitch pi/2 yaw jumps, and upside down the angles
+  // turn the other way.
   Course upright_angle(const std::string& name, double most_tilt_rad = kUpright_rad) const;
-  // Each row; by the newest roll and pitch, the pose's or else the posture sensor's, where there are any.
+  // For each row, by the newest roll and pitch of the pose, or else of the posture sensor, if there are any.
   std::vector<bool> upright(double most_tilt_rad = kUpright_rad) const;
   Course rate(const std::string& name) const;             // of a column of rates
-  Course forward(double most_tilt_rad = INFINITY) const;  // of the pose, along its heading
-  Course belts(double left, double right) const;          // measured, else commanded
+  Course forward(double most_tilt_rad = INFINITY) const;  // travel of the pose along its heading
+  Course belts(double left, double right) const;          // weighted sum of both tracks: measured, else commanded
   std::optional<Relation> relate(const Course& first, const Course& second) const;
-  // Of the values instead, about their means, as a slow servo follows in value and not in rate. An empty cell holds the
-  // value before it. `first` and `second` are their ranges.
+  // Compares values about their means instead of rates, as a slow servo follows in value and not in rate. An empty cell
+  // holds the value before it. `first` and `second` are the ranges of the two.
   std::optional<Relation> relate_values(const std::string& name, const std::string& other) const;
-  double distance_of_belts() const;    // the farther going belt's way, to and fro
-  double farthest_from_start() const;  // of the pose in the plane
+  double distance_of_belts() const;    // path length, to and fro, of the belt that goes farther
+  double farthest_from_start() const;  // largest distance of the pose from its start, in the plane
 
   void check_same_length(const std::string& name, const std::string& other, const std::optional<Relation>& relation);
   void check_same_angle(const std::string& name, const std::string& other, const std::optional<Relation>& relation,
@@ -71,12 +72,12 @@ class RunChecks {
   void check_turned_sign(const std::string& name, const std::string& other, const std::optional<Relation>& relation,
                          double enough_first, double enough_second, const std::string& what_to_do);
   void check_pose_against_tracks();
-  // `on_level` is the same relation where nothing pulls the robot down a slope, and the ratio of a robot that obeys its
-  // tracks lies between the two given.
+  // `on_level` is the same relation on level ground only. The ratio of a robot that obeys its tracks lies between
+  // `least_ratio` and `most_ratio`.
   void check_against_tracks(const std::string& name, const std::optional<Relation>& relation,
                             const std::optional<Relation>& on_level, double enough, double least_ratio,
                             double most_ratio, const std::string& what_to_do);
-  bool turns() const;  // by its gyro, or where there is none by its measured tracks
+  bool turns() const;  // by its gyro, or without one by its measured tracks
 
   const runs::Run& run_;
   std::string file_;

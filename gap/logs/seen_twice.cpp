@@ -1,4 +1,4 @@
-// What a run and a motion capture both measured: merge_pose.hpp.
+// The quantities that a run and a motion capture both measured: merge_pose.hpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 namespace kenaf::gap::logs {
 namespace {
 
-// What robots do: a gyro, a posture sensor or another pose agrees with motion capture, belts slip, and what track
-// speeds differ by turns a robot by far less than they would without slip. Gauges from 0.1 to 2 m.
+// Gains that robots have: a gyro, a posture sensor or another pose agrees with motion capture; belts slip; and with
+// slip the difference of the track speeds turns a robot far less than without. Gauges from 0.1 to 2 m.
 constexpr double kLeastGain = 0.8, kMostGain = 1.25;
 constexpr double kLeastBelt = 0.5, kMostBelt = 3;
 constexpr double kLeastGauge_m = 0.1, kMostGauge_m = 10;
@@ -22,7 +22,7 @@ constexpr double kEnough_rad = 0.1, kEnough_m = 0.05;
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
 
-// The turns about the body's axes and the way forward, added up.
+// The turns about the body's axes and the travel along its x axis, accumulated.
 struct BodyCourses {
   std::array<Course, 3> turn;
   Course forward;
@@ -40,8 +40,10 @@ BodyCourses courses_of(const Poses& poses) {
   for (Course* course : {&courses.turn[0], &courses.turn[1], &courses.turn[2], &courses.forward})
     *course = {poses.t_s, {0}, gap_s};
   for (std::size_t i = 1; i < poses.t_s.size(); ++i) {
+    // The rotation vector of q_(i-1)^-1 q_i is the turn in the body's frame; the travel is the displacement along the
+    // body's x axis half way between both rotations.
     const Eigen::AngleAxisd step(poses.q[i - 1].conjugate() * poses.q[i]);
-    // AngleAxis has angles from 0 to 2 pi; the shorter way round is meant.
+    // AngleAxis has angles from 0 to 2 pi; the remainder is the shorter way round.
     const Eigen::Vector3d turn = std::remainder(step.angle(), 2 * std::numbers::pi) * step.axis();
     const Eigen::Vector3d forward = poses.q[i - 1].slerp(0.5, poses.q[i]) * Eigen::Vector3d::UnitX();
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -62,7 +64,8 @@ Poses poses_of(const MotionCapture& capture) {
   return poses;
 }
 
-// The rows of a run in which all of these were measured; roll and pitch are 0 where `tilt` is false.
+// The rows of a run in which all columns asked for were measured. Roll and pitch are 0 without `tilt`, x and y without
+// `place`.
 Poses poses_of(const runs::Run& run, const std::string& angle_prefix, bool tilt, bool place) {
   const auto column = [&run](const std::string& name) { return run.column(name); };
   const auto t = column("t_s"), x = column("x_m"), y = column("y_m"), yaw = column(angle_prefix + "yaw_rad"),
@@ -79,7 +82,7 @@ Poses poses_of(const runs::Run& run, const std::string& angle_prefix, bool tilt,
   return poses;
 }
 
-// The sum of `left` times a sign and `right`, where both were measured.
+// The weighted sum of two columns; NaN where either is.
 std::vector<double> combined(std::span<const double> left, std::span<const double> right, double of_left,
                              double of_right) {
   std::vector<double> sum(std::min(left.size(), right.size()));
@@ -94,6 +97,7 @@ std::vector<CourseSeenTwice> courses_seen_twice(const runs::Run& run, const Moti
   const auto t_s = run.column("t_s");
   std::vector<CourseSeenTwice> seen;
   bool has_turn = false;
+  // A quantity needs two samples of the robot; without tilt the capture measured turns about z alone.
   const auto add = [&](const std::string& name, Course robot, const Course& other, double least, double most,
                        double enough, bool slips) {
     if (robot.t_s.size() >= 2) seen.push_back({name, std::move(robot), other, least, most, enough, slips});
@@ -105,6 +109,7 @@ std::vector<CourseSeenTwice> courses_seen_twice(const runs::Run& run, const Moti
         kMostGain, kEnough_rad, false);
   };
 
+  // Turns come from the best sensor there is: the gyro, else the posture sensor, else the run's own pose.
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name = std::string("gyro_") + kAxes[axis] + "_radps";
     const auto rate = run.column(name);
@@ -119,6 +124,8 @@ std::vector<CourseSeenTwice> courses_seen_twice(const runs::Run& run, const Moti
     for (std::size_t axis = tilt ? 0 : 2; axis < 3; ++axis) add_turn(axis, prefix + "yaw_rad", courses.turn[axis]);
   }
 
+  // Travel from the tracks, as a distance or else integrated from speeds; their difference gives turns only if no
+  // sensor did.
   const auto add_belts = [&](const std::string& unit, bool adds_up) {
     const auto left = run.column("track_left_" + unit), right = run.column("track_right_" + unit);
     const auto course = [&](double of_left, double of_right) {
@@ -135,6 +142,8 @@ std::vector<CourseSeenTwice> courses_seen_twice(const runs::Run& run, const Moti
           true);
     return true;
   };
+
+  // Without tracks the run's own pose gives the travel.
   if (!add_belts("m", true) && !add_belts("mps", false) && !run.column("x_m").empty() && !run.column("y_m").empty())
     add("travel (x_m, y_m)", courses_of(poses_of(run, "", false, true)).forward, captured.forward, kLeastGain,
         kMostGain, kEnough_m, false);

@@ -14,6 +14,7 @@ struct MeasuredCell {
   double t_s, value;
 };
 
+// Longest time between cells that is interpolated.
 double hole_of(const std::vector<MeasuredCell>& cells) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < cells.size(); ++i) steps.push_back(cells[i].t_s - cells[i - 1].t_s);
@@ -42,6 +43,7 @@ std::vector<double> column_at(const runs::Run& run, std::string_view column, std
   if (cells.empty()) return {};
   const bool angle = column.ends_with("roll_rad") || column.ends_with("pitch_rad") || column.ends_with("yaw_rad");
   const double hole_s = hole_of(cells);
+  // One pass over both lists: a cell at that time, else interpolated, else unknown.
   std::vector<double> result;
   result.reserve(times_s.size());
   std::size_t next = 0;  // first cell that is not before the time

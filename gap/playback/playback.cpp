@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The dataset that lists a run's file, with that run alone; or one made for it.
+// The dataset that lists a run's file, reduced to that run; or one made for it.
 runs::Dataset dataset_of_file(const fs::path& file, std::vector<std::string>& notes) {
   const std::string name = file.filename().string();
   if (fs::exists(file.parent_path() / "dataset.toml")) {
@@ -44,6 +44,8 @@ void read_report(const fs::path& folder, Playback& playback) {
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(fmt::format("{}: {}", file.string(), error.what()));
   }
+
+  // A report of none of the manoeuvres is that of other runs.
   const auto told = [&](const ListedRun& run) {
     return std::ranges::any_of(playback.report->phases,
                                [&](const ReportedPhase& phase) { return phase.manoeuvre == run.entry.manoeuvre; });
@@ -67,12 +69,15 @@ std::size_t find_run(const Playback& playback, const std::string& name) {
 
 Playback load_playback(const PlaybackRequest& request) {
   Playback playback;
+  // A single file, or a dataset's folder.
   const fs::path path = fs::absolute(request.runs).lexically_normal();
   const bool alone = fs::is_regular_file(path);
   playback.folder = alone ? path.parent_path() : path;
   playback.name = (path.has_filename() ? path : path.parent_path()).filename().string();
   const runs::Dataset dataset = alone ? dataset_of_file(path, playback.notes) : runs::read_dataset(request.runs);
   playback.source = dataset.source;
+
+  // Robot and worlds as requested, or else the dataset's; each world is loaded once.
   playback.robots.nominal = physics::load_robot(
       request.robot.empty() ? runs::resolve_beside(playback.folder, dataset.robot, ".toml") : request.robot);
   std::map<std::string, std::size_t> worlds;
@@ -88,6 +93,7 @@ Playback load_playback(const PlaybackRequest& request) {
     const auto time = run.column("t_s");
     playback.runs.push_back({entry, shown_name(world), run.row_count(), time.back() - time.front(), known->second});
   }
+
   if (!request.report.empty()) read_report(request.report, playback);
   if (!request.run.empty()) playback.first = find_run(playback, request.run);
   return playback;

@@ -48,7 +48,7 @@ void write_body(JsonWriter& out, const PlayedBody& body) {
   out.close('}').close('}');
 }
 
-// Columns that can be drawn, with their units; where a report says how much of the gap they show, that.
+// Columns that can be drawn, with their units and, if a report has it, their share of the gap.
 void write_channels(JsonWriter& out, const Playback& playback, const PlayedRun& played) {
   out.key("channels").open('[');
   for (const diagnose::Channel& channel : diagnose::diagnosis_channels()) {
@@ -68,6 +68,7 @@ void write_channels(JsonWriter& out, const Playback& playback, const PlayedRun& 
 }  // namespace
 
 std::string playback_json(const Playback& playback) {
+  // One object with the keys in the order of docs/compare.md.
   JsonWriter out;
   out.open('{').key("format").text("kenaf-playback/1").key("name").text(playback.name);
   out.key("source").text(playback.source).key("first").integer(playback.first);
@@ -94,6 +95,7 @@ std::string playback_json(const Playback& playback) {
 }
 
 std::string played_run_json(const Playback& playback, std::size_t index, const PlayedRun& played) {
+  // One object with the keys in the order of docs/compare.md.
   const ListedRun& listed = playback.runs.at(index);
   JsonWriter out;
   out.open('{').key("file").text(played.entry.file).key("manoeuvre").text(played.entry.manoeuvre);

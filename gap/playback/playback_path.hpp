@@ -1,4 +1,4 @@
-// What a page of recorded runs may ask for.
+// The paths that a page of recorded runs may request.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@ struct PlaybackPath {
   bool scene = false;              // the run's world, and not the run
 };
 
-// What stands behind "/playback": nothing for the list, "/RUN" or "/RUN/scene". nullopt: the path is none of these.
-// Whether there is such a run, the caller knows. Pure.
+// Parses what follows "/playback": nothing for the list, "/RUN" or "/RUN/scene"; nullopt otherwise. Does not check that
+// the run exists. Pure.
 std::optional<PlaybackPath> parse_playback_path(std::string_view path);
 
 }  // namespace kenaf::gap::playback

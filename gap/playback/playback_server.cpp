@@ -48,7 +48,7 @@ struct PlaybackServer::Implementation {
     if (asked->scene) return {http::status::ok, "application/octet-stream", scenes[playback.runs[run].world]};
     const Shelf::Look look = shelf.look(run);
     if (!look.failure.empty()) return live::reply_in_words(http::status::internal_server_error, look.failure + "\n");
-    // the page asks again
+    // The page asks again.
     if (!look.text) return live::reply_in_words(http::status::accepted, "It is being simulated.\n");
     return {http::status::ok, kJson, look.text};
   }

@@ -1,4 +1,4 @@
-// Serves a playback as a page, by the rules of the live view (docs/live-view.md): Host, Origin, token.
+// Serves a playback as a page, with the access rules of the live view (docs/live-view.md): Host, Origin, token.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace kenaf::gap::playback {
 
 class PlaybackServer {
  public:
-  // Listens, and serves from then on, on a thread of its own; runs are simulated on another one when a page asks for
-  // them. Throws std::runtime_error in words.
+  // Listens and serves on a thread of its own; simulates runs on another one when a page requests them. Throws
+  // std::runtime_error with words for the user.
   PlaybackServer(Playback playback, const live::ViewOptions& options);
-  // Waits for a simulation that is under way.
+  // Waits for a running simulation.
   ~PlaybackServer();
   PlaybackServer(const PlaybackServer&) = delete;
   PlaybackServer& operator=(const PlaybackServer&) = delete;

@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 3> kPosition{"x_m", "y_m", "z_m"}, kAngle
 constexpr std::array<std::string_view, 2> kBelts{"left", "right"};
 constexpr std::string_view kCommands[] = {"cmd_track_left_mps", "cmd_track_right_mps"};
 
-// A hole holds what was before it.
+// Fills unknown values with the one before; with `otherwise` at the start and if there are none.
 std::vector<double> held(std::vector<double> values, std::size_t count, double otherwise) {
   if (values.empty()) values.assign(count, otherwise);
   double last = otherwise;
@@ -61,6 +61,7 @@ PlayedBody body_of(std::string_view kind, const runs::Run& run, std::span<const 
     body.p_WB_m[i] = column_at(run, kPosition[i], times_s);
     body.angles_rad[i] = column_at(run, kAngles[i], times_s);
   }
+  // Flippers by their measured angles, else by their commands.
   for (std::size_t i = 0; i < robot::kFlipperNames.size(); ++i) {
     auto angle = column_at(run, fmt::format("flipper_{}_rad", robot::kFlipperNames[i]), times_s);
     if (angle.empty()) angle = column_at(run, fmt::format("cmd_flipper_{}_rad", robot::kFlipperNames[i]), times_s);
@@ -78,10 +79,13 @@ PlayedBody body_of(std::string_view kind, const runs::Run& run, std::span<const 
 runs::Run with_pose(const runs::Run& run, const physics::RobotDescription& robot, PoseFrom& from,
                     std::vector<std::string>& notes) {
   const auto has = [&run](std::string_view column) { return runs::any_measured(run.column(column)); };
+  // A measured pose is kept.
   if (has("x_m") && has("y_m") && has("yaw_rad")) {
     from = PoseFrom::measured;
     return run;
   }
+
+  // Otherwise dead reckoning replaces it, or there is none; a note says so.
   runs::Run result = run;
   if (const auto path = reckon(run, robot)) {
     from = PoseFrom::dead_reckoning;
@@ -102,7 +106,7 @@ runs::Run with_pose(const runs::Run& run, const physics::RobotDescription& robot
   return result;
 }
 
-// Heights and tilts that were not measured.
+// Adds heights and tilts that were not measured.
 void complete_pose(PlayedBody& body, const PlayedBody* nominal, double standing_m, std::vector<std::string>& notes) {
   const std::size_t count = body.p_WB_m[0].size();
   if (body.p_WB_m[2].empty()) {
@@ -121,6 +125,7 @@ void complete_pose(PlayedBody& body, const PlayedBody* nominal, double standing_
 
 std::vector<PlayedBody> simulate_bodies(const diagnose::Observation& observation, const PlayedRobots& robots,
                                         const physics::WorldDescription& world, std::span<const double> times_s) {
+  // A set of one run, for the diagnosis' own predictor; both robots are simulated at the same time.
   diagnose::Observations one;
   one.robot = robots.nominal;
   one.worlds.push_back(world);
@@ -144,14 +149,17 @@ std::vector<PlayedBody> simulate_bodies(const diagnose::Observation& observation
 PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const std::string& path,
                    const PlayedRobots& robots, const physics::WorldDescription& world, std::size_t most_times) {
   PlayedRun played{entry, run.row_count(), shown_times(run.column("t_s"), most_times), {}, {}, {}, {}};
+
+  // The recorded robot.
   PoseFrom from = PoseFrom::nothing;
   const runs::Run posed = with_pose(run, robots.nominal, from, played.notes);
   played.bodies.push_back(body_of("recorded", posed, played.times_s));
   played.bodies.front().pose_from = from;
-  // what was reckoned is no measurement, and may stand in the place of one
+  // Reckoned columns are no measurements, and may have replaced some.
   if (from == PoseFrom::dead_reckoning) played.bodies.front().channels = channels_of(run, played.times_s);
   if (!entry.fault.empty()) played.notes.push_back("This run's own simulation went wrong: " + entry.fault);
 
+  // Phases by the recorded run, and its simulations.
   diagnose::Observation observation{entry.file, entry.manoeuvre, 0, posed, {}, {}, 0};
   if (played.times_s.back() <= rollout::kLongestManoeuvre_s) played.phases = diagnose::phases_of(observation);
   try {
@@ -161,12 +169,15 @@ PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const st
   } catch (const std::exception& error) {
     played.notes.push_back(fmt::format("Not simulated: {}.", error.what()));
   }
+
+  // The simulations come first, since the recorded robot may take its height from the nominal one.
   const PlayedBody* nominal = played.bodies.size() > 1 ? &played.bodies[1] : nullptr;
   const double standing_m = standing_height_m(robots.nominal);
   for (std::size_t i = played.bodies.size(); i-- > 0;) {
     if (played.bodies[i].pose_from == PoseFrom::nothing) continue;
     complete_pose(played.bodies[i], i == 0 ? nominal : nullptr, standing_m, played.notes);
   }
+
   if (std::ranges::any_of(world.boxes, [](const physics::Box& box) { return box.mass_kg > 0; }))
     played.notes.push_back(
         "The world has boxes that can be pushed; no run records where they are, and they are not drawn.");

@@ -53,7 +53,7 @@ std::vector<ReportedPhase> phases_of_run(const ReportedPlaces& places, const std
     const auto found = world_of.find(name);
     return found == world_of.end() ? std::string() : found->second;
   };
-  std::set<std::string> told;  // whose phases could be this run's
+  std::set<std::string> told;  // runs whose phases could be this run's
   for (const ReportedPhase& phase : places.phases)
     if (phase.manoeuvre == manoeuvre && (phase.run.empty() || world(phase.run) == world(file))) told.insert(phase.run);
   if (told.empty() || (told.size() > 1 && !told.contains(file))) return {};

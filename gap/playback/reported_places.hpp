@@ -1,4 +1,4 @@
-// Where a report.json says that the gap is, as far as playback marks it.
+// The places of the gap in a report.json, as far as playback marks them.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -12,7 +12,7 @@ namespace kenaf::gap::playback {
 
 struct ReportedPhase {
   std::string manoeuvre, phase;
-  std::string run;      // file of the repeat whose times these are; empty in reports that do not say
+  std::string run;      // file of the repeat to which the times belong; empty in reports that do not name it
   double from_s, to_s;  // finite, 0 <= from_s <= to_s
   double share;         // of the gap, from 0 to 1
 };
@@ -24,12 +24,12 @@ struct ReportedPlaces {
   std::map<std::string, double> channel_share;  // by column
 };
 
-// Throws std::runtime_error in words where `report_json` is none of the formats kenaf-gap-report/1 and /2. (Of
-// version 2 these are the places of the stage that holds most of the gap.)
+// Throws std::runtime_error with words for the user if `report_json` has neither format kenaf-gap-report/1 nor /2. In
+// version 2 these are the places of the stage with most of the gap.
 ReportedPlaces parse_reported_places(std::string_view report_json);
 
-// Those of one run: its own, or those of the repeat that the report has in its place. `world_of`: of each run's file; a
-// report that has several repeats of that manoeuvre in that world, and not this run, says nothing of it.
+// Returns the phases of one run: its own, or those of the only repeat that the report has of the same manoeuvre and
+// world. Empty if it has several repeats, but not this run. `world_of`: the world of each run's file.
 std::vector<ReportedPhase> phases_of_run(const ReportedPlaces& places, const std::string& file,
                                          const std::string& manoeuvre,
                                          const std::map<std::string, std::string>& world_of);

@@ -35,6 +35,7 @@ Shelf::Look Shelf::look(std::size_t number) {
 void Shelf::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
+    // The newest request, unless its text exists already.
     changed_.wait(lock, [this] { return ending_ || !wanted_.empty(); });
     if (ending_) return;
     const std::size_t number = wanted_.front();
@@ -42,6 +43,8 @@ void Shelf::work() {
       wanted_.remove(number);
       continue;
     }
+
+    // Makes the text without the lock, so that look() never waits.
     lock.unlock();
     std::shared_ptr<const std::string> text;
     std::string failure;
@@ -50,12 +53,15 @@ void Shelf::work() {
     } catch (const std::exception& error) {
       failure = error.what();
     }
+
     lock.lock();
     wanted_.remove(number);
     if (!text) {
       failures_[number] = failure;
       continue;
     }
+
+    // Keeps it, and drops the least recently requested ones beyond the limit, but never this one.
     bytes_ += text->size();
     texts_[number] = std::move(text);
     kept_.push_front(number);

@@ -1,6 +1,6 @@
-// Texts that take long to make, made one at a time on a thread of their own when somebody asks, and kept for a while.
+// Makes texts that take long, one at a time on a thread of its own when somebody asks, and caches them.
 //
-// Thread safety: all of it.
+// Thread safety: all functions.
 #pragma once
 
 #include <condition_variable>
@@ -17,19 +17,19 @@ namespace kenaf::gap::playback {
 
 class Shelf {
  public:
-  // `make` is called on the shelf's thread; what it throws is told to who asked. Of what was made, the longest unasked
-  // for is dropped beyond `most_bytes`.
+  // Calls `make` on the shelf's thread; look() returns what it throws. Beyond `most_bytes`, drops the text that was not
+  // requested for the longest time.
   Shelf(std::size_t most_bytes, std::function<std::string(std::size_t)> make);
-  // Waits for what is being made.
+  // Waits for the text in work.
   ~Shelf();
   Shelf(const Shelf&) = delete;
   Shelf& operator=(const Shelf&) = delete;
 
   struct Look {
-    std::shared_ptr<const std::string> text;  // null: it is being made, or next, or could not be
-    std::string failure;                      // why it could not; told once, then it is tried again
+    std::shared_ptr<const std::string> text;  // null: in work, queued, or failed
+    std::string failure;                      // why it failed; returned once, then it is tried again
   };
-  // Returns at once. Whatever was asked for last is made next.
+  // Returns at once. The text requested last is made next.
   Look look(std::size_t number);
 
  private:
@@ -41,7 +41,7 @@ class Shelf {
   std::condition_variable changed_;
   bool ending_ = false;
   std::list<std::size_t> wanted_;  // next first
-  std::list<std::size_t> kept_;    // last asked for first
+  std::list<std::size_t> kept_;    // last requested first
   std::map<std::size_t, std::shared_ptr<const std::string>> texts_;
   std::map<std::size_t, std::string> failures_;
   std::size_t bytes_ = 0;

@@ -31,7 +31,7 @@ Ticks round_ticks(Range range, int at_most) {
   for (;; power *= 10) {
     for (const double factor : {1.0, 2.0, 5.0}) {
       const double step = factor * power;
-      // A hair of room, so that the range's own round ends are ticks.
+      // With a tolerance, so that round ends of the range are ticks.
       const double first = std::ceil(range.low / step - 1e-9), last = std::floor(range.high / step + 1e-9);
       if (last - first + 1 > at_most) continue;
       Ticks ticks;

@@ -1,4 +1,4 @@
-// Round numbers along an axis.
+// Ticks at round numbers along an axis.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -13,15 +13,15 @@ struct Range {
   double span() const { return high - low; }
 };
 
-// A range around [low, high] that has an extent, whatever the numbers: a little more than what rounding hides.
+// Returns a range around [low, high] that is at least a little longer than rounding errors.
 Range with_extent(Range range);
 
 struct Ticks {
-  std::vector<double> at;           // multiples of one step of 1, 2 or 5 times a power of ten, rising
-  std::vector<std::string> labels;  // as many decimals as the step has
+  std::vector<double> at;           // multiples of one step of 1, 2 or 5 times a power of ten, ascending
+  std::vector<std::string> labels;  // with as many decimals as the step
 };
 
-// The ticks within a range, with the smallest step that makes no more than `at_most` >= 2.
+// Returns the ticks within a range, with the smallest step that gives at most `at_most` >= 2 of them.
 Ticks round_ticks(Range range, int at_most);
 
 }  // namespace kenaf::gap::plot

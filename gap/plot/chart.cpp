@@ -18,7 +18,7 @@ constexpr double kLeft_px = 70, kRight_px = 14, kTop_px = 50, kBottom_px = 42;
 constexpr double kTitleBase_px = 16, kLegendBase_px = 38, kLegendSample_px = 24;
 constexpr double kLetter_px = 7.5;  // about the width of a letter at the font size of 13
 constexpr double kPixelsPerTick_x = 60, kPixelsPerTick_y = 26;
-constexpr double kTolerance_px = 0.15;                        // by which a drawn line may differ from its points
+constexpr double kTolerance_px = 0.15;                        // largest distance of a point from the drawn line
 constexpr double kLeastHeight_px = 90, kMostHeight_px = 340;  // of the plot, where the scales are equal
 
 std::string_view stroke_class(Stroke stroke) {
@@ -49,7 +49,7 @@ Range grown(Range range, double to_span) {
   return to_span > range.span() ? Range{middle - to_span / 2, middle + to_span / 2} : range;
 }
 
-// A margin of `share`, but none beyond a zero at which all values end.
+// Adds a margin of `share` to both ends, but not below a range that begins at zero.
 Range with_margin(Range range, double share) {
   range = with_extent(range);
   const double margin = share * range.span();
@@ -59,6 +59,8 @@ Range with_margin(Range range, double share) {
 View view_of(const Chart& chart, const Bounds& bounds) {
   const double width_px = chart.width_px - kLeft_px - kRight_px;
   View view{with_extent(bounds.x), with_margin(bounds.y, 0.06), width_px, chart.height_px - kTop_px - kBottom_px};
+
+  // The largest common scale that fits both axes; then both ranges grow to fill the plot.
   if (chart.equal_scales) {
     view.y = with_extent(bounds.y);
     const double pixels = std::min(width_px / view.x.span(), kMostHeight_px / view.y.span());
@@ -71,6 +73,7 @@ View view_of(const Chart& chart, const Bounds& bounds) {
 
 std::string path_data(const std::vector<Point>& points, const View& view) {
   std::string data;
+  // Points that are not finite part the line into pieces, each simplified by itself.
   std::vector<Point> piece;
   const auto draw_piece = [&] {
     for (std::size_t i = 0; const Point& p : simplified(piece, kTolerance_px)) {
@@ -160,7 +163,7 @@ std::string discs(const Chart& chart, const View& view) {
 std::string contents(const Chart& chart, const View& view) {
   std::string svg;
   const auto out = std::back_inserter(svg);
-  // An inner <svg> clips what lies outside of it.
+  // An inner <svg> clips its contents.
   fmt::format_to(out, "<svg width=\"{:.1f}\" height=\"{:.1f}\">\n", view.width_px, view.height_px);
   for (const Area& area : chart.areas) {
     fmt::format_to(out, "<path class=\"{} {}\" d=\"{}{}\"/>\n", area.filled ? "area" : "line", ink_class(area.ink),
@@ -184,6 +187,7 @@ std::string_view ink_class(Ink ink) {
 }
 
 std::string_view style_sheet() {
+  // The colours of light and dark theme and of paper, then the classes.
   return R"(:root { color-scheme: light dark;
   --paper: #fff; --ink: #1b2430; --soft: #5d6875; --grid: #e3e7ec; --frame: #9aa4b0;
   --real: #0072b2; --sim: #d55e00; --third: #009e73; --fourth: #cc79a7; --faint: #7d8792;
@@ -238,6 +242,8 @@ std::string to_svg(const Chart& chart) {
   for (const Line& line : chart.lines) {
     for (const Point& p : line.points) bounds.add(p);
   }
+
+  // The view must show the lines and what the chart includes.
   const bool empty = bounds.empty();
   if (empty) bounds.add({0, 0});
   for (const Point& p : chart.include) bounds.add(p);
@@ -277,7 +283,7 @@ std::string escaped(std::string_view text) {
         out += "&quot;";
         break;
       default:
-        // control characters may stand in no XML, not even escaped
+        // XML allows no control characters, not even escaped
         if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t')
           out += "\uFFFD";
         else

@@ -26,6 +26,8 @@ double widest_px(const std::vector<std::string>& names) {
 std::string to_svg(const HeatMap& map) {
   if (map.rows.empty() || map.columns.empty())
     return svg_begin(map.title, map.width_px, kMapTop_px) + text_at(0, kMapTop_px - 8, "nothing to show") + "</svg>\n";
+  // Layout: names of rows at the left, slanted names of columns above, which are length * sin(slant) high; cells fill
+  // the width.
   const double slant = kSlant_deg * 3.141592653589793 / 180;
   const double left_px = widest_px(map.rows) + 12, names_px = widest_px(map.columns);
   const double head_px = names_px * std::sin(slant) + 14, right_px = names_px * std::cos(slant) + 10;
@@ -33,6 +35,7 @@ std::string to_svg(const HeatMap& map) {
   const double cell_px = std::clamp((map.width_px - left_px - right_px) / columns, kLeastCell_px, kMostCell_px);
   const double width_px = std::max(left_px + columns * cell_px + right_px,
                                    std::max(text_width_px(map.legend), 1.1 * text_width_px(map.title)) + 8);
+
   std::string svg =
       svg_begin(map.title, width_px, kMapTop_px + head_px + kCellHeight_px * static_cast<double>(map.rows.size()) + 6);
   const auto out = std::back_inserter(svg);

@@ -17,9 +17,9 @@ constexpr double kTitle_px = 26, kLegend_px = 22, kGuide_px = 16, kRow_px = 24, 
 constexpr double kRadius_px = 5, kBarHalf_px = 7, kWhiskerEnd_px = 4;
 constexpr double kPixelsPerTick = 70;
 
-// From values to pixels, at the edge where they are beyond it.
+// Maps values to pixels; values beyond the range go to its edge.
 struct Scale {
-  Range range;  // of the logarithm where that is drawn
+  Range range;  // of the logarithms on a logarithmic scale
   bool logarithmic;
   double width_px;
   double operator()(double value) const {
@@ -31,6 +31,7 @@ struct Scale {
 Range range_of(const RowChart& chart) {
   if (chart.view)
     return chart.logarithmic ? Range{std::log10(chart.view->low), std::log10(chart.view->high)} : *chart.view;
+  // All values, intervals and guides, and the zero at which bars begin; values without a logarithm do not count.
   Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   const auto add = [&](double value) {
     if (!std::isfinite(value) || (chart.logarithmic && value <= 0)) return;
@@ -55,6 +56,7 @@ Ticks ticks_of(const Scale& scale) {
   if (!scale.logarithmic) return round_ticks(scale.range, at_most);
   Ticks ticks;
   const double factors[] = {1, 2, 5};
+  // Over more than 2.5 decades only powers of ten.
   const bool few = scale.range.span() > 2.5;
   for (int power = static_cast<int>(std::floor(scale.range.low)); power <= scale.range.high; ++power)
     for (const double factor : factors) {
@@ -123,6 +125,8 @@ std::string to_svg(const RowChart& chart) {
   std::string svg = svg_begin(chart.title, chart.width_px, top_px + rows_px + kRowsBottom_px) + legend_of(chart);
   const auto out = std::back_inserter(svg);
   fmt::format_to(out, "\n<g transform=\"translate({:.1f} {:.1f})\">\n", chart.label_px, top_px);
+
+  // Grid with tick labels, axis label and guides.
   const Ticks ticks = ticks_of(scale);
   std::string grid;
   for (std::size_t i = 0; i < ticks.at.size(); ++i) {
@@ -137,6 +141,8 @@ std::string to_svg(const RowChart& chart) {
     svg += text_at(scale(value), -7, words, scale(value) > 0.8 * scale.width_px ? "end" : "middle");
   }
   svg += "\n";
+
+  // The rows, then the frame over them.
   for (std::size_t i = 0; i < chart.rows.size(); ++i)
     svg += row_of(chart.rows[i], scale, kRow_px * (static_cast<double>(i) + 0.5));
   fmt::format_to(out, "<path class=\"frame\" d=\"M0 0h{0:.1f}v{1:.1f}h-{0:.1f}z\"/>\n</g>\n", scale.width_px, rows_px);

@@ -1,4 +1,4 @@
-// Named quantities one below the other, each a mark with its interval on one common axis.
+// Named quantities in rows, each with marks and their intervals on one common axis.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -12,11 +12,11 @@
 
 namespace kenaf::gap::plot {
 
-// Shapes, so that nobody needs the colours.
+// Shapes, so that the chart is readable without colours.
 enum class Shape { ring, disc, bar };
 
 struct RowMark {
-  double value;  // what is not finite is left out
+  double value;  // left out if not finite
   Shape shape = Shape::disc;
   Ink ink = Ink::real;
   std::optional<Range> interval{};  // a whisker
@@ -24,7 +24,7 @@ struct RowMark {
 
 struct Row {
   std::string label;           // left of the axis
-  std::vector<RowMark> marks;  // several are joined by a line
+  std::vector<RowMark> marks;  // joined by a line
   std::string note;            // right of the axis
 };
 
@@ -38,13 +38,13 @@ struct RowChart {
   std::string title, x_label;
   std::vector<Row> rows;
   std::vector<RowLegend> legend;
-  std::vector<std::pair<double, std::string>> guides;  // dashed upright lines with their words
-  std::optional<Range> view;  // empty: of all values and intervals; what is beyond is drawn at its edge
-  bool logarithmic = false;   // all that is not positive is drawn at the left edge
+  std::vector<std::pair<double, std::string>> guides;  // dashed vertical lines with their labels
+  std::optional<Range> view;  // empty: all values and intervals; values beyond are drawn at its edge
+  bool logarithmic = false;   // values that are not positive are drawn at the left edge
   double label_px = 190, note_px = 0, width_px = 1060;
 };
 
-// One <svg> element, for the style sheet of chart.hpp. Without rows it says "nothing to show".
+// Returns one <svg> element, for the style sheet of chart.hpp. Without rows it says "nothing to show".
 std::string to_svg(const RowChart& chart);
 
 }  // namespace kenaf::gap::plot

@@ -25,6 +25,8 @@ std::vector<Vector2d> simplified(std::span<const Vector2d> points, double tolera
   if (points.size() < 3) return {points.begin(), points.end()};
   std::vector<bool> stays(points.size(), false);
   stays.front() = stays.back() = true;
+
+  // Each open piece keeps its point farthest from the chord if that is beyond the tolerance, and is split there.
   std::vector<std::pair<std::size_t, std::size_t>> open{{0, points.size() - 1}};
   while (!open.empty()) {
     const auto [first, last] = open.back();
@@ -57,11 +59,14 @@ std::vector<Vector2d> envelope(std::span<const Vector2d> points, std::size_t col
   const auto by_y = [](const Vector2d& a, const Vector2d& b) { return a.y() < b.y(); };
   std::vector<Vector2d> kept;
   for (std::size_t begin = 0; begin < points.size();) {
+    // A piece is all finite points in one column, or a single point that is not finite.
     std::size_t end = begin + 1;
     const auto is_with_first = [&](const Vector2d& p) {
       return std::isfinite(p.y()) && std::isfinite(points[begin].y()) && column_of(p) == column_of(points[begin]);
     };
     while (end < points.size() && is_with_first(points[end])) ++end;
+
+    // Its first, lowest, highest and last point in order, each once.
     const auto [low, high] = std::minmax_element(points.begin() + static_cast<std::ptrdiff_t>(begin),
                                                  points.begin() + static_cast<std::ptrdiff_t>(end), by_y);
     std::array<std::size_t, 4> corners{begin, static_cast<std::size_t>(low - points.begin()),

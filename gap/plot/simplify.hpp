@@ -1,4 +1,4 @@
-// Fewer points for the same line.
+// Reduces the points of a line without a visible change.
 #pragma once
 
 #include <span>
@@ -8,12 +8,13 @@
 
 namespace kenaf::gap::plot {
 
-// Leaves points out so that none of them was farther than `tolerance` from what is left (Ramer, Douglas and Peucker).
-// First and last stay. All finite.
+// Leaves out points that are within `tolerance` of the remaining line (Ramer, Douglas and Peucker). First and last
+// stay. All points must be finite.
 std::vector<Eigen::Vector2d> simplified(std::span<const Eigen::Vector2d> points, double tolerance);
 
-// A dense line as a picture of so many columns has it: of each of `columns` equal spans of x the first, lowest, highest
-// and last point, in their order. x must not fall. Points whose y is not finite, at which a line breaks, all stay.
+// Reduces a dense line to what a picture of `columns` columns can show: the first, lowest, highest and last point of
+// each of that many equal spans of x, in their order. x must not decrease. Points whose y is not finite, at which a
+// line breaks, all stay.
 std::vector<Eigen::Vector2d> envelope(std::span<const Eigen::Vector2d> points, std::size_t columns);
 
 }  // namespace kenaf::gap::plot

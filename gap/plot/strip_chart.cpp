@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kStripsTop_px = 54, kStrip_px = 38, kGap_px = 8, kStripsBottom_px = 42, kStripsRight_px = 14;
 constexpr double kLabelGap_px = 10;
-constexpr double kSmallLetter = 0.85;  // of the width of a letter of full size
+constexpr double kSmallLetter = 0.85;  // width of a small letter relative to one of full size
 constexpr int kScaleSteps = 6;
 constexpr double kScaleStep_px = 26;
 
@@ -28,7 +28,7 @@ double room_for_labels(const StripChart& chart) {
   return std::clamp(widest_px + 2 * kLabelGap_px, chart.label_px, std::max(chart.label_px, chart.width_px / 2));
 }
 
-// The scale of shades, after the words of the legend.
+// The scale of shades, after the text of the legend.
 std::string scale_of(const StripChart& chart) {
   std::string svg = text_at(0, 38, chart.legend);
   double x = text_width_px(chart.legend) + 12;
@@ -57,6 +57,8 @@ std::string to_svg(const StripChart& chart) {
     for (const StripSpan& span : strip.spans) range = {std::min(range.low, span.from), std::max(range.high, span.to)};
   if (range.span() <= 0)
     return svg_begin(chart.title, chart.width_px, kStripsTop_px) + text_at(0, 38, "nothing to show") + "</svg>\n";
+
+  // The common axis begins at 0 or earlier, right of the labels.
   const double label_px = room_for_labels(chart), width_px = chart.width_px - label_px - kStripsRight_px;
   const double height_px = (kStrip_px + kGap_px) * static_cast<double>(chart.strips.size());
   const auto at = [&](double value) { return (value - range.low) / range.span() * width_px; };
@@ -64,12 +66,15 @@ std::string to_svg(const StripChart& chart) {
       svg_begin(chart.title, chart.width_px, kStripsTop_px + height_px + kStripsBottom_px) + scale_of(chart);
   const auto out = std::back_inserter(svg);
   fmt::format_to(out, "<g transform=\"translate({:.1f} {:.1f})\">\n", label_px, kStripsTop_px);
+
+  // Grid with tick labels, then the strips.
   const Ticks ticks = round_ticks(range, 14);
   for (std::size_t i = 0; i < ticks.at.size(); ++i) {
     fmt::format_to(out, "<path class=\"grid\" d=\"M{:.1f} 0v{:.1f}\"/>", at(ticks.at[i]), height_px);
     svg += text_at(at(ticks.at[i]), height_px + 15, ticks.labels[i], "middle");
   }
   svg += text_at(width_px / 2, height_px + 34, chart.x_label, "middle") + "\n";
+
   for (std::size_t s = 0; s < chart.strips.size(); ++s) {
     const double y = (kStrip_px + kGap_px) * static_cast<double>(s) + kGap_px / 2;
     svg += text_at(-kLabelGap_px, y + kStrip_px / 2 + 4.5, end_of(chart.strips[s].label, label_px - kLabelGap_px),

@@ -1,4 +1,4 @@
-// Time spans with names, one strip for each row over one common axis, each span darker where more is.
+// Named time spans in strips over one common axis, darker for more.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -10,8 +10,8 @@ namespace kenaf::gap::plot {
 
 struct StripSpan {
   double from, to;
-  double strength;         // of its shade, 0 to 1
-  std::string name, note;  // in the span, one below the other, where they have room
+  double strength;         // of the shade, 0 to 1
+  std::string name, note;  // in the span, one below the other, if they have room
 };
 
 struct Strip {
@@ -22,13 +22,13 @@ struct Strip {
 struct StripChart {
   std::string title, x_label;
   std::vector<Strip> strips;
-  std::string legend;                      // what the shade means
+  std::string legend;                      // meaning of the shade
   std::string least, most;                 // at the ends of the scale of shades
-  double label_px = 190, width_px = 1060;  // labels get more where they need it, up to half of the width
+  double label_px = 190, width_px = 1060;  // labels get more if they need it, up to half of the width
 };
 
-// One <svg> element, for the style sheet of chart.hpp. Without strips it says "nothing to show". A name without room in
-// its span shows under the pointer.
+// Returns one <svg> element, for the style sheet of chart.hpp. Without strips it says "nothing to show". A name without
+// room in its span is shown under the pointer.
 std::string to_svg(const StripChart& chart);
 
 }  // namespace kenaf::gap::plot

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kSvgTitleBase_px = 16;
 constexpr double kMeanLetter_px = 7.2;  // about the mean width of a letter at the font size of 13
-constexpr double kMostShade = 0.62;     // of opacity: text in ink on it keeps a contrast of 4.5, on light and on dark
+constexpr double kMostShade = 0.62;     // largest opacity: text on it keeps a contrast of 4.5 in both themes
 
 }  // namespace
 

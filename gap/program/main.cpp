@@ -1,11 +1,11 @@
-// kenaf-gap: how far simulation and reality are apart, and why.
+// kenaf-gap: measures how far simulation and reality differ, and finds out why.
 //
 //   kenaf-gap effects
 //   kenaf-gap compare REAL SIM --out DIR
 //   kenaf-gap --help
 //
-// Exit status: 0 done; 1 done but for runs whose simulation went wrong; 2 bad input, or what comes out cannot be
-// written, with what is wrong and where on standard error.
+// Exit status: 0 done; 1 done except for runs whose simulation went wrong; 2 bad input, or the output cannot be
+// written, with the error and its place on standard error.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -41,7 +41,7 @@ std::string in_words(const CLI::App* program, const CLI::Error& error) {
   return fmt::format("kenaf-gap: {}\n{} --help says what there is\n", error.what(), command);
 }
 
-// What was printed may not have gone anywhere, on a full disk.
+// Throws if the output could not be written, as on a full disk.
 void finish_output() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
     throw std::runtime_error("standard output cannot be written; is its disk full?");
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
   CLI::App program{"How far are simulation and reality apart, and why?", "kenaf-gap"};
   program.set_version_flag("--version", KENAF_VERSION);
   program.failure_message(in_words);
-  program.require_subcommand(0, 1);  // required, but CLI11 would not say which word it did not know
+  program.require_subcommand(0, 1);  // checked below, since CLI11 would not name an unknown word
   for (const auto add : kCommands) add(program);
   try {
     program.parse(argc, argv);

@@ -1,9 +1,9 @@
-// kenaf-gap-mpi: kenaf-gap diagnose by several processes, on several machines.
+// kenaf-gap-mpi: runs kenaf-gap diagnose in several processes, on several machines.
 //
 //   mpirun -n 8 kenaf-gap-mpi diagnose DATASET --out DIR
 //
-// Every machine needs the dataset, the shipped data and the same build. The first process writes the reports. Exit
-// status as kenaf-gap.
+// Every machine needs the dataset, the shipped data and the same build. The first process writes the reports. The exit
+// status is that of kenaf-gap.
 #include <fmt/format.h>
 #include <mpi.h>
 
@@ -22,7 +22,7 @@ using kenaf::gap::Ranks;
 
 constexpr int kBadInput = 2;
 
-// What a rank has goes as one array: for each result its size, then its values.
+// Packs the results rank, rank + count, ... into one array: for each its size, then its values.
 std::vector<double> packed(const std::vector<Eigen::VectorXd>& results, int rank, int count) {
   std::vector<double> numbers;
   for (auto j = static_cast<std::size_t>(rank); j < results.size(); j += static_cast<std::size_t>(count)) {
@@ -40,6 +40,7 @@ void unpack(const double* numbers, std::vector<Eigen::VectorXd>& results, int ra
   }
 }
 
+// Gives all ranks the results of every one.
 void share(std::vector<Eigen::VectorXd>& results, int rank, int count) {
   const std::vector<double> own = packed(results, rank, count);
   const int own_size = static_cast<int>(own.size());
@@ -67,11 +68,11 @@ int run(int argc, char** argv, const Ranks& ranks) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // all ranks have the same arguments: one says what is wrong with them
+    // All ranks have the same arguments; only one prints the error.
     if (ranks.rank > 0) return error.get_exit_code() == 0 ? 0 : kBadInput;
     return program.exit(error) == 0 ? 0 : kBadInput;
   } catch (const std::exception& error) {
-    // each may have what the others do not: a machine without the dataset, a full disk
+    // An error may concern one rank only: a machine without the dataset, a full disk.
     std::fprintf(stderr, "kenaf-gap-mpi: process %d of %d: %s\n", ranks.rank, ranks.count, error.what());
     std::fflush(stderr);
     MPI_Abort(MPI_COMM_WORLD, kBadInput);  // another rank may wait for this one's results
@@ -87,7 +88,7 @@ bool only_asks(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Outside of mpirun, MPI starts only on machines that could start processes on others; help is for all.
+  // Without mpirun, MPI only starts on machines that can start processes on others; help works everywhere.
   if (only_asks(argc, argv)) return run(argc, argv, {});
   MPI_Init(&argc, &argv);
   Ranks ranks;

@@ -9,9 +9,9 @@ double battery_current_a(double motor_current_a, double force_share, double spee
   return motor_current_a * std::clamp((force_share + speed_share) / voltage_share, 0.0, 1.0);
 }
 
-// The voltage that a current leaves is known a step late, and lower voltage means less current: followed at once, the
-// two would swing from step to step wherever resistance x stalled current is above the open-circuit voltage. This share
-// of the difference is Newton's step for drives at their limit, and never swings.
+// The voltage under a current is known a step late, and lower voltage means less current: followed at once, the two
+// would oscillate from step to step if resistance x stalled current exceeds the open-circuit voltage V. Drives at their
+// limit draw I_stalled v / V; Newton's step for v = V - R I(v) is the share 1 / (1 + R I_stalled / V).
 Battery::Battery(const BatteryDescription& battery, double added_resistance_ohm, double stalled_a)
     : open_circuit_v_(battery.open_circuit_v),
       resistance_ohm_(battery.internal_resistance_ohm + added_resistance_ohm),

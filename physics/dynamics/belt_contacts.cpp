@@ -7,22 +7,25 @@ namespace kenaf::physics {
 namespace {
 
 constexpr btScalar kDeepest_m = 0.03;  // deeper inside, a face is not the one that is touched
-constexpr btScalar kSideways = 0.15;   // a normal with less than this in the slice's plane belongs to a wall beside
+constexpr btScalar kSideways = 0.15;   // a normal with a smaller part in the slice belongs to a wall beside it
 constexpr btScalar kFacing = 0.9;      // cosine: a run faces a side of the ground
 constexpr btScalar kConeSlack = 0.05;  // sine: an edge is touched from within its two faces' normals
 constexpr int kMeshSlices = 5, kBoxSlices = 3;
 
-// Features are numbered: kind and place in the low bits, whose ground in the high ones.
+// A feature's number: slice and place in the low bits, the part of the ground in the high ones.
 constexpr std::uint64_t feature(std::uint64_t ground, std::uint32_t slice, std::uint32_t place) {
   return ground << 12 | slice << 8 | place;
 }
 
+// Where the slices are, and the share of the belt's width that each stands for.
 struct Slices {
   std::array<btScalar, kMeshSlices> y, share;
   int count;
 };
 
 Slices slices(const BeltShape& belt, int count) {
+  // Evenly spaced from edge to edge, weighted by the trapezoidal rule; the shares add up to 2, as those of a plane's
+  // two slices do.
   Slices s{{}, {}, count};
   for (int i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -32,8 +35,9 @@ Slices slices(const BeltShape& belt, int count) {
   return s;
 }
 
-// The points of the outline that can touch a side with that unit normal: the lowest of each disc, and those of the run
-// that faces it. `use(place, point, share)`; points have y = 0.
+// The points of the outline that can touch a face of unit normal `normal`: the lowest of each disc, and those of the
+// run that faces it, at the ends of equal pieces, weighted by the trapezoidal rule. `use(place, point, share)`; points
+// have y = 0.
 template <typename Use>
 void outline_points(const BeltShape& belt, const btVector3& normal, const Use& use) {
   for (int disc = 0; disc < 2; ++disc)
@@ -45,7 +49,7 @@ void outline_points(const BeltShape& belt, const btVector3& normal, const Use& u
     use(static_cast<std::uint32_t>(i + 1), from + (to - from) * (static_cast<btScalar>(i) / belt.pieces), 1.0);
 }
 
-// What of the outline meets a wall beside it: the ends of both runs, and both tips.
+// The points of the outline that meet a wall beside it: the ends of both runs, and both tips.
 template <typename Use>
 void side_points(const BeltShape& belt, const Use& use) {
   std::uint32_t place = 0;
@@ -55,20 +59,22 @@ void side_points(const BeltShape& belt, const Use& use) {
   use(place++, furthest_on_disc(belt, 1, {1, 0, 0}));
 }
 
+// Whether `outward` lies between the normals n1 and n2 of an edge's two faces.
 bool within_cone(const btVector3& outward, const btVector3& n1, const btVector3& n2) {
-  // outward = a n1 + b n2 for the part in the plane of both
+  // outward = a n1 + b n2, as far as it lies in their plane, with a, b >= 0. From d1 = a + b c and d2 = a c + b:
+  //   a = (d1 - c d2) / (1 - c^2)      b = (d2 - c d1) / (1 - c^2)
   const btScalar c = n1.dot(n2), d1 = outward.dot(n1), d2 = outward.dot(n2), sine2 = 1 - c * c;
   if (sine2 < 1e-6) return false;
   return d1 - c * d2 >= -kConeSlack * sine2 && d2 - c * d1 >= -kConeSlack * sine2;
 }
 
-// Lugs lie across the belt: behind an edge that runs along it, or nearly, there is nothing for them to catch.
+// Lugs lie across the belt: they catch nothing behind an edge that runs along it, or nearly.
 bool lies_across(const btVector3& edge) {
   constexpr btScalar kNearly = 0.5;  // the cosine of 60 degrees (chosen)
   return btFabs(edge.y()) > kNearly * edge.length();
 }
 
-// Corner k of a box has the sign + of axis j where bit j of k is set. Edge e runs along axis e / 4.
+// Corner k of a box is on the positive side of axis j if bit j of k is set. Edge e runs along axis e / 4.
 struct BoxEdge {
   int axis;
   std::size_t from, to;  // corners
@@ -84,6 +90,7 @@ BoxEdge box_edge(std::uint32_t e) {
 }
 constexpr std::uint32_t kBoxEdges = 12;
 
+// Whether a point, relative to the box's centre, is within the box along all axes but `except` (-1: along all).
 bool in_slabs(const BoxInT& box, const btVector3& from_center, int except) {
   for (int j = 0; j < 3; ++j)
     if (j != except && btFabs(box.axes.getColumn(j).dot(from_center)) > box.half[j]) return false;
@@ -96,7 +103,8 @@ class BoxTouches {
       : belt_(belt), box_(box), out_(out), first_(out.size()) {}
 
   void find() {
-    btScalar reach[3];  // half extents of the box along T's axes
+    // Most boxes are far away: compare the box's half extents along T's axes, |R| half, with the belt's.
+    btScalar reach[3];
     for (int k = 0; k < 3; ++k) {
       reach[k] = 0;
       for (int j = 0; j < 3; ++j) reach[k] += btFabs(box_.axes[k][j]) * box_.half[j];
@@ -106,6 +114,8 @@ class BoxTouches {
     if (c.x() - reach[0] > belt_.length + belt_.radius[1] + kTouching_m ||
         c.x() + reach[0] < -belt_.radius[0] - kTouching_m || btFabs(c.z()) > reach[2] + r)
       return;
+
+    // How deep the two overlap across the belt, and on which side the box lies.
     overlap_ = std::min(belt_.half_width + c.y() + reach[1], belt_.half_width - c.y() + reach[1]);
     beside_ = c.y() > 0 ? 1 : -1;
     if (overlap_ <= 0) return;
@@ -114,6 +124,7 @@ class BoxTouches {
       for (int j = 0; j < 3; ++j) corner_[k] += box_.axes.getColumn(j) * (k >> j & 1 ? box_.half[j] : -box_.half[j]);
     }
 
+    // Faces, edges and corners within the belt's width.
     const Slices s = slices(belt_, kBoxSlices);
     faces(s);
     for (std::uint32_t e = 0; e < kBoxEdges; ++e) {
@@ -123,17 +134,20 @@ class BoxTouches {
       inner_edge(edge, e, s);
     }
     corners();
+
+    // Where the shortest way out is sideways, the box is a wall beside the belt.
     if (overlap_ < kDeepest_m && overlap_ < depth_in_plane()) side();
   }
 
  private:
   void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar share, bool holds_lugs,
            std::uint64_t id) {
-    // what is deeper along the slice than across it is a wall that the belt's side face meets
+    // A point deeper in the slice than the overlap across it belongs to a wall that the belt's side face meets.
     if (-gap <= overlap_) out_.push_back({p, normal, gap, share, holds_lugs, id});
   }
 
-  // The faces that are not beside the slices: axis, side, normal, and the normal's part in the slices, unit length.
+  // Calls use(axis, side, normal, flat) for each face that is not beside the slices; `flat` is the normal's part in the
+  // slices' plane, of unit length.
   template <typename Use>
   void for_each_face(Use&& use) const {
     for (int j = 0; j < 3; ++j) {
@@ -146,8 +160,7 @@ class BoxTouches {
     }
   }
 
-  // How far the belt reaches below a face of axis j; `flat` is the part of the face's normal in the slices, unit
-  // length.
+  // How far the belt reaches below a face of axis j: half + n . centre - the least n . p of the swept discs.
   btScalar depth_below(int j, const btVector3& normal, const btVector3& flat) const {
     const btScalar lowest =
         std::min(normal.dot(furthest_on_disc(belt_, 0, -flat)), normal.dot(furthest_on_disc(belt_, 1, -flat))) -
@@ -155,7 +168,7 @@ class BoxTouches {
     return box_.half[j] + normal.dot(box_.center) - lowest;
   }
 
-  // How far the belt would have to go to be free of the box without leaving its slices; negative: it is free.
+  // The least displacement within the slices' plane that frees the belt from the box; negative: it is free.
   btScalar depth_in_plane() const {
     btScalar least = BT_LARGE_FLOAT;
     for_each_face([&](int j, int, const btVector3& normal, const btVector3& flat) {
@@ -174,8 +187,8 @@ class BoxTouches {
     });
   }
 
-  // A point of the outline, in each slice. Where the face goes on across the whole belt, the edges of the belt carry
-  // all, as on a plane.
+  // A point of the outline, in each slice. Where the face extends under the whole width, the belt's two edges carry all
+  // the load, as on a plane.
   void face_points(int j, const btVector3& normal, std::uint32_t face, const Slices& s, std::uint32_t place,
                    btVector3 p, btScalar share) {
     const auto move_to = [&](std::size_t k) { p.setY(s.y[k]); };
@@ -185,7 +198,7 @@ class BoxTouches {
       move_to(k);
       return in_slabs(box_, p - box_.center, j);
     };
-    // most points are far from most faces, which is quicker to see than where they are beside it
+    // Most points are far from most faces; the gap is cheaper to test than the position over the face.
     bool any = false;
     for (std::size_t k = 0; k < kBoxSlices; ++k) {
       move_to(k);
@@ -203,7 +216,8 @@ class BoxTouches {
     }
   }
 
-  // A point of an edge against the belt's outline.
+  // A point of an edge against the belt's outline: it touches if the outline's normal there, reversed, lies between the
+  // normals of the edge's two faces.
   void edge_point(const BoxEdge& edge, const btVector3& p, btScalar share, std::uint64_t id) {
     const OutlineDistance at = distance_to_outline(belt_, p.x(), p.z());
     if (at.distance > kTouching_m || at.distance < -kDeepest_m) return;
@@ -214,7 +228,7 @@ class BoxTouches {
         lies_across(corner_[edge.to] - corner_[edge.from]), id);
   }
 
-  // Whether a line reaches into the box that holds the belt.
+  // Whether the bounding box of a line overlaps that of the belt.
   bool near(const btVector3& p0, const btVector3& p1) const {
     const btScalar r = std::max(belt_.radius[0], belt_.radius[1]) + kTouching_m;
     return std::max(p0.x(), p1.x()) >= -belt_.radius[0] - kTouching_m &&
@@ -223,6 +237,7 @@ class BoxTouches {
            std::min(p0.y(), p1.y()) <= belt_.half_width;
   }
 
+  // The points where an edge crosses the slices.
   void edge_in_slices(const BoxEdge& edge, std::uint32_t e, const Slices& s) {
     const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
     const btScalar rise = p1.y() - p0.y();
@@ -234,6 +249,7 @@ class BoxTouches {
     }
   }
 
+  // Corners within the belt's width, pressed into the outline from outside of the box.
   void corners() {
     for (std::uint32_t k = 0; k < 8; ++k) {
       const btVector3& p = corner_[k];
@@ -248,13 +264,14 @@ class BoxTouches {
     }
   }
 
-  // An edge that stays between two slices: where it is deepest.
+  // An edge that lies between two slices touches where it is deepest.
   void inner_edge(const BoxEdge& edge, std::uint32_t e, const Slices& s) {
     const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
     const btScalar low = std::min(p0.y(), p1.y()), high = std::max(p0.y(), p1.y());
     for (std::size_t k = 0; k < kBoxSlices; ++k)
       if (low <= s.y[k] && s.y[k] <= high && high - low > 1e-9) return;
-    // the distance to a convex outline has one minimum along a line
+    // Golden section search: along a line, the distance to a convex outline has one minimum. 24 iterations narrow the
+    // edge down by 0.618^24 = 1e-5.
     const auto distance = [&](btScalar t) {
       const btVector3 p = p0 + (p1 - p0) * t;
       return distance_to_outline(belt_, p.x(), p.z()).distance;
@@ -275,22 +292,30 @@ class BoxTouches {
     edge_point(edge, p0 + (p1 - p0) * ((from + to) / 2), 1, feature(19, 0, e));
   }
 
-  // The belt's side face against the box: instead of all that was found along the slices.
+  // The belt's side face against the box; replaces all contacts that were found in the slices.
   void side() {
     out_.resize(first_);
+
+    // The normal: of the box's face that faces the belt's side, within kSideways, else across the belt.
     btVector3 normal(0, -beside_, 0);
     for (int j = 0; j < 3; ++j) {
       const btVector3 axis = box_.axes.getColumn(j);
       if (btFabs(axis.y()) > 1 - kSideways) normal = axis.y() * beside_ > 0 ? -axis : axis;
     }
+
+    // All points lie half way into the overlap and have its depth.
     const btScalar y = beside_ * belt_.half_width;
     const auto touch = [&](const btVector3& p, std::uint32_t place) {
       out_.push_back({p, normal, -overlap_, 1, false, feature(20, 0, place)});
     };
+
+    // Points of the belt's side face within the box.
     side_points(belt_, [&](std::uint32_t place, btVector3 p) {
       p.setY(y - beside_ * overlap_ / 2);
       if (in_slabs(box_, p - box_.center, -1)) touch(p, place);
     });
+
+    // Edges of the box where they pass through the side face, within the outline.
     for (std::uint32_t e = 0; e < kBoxEdges; ++e) {
       const BoxEdge edge = box_edge(e);
       const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
@@ -301,6 +326,8 @@ class BoxTouches {
       const btVector3 p = p0 + (p1 - p0) * t;
       if (distance_to_outline(belt_, p.x(), p.z()).distance <= 0) touch(p, 8 + e);
     }
+
+    // Corners of the box within the belt.
     for (std::uint32_t k = 0; k < 8; ++k) {
       const btVector3& p = corner_[k];
       if (btFabs(p.y()) <= belt_.half_width && distance_to_outline(belt_, p.x(), p.z()).distance <= 0) touch(p, 20 + k);
@@ -324,11 +351,15 @@ void touch_plane(const BeltShape& belt, const btVector3& normal, btScalar offset
     const btScalar gap = normal.dot(p) - offset;
     if (gap <= kTouching_m) out.push_back({p - normal * (gap / 2), normal, gap, share, false, id});
   };
+
+  // A wall beside the belt meets its side face.
   if (in_plane < kSideways) {
     const btScalar y = normal.y() > 0 ? -belt.half_width : belt.half_width;
     side_points(belt, [&](std::uint32_t place, const btVector3& p) { touch(p, y, 1, feature(0, 2, place)); });
     return;
   }
+
+  // Ground: the outline's points at both edges of the belt.
   const btVector3 flat(normal.x() / in_plane, 0, normal.z() / in_plane);
   for (const std::uint32_t slice : {0u, 1u})
     outline_points(belt, flat, [&](std::uint32_t place, const btVector3& p, btScalar share) {
@@ -343,6 +374,9 @@ void touch_box(const BeltShape& belt, const BoxInT& box, std::vector<BeltTouch>&
 void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<BeltTouch>& out) {
   const btScalar in_plane = btSqrt(t.normal.x() * t.normal.x() + t.normal.z() * t.normal.z());
   const btVector3 sides[3] = {t.corner[1] - t.corner[0], t.corner[2] - t.corner[1], t.corner[0] - t.corner[2]};
+
+  // A point of the belt touches the face if it projects into the triangle: on the inner side of all three edges,
+  // (side x (p - corner)) . n >= 0.
   const auto inside = [&](const btVector3& p) {
     for (int i = 0; i < 3; ++i)
       if (sides[i].cross(p - t.corner[i]).dot(t.normal) < 0) return false;
@@ -353,6 +387,8 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
     if (gap <= kTouching_m && gap >= -kDeepest_m && inside(p))
       out.push_back({p - t.normal * (gap / 2), t.normal, gap, share, false, id});
   };
+
+  // A triangle beside the belt meets its side face.
   if (in_plane < kSideways) {
     const btScalar y = t.normal.y() > 0 ? -belt.half_width : belt.half_width;
     side_points(belt, [&](std::uint32_t place, btVector3 p) {
@@ -361,6 +397,8 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
     });
     return;
   }
+
+  // In each slice: the face against the outline's points, ...
   const btVector3 flat(t.normal.x() / in_plane, 0, t.normal.z() / in_plane);
   const Slices s = slices(belt, kMeshSlices);
   for (int k = 0; k < s.count; ++k) {
@@ -370,6 +408,9 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
       p.setY(y);
       face(p, share * slice_share, feature(t.index, slice, place));
     });
+
+    // ... and the triangle's own edges where they cross the slice, p = corner + side (y - corner_y) / side_y: an edge
+    // touches if the outline's normal there lies between the normals of its two faces.
     for (int i = 0; i < 3; ++i) {
       if (!t.owns_edge[i] || btFabs(sides[i].y()) < 1e-9) continue;
       const btScalar along = (y - t.corner[i].y()) / sides[i].y();

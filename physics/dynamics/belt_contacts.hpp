@@ -1,14 +1,12 @@
 // Where a belt touches the ground: pure geometry, one function for each kind of ground.
 //
-// A belt is looked at in slices, planes across its axis: at both edges, and between them where the ground may end
-// between. In a slice the belt is two discs and their tangents, and ground is a line or a polygon, so contacts are
-// exact:
-//  - where a side of the ground faces the belt: the lowest points of both discs, and points spread along the straight
-//  run;
-//  - where an edge of the ground crosses the slice: the edge, pressed into the belt;
-//  - beside the belt's outline nothing drives: a side face meets ground like any other surface.
-// All points that touch are given, at most a millimetre apart; so a track's load spreads over its length and width
-// however the ground is made, and does not depend on how the robot came to stand there.
+// A belt is examined in slices, planes across its axis: at both edges, and between them where the ground may end there.
+// In a slice the belt is two discs and their tangents, and the ground is a line or a polygon, so contacts are exact:
+//  - a face of the ground touches the lowest points of both discs and points along the straight run that faces it;
+//  - an edge of the ground that crosses the slice touches the outline;
+//  - beside the outline nothing drives: a side face meets the ground like any other surface.
+// All points within 1 mm of the ground are returned. So a track's load spreads over its length and width whatever the
+// ground consists of, and does not depend on how the robot came to stand there.
 // Everything is in the belt's frame T. Thread safety: pure functions.
 #pragma once
 
@@ -23,9 +21,9 @@ struct BeltTouch {
   btVector3 p_T;          // half way between belt and ground
   btVector3 normal_T;     // unit, out of the ground
   btScalar gap_m;         // negative: pressed in
-  btScalar share;         // of a run's point: what of the contact's stiffness it stands for
-  bool holds_lugs;        // an edge of the ground across the belt, or a corner, behind which lugs catch; not a face
-  std::uint64_t feature;  // the same one from step to step
+  btScalar share;         // of a contact's stiffness that this point stands for
+  bool holds_lugs;        // lugs catch behind it: an edge of the ground across the belt, or a corner; not a face
+  std::uint64_t feature;  // identifies the contact from step to step
 };
 
 // Half space below the plane normal_T . p = offset.
@@ -37,9 +35,9 @@ struct BoxInT {
 };
 void touch_box(const BeltShape& belt, const BoxInT& box, std::vector<BeltTouch>& out);
 
-// A triangle of a surface. `edge_faces[i]`: the normal of the neighbour beyond the edge from corner i to corner i + 1,
-// for the one of the two triangles that owns the edge, and only where the surface is convex there; otherwise nothing
-// touches that edge.
+// A triangle of a surface. Edge i runs from corner i to corner i + 1; `neighbour_normal[i]` is the normal of the
+// triangle beyond it. One of the two triangles owns the edge, and only where the surface is convex there; an edge that
+// nobody owns touches nothing.
 struct TriangleInT {
   btVector3 corner[3], normal;
   bool owns_edge[3];
@@ -48,7 +46,7 @@ struct TriangleInT {
 };
 void touch_triangle(const BeltShape& belt, const TriangleInT& triangle, std::vector<BeltTouch>& out);
 
-// A gap that a step may close.
+// The widest gap that counts as contact: a step may close it.
 inline constexpr btScalar kTouching_m = 0.001;
 
 }  // namespace kenaf::physics

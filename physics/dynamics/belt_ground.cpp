@@ -22,11 +22,13 @@ const ShapeTag* tag_of(const btCollisionObjectWrapper& object) {
 
 MeshEdges::MeshEdges(const std::vector<btVector3>& vertices,
                      const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-  // vertices of one place are one vertex, whatever the file says
+  // Vertices at the same place are one vertex, whatever the file says.
   std::map<std::array<btScalar, 3>, std::uint32_t> places;
   std::vector<std::uint32_t> place;
   for (const btVector3& v : vertices)
     place.push_back(places.try_emplace({v.x(), v.y(), v.z()}, static_cast<std::uint32_t>(places.size())).first->second);
+
+  // The first of two triangles owns their edge, if the surface is convex there; an edge of one triangle has no owner.
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::size_t, int>> edge_owner;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     TriangleInT& t = triangles_.emplace_back();
@@ -42,7 +44,7 @@ MeshEdges::MeshEdges(const std::vector<btVector3>& vertices,
       TriangleInT& owner = triangles_[found->second.first];
       const int edge = found->second.second;
       const btVector3 along = (owner.corner[(edge + 1) % 3] - owner.corner[edge]).normalized();
-      // convex: the neighbour's normal turns away from the owner's, about the edge
+      // Convex: the neighbour's normal is turned away from the owner's about the edge, (n1 x n2) . edge > 0.
       owner.owns_edge[edge] = owner.normal.cross(t.normal).dot(along) > kFlat;
       owner.neighbour_normal[edge] = t.normal;
     }
@@ -106,6 +108,7 @@ class BeltGround::Algorithm : public btCollisionAlgorithm {
   }
 
   void touch_mesh(const btBvhTriangleMeshShape& shape, const MeshEdges& edges, const btTransform& X_TG) {
+    // Called by Bullet for each triangle near the belt: brings it into T and collects its contacts.
     const BeltShape& belt = *pair_->belt;
     struct Each : btTriangleCallback {
       const BeltShape* belt;
@@ -124,6 +127,8 @@ class BeltGround::Algorithm : public btCollisionAlgorithm {
     each.edges = &edges;
     each.X_TG = &X_TG;
     each.out = &owner_.touches_;
+
+    // The belt's bounding box, in the mesh's frame, selects the triangles.
     const btScalar r = std::max(belt.radius[0], belt.radius[1]) + kTouching_m;
     const btVector3 low(-belt.radius[0] - kTouching_m, -belt.half_width, -r);
     const btVector3 high(belt.length + belt.radius[1] + kTouching_m, belt.half_width, r);
@@ -132,7 +137,7 @@ class BeltGround::Algorithm : public btCollisionAlgorithm {
     shape.processAllTriangles(&each, low_G, high_G);
   }
 
-  // The contacts of this step, each with the impulses it had in the last one. They mostly come in the same order.
+  // Gives each contact of this step the impulses that it had in the last one. They mostly come in the same order.
   void remember() {
     pair_->before.swap(pair_->contacts);
     pair_->contacts.clear();
@@ -151,7 +156,7 @@ class BeltGround::Algorithm : public btCollisionAlgorithm {
   }
 
   BeltGround& owner_;
-  std::unique_ptr<Pair> pair_;  // not in here: Bullet's pool has room for its own algorithms' size
+  std::unique_ptr<Pair> pair_;  // not a member by value: Bullet's pool has room for its own algorithms' size only
   bool swapped_;
 };
 
@@ -209,7 +214,7 @@ void BeltGround::add_spare() {
   pair->contacts.reserve(kReserved);
   pair->before.reserve(kReserved);
   spare_.push_back(std::move(pair));
-  // each may come back while the others are here
+  // Room for all of them at once on either list.
   const std::size_t all = spare_.size() + pairs_.size();
   spare_.reserve(all);
   pairs_.reserve(all);

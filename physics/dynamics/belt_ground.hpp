@@ -1,5 +1,5 @@
 // Brings the contacts of belts (belt_contacts.hpp) into Bullet: one algorithm for each pair of a belt and a plane, box
-// or mesh, and the list of what touches, from which the contact solver takes it.
+// or mesh, and the list of these pairs for the contact solver.
 #pragma once
 
 #include <array>
@@ -14,14 +14,14 @@
 
 namespace kenaf::physics {
 
-// Hangs on btCollisionShape::getUserPointer() of the shapes that belts know how to meet.
+// Stored at btCollisionShape::getUserPointer() of the shapes that belts can meet.
 struct ShapeTag {
   const BeltShape* belt = nullptr;      // this convex hull is a belt
   const btVector3* box_half = nullptr;  // this convex hull is a box, origin at its centre
   const class MeshEdges* mesh = nullptr;
 };
 
-// What a triangle's neighbours are, for each edge of each triangle of a mesh.
+// A mesh's triangles with their neighbours across each edge.
 class MeshEdges {
  public:
   MeshEdges(const std::vector<btVector3>& vertices, const std::vector<std::array<std::uint32_t, 3>>& triangles);
@@ -31,7 +31,7 @@ class MeshEdges {
   std::vector<TriangleInT> triangles_;
 };
 
-// A contact with what the solver keeps of it from step to step.
+// A contact with the impulses that the solver keeps from step to step.
 struct BeltContact {
   BeltTouch touch;
   std::array<btScalar, 3> impulse;  // normal, along, across
@@ -55,9 +55,9 @@ class BeltGround {
   BeltGround(const BeltGround&) = delete;
   BeltGround& operator=(const BeltGround&) = delete;
 
-  // While it probes, belts meet the ground as any hull does: that also finds what is deep inside, for placing a robot.
+  // While probing, belts meet the ground as any hull does, which also finds deep penetrations, for placing a robot.
   void set_probing(bool probing) { probing_ = probing; }
-  // So that a step need not allocate: for so many pairs in all.
+  // Reserves memory for so many pairs in all, so that a step need not allocate.
   void make_room(std::size_t pairs);
   const std::vector<BeltPair*>& pairs() const { return pairs_; }
 

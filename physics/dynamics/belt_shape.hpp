@@ -2,7 +2,7 @@
 // a flipper a large one at its pivot and a small one at its tip.
 //
 // Frame T of a belt: x from disc 0 to disc 1, y across, z up, origin at the centre of disc 0. It is parallel to the
-// frame of the body that carries it. Exact: no polygon stands for an arc, so nothing bumps over the corners of one.
+// frame of the body that carries it. Arcs are exact, not polygons, so nothing bumps over corners.
 //
 // Thread safety: values and pure functions.
 #pragma once
@@ -19,23 +19,23 @@ struct BeltShape {
   btScalar length = 1;  // between the discs' centres
   btScalar half_width;
   btVector3 p_BodyT;  // in the frame of the collision shape
-  int pieces;         // of a straight run: it touches with a point at each end of each piece
+  int pieces;         // of a straight run, which has a contact point at each end of each piece
   Surface surface;
 
-  // Follow from the others. The straight runs' outward normals are (lean, 0, +-rise): not vertical where the discs'
-  // radii differ.
+  // Derived. The straight runs' outward unit normals are n = (lean, 0, +-rise). A tangent of both discs has
+  // n . c0 + r0 = n . c1 + r1, so lean = (r0 - r1) / length: not vertical where the radii differ.
   btScalar lean = (radius[0] - radius[1]) / length;
   btScalar rise = btSqrt(1 - lean * lean);
 };
 
-// The nearest place of the outline to a point of the plane y = 0.
+// Signed distance from a point of the plane y = 0 to the outline.
 struct OutlineDistance {
   btScalar distance;  // negative inside
-  btVector3 outward;  // unit normal of the outline there, y = 0
+  btVector3 outward;  // unit normal of the outline at the nearest place, y = 0
 };
 OutlineDistance distance_to_outline(const BeltShape& belt, btScalar x, btScalar z);
 
-// The point of a disc that is the furthest in a direction of the plane y = 0, a unit vector.
+// Support point of a disc in `direction`, a unit vector of the plane y = 0.
 inline btVector3 furthest_on_disc(const BeltShape& belt, int disc, const btVector3& direction) {
   return btVector3(disc ? belt.length : 0, 0, 0) + direction * belt.radius[static_cast<std::size_t>(disc)];
 }

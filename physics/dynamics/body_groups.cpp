@@ -10,6 +10,7 @@ void BodyGroups::begin(std::size_t bodies) {
   std::iota(earlier_.begin(), earlier_.end(), std::size_t{0});
 }
 
+// Follows the links to the group's first body; halves the path on its way (union-find).
 std::size_t BodyGroups::first_of(std::size_t body) {
   while (earlier_[body] != body) body = earlier_[body] = earlier_[earlier_[body]];
   return body;
@@ -33,6 +34,7 @@ void PlacesByGroup::make_room(std::size_t places) {
   place_.reserve(places);
 }
 
+// Counting sort: end_ counts each group, becomes where each begins, and grows to where it ends as places are filled in.
 void PlacesByGroup::sort(std::size_t groups) {
   end_.assign(groups, 0);
   for (const std::size_t group : group_of_) ++end_[group];

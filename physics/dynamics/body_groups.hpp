@@ -1,5 +1,4 @@
-// Which bodies push on each other within a step, directly or by way of others: a group. What happens in one has no
-// influence on another.
+// Groups of bodies that push on each other within a step, directly or through others. Groups are independent.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +7,13 @@
 
 namespace kenaf::physics {
 
-// Thread safety: a value. No allocation where there were as many bodies before.
+// Thread safety: a value. No allocation unless there are more bodies than before.
 class BodyGroups {
  public:
-  // Each of so many bodies is by itself.
+  // Starts with so many bodies, each in a group of its own.
   void begin(std::size_t bodies);
   void join(std::size_t a, std::size_t b);
-  // Once all are joined: numbers the groups from 0 on, in the order of their first bodies.
+  // Call once all are joined. Numbers the groups from 0 on, in the order of their first bodies.
   void number();
   std::size_t count() const { return count_; }
   std::size_t of(std::size_t body) const { return number_[body]; }
@@ -27,15 +26,15 @@ class BodyGroups {
   std::size_t count_ = 0;
 };
 
-// The places in a list, sorted by the group of what is there; within a group in the order of the list.
+// The indices of a list's entries, sorted by their group; within a group in the order of the list.
 class PlacesByGroup {
  public:
   void make_room(std::size_t places);
   void begin() { group_of_.clear(); }
-  // What comes next in the list is in that group.
+  // The list's next entry is in that group.
   void add(std::size_t group) { group_of_.push_back(group); }
   void sort(std::size_t groups);
-  // Once they are sorted.
+  // Valid after sort().
   std::span<const std::size_t> all() const { return place_; }
   std::size_t begin_of(std::size_t group) const { return group == 0 ? 0 : end_[group - 1]; }
   std::size_t end_of(std::size_t group) const { return end_[group]; }

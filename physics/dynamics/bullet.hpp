@@ -1,4 +1,4 @@
-// Between Eigen and Bullet (double precision). Only this room's implementation files include Bullet.
+// Conversions between Eigen and Bullet (double precision). Only implementation files of this room include Bullet.
 #pragma once
 
 #include <btBulletCollisionCommon.h>

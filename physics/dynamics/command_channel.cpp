@@ -9,18 +9,17 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr double kWholeStep = 1e-6;  // of a step: a delay this near to whole steps is meant so
+constexpr double kWholeStep = 1e-6;  // of a step: a delay this close to whole steps is rounded to them
 
 // No sensor has a name with a blank, so no sensor draws from the same generator.
 constexpr std::string_view kGeneratorName = "command channel";
 
-// A slowness of 0 is no limit.
+// A slowness of 0 means no limit.
 double limit_of(double amount, double slowness) {
   return slowness > 0 ? amount / slowness : std::numeric_limits<double>::infinity();
 }
 
-// Forward speed, that is the mean, and turn, that is half the difference, multiplied, are each as large as that at
-// most.
+// Clamps forward speed (the mean) and turn (half the difference, times `turn_gain`) to their limits.
 std::array<double, robot::kTrackCount> limited(const std::array<double, robot::kTrackCount>& tracks, double turn_gain,
                                                double most_forward, double most_turn) {
   const double forward = std::clamp((tracks[robot::kLeft] + tracks[robot::kRight]) / 2, -most_forward, most_forward);
@@ -37,11 +36,11 @@ robot::Command between(const robot::Command& newer, const robot::Command& older,
     out.track_speed_mps[i] += older_share * (older.track_speed_mps[i] - newer.track_speed_mps[i]);
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
     if (older.flipper[i].mode != newer.flipper[i].mode) {
-      out.flipper[i] = older.flipper[i];  // nothing lies between two modes; the newer one is still under way
+      out.flipper[i] = older.flipper[i];  // modes cannot be interpolated; the newer one is still under way
       continue;
     }
     const double apart = older.flipper[i].value - newer.flipper[i].value;
-    // an angle is a direction
+    // Angles are directions: interpolate the short way.
     out.flipper[i].value +=
         older_share * (newer.flipper[i].mode == robot::JointMode::angle ? robot::wrap_angle(apart) : apart);
   }
@@ -96,7 +95,7 @@ void CommandChannel::receive() {
   received_ = sent_;
   std::array<double, robot::kTrackCount>& tracks = received_.track_speed_mps;
   for (double& speed : tracks) speed *= gain_;
-  // only where there is something to do: a sum of halves is not always the number itself
+  // Only if needed: the sum of two halves is not always exactly the number itself.
   if (gain_turn_ != 1 || std::abs(tracks[robot::kLeft] + tracks[robot::kRight]) / 2 > most_forward_mps_ ||
       std::abs(tracks[robot::kRight] - tracks[robot::kLeft]) / 2 > most_turn_mps_)
     tracks = limited(tracks, gain_turn_, most_forward_mps_, most_turn_mps_);

@@ -1,4 +1,4 @@
-// What becomes of a command between World::set_command and the drives: the effects of the command stage.
+// A command's way from World::set_command to the drives: the effects of the command stage.
 #pragma once
 
 #include <array>
@@ -13,37 +13,35 @@
 
 namespace kenaf::physics {
 
-// In the order in which a command meets them:
-// 1. loss: a message is lost as a whole, on the link; the one before goes on to hold.
-// 2. gain: what one side's metre per second is to the other. As long as it stands behind the loss and before the slew
-//    limit its place changes nothing, since a delay of a multiple is a multiple of the delay. Then the gain of the turn
-//    rate, and the limits of forward speed and turn rate: of a controller that takes these two in place of two tracks.
-// 3. dead band: of what arrives, after gains and limits, a track's speed that is too small counts as none. Before the
-// delay, so
-//    that no speed between two commands, which nobody sent, falls into it.
-// 4. delay: of what arrives, joints' modes and values included. One that is no whole number of steps lies on the
-//    straight line between the two steps beside it, so that what a robot does changes smoothly with the delay.
-// 5. slew limits: the drives' own ramp, so it acts on what has arrived, and limits the speeds that the belts are to
-// have:
-//    first how fast their mean and their difference change, which are forward speed and turn rate, then each of them.
+// In the order in which they act:
+// 1. loss: a whole message is lost on the link; the one before remains valid.
+// 2. gain: the scale of one side's speed unit against the other's. Before or after the delay it has the same effect,
+//    since delay is linear. Then the gain of the turn rate, and the limits of forward speed and turn rate: those of a
+//    controller that takes these two in place of two tracks.
+// 3. dead band: after gains and limits, a track's speed that is too small counts as zero. Before the delay, so that no
+//    interpolated speed, which nobody sent, falls into it.
+// 4. delay: joints' modes and values included. A delay that is no whole number of steps interpolates linearly between
+//    the two adjacent steps, so that the robot's motion changes smoothly with the delay.
+// 5. slew limits: the drives' own ramp, on commands that have arrived: it limits the rate of the belts' mean and
+//    difference, which are forward speed and turn rate, then that of each belt.
 // No allocation after construction.
 class CommandChannel {
  public:
-  // Draws its losses from a generator of its own, seeded by world seed and robot name. `track_gauge_m`: between the
-  // tracks, for what a turn rate is.
+  // Draws its losses from a generator of its own, seeded by world seed and robot name. `track_gauge_m`, the distance of
+  // the tracks, converts turn rates.
   CommandChannel(const Effects& effects, std::uint64_t world_seed, std::string_view robot, double track_gauge_m,
                  double time_step_s);
 
-  // As if `command` had been sent for ever; the ramp stands at rest.
+  // As if `command` had always been sent; the ramp is at rest.
   void restart(const robot::Command& command);
-  // As if `command` had been sent for so long that nothing else is under way, with the ramp at `track_mps`: a robot
-  // that is on its way already.
+  // For a robot that is already moving: as if `command` had been sent so long ago that nothing else is under way, with
+  // the ramp at `track_mps`.
   void begin(const robot::Command& command, const std::array<double, robot::kTrackCount>& track_mps);
-  // The tracks stand, whatever was commanded: the ramp begins at 0 again. What is under way arrives.
+  // The tracks stand, whatever was commanded: the ramp restarts at 0. Commands under way still arrive.
   void stop_ramp() { ramp_mps_ = {}; }
-  // From the commander. What is no number leaves what was sent before.
+  // A command from the commander. Values that are not finite keep the ones sent before.
   void send(const robot::Command& command);
-  // What the drives are told; once before each time step.
+  // Returns the command for the drives; call once before each time step.
   const robot::Command& step();
 
  private:
@@ -52,16 +50,16 @@ class CommandChannel {
 
   NoiseSource noise_;
   double loss_, gain_, gain_turn_, dead_band_mps_;
-  // Of the mean of both tracks, and of half their difference. Infinite: no limit.
+  // Limits of the mean of both tracks, and of half their difference. Infinite: no limit.
   double most_forward_mps_, most_turn_mps_;
-  // What the ramp moves in a step at most: each track's speed, the mean of both, and half their difference. Infinite:
-  // no limit.
+  // The ramp's largest change in a step: of each track's speed, of the mean of both, and of half their difference.
+  // Infinite: no limit.
   double side_step_mps_, forward_step_mps_, turn_step_mps_;
   bool ramps_;
   std::size_t delay_steps_;
   double delay_rest_ = 0;  // of a step, below 1
   robot::Command sent_, received_, told_;
-  std::vector<robot::Command> line_;  // what was received in the last steps, a ring
+  std::vector<robot::Command> line_;  // ring of the commands received in the last steps
   std::size_t newest_ = 0;
   std::array<double, robot::kTrackCount> ramp_mps_{};
 };

@@ -12,7 +12,7 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr int kWholeBody = -1;  // the piece that is all of a body that is no compound
+constexpr int kWholeBody = -1;  // index of the only piece of a body that is no compound
 
 const btCompoundShape* compound_of(const btCollisionObjectWrapper& body) {
   const btCollisionShape& shape = *body.getCollisionShape();
@@ -24,7 +24,7 @@ std::size_t piece_count(const btCollisionObjectWrapper& body) {
   return compound ? static_cast<std::size_t>(compound->getNumChildShapes()) : 1;
 }
 
-// One shape of a body, where it is.
+// One shape of a body, with its pose.
 struct Piece {
   int index;
   btTransform X_W;
@@ -41,7 +41,7 @@ struct Piece {
   }
 };
 
-// Whether their boxes overlap in the compound's frame too, where a tilted robot's are tighter.
+// Whether the bounding boxes also overlap in the compound's frame, where those of a tilted robot are tighter.
 bool near_in(const btTransform& X_CW, const Piece& a, const Piece& b) {
   btVector3 low_a, high_a, low_b, high_b;
   a.wrapper.getCollisionShape()->getAabb(X_CW * a.X_W, low_a, high_a);
@@ -62,6 +62,9 @@ class CompoundAlgorithm : public btCollisionAlgorithm {
                         const btDispatcherInfo& dispatch, btManifoldResult* result) override {
     const btCollisionObjectWrapper& compound = swapped_ ? *body1 : *body0;
     const btCollisionObjectWrapper& other = swapped_ ? *body0 : *body1;
+
+    // Each pair of pieces has an algorithm of its own from when their boxes overlap in both frames until they no longer
+    // do in W.
     const btTransform X_CW = compound.getWorldTransform().inverse();
     const std::size_t count = piece_count(compound), other_count = piece_count(other);
     for (std::size_t j = 0; j < other_count; ++j) {
@@ -89,6 +92,7 @@ class CompoundAlgorithm : public btCollisionAlgorithm {
  private:
   void meet(const Piece& a, const Piece& b, btCollisionAlgorithm*& pair, const btDispatcherInfo& dispatch,
             btManifoldResult& result) {
+    // For the pair's algorithm the result speaks of the two pieces; afterwards of the whole bodies again.
     const btCollisionObjectWrapper *whole0 = result.getBody0Wrap(), *whole1 = result.getBody1Wrap();
     const Piece &piece0 = swapped_ ? b : a, &piece1 = swapped_ ? a : b;
     result.setBody0Wrap(&piece0.wrapper);
@@ -104,7 +108,7 @@ class CompoundAlgorithm : public btCollisionAlgorithm {
     result.setBody1Wrap(whole1);
   }
 
-  // Moves the last step's points with the bodies, so that new ones are compared with where they are now.
+  // Moves the last step's points with the bodies, so that new ones are compared with their present places.
   static void refresh(btCollisionAlgorithm& pair, btManifoldResult& result) {
     std::array<btPersistentManifold*, 4> memory;  // none of ours has more than one
     btManifoldArray manifolds;

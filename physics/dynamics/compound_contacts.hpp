@@ -1,7 +1,7 @@
-// Contacts of a compound (a robot's hull with its tracks) with anything else: those of its pieces, each by the
+// Contacts of a compound (a robot's hull with its tracks) with any other body: those of its pieces, each by the
 // dispatcher's algorithm for the two shapes.
 //
-// In place of Bullet's own, which allocates lists whenever a compound comes near another body.
+// Replaces Bullet's own, which allocates lists whenever a compound comes near another body.
 #pragma once
 
 #include <cstddef>

@@ -6,13 +6,14 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr btScalar kLeastFriction = 1e-6;  // for the ellipse of a surface that slides freely in one direction
+constexpr btScalar kLeastFriction = 1e-6;  // keeps the friction ellipse regular where a surface slides freely
 constexpr btScalar kEdgeRadius_m = 0.01;   // of timber and concrete
 constexpr btScalar kMostGrip = 10;         // a lug that is wholly behind an edge
 constexpr btScalar kSideFace = 0.1;  // |normal x belt axis| below which a surface is a side face without direction
 
-// An edge is a little round, and a lug that meets it is to it what a step is to a wheel: the lug's corner presses on
-// the edge at an angle b from the belt's normal, cos b = 1 - height / radius, and holds up to tan(friction angle + b).
+// An edge is slightly round, and a lug that meets it is to it as a step is to a wheel: the lug's corner presses on the
+// edge at an angle b from the belt's normal, cos b = 1 - height / radius. With tan a = mu it holds up to
+//   tan(a + b) = (mu cos b + sin b) / (cos b - mu sin b), at most kMostGrip, which also covers a + b >= 90 degrees.
 btScalar grip_at_edge(btScalar mu, btScalar lug_height_m) {
   if (lug_height_m <= 0) return mu;
   const btScalar cosine = 1 - std::min(lug_height_m / kEdgeRadius_m, btScalar(1));
@@ -25,17 +26,18 @@ btVector3 belt_axis(const Surface& surface, const btCollisionObject& body) {
   return surface.belt ? body.getWorldTransform().getBasis().getColumn(1) * surface.axis_y : btVector3(0, 0, 0);
 }
 
-// Of a belt's speed, what moves the surface.
+// The share of a belt's speed that moves its surface.
 btScalar driving_share(const Belt* belt) {
   return belt ? 1 - std::min(belt->slip_spm * std::abs(belt->speed_mps), 1.0) : 0;
 }
 
-// A belt that keeps its speed takes from its motor what a contact takes from it.
+// A belt of prescribed speed: its motor supplies the impulse that the contact takes from the belt.
 void hold_against(Belt& belt, Two gain, Two friction_impulse) {
   if (std::isinf(belt.moving_mass_kg))
     belt.motor_impulse_ns -= gain[0] * friction_impulse[0] + gain[1] * friction_impulse[1];
 }
 
+// Interleaves a linear and an angular part into the three rows normal, along, across.
 void set_rows(TwoVectors rows[3], const btVector3& normal, const btVector3& arm, const TwoVectors& tangents,
               const TwoVectors& arms) {
   rows[0] = side_by_side(normal, arm);
@@ -71,11 +73,12 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
       p_W_(touch.p_W) {
   const Surface &surface_a = *meeting.surface_a, &surface_b = *meeting.surface_b;
   const btVector3& normal = touch.normal_W;
-  // Where a point of the belt moves, for a belt speed of -1: along the belt, shorter towards the side faces. Drake's
-  // multibody plant defines a surface velocity so (speed * axis x normal).
+  // Velocity of the belt's surface for a belt speed of -1: n x axis, along the belt, shorter towards the side faces.
+  // Drake's multibody plant defines surface velocity in the same way (speed * axis x normal).
   const btVector3 belt_a = belt_a_ ? (-normal).cross(meeting.belt_axis_a) : btVector3(0, 0, 0);
   const btVector3 belt_b = belt_b_ ? normal.cross(meeting.belt_axis_b) : btVector3(0, 0, 0);
 
+  // The axes of friction: along a belt, A's before B's; on a side face and without a belt any tangent, isotropic.
   btScalar mu_along = surface_a.friction_along * surface_b.friction_along;
   const btScalar mu_across = surface_a.friction_across * surface_b.friction_across;
   if (touch.holds_lugs) mu_along = grip_at_edge(mu_along, surface_a.lug_height_m);
@@ -89,8 +92,10 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
     btPlaneSpace1(normal, along, unused);
     mu_along = mu_across;
   }
-  // what is of along and across is worked on side by side
+  // From here on the two tangents are worked on side by side.
   const TwoVectors tangents = side_by_side(along, normal.cross(along));
+
+  // A belt of speed u adds gain u to the slip; a friction impulse p changes its speed by gain . p / m_b.
   belt_gain_a_ = belt_gain_b_ = belt_push_a_ = belt_push_b_ = Two{0, 0};
   if (belt_a_) {
     belt_gain_a_ = -dot(belt_a, tangents) * meeting.driving_a;
@@ -101,7 +106,10 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
     belt_push_b_ = belt_gain_b_ / belt_b_->moving_mass_kg;
   }
 
-  // velocities of the rows for unit impulses; the axes are orthogonal
+  // Effective inverse masses K = J M^-1 J^T: k00 of the normal, k11, k12, k22 of the tangents. With rows (n, r x n)
+  //   K_ij = (1 / m) n_i . n_j + (r x n_i) . I^-1 (r x n_j)   for each body;
+  // the axes are orthogonal, so 1 / m enters the diagonal only. The coupling of normal and tangents is used one way
+  // only: the effect of the normal impulse on slip.
   btScalar k00, k12;
   Two k11_k22;
   const SolverBody& A = *body_a_;
@@ -132,13 +140,17 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
     normal_to_slip_ += dot(turn, arms);
     inverse_mass += B.inverse_mass;
   }
+
+  // The shares of mass, and of the belts: gain gain^T / m_b.
   k00 += inverse_mass;
   k11_k22 = k11_k22 + inverse_mass + (belt_gain_a_ * belt_push_a_ + belt_gain_b_ * belt_push_b_);
   k12 += belt_gain_a_[0] * belt_push_a_[1] + belt_gain_b_[0] * belt_push_b_[1];
   normal_velocity_ = normal.dot(velocity);
   slip_ = dot(velocity, tangents);
 
-  // spring and damper, implicit: impulse = -h (k (gap + h v) + d v), never negative
+  // Spring and damper, implicit: p = -h (k (gap + h v) + d v), p >= 0. Solved for v:
+  //   v = -k gap / (h k + d) - p / (h (h k + d)) = give_velocity - softness p
+  // The row's residual is v - give_velocity + softness p, its derivative by p is k00 + softness.
   const btScalar stiffness =
       settings.stiffness_npm * touch.share / (surface_a.compliance_scale * surface_b.compliance_scale);
   const btScalar damping = settings.damping_nspm * touch.share * surface_a.damping_scale * surface_b.damping_scale;
@@ -147,18 +159,21 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
   give_velocity_ = -stiffness * touch.gap_m / step_stiffness;
   normal_mass_ = 1 / (k00 + softness_);
 
+  // Sticking: the impulse -K^-1 slip stops all slip; K is the 2 x 2 matrix of the tangents.
   mu_ = Two{std::max(mu_along, kLeastFriction), std::max(mu_across, kLeastFriction)};
   inverse_mu_ = 1 / mu_;
   const btScalar k11 = k11_k22[0], k22 = k11_k22[1];
   const btScalar inverse_determinant = 1 / (k11 * k22 - k12 * k12);
   stick_[0] = Two{k22, -k12} * inverse_determinant;
   stick_[1] = Two{-k12, k11} * inverse_determinant;
-  // largest eigenvalue, with both directions scaled by their friction
+  // Sliding: in q = p / mu the limit ellipse is a circle, the slip becomes mu slip and K becomes S = mu K mu. Gradient
+  // steps of 1 / (largest eigenvalue of S) converge; it is (s11 + s22) / 2 + sqrt(((s11 - s22) / 2)^2 + s12^2).
   const btScalar s11 = k11 * mu_[0] * mu_[0], s12 = k12 * mu_[0] * mu_[1], s22 = k22 * mu_[1] * mu_[1];
   const btScalar difference = (s11 - s22) / 2;
   const btScalar largest = (s11 + s22) / 2 + std::sqrt(difference * difference + s12 * s12);
   slide_step_ = 1 / largest * mu_;
 
+  // The last step's impulses to start from.
   normal_impulse_ = *touch.kept[0];
   friction_impulse_ = meeting.kept * Two{*touch.kept[1], *touch.kept[2]};
 }
@@ -173,7 +188,7 @@ template <bool kOnGround>
   }
   if constexpr (kOnGround) return;
   if (body_b_) {
-    const Two inverse_mass{body_b_->inverse_mass, 1};  // of turning it is within response_b_
+    const Two inverse_mass{body_b_->inverse_mass, 1};  // response_b_ has it in its angular part only
     body_b_->delta -=
         (response_b_[0] * normal + response_b_[1] * friction[0] + response_b_[2] * friction[1]) * inverse_mass;
   }
@@ -190,12 +205,16 @@ void Contact::warm_start() {
 
 template <bool kOnGround>
 [[gnu::always_inline]] inline btScalar Contact::solve_one(Moved a) {
+  // Velocity change of A relative to B, without B's angular part, whose rows have arms of their own.
   const bool b_moves = !kOnGround && body_b_;
   TwoVectors relative = a.delta;
   if (b_moves) {
     const TwoVectors& b = body_b_->delta;
     relative -= {Two{b.x[0], 0}, Two{b.y[0], 0}, Two{b.z[0], 0}};
   }
+
+  // Normal: one Newton step of v - give_velocity + softness p = 0, clamped to p >= 0. A contact that is and stays open
+  // changes nothing.
   const Two normal_parts = dot(row_[0], relative);
   btScalar velocity = normal_velocity_ + normal_parts[0] + normal_parts[1];
   if (b_moves) velocity -= dot(row_b_[0], body_b_->delta)[1];
@@ -204,6 +223,7 @@ template <bool kOnGround>
   const btScalar normal_change = normal - normal_impulse_;
   if (normal <= 0 && normal_impulse_ <= 0 && friction_impulse_[0] == 0 && friction_impulse_[1] == 0) return 0;
 
+  // Friction: the slip with the normal's change and the belts' speeds in it.
   Two friction{0, 0};
   if (normal > 0) {
     const Two along = dot(row_[1], relative), across = dot(row_[2], relative);
@@ -212,19 +232,20 @@ template <bool kOnGround>
     slip += normal_to_slip_ * normal_change;
     if (belt_a_) slip += belt_gain_a_ * a.belt_mps;
     if (!kOnGround && belt_b_) slip += belt_gain_b_ * belt_b_->speed_mps;
-    // sticking: the impulse that stops the slip, if friction can give it
+    // Sticking: the impulse that stops the slip, if it lies within the limit ellipse.
     friction = friction_impulse_ - stick_[0] * slip[0] - stick_[1] * slip[1];
     const Two scaled = friction * inverse_mu_;
     if (scaled[0] * scaled[0] + scaled[1] * scaled[1] > normal * normal) {
-      // sliding: a step against the slip, then back onto the limit ellipse. In coordinates scaled by the friction
-      // the ellipse is a circle, and the point where this rests is the one that dissipates most: the impulse
-      // points against the slip (isotropic), or along the ellipse's normal there.
+      // Sliding: projected gradient step, q - mu slip / eigenvalue, then back onto the circle of radius p_normal. Its
+      // fixed point is the impulse of maximum dissipation: there the ellipse's normal points against the slip.
       const Two q = friction_impulse_ * inverse_mu_ - slide_step_ * slip;
       const btScalar length = std::sqrt(q[0] * q[0] + q[1] * q[1]);
       const btScalar scale = length > normal ? normal / length : 1;
       friction = q * scale * mu_;
     }
   }
+
+  // Apply the changes; the residual is the squared linear velocity change of A.
   const Two friction_change = friction - friction_impulse_;
   normal_impulse_ = normal;
   friction_impulse_ = friction;
@@ -244,12 +265,14 @@ btScalar Contact::solve(std::span<Contact> contacts) {
   for (auto next = contacts.begin(); next != contacts.end();) {
     const Contact& first = *next;
     const Moved place = first.in_place(none);
+    // Between moving things: one at a time, in place.
     if (!first.on_ground()) {
       residual = std::max(residual, next->solve_one<false>(place));
       ++next;
       continue;
     }
-    // in registers from contact to contact: by way of memory a step takes 3 % longer
+    // The contacts of one body on fixed ground: A's state stays in registers from contact to contact. Through memory, a
+    // step takes 3 % longer.
     TwoVectors delta = place.delta;
     btScalar belt_mps = place.belt_mps, load_ns = place.load_ns;
     for (; next != contacts.end() && next->on_ground() && next->body_a_ == first.body_a_ &&

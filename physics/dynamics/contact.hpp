@@ -15,27 +15,27 @@ struct ContactSettings {
   double damping_nspm;
 };
 
-// What touches. Everything is of body A relative to body B, and A is never fixed.
+// The two bodies that touch. All velocities are those of body A relative to body B; A is never fixed.
 struct Meeting {
   const Collider *collider_a, *collider_b;
   SolverBody *body_a, *body_b;  // null: B is fixed
   const Surface *surface_a, *surface_b;
-  // About which their belts turn, in W, and what of the belts' speed moves their surfaces; unused where there is no
-  // belt.
+  // The axes about which their belts turn, in W, and the share of the belts' speed that moves their surfaces; unused
+  // without a belt.
   btVector3 belt_axis_a, belt_axis_b;
   btScalar driving_a, driving_b;
-  btScalar kept;  // of the last step's friction
+  btScalar kept;  // share of the last step's friction impulse that this step starts from
 
   Meeting(const btCollisionObject& a, const btCollisionObject& b, SolverBody* solver_a, SolverBody* solver_b,
           const Surface& on_a, const Surface& on_b);
 };
 
-// Where it touches, however that was found.
+// One point where they touch, from whichever algorithm.
 struct Touch {
   btVector3 p_W, normal_W;  // from B to A
   btScalar gap_m, share;
   bool holds_lugs;
-  btScalar* kept[3];  // where the impulses stay from step to step: normal, along, across
+  btScalar* kept[3];  // storage of the impulses from step to step: normal, along, across
 };
 
 class Contact {
@@ -43,10 +43,9 @@ class Contact {
   Contact(const Meeting& meeting, const Touch& touch, const ContactSettings& settings, btScalar time_step);
 
   void warm_start();
-  // One iteration of contacts that follow each other; gives the largest square of the velocity by which one of them
-  // changed its body A.
+  // One iteration over contacts in their order. Returns the largest squared velocity change of a body A.
   static btScalar solve(std::span<Contact> contacts);
-  // Leaves the impulses where they were taken from.
+  // Writes the impulses back to where they were taken from.
   void finish();
 
   const Collider& collider_a() const { return *collider_a_; }
@@ -55,12 +54,12 @@ class Contact {
   bool pressed() const { return normal_impulse_ > 0; }
 
  private:
-  // What a contact changes of A.
+  // The state of A that a contact changes.
   struct Moved {
     TwoVectors& delta;
     btScalar &belt_mps, &load_ns;
   };
-  Moved in_place(btScalar& none) const;  // `none`: instead of a belt's numbers
+  Moved in_place(btScalar& none) const;  // `none` stands in for a belt's state where A has no belt
   bool on_ground() const { return !body_b_ && !belt_b_; }
   template <bool kOnGround>
   btScalar solve_one(Moved a);
@@ -69,23 +68,23 @@ class Contact {
 
   SolverBody *body_a_, *body_b_;
   Belt *belt_a_, *belt_b_;
-  // Three rows: normal, along, across; moving in lane 0, turning in lane 1.
-  TwoVectors row_[3];       // velocity of the row for a unit velocity of A: axis, arm x axis
-  TwoVectors response_[3];  // of A, for a unit impulse
+  // Three rows: normal, along, across; the linear part in lane 0, the angular part in lane 1.
+  TwoVectors row_[3];       // Jacobian: row velocity for a unit velocity of A: axis, arm x axis
+  TwoVectors response_[3];  // velocity change of A for a unit impulse
   TwoVectors row_b_[3], response_b_[3];
   btScalar inverse_mass_a_;
-  // What is of friction has along in lane 0, across in lane 1.
+  // Friction quantities: along in lane 0, across in lane 1.
   btScalar normal_impulse_;
   Two friction_impulse_;
   btScalar normal_velocity_;  // before any impulse of this step
   Two slip_;
   btScalar normal_mass_, softness_, give_velocity_;
-  Two normal_to_slip_;  // for a unit normal impulse
+  Two normal_to_slip_;  // slip change for a unit normal impulse
   Two stick_[2];        // inverse of the 2 x 2 matrix from friction impulse to slip
-  Two slide_step_;      // times mu
+  Two slide_step_;      // 1 / (largest eigenvalue of the scaled matrix), times mu
   Two mu_, inverse_mu_;
-  Two belt_gain_a_, belt_gain_b_;  // slip for a belt's speed; 0 without a belt
-  Two belt_push_a_, belt_push_b_;  // belt's speed for a unit impulse
+  Two belt_gain_a_, belt_gain_b_;  // slip for a unit belt speed; 0 without a belt
+  Two belt_push_a_, belt_push_b_;  // belt speed for a unit friction impulse
   btScalar* kept_[3];
   const Collider *collider_a_, *collider_b_;
   btVector3 p_W_;

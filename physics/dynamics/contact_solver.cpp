@@ -7,7 +7,7 @@ namespace kenaf::physics {
 namespace {
 
 // Tracks that once pulled against each other must not do so for ever: a belt that rolls brings unloaded rubber into
-// contact, and rubber creeps. After this way or time, 1/e of an old friction impulse is left to start from.
+// contact, and rubber creeps. After this distance or time, 1/e of an old friction impulse is left to start from.
 constexpr double kRenewal_m = 0.02;
 constexpr double kCreep_s = 0.5;
 
@@ -39,6 +39,7 @@ void ContactSolver::forget_contacts_of(const btCollisionObject& object) {
 
 void ContactSolver::solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatcher& dispatcher,
                           btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info) {
+  // Bodies, groups and rows; a row's impulse starts from the last step's.
   bodies_.resize(static_cast<std::size_t>(bodies.size()));
   for (int i = 0; i < bodies.size(); ++i) {
     bodies_[static_cast<std::size_t>(i)] = to_solver(*bodies[i], info.m_timeStep);
@@ -50,9 +51,13 @@ void ContactSolver::solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatch
   start_belts();
   for (Contact& contact : contacts_) contact.warm_start();
   for (JointRows& joint : joints_) joint.warm_start();
+
+  // Each group by itself, until an iteration changes no velocity in it or the iterations are used up.
   for (std::size_t group = 0; group < groups_.count(); ++group)
     for (int i = 0; i < info.m_numIterations; ++i)
       if (iterate(group, info.m_timeStep) <= info.m_leastSquaresResidualThreshold) break;
+
+  // Impulses to where the next step finds them, velocities to Bullet.
   for (Contact& contact : contacts_) contact.finish();
   for (JointRows& joint : joints_) joint.finish();
   for (const SolverBody& body : bodies_) write_back(body);
@@ -83,11 +88,13 @@ void ContactSolver::find_groups(btDispatcher& dispatcher, const btAlignedObjectA
       groups_.join(static_cast<std::size_t>(a.getCompanionId()), static_cast<std::size_t>(b.getCompanionId()));
   };
 
+  // A joint or a contact joins two moving bodies into one group.
   groups_.begin(bodies_.size());
   for (int i = 0; i < joints.size(); ++i) join(joints[i]->getRigidBodyA(), joints[i]->getRigidBodyB());
   each_touching([&](std::size_t, const auto& a, const auto& b) { join(a, b); });
   groups_.number();
 
+  // Joints, belts and touching pairs, sorted by group.
   joints_by_group_.begin();
   for (int i = 0; i < joints.size(); ++i) joints_by_group_.add(group_of(joints[i]->getRigidBodyA()));
   joints_by_group_.sort(groups_.count());
@@ -115,8 +122,11 @@ void ContactSolver::make_joints(const btAlignedObjectArray<btTypedConstraint*>& 
 }
 
 void ContactSolver::make_contacts(btDispatcher& dispatcher, btScalar time_step) {
+  // exp(-h (|u| / 20 mm + 1 / 0.5 s)) of the friction impulses is left to start from.
   for (const auto& [belt, body] : belts_)
     belt->kept = std::exp(-time_step * (std::abs(belt->speed_mps) / kRenewal_m + 1 / kCreep_s));
+
+  // Group by group, the contacts of its manifolds and belt pairs.
   const auto manifolds = static_cast<std::size_t>(dispatcher.getNumManifolds());
   contacts_.clear();
   contacts_end_.clear();
@@ -132,6 +142,7 @@ void ContactSolver::make_contacts(btDispatcher& dispatcher, btScalar time_step) 
   }
 }
 
+// Warm start of the belts' own impulses: motor and running gear.
 void ContactSolver::start_belts() {
   for (const auto& [belt, body] : belts_) {
     belt->motor_impulse_ns =
@@ -161,10 +172,10 @@ void ContactSolver::add_manifold(btPersistentManifold& manifold, btScalar time_s
     btManifoldPoint& point = manifold.getContactPoint(i);
     const Surface& surface0 = surface_of(*body0, point.m_index0);
     const Surface& surface1 = surface_of(*body1, point.m_index1);
-    // one point for both bodies, so that the two impulses cancel in moment too
+    // One point for both bodies, so that the two impulses cancel in moment too.
     const btVector3 p_W = (point.getPositionWorldOnA() + point.getPositionWorldOnB()) * 0.5;
-    // Bullet keeps these numbers with a point that it finds again, and no directions: they are along this contact's
-    // own axes
+    // Bullet keeps these impulses with a point that it finds again, but no directions: they are along this contact's
+    // own axes.
     const Touch touch{p_W,
                       solver0 ? point.m_normalWorldOnB : -point.m_normalWorldOnB,
                       point.getDistance(),
@@ -200,16 +211,21 @@ btScalar ContactSolver::solve_running_gear(Belt& belt, btScalar time_step) {
     changed = std::max(changed, change_mps * change_mps);
   };
   const double m = belt.moving_mass_kg;
-  // speed = target - droop impulse, with both of them after it; without droop the speed is the target
+
+  // Motor: speed = target - droop * impulse, with both after the change d: u + d / m = target - droop (p + d), so
+  //   d = (target - u - droop p) m / (1 + droop m). Without droop the speed becomes the target.
   const double short_mps = belt.target_mps - belt.speed_mps - belt.droop_mpspns * belt.motor_impulse_ns;
   push(belt.motor_impulse_ns, belt.motor_impulse_ns + short_mps * m / (1 + belt.droop_mpspns * m), belt.min_impulse_ns,
        belt.max_impulse_ns);
+
+  // Viscous friction, implicit: p = -d u with u = u_free + p / m after it, so p = -u_free / (1 / d + 1 / m).
   if (const double damping_ns = belt.viscous_nspm * time_step; damping_ns > 0) {
-    // impulse = -damping * speed, with the speed after it
     const double free_mps = belt.speed_mps - belt.viscous_impulse_ns / m;
     push(belt.viscous_impulse_ns, -free_mps / (1 / damping_ns + 1 / m), -1e9, 1e9);
   }
-  // without a load too: what rolling friction gave in the last step has to go. A sum of changes may end below 0
+
+  // Dry and rolling friction: stops the belt as far as its limit allows. Without a load too, as the last step's rolling
+  // friction has to go. The load is a sum of changes and may end below 0.
   if (const double dry_ns = belt.dry_friction_ns + belt.rolling_resistance * std::max(belt.load_ns, 0.0);
       dry_ns > 0 || belt.friction_impulse_ns != 0)
     push(belt.friction_impulse_ns, belt.friction_impulse_ns - belt.speed_mps * m, -dry_ns, dry_ns);

@@ -1,5 +1,5 @@
-// A sequential impulse solver as Bullet's, with contacts of our own: belts that run over surfaces, friction that does
-// not depend on axes, and a little give of the ground. docs/physics.md has the equations and why they are so.
+// A sequential impulse solver like Bullet's, with our own contacts: belts that run over surfaces, friction that does
+// not depend on axes, and slightly compliant ground. docs/physics.md has the equations and why they are so.
 #pragma once
 
 #include <span>
@@ -22,21 +22,21 @@ class ContactSolver {
     contacts_.reserve(kManyContacts);  // without a robot: of boxes
   }
 
-  // `body`: that it belongs to, or one that is joined to that.
+  // `body`: the one that carries the belt, or one that is joined to it.
   void add_belt(Belt* belt, const btRigidBody* body);
   void remove_belt(Belt* belt);
-  // For what leaves its place or the world: contacts() no longer speaks of it.
+  // Removes the contacts of an object that leaves its place or the world from contacts().
   void forget_contacts_of(const btCollisionObject& object);
-  // One step's impulses, written back as velocities. Each of `joints` is a FlipperJoint. What one group of bodies does
-  // has no influence on how another is solved: each stops where nothing changes in it any more.
+  // Solves one step's impulses and writes them back as velocities. Each of `joints` is a FlipperJoint. Groups of bodies
+  // are solved independently; each stops when nothing changes in it any more.
   void solve(btAlignedObjectArray<btRigidBody*>& bodies, btDispatcher& dispatcher,
              btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info);
-  // Of the last step.
+  // The contacts of the last step.
   std::span<const Contact> contacts() const { return contacts_; }
 
  private:
-  // Of one side of a robot, so that a step need not allocate. In a field of pallets each of its three belts is near ten
-  // or more.
+  // Room for one side of a robot, so that a step need not allocate. In a field of pallets each of its three belts is
+  // near ten or more of them.
   static constexpr std::size_t kManyContacts = 128, kManyPairs = 48;
 
   struct BeltOfBody {
@@ -44,27 +44,27 @@ class ContactSolver {
     const btRigidBody* body;
   };
 
-  SolverBody* solver_body(const btCollisionObject& object);  // null: it is fixed
+  SolverBody* solver_body(const btCollisionObject& object);  // null if it is fixed
   std::size_t group_of(const btCollisionObject& moving) const;
-  // Fills groups_, and which joints, belts and touches are in them.
+  // Fills groups_ and the lists of joints, belts and touching pairs by group.
   void find_groups(btDispatcher& dispatcher, const btAlignedObjectArray<btTypedConstraint*>& joints);
   void make_joints(const btAlignedObjectArray<btTypedConstraint*>& joints, const btContactSolverInfo& info);
   void make_contacts(btDispatcher& dispatcher, btScalar time_step);
   void start_belts();
-  btScalar iterate(std::size_t group, btScalar time_step);  // gives the largest square of a change of velocity
+  btScalar iterate(std::size_t group, btScalar time_step);  // returns the largest squared velocity change
   void add_manifold(btPersistentManifold& manifold, btScalar time_step);
   void add_belt_pair(BeltPair& pair, btScalar time_step);
-  static btScalar solve_running_gear(Belt& belt, btScalar time_step);  // gives the largest square of a speed change
+  static btScalar solve_running_gear(Belt& belt, btScalar time_step);  // returns the largest squared speed change
 
   ContactSettings settings_;
   BeltGround& belt_ground_;
   std::vector<SolverBody> bodies_;
   std::vector<BeltOfBody> belts_;
   BodyGroups groups_;
-  // Places in Bullet's list of joints, in belts_, and in touching_.
+  // Indices into Bullet's list of joints, into belts_, and into touching_.
   PlacesByGroup joints_by_group_, belts_by_group_, touching_by_group_;
   std::vector<std::size_t>
-      touching_;  // the number of a manifold that has contacts, or of a pair, counted on from those
+      touching_;  // number of a manifold that has contacts, or of a belt pair, counted on after the manifolds
   // Group by group.
   std::vector<JointRows> joints_;
   std::vector<Contact> contacts_;

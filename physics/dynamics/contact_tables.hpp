@@ -1,5 +1,5 @@
-// Bullet's tables of what is near each other and of what touches, with room from the start: they grow in a step else.
-// Beyond this room they still grow.
+// Bullet's tables of near pairs and of contacts, with room from the start, so that they do not grow in a step. Beyond
+// this room they still grow.
 #pragma once
 
 #include "physics/dynamics/bullet.hpp"
@@ -7,7 +7,7 @@
 namespace kenaf::physics {
 
 // Five bodies of a robot in a field of obstacles have about 100 pairs.
-constexpr int kRoomForPairs = 1024;  // a power of two, as the hash wants it
+constexpr int kRoomForPairs = 1024;  // a power of two, as the hash requires
 
 // Bullet clears its pools when a world is made, twice. At their usual 4096 pairs (7 MB) this takes as long as a second
 // of a robot's simulation.

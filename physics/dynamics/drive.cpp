@@ -9,7 +9,7 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr double kTurning_mps = 0.01;  // from here on the motor's own friction is full
+constexpr double kTurning_mps = 0.01;  // above this speed the motor's own friction is full
 
 }  // namespace
 
@@ -27,19 +27,21 @@ void TrackDrive::prescribe(Belt& belt, double speed_mps) {
   turn_at(speed_mps);
   belt.moving_mass_kg = std::numeric_limits<double>::infinity();
   belt.speed_mps = speed_mps;
-  belt.min_impulse_ns = belt.max_impulse_ns = 0;  // the solver says what it would have taken
+  belt.min_impulse_ns = belt.max_impulse_ns = 0;  // the solver computes the impulse that the speed needs
   belt.friction_impulse_ns = belt.viscous_impulse_ns = 0;
 }
 
 void TrackDrive::before_step(Belt& belt, double commanded_mps, double voltage_share, double time_step_s) {
   double target = std::clamp(commanded_mps, -drive_.max_speed_mps, drive_.max_speed_mps);
-  // both lags exact for a constant command, so the step size changes nothing
+  // Both lags are exact for a constant command, 1 - exp(-h / tau), so the step size has no influence.
   if (lag_s_ > 0) {
     lagged_mps_ -= std::expm1(-time_step_s / lag_s_) * (target - lagged_mps_);
     target = lagged_mps_;
   }
   const double share = drive_.time_constant_s > 0 ? -std::expm1(-time_step_s / drive_.time_constant_s) : 1;
   reference_mps_ += share * (target - reference_mps_);
+
+  // Limits by the torque-speed line: F_max s when braking, F_max (s - |u| / u_max) when driving.
   const double u = belt.speed_mps;
   const double braking_n = drive_.max_force_n * voltage_share;
   const double driving_n = drive_.max_force_n * std::max(0.0, voltage_share - std::abs(u) / drive_.max_speed_mps);
@@ -58,6 +60,7 @@ double TrackDrive::current_a(const Belt& belt, double time_step_s) const {
 }
 
 double TrackDrive::battery_current_a(const Belt& belt, double voltage_share, double time_step_s) const {
+  // Current for the force, and idle current, which needs no voltage but that of turning.
   const double force_n = std::abs(belt.motor_impulse_ns) / time_step_s;
   const double speed_share = belt.speed_mps / drive_.max_speed_mps;
   const double idle_a = drive_.idle_amperes * std::min(1.0, std::abs(belt.speed_mps) / kTurning_mps);

@@ -5,7 +5,7 @@
 namespace kenaf::physics {
 namespace {
 
-// btRigidBody::predictIntegratedTransform, compiled here in one piece: 1 % of a climb.
+// btRigidBody::predictIntegratedTransform, compiled here so that it is inlined: saves 1 % of a climb's time.
 btTransform pose_after(const btRigidBody& body, btScalar time_step) {
   btTransform X;
   btTransformUtil::integrateTransform(body.getWorldTransform(), body.getLinearVelocity(), body.getAngularVelocity(),
@@ -15,7 +15,7 @@ btTransform pose_after(const btRigidBody& body, btScalar time_step) {
 
 }  // namespace
 
-// Where the bodies would go: the boxes of the broad phase hold this place too.
+// Predicted poses of the bodies, which the boxes of the broad phase include.
 void DynamicsWorld::predictUnconstraintMotion(btScalar time_step) {
   for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
     btRigidBody& body = *m_nonStaticRigidBodies[i];
@@ -30,7 +30,7 @@ void DynamicsWorld::solveConstraints(btContactSolverInfo& info) {
 void DynamicsWorld::integrateTransforms(btScalar time_step) {
   for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
     btRigidBody& body = *m_nonStaticRigidBodies[i];
-    if (!body.isActive()) continue;  // Bullet stops what has become too large for its broad phase
+    if (!body.isActive()) continue;  // Bullet deactivates a body whose box is too large for its broad phase
     body.proceedToTransform(pose_after(body, time_step));
   }
 }

@@ -1,7 +1,7 @@
-// Bullet's world with a step of our own: Bullet finds what touches, the contact solver does the rest.
+// Bullet's world with our own step: Bullet finds contacts, the contact solver does the rest.
 //
-// Left out of Bullet's step is what has no effect here, 4 % of a climb's time: damping of 0, contacts predicted for
-// fast bodies (none ask for them), sleeping, and islands: the solver finds its groups by what touches.
+// Parts of Bullet's step without effect here are left out, 4 % of a climb's time: damping of 0, predicted contacts of
+// fast bodies (none use them), sleeping, and islands, as the solver finds its own groups.
 #pragma once
 
 #include "physics/dynamics/bullet.hpp"
@@ -11,7 +11,7 @@ namespace kenaf::physics {
 
 class DynamicsWorld : public btDiscreteDynamicsWorld {
  public:
-  // All that is added to it moves freely, or not at all; each constraint is a FlipperJoint.
+  // All bodies must be dynamic or static, and each constraint a FlipperJoint.
   DynamicsWorld(btDispatcher& dispatcher, btBroadphaseInterface& broadphase, btCollisionConfiguration& configuration,
                 ContactSolver& solver)
       : btDiscreteDynamicsWorld(&dispatcher, &broadphase, nullptr, &configuration), solver_(solver) {}

@@ -9,9 +9,9 @@ namespace kenaf::physics {
 namespace {
 
 constexpr double kServoGain_per_s = 30;     // of the position loop
-constexpr double kEndStopTorque_nm = 1000;  // what the mechanical stop can hold
+constexpr double kEndStopTorque_nm = 1000;  // limit of the mechanical stop
 constexpr double kEndStopGain_per_s = 20;
-constexpr double kTeeth_radpnm = 1e-4;      // give of the gear's teeth, where there is play
+constexpr double kTeeth_radpnm = 1e-4;      // compliance of the gear's teeth, with play
 constexpr double kSpringDamping_s = 0.005;  // damping of the coupling over its stiffness
 
 }  // namespace
@@ -53,6 +53,7 @@ double FlipperJoint::speed_radps() const {
 
 void FlipperJoint::drive(const robot::JointCommand& command, const FlipperDescription& flipper,
                          const FlipperServoDescription& servo, double time_step_s) {
+  // Speed and torque limit by mode.
   double torque = servo.max_torque_nm;
   double speed = 0;
   const double at = servo_rad();
@@ -80,12 +81,15 @@ void FlipperJoint::drive(const robot::JointCommand& command, const FlipperDescri
   servo_most_nm_ = torque;
   min_impulse_ = -torque * time_step_s;
   max_impulse_ = torque * time_step_s;
-  // never past a limit within the next step; a load may press it past, then the stop pushes back
+
+  // Never past a limit within the next step; a load may press it past, then the stop pushes back.
   speed = std::clamp(speed, std::min((flipper.min_angle_rad - at) / time_step_s, 0.0),
                      std::max((flipper.max_angle_rad - at) / time_step_s, 0.0));
   if (!coupling_.rigid()) push_through(speed, torque, time_step_s);
+
+  // Beyond a limit the stop acts, which is at the arm; otherwise a soft coupling has set its own row already.
   const double to_min = flipper.min_angle_rad - angle_rad_, to_max = flipper.max_angle_rad - angle_rad_;
-  if (to_max < 0 || to_min > 0) softness_ = 0;  // the stop is at the arm
+  if (to_max < 0 || to_min > 0) softness_ = 0;  // the stop is rigid
   if (to_max < 0) {
     speed = std::min(speed, kEndStopGain_per_s * to_max);
     min_impulse_ = -kEndStopTorque_nm * time_step_s;
@@ -100,7 +104,7 @@ void FlipperJoint::drive(const robot::JointCommand& command, const FlipperDescri
 
 void FlipperJoint::prescribe(double angle_rad, double time_step_s) {
   constexpr double kAnyTorque_nm = 1e6;
-  constexpr double kFastest_radps = 10;  // chosen: an arm that hung elsewhere at first gets there without a blow
+  constexpr double kFastest_radps = 10;  // chosen: an arm that starts elsewhere gets there without a shock
   const double at = servo_rad();
   target_radps_ = std::clamp(robot::wrap_angle(angle_rad - at) / time_step_s, -kFastest_radps, kFastest_radps);
   servo_most_nm_ = kAnyTorque_nm;
@@ -112,7 +116,8 @@ void FlipperJoint::prescribe(double angle_rad, double time_step_s) {
 }
 
 // Spring and damper, implicit as a contact's: torque = k (apart + h (servo - arm speed)) + d (servo - arm speed), at
-// most what the servo has, and with play never a pull across it.
+// most the servo's, and with play never a pull across it. Solved for the arm's speed, with d = k kSpringDamping_s:
+//   arm speed = servo speed + k apart / (k h + d) - impulse / (h (k h + d))
 void FlipperJoint::push_through(double servo_radps, double torque_nm, double time_step_s) {
   const double give =
       coupling_.play_rad > 0 ? std::max(coupling_.compliance_radpnm, kTeeth_radpnm) : coupling_.compliance_radpnm;
@@ -132,7 +137,7 @@ void FlipperJoint::rows(btScalar correction_per_s, std::array<Row, kRows>& out) 
   const btVector3 r_a = X_WJa.getOrigin() - m_rbA.getCenterOfMassPosition();
   const btVector3 r_b = X_WJb.getOrigin() - m_rbB.getCenterOfMassPosition();
   const btVector3 apart = X_WJb.getOrigin() - X_WJa.getOrigin();
-  // the first three hold the pivots together
+  // Three rows hold the pivots together: v_A + w_A x r_A = v_B + w_B x r_B along each axis of W.
   for (int i = 0; i < 3; ++i) {
     Row& row = out[static_cast<std::size_t>(i)];
     btVector3 axis(0, 0, 0);
@@ -141,7 +146,7 @@ void FlipperJoint::rows(btScalar correction_per_s, std::array<Row, kRows>& out) 
     row.angular_b = -r_b.cross(axis);
     row.velocity = correction_per_s * apart[i];
   }
-  // two keep the axes parallel
+  // Two keep the axes parallel: no relative turn about the joint's x and z.
   const btVector3 axis_a = X_WJa.getBasis().getColumn(1);
   const btVector3 tilt = axis_a.cross(X_WJb.getBasis().getColumn(1));
   for (const std::size_t i : {3u, 4u}) {
@@ -150,7 +155,7 @@ void FlipperJoint::rows(btScalar correction_per_s, std::array<Row, kRows>& out) 
     out[i].angular_b = -p;
     out[i].velocity = correction_per_s * tilt.dot(p);
   }
-  // the last is the servo: B turns relative to A about -y of the joint
+  // The last is the servo: B turns relative to A about -y of the joint.
   Row& servo = out[5];
   servo.angular_a = axis_a;
   servo.angular_b = -axis_a;

@@ -1,4 +1,4 @@
-// A hinge between a robot's body and a flipper, with a servo that is limited in speed and torque.
+// A hinge between a robot's body and a flipper, with a servo of limited speed and torque.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace kenaf::physics {
 
-// What is between the servo and its arm: nothing, unless the effects put something there.
+// The coupling between servo and arm: rigid, unless effects change it.
 struct ServoCoupling {
   double lag_s = 0;     // of the angle that the servo follows
   double play_rad = 0;  // between both ends
@@ -18,11 +18,11 @@ struct ServoCoupling {
   bool rigid() const { return play_rad == 0 && compliance_radpnm == 0; }
 };
 
-// The angle is counted through full turns, so a flipper with more than half a turn of travel knows where it is.
+// The angle is counted through full turns, so it is unambiguous for a flipper with more than half a turn of travel.
 //
-// Rigid, servo and arm are one, and the servo's row moves the arm. Otherwise the servo has an angle of its own: it
-// moves as it is told, and drags the arm by a spring and a damper that begin at the end of the play. Where the spring's
-// torque would go beyond the servo's, it is the servo that gives way.
+// With a rigid coupling, the servo's row moves the arm. Otherwise the servo has an angle of its own: it moves as
+// commanded and drags the arm by a spring and a damper that engage at the end of the play. If the spring's torque would
+// exceed the servo's, the servo gives way.
 class FlipperJoint : public btTypedConstraint {
  public:
   // `X_AJ`, `X_BJ`: the joint's frame in the frames of the two bodies' centres of mass. They coincide at angle 0; a
@@ -32,15 +32,15 @@ class FlipperJoint : public btTypedConstraint {
 
   // Reads the angle from the bodies; call once after each step.
   void after_step(double time_step_s);
-  // Places it without history.
+  // Sets the angle and clears the history.
   void restart(double angle_rad);
-  // At rest, as after a teleport. Who lifts a robot turns no servo: it and the arm stay as far apart as they are.
+  // Sets it to rest, as after a teleport, which turns no servo: servo and arm stay as far apart as they are.
   void come_to_rest();
   // Sets the servo for the next step.
   void drive(const robot::JointCommand& command, const FlipperDescription& flipper,
              const FlipperServoDescription& servo, double time_step_s);
-  // Instead of drive(): at the end of the next step the servo has this direction, whatever it can do; it turns at most
-  // at 10 rad/s. Rigid, the arm is there, too; else it follows through play and compliance.
+  // Instead of drive(): at the end of the next step the servo has this direction, regardless of its limits; it turns at
+  // most at 10 rad/s. A rigid arm is there too; otherwise it follows through play and compliance.
   void prescribe(double angle_rad, double time_step_s);
 
   double angle_rad() const { return angle_rad_; }
@@ -48,23 +48,23 @@ class FlipperJoint : public btTypedConstraint {
   double servo_rad() const { return coupling_.rigid() ? angle_rad_ : servo_rad_; }
   double speed_radps() const;
   double torque_nm(double time_step_s) const { return row_impulse[5] / time_step_s; }  // + lifts the tip
-  // Of it, what the servo gives: not the mechanical stop, which holds for nothing.
+  // The servo's part of it, without the mechanical stop, which takes no current.
   double servo_nm(double time_step_s) const {
     return std::clamp(torque_nm(time_step_s), -servo_most_nm_, servo_most_nm_);
   }
 
-  // An equation for the solver: angular_a . w_A + angular_b . w_B = velocity, held by an impulse between `low` and
-  // `high`. The first three rows have v_A - v_B along x, y, z of W too.
+  // An equation for the solver: angular_a . w_A + angular_b . w_B = velocity, enforced by an impulse between `low` and
+  // `high`. The first three rows also contain v_A - v_B along x, y, z of W.
   struct Row {
     btVector3 angular_a, angular_b;
     btScalar velocity, low = -SIMD_INFINITY, high = SIMD_INFINITY;
-    btScalar softness = 0;  // by how much it gives way, in rad/s for an impulse of 1 N m s
+    btScalar softness = 0;  // compliance, in rad/s for an impulse of 1 N m s
   };
   static constexpr std::size_t kRows = 6;
-  // `correction_per_s`: of an error of position.
+  // `correction_per_s`: rate at which position errors are removed.
   void rows(btScalar correction_per_s, std::array<Row, kRows>& out) const;
 
-  // Bullet's own solver never sees it.
+  // No rows for Bullet's own solver.
   void getInfo1(btConstraintInfo1* info) override { info->m_numConstraintRows = info->nub = 0; }
   void getInfo2(btConstraintInfo2*) override {}
   void setParam(int, btScalar, int) override {}
@@ -82,8 +82,8 @@ class FlipperJoint : public btTypedConstraint {
   double target_radps_ = 0, min_impulse_ = 0, max_impulse_ = 0, softness_ = 0;
   ServoCoupling coupling_;
   double servo_most_nm_ = 0;
-  double followed_rad_ = 0;                                      // the commanded angle behind the lag
-  double servo_rad_ = 0, servo_radps_ = 0, most_apart_rad_ = 0;  // unused where it is rigid
+  double followed_rad_ = 0;                                      // the commanded angle after the lag
+  double servo_rad_ = 0, servo_radps_ = 0, most_apart_rad_ = 0;  // unused if rigid
 };
 
 }  // namespace kenaf::physics

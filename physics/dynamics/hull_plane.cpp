@@ -10,7 +10,7 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr btScalar kTouching_m = 0.001;  // a gap that a step may close
+constexpr btScalar kTouching_m = 0.001;  // widest gap that counts as contact: a step may close it
 
 class HullPlaneAlgorithm : public btCollisionAlgorithm {
  public:
@@ -28,6 +28,7 @@ class HullPlaneAlgorithm : public btCollisionAlgorithm {
   void processCollision(const btCollisionObjectWrapper* body0, const btCollisionObjectWrapper* body1,
                         const btDispatcherInfo&, btManifoldResult* result) override {
     if (!manifold_) return;
+    // The plane in the hull's frame: n . p + offset is the distance of a vertex.
     const btCollisionObjectWrapper& hull = swapped_ ? *body1 : *body0;
     const btCollisionObjectWrapper& plane_wrap = swapped_ ? *body0 : *body1;
     const auto& plane = *static_cast<const btStaticPlaneShape*>(plane_wrap.getCollisionShape());
@@ -36,6 +37,7 @@ class HullPlaneAlgorithm : public btCollisionAlgorithm {
     const btVector3 normal_H = X_PH.getBasis().transpose() * plane.getPlaneNormal();
     const btScalar offset = plane.getPlaneNormal().dot(X_PH.getOrigin()) - plane.getPlaneConstant();
 
+    // A contact point for each of the lowest vertices.
     const auto& shape = *static_cast<const btConvexHullShape*>(hull.getCollisionShape());
     const btVector3* points = shape.getUnscaledPoints();
     const Deepest deepest = find_deepest(points, static_cast<std::size_t>(shape.getNumPoints()), normal_H, offset);
@@ -43,7 +45,7 @@ class HullPlaneAlgorithm : public btCollisionAlgorithm {
     for (std::size_t i = 0; i < deepest.count; ++i) {
       const btScalar distance = deepest.point[i].distance;
       const btVector3 on_hull_W = hull.getWorldTransform() * points[deepest.point[i].index];
-      // a result wants the normal on the second body and the point on it
+      // btManifoldResult expects normal and point on the second body.
       if (swapped_)
         result->addContactPoint(-normal_W, on_hull_W, distance);
       else
@@ -70,6 +72,7 @@ class HullPlaneAlgorithm : public btCollisionAlgorithm {
     std::size_t count = 0;
   };
 
+  // The four vertices of least distance within kTouching_m, in the order of the hull's vertices.
   static Deepest find_deepest(const btVector3* points, std::size_t count, const btVector3& normal, btScalar offset) {
     Deepest found;
     for (std::size_t i = 0; i < count; ++i) {

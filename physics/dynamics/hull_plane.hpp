@@ -1,7 +1,7 @@
-// Contacts of a convex hull with an infinite plane: the hull's own vertices, the four lowest at once.
+// Contacts of a convex hull with an infinite plane: the four lowest vertices of the hull at once.
 //
-// Bullet's own algorithm finds one vertex in a step and gathers the others while the body rocks, so that a load would
-// depend on how it came to stand.
+// Bullet's own algorithm finds one vertex in a step and gathers the others while the body rocks, so that loads would
+// depend on how the body came to rest.
 #pragma once
 
 #include "physics/dynamics/bullet.hpp"
@@ -9,7 +9,7 @@
 namespace kenaf::physics {
 
 // Makes `dispatcher` use it in contact tests, for convex hulls and static planes in either order. In a step a hull may
-// be a belt: there BeltGround chooses, and takes create() where it is none.
+// be a belt: there BeltGround decides, and uses create() for other hulls.
 class HullPlaneContacts {
  public:
   explicit HullPlaneContacts(btCollisionDispatcher& dispatcher);

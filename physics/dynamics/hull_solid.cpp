@@ -12,9 +12,9 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr int kManyCorners = 256;  // of a face and of what is cut from it; a track's side has 34
+constexpr int kManyCorners = 256;  // of a face, and after clipping; a track's side has 34
 
-// Takes away the margins within which the shapes are rounded: a hull's corners lie inside of them.
+// Removes the margins by which Bullet rounds shapes: a hull's corners lie inside of them.
 struct WithoutMargins : btDiscreteCollisionDetectorInterface::Result {
   btManifoldResult& result;
   btScalar margin_a, margin_b;
@@ -31,7 +31,7 @@ struct WithoutMargins : btDiscreteCollisionDetectorInterface::Result {
   }
 };
 
-// A box's corners are outside of its margin.
+// A box's corners include its margin.
 btScalar margin_of(const btConvexShape& shape) {
   return shape.getShapeType() == BOX_SHAPE_PROXYTYPE ? 0 : shape.getMargin();
 }
@@ -52,6 +52,7 @@ class HullSolidAlgorithm : public btCollisionAlgorithm {
     const auto& b = *static_cast<const btPolyhedralConvexShape*>(body1->getCollisionShape());
     const btScalar reach = manifold_->getContactBreakingThreshold();
 
+    // Nearest points, or deepest ones, by GJK and EPA.
     btVoronoiSimplexSolver simplex;
     btGjkPairDetector nearest(&a, &b, &simplex, &shared_.depth);
     btGjkPairDetector::ClosestPointInput input;
@@ -61,6 +62,8 @@ class HullSolidAlgorithm : public btCollisionAlgorithm {
     input.m_maximumDistanceSquared = furthest * furthest;
     WithoutMargins found(*result, margin_of(a), margin_of(b));
     nearest.getClosestPoints(input, found, nullptr);
+
+    // Overlapping: all corners of the contact's face.
     if (found.gap < 0)
       btPolyhedralContactClipping::clipHullAgainstHull(
           found.normal_W, *a.getConvexPolyhedron(), *b.getConvexPolyhedron(), body0->getWorldTransform(),

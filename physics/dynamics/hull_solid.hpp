@@ -1,8 +1,8 @@
-// Contacts of a convex hull with another or with a box: the nearest points, and where they overlap, the corners of
-// one's face on the other's.
+// Contacts of a convex hull with another or with a box: the nearest points, and if they overlap, the corners of one's
+// face clipped by the other's.
 //
-// The points are those of Bullet's btConvexConvexAlgorithm. Each of those has lists of its own for the corners, which
-// it allocates anew when two bodies touch; here all share two that stay.
+// The points are those of Bullet's btConvexConvexAlgorithm. Each of its instances has lists of its own for the corners,
+// allocated anew when two bodies touch; here all instances share two lists.
 #pragma once
 
 #include <BulletCollision/NarrowPhaseCollision/btGjkEpaPenetrationDepthSolver.h>
@@ -16,7 +16,7 @@ class HullSolidContacts {
   HullSolidContacts();
   btCollisionAlgorithmCreateFunc& create() { return create_; }
 
-  // What all algorithms share.
+  // Shared by all algorithms.
   struct Shared {
     btGjkEpaPenetrationDepthSolver depth;
     btAlignedObjectArray<btVector3> face_W, clipped_W;  // scratch

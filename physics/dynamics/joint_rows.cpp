@@ -3,12 +3,12 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr Two kApart{1, -1};  // of the first three rows: A's velocity less B's
+constexpr Two kApart{1, -1};  // first three rows: A's velocity minus B's
 
 }  // namespace
 
 // Here and in solve(): the arithmetic of btSequentialImpulseConstraintSolver (convertJoint,
-// resolveSingleConstraintRowGeneric) in its order, less its sums of zeros and products with 1, which change no number.
+// resolveSingleConstraintRowGeneric) in its order, without sums of zeros and products with 1, which have no effect.
 JointRows::JointRows(FlipperJoint& joint, SolverBody& a, SolverBody& b, const btContactSolverInfo& info)
     : push_(kApart * Two{a.inverse_mass, b.inverse_mass}), joint_(&joint), a_(&a), b_(&b) {
   std::array<FlipperJoint::Row, FlipperJoint::kRows> equations;
@@ -20,6 +20,8 @@ JointRows::JointRows(FlipperJoint& joint, SolverBody& a, SolverBody& b, const bt
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const FlipperJoint::Row& e = equations[i];
     Row& row = rows_[i];
+
+    // Effective mass 1 / (J M^-1 J^T), and the impulse that brings the row from its velocity to the wanted one.
     row.angular = side_by_side(e.angular_a, e.angular_b);
     row.turn = inverse_inertia * row.angular;
     const Two moves = i < 3 ? inverse_mass : none, turns = dot(row.turn, row.angular);
@@ -28,7 +30,7 @@ JointRows::JointRows(FlipperJoint& joint, SolverBody& a, SolverBody& b, const bt
     row.velocity_impulse = e.velocity * row.mass + (0 - (velocity[0] + velocity[1])) * row.mass;
     row.softness = 0;
     if (e.softness > 0) {
-      // a soft row of Bullet's own would not converge: it leaves the softness out of the row's mass
+      // The softness adds to the inverse mass. Bullet leaves it out, and its soft rows would not converge.
       const btScalar mass = 1 / (1 / row.mass + e.softness);
       row.velocity_impulse *= mass / row.mass;
       row.softness = e.softness * mass;

@@ -1,8 +1,8 @@
 // The six rows of a flipper's joint in the solver of a step: five that hold it together, and its servo's.
 //
-// Each row waits for the one before, so what counts is how long one takes from velocity to velocity. Both bodies'
-// numbers are side by side, in registers for all six rows, and there are no sums of zeros; with the same in Contact
-// that takes 12 % off a climb's time.
+// Each row depends on the one before, so the latency of a row counts. Both bodies' numbers are side by side, in
+// registers for all six rows, and sums of zeros are left out; together with the same in Contact this saves 12 % of a
+// climb's time.
 #pragma once
 
 #include <array>
@@ -15,12 +15,12 @@ namespace kenaf::physics {
 
 class JointRows {
  public:
-  // Begins with the impulses of the last step.
+  // Starts from the impulses of the last step.
   JointRows(FlipperJoint& joint, SolverBody& a, SolverBody& b, const btContactSolverInfo& info);
   void warm_start();
-  // One iteration; gives the largest square of a change of velocity.
+  // One iteration. Returns the largest squared velocity change.
   btScalar solve();
-  // Leaves the impulses with the joint.
+  // Stores the impulses in the joint.
   void finish();
 
  private:
@@ -29,14 +29,14 @@ class JointRows {
     TwoVectors linear, angular;
   };
   struct Row {
-    TwoVectors angular, turn;   // its velocity for a unit angular velocity, angular velocity for a unit impulse
-    btScalar velocity_impulse;  // that brings it to its velocity
+    TwoVectors angular, turn;   // Jacobian; angular velocity for a unit impulse
+    btScalar velocity_impulse;  // brings the row to its velocity
     btScalar softness;          // times mass
     btScalar mass, inverse_mass;
     btScalar low, high;
     btScalar impulse;
 
-    btScalar change(Two velocity);  // gives the impulse for that velocity
+    btScalar change(Two velocity);  // returns the change of impulse at that velocity
   };
   Velocities begin() const;
   void end(const Velocities& v);

@@ -9,7 +9,7 @@
 namespace kenaf::physics {
 namespace {
 
-constexpr int kFlipperPieces = 2;  // of its straight run, with contacts at the ends of each
+constexpr int kFlipperPieces = 2;  // of a straight run, with contacts at the ends of each
 
 Surface belt_surface(const RobotDescription& robot, robot::Track side, double friction_along, double friction_across,
                      Belt* belt, double axis_y) {
@@ -33,7 +33,7 @@ std::unique_ptr<btRigidBody> make_body(double mass_kg, btCollisionShape& shape, 
   return body;
 }
 
-// What all drives draw together at standstill with all their force.
+// Total current of all drives at standstill with full force.
 double stalled_a(const RobotDescription& robot) {
   const Effects& effects = robot.effects;
   const double track = robot.drive.amperes_per_newton * robot.drive.max_force_n * effects.drive_torque_scale;
@@ -73,7 +73,7 @@ void RobotModel::enter_dynamics() {
   if (in_dynamics_) return;
   for (Belt& belt : belts_) solver_.add_belt(&belt, hull_.get());
   for (btRigidBody* body : body_list_) world_.addRigidBody(body);
-  // the order in which they are solved
+  // The solver works in this order.
   for (const robot::Flipper which : {robot::kRearLeft, robot::kRearRight, robot::kFrontLeft, robot::kFrontRight})
     if (const auto& joint = flippers_[which].joint)
       world_.addConstraint(joint.get(), true);  // true: it does not collide with the hull
@@ -103,6 +103,8 @@ void RobotModel::make_hull(RobotId id) {
     hull_pieces_.push_back(std::move(shape));
     hull_collider_.surfaces.push_back(surface);
   };
+
+  // Main tracks: a belt for the ground, and a prism for everything else.
   for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     Eigen::Vector3d center = track.p_BT_m;
     if (side == robot::kRight) center.y() = -center.y();
@@ -120,8 +122,9 @@ void RobotModel::make_hull(RobotId id) {
     shape->setUserPointer(&track_tags_[side]);
     add(std::move(shape), surface);
   }
+
+  // The body between them: a hull, not a btBoxShape, so that all of a robot meets the ground by the same algorithm.
   const Eigen::Vector2d half(body.size_m.x() / 2, body.size_m.z() / 2);
-  // a hull, not a btBoxShape: all of a robot meets the ground through the same algorithm
   add(make_prism({{half.x(), -half.y()}, half, {-half.x(), half.y()}, -half}, body.size_m.y(), {0, 0, 0}),
       {.friction_along = body.friction,
        .friction_across = body.friction,
@@ -138,7 +141,8 @@ void RobotModel::make_flipper(robot::Flipper which, RobotId id) {
   const OutlineMoments m = moments(outline);
   const Eigen::Vector3d com(m.centroid.x(), 0, m.centroid.y());
   const robot::Track side = robot::side_of(which);
-  // a rear flipper is a front one that is turned half round: x out along the arm, tip up about -y for all four
+
+  // A rear flipper is a front one turned by 180 degrees: x out along the arm, tip up about -y for all four.
   const bool front = robot::is_front(which);
   const Eigen::Vector3d pivot(front ? f.p_BPivot_m.x() : -f.p_BPivot_m.x(),
                               side == robot::kLeft ? f.p_BPivot_m.y() : -f.p_BPivot_m.y(), f.p_BPivot_m.z());
@@ -146,6 +150,7 @@ void RobotModel::make_flipper(robot::Flipper which, RobotId id) {
   flipper.X_BodyPivot = btTransform(turn, to_bullet(pivot));
   flipper.X_FlipperCom = btTransform(btQuaternion::getIdentity(), to_bullet(com));
 
+  // Collision shape and belt, with the centre of mass as origin.
   flipper.shape = make_prism(outline, f.width_m, -com);
   flipper.collider.robot = static_cast<std::uint32_t>(id);
   const Surface surface = belt_surface(description, side, f.friction_along, f.friction_across,
@@ -159,6 +164,8 @@ void RobotModel::make_flipper(robot::Flipper which, RobotId id) {
                   .surface = surface};
   flipper.tag.belt = &flipper.belt;
   flipper.shape->setUserPointer(&flipper.tag);
+
+  // Body of uniform density, from the outline's second moments per area, and its joint to the hull.
   const double xx = m.Ixx / m.area, zz = m.Izz / m.area, yy = f.width_m * f.width_m / 12;
   flipper.body =
       make_body(f.mass_kg, *flipper.shape, f.mass_kg * btVector3(zz + yy, xx + zz, xx + yy), flipper.collider);
@@ -181,12 +188,14 @@ void RobotModel::place(const Pose& X_WB, bool start_joints) {
     body.setInterpolationAngularVelocity({0, 0, 0});
     body.clearForces();
     body.updateInertiaTensor();
-    // contacts of the old place must not pull on it, nor a sensor feel them
+    // Contacts of the old place must neither pull on it nor be felt by a sensor.
     solver_.forget_contacts_of(body);
     world_.getBroadphase()->getOverlappingPairCache()->cleanProxyFromPairs(body.getBroadphaseHandle(),
                                                                            world_.getDispatcher());
     world_.updateSingleAabb(&body);
   };
+
+  // Bodies, belts and drives at rest.
   const btTransform X = to_bullet(X_WB);
   put(*hull_, X * X_BCom_);
   for (FlipperBody& flipper : flippers_) {
@@ -204,6 +213,8 @@ void RobotModel::place(const Pose& X_WB, bool start_joints) {
     belts_[side].motor_impulse_ns = 0;
     drives_[side].turn_at(0);
   }
+
+  // Commands: a fresh start holds the start angles; otherwise commands that are under way still arrive.
   prescribed_ = {};
   channel_.stop_ramp();
   if (start_joints) {
@@ -215,6 +226,7 @@ void RobotModel::place(const Pose& X_WB, bool start_joints) {
 }
 
 void RobotModel::set_in_motion(const RobotMotion& motion, const robot::Command& command) {
+  // All bodies move as one rigid body: v + w x (p_com - p_WB).
   const btVector3 v = to_bullet(motion.v_WB_mps), w = to_bullet(motion.w_WB_radps);
   const btVector3 p_WB = (hull_->getWorldTransform() * X_BCom_.inverse()).getOrigin();
   for (btRigidBody* body : body_list_) {
@@ -224,7 +236,9 @@ void RobotModel::set_in_motion(const RobotMotion& motion, const robot::Command& 
     body->setInterpolationLinearVelocity(v_com);
     body->setInterpolationAngularVelocity(w);
   }
-  std::array<double, robot::kTrackCount> told_mps{};  // what the channel would have given for these speeds
+
+  // Belts at their speeds, with drives and channel as if they had been commanded so for long.
+  std::array<double, robot::kTrackCount> told_mps{};  // the channel's output for these speeds
   for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     belts_[side].speed_mps = motion.track_mps[side];
     belts_[side].motor_impulse_ns = 0;
@@ -234,7 +248,7 @@ void RobotModel::set_in_motion(const RobotMotion& motion, const robot::Command& 
   channel_.begin(command, told_mps);
 }
 
-// A servo's speed and torque shrink with the voltage as a track motor's do.
+// A servo's speed and torque scale with the voltage, as a track motor's do.
 FlipperServoDescription RobotModel::servo_now() const {
   FlipperServoDescription servo = description.servo;
   servo.max_torque_nm *= description.effects.flipper_torque_scale * battery_.voltage_share();

@@ -23,18 +23,18 @@ namespace kenaf::physics {
 
 class RobotModel {
  public:
-  // `name` and `world_seed` seed what is left to chance; the time step is that of every step to come.
+  // `name` and `world_seed` seed the random numbers; all later steps have this time step.
   RobotModel(const RobotDescription& description, const std::string& name, std::uint64_t world_seed, double time_step_s,
              RobotId id, btDiscreteDynamicsWorld& world, ContactSolver& solver);
   ~RobotModel();
   RobotModel(const RobotModel&) = delete;
   RobotModel& operator=(const RobotModel&) = delete;
 
-  // At rest, joints at their start angles when `start_joints`, else at their present ones.
+  // Places it at rest, with joints at their start angles if `start_joints`, else at their present ones.
   void place(const Pose& X_WB, bool start_joints);
 
   void send(const robot::Command& command) { channel_.send(command); }
-  // World's contracts.
+  // See World.
   void set_in_motion(const RobotMotion& motion, const robot::Command& command);
   void prescribe(const PrescribedMotion& motion) { prescribed_ = motion; }
   void before_step(double time_step_s);
@@ -46,7 +46,7 @@ class RobotModel {
 
   const std::vector<btRigidBody*>& bodies() const { return body_list_; }
 
-  // Out of the dynamics it stands still and nothing meets it; place() puts it back.
+  // Takes it out of the dynamics, where it stands still and nothing collides with it; place() puts it back.
   void leave_dynamics();
 
   const RobotDescription description;
@@ -60,14 +60,14 @@ class RobotModel {
     BeltShape belt;
     ShapeTag tag;
     btTransform X_FlipperCom;  // the flipper's frame (x out along the arm) to its centre of mass
-    btTransform X_BodyPivot;   // where that frame is in B at angle 0
+    btTransform X_BodyPivot;   // pose of that frame in B at angle 0
   };
 
   void enter_dynamics();
   void make_hull(RobotId id);
   void make_flipper(robot::Flipper which, RobotId id);
   FlipperServoDescription servo_now() const;
-  // What a track is told is multiplied by this.
+  // Factor on a track's commanded speed.
   double favour(robot::Track side) const { return side_factor(side, description.effects.drive_asymmetry); }
   double battery_current_a(double time_step_s) const;
 

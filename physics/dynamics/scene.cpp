@@ -13,10 +13,11 @@ namespace {
 
 constexpr double kJointCorrection = 0.2;  // share of a joint's position error that is removed in a step
 constexpr double kFree_m = 1e-5;
-// An iteration that changes no velocity by more than this share of what gravity does in a step is the last one.
+// The last iteration is the first that changes no velocity by more than this share of gravity's change in a step.
 constexpr double kSolved = 1e-5;
 
-// Of a uniform box of that half size. Bullet takes a hull for a box that is larger by its margins.
+// Moments of inertia of a uniform box of half size a, b, c: m / 3 (b^2 + c^2), ... Bullet's own, for a hull, are those
+// of a box that is larger by its margins.
 btVector3 box_inertia(double mass_kg, const btVector3& half) {
   const btVector3 squares = half * half;
   return mass_kg / 3 * btVector3(squares.y() + squares.z(), squares.x() + squares.z(), squares.x() + squares.y());
@@ -57,6 +58,8 @@ void Scene::add_mesh(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) return;
   MeshFixture& added = meshes_.emplace_back();
   added.mesh = mesh;
+
+  // Bullet's tree over the triangles, which stay in `added`.
   btIndexedMesh layout;
   layout.m_numTriangles = static_cast<int>(mesh.triangles.size());
   layout.m_triangleIndexBase = reinterpret_cast<const unsigned char*>(added.mesh.triangles.data());
@@ -68,6 +71,8 @@ void Scene::add_mesh(const TriangleMesh& mesh) {
   added.triangles.addIndexedMesh(layout, PHY_INTEGER);
   constexpr bool kQuantized = true;  // of the tree's boxes, not of the vertices
   added.fixture.shape = std::make_unique<btBvhTriangleMeshShape>(&added.triangles, kQuantized);
+
+  // Neighbours across edges, for the contacts of belts.
   std::vector<btVector3> vertices;
   for (const Eigen::Vector3d& p_W : mesh.vertices_W) vertices.push_back(to_bullet(p_W));
   added.edges = std::make_unique<MeshEdges>(vertices, mesh.triangles);
@@ -97,7 +102,7 @@ void Scene::step(double time_step_s) {
 void Scene::add_box(BoxId id, const Box& box) {
   Fixture& fixture = boxes_[id];
   if (box.mass_kg > 0) {
-    // a hull, so that it stands on planes as robots do
+    // A hull, not a box, so that it meets planes as robots do.
     const Eigen::Vector2d half(box.size_m.x() / 2, box.size_m.z() / 2);
     fixture.shape = make_prism({{half.x(), -half.y()}, half, {-half.x(), half.y()}, -half}, box.size_m.y(), {0, 0, 0});
     fixture.half = to_bullet(Eigen::Vector3d(box.size_m / 2));
@@ -133,6 +138,7 @@ Pose Scene::box_pose(BoxId id) const {
 }
 
 double Scene::lift_needed(RobotModel& robot, double search_step_m) {
+  // The largest way up that frees the robot from a penetrating contact with anything but itself: depth / n_z.
   struct Deepest : btCollisionWorld::ContactResultCallback {
     const btCollisionObject* self = nullptr;
     const std::vector<btRigidBody*>* own = nullptr;
@@ -145,12 +151,14 @@ double Scene::lift_needed(RobotModel& robot, double search_step_m) {
       const double depth = -point.getDistance();
       if (depth <= 0) return 0;
       const double up = (object0->getCollisionObject() == self ? 1 : -1) * point.m_normalWorldOnB.z();
-      // a wall beside it, or an obstacle's underside: on, in steps, until it is above
+      // A wall beside it, or an obstacle's underside: up in steps, until the robot is above it.
       constexpr double kSteepest = 0.3;
       lift_m = std::max(lift_m, up > kSteepest ? depth / up : search_step_m);
       return 0;
     }
   } deepest;
+
+  // While probing, belts meet the ground as hulls do, which finds deep penetrations too.
   deepest.own = &robot.bodies();
   deepest.search_step_m = search_step_m;
   belt_ground_.set_probing(true);
@@ -163,6 +171,7 @@ double Scene::lift_needed(RobotModel& robot, double search_step_m) {
 }
 
 double Scene::depth_in_mesh(const Eigen::Vector3d& p_W) const {
+  // Inside a solid, a ray upward meets the nearest surface from below: from the side against its normal.
   struct MeshAbove : btCollisionWorld::ClosestRayResultCallback {
     using ClosestRayResultCallback::ClosestRayResultCallback;
     bool needsCollision(btBroadphaseProxy* proxy) const override {
@@ -181,13 +190,13 @@ double Scene::depth_in_mesh(const Eigen::Vector3d& p_W) const {
 void Scene::place_free(RobotModel& robot, Pose X_WB, bool start_joints) {
   constexpr int kMaxLifts = 1000, kLiftsToDouble = 100;  // over 2 km in all
   double search_step_m = 0.02;
-  // deep inside, it would touch none of the triangles
+  // Deep inside a mesh, the robot would touch none of its triangles.
   X_WB.p.z() += depth_in_mesh(X_WB.p);
   robot.place(X_WB, start_joints);
   for (int i = 1; i <= kMaxLifts; ++i) {
     const double lift_m = lift_needed(robot, search_step_m);
     if (lift_m <= 0) return;
-    if (i % kLiftsToDouble == 0) search_step_m *= 2;  // out of what is as high as a house
+    if (i % kLiftsToDouble == 0) search_step_m *= 2;  // out of tall obstacles
     X_WB.p.z() += lift_m + kFree_m;
     robot.place(X_WB, start_joints);
   }

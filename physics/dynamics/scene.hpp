@@ -39,7 +39,7 @@ class Scene {
   void place_free(RobotModel& robot, Pose X_WB, bool start_joints);
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,
                                  std::uint32_t ignored_robot) const;
-  // Where a robot is pressed upon, in the world.
+  // The points where a robot is pressed upon, in W.
   void touches(RobotId robot, std::vector<Eigen::Vector3d>& out) const;
   std::size_t contact_count() const { return solver_.contacts().size(); }
 
@@ -54,7 +54,7 @@ class Scene {
     btVector3 half;  // of a loose box
     ShapeTag tag;
   };
-  // A fixed body of triangles; Bullet reads vertices and indices where they lie.
+  // A fixed body of triangles; Bullet reads vertices and indices in place.
   struct MeshFixture {
     TriangleMesh mesh;
     btTriangleIndexVertexArray triangles;
@@ -63,11 +63,11 @@ class Scene {
     Fixture fixture;
   };
   void add_mesh(const TriangleMesh& mesh);
-  // Fixed without a mass, else a loose box.
+  // A body without mass is fixed; otherwise it is a loose box.
   void add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W);
-  // 0: it is free. Where up is not the way out of what it touches: `search_step_m`.
+  // How far up the robot must go to be free, 0 if it is. Returns `search_step_m` if up is not the way out of a contact.
   double lift_needed(RobotModel& robot, double search_step_m);
-  // How far below the surface of a mesh's solid a point is; 0: outside of it.
+  // Depth of a point below the surface of a mesh's solid, 0 outside of it.
   double depth_in_mesh(const Eigen::Vector3d& p_W) const;
 
   CollisionConfiguration configuration_;
@@ -81,7 +81,7 @@ class Scene {
   ContactSolver solver_;
   DynamicsWorld world_;
   std::vector<Fixture> planes_;
-  std::list<MeshFixture> meshes_;  // stay where they are, as Bullet points at them
+  std::list<MeshFixture> meshes_;  // a list, as Bullet keeps pointers to them
   std::map<BoxId, Fixture> boxes_;
 };
 

@@ -1,4 +1,4 @@
-// A rigid body as the solver of a step sees it: only what impulses need, close together.
+// A rigid body in the solver of a step: only what impulses need, close together in memory.
 #pragma once
 
 #include "physics/dynamics/bullet.hpp"
@@ -7,8 +7,8 @@
 namespace kenaf::physics {
 
 struct SolverBody {
-  TwoVectors delta{};  // what the impulses of this step have changed; lane 0: m/s, lane 1: rad/s
-  btVector3 v, w;      // without them, at the end of the step
+  TwoVectors delta{};  // velocity change by the impulses of this step; lane 0: m/s, lane 1: rad/s
+  btVector3 v, w;      // at the end of the step, without these impulses
   btVector3 p_W;
   btMatrix3x3 inverse_inertia_W;
   btScalar inverse_mass;

@@ -1,4 +1,4 @@
-// What the contact solver needs to know of the things that touch: friction, and the belt that runs over a surface.
+// Surface properties for the contact solver: friction, and the belt that runs over a surface.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,14 @@ namespace kenaf::physics {
 // together with the contacts: the motor drives it, the friction on all the surfaces it runs over brakes it.
 struct Belt {
   // set before a step
-  double moving_mass_kg = 1;  // infinite: its speed is what it was set to, whatever pushes on it
-  double target_mps = 0;      // the motor turns towards it
-  double droop_mpspns = 0;    // but stays short of it by this for each newton second that the motor gives within a step
-  double min_impulse_ns = 0;  // what the motor can give within a step, <= 0
-  double max_impulse_ns = 0;  // >= 0
+  double moving_mass_kg = 1;      // infinite: a prescribed speed, whatever pushes on it
+  double target_mps = 0;          // the motor's set speed
+  double droop_mpspns = 0;        // shortfall from it for each newton second that the motor gives within a step
+  double min_impulse_ns = 0;      // limits of the motor within a step, <= 0
+  double max_impulse_ns = 0;      // >= 0
   double dry_friction_ns = 0;     // of the running gear, within a step
   double viscous_nspm = 0;        // of the running gear
-  double rolling_resistance = 0;  // friction for a unit of what presses on the belt
+  double rolling_resistance = 0;  // friction force for a unit of normal force on the belt
   double slip_spm = 0;            // the surface moves with speed (1 - slip |speed|)
   // state
   double speed_mps = 0;  // of the surface relative to the body, + drives the robot forward
@@ -25,21 +25,21 @@ struct Belt {
   double motor_impulse_ns = 0;
   double friction_impulse_ns = 0;  // dry and rolling, of the running gear
   double viscous_impulse_ns = 0;
-  double load_ns = 0;  // what presses on it
-  double kept = 1;     // of the friction that the next step starts from
+  double load_ns = 0;  // normal impulse on it
+  double kept = 1;     // share of the friction impulses that the next step starts from
 };
 
 struct Surface {
   double friction_along = 1;
-  double friction_across = 1;  // equal to `friction_along` where nothing runs
+  double friction_across = 1;  // equal to `friction_along` without a belt
   Belt* belt = nullptr;        // null: the surface does not move in its body
   double axis_y = 1;           // the belt turns about (0, axis_y, 0) of its body, 1 or -1
   double lug_height_m = 0;
-  double compliance_scale = 1;  // of the give of what it stands on
+  double compliance_scale = 1;  // of the compliance of the ground under it
   double damping_scale = 1;
 };
 
-// Hangs on btCollisionObject::getUserPointer().
+// Stored at btCollisionObject::getUserPointer().
 struct Collider {
   std::vector<Surface> surfaces;  // of each child of a compound shape, or the only one
   std::uint32_t robot = 0;        // 0: none

@@ -1,5 +1,5 @@
-// Arithmetic on two numbers at once, in one register (vector extensions of g++ and clang). What is done to two is done
-// to each by itself and in the order that is written, so each gets the bits that it would get alone.
+// Arithmetic on two numbers at once, in one register (vector extensions of g++ and clang). Both lanes are independent
+// and computed in the written order, so each has the same bits as scalar code.
 #pragma once
 
 #include "physics/dynamics/bullet.hpp"
@@ -8,7 +8,7 @@ namespace kenaf::physics {
 
 using Two = double __attribute__((vector_size(16)));
 
-// Two vectors side by side, or a moving in lane 0 and a turning in lane 1.
+// Two vectors side by side, or a linear part in lane 0 and an angular part in lane 1.
 struct TwoVectors {
   Two x, y, z;
 };
@@ -30,7 +30,7 @@ inline TwoMatrices side_by_side(const btMatrix3x3& a, const btMatrix3x3& b) {
   return {{side_by_side(a[0], b[0]), side_by_side(a[1], b[1]), side_by_side(a[2], b[2])}};
 }
 
-// As btVector3 and btMatrix3x3 do it.
+// In the order of btVector3 and btMatrix3x3.
 inline Two dot(const TwoVectors& a, const TwoVectors& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }

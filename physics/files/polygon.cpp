@@ -17,11 +17,12 @@ double cross(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-// c, which is in line with a and b, lies between them.
+// Whether c, which is in line with a and b, lies between them.
 bool between(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return (c - a).dot(c - b) <= 0;
 }
 
+// Segments a b and c d meet: each one's ends lie on both sides of the other, or an end lies on the other.
 bool segments_meet(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
   const double c_side = cross(a, b, c), d_side = cross(a, b, d), a_side = cross(c, d, a), b_side = cross(c, d, b);
   if (((c_side > 0 && d_side < 0) || (c_side < 0 && d_side > 0)) &&
@@ -67,11 +68,13 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(std::vector<Vector2d>& cor
     throw description::DescriptionError("a polygon must have at least 3 corners that are not in line");
   constexpr const char* kNotSimple = "a polygon must not touch or cross itself";
   if (!is_simple(corners)) throw description::DescriptionError(kNotSimple);
+
+  // Counter-clockwise, by the sign of the area: a fan of triangles from corner 0.
   double twice_area = 0;
   for (std::size_t i = 0; i + 1 < corners.size(); ++i) twice_area += cross(corners[0], corners[i], corners[i + 1]);
   if (twice_area < 0) std::ranges::reverse(corners);
 
-  // Ear clipping: a corner whose triangle holds no other corner is cut off, until one triangle is left.
+  // Ear clipping: a convex corner whose triangle holds no other corner is cut off, until one triangle is left.
   std::vector<std::uint32_t> left(corners.size());
   std::iota(left.begin(), left.end(), 0U);
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -89,7 +92,7 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(std::vector<Vector2d>& cor
     };
     std::size_t ear = 0;
     while (ear < n && !is_ear(ear)) ++ear;
-    if (ear == n) throw description::DescriptionError(kNotSimple);  // as near to it as rounding can tell
+    if (ear == n) throw description::DescriptionError(kNotSimple);  // up to rounding
     triangles.push_back({left[(ear + n - 1) % n], left[ear], left[(ear + 1) % n]});
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
   }

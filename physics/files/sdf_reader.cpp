@@ -10,7 +10,7 @@
 namespace kenaf::physics {
 namespace {
 
-// Which children of an element this simulator understands; an element that is not a key here is understood whole.
+// The children that this simulator supports, by element; an element that is not a key here is supported whole.
 const std::map<std::string, std::set<std::string>>& known_children() {
   static const std::map<std::string, std::set<std::string>> known{
       {"world", {"gravity", "frame", "model"}},

@@ -1,4 +1,4 @@
-// What the parts of the SDF reader share: where an element stands, how it is refused and how it is left out.
+// Shared by the parts of the SDF reader: the place of an element, and how elements are refused or skipped.
 #pragma once
 
 #include <sdf/Element.hh>
@@ -20,7 +20,7 @@ struct SdfPlaces {
   void skip(const sdf::ElementPtr& element, const std::string& what) const;
 };
 
-// Lists what the world's elements hold and this simulator does not know, an element a line.
+// Lists, one line each, the elements of the world that this simulator does not support.
 void list_unknown(const SdfPlaces& places, const sdf::ElementPtr& element);
 
 }  // namespace kenaf::physics

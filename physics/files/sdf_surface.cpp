@@ -26,7 +26,8 @@ Eigen::Vector3d from_sdf(const ignition::math::Vector3d& v) {
   return {v.X(), v.Y(), v.Z()};
 }
 
-// Radii, lengths, sizes. Errors of this and of the functions below get their place in read_surface().
+// Throws DescriptionError unless all sizes are positive and not too large. read_surface() adds the place to errors of
+// this and of the functions below.
 void check_sizes(const sdf::ElementPtr& element, std::initializer_list<double> sizes) {
   for (const double size : sizes)
     if (!(size > 0 && size <= kMaxCoordinate_m))
@@ -64,6 +65,8 @@ TriangleSurface read_mesh_element(const SdfPlaces& places, const sdf::Mesh& mesh
   const Eigen::Vector3d scale = from_sdf(mesh.Scale());
   if (!scale.allFinite() || !(scale.cwiseAbs().minCoeff() > 0))
     throw description::DescriptionError("<scale> must not be zero");
+
+  // Errors of the file get its name.
   const std::string bytes = files.read(mesh.Uri());
   MeshContent content;
   try {
@@ -74,6 +77,8 @@ TriangleSurface read_mesh_element(const SdfPlaces& places, const sdf::Mesh& mesh
   if (content.other_faces > 0)
     places.skip(mesh.Element(),
                 fmt::format("\"{}\": {} points and lines are not simulated", mesh.Uri(), content.other_faces));
+
+  // A scale that mirrors turns the triangles inside out.
   for (Eigen::Vector3d& p : content.surface.vertices) p = p.cwiseProduct(scale);
   if (scale.prod() < 0)
     for (auto& t : content.surface.triangles) std::swap(t[1], t[2]);
@@ -95,6 +100,7 @@ TriangleSurface read_height_map_element(const sdf::Heightmap& map, WorldFiles& f
 // `element` becomes that of the shape, for errors.
 TriangleSurface read_shape(const SdfPlaces& places, const sdf::Geometry& geometry, WorldFiles& files,
                            std::size_t most_triangles, sdf::ElementPtr& element) {
+  // One branch for each shape; sizes are checked first.
   if (const sdf::Cylinder* cylinder = geometry.CylinderShape()) {
     element = cylinder->Element();
     check_sizes(element, {cylinder->Radius(), cylinder->Length()});
@@ -143,6 +149,8 @@ TriangleSurface read_surface(const SdfPlaces& places, const sdf::Geometry& geome
   } catch (const description::DescriptionError& error) {
     places.fail(element, error.what());
   }
+
+  // Limits, then tidying; what is left out or doubtful is listed.
   if (surface.triangles.empty()) return surface;
   if (surface.triangles.size() > most_triangles)
     places.fail(element, fmt::format("the world has too many triangles: only {} are left for this <{}>", most_triangles,

@@ -10,9 +10,9 @@
 namespace kenaf::physics {
 
 // The surface of a <cylinder>, <sphere>, <capsule>, <ellipsoid>, <polyline>, <mesh> or <heightmap>, in the collision's
-// frame, tidy; without triangles where the geometry is none of these. What is left out of it is listed.
-// Throws DescriptionError with file and line: sizes that cannot be, a file that is missing or not what it must be, a
-// surface of more than `most_triangles`.
+// frame, tidied; without triangles if the geometry is none of these. Parts that are left out are listed.
+// Throws DescriptionError with file and line if a size is invalid, a file is missing or malformed, or the surface has
+// more than `most_triangles`.
 TriangleSurface read_surface(const SdfPlaces& places, const sdf::Geometry& geometry, WorldFiles& files,
                              std::size_t most_triangles);
 

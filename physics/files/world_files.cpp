@@ -35,6 +35,8 @@ std::string WorldFiles::read(const std::string& uri) {
   if (folder_.empty())
     throw description::DescriptionError(
         fmt::format("\"{}\": this world has no folder in which to look for files", uri));
+
+  // Links are resolved before the comparison, so that they cannot lead out of the folder.
   std::error_code error;
   const fs::path folder = fs::canonical(folder_, error);
   const fs::path file = error ? fs::path() : fs::canonical(folder / path, error);
@@ -44,6 +46,8 @@ std::string WorldFiles::read(const std::string& uri) {
   if (error || !fs::is_regular_file(file, error))
     throw description::DescriptionError(
         fmt::format("\"{}\": there is no such file in the world's folder {}", uri, folder_.string()));
+
+  // At most one byte more than is allowed is read, whatever the size says.
   std::ifstream in(file, std::ios::binary);
   const std::size_t most = std::min(kMostFileBytes, bytes_left_);
   std::string bytes(std::min<std::size_t>(fs::file_size(file, error), most + 1), '\0');

@@ -1,4 +1,4 @@
-// The files that a world names: looked up in the world's own folder and nowhere else.
+// The files that a world refers to, read from the world's own folder and nowhere else.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@ class WorldFiles {
  public:
   static constexpr std::size_t kMostFileBytes = std::size_t{16} << 20U, kMostBytes = std::size_t{64} << 20U;
 
-  // Empty: a world that may name no files.
+  // `folder` empty: the world may not refer to files.
   explicit WorldFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  // The bytes of the file that `uri` names: "a/b.stl", "file://a/b.stl", "file:///folder/a/b.stl" or
-  // "model://a/b.stl", where a is a folder within this one. Throws DescriptionError with what is wrong, without a
-  // place: a path that leads out of the folder (through ".." or a link too), no regular file, more than 16 MiB, more
-  // than 64 MiB with all read before.
+  // Returns the bytes of the file that `uri` names: "a/b.stl", "file://a/b.stl", "file:///folder/a/b.stl" or
+  // "model://a/b.stl", where a is a folder within this one. Throws DescriptionError (without a place) if the path leads
+  // out of the folder (also through ".." or a link), is no regular file, has more than 16 MiB, or more than 64 MiB
+  // together with all files read before.
   std::string read(const std::string& uri);
 
  private:

@@ -1,5 +1,4 @@
-// One function for each kind of sensor: from what the robot did to what the sensor reports. docs/physics.md says what
-// each one models.
+// One function for each kind of sensor, from the robot's motion to the reading. docs/physics.md describes the models.
 #pragma once
 
 #include <functional>
@@ -12,25 +11,25 @@
 
 namespace kenaf::physics {
 
-// What a sensor carries from one report to the next.
+// State of a sensor between its reports.
 struct SensorState {
   explicit SensorState(const NoiseSource& source) : noise(source) {}
   NoiseSource noise;
   Eigen::Vector3d bias_rad{0, 0, 0}, bias_radps{0, 0, 0};
-  // where its integration started
+  // start of its integration
   std::array<double, robot::kTrackCount> start_track_m{};
   Eigen::Vector3d start_odometry{0, 0, 0};
-  Pose X_given_true;  // INS: turns the true pose into the one it was told to have
+  Pose X_given_true;  // INS: maps the true pose to the one that it was set to
 };
 
-// What an inclinometer makes of a pose: posture is against gravity, whatever way the world's axes point.
+// An inclinometer: measures posture against gravity, not against the world's axes.
 class PostureSense {
  public:
   PostureSense(const Effects& effects, const Eigen::Vector3d& gravity_W_mps2);
 
-  // Turned so that gravity points along -z; where gravity does so in W, the same bits.
+  // Returns the pose turned so that gravity points along -z; if it does so in W, with the same bits.
   Pose leveled(const Pose& X_WB) const { return {X_WB.p, q_LW_ * X_WB.q}; }
-  // Roll, pitch, yaw of a level pose, with the faults that the effects give the sensor.
+  // Returns roll, pitch, yaw of a levelled pose, with the errors that effects give the sensor.
   Eigen::Vector3d sensed(const Eigen::Quaterniond& q_LB) const;
 
  private:
@@ -38,13 +37,13 @@ class PostureSense {
   double mount_rad_, scale_, bias_rad_;
 };
 
-// What a gyro makes of a robot's angular velocity.
+// A gyro with the errors that effects give it.
 class GyroSense {
  public:
   explicit GyroSense(const Effects& effects)
       : scale_(effects.gyro_scale), bias_B_radps_(0, 0, effects.gyro_bias_z_radps) {}
 
-  // Of an angular velocity in B.
+  // Returns the reading for an angular velocity in B.
   Eigen::Vector3d sensed(const Eigen::Vector3d& w_WB_B_radps) const { return scale_ * w_WB_B_radps + bias_B_radps_; }
 
  private:
@@ -52,8 +51,8 @@ class GyroSense {
   Eigen::Vector3d bias_B_radps_;
 };
 
-// What an IMU reports of. Accelerations are the mean between `now` and `before`, which is one averaging time earlier.
-// Pose and rates may be older than the nominal delay says.
+// Motion that an IMU measures. Accelerations are the mean between `now` and `before`, one averaging time earlier.
+// Effects may make pose and rates older than the nominal delay.
 struct ImuMotion {
   const MotionSample &now, &before;
   Pose X_WB;
@@ -61,7 +60,7 @@ struct ImuMotion {
 };
 
 GroundTruthReading measure_ground_truth(const MotionSample& now);
-// `X_WB` is the pose that the sensor reports, which may be an older one than the nominal delay says.
+// `X_WB` is the measured pose, which effects may make older than the nominal delay.
 InsReading measure_ins(const SensorDescription& sensor, SensorState& state, const Pose& X_WB,
                        const PostureSense& posture);
 ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, const ImuMotion& motion,
@@ -80,7 +79,7 @@ Eigen::Vector3d advance_odometry(const Eigen::Vector3d& odometry,
                                  const std::array<double, robot::kTrackCount>& new_track_m,
                                  const RobotDescription& robot);
 
-// The distance to the first surface along a ray from a point in W, if one is nearer than `max_m`.
+// Returns the distance to the first surface along a ray from a point in W, if one is nearer than `max_m`.
 using RayCaster = std::function<std::optional<double>(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W,
                                                       double max_m)>;
 SonarReading measure_sonar(const SensorDescription& sensor, SensorState& state, const MotionSample& now,

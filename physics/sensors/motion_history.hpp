@@ -1,4 +1,4 @@
-// What a robot did in its last steps: sensors measure the past, because they are late.
+// A robot's motion in its last steps, for sensors with delays.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ struct MotionSample {
   double t_s = 0;
   Pose X_WB;
   Eigen::Vector3d v_WB_mps{0, 0, 0}, w_WB_radps{0, 0, 0};
-  std::array<double, robot::kTrackCount> track_mps{}, track_m{};  // as the encoders have it
+  std::array<double, robot::kTrackCount> track_mps{}, track_m{};  // with the encoders' errors
   std::array<double, robot::kTrackCount> track_a{};
   std::array<double, robot::kFlipperCount> flipper_a{}, servo_rad{};
   double battery_v = 0;
@@ -30,12 +30,12 @@ class MotionHistory {
 
   void clear() { count_ = 0; }
   void push(const MotionSample& sample) { samples_[count_++ % samples_.size()] = sample; }
-  // 0 = the newest; older than the oldest gives the oldest.
+  // 0 is the newest; beyond the oldest, returns the oldest.
   const MotionSample& back(std::size_t steps) const {
     const std::size_t kept = std::min(count_, samples_.size());
     return samples_[(count_ - 1 - std::min(steps, kept - 1)) % samples_.size()];
   }
-  // Between two samples: on the way from one to the other.
+  // Interpolates between two samples.
   Pose pose_back(double steps) const {
     const auto whole = static_cast<std::size_t>(steps);
     const double rest = steps - static_cast<double>(whole);
@@ -45,7 +45,7 @@ class MotionHistory {
     return {newer.p + rest * (older.p - newer.p), newer.q.slerp(rest, older.q)};
   }
 
-  // The angular velocity in B, also between two samples.
+  // The angular velocity in B, interpolated between two samples.
   Eigen::Vector3d rate_back(double steps) const {
     const auto whole = static_cast<std::size_t>(steps);
     const double rest = steps - static_cast<double>(whole);

@@ -18,7 +18,7 @@ PostureSense::PostureSense(const Effects& effects, const Eigen::Vector3d& gravit
       mount_rad_(effects.posture_mount_rad),
       scale_(effects.posture_scale),
       bias_rad_(effects.posture_bias_rad) {
-  // up_W is the last row of R_LW = R_y(pitch) R_x(roll): (-sin p, cos p sin r, cos p cos r)
+  // up_W is the last row of R_LW = R_y(pitch) R_x(roll), (-sin p, cos p sin r, cos p cos r): solve for r and p.
   if (!(gravity_W_mps2.norm() > 0)) return;
   const Eigen::Vector3d up_W = -gravity_W_mps2.normalized();
   if (up_W.x() == 0 && up_W.y() == 0 && up_W.z() > 0) return;
@@ -28,7 +28,7 @@ PostureSense::PostureSense(const Effects& effects, const Eigen::Vector3d& gravit
 Eigen::Vector3d PostureSense::sensed(const Eigen::Quaterniond& q_LB) const {
   Eigen::Vector3d angles = roll_pitch_yaw(q_LB);
   if (mount_rad_ != 0) {
-    // roll and pitch are those of the sensor's own axes; its heading was set to the body's
+    // Roll and pitch are about the sensor's own axes; its heading is aligned with the body's.
     const Eigen::Quaterniond q_BS(Eigen::AngleAxisd(mount_rad_, Eigen::Vector3d::UnitZ()));
     angles.head<2>() = roll_pitch_yaw(q_LB * q_BS).head<2>();
   }
@@ -50,7 +50,7 @@ ImuReading measure_imu(const SensorDescription& sensor, SensorState& state, cons
                        const Eigen::Vector3d& gravity_W_mps2, const PostureSense& posture) {
   const auto& [now, before, X_WB, gyro_B_radps] = motion;
   const double dt = now.t_s - before.t_s;
-  // velocity where the sensor is mounted
+  // Proper acceleration is the change of velocity at the mount, v + w x r, over dt, minus gravity.
   const auto velocity = [&sensor](const MotionSample& s) -> Eigen::Vector3d {
     return s.v_WB_mps + s.w_WB_radps.cross(s.X_WB.q * sensor.X_BS.p);
   };

@@ -18,7 +18,7 @@ double ranged(const SensorDescription& sensor, SensorState& state, std::optional
 
 SonarReading measure_sonar(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
                            const RayCaster& cast) {
-  // the axis of the cone, and two rings of rays around it
+  // The axis of the cone, and two rings of rays around it.
   const Pose X_WS = compose(now.X_WB, sensor.X_BS);
   std::optional<double> nearest = cast(X_WS.p, X_WS.q * Eigen::Vector3d::UnitX(), sensor.max_range_m);
   for (const double off : {sensor.field_of_view_rad / 4, sensor.field_of_view_rad / 2}) {
@@ -56,6 +56,9 @@ GpsReading measure_gps(const SensorDescription& sensor, SensorState& state, cons
   constexpr int kSatellites = 11;
   const Pose X_WS = compose(now.X_WB, sensor.X_BS);
   if (cast(X_WS.p, Eigen::Vector3d::UnitZ(), kRoof_m)) return {0, 0, 0, false};
+
+  // Radii of curvature of the ellipsoid at the origin, w = 1 - e^2 sin^2 latitude: a (1 - e^2) / w^(3/2) to the north,
+  // a cos(latitude) / w^(1/2) to the east.
   const double sine = std::sin(kLatitude_deg * kPi / 180);
   const double w = 1 - kEccentricity2 * sine * sine;
   const double north_radius_m = kEquator_m * (1 - kEccentricity2) / (w * std::sqrt(w));

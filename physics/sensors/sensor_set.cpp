@@ -18,6 +18,7 @@ std::size_t averaging_steps(const SensorDescription& sensor, double time_step_s)
   return std::max<std::size_t>(1, steps_in(std::min(sensor.period_s, kLongest_s), time_step_s));
 }
 
+// How many steps the slowest sensor looks back, with delays of effects, plus the present one.
 std::size_t history_length(const RobotDescription& robot, double time_step_s) {
   std::size_t longest = 0;
   const auto late = [time_step_s](double delay_s) {
@@ -59,6 +60,7 @@ SensorSet::SensorSet(const RobotDescription& robot, const std::string& robot_nam
 void SensorSet::record(const RobotTruth& truth, double t_s, const std::array<double, robot::kTrackCount>& track_a,
                        const std::array<double, robot::kFlipperCount>& flipper_a,
                        std::span<const Eigen::Vector3d> touches_B) {
+  // Effects of the encoders act before everything that is derived from them.
   std::array<double, robot::kTrackCount> track_m = truth.track_m, track_mps = truth.track_mps;
   for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     track_m[side] *= robot_.encoder_factor(side);
@@ -66,6 +68,8 @@ void SensorSet::record(const RobotTruth& truth, double t_s, const std::array<dou
   }
   if (has_odometry_) odometry_ = advance_odometry(odometry_, track_m_, track_m, robot_);
   track_m_ = track_m;
+
+  // The step's sample; sensors read it when their delay has passed.
   MotionSample sample{.t_s = t_s,
                       .X_WB = truth.X_WB,
                       .v_WB_mps = truth.v_WB_mps,
@@ -77,6 +81,8 @@ void SensorSet::record(const RobotTruth& truth, double t_s, const std::array<dou
                       .servo_rad = truth.servo_rad,
                       .battery_v = truth.battery_v,
                       .odometry = odometry_};
+
+  // Bit i is set if touch sensor i is within kTouchRadius_m of a contact.
   for (std::size_t i = 0; has_touch_ && i < entries_.size(); ++i) {
     if (robot_.sensors[i].type != SensorType::touch) continue;
     for (const Eigen::Vector3d& p_BC : touches_B)
@@ -89,7 +95,7 @@ Reading SensorSet::measure(std::size_t i, const RayCaster& cast) {
   const SensorDescription& sensor = robot_.sensors[i];
   Entry& entry = entries_[i];
   const MotionSample& now = history_.back(entry.delay_steps);
-  // A report says when it was measured by the sensor's own delay: an effect does not tell of itself.
+  // The reported time accounts for the sensor's own delay only; the delay of an effect stays hidden.
   const auto late_pose = [&] {
     return history_.pose_back(static_cast<double>(entry.delay_steps) + posture_delay_steps_);
   };
@@ -140,6 +146,7 @@ void SensorSet::reset(std::size_t sensor, const std::optional<GroundTruthReading
   state.start_track_m = now.track_m;
   state.start_odometry = now.odometry;
   state.X_given_true = {};
+  // Applied to the levelled pose of now, this gives `pose`.
   if (pose)
     state.X_given_true =
         compose({pose->p_WB_m, rotation_from(pose->roll_pitch_yaw_rad)}, inverse(posture_.leveled(now.X_WB)));

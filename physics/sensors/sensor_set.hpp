@@ -1,4 +1,4 @@
-// All the sensors of one robot: when each is due, how late it is, and what it reports.
+// All sensors of one robot: when each is due, its delay, and its reading.
 #pragma once
 
 #include <optional>
@@ -18,10 +18,10 @@ class SensorSet {
   SensorSet(const RobotDescription& robot, const std::string& robot_name, std::uint64_t world_seed, double time_step_s,
             const Eigen::Vector3d& gravity_W_mps2);
 
-  // Once after placement and after each step. `touches_B`: where the robot is touched, in B.
+  // Call once after placement and after each step. `touches_B`: where the robot is touched, in B.
   void record(const RobotTruth& truth, double t_s, const std::array<double, robot::kTrackCount>& track_a,
               const std::array<double, robot::kFlipperCount>& flipper_a, std::span<const Eigen::Vector3d> touches_B);
-  // After a teleport: what was before is no motion.
+  // Call after a teleport: the jump is no motion.
   void forget_motion() { history_.clear(); }
 
   void read(std::uint64_t step, const RayCaster& cast, std::vector<SensorSample>& out);

@@ -35,6 +35,7 @@ DrivesReading measure_drives(const SensorDescription& sensor, SensorState& state
 }
 
 OdometryReading measure_odometry(const SensorState& state, const MotionSample& now) {
+  // The pose relative to that at the last reset, in the frame of that pose.
   const Eigen::Vector3d& start = state.start_odometry;
   const double dx = now.odometry.x() - start.x(), dy = now.odometry.y() - start.y();
   const double c = std::cos(start.z()), s = std::sin(start.z());
@@ -60,8 +61,9 @@ Eigen::Vector3d advance_odometry(const Eigen::Vector3d& odometry,
     return static_cast<double>(counts_of(new_track_m[side], robot.drive) - counts_of(old_track_m[side], robot.drive)) *
            metres;
   };
+  // Without slip: turn = (right - left) / gauge, and the mean along the heading half way through the turn.
   const double left = moved(robot::kLeft), right = moved(robot::kRight);
-  const double turn = (right - left) / robot.track_gauge_m();  // as if nothing slipped
+  const double turn = (right - left) / robot.track_gauge_m();
   const double ahead = (left + right) / 2, heading = odometry.z() + turn / 2;
   return {odometry.x() + ahead * std::cos(heading), odometry.y() + ahead * std::sin(heading), odometry.z() + turn};
 }

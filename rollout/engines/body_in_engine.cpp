@@ -23,7 +23,7 @@ using namespace physics;
 
 constexpr double kSettle_s = 0.5;  // before the first row: engines rest at different depths
 
-// In settings that have contacts all along a track and give the same bits each time.
+// Engines in settings with contacts all along a track that give the same bits each time.
 struct NamedEngine {
   std::string name;
   Engine engine;
@@ -66,6 +66,9 @@ std::vector<DriveSample> drives_of(const runs::Run& run, const RobotDescription&
   for (const std::string_view belt : {"track_left_mps", "track_right_mps"}) measured(run, belt);
   if (robot.has_flippers())
     for (const std::string_view which : robot::kFlipperNames) measured(run, fmt::format("flipper_{}_rad", which));
+
+  // True motion of belts and flippers, row by row; while the robot settles, belts stand, flippers at their first
+  // angles.
   const rollout::MeasuredMotion reported = rollout::measured_motion(run);
   const rollout::ReportDelays late = rollout::report_delays(robot);
   const std::span<const double> t_s = run.column("t_s");
@@ -92,13 +95,13 @@ Pose start_of(const runs::Run& run) {
           rotation_from({first("roll_rad"), first("pitch_rad"), first("yaw_rad")})};
 }
 
-// What is measured of the body, in the order of kColumns.
+// Columns that measure the body; Motion has them in this order.
 constexpr std::array kColumns{"x_m",     "y_m",          "z_m",          "roll_rad",    "pitch_rad",
                               "yaw_rad", "gyro_x_radps", "gyro_y_radps", "gyro_z_radps"};
 constexpr std::size_t kYaw = 5;
 using Motion = std::array<double, kColumns.size()>;
 
-// Rates are those of the turn from the row before to the row after, so that they are not late.
+// Rates are central differences, from the row before to the row after, so that they are not late.
 Motion motion_of(const Pose& before, const Pose& now, const Pose& after, double span_s) {
   const Eigen::Vector3d angles = roll_pitch_yaw(now.q);
   const Eigen::AngleAxisd turned(before.q.conjugate() * after.q);
@@ -108,6 +111,7 @@ Motion motion_of(const Pose& before, const Pose& now, const Pose& after, double 
   return {now.p.x(), now.p.y(), now.p.z(), angles.x(), angles.y(), angles.z(), rates.x(), rates.y(), rates.z()};
 }
 
+// Settles, then runs the engine from row to row.
 std::vector<Motion> motions_in(const Engine& engine, const EngineScene& scene, std::span<const double> t_s) {
   const std::unique_ptr<Runner> runner = engine.build(scene);
   std::vector<Pose> poses;
@@ -134,7 +138,7 @@ std::vector<std::string> engine_names() {
 }
 
 bool shows_in_engine(const EffectInfo& effect) {
-  // what lies between servo and arm no column tells; moments that no rigid body has MuJoCo refuses
+  // No column shows what lies between servo and arm; MuJoCo refuses moments of inertia that no rigid body has.
   constexpr std::string_view kNot[] = {"flipper_backlash", "flipper_compliance", "roll_inertia",  "pitch_inertia",
                                        "yaw_inertia",      "ground_compliance",  "ground_damping"};
   switch (effect.stage) {
@@ -153,6 +157,7 @@ bool shows_in_engine(const EffectInfo& effect) {
 
 runs::Run with_body_of(std::string_view engine, const RobotDescription& robot, const WorldDescription& world,
                        const runs::Run& exact, const runs::Run& noisy) {
+  // The engine drives the exact run's belts and flippers.
   EngineScene scene;
   scene.world = with_terrain_effects(world, robot.effects);
   scene.robot = with_effects(robot);
@@ -160,6 +165,8 @@ runs::Run with_body_of(std::string_view engine, const RobotDescription& robot, c
   scene.prescribed = drives_of(exact, robot);
   const std::vector<Motion> motions = motions_in(engine_named(engine), scene, exact.column("t_s"));
 
+  // Columns of the body: the engine's value plus the noise of Kenaf's run, noisy - exact; for yaw that difference is
+  // wrapped. Accelerations are dropped, all other columns copied.
   runs::Run run;
   for (std::size_t c = 0; c < noisy.columns.size(); ++c) {
     if (noisy.columns[c].starts_with("acc_")) continue;

@@ -1,8 +1,8 @@
-// A run whose body another physics engine moves: its belts and flippers turn as Kenaf's drives turn them, and where
-// that takes the robot the other engine says. For data of a "reality" that differs from the model in what nobody can
-// name.
+// A run whose body is moved by another physics engine: belts and flippers turn as Kenaf's drives turn them, and the
+// other engine computes where that takes the robot. For data of a "reality" that differs from the model in ways that no
+// effect names.
 //
-// What the engines cannot do alike is left out by who makes such runs: ODE and MuJoCo do not hold a turn on the spot as
+// Whoever makes such runs leaves out what the engines cannot do alike: ODE and MuJoCo do not hold a turn on the spot as
 // belts with friction ellipses do, and have no meshes here; effects of sensors act on Kenaf's body only
 // (shows_in_engine()).
 //
@@ -20,18 +20,18 @@
 
 namespace kenaf::engines {
 
-// Of the engines that this was built with: "mujoco", "ode". None where their libraries were not there.
+// Names of the engines that this was built with: "mujoco", "ode". Empty if their libraries were missing.
 std::vector<std::string> engine_names();
 
-// Whether a run whose body an engine moves shows the effect: those of commands and drives, of the body's mass and
-// centre, and of the ground's slope and obstacles; of contacts the friction along alone, as these engines have one for
-// both directions.
+// Whether a run with an engine's body shows the effect: effects of commands and drives, of the body's mass and centre,
+// and of the ground's slope and obstacles; among those of contacts only the friction along, as these engines have one
+// for both directions.
 bool shows_in_engine(const physics::EffectInfo& effect);
 
 // `exact`: a run of roll_out() without noise; `noisy`: the same with noise, from the same start. Returns `noisy` with
-// position, tilt, yaw and turn rates as the engine has them and the same noise on them, and without accelerations.
-// Robot and world are taken with the robot's effects. Throws std::invalid_argument where there is no such engine, or
-// the run lacks belts, pose or tilt.
+// the engine's position, tilt, yaw and turn rates with the same noise on them, and without accelerations. The robot's
+// effects are applied to robot and world. Throws std::invalid_argument if there is no such engine, or the run lacks
+// belts, pose or tilt.
 runs::Run with_body_of(std::string_view engine, const physics::RobotDescription& robot,
                        const physics::WorldDescription& world, const runs::Run& exact, const runs::Run& noisy);
 

@@ -13,7 +13,7 @@ namespace {
 using namespace physics;
 
 constexpr double kDrive_mps = 0.2;
-// as physics/dynamics/flipper_joint.cpp has them, the last two where the motion is prescribed
+// As in physics/dynamics/flipper_joint.cpp, the last two for prescribed motion.
 constexpr double kServoGain_per_s = 30;
 constexpr double kFastest_radps = 10;
 constexpr double kAnyTorque_nm = 1e6;
@@ -82,8 +82,8 @@ double servo_torque_nm(const EngineScene& scene) {
 RobotParts parts_of(const RobotDescription& robot) {
   RobotParts parts;
   const TrackDescription& track = robot.track;
-  // On a plane Kenaf touches with two points at each end of its pieces; the other engines with four of each box and two
-  // of each drum.
+  // As many contacts as Kenaf, which on a plane has two at each end of its pieces; the other engines have four for each
+  // box and two for each drum: 4 boxes + 4 >= 2 (pieces + 1).
   const int boxes = std::max(1, (2 * (track.pieces + 1) - 4 + 3) / 4);
   for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     Eigen::Vector3d center = track.p_BT_m;
@@ -100,6 +100,8 @@ RobotParts parts_of(const RobotDescription& robot) {
                           boxes,
                           hull_of(track_outline(track), track.width_m, center)};
   }
+
+  // Flippers, of uniform density: moments from the outline's second moments per area.
   if (!robot.has_flippers()) return parts;
   const FlipperDescription& f = robot.flipper.front();
   const Outline outline = flipper_outline(f);
@@ -110,7 +112,7 @@ RobotParts parts_of(const RobotDescription& robot) {
     const robot::Track side = robot::side_of(which);
     const Eigen::Vector3d pivot(front ? f.p_BPivot_m.x() : -f.p_BPivot_m.x(),
                                 side == robot::kLeft ? f.p_BPivot_m.y() : -f.p_BPivot_m.y(), f.p_BPivot_m.z());
-    // a rear flipper is a front one that is turned half round
+    // A rear flipper is a front one turned by 180 degrees.
     const Eigen::Quaterniond turn = front ? Eigen::Quaterniond::Identity() : Eigen::Quaterniond(0, 0, 0, 1);
     parts.arms.push_back({{Eigen::Vector3d::Zero(),
                            {f.length_m, 0, 0},
@@ -150,6 +152,7 @@ Drives::Drives(const EngineScene& scene)
 }
 
 void Drives::advance_as_prescribed() {
+  // Between the samples before and after the end of the step.
   time_s_ += time_step_s_;
   while (next_ + 1 < prescribed_.size() && prescribed_[next_].t_s < time_s_) ++next_;
   const DriveSample &before = prescribed_[next_ > 0 ? next_ - 1 : 0], &after = prescribed_[next_];

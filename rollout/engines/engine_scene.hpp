@@ -1,4 +1,4 @@
-// What every engine is given: one robot or one loose block, on terrain of planes and boxes.
+// The scene for every engine: one robot or one loose block, on terrain of planes and boxes.
 //
 // Made from the project's own descriptions, so that all engines simulate the same masses, shapes and friction.
 #pragma once
@@ -15,7 +15,7 @@
 
 namespace kenaf::engines {
 
-// What belts and flippers do at a time.
+// Motion of belts and flippers at a time.
 struct DriveSample {
   double t_s = 0;
   std::array<double, robot::kTrackCount> belt_mps{};
@@ -29,26 +29,25 @@ struct EngineScene {
   std::optional<physics::Box> block;
   physics::Pose X_start;  // of the robot's body frame
   robot::Command command;
-  // By time, the first at 0; where there are any, belts and flippers do this, straight between two of them, whatever is
-  // commanded.
+  // By time, the first at 0. If there are any, belts and flippers follow them, interpolated, instead of commands.
   std::vector<DriveSample> prescribed;
   double duration_s = 0;
   double time_step_s = 0.001;
 };
 
-// The climbs that are timed. Flippers stay where they are told: one posture for each obstacle.
+// The climbs that are timed. Flippers hold one posture for each obstacle.
 std::vector<EngineScene> climbs();
-// How high the body frame stands over level ground.
+// Height of the body frame over level ground.
 double belly_height_m(const physics::RobotDescription& robot);
 // The robot at rest on a plane that falls away forward by `slope_rad`, flippers folded up.
 EngineScene on_plane(const physics::RobotDescription& robot, double slope_rad);
 
-// A drum pair with a belt around: track (equal drums) or flipper. Profile in x and z, swept along y.
+// Two drums with a belt around: track (equal drums) or flipper. Profile in x and z, swept along y.
 struct Belted {
   Eigen::Vector3d p_rear_m, p_front_m;  // drum centres, of the flipper: pivot and tip
   double rear_radius_m, front_radius_m, width_m;
   double friction_along, friction_across;
-  std::optional<robot::Track> belt;     // whose speed it runs with
+  std::optional<robot::Track> belt;     // the track with whose speed it runs
   int boxes;                            // of the straight part, for about as many contacts as Kenaf has
   std::vector<Eigen::Vector3d> hull_m;  // corners of the convex hull of both drums
 };
@@ -68,32 +67,32 @@ struct Arm {
 
 // The angle of an arm before the first step.
 double flipper_at_start(const EngineScene& scene, std::size_t flipper);
-// The most that a servo can do; to hold an arm to a prescribed angle, anything.
+// The largest torque of a servo; practically unlimited for prescribed angles.
 double servo_torque_nm(const EngineScene& scene);
 
 struct RobotParts {
   std::array<Belted, robot::kTrackCount> tracks;  // in B
-  std::vector<Arm> arms;                          // in the order of physics::Flipper
+  std::vector<Arm> arms;                          // in the order of robot::Flipper
 };
 RobotParts parts_of(const physics::RobotDescription& robot);
 
-// The drives as Kenaf's are in physics/, but for the force: lag of a track's speed, position loop of a flipper. Or as
+// The drives as in physics/, without limits of force (lag of a track's speed, position loop of a flipper), or
 // prescribed.
 class Drives {
  public:
   explicit Drives(const EngineScene& scene);
   void advance();  // call before each step
   double belt_mps(robot::Track track) const { return belt_mps_[track]; }
-  // The speed that a flipper at `angle_rad` shall have; a prescribed one is there after the step.
+  // The commanded speed of a flipper at `angle_rad`; a prescribed one reaches its angle within the step.
   double flipper_radps(std::size_t flipper, double angle_rad) const;
-  double flipper_rad(std::size_t flipper) const { return command_.flipper[flipper].value; }  // where it shall be
+  double flipper_rad(std::size_t flipper) const { return command_.flipper[flipper].value; }  // commanded
 
  private:
   void advance_as_prescribed();
 
   robot::Command command_;
   std::vector<DriveSample> prescribed_;
-  std::size_t next_ = 0;  // of prescribed_, the first that is not over
+  std::size_t next_ = 0;  // index in prescribed_ of the first sample that is not past
   double time_step_s_ = 0, time_s_ = 0;
   double share_ = 1, max_mps_ = 0, max_radps_ = 0, servo_gain_per_s_ = 0;
   std::array<double, robot::kTrackCount> belt_mps_{};

@@ -11,7 +11,7 @@ namespace {
 
 using namespace physics;
 
-// Of a belt: two cylinders with a row of boxes between them, or with one box, or one convex mesh.
+// Shapes of a belt: two cylinders with a row of boxes or one box between them, or one convex mesh.
 enum class Shapes { boxes, box, hull };
 
 struct Options {
@@ -21,7 +21,7 @@ struct Options {
   int iterations = 100;  // at most; MuJoCo's default
 };
 
-// Of the servo: with more, its explicit integration would be near its limit of stability at 1 ms.
+// Damping of the servo; with more, explicit integration would be close to its stability limit at 1 ms.
 constexpr double kServoDamping_nms = 5;
 
 std::string text(const Eigen::Vector3d& v) {
@@ -34,8 +34,8 @@ std::string inertial(double mass_kg, const Eigen::Vector3d& com, const Eigen::Ve
   return fmt::format("<inertial pos=\"{}\" mass=\"{}\" diaginertia=\"{}\"/>", text(com), mass_kg, text(inertia));
 }
 
-// The scene as MJCF. A geom's `user` is 1 + the track whose belt it is, 0: none. The contact takes the friction of the
-// side with the higher priority: robot and block, whose coefficients are already multiplied with the terrain's.
+// The scene as MJCF. A geom's `user` is 1 + the track whose belt it is, or 0. A contact has the friction of the side
+// with the higher priority: robot and block, whose coefficients are already multiplied by the terrain's.
 class ModelText {
  public:
   ModelText(const EngineScene& scene, const Options& options) : options_(options) {
@@ -85,7 +85,7 @@ class ModelText {
       bodies_ +=
           fmt::format("<body {}><joint name=\"{}\" type=\"hinge\" axis=\"0 -1 0\"/>{}{}</body>", placed(arm.X_BArm),
                       joint, inertial(arm.mass_kg, arm.p_com_m, arm.inertia_kgm2), belted(arm.shape));
-      // a prescribed arm gives way to no load, so that what the robot's columns say of it is where it is
+      // A prescribed arm is held rigidly, so that it is where the robot's columns say.
       if (!scene.prescribed.empty()) {
         held_ += fmt::format("<joint joint1=\"{}\" solref=\"{} 1\" solimp=\"0.999 0.999 0.001\"/>", joint,
                              2 * scene.time_step_s);
@@ -166,8 +166,8 @@ class MujocoRunner : public Runner {
   }
 
  private:
-  // MuJoCo 2.2.2 has no surface velocity. Between the two halves of its step each friction row holds the acceleration
-  // that it aims at, - damping * slip: there the slip can be given the belt's part. The rest of the step is MuJoCo's.
+  // MuJoCo 2.2.2 has no surface velocity. Between the two halves of its step, each friction row holds its reference
+  // acceleration, -damping * slip, to which the belt's part of the slip is added. The rest of the step is MuJoCo's.
   void move_belts() {
     const mjModel& m = *model_;
     mjData& d = *data_;
@@ -179,8 +179,8 @@ class MujocoRunner : public Runner {
       if (!belt1 && !belt2) continue;
       const Eigen::Map<const Eigen::Vector3d> normal(c.frame);  // from geom 1 to geom 2
       const double speed = drives_.belt_mps(static_cast<robot::Track>((belt1 ? belt1 : belt2) - 1));
-      // the surface moves with -speed * (outward normal x axis); on geom 1 outward is the normal and the sign of the
-      // slip (2 relative to 1) is -, on geom 2 both turn round
+      // The surface moves with -speed * (outward normal x axis). On geom 1 the outward normal is `normal` and the sign
+      // in the slip (of 2 relative to 1) is negative; on geom 2 both are reversed.
       const Eigen::Vector3d slip_W = speed * normal.cross(belt_axis_W);
       for (int k = 0; k < c.dim - 1; ++k) {
         const double slip = slip_W.dot(Eigen::Map<const Eigen::Vector3d>(c.frame + 3 * (k + 1)));
@@ -204,7 +204,7 @@ class MujocoRunner : public Runner {
   bool pyramidal_;
   std::unique_ptr<mjModel, Free> model_;
   std::unique_ptr<mjData, Free> data_;
-  std::size_t servos_ = 0, held_ = 0;  // of the flippers, which are all one or all the other
+  std::size_t servos_ = 0, held_ = 0;  // numbers of flippers; either all are driven or all are held
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ enum class Stepper { quick, world };  // projected Gauss-Seidel, or Dantzig's ex
 struct Options {
   Stepper stepper;
   int iterations;
-  bool boxes;  // a row of boxes between the drums, else one
+  bool boxes;  // a row of boxes between the drums instead of one
   bool repeatable = false;
 };
 
@@ -27,7 +27,8 @@ std::mutex& generator_in_use() {
   return mutex;
 }
 
-// The same give of a contact as Kenaf has (PhysicsSettings), in ODE's terms.
+// The same contact compliance as Kenaf's (PhysicsSettings). In ODE's terms, with a step h:
+//   ERP = h k / (h k + d)      CFM = 1 / (h k + d)
 constexpr double kStiffness_npm = 2e5, kDamping_nspm = 1000;
 
 struct Surface {
@@ -55,6 +56,8 @@ class OdeRunner : public Runner {
       return dInitODE2(0) != 0;
     }();
     if (!initialised) throw std::runtime_error("ODE does not start");
+
+    // The world; terrain and moving bodies in spaces of their own, which are collided with each other only.
     world_ = dWorldCreate();
     terrain_ = dSimpleSpaceCreate(nullptr);
     moving_ = dSimpleSpaceCreate(nullptr);
@@ -66,6 +69,7 @@ class OdeRunner : public Runner {
     soft_erp_ = kStiffness_npm * time_step_s_ / stiffness;
     soft_cfm_ = 1 / stiffness;
 
+    // Ground. Friction is kept with the moving geoms, so all ground has one coefficient: that of the last piece.
     for (const GroundPlane& plane : scene.world.planes) {
       friction_ = plane.friction;
       const Eigen::Vector3d n = plane.X_WP.q * Eigen::Vector3d::UnitZ();
@@ -114,7 +118,7 @@ class OdeRunner : public Runner {
   }
 
  private:
-  // `X_WCom`: of the centre of mass.
+  // `X_WCom` is the pose of the centre of mass, ODE's body origin.
   dBodyID add_body(double mass_kg, const Eigen::Vector3d& inertia, const Pose& X_WCom) {
     dBodyID body = dBodyCreate(world_);
     dMass mass;
@@ -161,6 +165,7 @@ class OdeRunner : public Runner {
   }
 
   void add_robot(const EngineScene& scene) {
+    // The hull with its tracks is one body. ODE's bodies have their origin at the centre of mass.
     const RobotDescription& robot = *scene.robot;
     const RobotParts parts = parts_of(robot);
     const auto com_at = [](const Pose& X, const Eigen::Vector3d& p) { return Pose{X.p + X.q * p, X.q}; };
@@ -170,6 +175,8 @@ class OdeRunner : public Runner {
     add_geom(dCreateBox(moving_, s.x(), s.y(), s.z()), main_, -p_com_m_,
              {robot.body.friction, robot.body.friction, {}});
     for (const Belted& track : parts.tracks) add_belted(track, main_, p_com_m_);
+
+    // Each flipper is a body on a hinge about -y, positive tip up, whose motor has the servo's torque.
     for (const Arm& arm : parts.arms) {
       start_rad_.push_back(flipper_at_start(scene, start_rad_.size()));
       const Eigen::Quaterniond tip_up(Eigen::AngleAxisd(start_rad_.back(), -Eigen::Vector3d::UnitY()));
@@ -197,6 +204,7 @@ class OdeRunner : public Runner {
 
   static void near(void* self, dGeomID moving, dGeomID fixed) { static_cast<OdeRunner*>(self)->touch(moving, fixed); }
 
+  // A contact joint for each point, valid for one step; a belt moves its surface along fdir1.
   void touch(dGeomID moving, dGeomID fixed) {
     if (!dGeomGetBody(moving)) std::swap(moving, fixed);
     constexpr int kMost = 8;
@@ -210,8 +218,8 @@ class OdeRunner : public Runner {
       s.soft_cfm = soft_cfm_;
       s.mu = surface.friction_along;
       if (surface.belt) {
-        // ODE's normal points into the moving body, so outward is against it; the first body's speed along fdir1,
-        // relative to the second, becomes motion1
+        // ODE's normal points into the moving body, so the outward normal is its negative. ODE drives the first body's
+        // speed along fdir1, relative to the second, towards motion1.
         const Eigen::Vector3d along = (-vector(contact[i].geom.normal)).cross(belt_axis_W_);
         const double length = along.norm();
         if (length > 0.1) {  // else a side face

@@ -1,7 +1,7 @@
-// Another physics engine that simulates one scene, and the engines there are: those that this was built with. For a
-// benchmark to be compared with, and for a "reality" whose contacts are not those of the model.
+// Other physics engines that simulate one scene, as far as this was built with them. For comparison in a benchmark, and
+// for a "reality" whose contacts are not those of the model.
 //
-// Thread safety: none of a Runner; each has its own, and any number may be built and stepped at once.
+// Thread safety: none for one Runner; any number of them may be built and stepped at once.
 #pragma once
 
 #include <functional>
@@ -25,14 +25,14 @@ struct Engine {
   std::string name;  // "MuJoCo"
   std::string version;
   std::string setting;  // "Newton, elliptic"
-  bool same_contacts;   // about as many as Kenaf, along all of a track; else fewer, for the record: no limit
+  bool same_contacts;   // about as many as Kenaf, along all of a track; otherwise fewer, and no limit applies
   std::function<std::unique_ptr<Runner>(const EngineScene&)> build;
 };
 
 std::vector<Engine> mujoco_engines();
 std::vector<Engine> ode_engines();
-// QuickStep takes constraints in an order by chance, from a generator that all worlds of a process share: this one
-// begins it anew in each step, one world at a time, so that a run has the same bits whatever else runs.
+// QuickStep orders constraints at random, by a generator that all worlds of a process share. This engine reseeds it in
+// each step, one world at a time, so that a run has the same bits whatever else runs.
 Engine repeatable_ode_engine();
 
 }  // namespace kenaf::engines

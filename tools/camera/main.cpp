@@ -1,4 +1,4 @@
-// camera_picture: what a robot's camera sees, as a PNG file.
+// camera_picture: writes the picture of a robot's camera as a PNG file.
 //
 //   camera_picture --world step-200 --at 0.3 0 0 --out front.png
 //   camera_picture --world step-field --camera BirdsEye --flippers 0.5 --out above.png
@@ -40,7 +40,7 @@ std::string png_of(const camera::Picture& picture) {
   return file;
 }
 
-// The robot where it is told to be, having stood or driven for a while.
+// A world with the robot at its place, after it has stood or driven for a while.
 physics::World driven_world(const Options& options) {
   std::vector<std::string> unsupported;
   physics::World world(physics::load_world(options.world, unsupported), {}, 1);
@@ -85,6 +85,7 @@ void make_picture(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Options, then the picture; status 2 if it cannot be made.
   Options options;
   CLI::App app{"Writes what a robot's camera sees."};
   app.add_option("--robot", options.robot, "robot description")->capture_default_str();

@@ -8,7 +8,7 @@ namespace kenaf::draw {
 
 namespace {
 
-constexpr double kTickSpacing = 36;  // at least so many pixels between two lines
+constexpr double kTickSpacing = 36;  // least distance of two lines, pixels
 constexpr double kTickSize = 11.5;
 constexpr double kShownInMillimetres_m = 1.5;
 
@@ -65,9 +65,12 @@ void draw_grid(const Canvas& canvas, const Mapping& map) {
 
 void draw_labels(const Canvas& canvas, const Mapping& map, const std::string& caption, const std::string& right_name,
                  const std::string& up_name) {
+  // Small areas are labelled in millimetres.
   const double step = step_of(map);
   const bool millimetres = map.high.x() - map.low.x() < kShownInMillimetres_m;
   const std::string unit = millimetres ? " [mm]" : " [m]";
+
+  // Frame, and a number at each grid line.
   const Rectangle& area = map.area;
   canvas.rectangle(area);
   canvas.stroke(palette::kFrame, 1);
@@ -79,6 +82,8 @@ void draw_labels(const Canvas& canvas, const Mapping& map, const std::string& ca
     canvas.text({area.left - 8, map({0, y}).y() + 4}, tick_label(y, step, millimetres), kTickSize, palette::kGreyInk,
                 Align::right);
   });
+
+  // Names of the axes, the upward one turned by 90 degrees, and the caption.
   canvas.text({area.left + area.width / 2, area.bottom() + 35}, right_name + unit, kTickSize, palette::kGreyInk,
               Align::centre);
   cairo_save(canvas.cairo());

@@ -1,4 +1,4 @@
-// The frame around a view: grid, ticks, their labels and what the axes are.
+// The frame around a view: grid, ticks, their labels and the axes' names.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace kenaf::draw {
 
-// What is left of a view's area inside of its labels.
+// The part of a view's area inside of its labels.
 Rectangle inside_labels(const Rectangle& area);
 
 // Fills the area and draws the grid. The grid lies under the view.
 void draw_grid(const Canvas& canvas, const Mapping& map);
 
-// The frame, the tick labels and the axes' names with their unit: mm where little is shown, m where more.
+// The frame, the tick labels and the axes' names with their unit: mm for small areas, m for large ones.
 void draw_labels(const Canvas& canvas, const Mapping& map, const std::string& caption, const std::string& right_name,
                  const std::string& up_name);
 

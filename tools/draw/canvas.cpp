@@ -36,7 +36,7 @@ Canvas::Canvas(Format format, int width_px, int height_px)
   cairo_scale(cairo_, scale, scale);
   cairo_set_line_join(cairo_, CAIRO_LINE_JOIN_ROUND);
   cairo_set_line_cap(cairo_, CAIRO_LINE_CAP_ROUND);
-  // Hinted letter widths would differ between PNG and SVG.
+  // Without hinting, which would make letter widths differ between PNG and SVG.
   cairo_font_options_t* options = cairo_font_options_create();
   cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
   cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);

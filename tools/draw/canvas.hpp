@@ -1,5 +1,5 @@
-// A picture being drawn: a cairo surface that becomes PNG or SVG, and the few strokes, colours and letters that every
-// view uses. Lengths are logical pixels; a picture is always kLogicalWidth of them wide, whatever its size on disk.
+// A picture being drawn: a cairo surface that becomes PNG or SVG, with the shapes, colours and text that the views use.
+// Lengths are logical pixels; a picture is always kLogicalWidth of them wide, whatever its size in the file.
 #pragma once
 
 #include <cairo.h>
@@ -24,7 +24,7 @@ constexpr Colour rgb(unsigned hex) {
           static_cast<double>(hex & 255u) / 255};
 }
 
-// `share` of paper mixed into a colour.
+// A colour mixed with `share` of white.
 constexpr Colour paler(Colour colour, double share) {
   return {colour.r + share * (1 - colour.r), colour.g + share * (1 - colour.g), colour.b + share * (1 - colour.b)};
 }
@@ -66,18 +66,18 @@ class Canvas {
   void polyline(std::span<const Point> points) const;                // makes it the current path
   void circle(const Point& centre, double radius) const;             // makes it the current path
   void rectangle(const Rectangle& area) const;                       // makes it the current path
-  void fill(Colour colour, double alpha = 1) const;                  // the current path, which stays
-  void stroke(Colour colour, double width, double alpha = 1) const;  // the current path, which is used up
+  void fill(Colour colour, double alpha = 1) const;                  // fills the current path and keeps it
+  void stroke(Colour colour, double width, double alpha = 1) const;  // strokes the current path and clears it
 
-  // Draws text whose base line is at `at`; gives its width.
+  // Draws text with its base line at `at`; returns its width.
   double text(const Point& at, const std::string& words, double size, Colour colour, Align align = Align::left,
               bool bold = false) const;
   double text_width(const std::string& words, double size, bool bold = false) const;
-  // The same with a halo of paper around the letters, so that it reads on anything.
+  // The same with a light halo around the letters, so that it is legible on any background.
   void text_with_halo(const Point& at, const std::string& words, double size, Colour colour, Align align,
                       bool bold = false) const;
 
-  // The finished file's bytes. Nothing can be drawn after it.
+  // Returns the finished file's bytes. Nothing can be drawn afterwards.
   std::string finish();
 
  private:

@@ -14,7 +14,7 @@ constexpr double kClimbHeight_m = 0.04;
 constexpr double kClimbPitch_rad = 0.1;
 constexpr double kFarthest_m = 1e6;  // beyond it a double resolves no robot's details
 
-// The value of a column at each row, or the last one there was.
+// The value of a column at each row, or the last one before.
 class Channel {
  public:
   Channel(const runs::Run& run, const std::string& column, double value) : values_(run.column(column)), last_(value) {}
@@ -68,7 +68,7 @@ bool DrivenPath::climbs() const {
 
 DrivenPath driven_path(const runs::Run& run, const std::string& name, const physics::RobotDescription& robot) {
   const double start_rad = robot.has_flippers() ? robot.flipper.front().start_angle_rad : 0;
-  // Where the height is not measured the robot stands on the ground z = 0.
+  // Without measured height the robot stands on the ground z = 0.
   const double resting_height_m = robot.track.end_radius_m - robot.track.p_BT_m.z();
   Channel x(run, "x_m", 0), y(run, "y_m", 0), z(run, "z_m", resting_height_m);
   Channel roll(run, "roll_rad", 0), pitch(run, "pitch_rad", 0), yaw(run, "yaw_rad", 0);
@@ -79,6 +79,7 @@ DrivenPath driven_path(const runs::Run& run, const std::string& name, const phys
     flippers.emplace_back(run, column, Channel(run, column, start_rad).first_or(start_rad));
   }
 
+  // A posture for each row with a position.
   DrivenPath path{name, {}};
   const std::span<const double> time_s = run.column("t_s");
   for (std::size_t row = 0; row < run.row_count(); ++row) {
@@ -113,7 +114,7 @@ std::vector<std::size_t> spaced_postures(const DrivenPath& path, double spacing_
     return chosen;
   };
   std::vector<std::size_t> chosen = choose(spacing_m);
-  // What is left before the end is shared out among the steps.
+  // The rest before the end is distributed over the steps.
   const double steps = static_cast<double>(chosen.size() - 1) + distance(chosen.back(), last) / spacing_m;
   const double whole_steps = std::max(1.0, std::round(steps));
   const double even_spacing_m = spacing_m * steps / whole_steps;

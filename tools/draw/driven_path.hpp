@@ -1,4 +1,4 @@
-// A run as the views need it: the robot's pose and flipper angles at each sample time.
+// A run for the views: the robot's pose and flipper angles at each sample time.
 // Frame W: x forward, y left, z up; SI units, radians.
 #pragma once
 
@@ -25,16 +25,16 @@ struct DrivenPath {
   double duration_s() const;
   double length_m() const;        // driven, in space
   double start_to_end_m() const;  // in the ground plane
-  double turned_rad() const;      // yaw at the end less yaw at the start, in (-pi, pi]
-  bool climbs() const;            // height or pitch change enough to be seen from the side
+  double turned_rad() const;      // yaw at the end minus yaw at the start, in [-pi, pi]
+  bool climbs() const;            // whether height or pitch change enough for a side view
 };
 
 // Rows without x_m and y_m are left out; other quantities that a row does not have keep their last value. Throws
-// RunFileError where no row has a position, or one is farther than 1000 km away.
+// RunFileError if no row has a position, or one is farther than 1000 km away.
 DrivenPath driven_path(const runs::Run& run, const std::string& name, const physics::RobotDescription& robot);
 
-// Indices of postures evenly apart, about `spacing_m`, turning counted as driving along a circle of `radius_m`; the
-// first and the last are among them.
+// Indices of evenly spaced postures, about `spacing_m` apart, including the first and the last. Turning counts as
+// driving along a circle of `radius_m`.
 std::vector<std::size_t> spaced_postures(const DrivenPath& path, double spacing_m, double radius_m);
 
 }  // namespace kenaf::draw

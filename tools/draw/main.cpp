@@ -3,7 +3,7 @@
 //   kenaf-draw square.csv --out square.png
 //   kenaf-draw real/run-000.csv --run sim/run-000.csv --world step-200 --out compared.svg
 //
-// Exit status: 0 the picture is written, 2 bad input, with the file and place at fault on standard error.
+// Exit status: 0 if the picture is written, 2 for bad input, with the file and place at fault on standard error.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -28,7 +28,7 @@ struct Options {
   std::vector<std::string> other_runs;
 };
 
-// Where the run belongs to a dataset, the dataset says which robot and world it is from.
+// If the run belongs to a dataset, robot and world default to the dataset's.
 void complete_from_dataset(Options& options) {
   const fs::path folder = fs::path(options.run).parent_path();
   const bool complete = !options.robot.empty() && !options.world.empty();
@@ -68,7 +68,7 @@ draw::Scene load_scene(const Options& options) {
   const auto add = [&scene](const std::string& file, const std::string& name) {
     scene.paths.push_back(draw::driven_path(runs::read_run(file), name, scene.robot));
   };
-  // Runs of two datasets are often called alike; then their folders tell them apart.
+  // Runs of two datasets often have the same name; then their folders distinguish them.
   std::vector<std::string> files{options.run};
   files.insert(files.end(), options.other_runs.begin(), options.other_runs.end());
   for (const std::string& file : files) {
@@ -98,6 +98,7 @@ void draw_to_file(Options options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Options, then the picture; both kinds of errors end with the same status.
   Options options;
   CLI::App app{"Draws a run of the robot, from above and, where it climbs, from the side.", "kenaf-draw"};
   app.set_version_flag("--version", KENAF_VERSION);

@@ -14,7 +14,7 @@ std::string distance_text(double metres) {
   return metres < 1 ? fmt::format("{:.1f} mm", metres * 1000) : fmt::format("{:.3f} m", metres);
 }
 
-// Title, robot and world, then a line for each run. Returns where it ends.
+// Title, robot and world, then a line for each run. Returns the y of its lower end.
 double draw_header(const Canvas& canvas, const Scene& scene, const std::string& title) {
   double y = kMargin + 20;
   canvas.text({kMargin, y}, title, 25, palette::kInk, Align::left, true);
@@ -35,8 +35,9 @@ double draw_header(const Canvas& canvas, const Scene& scene, const std::string& 
   return y + 18;
 }
 
-// What the marks mean, in one line at the bottom.
+// The meaning of the marks, in one line at the bottom.
 void draw_legend(const Canvas& canvas, const Scene& scene) {
+  // An entry is a symbol with its word; the next one begins where it ends.
   const double y = canvas.logical_height() - kMargin + 8;
   double x = kMargin + 6;
   const auto entry = [&](double symbol_width, const std::string& words, auto draw_symbol) {
@@ -48,6 +49,8 @@ void draw_legend(const Canvas& canvas, const Scene& scene) {
     canvas.fill(colour);
     canvas.stroke(edge, 1);
   };
+
+  // Marks of a path, parts of the robot, and what only some pictures show.
   const Colour colour = run_colour(0);
   entry(22, "start", [&](const Point& at) { draw_end_mark(canvas, at, {1, 0}, PathEnd::start, colour, 5); });
   entry(20, "end", [&](const Point& at) { draw_end_mark(canvas, at, {1, 0}, PathEnd::end, colour, 4.5); });
@@ -86,6 +89,8 @@ void draw_picture(const Canvas& canvas, const Scene& scene, const std::string& t
   const Rectangle views{kMargin, top, kLogicalWidth - 2 * kMargin, canvas.logical_height() - top - kMargin - 16};
   const bool side = view == ViewChoice::side || (view == ViewChoice::automatic && scene.paths.front().climbs());
   const bool from_above = view != ViewChoice::side;
+
+  // Both views one above the other, one of them alone, or from above with a close-up where the robot hardly moved.
   if (side && from_above) {
     const double side_height = 0.54 * views.height;
     const auto map = draw_side_view(canvas, {views.left, views.top, views.width, side_height}, scene);

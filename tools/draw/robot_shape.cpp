@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 constexpr int kCircleCorners = 36;
 constexpr double kLugSpacing_m = 0.03;
-// Details that only make the picture readable; no description has them.
+// Details for a readable picture; no description has them.
 constexpr double kBeltThickness = 0.24;  // of the smaller drum's radius
 constexpr double kWheelShare = 0.6;      // of its drum's radius
 constexpr int kRoadWheels = 3;
@@ -38,12 +38,16 @@ std::vector<Belt> belts_of(const physics::RobotDescription& robot, const Posture
   const auto mirrored = [](Vector3d p, double front, double left) {
     return Vector3d(p.x() * front, p.y() * left, p.z());
   };
+
+  // Main tracks: the drums' centres are one end radius from the ends.
   for (const double left : {1.0, -1.0}) {
     const Vector3d centre_B = mirrored(robot.track.p_BT_m, 1, left);
     const Vector3d half(robot.track.length_m / 2 - robot.track.end_radius_m, 0, 0);
     const double radius_m = robot.track.end_radius_m;
     belts.push_back({PartKind::track, centre_B + half, centre_B - half, radius_m, radius_m, robot.track.width_m});
   }
+
+  // Flippers: from the pivot along (cos, 0, sin) of the angle, forward in front and backward behind.
   if (!robot.has_flippers()) return belts;
   const physics::FlipperDescription& flipper = robot.flipper.front();
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
@@ -98,6 +102,7 @@ std::vector<std::vector<Vector3d>> wheels_of(const Belt& belt, const Vector3d& a
 }
 
 Part belt_part(const Belt& belt, const physics::Pose& X_WB, const Projection& projection) {
+  // The outline: the hull of both rims.
   const Vector3d toward_W = projection.toward_viewer_W();
   const double facing = toward_W.dot(X_WB.q * Vector3d::UnitY());
   std::vector<Vector3d> surface_B;
@@ -109,6 +114,7 @@ Part belt_part(const Belt& belt, const physics::Pose& X_WB, const Projection& pr
   Part part{belt.kind, 0, convex_hull(projected(surface_B, X_WB, projection)), std::abs(facing) > 0.3, {}, {}, {}};
   part.nearness = toward_W.dot(X_WB.p + X_WB.q * ((belt.first_B + belt.second_B) / 2));
 
+  // The face towards the viewer: the belt's inner outline and the wheels; and the lugs of its upper run.
   const Vector3d aside(0, (facing > 0 ? 0.5 : -0.5) * belt.width_m, 0);
   const double thickness_m = kBeltThickness * std::min(belt.first_radius_m, belt.second_radius_m);
   std::vector<Vector3d> inside_B = circle(belt.first_B + aside, belt.first_radius_m - thickness_m);
@@ -156,7 +162,8 @@ void draw_belt(const Canvas& canvas, const Mapping& map, const Part& part, doubl
 }  // namespace
 
 std::vector<Point> convex_hull(std::vector<Point> points) {
-  // Andrew's monotone chain.
+  // Andrew's monotone chain: the lower hull in order of x, then the upper one in reverse; a point that makes no left
+  // turn is dropped.
   std::ranges::sort(points,
                     [](const Point& a, const Point& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
   const auto turns_left = [](const Point& a, const Point& b, const Point& c) {

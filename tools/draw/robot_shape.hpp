@@ -10,7 +10,7 @@
 
 namespace kenaf::draw {
 
-// A picture plane in W: what of a point goes to the right and what goes up.
+// A picture plane in W, by its axes to the right and up.
 struct Projection {
   Eigen::Vector3d right_W, up_W;
   Point operator()(const Eigen::Vector3d& p_W) const { return {right_W.dot(p_W), up_W.dot(p_W)}; }
@@ -21,7 +21,7 @@ enum class PartKind { hull, track, flipper };
 
 struct Part {
   PartKind kind;
-  double nearness;                         // of its centre to the viewer, m
+  double nearness;                         // of its centre: coordinate towards the viewer, m
   std::vector<Point> outline;              // convex, in the picture plane, m
   bool shows_face = false;                 // whether the viewer looks at the wheels rather than at the belt
   std::vector<Point> inside;               // of the belt's loop, on the face that the viewer sees
@@ -41,7 +41,7 @@ std::vector<Point> convex_hull(std::vector<Point> points);
 // From metres in the picture plane to the canvas: equal scales, up is up.
 struct Mapping {
   Rectangle area;   // on the canvas
-  Point low, high;  // what of the picture plane it shows, m
+  Point low, high;  // the shown part of the picture plane, m
   double pixels_per_metre() const { return area.width / (high.x() - low.x()); }
   Point operator()(const Point& p) const {
     return {area.left + (p.x() - low.x()) * pixels_per_metre(), area.bottom() - (p.y() - low.y()) * pixels_per_metre()};
@@ -49,7 +49,7 @@ struct Mapping {
   std::vector<Point> operator()(const std::vector<Point>& points) const;
 };
 
-// What of an outline's bounding box lies in `area`; width or height <= 0: nothing of it.
+// The part of an outline's bounding box that lies in `area`; empty if width or height <= 0.
 Rectangle seen_part(const std::vector<Point>& outline, const Rectangle& area);
 
 // The mapping that shows low..high in `area`, grown to the area's shape about its centre.

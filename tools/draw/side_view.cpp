@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 constexpr double kTimeLabelRoom = 34;  // pixels above the robots
 constexpr double kTimeLabelSize = 11.5;
 
-// The horizontal direction from the start to where the run came farthest; forward where it stayed.
+// The horizontal direction from the start to the farthest point of the run; forward if the robot stayed.
 Vector3d main_direction(const DrivenPath& path) {
   const Posture& start = path.postures.front();
   Vector3d farthest = Vector3d::Zero();
@@ -27,11 +27,11 @@ Vector3d main_direction(const DrivenPath& path) {
   farthest.z() = 0;
   if (farthest.norm() < 1e-6) return Vector3d::UnitX();
   farthest.normalize();
-  // A few degrees aside are of no interest; the picture then has x itself.
+  // Within a few degrees of x the picture uses x itself.
   return farthest.x() > 0.99 ? Vector3d::UnitX() : farthest;
 }
 
-// Boxes that the robot can have met, the farthest first.
+// Boxes within the robot's path, in the viewing direction, the farthest first.
 std::vector<physics::Box> boxes_along(const Scene& scene, const Projection& projection) {
   const Vector3d toward_W = projection.toward_viewer_W();
   double low = 1e300, high = -1e300;
@@ -51,12 +51,13 @@ std::vector<physics::Box> boxes_along(const Scene& scene, const Projection& proj
   return boxes;
 }
 
-// The planes cut along the path's main line, as solid ground.
+// The planes, cut along the path's main direction, as solid ground.
 void draw_ground(const Canvas& canvas, const Mapping& map, const Scene& scene, const Projection& projection) {
   const Vector3d& start_W = scene.paths.front().postures.front().X_WB.p;
   for (const physics::GroundPlane& plane : scene.world.planes) {
     const Vector3d normal_W = plane.X_WP.q * Vector3d::UnitZ();
     if (std::abs(normal_W.z()) < 1e-6) continue;
+    // Along the cut at right coordinate u: the z where n . (p - p_plane) = 0.
     const auto height_at = [&](double u) {
       const Vector3d p_W = start_W + (u - projection.right_W.dot(start_W)) * projection.right_W;
       return p_W.z() - normal_W.dot(p_W - plane.X_WP.p) / normal_W.z();
@@ -88,7 +89,8 @@ void draw_side_boxes(const Canvas& canvas, const Mapping& map, const std::vector
   }
 }
 
-// The time of each instant in a row above the robots, at `row`, with a hair line down to the body's centre.
+// The time of each instant in a row above the robots, at `row`, with a thin line down to the body's centre; labels that
+// would overlap are left out.
 void draw_times(const Canvas& canvas, const Mapping& map, const DrivenPath& path,
                 const std::vector<std::size_t>& instants, const Projection& projection, double row) {
   double free_from = map.area.left;
@@ -113,6 +115,7 @@ std::optional<Mapping> draw_side_view(const Canvas& canvas, const Rectangle& are
   const double robot_m = scene.robot.track.length_m;
   const std::vector<std::size_t> instants = spaced_postures(first, 1.05 * robot_m, robot_m / 2);
 
+  // The area: all paths and the drawn robots, with room for the times above them.
   Bounds bounds;
   for (const DrivenPath& path : scene.paths) bounds.add(centre_line(path, projection));
   for (const std::size_t i : instants) {
@@ -122,7 +125,7 @@ std::optional<Mapping> draw_side_view(const Canvas& canvas, const Rectangle& are
   const Rectangle inner = inside_labels(area);
   Mapping map = fit({inner.left, inner.top + kTimeLabelRoom, inner.width, inner.height - kTimeLabelRoom}, bounds.low,
                     bounds.high);
-  // The same scale over the whole area; what is left of its height is sky, not ground.
+  // The same scale over the whole area; the rest of its height is above the robots, not below the ground.
   map.area = inner;
   map.low.y() = bounds.low.y();
   map.high.y() = map.low.y() + inner.height / map.pixels_per_metre();

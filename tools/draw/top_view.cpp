@@ -24,7 +24,7 @@ void draw_paths(const Canvas& canvas, const Mapping& map, const Scene& scene, do
   }
 }
 
-// Lower ones first, so that what stands on a box covers it.
+// Lower boxes first, so that a box on another one covers it.
 void draw_boxes(const Canvas& canvas, const Mapping& map, const Scene& scene) {
   const auto top_m = [](const physics::Box& box) { return box.X_WBox.p.z() + box.size_m.z() / 2; };
   std::vector<physics::Box> boxes = scene.world.boxes;
@@ -43,7 +43,7 @@ void draw_boxes(const Canvas& canvas, const Mapping& map, const Scene& scene) {
   }
 }
 
-// A mapping with the horizontal of `like`, where `bounds` fit into it.
+// A mapping with the horizontal axis of `like`, if `bounds` fit into it.
 std::optional<Mapping> same_horizontal(const Rectangle& area, const Bounds& bounds, const Mapping& like) {
   const double half_height_m = area.height / like.pixels_per_metre() / 2;
   const double middle_m = (bounds.low.y() + bounds.high.y()) / 2;
@@ -62,11 +62,12 @@ bool needs_close_up(const Scene& scene) {
 void draw_top_view(const Canvas& canvas, const Rectangle& area, const Scene& scene,
                    const std::optional<Mapping>& like) {
   const double robot_m = scene.robot.track.length_m;
-  const bool crowded = needs_close_up(scene);  // then the start and the end say enough
+  const bool crowded = needs_close_up(scene);  // then only the start and the end are drawn
   const DrivenPath& first = scene.paths.front();
   std::vector<std::size_t> instants = spaced_postures(first, 1.35 * robot_m, robot_m / 2);
   if (crowded) instants = {0, first.postures.size() - 1};
 
+  // The area: all paths and the drawn robots, if possible aligned with the side view.
   Bounds bounds = path_bounds(scene);
   for (const std::size_t i : instants) {
     for (const Part& part : robot_parts(scene.robot, first.postures[i], kFromAbove)) bounds.add(part.outline);
@@ -77,6 +78,7 @@ void draw_top_view(const Canvas& canvas, const Rectangle& area, const Scene& sce
   bounds.grow(0.12 * robot_m);
   if (!map) map = fit(inner, bounds.low, bounds.high);
 
+  // Grid, boxes, robots from the first on, and paths on top.
   draw_grid(canvas, *map);
   {
     const Clip clip(canvas, inner);

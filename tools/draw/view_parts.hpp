@@ -1,4 +1,4 @@
-// What the views share.
+// Shared parts of the views.
 #pragma once
 
 #include <vector>
@@ -29,12 +29,12 @@ class Clip {
   cairo_t* cairo_;
 };
 
-// Where the body's centre went.
+// The path of the body's centre.
 std::vector<Point> centre_line(const DrivenPath& path, const Projection& projection);
 void draw_centre_line(const Canvas& canvas, const Mapping& map, const DrivenPath& path, const Projection& projection,
                       Colour colour, double width);
 
-// A ring where a path starts, a disc where it ends, each with a nose that points the way the robot faces.
+// A ring at a path's start, a disc at its end, each with a nose in the robot's direction.
 enum class PathEnd { start, end };
 void draw_path_end(const Canvas& canvas, const Mapping& map, const DrivenPath& path, const Projection& projection,
                    PathEnd which, Colour colour, double size);

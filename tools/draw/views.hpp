@@ -15,19 +15,19 @@ struct Scene {
   std::vector<DrivenPath> paths;  // the first is the run whose robot is drawn, the others are compared with it
 };
 
-// Whether the paths are so small beside the robot that they need a view of their own.
+// Whether the paths are so small compared with the robot that they need a view of their own.
 bool needs_close_up(const Scene& scene);
 
-// The world from above with the robot along its path. With `like`, the mapping of a side view along x, x has the same
-// place and scale in both where the path fits so.
+// The world from above with the robot along its path. With `like`, the mapping of a side view along x, both views have
+// the same x axis, if the path fits.
 void draw_top_view(const Canvas& canvas, const Rectangle& area, const Scene& scene,
                    const std::optional<Mapping>& like = std::nullopt);
 
-// The paths alone, as large as they fit.
+// The paths alone, as large as possible.
 void draw_close_up(const Canvas& canvas, const Rectangle& area, const Scene& scene);
 
-// The robot at several instants over the ground, seen at right angles to the way it went. Returns its mapping where it
-// looks along y, so that the right of the picture is x.
+// The robot at several instants over the ground, seen at right angles to its main direction. Returns the mapping if the
+// view is along y, so that x is to the right.
 std::optional<Mapping> draw_side_view(const Canvas& canvas, const Rectangle& area, const Scene& scene);
 
 }  // namespace kenaf::draw

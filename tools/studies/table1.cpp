@@ -1,5 +1,5 @@
-// How far each outcome of the published table is from turning: critical sizes of the obstacles, and for every effect
-// the sizes from which on it turns the simulated row into the real one. docs/table1.md shows the results.
+// Margins of the outcomes in the published table: critical sizes of the obstacles, and for every effect the values that
+// turn the simulated row into the real one. docs/table1.md shows the results.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -27,7 +27,7 @@ using rollout::PublishedExperiment;
 
 constexpr double kTimeStep_s = 0.001;
 constexpr int kValues = 8;         // of each effect on each side of its neutral value, evenly
-constexpr double kSharpness = 32;  // a boundary between two of them is found to this part of their distance
+constexpr double kSharpness = 32;  // a boundary between two values is found to within their distance / this
 
 // The operator of the manoeuvres sees the robot itself, not what its sensors report.
 bool acts(const EffectInfo& effect) {
@@ -36,14 +36,15 @@ bool acts(const EffectInfo& effect) {
 
 // ---- critical sizes
 
-// Sizes in millimetres between which the outcome changes. A search by bisection alone would miss a second change.
+// Sizes in millimetres between which the outcome changes. Bisection alone would miss a second change.
 struct Critical {
   int largest_passed_mm = 0, smallest_failed_mm = 0;
-  bool gave_up = false;    // at the smallest failed one: the operator did
-  bool one_change = true;  // on the grid nothing above fails and passes again
+  bool gave_up = false;    // the operator did, at the smallest failed size
+  bool one_change = true;  // on the grid, no size above a failed one passes
 };
 
 Critical critical_size(Obstacle obstacle, const RobotDescription& robot, double time_step_s, int grid_mm) {
+  // Before the first attempt, the bracket is the range of sizes, one grid step wider on each side.
   const bool step = obstacle == Obstacle::step;
   const int from_mm = step ? 50 : 100, to_mm = step ? 450 : 500;
   Critical found{from_mm - grid_mm, to_mm + grid_mm};
@@ -52,6 +53,8 @@ Critical critical_size(Obstacle obstacle, const RobotDescription& robot, double 
     found.smallest_failed_mm = size_mm;
     found.gave_up = attempt.gave_up;
   };
+
+  // The grid: the last size that passes before the first that fails.
   bool failed = false;
   for (int size_mm = from_mm; size_mm <= to_mm; size_mm += grid_mm) {
     const rollout::RollOut attempt = try_at(size_mm);
@@ -61,6 +64,8 @@ Critical critical_size(Obstacle obstacle, const RobotDescription& robot, double 
     found.one_change &= !(pass && failed);
     failed |= !pass;
   }
+
+  // Bisection between these two, down to 1 mm.
   while (found.smallest_failed_mm - found.largest_passed_mm > 1) {
     const int middle_mm = (found.largest_passed_mm + found.smallest_failed_mm) / 2;
     const rollout::RollOut attempt = try_at(middle_mm);
@@ -109,8 +114,8 @@ std::string differences(Row row, Row from) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-// The boundary of `holds` between a value for which it does not hold and one for which it does: the latter, close to
-// it.
+// Bisects between `without`, for which `holds` is false, and `with`, for which it is true. Returns a value close to the
+// boundary for which it holds.
 double boundary(double without, double with, const std::function<bool(double)>& holds) {
   const double sharp = std::abs(with - without) / kSharpness;
   while (std::abs(with - without) > sharp) {
@@ -129,11 +134,12 @@ struct Side {
     double from, to;  // the real row; `from` is nearer to neutral
   };
   std::vector<Interval> real;
-  std::optional<double> first_change;  // the smallest deviation seen that changes the row
+  std::optional<double> first_change;  // the smallest deviation found that changes the row
   Row row_at_first_change = 0, row_at_end = 0;
 };
 
 void study(Side& side) {
+  // Values of the parameter on a grid, from neutral to the end of the range.
   const Row simulated = published_row(&PublishedExperiment::simulated),
             real = published_row(&PublishedExperiment::real);
   const EffectParameter& parameter = *side.parameter;
@@ -143,6 +149,8 @@ void study(Side& side) {
   for (int i = 1; i <= kValues; ++i) {
     const double value = parameter.neutral + (side.end - parameter.neutral) * i / kValues;
     const Row row = row_with(parameter, value);
+
+    // The first grid value with another row: its boundary to the one before it, with the row there.
     if (!side.first_change && row != simulated) {
       side.row_at_first_change = row;
       side.first_change = boundary(before, value, [&](double v) {
@@ -151,6 +159,8 @@ void study(Side& side) {
         return here != simulated;
       });
     }
+
+    // Intervals of the real row: begun, continued and ended, with boundaries between grid values.
     if (row == real && row_before != real) side.real.push_back({boundary(before, value, is_real), value});
     if (row == real) side.real.back().to = value;
     if (row != real && row_before == real) side.real.back().to = boundary(value, before, is_real);

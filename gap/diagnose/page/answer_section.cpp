@@ -1,4 +1,4 @@
-// The first screen, for somebody who sees such a page for the first time.
+// The first screen, for readers new to such a page.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,8 +16,8 @@ namespace {
 
 using plot::escaped;
 
-constexpr std::size_t kMostLeftSaid = 2;  // of each stage; its section has all
-constexpr double kWorthSaying = 0.02;     // of the whole gap: of a smaller stage without a name the table says enough
+constexpr std::size_t kMostLeftSaid = 2;  // per stage; its section has all
+constexpr double kWorthSaying = 0.02;     // of the whole gap: the table suffices for smaller stages without a name
 
 std::string_view stage_meaning(Passage passage) {
   switch (passage) {
@@ -36,17 +36,20 @@ std::string bullets(const std::vector<std::string>& items) {
   return fmt::format("<ul>\n<li>{}</li>\n</ul>", fmt::join(items, "</li>\n<li>"));
 }
 
-// One row for each stage, with its share of the gap as a bar: what the best model takes off and what is left.
+// One row per stage, with its share of the gap as a bar: explained by the best model, and left.
 std::string stages_at_a_glance(const Diagnosis& d) {
   std::string html =
       "<table class=\"glance\">\n<tr><th class=\"text\">stage</th><th class=\"text\">share of the whole gap</th>"
       "<th class=\"text\">verdict</th><th class=\"text\">explained</th></tr>\n";
   for (std::size_t s = 0; s < d.stages.size(); ++s) {
+    // the bar: length by the stage's share of the gap, split into explained and left
     const StageDiagnosis& stage = d.stages[s];
     const double share = share_of_gap(d, s), gone = explained(stage);
     const bool has_gap = stage.decision.verdict != Verdict::none;
     const double gone_part = std::isnan(gone) ? 0 : share * gone;
     const NamesFound names = names_found(stage);
+
+    // the verdict, with the names found
     std::string verdict = has_gap ? std::string(verdict_name(stage.decision.verdict)) : "no gap";
     if (!names.empty()) verdict += ": " + names_in_words(d, names);
     html += fmt::format(
@@ -57,13 +60,15 @@ std::string stages_at_a_glance(const Diagnosis& d) {
         stage_id(stage.passage), passage_name(stage.passage), 100 * gone_part, 100 * (share - gone_part),
         has_gap ? percent(share) : "", escaped(verdict), has_gap ? percent_interval(explained_interval(stage)) : "");
   }
+
+  // a key to the two colours
   return html +
          "</table>\n<p class=\"soft key\"><span class=\"gone\"></span> the best model takes it off, on runs that it "
          "was "
          "not fitted to <span class=\"left\"></span> is left</p>\n";
 }
 
-// Those that words are about.
+// The stages described in words.
 std::vector<std::size_t> stages_told(const Diagnosis& d) {
   std::vector<std::size_t> stages = stages_with_gap(d);
   std::erase_if(stages, [&](std::size_t s) {
@@ -169,6 +174,7 @@ std::string what_is_left(const Diagnosis& d) {
 std::string what_next(const Diagnosis& d) {
   std::vector<std::string> items;
   const RobotFile robot = robot_file(d);
+  // one item for each verdict: which file to use, and how far to trust it
   switch (d.verdict) {
     case Verdict::none:
       return "<p>Use the simulator as it is for motions like these. What these manoeuvres do not show can still be "
@@ -198,8 +204,12 @@ std::string what_next(const Diagnosis& d) {
           "world's dimensions, the units of the log and its time stamps.");
       break;
   }
+
+  // without a valid robot there is no file, so that says all of it
   if (!robot.fault.empty())
     items = {fmt::format("No robot.toml was written, as the values together make no robot: {}.", escaped(robot.fault))};
+
+  // the proposed manoeuvre, or the request for one where a choice is open
   if (!d.next.empty())
     items.push_back(fmt::format("To tell {} apart: {}.", escaped(enumeration(candidate_names(d, d.told_apart))),
                                 escaped(advice_in_words(d.next))));

@@ -14,7 +14,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kUnlike_deg = 60;      // no shade from here on
+constexpr double kUnlike_deg = 60;      // no shade beyond
 constexpr std::size_t kMostPairs = 30;  // in words
 constexpr std::size_t kMostShown = 24;  // of candidates: more cannot be read
 
@@ -25,7 +25,7 @@ double mean_angle(const MatrixXd& angle_deg, const std::vector<std::size_t>& a, 
   return sum / static_cast<double>(a.size() * b.size());
 }
 
-// Both in one, with the ends side by side that are most alike.
+// Joins both, with their most similar ends adjacent.
 std::vector<std::size_t> joined(const MatrixXd& angle_deg, std::vector<std::size_t> a, std::vector<std::size_t> b) {
   const auto angle = [&](std::size_t i, std::size_t j) {
     return angle_deg(static_cast<Index>(i), static_cast<Index>(j));
@@ -38,7 +38,7 @@ std::vector<std::size_t> joined(const MatrixXd& angle_deg, std::vector<std::size
   return a;
 }
 
-// Rows of the isolability: those of the best model, their rivals, then those that alone take off most.
+// Rows of the isolability: effects of the best model, their rivals, then those that explain most alone.
 std::vector<std::size_t> shown_rows(const StageDiagnosis& stage) {
   std::vector<std::size_t> wanted, rows;
   for (const NamedEffect& effect : stage.decision.effects) {
@@ -111,9 +111,12 @@ std::vector<std::size_t> look_alikes_together(const MatrixXd& angle_deg) {
 
 std::string confusability_part(const Diagnosis& d, const StageDiagnosis& stage) {
   const Isolability& isolability = stage.isolability;
+  // no candidate moves these runs at all
   if (isolability.candidates.empty())
     return "<h3>What these runs can tell apart</h3>\n" +
            paragraph("These runs show no effect in this stage at any size.");
+
+  // the angles of the shown candidates, sorted so that look-alikes are neighbours
   const std::vector<std::size_t> rows = shown_rows(stage);
   const auto select = [&](const std::vector<std::size_t>& chosen, const MatrixXd& from) {
     MatrixXd selected(std::ssize(chosen), std::ssize(chosen));
@@ -128,6 +131,8 @@ std::string confusability_part(const Diagnosis& d, const StageDiagnosis& stage) 
   angle_deg = select(order, angle_deg);
   std::vector<std::string> names;
   for (const std::size_t i : order) names.push_back(d.candidates[isolability.candidates[rows[i]]].name);
+
+  // how to read it, what is not shown, then matrix and pairs
   std::string html = "<details><summary>What these runs can tell apart</summary>\n";
   html += paragraph(
       "A small amount of an effect moves all channels of all runs in some direction. The angle between the directions "

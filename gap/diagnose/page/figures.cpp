@@ -22,22 +22,22 @@ using plot::Line;
 using plot::Point;
 using plot::Stroke;
 
-constexpr std::size_t kColumns = 450;      // of a chart of half width: no more detail can be seen
+constexpr std::size_t kColumns = 450;      // of a chart of half width: more detail is invisible
 constexpr std::size_t kPathPoints = 4000;  // likewise of a path
 constexpr double kChannelHeight_px = 240;
-constexpr double kTitle_px = 360;    // of a chart of half width, in letters of usual size: titles are larger
-constexpr double kClimbs_m = 0.05;   // of height: seen from the side
-constexpr double kAround_m = 0.2;    // of the body's centre: the robot is about 0.5 m long
+constexpr double kTitle_px = 360;    // of a chart of half width, in letters of normal size: titles are larger
+constexpr double kClimbs_m = 0.05;   // change of height from which it is seen from the side
+constexpr double kAround_m = 0.2;    // around the body's centre: the robot is about 0.5 m long
 constexpr double kBeside_m = 0.1;    // likewise, of a path seen from above
-constexpr double kWholeGap_px = 50;  // radius of a disc that has all of the gap
-constexpr double kLabelled = 0.01;   // share of the gap of a phase or a chart that has a label
-constexpr double kApart = 0.2;       // of the path's extent, from label to label
+constexpr double kWholeGap_px = 50;  // radius of a disc for the whole gap
+constexpr double kLabelled = 0.01;   // minimum share of the gap for a label of a phase or chart
+constexpr double kApart = 0.2;       // minimum distance of labels, as a share of the path's extent
 
 std::vector<Point> drawn_over_time(const runs::Run& run, std::size_t channel) {
   return plot::envelope(over_time(run, channel), kColumns);
 }
 
-// Where x and at least one of y and z were measured.
+// A place where x and at least one of y and z were measured.
 struct Place {
   double t_s, x_m, y_m, z_m;
 };
@@ -70,7 +70,7 @@ std::vector<Point> path_of(const runs::Run& run, bool from_side) {
   return points;
 }
 
-// Axes to scale, with the ground where it is seen from the side.
+// Axes to scale, with the ground if it is seen from the side.
 Chart place_chart(const Diagnosis& d, const Overlay& overlay, std::vector<Line> lines, bool from_side) {
   Chart chart;
   chart.x_label = "x (m)";
@@ -116,7 +116,7 @@ Line residual_line(const FeatureMap& map, const Eigen::VectorXd& residual, const
   return line;
 }
 
-// Noise of each bin of a run's FeatureMap, from the first stage that compares it; 0 where none does.
+// Noise of each bin of a run's FeatureMap, from the first stage that compares it; 0 if none does.
 Eigen::VectorXd noise_of_run(const Diagnosis& d, std::size_t run) {
   Eigen::VectorXd sigma = Eigen::VectorXd::Zero(std::ssize(d.features.maps[run].bins()));
   for (auto stage = d.stages.rbegin(); stage != d.stages.rend(); ++stage) {
@@ -176,9 +176,13 @@ Chart residual_figure(const Diagnosis& d, const Overlay& overlay) {
   chart.width_px = kHalf_px;
   chart.height_px = kChannelHeight_px;
   chart.include = {{0, 0}};
+
+  // a run that was not compared has an empty chart
   if (overlay.run >= d.features.maps.size()) return chart;
   const FeatureMap& map = d.features.maps[overlay.run];
   const Eigen::VectorXd sigma = noise_of_run(d, overlay.run);
+
+  // rms over channels per span, in units of noise: 1 is noise alone
   Line before = residual_line(map, map.measured() - map.of(overlay.nominal), sigma);
   before.ink = Ink::sim;
   before.stroke = Stroke::dashed;
@@ -186,6 +190,8 @@ Chart residual_figure(const Diagnosis& d, const Overlay& overlay) {
   if (before.points.empty()) return chart;
   const double end_s = before.points.back().x();
   chart.lines = {{{{0, 1}, {end_s, 1}}, Ink::faint, Stroke::hair, "noise: 1"}, std::move(before)};
+
+  // the same after correction
   if (overlay.corrected) {
     Line after = residual_line(map, map.measured() - map.of(*overlay.corrected), sigma);
     after.ink = Ink::third;
@@ -205,8 +211,12 @@ Chart channel_residual_figure(const Diagnosis& d, const Overlay& overlay, std::s
   chart.width_px = kHalf_px;
   chart.height_px = kChannelHeight_px;
   chart.include = {{0, 0}};
+
+  // a run that was not compared has an empty chart
   if (overlay.run >= d.features.maps.size()) return chart;
   const FeatureMap& map = d.features.maps[overlay.run];
+
+  // values of this channel's bins, at the middle of each
   const auto line_of = [&](const Eigen::VectorXd& values, Ink ink, Stroke stroke, std::string_view legend) {
     Line line{{}, ink, stroke, std::string(legend)};
     for (std::size_t b = 0; b < map.bins().size(); ++b)
@@ -216,6 +226,8 @@ Chart channel_residual_figure(const Diagnosis& d, const Overlay& overlay, std::s
     line.points = plot::envelope(line.points, kColumns);
     return line;
   };
+
+  // the band of noise, then the residual before and after correction
   const Eigen::VectorXd sigma = noise_of_run(d, overlay.run);
   chart.lines = {line_of(sigma, Ink::faint, Stroke::hair, "noise, 1 sigma"),
                  line_of(-sigma, Ink::faint, Stroke::hair, ""),
@@ -226,19 +238,28 @@ Chart channel_residual_figure(const Diagnosis& d, const Overlay& overlay, std::s
 }
 
 Chart places_figure(const Diagnosis& d, const Overlay& overlay, const StageDiagnosis& stage) {
+  // the real path as background
   const runs::Run& real = d.observations.runs[overlay.run].run;
   const bool from_side = seen_from_side(real);
   const std::vector<Place> places = places_of(real);
   Chart chart =
       place_chart(d, overlay, {{path_of(real, from_side), Ink::faint, Stroke::solid, "real path"}}, from_side);
   if (places.empty()) return chart;
+
+  // the manoeuvre's name is shortened so that the title fits
   const std::string_view what = from_side ? ": gap by place, from the right" : ": gap by place, from above";
   chart.title = plot::end_of(group_title(d, overlay.group), kTitle_px - plot::text_width_px(what));
   chart.title += what;
+
+  // discs after correction are scaled to the gap before: both kinds show shares of the same total
   const double left = stage.where.beyond_chance > 0 ? stage.where_left.beyond_chance / stage.where.beyond_chance : 0;
+
+  // labels are at least a part of the path's width apart
   const auto [west, east] = std::ranges::minmax(places, {}, &Place::x_m);
   const double width_m = east.x_m - west.x_m;
   std::vector<Point> labelled;
+
+  // one disc per phase, with area proportional to its share; the larger ones before correction have labels
   const auto add = [&](const GapPlaces& where, double scale, bool before) {
     bool first = true;
     for (const PhaseGap& phase : where.phases) {
@@ -258,6 +279,8 @@ Chart places_figure(const Diagnosis& d, const Overlay& overlay, const StageDiagn
       chart.discs.push_back(std::move(disc));
     }
   };
+
+  // rings before, discs after
   add(stage.where, 1, true);
   if (!stage.decision.best.model.places.empty()) add(stage.where_left, left, false);
   return chart;

@@ -36,7 +36,7 @@ std::string left_over_plot(const Dependence& d) {
     chart.discs.push_back({{x, y}, kDot_px, plot::Ink::real});
     chart.include.emplace_back(x, y);
   }
-  // no dot on the frame
+  // keeps dots off the frame
   const double margin = kMargin * (high - low);
   low -= margin;
   high += margin;

@@ -11,6 +11,8 @@ namespace kenaf::gap::diagnose {
 std::string overlay_section(const Diagnosis& d, std::span<const Overlay> overlays) {
   std::string html = section_head("overlay", "Real, nominal and corrected runs");
   if (overlays.empty()) return html + paragraph("No run was simulated before the diagnosis ended.");
+
+  // what the three lines of each figure are, and how many manoeuvres are shown
   const RobotFile robot = robot_file(d);
   const bool has_corrected = overlays.front().corrected.has_value();
   html += paragraph(
@@ -27,6 +29,8 @@ std::string overlay_section(const Diagnosis& d, std::span<const Overlay> overlay
     html += paragraph(
         fmt::format("Shown are the {} of {} manoeuvres with most of the gap.", overlays.size(), d.repeats.size()),
         "soft");
+
+  // per manoeuvre the path and the total residual, then each channel with its residual
   for (const Overlay& overlay : overlays) {
     html += fmt::format("<h3>{} <span class=\"soft\">{}, one of {}</span></h3>\n<div class=\"figures\">\n",
                         plot::escaped(group_title(d, overlay.group)),

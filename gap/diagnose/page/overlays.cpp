@@ -20,9 +20,9 @@ namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr std::size_t kMostGroups = 8, kLeastChannels = 2, kMostChannels = 4;
-constexpr double kWorthShowing = 0.03;  // of a manoeuvre's gap, of a third channel and a fourth
+constexpr double kWorthShowing = 0.03;  // minimum share of a manoeuvre's gap for a third and a fourth channel
 constexpr double kLongGap_s = 0.5;
-// What is shown where no channel stands out.
+// The channels shown if none stands out.
 constexpr std::string_view kTelling[] = {"pitch_rad", "yaw_rad", "x_m", "track_left_mps", "track_right_mps"};
 
 // "track_mps" of track_left_mps, "flipper_rad" of flipper_fl_rad.
@@ -34,7 +34,7 @@ std::string without_side(std::string_view column) {
   return family;
 }
 
-// [group][channel], of what is beyond chance in all runs; all 0 where nothing is, or nothing is known.
+// [group][channel], share of everything beyond chance in all runs; all 0 if there is nothing, or nothing is known.
 std::vector<std::vector<double>> shares_by_group(const Diagnosis& d) {
   std::vector<std::vector<double>> shares(d.repeats.size(), std::vector<double>(diagnosis_channels().size(), 0));
   for (std::size_t s = 0; s < d.stages.size(); ++s) {

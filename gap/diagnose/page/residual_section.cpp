@@ -15,11 +15,11 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-constexpr double kLeastShown = 0.1;  // of noise: what is less is drawn at this edge
+constexpr double kLeastShown = 0.1;  // of noise: smaller values are drawn at this edge
 
 struct ChannelResidual {
   const Channel* channel;
-  double share, before, after, floor;  // the last three in the channel's unit; after: NaN where there is no model
+  double share, before, after, floor;  // the last three in the channel's unit; after: NaN without a model
 };
 
 std::vector<ChannelResidual> channel_residuals(const StageDiagnosis& stage) {
@@ -38,6 +38,7 @@ std::string channel_figure(const Diagnosis& d, const std::vector<ChannelResidual
   chart.title = "Residual of each channel in noise units, largest share of the gap first";
   chart.x_label = "rms of measured minus simulated, over rms of noise (1: noise alone)";
   chart.legend = {{plot::Shape::ring, plot::Ink::sim, "before"}};
+  // one row per channel: a ring before, a disc after, both over the noise
   for (const ChannelResidual& r : residuals) {
     plot::Row row{std::string(r.channel->column), {{r.before / r.floor, plot::Shape::ring, plot::Ink::sim}}, {}};
     if (!std::isnan(r.after)) row.marks.push_back({r.after / r.floor, plot::Shape::disc, plot::Ink::third});
@@ -45,8 +46,12 @@ std::string channel_figure(const Diagnosis& d, const std::vector<ChannelResidual
                                    : fmt::format("{} to {}", figure(r.before / r.floor), figure(r.after / r.floor));
     chart.rows.push_back(std::move(row));
   }
+
+  // the legend has discs only where there are some
   if (std::ranges::any_of(residuals, [](const ChannelResidual& r) { return !std::isnan(r.after); }))
     chart.legend.push_back({plot::Shape::disc, plot::Ink::third, fmt::format("after, on {}", measured_on(d))});
+
+  // logarithmic from a tenth of the noise, with the noise as a guide and room for the largest
   chart.guides = {{1, "noise"}};
   chart.logarithmic = true;
   double most = 1;

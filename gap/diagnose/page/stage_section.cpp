@@ -1,4 +1,4 @@
-// One stage: what was decided, with values, and what that is worth on runs held out.
+// One stage: its decision, values, and their performance on held-out runs.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -104,6 +104,7 @@ std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
       {"effect", "name", "value (95 % interval)", "nominal", "differs by (sd)", "takes off", "most, of", "evidence"},
       {},
       {0, 1}};
+  // one row per effect: whether it has a name, its value, and what it takes off
   for (const NamedEffect& effect : stage.decision.effects) {
     const candidates::Candidate& candidate = d.candidates[effect.candidate];
     std::string name = "yes";
@@ -118,6 +119,8 @@ std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
          fmt::format("{} of {}", percent(effect.share.of_kind), kind_name(effect.share.kind)),
          figure(effect.evidence)});
   }
+
+  // a key to the columns
   return to_html(table) +
          paragraph(
              "Differs by: the standard deviation between manoeuvres of the value that each wants. Takes off: the share "

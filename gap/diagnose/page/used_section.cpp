@@ -1,4 +1,4 @@
-// What to drive next, what the diagnosis was made from, and how.
+// The next manoeuvre, and the data, options and method of the diagnosis.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ std::string warnings_list(const Diagnosis& d) {
   return html + "</ul>\n";
 }
 
-// Of each channel in the first stage that compares it.
+// Noise of each channel in the first stage that compares it.
 std::string noise_table(const Diagnosis& d) {
   Table table{{"channel", "unit", "noise", "stated by the dataset, of a sample"}, {}, {0, 1}};
   for (std::size_t c = 0; c < diagnosis_channels().size(); ++c) {
@@ -90,6 +90,7 @@ std::string options_text(const Diagnosis& d) {
 
 std::string next_section(const Diagnosis& d) {
   std::string html = section_head("next", "What to drive next");
+  // no proposal: say why
   if (!d.options.propose_next) return html + paragraph("It was not asked for.");
   if (d.next.empty())
     return html +
@@ -98,6 +99,8 @@ std::string next_section(const Diagnosis& d) {
                    ? "It was not worked out before the diagnosis ended."
                    : "These runs leave no choice between effects that a manoeuvre could decide. Any manoeuvre that "
                      "is not in this dataset is a test of the verdict.");
+
+  // the advice in one sentence, and how to read the figures
   html += paragraph(fmt::format("It is to tell {} apart. {}.", enumeration(candidate_names(d, d.told_apart)),
                                 with_capital(advice_in_words(d.next))));
   html += paragraph(
@@ -106,6 +109,8 @@ std::string next_section(const Diagnosis& d) {
       "as simulated, the worst of the robots that are still possible: they put manoeuvres in order and are no "
       "guarantee.",
       "soft");
+
+  // one bar and one row per manoeuvre, best first
   plot::RowChart chart;
   chart.title = "How well one run of a manoeuvre would tell the candidates apart";
   chart.x_label = "expected difference (standard deviations)";
@@ -127,6 +132,8 @@ std::string next_section(const Diagnosis& d) {
                           : next.suffices ? "yes"
                                           : "no"});
   }
+
+  // the chart above the table, with the score that suffices as a guide
   chart.guides = {{kSuffices, "suffices"}};
   chart.note_px = 60;
   chart.width_px = kWide_px;
@@ -145,6 +152,7 @@ std::string used_section(const Diagnosis& d, std::span<const Overlay> overlays) 
 }
 
 std::string method_section(const Diagnosis& d) {
+  // fixed text, but for the bin width and the largest number of effects
   return section_head("method", "How it was found, and what it cannot say") +
          paragraph(
              fmt::format("The commands of each run are given to the simulated robot from the place where the "

@@ -12,7 +12,7 @@ namespace kenaf::gap::diagnose {
 namespace {
 
 constexpr std::size_t kMostPhases = 12;  // in the table
-constexpr double kStays_m = 0.1;         // too small a motion for a map
+constexpr double kStays_m = 0.1;         // less motion is not mapped
 
 double share_left(const StageDiagnosis& stage) {
   return stage.where.beyond_chance > 0 ? stage.where_left.beyond_chance / stage.where.beyond_chance : 0;
@@ -22,7 +22,7 @@ bool shows_after(const StageDiagnosis& stage) {
   return !stage.decision.best.model.places.empty();
 }
 
-// `scale`: of shares, to shares of the gap before.
+// `scale`: from shares to shares of the gap before.
 std::string time_map(const Diagnosis& d, std::span<const Overlay> overlays, const StageDiagnosis& stage,
                      const GapPlaces& where, double scale, std::string_view title) {
   double most = 0;
@@ -99,16 +99,21 @@ std::string maps(const Diagnosis& d, std::span<const Overlay> overlays, const St
 }  // namespace
 
 std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays) {
+  // nothing was located, or there is nothing to locate
   std::string html = section_head("where", "Where the gap is, in time and place");
   const std::optional<std::size_t> main = main_stage(d);
   if (!main || overlays.empty()) return html + paragraph("Nothing was located before the diagnosis ended.");
   const std::vector<std::size_t> stages = stages_with_gap(d);
   if (stages.empty()) return html + paragraph("Nowhere: no stage has a gap.");
+
+  // phases and how the gap is counted in them
   html += paragraph(
       fmt::format("Phases are found from the data. The gap is counted in stretches of {} s of each channel, so "
                   "a shorter phase takes part of its neighbours' gap.",
                   d.options.stretch_s),
       "soft");
+
+  // per stage: time before and after, the table of phases, and maps for the stage with most of the gap
   for (const std::size_t s : stages) {
     const StageDiagnosis& stage = d.stages[s];
     html += fmt::format("<h3>{}</h3>\n", with_capital(from_to(stage.passage)));

@@ -1,4 +1,4 @@
-// How the page writes things; what it calls them is in gap/diagnose/report_words.hpp.
+// Formatting of the page; its wording is in gap/diagnose/report_words.hpp.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -11,7 +11,7 @@
 
 namespace kenaf::gap::diagnose {
 
-// A probability, "< 0.0001" at least.
+// A probability; tiny ones as "< 0.0001".
 std::string probability(double p);
 
 // An element with escaped text.
@@ -19,7 +19,7 @@ std::string paragraph(std::string_view text, std::string_view classes = {});
 std::string section_head(std::string_view id, std::string_view title);
 std::string with_capital(std::string text);  // its first letter
 
-// A table whose first column is text and the others are figures; cells are escaped.
+// A table whose first column is text and the others are numbers; cells are escaped.
 struct Table {
   std::vector<std::string> head;
   std::vector<std::vector<std::string>> rows;
