@@ -23,7 +23,7 @@ std::shared_ptr<const CameraPicture> CameraStream::wait(std::uint64_t had, Clock
   std::unique_lock lock(mutex_);
   const auto is_there = [&] { return newest_ && (had == 0 || newest_->number != had); };
   const Clock::time_point now = Clock::now();
-  // what lies here from before the pause is not the newest any more
+  // a picture from before the pause is no longer the newest
   if (now > wanted_until_) newest_.reset();
   wanted_until_ = std::max(now, until) + kIdleAfter;
   wanted_.notify_one();
@@ -100,7 +100,7 @@ std::shared_ptr<CameraStream> Cameras::stream(const std::string& name) {
 }
 
 void Cameras::drop(const std::shared_ptr<CameraStream>& stream) {
-  std::shared_ptr<CameraStream> last;  // ends its thread, where nobody else has it, after the lock is given back
+  std::shared_ptr<CameraStream> last;  // if this is the last owner, its thread ends after the lock is released
   const std::lock_guard lock(mutex_);
   for (auto entry = streams_.begin(); entry != streams_.end(); ++entry) {
     if (entry->second != stream) continue;

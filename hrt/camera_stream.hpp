@@ -1,4 +1,4 @@
-// The newest picture of each open camera, and the threads that fetch them while they are asked for.
+// The newest picture of each open camera, and the threads that fetch pictures while they are requested.
 #pragma once
 
 #include <chrono>
@@ -17,11 +17,11 @@
 
 namespace kenaf::hrt {
 
-// One camera, from its opening to its first failure. Thread safety: every function from any thread.
+// One camera, from its opening to its first failure. Thread safety: every function may be called from any thread.
 class CameraStream {
  public:
   using Clock = std::chrono::steady_clock;
-  // Pictures are fetched until so long after the last wait().
+  // Pictures are fetched until this long after the last wait().
   static constexpr std::chrono::seconds kIdleAfter{2};
 
   explicit CameraStream(std::unique_ptr<Camera> camera);
@@ -29,15 +29,15 @@ class CameraStream {
   CameraStream(const CameraStream&) = delete;
   CameraStream& operator=(const CameraStream&) = delete;
 
-  // The newest picture whose number is not `had` (0: any), waited for until `until`; null: there was none. Throws the
-  // Error that ended the stream, also one that came between two calls.
+  // Returns the newest picture whose number is not `had` (0: any), waiting until `until`; null if there was none.
+  // Throws the Error that ended the stream, also if it occurred between two calls.
   std::shared_ptr<const CameraPicture> wait(std::uint64_t had, Clock::time_point until);
 
   // Every wait() throws Error(HRT_E_CLOSED) from now on.
   void close();
 
  private:
-  // Of an Error: copies of one share its text, and each of several threads throws its own.
+  // The contents of an Error: copies of one Error share its text, so each waiting thread throws its own.
   struct Failure {
     int code;
     std::string text;
@@ -47,7 +47,7 @@ class CameraStream {
   bool wait_until_wanted();  // false: closed
 
   std::unique_ptr<Camera> camera_;
-  std::mutex mutex_;  // guards all below
+  std::mutex mutex_;  // guards all members below
   std::condition_variable changed_, wanted_;
   std::shared_ptr<const CameraPicture> newest_;
   std::optional<Failure> failure_;  // set once
@@ -57,14 +57,14 @@ class CameraStream {
   std::thread thread_;
 };
 
-// All cameras of an open robot, by name. Thread safety: every function from any thread.
+// All cameras of an open robot, by name. Thread safety: every function may be called from any thread.
 class Cameras {
  public:
   explicit Cameras(const hrt_config& config) : config_(config) {}
 
-  // The stream of a camera, opened where it is not. Throws Error: there is no such camera, or closed.
+  // Returns the stream of a camera and opens it if necessary. Throws Error if there is no such camera, or if closed.
   std::shared_ptr<CameraStream> stream(const std::string& name);
-  // It has failed: the next stream() of this camera opens it anew.
+  // The stream has failed: the next stream() of this camera opens it anew.
   void drop(const std::shared_ptr<CameraStream>& stream);
   void close();
 
@@ -73,7 +73,7 @@ class Cameras {
   std::mutex mutex_;
   bool closed_ = false;
   std::map<std::string, std::shared_ptr<CameraStream>> streams_;  // by resolved name
-  std::map<std::string, std::string> resolved_;                   // of the names in streams_, by the name asked for
+  std::map<std::string, std::string> resolved_;  // resolved names of those in streams_, by requested name
 };
 
 }  // namespace kenaf::hrt

@@ -66,7 +66,7 @@ constexpr TextKey kTextKeys[] = {
     {"camera_server", [](hrt_config& c) { return std::span<char>(c.camera_server); }, false},
 };
 
-// Each set_... returns what is wrong with the value, or an empty string once it is set.
+// Each set_... returns an error text, or an empty string once the value is set.
 
 std::string set_number(const NumberKey& key, double value, hrt_config& config) {
   if (!(value >= key.minimum && value <= key.maximum)) {
@@ -88,12 +88,12 @@ std::string set_text(const TextKey& key, std::string_view value, hrt_config& con
   return {};
 }
 
-// One key of the file. Returns what is wrong with it, or an empty string.
+// Sets one key of the file. Returns an error text, or an empty string.
 std::string set_from_toml(std::string_view name, const toml::node& node, hrt_config& config) {
   for (const NumberKey& key : kNumberKeys) {
     if (name != key.name) continue;
     if (!node.is_number()) return fmt::format("{} must be a number", name);
-    // not value<double>(), which has none of an integer beyond 2^53
+    // not value<double>(), which rejects integers beyond 2^53
     const double value = node.is_integer() ? static_cast<double>(**node.as_integer()) : **node.as_floating_point();
     return set_number(key, value, config);
   }
@@ -125,7 +125,7 @@ std::optional<bool> flag_from(std::string_view text) {
   return std::nullopt;
 }
 
-// Of ASCII alone: what std::toupper makes of an 'i' is the program's locale's.
+// ASCII only: std::toupper depends on the program's locale.
 char capital(char c) {
   return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
 }
@@ -183,7 +183,7 @@ void apply_toml(std::string_view text, const std::string& name_for_errors, hrt_c
   }
   hrt_config changed = config;
   for (const auto& [key, node] : table) {
-    // A value's own place says where it is wrong; an unknown key is wrong at its name.
+    // A wrong value is reported at its own position, an unknown key at its name.
     const std::string wrong = set_from_toml(key.str(), node, changed);
     if (!wrong.empty()) fail(wrong.starts_with("unknown") ? key.source().begin : node.source().begin, wrong);
   }
@@ -191,6 +191,7 @@ void apply_toml(std::string_view text, const std::string& name_for_errors, hrt_c
 }
 
 void apply_environment(const Environment& environment, hrt_config& config) {
+  // `changed` is a copy: a wrong variable leaves `config` as it was.
   hrt_config changed = config;
   const auto value_of = [&](const char* key) -> std::optional<std::string_view> {
     const char* value = environment(variable_name(key).c_str());
@@ -200,6 +201,8 @@ void apply_environment(const Environment& environment, hrt_config& config) {
     if (!wrong.empty())
       throw Error(HRT_E_CONFIG, fmt::format("environment variable {}: {}", variable_name(key), wrong));
   };
+
+  // Each key by the type of its member; variables that are not set change nothing.
   for (const NumberKey& key : kNumberKeys) {
     if (const auto text = value_of(key.name)) {
       const std::optional<double> value = number_from<double>(*text);
@@ -223,7 +226,7 @@ void load_config(const Environment& environment, hrt_config& config) {
   hrt_config changed = config;
   if (const std::filesystem::path path = file_that_applies(environment); !path.empty()) {
     std::ifstream file(path);
-    file.peek();  // reading a folder sets badbit here, and would throw below
+    file.peek();  // reading a directory sets badbit here and would throw below
     std::string text;
     if (file.good()) text.assign(std::istreambuf_iterator<char>(file), {});
     if (!file.is_open() || file.bad()) {
@@ -252,7 +255,7 @@ void check_config(const hrt_config& config) {
 }
 
 void check_together(const hrt_config& config, int code) {
-  // the time since the last call is looked at once a cycle: such a robot would be stopped in each
+  // the time since the last call is checked once a cycle: such a robot would be stopped in every cycle
   if (config.period_s > config.command_timeout_s) {
     throw Error(
         code, fmt::format("period_s, {}, must not be above command_timeout_s, {}: the tracks would stop in every cycle",

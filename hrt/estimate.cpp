@@ -11,17 +11,17 @@
 namespace kenaf::hrt {
 namespace {
 
-// Time constant that takes a posture sensor's white noise of 0.1 degrees in 10 ms cycles down to 0.03, while the lag
-// stays far below what the last, slow part of a turn can notice.
+// This time constant reduces a posture sensor's white noise of 0.1 degrees in 10 ms cycles to 0.03 degrees, while the
+// lag stays far below what affects the last, slow part of a turn.
 constexpr double kHeadingSmoothing_s = 0.05;
 
-// Thirty years: in nanoseconds, a difference of two such times still fits 64 bits.
+// Thirty years: the difference of two such times in nanoseconds still fits 64 bits.
 constexpr double kLongest_s = 1e9;
 
-// A posture sensor that is silent for longer is lost, not slow.
+// A posture sensor that is silent for longer counts as lost.
 constexpr double kPostureLost_s = 0.25;
 
-// Travel below this is the encoder's resolution, not motion.
+// Travel below this is encoder resolution, not motion.
 constexpr double kStillTravel_m = 0.00025;
 
 }  // namespace
@@ -30,11 +30,11 @@ const Estimate& Estimator::update(const robot::State& state) {
   Estimate& now = estimate_;
   const bool first = !started_;
   now.frame = state.frame;
-  // The clock's zero is anywhere: in whole nanoseconds since the first cycle, the same run has the same times to the
-  // last bit whenever it begins.
+  // The clock's zero is arbitrary: in whole nanoseconds since the first cycle, identical runs have identical times to
+  // the last bit, whenever they begin.
   const std::int64_t t_ns = std::llround(std::clamp(state.robot_time_s, -kLongest_s, kLongest_s) * 1e9);
   if (first) t_ns_ = t_ns;
-  // A clock that was put back says nothing of this cycle, and is the measure of the next.
+  // A clock that was set back gives no interval for this cycle; the next cycle is measured from it.
   const std::int64_t dt_ns = std::max<std::int64_t>(0, t_ns - t_ns_);
   t_ns_ = t_ns;
   passed_ns_ += std::min(dt_ns, std::numeric_limits<std::int64_t>::max() - passed_ns_);
@@ -46,7 +46,7 @@ const Estimate& Estimator::update(const robot::State& state) {
     now.max_track_a = std::max(std::abs(state.track_a[robot::kLeft]), std::abs(state.track_a[robot::kRight]));
   }
 
-  // A track's travel since the cycle before; nothing where it was not measured.
+  // Travel of each track since the previous cycle; zero if it was not measured.
   std::array<double, robot::kTrackCount> moved_m{};
   if (now.has_encoders) {
     for (std::size_t i = 0; i < robot::kTrackCount; ++i) {
@@ -57,7 +57,7 @@ const Estimate& Estimator::update(const robot::State& state) {
     now.travel_m = 0.5 * (track_m_[robot::kLeft] + track_m_[robot::kRight]);
   }
 
-  // Heading: the posture sensor's, unwrapped step by step and smoothed, else the encoders'.
+  // Heading: unwrapped and smoothed posture sensor if available, else from the encoders.
   const double before_rad = now.heading_rad;
   const double turned_rad =
       (moved_m[robot::kRight] - moved_m[robot::kLeft]) / settings_.track_gauge_m * settings_.turn_efficiency;
@@ -65,8 +65,8 @@ const Estimate& Estimator::update(const robot::State& state) {
     if (first) {
       raw_heading_rad_ = now.heading_rad = start_heading_rad_ = state.posture_rad[2];
     } else if (!has_posture_ || posture_gap_s_ > kPostureLost_s) {
-      // it begins late, or anew, from any heading: the robot's goes on from where the encoders brought it, as a motion
-      // under way wants it
+      // the sensor starts late, or again, at an arbitrary heading: the robot's heading continues from where the
+      // encoders brought it, so that a motion under way sees no jump
       posture_offset_rad_ = before_rad - state.posture_rad[2];
       raw_heading_rad_ = before_rad;
     } else {
@@ -85,7 +85,7 @@ const Estimate& Estimator::update(const robot::State& state) {
     if (posture_gap_s_ > kPostureLost_s) now.heading_rad += std::exchange(gap_turn_rad_, 0);
   }
 
-  // Odometry along the mean heading of the step and, with a posture sensor, up and down the slope.
+  // Odometry along the mean heading of the step; with a posture sensor, the travel is projected onto the horizontal.
   const double yaw_rad = now.heading_rad - start_heading_rad_;
   const double mean_rad = first ? yaw_rad : 0.5 * (yaw_rad + now.odometry_yaw_rad);
   const double slope_rad = (state.fields & robot::kHasPosture) != 0 ? state.posture_rad[1] : 0;

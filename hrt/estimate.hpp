@@ -1,4 +1,4 @@
-// What the motions know of the robot in a cycle, from what was measured. SI units, REP 103.
+// The measured quantities of a cycle as the motions use them. SI units, REP 103.
 #pragma once
 
 #include <array>
@@ -10,20 +10,20 @@ namespace kenaf::hrt {
 
 struct Estimate {
   std::uint32_t frame = 0;
-  double t_s = 0;   // since the first cycle, in whole nanoseconds; never goes back, as a reset world's clock does
-  double dt_s = 0;  // since the cycle before; 0 in the first one
+  double t_s = 0;   // since the first cycle, in whole nanoseconds; never decreases, unlike the clock of a reset world
+  double dt_s = 0;  // since the previous cycle; 0 in the first one
   bool has_encoders = false;
   bool has_currents = false;
-  double heading_rad = 0;  // unwrapped: counts full turns; smoothed where it comes from the posture sensor
+  double heading_rad = 0;  // unwrapped: counts full turns; smoothed if from the posture sensor
   double travel_m = 0;     // mean of both tracks
-  double still_s = 0;      // how long both tracks have stood
-  double max_track_a = 0;  // the larger of both currents' magnitudes
+  double still_s = 0;      // time for which both tracks have stood still
+  double max_track_a = 0;  // the larger magnitude of the two currents
   double odometry_x_m = 0, odometry_y_m = 0, odometry_yaw_rad = 0;  // since the first cycle
 };
 
 struct EstimatorSettings {
   double track_gauge_m;
-  double turn_efficiency;  // used where there is no posture sensor
+  double turn_efficiency;  // used without a posture sensor
 };
 
 class Estimator {
@@ -34,17 +34,17 @@ class Estimator {
  private:
   EstimatorSettings settings_;
   Estimate estimate_;
-  std::int64_t t_ns_ = 0, passed_ns_ = 0;  // the robot's clock in the newest cycle, and what has passed on it
+  std::int64_t t_ns_ = 0, passed_ns_ = 0;  // robot clock in the newest cycle; time passed on it
   bool started_ = false;
-  bool has_posture_ = false;  // was ever seen: the heading is the encoders' before, and while it is lost
+  bool has_posture_ = false;  // was ever seen: before that, and while it is lost, the heading comes from the encoders
   double posture_gap_s_ = 0,
-         gap_turn_rad_ = 0;        // since it was last seen; what the encoders turned and is not counted yet
+         gap_turn_rad_ = 0;        // time since it was last seen; turn by the encoders that is not yet counted
   double posture_offset_rad_ = 0;  // heading minus the sensor's yaw
   bool has_travel_ = false;
   double raw_heading_rad_ = 0;  // unwrapped, not smoothed
   double start_heading_rad_ = 0;
   std::array<double, robot::kTrackCount> track_m_{};
-  std::array<double, robot::kTrackCount> still_track_m_{};  // where the tracks were when still_s began
+  std::array<double, robot::kTrackCount> still_track_m_{};  // track positions when still_s began
 };
 
 }  // namespace kenaf::hrt

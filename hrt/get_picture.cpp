@@ -16,7 +16,7 @@ namespace {
 
 using PictureClock = CameraStream::Clock;
 
-// A robot whose link breaks ends the wait this late.
+// The wait ends at most this long after the robot's link breaks.
 constexpr std::chrono::milliseconds kWaitSlice{50};
 
 std::shared_ptr<const CameraPicture> wait_for_picture(Robot& robot, CameraStream& stream, std::uint64_t had,
@@ -53,7 +53,7 @@ void get_picture(Robot& robot, Cameras& cameras, const std::string& camera, int 
                             camera.empty() ? "the first camera" : "camera " + camera, timeout_s));
   }
 
-  // What cannot be decoded has been had all the same: the next call shall not get it again.
+  // A picture that cannot be decoded counts as delivered: the next call must not get it again.
   const std::uint64_t had = std::exchange(picture.number, found->number);
   const PictureSize size = picture_size(*found);
   std::vector<std::uint8_t> made;

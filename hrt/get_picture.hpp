@@ -1,4 +1,4 @@
-// hrt_get_picture behind its argument checks.
+// hrt_get_picture after its argument checks.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace kenaf::hrt {
 
-// As hrt.h has it: fills `picture` (all but its size member) and `data`. `format` is one of HRT_PICTURE_... . Throws
+// Fills `picture` (all but its size member) and `data` as hrt.h specifies. `format` is one of HRT_PICTURE_... . Throws
 // Error.
 void get_picture(Robot& robot, Cameras& cameras, const std::string& camera, int format, std::span<std::uint8_t> data,
                  double timeout_s, hrt_picture& picture);

@@ -1,4 +1,4 @@
-// The C border: arguments are checked, units become SI, exceptions become return codes. Behaviour is in robot.cpp.
+// The C interface: checks arguments, converts units to SI and exceptions to return codes. Behaviour is in robot.cpp.
 #include "kenaf/hrt.h"
 
 #include <fmt/format.h>
@@ -31,18 +31,18 @@ using kenaf::hrt::Snapshot;
 
 namespace {
 
-// The first published sizes: a program compiled then may pass a struct that ends there.
+// The first published sizes: programs compiled then pass structs that end here.
 constexpr std::size_t kFirstStateSize = sizeof(hrt_state);
 constexpr std::size_t kFirstPictureSize = sizeof(hrt_picture);
 
 thread_local char last_error[600];
 
-// The one robot of the process. Never destroyed: threads of the user may outlive main().
+// The one robot of the process. Never destroyed: user threads may outlive main().
 struct Holder {
   std::mutex mutex;
   std::shared_ptr<Robot> robot;
-  std::shared_ptr<Cameras> cameras;  // while there is a robot
-  const char* under_way = nullptr;   // what a thread does with it: "opened", "closed"
+  std::shared_ptr<Cameras> cameras;  // while a robot is open
+  const char* under_way = nullptr;   // what a thread is doing with it: "opened", "closed"
   std::atomic<pid_t> owner = 0;      // the process that opened the robot
 };
 Holder& holder() {
@@ -94,7 +94,7 @@ void require(bool fine, const std::string& what) {
   if (!fine) throw Error(HRT_E_ARGUMENT, what);
 }
 
-// Throws unless `value` is a number from `minimum` to `maximum`.
+// Throws if `value` is not a number from `minimum` to `maximum`.
 void require_range(double value, double minimum, double maximum, const char* what) {
   require(value >= minimum && value <= maximum,
           fmt::format("{} must be from {} to {}, not {}", what, minimum, maximum, value));
@@ -106,20 +106,20 @@ void require_state(const hrt_state* state) {
           "state.size is wrong: begin with `hrt_state state = hrt_state_init();`");
 }
 
-// Copies as much as the program's version of the struct has.
+// Copies as many bytes as the program's version of the struct has.
 void copy_state(const Snapshot& snapshot, hrt_state& out) {
   hrt_state full = kenaf::hrt::state_from(snapshot);
   full.size = out.size;
   std::memcpy(&out, &full, out.size);
 }
 
-// Not by its destructor: a call that has not returned yet may keep it alive, and with it the bus that the new one
-// needs.
+// Closes explicitly and not by the destructor: a call that has not returned yet may keep the robot alive, and with it
+// the bus that the new robot needs.
 void close_lost(Robot& robot) {
   try {
     robot.close();
   } catch (const std::exception&) {
-    // its recording is not whole: who wanted to know would have ended it, and a new robot is what is asked for now
+    // its recording is incomplete: a caller interested in it would have ended it, and now wants a new robot
   }
 }
 
@@ -152,7 +152,7 @@ void open_with(const hrt_config& config) {
   h.owner = getpid();
   static std::once_flag registered;
   std::call_once(registered, [] {
-    // a child of fork() ends by exit() too: the robot is its parent's, and goes on
+    // a child of fork() also ends by exit(): the robot belongs to its parent and continues
     std::atexit([] {
       if (holder().owner == getpid()) (void)hrt_close();
     });
@@ -225,7 +225,7 @@ int hrt_close(void) {
       cameras = std::move(h.cameras);
       h.under_way = "closed";
     }
-    // the robot first: it stops
+    // first the robot, so that it stops
     const int code = guarded([&] { robot->close(); });
     const std::string words(last_error);
     const int cameras_code = guarded([&] { cameras->close(); });
@@ -315,7 +315,7 @@ double hrt_time(void) {
     try {
       robot->snapshot(snapshot);
     } catch (const Error&) {
-      // the time of the last state that arrived
+      // keep the time of the last state that arrived
     }
     time_s = snapshot.measured.robot_time_s;
   });
@@ -384,7 +384,7 @@ int hrt_get_picture(const char* camera, int format, void* data, size_t capacity,
     require(data != nullptr || capacity == 0, "hrt_get_picture: data is a null pointer");
     require_range(timeout_s, 0, kMaxPictureWait_s, "hrt_get_picture: timeout_s");
     const Opened opened = open_all();
-    // a program of an older header has a shorter struct
+    // a program compiled with an older header has a shorter struct
     hrt_picture full = hrt_picture_init();
     std::memcpy(&full, picture, picture->size);
     const int code = guarded([&] {

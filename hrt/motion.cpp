@@ -6,8 +6,8 @@
 namespace kenaf::hrt {
 namespace {
 
-// Creeping makes progress several times a second. Where it has not for 0.3 s, a tenth of a second adds 1.5 times its
-// speed.
+// While creeping, progress shows several times a second. After 0.3 s without any, each further 0.1 s adds 1.5 times the
+// creeping speed.
 constexpr double kPushAfter_s = 0.3;
 constexpr double kPush_per_s = 15;
 
@@ -34,7 +34,7 @@ double Approach::speed(double error, double before, double dt_s, double without_
   const double slowest =
       std::min(min_speed * (1 + kPush_per_s * std::max(0.0, without_progress_s - kPushAfter_s)), max_speed);
   const double profile = std::min({max_speed, std::sqrt(2 * acceleration * remaining), gain * remaining});
-  // Speeding up is limited; slowing down follows the goal, whose square root is the deceleration.
+  // The profile min(v_max, sqrt(2 a e), gain e) brakes by itself; speeding up is limited to a dt a cycle.
   const bool turned_round = before * error < 0;
   const double reached = turned_round ? 0 : std::abs(before) + acceleration * dt_s;
   return std::copysign(std::max(slowest, std::min(profile, reached)), error);
@@ -44,7 +44,7 @@ double Approach::duration_s(double distance) const {
   const double ramp = max_speed * max_speed / acceleration;  // length of both ramps together
   const double profile = distance > ramp ? (distance - ramp) / max_speed + 2 * max_speed / acceleration
                                          : 2 * std::sqrt(distance / acceleration);
-  // The exponential part takes longer than the ramp it stands for: a few of its time constants.
+  // The exponential part takes longer than the ramp it replaces: add a few of its time constants.
   return profile + 5 / gain;
 }
 

@@ -1,4 +1,4 @@
-// What the motion primitives share: their limits, their result, and the speed at which a goal is approached.
+// Shared by the motion primitives: limits, result, and the speed profile towards a goal.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace kenaf::hrt {
 
-// hrt_config's motion part in SI units.
+// The motion part of hrt_config in SI units.
 struct MotionLimits {
   double max_speed_mps, acceleration_mps2, distance_tolerance_m;
   double max_turn_radps, turn_acceleration_radps2, angle_tolerance_rad;
@@ -20,7 +20,7 @@ struct MotionLimits {
 };
 MotionLimits motion_limits_from(const hrt_config& config);
 
-// What a motion commands in a cycle, and whether it goes on.
+// The command of a motion in a cycle, and whether the motion is finished.
 struct MotionStep {
   std::array<double, robot::kTrackCount> track_speed_mps{};
   bool finished = false;
@@ -28,22 +28,22 @@ struct MotionStep {
   std::string text;   // why it failed
 };
 
-// How fast a goal is approached: a trapezoid whose last part falls exponentially, so that neither the cycle's delay
-// nor the drive's lag overshoots the goal. All in the unit of the distance: metres or radians.
+// Speed profile towards a goal: a trapezoid that ends exponentially, so that neither the cycle's delay nor the drive's
+// lag overshoots the goal. All in the unit of the distance: metres or radians.
 struct Approach {
   double max_speed, acceleration;
-  double gain;       // 1/s: the last part falls with this rate
-  double min_speed;  // outside of the goal's band the motion never creeps slower
+  double gain;       // 1/s: decay rate of the exponential part
+  double min_speed;  // lowest speed outside the goal's tolerance band
 
-  // The speed for a signed `error` to the goal, `dt_s` after `before` was commanded. A motion that has not got on for
-  // `without_progress_s` pushes harder: what is too slow to overcome friction or a drive's dead band grows until it
+  // Returns the speed for a signed `error` to the goal, `dt_s` after `before` was commanded. A motion without progress
+  // for `without_progress_s` pushes harder: a speed too low to overcome friction or a drive's dead band grows until it
   // does.
   double speed(double error, double before, double dt_s, double without_progress_s = 0) const;
-  // The time the profile takes over `distance` from standstill to standstill.
+  // Returns the time of the profile over `distance` from standstill to standstill.
   double duration_s(double distance) const;
 };
 
-// Watches whether a motion gets on. One for each motion.
+// Detects whether a motion makes progress. One for each motion.
 class ProgressWatch {
  public:
   ProgressWatch(const MotionLimits& limits, double step, const Estimate& start)
@@ -54,10 +54,10 @@ class ProgressWatch {
         low_current_t_s_(start.t_s) {}
 
   enum class Finding { fine, no_progress, overcurrent };
-  // `remaining`: the distance to the goal, unsigned; counts as progress once it fell by `step`.
+  // `remaining`: unsigned distance to the goal; counts as progress when it has fallen by `step`.
   Finding look(double remaining, const Estimate& now);
   double without_progress_s(const Estimate& now) const { return now.t_s - progress_t_s_; }
-  // The goal was reached for now: what comes counts anew.
+  // The goal is reached for now: progress is counted anew from here.
   void rest(const Estimate& now);
 
  private:

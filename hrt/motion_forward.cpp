@@ -7,14 +7,15 @@
 namespace kenaf::hrt {
 namespace {
 
-// 5/s: at the default limits the last 30 mm fall exponentially, within a second to the default tolerance.
+// 5/s: at the default limits the speed decays exponentially over the last 30 mm, to the default tolerance within a
+// second.
 constexpr double kDistanceGain_per_s = 5;
 constexpr double kMinSpeed_mps = 0.003;
-// Turn rate for a heading error. Tracks slip when they turn, so the loop is slower than this: it cannot swing.
+// Turn rate per heading error. Tracks slip when turning, so the real loop gain is lower and the loop cannot oscillate.
 constexpr double kHeadingGain_per_s = 4;
-// The heading may take this part of the forward speed, so that the robot stands where it has arrived.
+// The heading correction may use this share of the forward speed, so that the robot stands still on arrival.
 constexpr double kHeadingShare = 0.5;
-// How long the tracks have to stand before the motion ends.
+// The tracks must stand for this long before the motion ends.
 constexpr double kSettled_s = 0.05;
 
 }  // namespace
@@ -37,7 +38,7 @@ MotionStep GoForward::step(const Estimate& now) {
     return fail(HRT_E_TIMEOUT, now, fmt::format("the time limit of {:.1f} s is up", time_limit_s_));
   }
 
-  // Within half of the tolerance the tracks stand; the other half is for what they roll on.
+  // The tracks stop within half of the tolerance; the other half is for coasting.
   holding_ = remaining_m <= (holding_ ? 1.0 : 0.5) * limits_.distance_tolerance_m;
   MotionStep result;
   if (holding_) {

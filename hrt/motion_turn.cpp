@@ -10,9 +10,9 @@ namespace kenaf::hrt {
 namespace {
 
 constexpr double kTurnGain_per_s = 4;
-// Slow enough that the heading's smoothing and the drive's lag keep within half of the tolerance.
+// Slow enough for heading smoothing and drive lag to stay within half of the tolerance.
 constexpr double kMinTrackSpeed_mps = 0.003;
-// The smoothed heading has to follow before it is believed: several of its time constants.
+// The smoothed heading must settle before it is trusted: several of its time constants.
 constexpr double kTurnSettled_s = 0.15;
 
 }  // namespace
@@ -28,12 +28,15 @@ TurnInPlace::TurnInPlace(const MotionLimits& limits, double goal_rad, const Esti
       watch_(limits, 0.5 * limits.angle_tolerance_rad, start) {}
 
 MotionStep TurnInPlace::step(const Estimate& now) {
+  // Both angles are unwrapped: a turn of more than 180 degrees is an ordinary distance.
   const double error_rad = goal_rad_ - now.heading_rad;
   const double remaining_rad = std::abs(error_rad);
   if (now.t_s - start_t_s_ > time_limit_s_) {
     return fail(HRT_E_TIMEOUT, now, fmt::format("the time limit of {:.1f} s is up", time_limit_s_));
   }
 
+  // Within the band the tracks stand: entered at half of the tolerance, left at all of it, so that noise does not
+  // switch it on and off. The motion ends once they have stood long enough.
   holding_ = remaining_rad <= (holding_ ? 1.0 : 0.5) * limits_.angle_tolerance_rad;
   MotionStep result;
   if (holding_) {
@@ -42,6 +45,8 @@ MotionStep TurnInPlace::step(const Estimate& now) {
     result.finished = now.still_s >= kTurnSettled_s;
     return result;
   }
+
+  // Outside of it the error has to shrink, and the current has to stay below the limit.
   switch (watch_.look(remaining_rad, now)) {
     case ProgressWatch::Finding::no_progress:
       return fail(HRT_E_STUCK, now, fmt::format("the heading shows no progress for {:.1f} s", limits_.stuck_time_s));
@@ -51,6 +56,7 @@ MotionStep TurnInPlace::step(const Estimate& now) {
       break;
   }
 
+  // The rate of the approach profile; turning in place, the tracks run at -+ gauge / 2 * rate.
   turn_radps_ = approach_.speed(error_rad, turn_radps_, now.dt_s, watch_.without_progress_s(now));
   const double track_mps = 0.5 * limits_.track_gauge_m * turn_radps_;
   result.track_speed_mps = {-track_mps, track_mps};

@@ -1,4 +1,4 @@
-// Turns in place to a heading. A pure state machine: one step for each cycle.
+// Turns in place to a heading. A pure state machine: one step per cycle.
 #pragma once
 
 #include "hrt/motion.hpp"
@@ -17,7 +17,7 @@ class TurnInPlace {
   MotionLimits limits_;
   Approach approach_;
   double goal_rad_, start_heading_rad_, start_t_s_, time_limit_s_;
-  double turn_radps_ = 0;  // commanded last
+  double turn_radps_ = 0;  // last command
   bool holding_ = false;   // within the goal's band, tracks at 0
   ProgressWatch watch_;
 };

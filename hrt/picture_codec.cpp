@@ -25,7 +25,7 @@ Turbo start_turbo(tjhandle (*init)()) {
   throw Error(HRT_E_DEVICE, fmt::format("picture {} of the camera is damaged: {}", picture.number, why));
 }
 
-// ITU-R BT.601, 8 bits: Y from 16 to 235, U and V from 16 to 240 around 128. In 1/65536, rounded.
+// ITU-R BT.601, 8 bits: Y from 16 to 235, U and V from 16 to 240 around 128. Coefficients in 1/65536, rounded.
 void yuyv_to_rgb(std::span<const std::uint8_t> yuyv, std::span<std::uint8_t> rgb) {
   constexpr int kY = 76309, kRed = 104597, kGreenU = 25675, kGreenV = 53279, kBlue = 132201, kHalf = 1 << 15;
   const auto level = [](int value) { return static_cast<std::uint8_t>(std::clamp(value >> 16, 0, 255)); };
@@ -69,7 +69,7 @@ void write_rgb(const CameraPicture& picture, std::span<std::uint8_t> rgb) {
   if (tjDecompress2(turbo.get(), picture.bytes.data(), picture.bytes.size(), rgb.data(), size.width, 0, size.height,
                     TJPF_RGB, TJFLAG_LIMITSCANS) == 0)
     return;
-  // Bytes too many between segments are common with webcams, and harm nothing; all other warnings mean grey areas.
+  // Extraneous bytes between segments are common with webcams and harmless; all other warnings mean grey areas.
   const std::string_view why = tjGetErrorStr2(turbo.get());
   const bool harmless =
       tjGetErrorCode(turbo.get()) == TJERR_WARNING && why.find("extraneous bytes") != std::string_view::npos;

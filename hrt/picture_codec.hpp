@@ -1,4 +1,4 @@
-// Between what cameras give and what hrt.h hands out: JPEG by TurboJPEG, YUYV. Thread safety: pure functions.
+// Conversions between camera pictures and those of hrt.h: JPEG by TurboJPEG, YUYV. Thread safety: pure functions.
 #pragma once
 
 #include <cstddef>
@@ -16,14 +16,14 @@ struct PictureSize {
     return std::size_t{3} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
 };
-// What a file claims to hold is not believed beyond this: decoding a progressive one takes 6 bytes a pixel.
+// Larger sizes claimed by a file are rejected: decoding a progressive JPEG takes 6 bytes a pixel.
 inline constexpr int kMaxSide = 4096;
 
-// Each throws Error(HRT_E_DEVICE): what is wrong with the picture.
+// Each throws Error(HRT_E_DEVICE) saying what is wrong with the picture.
 PictureSize picture_size(const CameraPicture& picture);
 // `rgb` has rgb_bytes() bytes.
 void write_rgb(const CameraPicture& picture, std::span<std::uint8_t> rgb);
-// The file; `made` holds it where it has to be made.
+// Returns the JPEG file; `made` holds it if it has to be encoded.
 std::span<const std::uint8_t> jpeg_file(const CameraPicture& picture, std::vector<std::uint8_t>& made);
 
 }  // namespace kenaf::hrt

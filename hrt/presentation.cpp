@@ -25,10 +25,13 @@ void scale(const From& from, double factor, To& to) {
 }  // namespace
 
 hrt_state state_from(const Snapshot& snapshot) {
+  // Every quantity is copied, measured or not; `valid` tells which ones are.
   const robot::State& measured = snapshot.measured;
   hrt_state state{};
   state.size = sizeof state;
   state.valid = measured.fields & kValidBits;
+
+  // Activity, as seen by the library and by the robot.
   const auto flag = [](bool on, std::uint32_t bit) { return on ? bit : 0u; };
   state.activity = flag(snapshot.motion_active, HRT_MOTION_ACTIVE) | flag(snapshot.paused, HRT_PAUSED) |
                    flag(snapshot.stopped_by_silence || measured.stopped_by_silence, HRT_STOPPED_BY_SILENCE) |
@@ -38,6 +41,7 @@ hrt_state state_from(const Snapshot& snapshot) {
   state.cycle = measured.frame;
   state.time_s = measured.robot_time_s;
 
+  // Measured: posture and inertial, then drives and battery.
   state.roll_deg = measured.posture_rad[0] * kDegrees;
   state.pitch_deg = measured.posture_rad[1] * kDegrees;
   state.yaw_deg = measured.posture_rad[2] * kDegrees;
@@ -51,6 +55,7 @@ hrt_state state_from(const Snapshot& snapshot) {
   scale(measured.flipper_a, 1, state.flipper_a);
   state.battery_v = measured.battery_v;
 
+  // Odometry is the estimate's; the pose is the simulator's ground truth.
   state.odometry_x_mm = snapshot.estimate.odometry_x_m * kMillimetres;
   state.odometry_y_mm = snapshot.estimate.odometry_y_m * kMillimetres;
   state.odometry_yaw_deg = snapshot.estimate.odometry_yaw_rad * kDegrees;
@@ -62,6 +67,7 @@ hrt_state state_from(const Snapshot& snapshot) {
   state.pose_pitch_deg = measured.orientation_rad[1] * kDegrees;
   state.pose_yaw_deg = measured.orientation_rad[2] * kDegrees;
 
+  // The command in force and the health of the link.
   scale(snapshot.commanded.track_speed_mps, kMillimetres, state.commanded_track_mmps);
   scale(snapshot.commanded.flipper_rad, kDegrees, state.commanded_flipper_deg);
 
@@ -72,6 +78,7 @@ hrt_state state_from(const Snapshot& snapshot) {
 }
 
 std::string status_text(const hrt_state& state, const std::string& library) {
+  // Head line: time, cycle, and one word in brackets for each activity.
   const auto has = [&](std::uint32_t bit) { return (state.valid & bit) != 0; };
   std::string text = fmt::format("Kenaf ({})  t = {:.3f} s  cycle {}", library, state.time_s, state.cycle);
   for (const auto& [bit, words] :
@@ -81,6 +88,8 @@ std::string status_text(const hrt_state& state, const std::string& library) {
     if ((state.activity & static_cast<std::uint32_t>(bit)) != 0) text += fmt::format("  [{}]", words);
   }
   text += '\n';
+
+  // One line for each group of quantities that the robot measures.
   if (has(HRT_HAS_POSTURE)) {
     text += fmt::format("  posture   roll {:.2f}  pitch {:.2f}  yaw {:.2f} deg\n", state.roll_deg, state.pitch_deg,
                         state.yaw_deg);
@@ -108,6 +117,8 @@ std::string status_text(const hrt_state& state, const std::string& library) {
                         state.pose_x_mm, state.pose_y_mm, state.pose_z_mm, state.pose_roll_deg, state.pose_pitch_deg,
                         state.pose_yaw_deg);
   }
+
+  // The link is always reported.
   text += fmt::format("  link      round trip {:.3f} ms  late {}  lost {}\n", state.round_trip_ms, state.late_cycles,
                       state.lost_cycles);
   return text;

@@ -1,4 +1,4 @@
-// A snapshot as hrt.h presents it: in millimetres and degrees, and in words. The one place where SI becomes either.
+// A snapshot as hrt.h presents it: in millimetres and degrees, and as text. The only place that converts from SI.
 #pragma once
 
 #include <string>
@@ -13,7 +13,8 @@ inline constexpr double kDegrees = 57.295779513082320877;  // 180 / pi
 
 hrt_state state_from(const Snapshot& snapshot);
 
-// A few lines for people, each ended by '\n'.
+// A few lines of text, each ended by '
+// '.
 std::string status_text(const hrt_state& state, const std::string& library);
 
 }  // namespace kenaf::hrt

@@ -1,5 +1,5 @@
-// A thread that takes none of the process's signals: they belong to the user's program. Those that a thread raises by
-// its own fault stay as they are.
+// A thread that takes none of the process's signals: they belong to the user's program. Signals raised by a fault of
+// the thread itself stay enabled.
 #pragma once
 
 #include <csignal>
@@ -10,7 +10,7 @@ namespace kenaf::hrt {
 
 template <typename Body>
 std::thread start_quiet_thread(Body&& body) {
-  // A thread inherits its creator's mask, so there is no moment in which it could be interrupted.
+  // A thread inherits its creator's mask, so there is no moment at which a signal could interrupt it.
   sigset_t all, before;
   sigfillset(&all);
   for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGABRT}) sigdelset(&all, fault);

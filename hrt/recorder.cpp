@@ -19,13 +19,13 @@ constexpr auto kLongestWait = std::chrono::milliseconds(100);
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-// Where a quantity's columns begin in a row.
+// Index of a quantity's first column in a row.
 constexpr std::ptrdiff_t place_of(robot::Quantity quantity) {
   return std::count_if(robot::columns().data(), robot::columns_of(quantity).data(),
                        [](const robot::Column& column) { return column.by_robot; });
 }
 
-// `values` into a row, in the order of the quantity's columns.
+// Writes `values` into a row, in the order of the quantity's columns.
 template <robot::Quantity quantity>
 void put(RecordRow& row, std::span<const double> values) {
   constexpr std::ptrdiff_t kPlace = place_of(quantity);
@@ -36,7 +36,7 @@ void put(RecordRow& row, double value) {
   put<quantity>(row, std::span(&value, 1));
 }
 
-// A recording begins anywhere: without the rounding of its difference the same run has the same file.
+// A recording may begin at any time: rounding the difference gives identical runs identical files.
 double whole_nanoseconds(double t_s) {
   return static_cast<double>(std::llround(t_s * 1e9)) / 1e9;
 }
@@ -64,7 +64,7 @@ RecordRow record_row(const robot::State& state, const DriveCommand& command, dou
   row.fill(kNotMeasured);
   const auto has = [&](robot::StateField field) { return robot::is_new(state.fields, field); };
 
-  // what was asked
+  // commanded
   put<time>(row, t_s);
   put<track_command>(row, command.track_speed_mps);
   std::array<double, robot::kFlipperCount> flipper_rad = command.flipper_rad;
@@ -72,7 +72,7 @@ RecordRow record_row(const robot::State& state, const DriveCommand& command, dou
     if ((command.flipper_mask >> i & 1) == 0) flipper_rad[i] = kNotMeasured;
   put<flipper_command>(row, flipper_rad);
 
-  // what was measured
+  // measured
   if (has(robot::kHasEncoders)) {
     put<track_speed>(row, state.track_mps);
     put<track_travel>(row, state.track_m);
@@ -94,7 +94,7 @@ RecordRow record_row(const robot::State& state, const DriveCommand& command, dou
   }
   if (has(robot::kHasPosture)) put<posture>(row, state.posture_rad);
 
-  // how the cycle went
+  // course of the cycle
   put<robot_time>(row, state.robot_time_s);
   put<frame>(row, state.frame);
   put<late_commands>(row, state.late_commands);
@@ -112,7 +112,7 @@ Recorder::~Recorder() {
   try {
     finish();
   } catch (const std::exception&) {
-    // whoever wants to know calls finish()
+    // callers interested in the error call finish()
   }
 }
 

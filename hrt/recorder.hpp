@@ -1,4 +1,4 @@
-// Records cycles into a kenaf-runs/1 CSV file. A thread of its own writes, so that no cycle waits for the disk.
+// Records cycles into a kenaf-runs/1 CSV file. Its own thread writes, so that no cycle waits for the disk.
 #pragma once
 
 #include <algorithm>
@@ -18,33 +18,33 @@
 
 namespace kenaf::hrt {
 
-// A value for each column that the robot records, in the order of robot::columns().
+// One value for each column that the robot records, in the order of robot::columns().
 inline constexpr std::size_t kRecordColumns =
     static_cast<std::size_t>(std::ranges::count_if(robot::columns(), &robot::Column::by_robot));
 using RecordRow = std::array<double, kRecordColumns>;
 std::vector<std::string> record_columns();
 
-// One row: `state` with the command that is in force from its time on. NaN where nothing was measured since the state
-// before.
+// Returns one row: `state` with the command in force from its time on. NaN if a quantity was not measured since the
+// previous state.
 RecordRow record_row(const robot::State& state, const DriveCommand& command, double t_s);
 
-// Thread safety: add() belongs to one thread at a time; finish() comes after the last add().
+// Thread safety: add() is for one thread at a time; finish() must follow the last add().
 class Recorder {
  public:
-  // 2^13 rows are 82 s of 10 ms cycles: longer than a disk is busy, 3 MB of memory.
+  // 2^13 rows are 82 s of 10 ms cycles: longer than a disk stalls, 3 MB of memory.
   static constexpr std::size_t kQueueRows = 8192;
 
-  // Throws Error(HRT_E_RECORD) where the file cannot be made. `wait_when_full`: add() may wait for the disk, since
-  // robot time waits too; otherwise a row that finds the queue full is lost and counted.
+  // Throws Error(HRT_E_RECORD) if the file cannot be created. `wait_when_full`: add() may wait for the disk, because
+  // robot time waits too; otherwise a row that finds the queue full is dropped and counted.
   Recorder(const std::string& path, bool wait_when_full);
-  ~Recorder();  // finishes; errors are lost then. Without a row the file is not made, and one of its name stays
+  ~Recorder();  // finishes, ignoring errors. Without a row no file is made, and an existing one stays
 
-  // `t_s`: an Estimate's, because the clock of `state` may be put back. Time in the file counts from the first state
-  // added. A state no later than the one before is left out.
+  // `t_s`: from an Estimate, because the clock of `state` may be set back. Time in the file counts from the first state
+  // added. A state no later than the previous one is skipped.
   void add(const robot::State& state, const DriveCommand& command, double t_s);
 
-  // Writes what is queued and closes the file. Throws Error(HRT_E_RECORD): not whole, with the reason; what there is
-  // stays in the part file.
+  // Writes the queued rows and closes the file. Throws Error(HRT_E_RECORD) with the reason if the file is incomplete;
+  // the rows written so far stay in the part file.
   void finish();
 
  private:
@@ -55,7 +55,7 @@ class Recorder {
   std::unique_ptr<runs::RunWriter> writer_;  // until finish()
   std::mutex mutex_;
   std::condition_variable row_added_, row_taken_;
-  std::vector<RecordRow> queue_;  // a ring of kQueueRows
+  std::vector<RecordRow> queue_;  // a ring buffer of kQueueRows
   std::size_t first_ = 0, count_ = 0, lost_ = 0;
   bool ended_ = false;
   bool started_ = false;

@@ -16,15 +16,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A held answer never reaches the 2 s after which a world server stops waiting in lock step.
+// An answer is held for less than the 2 s after which a world server stops waiting in lock step.
 constexpr auto kLongestHold = std::chrono::seconds(1);
-// How often a hold looks at what the program does: a quick program is never looked at.
+// Period at which a hold checks the program: a fast program is never checked.
 constexpr auto kLookEvery = std::chrono::milliseconds(5);
-// A motion takes the goal heading of the one before it where the robot is no farther from it.
+// A motion reuses the goal heading of the previous motion if the robot is within this angle of it.
 constexpr double kSameHeading_rad = 2 * std::numbers::pi / 180;
-// hrt_stop leaves a flipper's command as it is where it has arrived: its servo then does not creep.
+// hrt_stop keeps the command of a flipper that has arrived, so that its servo does not creep.
 constexpr double kFlipperArrived_rad = 2 * std::numbers::pi / 180;
-// Times of cycles are sums of periods: a wait for ten of them must not miss the tenth by a rounding.
+// Cycle times are sums of periods: a wait for ten of them must not miss the tenth by rounding.
 constexpr double kCycleRounding = 1e-3;
 
 constexpr const char* kFlipperNames[] = {"front left", "front right", "rear left", "rear right"};
@@ -40,7 +40,7 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
     connection_ = transport_->open(config_);
     const std::optional<robot::State> first = transport_->wait_state();
     if (!first) throw Error(HRT_E_INTERNAL, "the transport was interrupted while it was being opened");
-    // The first cycle is known before the caller goes on.
+    // The first cycle is known before the constructor returns.
     measured_ = *first;
     measured_at_ = Clock::now();
     estimate_ = estimator_.update(*first);
@@ -54,7 +54,7 @@ Robot::Robot(std::unique_ptr<Transport> transport, const hrt_config& config)
     try {
       transport_->close();
     } catch (const std::exception&) {
-      // what went wrong first is what counts
+      // the first error is the relevant one
     }
     throw;
   }
@@ -64,7 +64,7 @@ Robot::~Robot() {
   try {
     close();
   } catch (const std::exception&) {
-    // whoever wants to know calls close()
+    // callers interested in the error call close()
   }
 }
 
@@ -123,16 +123,22 @@ bool Robot::motion_active() const {
 }
 
 void Robot::wait_beside(const std::function<bool()>& wait_a_little) {
+  // Counts as a call under way, so the command does not time out; only closing or losing the robot gives it a verdict.
   Call call{.kind = Kind::beside, .step = [] { return std::optional<Verdict>(); }};
   std::unique_lock lock = lock_open();
+  // Robot time continues: no answer is held for this thread.
   calls_.push_back(&call);
   std::erase_if(due_, [&](const Due& due) { return due.thread == call.owner; });
   program_acted_.notify_one();
+
+  // Afterwards the answer is held for this thread's next call, unless the robot is lost.
   const auto leave = [&] {
     std::erase(calls_, &call);
     last_call_t_s_ = estimate_.t_s;
     if (!call.verdict) due_.push_back({call.owner});
   };
+
+  // Waits without the lock, which the cycle thread needs.
   try {
     for (bool done = false; !done && !call.verdict;) {
       lock.unlock();
@@ -253,7 +259,7 @@ void Robot::snapshot(Snapshot& out) {
   out.commanded = command_;
   out.lost_cycles = lost_cycles_;
   out.warning = warning_;
-  if (!closing_) {  // afterwards the transport may be closing without this lock
+  if (!closing_) {  // later the transport may be closing without this lock
     out.round_trip_s = transport_->round_trip_s();
     out.paused = transport_->is_paused();
   }
@@ -286,7 +292,7 @@ void Robot::record_start(const std::string& path) {
     const std::unique_lock lock = lock_open();
     if (recorder_) throw Error(HRT_E_BUSY, "a recording is under way; hrt_record_stop() ends it");
   }
-  // the file is made while cycles go on: a disk may take seconds for it
+  // the file is created while cycles continue: a disk may take seconds
   auto recorder = std::make_unique<Recorder>(path, connection_.lockstep);
   const std::unique_lock lock = lock_open();
   recorder_ = std::move(recorder);
@@ -295,10 +301,10 @@ void Robot::record_start(const std::string& path) {
 }
 
 void Robot::record_stop() {
-  const std::lock_guard one(record_mutex_);  // until the file is whole: the next recording may have its name
+  const std::lock_guard one(record_mutex_);  // until the file is complete: the next recording may have its name
   std::unique_ptr<Recorder> recorder;
   {
-    const std::lock_guard lock(mutex_);  // also where the link is lost: what came before it is worth keeping
+    const std::lock_guard lock(mutex_);  // also if the link is lost: the recording up to then is worth keeping
     recorder = std::move(recorder_);
     last_call_t_s_ = estimate_.t_s;
     note_setting();
@@ -334,7 +340,7 @@ void Robot::close() {
   try {
     if (recorder) recorder->finish();
   } catch (const Error&) {
-    if (!not_stopped) throw;  // a robot that may still move is the worse news
+    if (!not_stopped) throw;  // a robot that may still move is the more serious error
   }
   if (not_stopped) throw *not_stopped;
 }
@@ -348,7 +354,7 @@ void Robot::run(robot::State state) {
       if (!command) return;
       transport_->send(*command);
     }
-    // after close() its failure stands; otherwise whoever waits for a cycle would wait for ever
+    // after close() its failure stands; otherwise threads waiting for a cycle would wait for ever
     fail(HRT_E_INTERNAL, "the wait for the robot's states was ended by something other than hrt_close()");
   } catch (const Error& error) {
     fail(error.code(), error.what());
@@ -365,8 +371,8 @@ void Robot::fail(int code, const std::string& text) {
 
 std::optional<DriveCommand> Robot::answer(const robot::State& state) {
   std::unique_lock lock(mutex_);
-  if (closing_) return std::nullopt;     // this state was faster than the interrupt
-  if (state.frame != estimate_.frame) {  // the first one was taken by the constructor
+  if (closing_) return std::nullopt;     // this state overtook the interrupt
+  if (state.frame != estimate_.frame) {  // the constructor has taken the first one
     lost_cycles_ += state.frame - estimate_.frame - 1;
     measured_ = state;
     measured_at_ = Clock::now();
@@ -380,7 +386,7 @@ std::optional<DriveCommand> Robot::answer(const robot::State& state) {
     hold(lock);
     step_calls();  // those that began during the hold
   } else {
-    due_.clear();  // nobody is waited for
+    due_.clear();  // no call is waited for
   }
   compose_command();
   return command_;
@@ -415,7 +421,7 @@ void Robot::hold(std::unique_lock<std::mutex>& lock) {
   due_.clear();
 }
 
-// Lets go of those that have kept robot time waiting for long enough by their own doing.
+// Releases threads that have kept robot time waiting long enough by their own doing.
 void Robot::look_at_due() {
   const double wall_s = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
   std::erase_if(due_, [&](Due& due) {

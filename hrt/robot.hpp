@@ -1,8 +1,8 @@
-// An open robot: the cycle thread that answers every state of the transport, and the calls that users' threads wait in.
-// SI units; hrt.cpp is the border to hrt.h's.
+// An open robot: the cycle thread that answers every state of the transport, and the calls in which user threads wait.
+// SI units; hrt.cpp converts to those of hrt.h.
 //
-// One cycle: take the state, step the motion and whatever is waited for, hold the answer back while a program whose
-// call has just ended is due to make its next one (lock step only), send the answer.
+// One cycle: take the state, step the motion and the waiting calls, hold the answer while a program whose call has just
+// ended is due to make its next one (lock step only), send the answer.
 #pragma once
 
 #include <unistd.h>
@@ -29,7 +29,7 @@
 
 namespace kenaf::hrt {
 
-// Everything that is known, as of one cycle.
+// All quantities as of one cycle.
 struct Snapshot {
   robot::State measured{};
   Estimate estimate;
@@ -40,10 +40,10 @@ struct Snapshot {
   bool motion_active = false, paused = false, stopped_by_silence = false, recording = false, lockstep = false;
 };
 
-// Thread safety: every function may be called from any thread. All of them throw Error with the codes that hrt.h names.
+// Thread safety: every function may be called from any thread. All throw Error with the codes that hrt.h names.
 class Robot {
  public:
-  // Opens the transport, waits for the first state and, where the configuration asks for it, begins a recording.
+  // Opens the transport, waits for the first state and, if configured, begins a recording.
   Robot(std::unique_ptr<Transport> transport, const hrt_config& config);
   ~Robot();
   Robot(const Robot&) = delete;
@@ -55,8 +55,8 @@ class Robot {
   void wait_flippers(double tolerance_rad, double timeout_s);
   void sleep(double seconds);
   void wait_cycle();
-  // For what no cycle brings: calls `wait_a_little`, which takes some tens of milliseconds at most, until it returns
-  // true. Robot time runs on meanwhile, and the program counts as calling.
+  // For waits that no cycle ends: calls `wait_a_little`, which takes at most some tens of milliseconds, until it
+  // returns true. Robot time continues meanwhile, and the program counts as calling.
   void wait_beside(const std::function<bool()>& wait_a_little);
 
   void set_tracks(double left_mps, double right_mps);
@@ -66,36 +66,36 @@ class Robot {
   void record_start(const std::string& path);
   void record_stop();
 
-  // Fills `out` also where the link is lost; throws afterwards then.
+  // Fills `out` even if the link is lost, and then throws.
   void snapshot(Snapshot& out);
   bool is_lost() const;
-  // Throws where the link is lost or the robot closed; else the program has called.
+  // Throws if the link is lost or the robot closed; otherwise notes that the program has called.
   void note_call();
-  // The robot time of a moment of the wall clock that has just been, by the newest cycle; nullopt in lock step, where
-  // robot time stands and runs as it likes.
+  // Converts a recent moment of the wall clock to robot time, by the newest cycle; nullopt in lock step, where robot
+  // time does not follow the wall clock.
   std::optional<double> robot_time_at(std::chrono::steady_clock::time_point moment) const;
 
-  // Stops the robot and ends every call with HRT_E_CLOSED; a recording ends with the cycle that is known now. Throws
-  // where the recording is not whole.
+  // Stops the robot and ends every call with HRT_E_CLOSED; a recording ends with the current cycle. Throws if the
+  // recording is incomplete.
   void close();
 
  private:
-  // What ends a call: a code, and words where it failed.
+  // Result of a call: a code, and a text if it failed.
   struct Verdict {
     int code;
     std::string text;
   };
   enum class Kind { motion, flippers, time, beside };
-  // A blocking call; it lives on the stack of the thread that waits in it.
+  // A blocking call; it lives on the stack of the waiting thread.
   struct Call {
     Kind kind;
     std::function<std::optional<Verdict>()> step;  // looks at the newest cycle; called under the lock
     pid_t owner = gettid();
-    std::uint32_t start_frame = 0;  // it ends in a later cycle than this one
+    std::uint32_t start_frame = 0;  // it ends in a later cycle than this
     std::uint32_t stepped_frame = 0;
     std::optional<Verdict> verdict{};
   };
-  // A thread whose call has just ended: the answer is held for its next one.
+  // A thread whose call has just ended: the answer is held until its next call.
   struct Due {
     pid_t thread;
     ThreadWatch watch{};
@@ -113,8 +113,8 @@ class Robot {
   void compose_command();
   void fail(int code, const std::string& text);
 
-  std::unique_lock<std::mutex> lock_open();  // throws where the link is lost or the robot closed
-  void note_setting();                       // the program has set something: it is at work
+  std::unique_lock<std::mutex> lock_open();  // throws if the link is lost or the robot closed
+  void note_setting();                       // the program has changed a setting: it is active
   double motion_heading() const;
   bool motion_active() const;
   void begin_motion();
@@ -126,32 +126,31 @@ class Robot {
   std::unique_ptr<Transport> transport_;
   Connection connection_{};
 
-  mutable std::mutex mutex_;  // guards all below
+  mutable std::mutex mutex_;  // guards all members below
   std::condition_variable call_ended_, program_acted_;
   std::optional<Error> failure_;  // link lost or closed: set once
   bool closing_ = false;
   robot::State measured_{};
-  std::chrono::steady_clock::time_point measured_at_;  // when it was taken
+  std::chrono::steady_clock::time_point measured_at_;  // when it was received
   Estimator estimator_;
   Estimate estimate_;
   std::uint64_t lost_cycles_ = 0;
   std::string warning_;
   DriveCommand command_;   // the newest answer, in force from the next cycle on
-  DriveCommand in_force_;  // the answer before it: in force since measured_
+  DriveCommand in_force_;  // the previous answer: in force since measured_
   std::array<double, robot::kTrackCount> user_track_mps_{};
-  bool stopped_by_silence_ = false;  // those speeds, and none has been asked for since
+  bool stopped_by_silence_ = false;  // silence has set them to 0, and no speed was requested since
   std::array<double, robot::kTrackCount> motion_track_mps_{};
-  std::uint8_t flipper_mask_ = 0;  // what the program wants, as DriveCommand has it
+  std::uint8_t flipper_mask_ = 0;  // requested by the program, as in DriveCommand
   std::array<double, robot::kFlipperCount> flipper_rad_{};
-  std::optional<double> goal_heading_rad_;  // of the motion before, while nothing else has moved the robot
+  std::optional<double> goal_heading_rad_;  // of the previous motion, while nothing else has moved the robot
   double last_call_t_s_ = 0;
-  std::vector<Call*> calls_;  // those that wait
+  std::vector<Call*> calls_;  // the waiting ones
   std::vector<Due> due_;
   std::unique_ptr<Recorder> recorder_;
 
-  std::mutex close_mutex_;  // one close at a time
-  std::mutex
-      record_mutex_;  // one recording is begun or ended at a time; locked before mutex_, and never by the cycle thread
+  std::mutex close_mutex_;   // one close at a time
+  std::mutex record_mutex_;  // one recording starts or ends at a time; locked before mutex_, never by the cycle thread
   std::thread thread_;
 };
 

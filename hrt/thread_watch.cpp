@@ -11,7 +11,7 @@
 namespace kenaf::hrt {
 
 std::optional<ThreadLook> read_thread_stat(std::string_view stat) {
-  // "TID (name) S ...": the name may hold anything, also blanks and brackets, so the last bracket ends it.
+  // "TID (name) S ...": the name may contain anything, even blanks and brackets, so the last bracket ends it.
   const std::size_t name_end = stat.rfind(") ");
   if (name_end == std::string_view::npos) return std::nullopt;
   stat.remove_prefix(name_end + 2);

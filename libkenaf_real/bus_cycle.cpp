@@ -15,13 +15,13 @@ using canopen::PowerState;
 using canopen::Time;
 using hrt::Error;
 
-// The answers' share of a period; the rest is for the commands to the drives.
+// Share of a period for the answers; the rest is for the commands to the drives.
 constexpr double kAnswerShare = 0.6;
-// Of the bus: the rest is for frames that are repeated after an error, and so that SYNC finds the bus free.
+// Maximum bus load; the rest is for retransmissions after errors, and so that SYNC finds the bus free.
 constexpr double kMostLoad = 0.7;
-// Two lost frames of a drive are no silence yet: kSilentDrive_s has two and a half of these.
+// Two lost frames of a drive do not count as silence: kSilentDrive_s spans two and a half of these.
 constexpr double kLongestPeriod_s = 0.02;
-// SYNC is the kernel's: so long without one means that the interface is gone.
+// The kernel sends SYNC: this long without one means that the interface is gone.
 constexpr Time kLongestSync = std::chrono::milliseconds(100);
 
 double seconds(Time duration) {
@@ -71,7 +71,7 @@ std::optional<Beat> BusCycle::wait() {
                 fmt::format("no SYNC on {} any more: is the interface still up? (`ip -details link show {}`)",
                             bus_.interface, bus_.interface));
   }
-  // After a hold-up more than one waits in the socket: answers to all of them would be taken within one period.
+  // After a hold-up several SYNCs wait in the socket: answers to all of them would be taken within one period.
   while (master_.now() - *image_.sync_at() >= period_ && master_.receive(master_.now())) {
   }
   const Time answers_until = *image_.sync_at() + std::chrono::round<Time>(kAnswerShare * period_);
@@ -80,7 +80,7 @@ std::optional<Beat> BusCycle::wait() {
   } else if (master_.was_interrupted()) {
     return std::nullopt;
   }
-  // a later SYNC may have come meanwhile; the newest counts
+  // a later SYNC may have arrived meanwhile; the newest counts
   const Time at = *image_.sync_at();
   if (!first_sync_at_) first_sync_at_ = at;
   const auto on_grid = 1 + std::lround(seconds(at - *first_sync_at_) / seconds(period_));
@@ -99,8 +99,8 @@ void BusCycle::send(const DriveOrders& orders) {
   sent_ = orders;
 }
 
-// By the newest SYNC, not by the clock: a master that was held up finds the answers waiting, with the times at which
-// they came.
+// Measured by the newest SYNC, not by the clock: a master that was held up finds the answers waiting, with their times
+// of arrival.
 bool BusCycle::is_silent(const std::optional<Time>& at, double limit_s) const {
   return !at || (image_.sync_at() && *image_.sync_at() - *at > to_time(limit_s));
 }

@@ -1,4 +1,4 @@
-// The beat of the bus: SYNC by SYNC, what the nodes measured, what the drives are told, and who has fallen silent.
+// The bus cycle, SYNC by SYNC: measurements of the nodes, commands to the drives, and detection of silent nodes.
 #pragma once
 
 #include <array>
@@ -12,22 +12,21 @@
 
 namespace kenaf::real {
 
-// A drive that sent nothing for so long is lost; so is a sensor, without which the robot goes on.
+// A drive silent for this long is lost; a sensor too, but the robot continues without it.
 inline constexpr double kSilentDrive_s = 0.05, kSilentSensor_s = 0.1;
 
-// Throws hrt::Error(HRT_E_CONFIG): in so short a period the bus cannot carry a cycle, with room to spare for errors and
-// for what is not a cycle's; or it is so long that a drive's silence shows too late, or after less than two frames that
-// got lost.
+// Throws hrt::Error(HRT_E_CONFIG) if the period is too short for the bus to carry a cycle with a margin for errors and
+// other traffic, or too long: a drive's silence would show too late, or after fewer than two lost frames.
 void check_period(const canbus::RobotBus& bus, double period_s);
 
 struct DriveOrder {
   std::uint16_t controlword = 0;
-  std::int32_t target = 0;  // position or velocity, by the drive's mode, in its units
+  std::int32_t target = 0;  // position or velocity, according to the drive's mode, in its units
 };
 using DriveOrders = std::array<DriveOrder, canbus::kDriveCount>;
 
 struct Beat {
-  std::uint32_t number;  // 1 = the first SYNC; more than one more than the last: SYNCs that never came
+  std::uint32_t number;  // 1 = the first SYNC; a step of more than one: SYNCs that never came
   canopen::Time sync_at;
 };
 
@@ -43,14 +42,14 @@ class BusCycle {
   const canbus::RobotBus& bus() const { return bus_; }
   const ProcessImage& image() const { return image_; }
 
-  // SYNC begins; it ends with stop() or with the program.
+  // Starts SYNC; it ends with stop() or with the program.
   void start();
   void stop();
 
-  // Waits for the next SYNC, and then until all nodes have answered it or 0.6 periods are over; of several that wait,
-  // the newest alone is a beat. nullopt: interrupted. Throws hrt::Error(HRT_E_LINK): no SYNC comes any more.
+  // Waits for the next SYNC, and then until all nodes have answered it or 0.6 periods have passed; if several SYNCs
+  // wait, only the newest is a beat. nullopt: interrupted. Throws hrt::Error(HRT_E_LINK) if no more SYNC comes.
   std::optional<Beat> wait();
-  // In force from the next SYNC on; late where it has come already. Throws HeldUp.
+  // In force from the next SYNC on; late if that has already come. Throws HeldUp.
   void send(const DriveOrders& orders);
   const DriveOrders& sent() const { return sent_; }
   std::uint32_t late_orders() const { return late_; }
@@ -58,10 +57,10 @@ class BusCycle {
 
   // From now on a boot-up message counts as a restart.
   void watch_restarts() { image_.watch_restarts(); }
-  // The first drive that is not under control: restarted, silent, or not enabled.
+  // Returns the first drive that is not under control: restarted, silent, or not enabled.
   std::optional<std::size_t> lost_drive() const;
-  // What is wrong with it at this moment, in words that name it. Its emergency message, where it sends one, may come
-  // some milliseconds after its statusword: emergency_of, "" where there is none.
+  // Describes what is wrong with the drive at this moment, naming it. Its emergency message, if it sends one, may come
+  // some milliseconds after its statusword: emergency_of, "" if there is none.
   std::string loss_of(std::size_t drive) const;
   std::string emergency_of(std::size_t drive) const;
   bool slope_is_silent() const, gyro_is_silent() const;

@@ -15,12 +15,16 @@ std::vector<CameraOnRobot> parse_cameras(std::string_view toml_text, const std::
   const toml::table root = description::parse_toml(toml_text, name_for_errors);
   description::TomlReader file(root, "", name_for_errors);
   std::vector<CameraOnRobot> cameras;
+  // One [[camera]] after the other, each reported at its own key.
   for (description::TomlReader& table : file.tables("camera")) {
     CameraOnRobot camera{};
+    // The name is what programs ask for, so it is unique.
     camera.name = table.text("name");
     if (camera.name.empty()) table.fail("name", "must not be empty");
     if (std::ranges::find(cameras, camera.name, &CameraOnRobot::name) != cameras.end())
       table.fail("name", "is the name of another camera too");
+
+    // The device is optional (the simulator has none), but two cameras cannot share one.
     if (table.has("device")) {
       camera.device = table.text("device");
       if (!camera.device.starts_with('/'))
@@ -29,6 +33,8 @@ std::vector<CameraOnRobot> parse_cameras(std::string_view toml_text, const std::
       if (std::ranges::find(cameras, camera.device, &CameraOnRobot::device) != cameras.end())
         table.fail("device", "is the device of another camera too");
     }
+
+    // Settings of the device.
     camera.width = table.integer("width", 16, 4096);
     camera.height = table.integer("height", 16, 4096);
     camera.rate_hz = table.number("rate_hz", {.min = 0.1, .max = 120});

@@ -22,9 +22,9 @@ namespace {
 
 using hrt::Error;
 
-// The heading's bias is learnt in this time, while the robot stands; also what "standing" needs to be believed.
+// The heading bias is learnt during this time, while the robot stands; also the time after which it counts as standing.
 constexpr double kStand_s = 0.5;
-constexpr double kGaugeTolerance = 0.05;  // what belts of some width leave open
+constexpr double kGaugeTolerance = 0.05;  // spread due to the width of the belts
 
 canbus::RobotBus read_description(const hrt_config& config) {
   try {
@@ -37,7 +37,7 @@ canbus::RobotBus read_description(const hrt_config& config) {
   }
 }
 
-// Turns and, without a posture, the heading come from it.
+// Turns depend on the gauge and, without posture, the heading too.
 std::string warning_of_gauge(const canbus::RobotBus& robot, double configured_mm) {
   const double described_mm = 1e3 * robot.track_gauge_m;
   if (described_mm <= 0 || std::abs(configured_mm - described_mm) <= kGaugeTolerance * described_mm) return {};
@@ -65,7 +65,7 @@ struct CanTransport::Session {
   std::string gauge_warning;  // "": none
   std::optional<MeasuredState> measured;
   std::optional<DriveTargets> targets;
-  // what of beats and of late orders the opening took: known with the first state after it
+  // beats and late orders during the opening: reported with the first state after it
   std::uint32_t before = 0, late_before = 0;
   bool lost = false;
   std::atomic<double> round_trip_s = 0;
@@ -103,7 +103,7 @@ std::optional<robot::State> CanTransport::wait_state() {
   std::optional<robot::State> state = measure();
   if (!state) return state;
   Session& s = *session_;
-  if (s.before == 0) {  // the opening took beats of its own
+  if (s.before == 0) {  // beats during the opening
     s.before = state->frame - 1;
     s.late_before = state->late_commands;
   }

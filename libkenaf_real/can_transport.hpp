@@ -1,8 +1,8 @@
-// The real robot: CiA 402 drives on a CAN bus. Beat by beat, all in the one thread that waits for states and answers
+// The real robot: CiA 402 drives on a CAN bus. Runs beat by beat in the one thread that waits for states and answers
 // them.
 //
-// Who loses control stops the robot: a program that ends or hangs sends no heartbeat any more, and the drives stop by
-// themselves after master_silence_s; a drive that is silent, in fault or restarted ends the loop with a quick stop for
+// Loss of control stops the robot: a program that ends or hangs no longer sends a heartbeat, and the drives stop by
+// themselves after master_silence_s; a drive that is silent, in fault or restarted ends the loop with a quick stop of
 // all others; so does a bus that is down or off.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace kenaf::real {
 
-// The bus that `config` and description name; throws canopen::BusError.
+// Opens the bus that configuration and description name; throws canopen::BusError.
 using OpenBus =
     std::function<std::unique_ptr<canopen::Bus>(const std::string& interface, std::span<const std::uint16_t> ids)>;
 
@@ -38,8 +38,8 @@ class CanTransport final : public hrt::Transport {
 
  private:
   struct Session;                         // an open robot
-  std::optional<robot::State> measure();  // as wait_state, in the beats and the late orders since SYNC began
-  void let_go();                          // the robot is lost, and told to stop
+  std::optional<robot::State> measure();  // as wait_state, with beats and late orders counted since SYNC began
+  void let_go();                          // the robot is lost, and is told to stop
 
   OpenBus open_bus_;
   std::unique_ptr<Session> session_;

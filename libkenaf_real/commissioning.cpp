@@ -46,7 +46,7 @@ std::string names(const std::vector<NamedNode>& nodes) {
   return out;
 }
 
-// A heartbeat of the master's node is refused by whoever waits for frames (Master::receive).
+// A heartbeat with the master's node id is rejected by every wait for frames (Master::receive).
 void refuse_other_master(Master& master, const RobotBus& bus) {
   const Time until = master.now() + to_time(bus.master_silence_s);
   while (const auto received = master.receive(until)) {
@@ -71,12 +71,15 @@ void await_start(Master& master, std::vector<NamedNode>& missing, Time until) {
   if (master.was_interrupted()) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");
 }
 
-// A bus that takes no frame is one on which nobody has power yet: it is waited for as a node is.
+// A bus that accepts no frame has no powered node yet: it is waited for like a node.
 void reset_communication(Master& master, const RobotBus& bus, double patience_s) {
+  // All nodes are missing until their boot-up message has come.
   std::vector<NamedNode> missing = nodes_of(bus);
   const Time until = master.now() + to_time(patience_s);
   Time ask_at = master.now();
   std::string bus_says;
+
+  // Each missing node gets its own order, repeated every kAskAgain: a node powered late has missed the first ones.
   while (!missing.empty()) {
     try {
       if (master.now() >= ask_at) {
@@ -89,6 +92,8 @@ void reset_communication(Master& master, const RobotBus& bus, double patience_s)
     } catch (const canopen::BusFull& error) {
       bus_says = fmt::format(" ({})", error.what());
     }
+
+    // The bus's own report is part of the message: a missing acknowledgement usually means missing power.
     if (!missing.empty() && master.now() >= until) {
       throw Error(HRT_E_DEVICE,
                   fmt::format("on {} nobody started within {} s as: {}{}; are they powered, is the bit rate "
@@ -133,8 +138,8 @@ void write_heartbeats(Master& master, const NamedNode& node, const RobotBus& bus
                make_write(object::producer_heartbeat_ms, std::lround(1e3 * bus.node_heartbeat_s), "own heartbeat"));
 }
 
-// CiA 402, 0x60C2: a time as number * 10^exponent s, with a number of 8 bits. In milliseconds where it is a whole
-// number of them, for many drives take no exponent but -3, their default; else the finest that fits.
+// CiA 402, 0x60C2: a time as number * 10^exponent s, with an 8-bit number. In milliseconds if it is a whole number of
+// them, since many drives accept only the default exponent -3; otherwise the finest exponent that fits.
 struct InterpolationTime {
   std::int64_t number;
   int exponent;
@@ -147,7 +152,7 @@ InterpolationTime interpolation_time(double period_s) {
   return {std::lround(period_s / std::pow(10.0, exponent)), exponent};
 }
 
-// What CiA 402 leaves to the drive, and its key in [can].
+// An object that CiA 402 leaves optional, and its key in [can].
 std::string_view key_without(const Pdo& pdo) {
   for (const MappedObject& mapped : pdo.objects) {
     if (mapped.object == object::dc_link_voltage.object) return "battery";
@@ -165,8 +170,7 @@ void write_pdo(Master& master, const NamedNode& node, const Pdo& pdo, const std:
               fmt::format("{}; where its drives have no such object: `{} = false` in [can]", error.what(), key));
 }
 
-// Those that the node may have from its maker, and nobody here sends or takes, are switched off: no frame that is not
-// known.
+// Switches off PDOs that the manufacturer may have enabled but nobody here uses: no unknown frames on the bus.
 void write_pdos(Master& master, const NamedNode& node, const std::vector<Pdo>& used) {
   for (const PdoDirection direction : {PdoDirection::transmit, PdoDirection::receive}) {
     for (int number = 1; number <= kLastPdo; ++number) {
@@ -183,13 +187,13 @@ void write_pdos(Master& master, const NamedNode& node, const std::vector<Pdo>& u
   }
 }
 
-// The rated current in A; nullopt: it does not say it, or is not asked.
+// Returns the rated current in A; nullopt if the drive does not report it or is not asked.
 std::optional<double> set_up_drive(Master& master, const RobotBus& bus, std::size_t i, double period_s) {
   const NamedNode node = drive_node(bus, i);
   check_profile(master, node, canopen::kProfileDrive, "drive");
   check_modes(master, node, bus.drives[i]);
   for (const SdoWrite& write : parameters_of(bus, i, period_s)) master.write(node, write);
-  // not every drive has these, and what they say by default is no worse
+  // not every drive has these, and their default values are acceptable
   master.write_if_there(
       node, make_write(object::communication_error_behaviour, 1, "stay operational when the heartbeat is lost"));
   master.write_if_there(node, make_write(object::fault_reaction_option, kFaultReactionQuickStop, "fault reaction"));
@@ -234,7 +238,7 @@ std::vector<SdoWrite> parameters_of(const RobotBus& bus, std::size_t i, double p
       make_write(object::quick_stop_deceleration, stop, "quick stop deceleration"),
       make_write(object::max_profile_velocity, full_speed, "speed limit"),
       make_write(object::profile_acceleration, acceleration, "acceleration"),
-      // motions ramp by themselves; a track that is told to stand otherwise is to stand at once
+      // motions ramp by themselves; a track commanded to stop in any other case must stop at once
       make_write(object::profile_deceleration, canbus::is_track(i) ? stop : acceleration, "deceleration"),
   };
   if (is_position(drive.mode)) {
@@ -257,7 +261,7 @@ std::vector<SdoWrite> parameters_of(const RobotBus& bus, std::size_t i, double p
 
 NodeFacts commission(Master& master, const RobotBus& bus, double period_s, double patience_s) {
   refuse_other_master(master, bus);
-  master.start_heartbeat();  // from here on: who listens while the nodes start is to hear that there is a master
+  master.start_heartbeat();  // from here on, so that nodes watching for it while starting see a master
   reset_communication(master, bus, patience_s);
   NodeFacts facts;
   for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {

@@ -11,8 +11,8 @@ using canbus::DriveOnBus;
 using canopen::DriveMode;
 
 void PositionRamp::step(double target, double max_speed, double acceleration, double dt_s) {
-  // The fastest speed from which it can still stop at the target, one step ahead: v dt / 2 + v^2 / (2 a) = way left.
-  // Where v is no whole number of speed steps, stopping takes up to dv dt / 8 more.
+  // The fastest speed from which it can still stop at the target, one step ahead: v dt / 2 + v^2 / (2 a) = remaining
+  // way. If v is no whole number of speed steps, stopping takes up to dv dt / 8 more.
   const double left = target - position, way = std::abs(left), dv = acceleration * dt_s;
   const double reachable =
       way <= dv * dt_s ? way / dt_s : std::sqrt(dv * dv / 4 + 2 * acceleration * (way - dv * dt_s / 8)) - dv / 2;
@@ -35,7 +35,7 @@ DriveOrders DriveTargets::step(const hrt::DriveCommand& command, const ProcessIm
     const std::size_t drive = robot::kTrackCount + f;
     const bool told = (command.flipper_mask >> f & 1) != 0;
     const DriveOnBus& on_bus = bus_.drives[drive];
-    // one that was not told anything stays also where that is outside of its limits
+    // a drive that was never commanded stays where it is, even outside its limits
     if (told)
       hold_rad_[f] =
           robot::reachable_angle(command.flipper_rad[f], position_from_drive(on_bus.units, image.drive(drive).position),
@@ -48,7 +48,7 @@ DriveOrders DriveTargets::step(const hrt::DriveCommand& command, const ProcessIm
 DriveOrder DriveTargets::track(std::size_t i, double speed_mps, double period_s) {
   const DriveOnBus& drive = bus_.drives[i];
   const double wanted_mps = std::clamp(speed_mps, -drive.max_speed, drive.max_speed);
-  // In cyclic velocity mode the drive follows each target at once: the ramp is the master's.
+  // In cyclic velocity mode the drive follows each target at once: the master does the ramp.
   const bool slower = std::abs(wanted_mps) < std::abs(track_mps_[i]);
   const double rate = slower ? drive.quick_stop_deceleration : drive.acceleration;
   const double dv = drive.mode == DriveMode::cyclic_velocity ? rate * period_s : 2 * drive.max_speed;
@@ -64,7 +64,7 @@ DriveOrder DriveTargets::flipper(std::size_t i, bool told, const DriveInput& inp
     return {canopen::kControlEnable, position_to_drive(drive.units, ramps_[f].position)};
   }
   const std::int32_t target = position_to_drive(drive.units, hold_rad_[f]);
-  // a drive in profile position mode holds by itself where it was enabled
+  // a drive in profile position mode holds the position at which it was enabled
   if (!told) return {canopen::kControlEnable, target};
   const std::uint16_t handshake = handshakes_[f].step(target, input.statusword);
   return {static_cast<std::uint16_t>(canopen::kControlEnable | handshake), target};

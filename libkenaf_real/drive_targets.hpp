@@ -1,4 +1,4 @@
-// From what the robot shall do to what each drive is told in a cycle: limits, ramps where the mode leaves them to the
+// From the robot's command to the command of each drive in a cycle: limits, ramps if the mode leaves them to the
 // master, and the handshake of profile position mode.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace kenaf::real {
 
-// A position that goes to a target within a speed and an acceleration, and stops there without going beyond.
+// A position that moves to a target within a speed and an acceleration limit and stops there without overshoot.
 struct PositionRamp {
   double position = 0, speed = 0;
   void step(double target, double max_speed, double acceleration, double dt_s);
@@ -19,12 +19,12 @@ struct PositionRamp {
 
 class DriveTargets {
  public:
-  // The flippers stay where they are until they are told otherwise.
+  // The flippers stay where they are until they are commanded.
   DriveTargets(const canbus::RobotBus& bus, const ProcessImage& image);
 
-  // A speed out of range is cut to the description's limit; a flipper's angle is taken to the same direction within the
-  // limits or, where there is none, to the nearer limit. Ramps go on by one period a call, also where the call before
-  // is longer ago: a drive goes to each target within a period, and what was missed would be a jump beyond the limits.
+  // A speed out of range is limited to the description's maximum; a flipper angle is taken to the same direction within
+  // the limits or, if there is none, to the nearer limit. Ramps advance by one period per call, even if the previous
+  // call is longer ago: a drive reaches each target within a period, and catching up would be a jump beyond the limits.
   DriveOrders step(const hrt::DriveCommand& command, const ProcessImage& image, double period_s);
 
  private:

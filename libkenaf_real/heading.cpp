@@ -7,13 +7,13 @@
 namespace kenaf::real {
 namespace {
 
-// Tracks that have stopped leave a robot that still rocks; only what comes after this counts as standing.
+// A robot still rocks after its tracks have stopped; standing counts only after this time.
 constexpr double kSettled_s = 0.2;
-// The bias is the mean over the stand at first, and follows with this time constant later.
+// The bias is the mean over the stand at first, and later follows with this time constant.
 constexpr double kBiasTime_s = 2;
-// A robot that is turned by hand while its tracks stand is not a bias.
+// A rate above this is a robot turned by hand while its tracks stand, not a bias.
 constexpr double kLargestBias_radps = 0.05;
-constexpr double kLeastCosine = 0.1;  // on its side or nose there is no heading to speak of
+constexpr double kLeastCosine = 0.1;  // on its side or nose a robot has no meaningful heading
 
 double wrapped(double angle_rad) {
   const double turned = std::remainder(angle_rad, 2 * std::numbers::pi);

@@ -1,15 +1,15 @@
 // The robot's heading from a yaw-rate gyro: integrated SYNC by SYNC, its bias learnt whenever the robot stands.
 //
-// The rate about the body's z axis is taken for the rate of yaw, divided by cos(pitch) / cos(roll) of z-y-x angles,
-// without the part of the pitch rate, which is not measured: exact on level ground and along a slope, and wrong while a
-// robot that is rolled pitches. A gyro's bias drifts; between stands of the robot the heading drifts with it.
+// The rate about the body's z axis is taken as the yaw rate, multiplied by cos(roll) / cos(pitch) of z-y-x angles,
+// without the contribution of the unmeasured pitch rate: exact on level ground and along a slope, wrong while a rolled
+// robot pitches. A gyro's bias drifts; between stands of the robot the heading drifts with it.
 #pragma once
 
 namespace kenaf::real {
 
 class Heading {
  public:
-  // `dt_s` since the sample before; `standing`: tracks at rest and told to be.
+  // `dt_s`: time since the previous sample; `standing`: tracks at rest and commanded to be.
   void update(double rate_radps, double roll_rad, double pitch_rad, bool standing, double dt_s);
 
   double yaw_rad() const { return yaw_rad_; }  // in (-pi, pi]; 0 at the start

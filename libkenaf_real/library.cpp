@@ -1,4 +1,4 @@
-// What makes this library libkenaf_real.
+// The parts that are specific to libkenaf_real.
 #include "can/canbus/socket_bus.hpp"
 #include "formats/description/description_error.hpp"
 #include "hrt/camera.hpp"

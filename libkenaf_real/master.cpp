@@ -31,7 +31,7 @@ bool is_missing(const SdoOutcome& outcome) {
   return outcome.by_server && (outcome.abort == SdoAbort::no_object || outcome.abort == SdoAbort::no_sub_index);
 }
 
-// An expedited answer that does not say its size has four bytes, of which the first ones are the number.
+// An expedited answer without a size has four bytes, of which the first ones are the number.
 std::int64_t number_in(const MappedObject& object, const SdoOutcome& outcome) {
   return decode_number(object.type, std::span(outcome.value).first(byte_count(object.type)));
 }
@@ -70,7 +70,7 @@ void Master::send_heartbeat() {
     send(encode(canopen::Heartbeat{own_node_, canopen::NmtState::operational}));
     next_heartbeat_ = before + heartbeat_;
   } catch (const canopen::BusFull&) {
-    next_heartbeat_ = now() + heartbeat_;  // whoever goes on all the same is to receive in between
+    next_heartbeat_ = now() + heartbeat_;  // if the caller continues all the same, it can receive in between
     throw;
   }
 }
@@ -95,7 +95,7 @@ std::optional<ReceivedFrame> Master::receive(Time until) {
   }
 }
 
-// The bus does not give back what this program sends.
+// The bus does not return this program's own frames.
 void Master::refuse_own_heartbeat(const ReceivedFrame& received) const {
   const auto heartbeat = canopen::heartbeat_from(received.frame);
   if (!heartbeat || heartbeat->node != own_node_) return;

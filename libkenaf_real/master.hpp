@@ -1,7 +1,7 @@
-// The master's place on the bus: waiting, with its heartbeat going on meanwhile, and SDO for the set-up.
+// The master on the bus: waiting, with its heartbeat continuing meanwhile, and SDO for the set-up.
 //
-// The heartbeat is sent by whoever waits here, and by no thread or timer of its own: a program that hangs must not look
-// alive.
+// The heartbeat is sent from the waits here, and not by a thread or timer of its own: a program that hangs must not
+// appear alive.
 #pragma once
 
 #include <functional>
@@ -16,27 +16,28 @@
 
 namespace kenaf::real {
 
-// A node and what it is to the robot: "flipper rear left (node 5)".
+// A node and its role on the robot: "flipper rear left (node 5)".
 struct NamedNode {
   canopen::NodeId node;
   std::string_view name;
 };
 std::string to_string(const NamedNode& node);
 
-// Sees every frame that arrives, also while something else is waited for.
+// Called with every frame that arrives, also during other waits.
 using FrameWatch = std::function<void(const canopen::ReceivedFrame&)>;
 
-// The bus works and the drives obey, but not this program alone: they are to be told to stop, and nothing else.
+// The bus works and the drives obey, but this program is not their only master: they must be told to stop, and nothing
+// else.
 class ControlLost : public hrt::Error {
  public:
   using hrt::Error::Error;
 };
-// A heartbeat of this master's node came that is not its own. CiA 301, 7.2.8.2.2: a node id has one producer.
+// A foreign heartbeat with this master's node id was received. CiA 301, 7.2.8.2.2: a node id has one producer.
 class OtherMaster : public ControlLost {
  public:
   using ControlLost::ControlLost;
 };
-// No heartbeat went out for so long that the drives have stopped by themselves.
+// No heartbeat was sent for so long that the drives have stopped by themselves.
 class HeldUp : public ControlLost {
  public:
   using ControlLost::ControlLost;
@@ -50,26 +51,26 @@ class Master {
   canopen::Time now() const { return bus_.now(); }
   void send(const canopen::Frame& frame) { bus_.send(frame); }
 
-  // From now on a heartbeat goes out whenever one is due in receive().
+  // From now on receive() sends a heartbeat whenever one is due.
   void start_heartbeat();
   void stop_heartbeat() { next_heartbeat_.reset(); }
-  // From now on the drives obey: a pause of `silence` in the heartbeat ends it, and is HeldUp from receive() and
-  // check_pause(), once, before anything else is sent. Drives whose watch began anew would take what comes next as if
-  // nothing had been.
+  // From now on the drives obey: a pause of `silence` in the heartbeat ends that, and receive() and check_pause() throw
+  // HeldUp, once, before anything else is sent. Drives whose watch had restarted would otherwise follow the next
+  // command as if nothing had happened.
   void watch_pauses(canopen::Time silence) { longest_pause_ = silence; }
   void check_pause();
 
   void watch(FrameWatch watch) { watch_ = std::move(watch); }
   // As Bus::receive. Throws ControlLost.
   std::optional<canopen::ReceivedFrame> receive(canopen::Time until);
-  // Waits until `done` holds, looking after each frame; false: until has come, or interrupted.
+  // Waits until `done` holds, checking after each frame; returns false at `until` or if interrupted.
   bool wait_until(canopen::Time until, const std::function<bool()>& done);
   bool was_interrupted() const { return interrupted_; }
 
-  // Throw hrt::Error(HRT_E_DEVICE) that names node, object, purpose, and why: aborted by the node, no answer.
+  // Throw hrt::Error(HRT_E_DEVICE) naming node, object, purpose and reason: aborted by the node, or no answer.
   std::int64_t read(const NamedNode& node, const canopen::MappedObject& object, std::string_view purpose);
   void write(const NamedNode& node, const canopen::SdoWrite& write);
-  // nullopt where the node has no such object.
+  // nullopt if the node has no such object.
   std::optional<std::int64_t> read_if_there(const NamedNode& node, const canopen::MappedObject& object);
   void write_if_there(const NamedNode& node, const canopen::SdoWrite& write);
 

@@ -14,7 +14,8 @@ using canbus::DriveUnits;
 using canbus::InclinometerAxis;
 
 constexpr double kStanding_mps = 0.002;
-// A longer gap in the posture is bridged by the tracks (hrt/estimate.cpp), from whatever heading the sensor then has.
+// A longer gap in the posture is bridged by the tracks (hrt/estimate.cpp), starting from the sensor's heading
+// afterwards.
 constexpr double kLongestCatchUp_s = 0.25;
 
 double angle_from(const InclinometerAxis& axis, const SlopeInput& slope, double unit_rad) {
@@ -22,7 +23,7 @@ double angle_from(const InclinometerAxis& axis, const SlopeInput& slope, double 
   return axis.direction * raw * unit_rad - axis.zero_rad;
 }
 
-// A difference of counters that wrap at 32 bits.
+// Difference of counters that wrap at 32 bits.
 std::int32_t difference(std::int32_t now, std::int32_t before) {
   return static_cast<std::int32_t>(static_cast<std::uint32_t>(now) - static_cast<std::uint32_t>(before));
 }
@@ -83,7 +84,7 @@ void MeasuredState::add_posture(const BusCycle& cycle, double elapsed_s, robot::
   const ProcessImage& image = cycle.image();
   state.posture_rad[0] = angle_from(bus_.inclinometer->roll, image.slope(), facts_.slope_unit_rad);
   state.posture_rad[1] = angle_from(bus_.inclinometer->pitch, image.slope(), facts_.slope_unit_rad);
-  // what a slow turn makes the gyro say is no bias
+  // the rate during a slow turn is not a bias
   bool standing = true;
   for (std::size_t t = 0; t < robot::kTrackCount; ++t) {
     standing = standing && std::abs(state.track_mps[t]) < kStanding_mps && cycle.sent()[t].target == 0;

@@ -1,5 +1,5 @@
-// From what the nodes measured to the robot's state: SI units, travel that counts on where the drives' counters wrap,
-// posture from inclinometer and gyro.
+// Converts the nodes' measurements to the robot's state: SI units, travel that continues when the drives' counters
+// wrap, posture from inclinometer and gyro.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ class MeasuredState {
  public:
   MeasuredState(const canbus::RobotBus& bus, const NodeFacts& facts, double period_s);
 
-  // For one beat. Without posture (kHasPosture) while inclinometer or gyro are silent or there is none of them;
-  // warning() says so. The heading catches up on a short silence with the rate that it finds after it.
+  // Updates for one beat. No posture (kHasPosture) while inclinometer or gyro are silent or absent; warning() reports
+  // it. After a short silence the heading catches up with the first rate measured after it.
   robot::State update(const BusCycle& cycle, const Beat& beat);
   const std::string& warning() const { return warning_; }
 
@@ -33,7 +33,7 @@ class MeasuredState {
   std::array<std::int32_t, robot::kTrackCount> last_counts_{};
   std::array<std::int64_t, robot::kTrackCount> travelled_counts_{};
   Heading heading_;
-  double unseen_s_ = 0;  // without inclinometer or gyro, and not in the heading yet
+  double unseen_s_ = 0;  // time without inclinometer or gyro that the heading does not cover yet
   std::string warning_;
 };
 

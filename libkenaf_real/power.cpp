@@ -21,19 +21,19 @@ namespace object = canopen::object;
 
 constexpr Time kPowerUp = std::chrono::seconds(3);  // relays and capacitors
 constexpr Time kModeChange = std::chrono::seconds(1);
-// A drive may say "attained" of the homing before for so long.
+// A drive may report "attained" of the previous homing for this long.
 constexpr Time kHomingBegins = std::chrono::milliseconds(100);
 constexpr Time kEmergencyFollows = std::chrono::milliseconds(20);  // its statusword
 constexpr Time kPowerDown = std::chrono::milliseconds(300);
 // Leaving quick stop straight to operation (CiA 402, transition 16) keeps the torque of flippers that carry the robot,
-// but not every drive can; after so many cycles it is left through "switch on disabled".
+// but not every drive supports it; after this many cycles quick stop is left through "switch on disabled".
 constexpr int kHoldThroughQuickStop = 20;
-// The order that leads back is an edge to "enable" (can/candrives/power_states.hpp). A drive that stopped by itself,
-// because its master died, still has "enable" as its last controlword: so it hears "quick stop" first, which leads
-// nowhere from there (CiA 402-2, 10), and again every so many cycles, for a frame may get lost.
+// Returning needs a rising edge to "enable" (can/candrives/power_states.hpp). A drive that stopped by itself because
+// its master died still has "enable" as its last controlword: so it first gets "quick stop", which has no effect in
+// that state (CiA 402-2, 10), and again every few cycles, since a frame may get lost.
 constexpr int kEdgeEachCycles = 4;
-constexpr double kHomeTolerance_rad = 0.05;  // between what a drive says after homing and what it was told
-constexpr double kStanding = 0.01;           // of the full speed
+constexpr double kHomeTolerance_rad = 0.05;  // between a drive's position after homing and the expected one
+constexpr double kStanding = 0.01;           // share of the full speed
 
 PowerState state_of(const BusCycle& cycle, std::size_t i) {
   return canopen::power_state_of(cycle.image().drive(i).statusword);
@@ -54,8 +54,8 @@ void wait_in_set_up(BusCycle& cycle) {
   if (!cycle.wait()) throw Error(HRT_E_CLOSED, "hrt_close() was called while the robot was being set up");
 }
 
-// Nothing is told to any drive until all have been heard: what leads one on depends on the state in which it is, and
-// what is right for one without power takes the torque of one that holds the robot.
+// No drive is commanded until all have been heard: the next step depends on a drive's state, and the step for an
+// unpowered one would remove the torque of one that holds the robot.
 void hear_all(BusCycle& cycle) {
   const Time until = cycle.master().now() + kPowerUp;
   for (std::size_t i = 0; i < kDriveCount;) {
@@ -69,7 +69,7 @@ void hear_all(BusCycle& cycle) {
   }
 }
 
-// Cycle by cycle, until `done` is true of all drives; `failure` says what it is where that takes too long.
+// Runs cycle by cycle until `done` is true for all drives; `failure` describes it if that takes too long.
 void run_until(BusCycle& cycle, Time patience, const std::function<DriveOrder(std::size_t)>& order,
                const std::function<bool(std::size_t)>& done, const std::function<std::string(std::size_t)>& failure) {
   const Time until = cycle.master().now() + patience;
@@ -138,16 +138,16 @@ void begin_homing(BusCycle& cycle, std::size_t i) {
   write_mode(cycle, i, DriveMode::homing);
 }
 
-// CiA 402 can be read in two ways: at home the position is the home offset, or minus the offset. A flipper whose angle
-// has the wrong sign would be driven to the wrong side of the robot.
+// CiA 402 is ambiguous: at home the position is the home offset, or minus the offset. A flipper with the wrong sign of
+// its angle would be driven to the wrong side of the robot.
 void check_home(const BusCycle& cycle, std::size_t i) {
   const canbus::DriveOnBus& drive = cycle.bus().drives[i];
   const double home_rad = drive.homing->home_rad;
   const double measured_rad = position_from_drive(drive.units, cycle.image().drive(i).position);
   const double mirrored_rad = position_from_drive(drive.units, -position_to_drive(drive.units, home_rad));
   const bool stays = drive.homing->method == 35 || drive.homing->method == 37;
-  // one that moves stops behind its switch, or goes on to wherever its maker thinks best: all that shows is the wrong
-  // sign
+  // a drive that moves stops behind its switch, or continues to a position its manufacturer chose: only a wrong sign
+  // can be detected
   const double speed = drive.homing->speed_radps, stopping_rad = speed * speed / drive.homing->acceleration_radps2;
   const double margin_rad = stays ? kHomeTolerance_rad : kHomeTolerance_rad + stopping_rad;
   if (std::abs(measured_rad - home_rad) <= margin_rad) return;
@@ -190,7 +190,7 @@ void home(BusCycle& cycle) {
         return fmt::format("{} was not home within {} s (statusword {:#06x})", to_string(drive_node(cycle.bus(), i)),
                            patience_s, status(i));
       });
-  // In profile position mode bit 4 is a new set-point: it is down, and seen to be, before the mode is.
+  // In profile position mode bit 4 is a new set-point: it must be low, and seen as low, before the mode changes.
   int cycles_down = 0;
   run_until(
       cycle, kModeChange,
@@ -220,7 +220,8 @@ std::string not_stopped(const BusCycle& cycle, std::size_t i,
   return fmt::format("{} stays in the state \"{}\"", name, describe(state));
 }
 
-// One that does not take it stands all the same; what it does when the heartbeat ends is what it was told at the start.
+// A drive that rejects this stands all the same; its reaction to the end of the heartbeat is then as configured at the
+// start.
 void end_watch(BusCycle& cycle, std::size_t i) try {
   const canopen::MappedObject& watch = object::consumer_heartbeat_1;
   cycle.master().write(drive_node(cycle.bus(), i),
@@ -237,7 +238,7 @@ void power_up(BusCycle& cycle) try {
   for (std::size_t i = 0; i < kDriveCount; ++i) write_mode(cycle, i, cycle.bus().drives[i].mode);
   home(cycle);
 } catch (const Error&) {
-  try_quick_stop(cycle);  // those that are enabled, and may be moving home, do not wait until they miss the heartbeat
+  try_quick_stop(cycle);  // enabled drives, possibly moving home, must not wait until they miss the heartbeat
   throw;
 }
 
@@ -271,7 +272,7 @@ std::string power_down(BusCycle& cycle) {
   };
   std::string running;
   do {
-    // in each cycle anew: a frame may get lost on its way to one drive
+    // repeated in each cycle: a frame may not reach every drive
     quick_stop(cycle);
     cycle.wait();
     running.clear();

@@ -1,4 +1,4 @@
-// The newest of everything that the nodes send in the control loop, in the drives' own units, and when it came.
+// The newest values that the nodes send in the control loop, in the drives' own units, and their times of arrival.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ class ProcessImage {
  public:
   explicit ProcessImage(const canbus::RobotBus& bus);
 
-  // What is no frame of this robot, or has not its PDO's length, changes nothing.
+  // Frames that are not this robot's, or lack their PDO's length, change nothing.
   void on_frame(const canopen::ReceivedFrame& received);
   void watch_restarts();
 
@@ -45,7 +45,7 @@ class ProcessImage {
   const GyroInput& gyro() const { return gyro_; }
   std::optional<double> battery_v() const { return battery_v_; }
   std::optional<canopen::Time> sync_at() const { return sync_at_; }
-  // Everything that comes with each SYNC came since the newest one.
+  // True if everything due with each SYNC has come since the newest one.
   bool is_complete() const;
 
  private:

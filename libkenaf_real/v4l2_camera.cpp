@@ -25,10 +25,10 @@ namespace {
 using Encoding = hrt::CameraPicture::Encoding;
 using SteadyTime = std::chrono::steady_clock::time_point;
 
-// As many as the driver fills while the thread that empties them is kept waiting.
+// As many as the driver fills while the reading thread is held up.
 constexpr std::uint32_t kBufferCount = 4;
-// A webcam may take a second for its first picture; after that it is silent when this, or ten pictures' time, has
-// passed.
+// A webcam may take a second for its first picture; after that it counts as silent when this, or the time of ten
+// pictures, has passed.
 constexpr double kSilence_s = 3;
 constexpr double kSilentPictures = 10;
 
@@ -79,13 +79,13 @@ V4l2Camera::V4l2Camera(CameraOnRobot camera)
 
 V4l2Camera::~V4l2Camera() {
   for (const Buffer& buffer : buffers_) munmap(buffer.memory, buffer.bytes);
-  if (device_ >= 0) ::close(device_);  // which ends the stream
+  if (device_ >= 0) ::close(device_);  // which also ends the stream
   ::close(interrupt_);
 }
 
 void V4l2Camera::interrupt() {
   const std::uint64_t one = 1;
-  // An eventfd takes it unless its count overflows, and then it is readable already.
+  // The write fails only if the eventfd's count would overflow, and then it is readable already.
   [[maybe_unused]] const ssize_t written = write(interrupt_, &one, sizeof one);
 }
 
@@ -128,11 +128,14 @@ void V4l2Camera::check_that_it_is_a_camera() const {
 }
 
 void V4l2Camera::set_format() {
+  // All formats that the device offers, for the choice and for the error message.
   std::vector<std::uint32_t> offered;
   auto description = of_capture<v4l2_fmtdesc>();
   for (; description.index < 256 && control(VIDIOC_ENUM_FMT, &description, "names no formats", EINVAL);
        ++description.index)
     offered.push_back(description.pixelformat);
+
+  // The first of kFormats that the device sets exactly as asked: S_FMT may answer with another format or size.
   std::string sizes;
   for (const auto& [pixel_format, encoding] : kFormats) {
     if (std::ranges::find(offered, pixel_format) == offered.end()) continue;
@@ -151,6 +154,8 @@ void V4l2Camera::set_format() {
     }
     sizes += fmt::format("{}{} {}", sizes.empty() ? "" : "; ", format_name(pixel_format), sizes_of(pixel_format));
   }
+
+  // No match: report the sizes of the supported formats or, without such formats, the device's formats.
   if (sizes.empty()) {
     std::string names;
     for (const std::uint32_t format : offered) names += (names.empty() ? "" : ", ") + format_name(format);
@@ -179,7 +184,7 @@ void V4l2Camera::set_rate() {
   auto parameters = of_capture<v4l2_streamparm>();
   v4l2_fract& period = parameters.parm.capture.timeperframe;
   period = {.numerator = 1000, .denominator = static_cast<std::uint32_t>(std::lround(1000 * camera_.rate_hz))};
-  // Devices of a fixed rate do not know the question.
+  // Devices with a fixed rate do not support the request.
   const bool known = control(VIDIOC_S_PARM, &parameters, "refuses a rate", ENOTTY);
   period_ = std::chrono::duration<double>(1 / camera_.rate_hz);
   if (known && period.numerator > 0 && period.denominator > 0)
@@ -212,7 +217,7 @@ void V4l2Camera::start() {
   int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
   (void)control(VIDIOC_STREAMON, &type, "does not start");
   streams_ = true;
-  first_number_ = newest_number_ + 1;  // its own count begins at 0 again
+  first_number_ = newest_number_ + 1;  // the driver's count restarts at 0
 }
 
 void V4l2Camera::pause() {
@@ -227,7 +232,7 @@ std::optional<hrt::CameraPicture> V4l2Camera::next() {
   const SteadyTime until =
       std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::milliseconds>(silence);
   for (;;) {
-    // Of several that are filled the newest: the others are older for nothing.
+    // Takes the newest of several filled buffers: the others are only older.
     std::optional<hrt::CameraPicture> newest;
     for (bool was_filled = true; was_filled;) {
       if (std::optional<hrt::CameraPicture> picture = take(was_filled)) newest = std::move(picture);
@@ -238,7 +243,7 @@ std::optional<hrt::CameraPicture> V4l2Camera::next() {
     std::array<pollfd, 2> watched{{{device_, POLLIN, 0}, {interrupt_, POLLIN, 0}}};
     poll(watched.data(), watched.size(), static_cast<int>(left));
     if (watched[1].revents != 0) return std::nullopt;
-    // A device that is gone is always ready, with an error; taking a buffer says which.
+    // A device that is gone is always ready, with an error; dequeuing a buffer tells which.
     if ((watched[0].revents & (POLLERR | POLLHUP)) != 0 && (watched[0].revents & POLLIN) == 0) {
       bool was_filled = false;
       if (std::optional<hrt::CameraPicture> picture = take(was_filled)) return picture;
@@ -260,7 +265,7 @@ std::optional<hrt::CameraPicture> V4l2Camera::take(bool& was_filled) {
                                             std::min<std::size_t>(buffer.bytesused, filled.bytes));
   std::optional<std::vector<std::uint8_t>> copy;
   if (!is_damaged) copy = bytes_of_buffer(encoding_, camera_.width, camera_.height, row_bytes_, bytes);
-  v4l2_buffer empty = buffer;  // what is known of the picture is lost in the one that is given back
+  v4l2_buffer empty = buffer;  // the returned buffer loses the information about its picture
   (void)control(VIDIOC_QBUF, &empty, "takes no buffer back");
   if (!copy) return std::nullopt;
   picture.encoding = encoding_;
@@ -275,7 +280,7 @@ std::optional<hrt::CameraPicture> V4l2Camera::take(bool& was_filled) {
     const auto stamp =
         std::chrono::seconds(buffer.timestamp.tv_sec) + std::chrono::microseconds(buffer.timestamp.tv_usec);
     SteadyTime exposed_at{std::chrono::duration_cast<SteadyTime::duration>(stamp)};
-    // Where it marks the end of a picture, exposure and reading out were before: up to a picture's time.
+    // A stamp at the end of a picture comes after exposure and readout: up to one picture period late.
     if ((buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) != V4L2_BUF_FLAG_TSTAMP_SRC_SOE)
       exposed_at -= std::chrono::duration_cast<SteadyTime::duration>(period_);
     picture.exposed_at = exposed_at;

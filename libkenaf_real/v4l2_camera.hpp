@@ -1,8 +1,8 @@
 // A video device of Linux (V4L2) that streams into memory it shares with the program: webcams, capture cards, vivid.
 // Source: the kernel's Documentation/userspace-api/media/v4l.
 //
-// It gives Motion JPEG, which is handed on as it is, or YUYV; Motion JPEG where it can, because that is what USB has
-// room for at full rate. The resolution is the description's, exactly; the rate the nearest that the device has.
+// Delivers Motion JPEG, passed on unchanged, or YUYV; Motion JPEG if available, because USB has the bandwidth for it at
+// full rate. The resolution is exactly the description's, the rate the nearest that the device supports.
 #pragma once
 
 #include <chrono>
@@ -17,8 +17,8 @@
 
 namespace kenaf::real {
 
-// What of a filled buffer a picture's bytes are. `row_bytes`: from row to row in the buffer, YUYV only. nullopt: it is
-// not whole, as it happens with webcams at their start and where USB loses packets.
+// Extracts a picture's bytes from a filled buffer. `row_bytes`: row stride in the buffer, YUYV only. nullopt if it is
+// incomplete, as happens when webcams start and when USB loses packets.
 std::optional<std::vector<std::uint8_t>> bytes_of_buffer(hrt::CameraPicture::Encoding encoding, int width, int height,
                                                          std::size_t row_bytes, std::span<const std::uint8_t> buffer);
 
@@ -40,7 +40,7 @@ class V4l2Camera final : public hrt::Camera {
     std::size_t bytes;
   };
 
-  // ioctl that is not interrupted; throws Error in words but where errno is `expected`, then it is false.
+  // ioctl that restarts after signals; returns false if errno is `expected`, and throws Error on any other failure.
   bool control(unsigned long request, void* argument, const char* what, int expected = 0) const;
   [[noreturn]] void fail(const std::string& why) const;
   void check_that_it_is_a_camera() const;
@@ -49,7 +49,7 @@ class V4l2Camera final : public hrt::Camera {
   void set_rate();
   void map_buffers();
   void start();
-  // The oldest filled buffer as a picture; nullopt: there is none (`was_filled` false), or it was damaged.
+  // Returns the oldest filled buffer as a picture; nullopt if there was none (`was_filled` false) or it was damaged.
   std::optional<hrt::CameraPicture> take(bool& was_filled);
 
   const CameraOnRobot camera_;
@@ -59,7 +59,7 @@ class V4l2Camera final : public hrt::Camera {
   std::chrono::duration<double> period_{};
   std::vector<Buffer> buffers_;
   bool streams_ = false;
-  std::uint64_t first_number_ = 1;  // of the stream's picture 0, so that numbers grow over pauses
+  std::uint64_t first_number_ = 1;  // number of the stream's picture 0, so that numbers grow over pauses
   std::uint64_t newest_number_ = 0;
 };
 

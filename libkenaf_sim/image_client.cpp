@@ -19,17 +19,17 @@
 namespace kenaf::sim {
 namespace {
 
-// A Kenaf server answers 'J' within a second, if only with the old picture again.
+// A Kenaf server answers 'J' within a second, if only with the previous picture.
 constexpr std::chrono::milliseconds kOldServerAfter{1000};
-// A Kenaf server whose world stands still before the first picture says so after 10 s. Nobody waits for longer than he
-// wants: it is the calls that have time limits.
+// A Kenaf server whose world has stopped before the first picture reports that after 10 s. This patience keeps no
+// caller waiting: the calls have their own time limits.
 constexpr double kPatienceWithSilence = 5;
-// A picture is requested when this part of the time between the last two has passed: it is not there before, so nothing
-// is lost, and the age, which counts from the request, is hardly too large. Where the world's speed changes, one
-// picture is late by this at most.
+// A picture is requested once this share of the interval between the last two has passed. It does not exist earlier, so
+// nothing is lost, and the age, which counts from the request, is hardly too large. If the world's speed changes, at
+// most one picture is late by this.
 constexpr double kRequestAfter = 0.8;
 constexpr std::chrono::milliseconds kLongestPause{100};
-// Words of a server that are passed on.
+// Limit on the server text that is passed on.
 constexpr std::size_t kMaxRefusalBytes = 400;
 
 std::string printable(std::span<const std::uint8_t> words) {
@@ -58,7 +58,7 @@ ImageClient::~ImageClient() {
 
 void ImageClient::interrupt() {
   const std::uint64_t one = 1;
-  // An eventfd takes it unless its count overflows, and then it is readable already.
+  // The write fails only if the eventfd's count would overflow, and then it is readable already.
   [[maybe_unused]] const ssize_t written = write(interrupt_, &one, sizeof one);
 }
 
@@ -95,8 +95,8 @@ void ImageClient::open() {
     if (wrong == 0) {
       const int on = 1;
       setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-      // Nothing but requests for pictures goes to a server that is not asked for a certain one: an old one knows
-      // nothing else.
+      // An old server understands requests for pictures only, so nothing else is sent unless a certain camera is
+      // requested.
       if (!camera_.empty()) send_all(protocol::image::select_request(camera_));
       return;
     }
@@ -115,7 +115,7 @@ void ImageClient::lose(const std::string& why) const {
 }
 
 void ImageClient::send_all(std::string_view bytes) {
-  // Some bytes into an empty buffer of the kernel's: that they do not fit means that the server has not read for long.
+  // A few bytes into an empty kernel buffer: if they do not fit, the server has not read for a long time.
   const ssize_t sent = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
   if (sent < 0) lose(fmt::format("is gone: {}", std::strerror(errno)));
   if (static_cast<std::size_t>(sent) != bytes.size()) lose("does not take requests");
@@ -150,7 +150,7 @@ bool ImageClient::read_answer() {
       case Ready::interrupted:
         return false;
       case Ready::yes:
-        // A large picture over a slow network takes its time; silence does not.
+        // A large picture over a slow network takes long; silence must not.
         if (receive_some()) until = std::max(until, Clock::now() + patience);
         break;
       case Ready::time_is_up:
@@ -165,7 +165,7 @@ bool ImageClient::read_answer() {
 }
 
 std::optional<hrt::CameraPicture> ImageClient::next() {
-  if (socket_ < 0) return std::nullopt;  // interrupted while it was being opened
+  if (socket_ < 0) return std::nullopt;  // interrupted while connecting
   if (wait_for(0, request_at_) == Ready::interrupted) return std::nullopt;
   request();
   if (!read_answer()) return std::nullopt;
@@ -210,7 +210,7 @@ hrt::CameraPicture ImageClient::picture_of_answer() {
   picture.number = note->number;
   picture.robot_time_s = note->robot_time_s;
   picture.camera = note->camera;
-  // It was sent after it was requested: counted from then, the age is never too small.
+  // The picture was sent after it was requested: counted from the request, the age is never too small.
   const std::chrono::duration<double, std::milli> age(note->age_ms);
   constexpr std::chrono::hours kOldest{24 * 365};
   picture.exposed_at =

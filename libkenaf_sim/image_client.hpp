@@ -1,10 +1,9 @@
 // A camera of the simulated robot: TCP to the world server's image port and back. formats/protocol/image_message.hpp
 // has the wire format.
 //
-// One request is under way at a time, so a picture is asked for when there is a use for it, and none waits in a buffer
-// and grows old. USARSim image servers that know neither 'J' nor frame notes are understood: where a first 'J' stays
-// unanswered for a second, 'OK' is asked with from then on; pictures are counted here then, and their age and robot
-// time are not known.
+// One request is under way at a time, so a picture is requested only when it is needed, and none ages in a buffer.
+// USARSim image servers that know neither 'J' nor frame notes are supported: if the first 'J' stays unanswered for a
+// second, 'OK' is sent from then on; pictures are then counted here, and their age and robot time are unknown.
 #pragma once
 
 #include <array>
@@ -22,8 +21,7 @@ namespace kenaf::sim {
 
 class ImageClient final : public hrt::Camera {
  public:
-  // `camera`: "ROBOT/CAMERA", "CAMERA" of the robot that was placed last, or "": the server's own choice, its robot's
-  // first one.
+  // `camera`: "ROBOT/CAMERA", "CAMERA" of the robot placed last, or "": the server's choice, its robot's first camera.
   ImageClient(const hrt_config& config, const std::string& camera);
   ~ImageClient() override;
   ImageClient(const ImageClient&) = delete;
@@ -41,9 +39,9 @@ class ImageClient final : public hrt::Camera {
   Ready wait_for(short events, Clock::time_point until) const;
   void request();
   void send_all(std::string_view bytes);
-  // Waits for an answer and reads it. False: interrupted.
+  // Waits for an answer and reads it. Returns false if interrupted.
   bool read_answer();
-  // False: the connection has no more for now.
+  // Returns false if the connection has no more data for now.
   bool receive_some();
   [[noreturn]] void lose(const std::string& why) const;
   hrt::CameraPicture picture_of_answer();
@@ -52,15 +50,15 @@ class ImageClient final : public hrt::Camera {
   std::chrono::duration<double> patience_,
       silence_;  // with a connection that is being made; with one that says nothing
   int socket_ = -1, interrupt_ = -1;
-  bool is_old_server_ = false;                       // it knows 'OK' alone
+  bool is_old_server_ = false;                       // it understands only 'OK'
   bool is_kenaf_server_ = false;                     // it has sent a frame note
-  Clock::time_point requested_at_{}, request_at_{};  // the last one; the next one, not before
+  Clock::time_point requested_at_{}, request_at_{};  // the last one; the next one, not earlier
   Clock::time_point newest_at_ = Clock::now();
   std::uint64_t newest_number_ = 0;
-  std::uint64_t counted_ = 0;  // pictures without a frame note
+  std::uint64_t counted_ = 0;  // number of pictures without a frame note
   protocol::image::AnswerReader reader_;
   std::array<std::uint8_t, 65536> buffer_{};
-  std::span<const std::uint8_t> unread_{};  // of buffer_
+  std::span<const std::uint8_t> unread_{};  // part of buffer_
 };
 
 }  // namespace kenaf::sim

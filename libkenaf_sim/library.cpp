@@ -1,4 +1,4 @@
-// What makes this library libkenaf_sim.
+// The parts that are specific to libkenaf_sim.
 #include "hrt/camera.hpp"
 #include "hrt/transport.hpp"
 #include "libkenaf_sim/image_client.hpp"

@@ -21,19 +21,20 @@ using hrt::Error;
 using namespace std::chrono_literals;
 
 constexpr auto kHelloEvery = 100ms;
-// A commander that was killed keeps the robot until the relay has missed it for a second.
+// A killed commander keeps the robot until the relay has missed it for a second.
 constexpr auto kBusyPatience = 1500ms;
-// Commands are sent again after 4 ms, then 8, 16, 32, 32 ...: quick to mend a loss, quiet where the world is slow.
+// Commands are resent after 4 ms, then 8, 16, 32, 32 ...: quick recovery from loss, little traffic while the world is
+// slow.
 constexpr auto kFirstResend = 4ms;
 constexpr auto kSlowestResend = 32ms;
-// A first State that has not come so long after Welcome was lost.
+// A first State that has not arrived this long after Welcome was lost.
 constexpr auto kFirstStateResend = 20ms;
 constexpr auto kPingEvery = 1000ms;
-// The relay takes a commander that says nothing for a second for gone.
+// The relay considers a commander gone after a second of silence.
 constexpr auto kAliveEvery = 100ms;
-// This thread looks at its socket every 32 ms. Where it did not for longer, it was the process that slept.
+// This thread checks its socket every 32 ms. A longer pause means that the process itself slept.
 constexpr auto kLongestLook = 100ms;
-// A world server that answers pings but counts no frame for this many link time-outs will not count any more.
+// A world server that answers pings but counts no frame for this many link time-outs has stopped for good.
 constexpr double kFrozenLinkTimeouts = 20;
 constexpr int kByeCount = 3;
 
@@ -73,7 +74,7 @@ hrt::Connection RelayTransport::open(const hrt_config& config) {
                                             .command_timeout_s = config.command_timeout_s,
                                             .lockstep = config.lockstep != 0,
                                             .reset_robot = config.reset_robot != 0});
-  // Until the first State is here, this stands in for its answer: the relay answers a Command with the newest State.
+  // Until the first State arrives, this stands in for its answer: the relay answers a Command with the newest State.
   command_ = {};
   command_.session = session_;
   command_.sequence = 1;
@@ -81,13 +82,13 @@ hrt::Connection RelayTransport::open(const hrt_config& config) {
   resend_after_ = kFirstStateResend;
   resend_at_ = now + resend_after_;
   life_at_ = looked_at_ = ping_at_ = now;
-  state_at_ = start;  // connect_timeout_s is for all until the first State
+  state_at_ = start;  // connect_timeout_s covers everything until the first State
   return connection;
 }
 
 void RelayTransport::connect_socket() {
   const Addresses found = look_up("relay", relay_, SOCK_DGRAM);
-  // kenaf-relayd listens on IPv4 alone, and "localhost" may be ::1 first
+  // kenaf-relayd listens on IPv4 only, and "localhost" may resolve to ::1 first
   const addrinfo* address = found.get();
   while (address != nullptr && address->ai_family != AF_INET) address = address->ai_next;
   if (address == nullptr) address = found.get();
@@ -118,7 +119,7 @@ hrt::Connection RelayTransport::greet(const protocol::relay::Hello& hello) {
       if (const auto* answer = std::get_if<protocol::relay::Refused>(&*datagram);
           answer && answer->session == session_) {
         refused = *answer;
-        // These do not change by asking again.
+        // Asking again does not change these.
         if (answer->reason == protocol::relay::RefusedReason::bad_request) {
           throw Error(HRT_E_REFUSED, fmt::format("the relay at {} refused: {}", relay_, words(*answer)));
         }
@@ -151,6 +152,7 @@ std::optional<robot::State> RelayTransport::wait_state() {
 
 std::optional<robot::State> RelayTransport::take(const protocol::relay::Datagram& datagram) {
   const Clock::time_point now = Clock::now();
+  // Pong: only the answer to the newest ping gives the round trip.
   if (const auto* pong = std::get_if<protocol::relay::Pong>(&datagram)) {
     if (pong->session == session_ && pong->id == ping_id_) {
       round_trip_s_ = std::chrono::duration<double>(now - pinged_at_).count();
@@ -158,11 +160,15 @@ std::optional<robot::State> RelayTransport::take(const protocol::relay::Datagram
     }
     return std::nullopt;
   }
+
+  // Refused: the relay ended this session.
   if (const auto* refused = std::get_if<protocol::relay::Refused>(&datagram)) {
     if (refused->session != session_) return std::nullopt;
     throw Error(HRT_E_LINK, fmt::format("the relay at {} ended the session: {}; hrt_close() and hrt_kenaf_init() again",
                                         relay_, words(*refused)));
   }
+
+  // State: one of another session is late; if the relay has lost its world server, no newer one will come.
   const auto* state = std::get_if<protocol::relay::State>(&datagram);
   if (state == nullptr || state->session != session_) return std::nullopt;
   if (state->world_server_lost) {
@@ -170,8 +176,12 @@ std::optional<robot::State> RelayTransport::take(const protocol::relay::Datagram
                                         "hrt_kenaf_init() again",
                                         relay_));
   }
+
+  // A paused world sends no new frames and must not count as lost.
   is_paused_ = state->world_paused;
   if (is_paused_) state_at_ = life_at_ = now;
+
+  // Only a newer frame begins a cycle: a repeated State, or one that was overtaken, is dropped.
   if (state->robot.frame <= frame_) return std::nullopt;
   frame_ = state->robot.frame;
   state_at_ = life_at_ = now;
@@ -183,7 +193,7 @@ void RelayTransport::check_life(Clock::time_point now) {
   if (port_closed_) {
     throw Error(HRT_E_LINK, fmt::format("the relay at {} is gone: nobody listens there any more", relay_));
   }
-  // What this process has slept through (a busy or paused machine, a debugger) is not the link's silence.
+  // Time during which this process slept (busy or suspended machine, debugger) is not silence of the link.
   const Clock::duration slept = std::max<Clock::duration>(now - looked_at_ - kLongestLook, Clock::duration::zero());
   state_at_ += slept;
   life_at_ += slept;
@@ -216,17 +226,17 @@ void RelayTransport::send(const hrt::DriveCommand& command) {
               .flipper_mask = command.flipper_mask,
               .flipper_rad = command.flipper_rad};
   const Clock::time_point now = Clock::now();
-  // Before the command: where states come so fast that nobody ever waits, this is where the round trip is measured, and
-  // the answer is read before the state that ends the wait, not after the program's next thought.
+  // Before the command: if states come so fast that nobody ever waits, this measures the round trip, and the answer is
+  // read before the state that ends the wait, not after the program's next computation.
   if (now >= ping_at_) ping(now);
   transmit(command_);
   resend_after_ = kFirstResend;
   resend_at_ = now + resend_after_;
-  // The time the program took is not the link's.
+  // Time spent by the program does not count against the link.
   state_at_ = life_at_ = looked_at_ = now;
 }
 
-// The command before is in force: the relay has it, and hears it as a sign of life.
+// The previous command stays in force: the relay has it and takes the repetition as a sign of life.
 void RelayTransport::keep_alive() {
   const Clock::time_point now = Clock::now();
   if (now < alive_at_) return;
@@ -240,7 +250,7 @@ void RelayTransport::send_what_is_due(Clock::time_point now) {
     resend_after_ = std::min<Clock::duration>(2 * resend_after_, kSlowestResend);
     resend_at_ = now + resend_after_;
   }
-  // A state that is overdue: does the world server still live? It answers a ping also where its time stands still.
+  // A state is overdue: check whether the world server still lives. It answers pings even while its time stands still.
   const Clock::duration overdue = seconds<Clock::duration>(link_timeout_s_ / 4);
   const bool is_overdue = now - state_at_ >= overdue;
   if (now >= ping_at_ || (is_overdue && now - pinged_at_ >= overdue)) ping(now);
@@ -255,7 +265,7 @@ void RelayTransport::ping(Clock::time_point now) {
 
 void RelayTransport::close() {
   if (socket_ < 0) return;
-  // Not answered, so one is not enough where packets get lost.
+  // There is no acknowledgement, so one is not enough if packets get lost.
   for (int i = 0; session_ != 0 && i < kByeCount; ++i) transmit(protocol::relay::Bye{.session = session_});
   ::close(socket_);
   socket_ = -1;
@@ -264,15 +274,15 @@ void RelayTransport::close() {
 
 void RelayTransport::interrupt() {
   const std::uint64_t one = 1;
-  // An eventfd takes it unless its count overflows, and then it is readable already.
+  // The write fails only if the eventfd's count would overflow, and then it is readable already.
   [[maybe_unused]] const ssize_t written = write(interrupt_, &one, sizeof one);
 }
 
 void RelayTransport::transmit(const protocol::relay::Datagram& datagram) {
   std::array<std::byte, protocol::relay::kMaxDatagramBytes> bytes;
   const std::size_t size = protocol::relay::encode(datagram, bytes);
-  // A datagram that cannot be sent is as good as lost: whatever matters is sent again. A closed port is reported to
-  // the next call on the socket, which may be this one.
+  // A datagram that cannot be sent counts as lost: everything important is sent again. A closed port is reported by the
+  // next call on the socket, which may be this one.
   if (::send(socket_, bytes.data(), size, MSG_NOSIGNAL) < 0 && errno == ECONNREFUSED) port_closed_ = true;
 }
 

@@ -1,7 +1,7 @@
 // The simulated robot: UDP datagrams to kenaf-relayd and back. docs/relay-protocol.md has the protocol.
 //
-// A Command is sent again until the State of the next frame arrives, so that loss costs milliseconds and nothing else;
-// a State that is not newer than all before is a duplicate or came late, and says nothing new.
+// A Command is resent until the State of the next frame arrives, so that loss costs only milliseconds; a State that is
+// not newer than all before is a duplicate or late, and is ignored.
 #pragma once
 
 #include <array>
@@ -37,21 +37,21 @@ class RelayTransport final : public hrt::Transport {
 
   void connect_socket();
   hrt::Connection greet(const protocol::relay::Hello& hello);
-  // The next well-formed datagram that waits in the socket.
+  // Returns the next well-formed datagram waiting in the socket.
   std::optional<protocol::relay::Datagram> receive();
-  // A state that begins a new cycle. Throws where the datagram ends the session.
+  // Returns a state that begins a new cycle. Throws if the datagram ends the session.
   std::optional<robot::State> take(const protocol::relay::Datagram& datagram);
   void transmit(const protocol::relay::Datagram& datagram);
   void send_what_is_due(Clock::time_point now);
   void ping(Clock::time_point now);
-  void check_life(Clock::time_point now);  // the first State has connect_timeout_s from open() on
-  // Sleeps until a datagram, an interrupt or `until`. False: interrupted.
+  void check_life(Clock::time_point now);  // the first State has connect_timeout_s, counted from open()
+  // Sleeps until a datagram, an interrupt or `until`. Returns false if interrupted.
   bool wait_readable(Clock::time_point until);
 
   std::string relay_;
   double link_timeout_s_ = 0, connect_timeout_s_ = 0;
   int socket_ = -1, interrupt_ = -1;
-  bool port_closed_ = false;  // the last answer was that nobody listens there
+  bool port_closed_ = false;  // the last send or receive reported that nobody listens there
   std::array<std::byte, protocol::relay::kMaxDatagramBytes + 1> buffer_{};
 
   std::uint64_t session_ = 0;           // 0: none

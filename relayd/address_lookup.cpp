@@ -15,7 +15,7 @@ namespace kenaf::relayd {
 
 namespace {
 
-// 0, or what getaddrinfo() says.
+// Returns 0, or the error code of getaddrinfo().
 int get_endpoints(const HostPort& server, int flags, std::vector<Endpoint>& out) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;

@@ -1,5 +1,4 @@
-// Keeps the relay from being used against others: whoever forges the sender of a small datagram would have a large
-// answer sent to it.
+// Prevents reflection attacks through the relay: a forged sender of a small datagram would be sent a large answer.
 //
 // Thread safety: a value.
 #pragma once
@@ -14,9 +13,9 @@ class AnswerLimiter {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  static constexpr double kAnswersPerSecond = 100;  // and so many at once, after a quiet second
+  static constexpr double kAnswersPerSecond = 100;  // also the burst allowed after a quiet second
 
-  // Whether one more answer may be sent.
+  // Returns whether one more answer may be sent.
   bool allow(TimePoint now) {
     const std::chrono::duration<double> passed = last_ ? now - *last_ : std::chrono::seconds(0);
     last_ = now;

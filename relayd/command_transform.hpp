@@ -1,5 +1,5 @@
-// What the relay writes to the world server: commands in USARSim's units and frames, and session settings.
-// Each function appends whole lines to `out`, which keeps its capacity. Thread safety: pure functions.
+// Writes the relay's messages to the world server: commands in USARSim's units and frames, and session settings. Each
+// function appends whole lines to `out`, which keeps its capacity. Thread safety: pure functions.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,8 @@
 
 namespace kenaf::relayd {
 
-// What the world server is asked for. The defaults are for a relay without a commander: a sign of life now and then.
+// Settings requested from the world server. The defaults are for a relay without a commander: an occasional sign of
+// life.
 struct WorldSession {
   double period_s = 1;
   bool lockstep = false;
@@ -18,7 +19,7 @@ struct WorldSession {
 };
 
 // MULTIDRIVE with the flippers named by the mask, then DRIVE, which ends the answer. Surface speeds become spins of a
-// wheel of `wheel_radius_m`, flipper angles USARSim's joint angles. Without `world_frame` it takes effect at once.
+// wheel of `wheel_radius_m`, flipper angles USARSim joint angles. Without `world_frame` it takes effect at once.
 void write_command(std::string& out, const protocol::relay::Command& command, double wheel_radius_m,
                    std::optional<std::int64_t> world_frame);
 
@@ -28,9 +29,9 @@ void write_world_session(std::string& out, const WorldSession& session);
 
 void write_ping(std::string& out, std::int64_t id);
 
-// In words what no Kenaf can do, or nullptr: more than 10 m/s, more than 100 rad.
+// Returns which value is out of range for any Kenaf, or nullptr: more than 10 m/s, more than 100 rad.
 const char* out_of_range(const protocol::relay::Command& command);
-// The same of a Hello, by the ranges of docs/relay-protocol.md.
+// The same for a Hello, by the ranges of docs/relay-protocol.md.
 const char* out_of_range(const protocol::relay::Hello& hello);
 
 }  // namespace kenaf::relayd

@@ -35,11 +35,15 @@ bool CommanderSession::is_commander(std::uint64_t session, const Address& from) 
 }
 
 void CommanderSession::take(const protocol::relay::Hello& hello, const Address& from, TimePoint now) {
+  // A bad Hello is refused, but no faster than the limiter allows: the sender may be forged.
   if (const char* wrong = out_of_range(hello)) {
     if (answers_to_strangers_.allow(now))
       refuse(hello.session, from, protocol::relay::RefusedReason::bad_request, wrong);
     return;
   }
+
+  // While a session is open, its commander's Hello is a repetition, answered again once the world is ready; any other
+  // Hello is refused.
   if (is_open()) {
     if (hello.session != hello_.session || from != commander_) {
       if (!answers_to_strangers_.allow(now)) return;
@@ -53,6 +57,8 @@ void CommanderSession::take(const protocol::relay::Hello& hello, const Address& 
     send_state(now);
     return;
   }
+
+  // A Hello of a session that has just ended is a late copy and must not reopen it.
   const auto is_late_copy = [&](const Ended& ended) {
     return ended.session == hello.session && now - ended.when < kForgetEnded;
   };
@@ -61,6 +67,8 @@ void CommanderSession::take(const protocol::relay::Hello& hello, const Address& 
       refuse(hello.session, from, protocol::relay::RefusedReason::unknown_session, "this session is over");
     return;
   }
+
+  // A new session: all counts start here. The world is asked; on_world_ready() continues.
   phase_ = Phase::opening;
   hello_ = hello;
   commander_ = from;
@@ -89,8 +97,8 @@ void CommanderSession::on_frame(const WorldFrame& frame, TimePoint now) {
     late_before_ = frame.state.late_commands;
     commanded_s_ = frame.state.robot_time_s;
   }
-  // The first frame is 1; should the world count anew, States go on counting. A number that comes again is no new
-  // frame: the world tells that it was paused or goes on.
+  // The first frame is 1; if the world restarts its count, States continue theirs. A repeated number is no new frame:
+  // the world reports that it was paused or resumed.
   if (first || frame.number + frame_offset_ < state_.robot.frame) frame_offset_ = state_.robot.frame + 1 - frame.number;
 
   state_.robot = frame.state;
@@ -99,7 +107,7 @@ void CommanderSession::on_frame(const WorldFrame& frame, TimePoint now) {
   world_counts_late_ = frame.numbered;
   state_.robot.late_commands = late_counted_here_ + (frame.numbered ? frame.state.late_commands - late_before_ : 0);
 
-  commanded_s_ = std::min(commanded_s_, state_.robot.robot_time_s);  // a reset takes robot time back
+  commanded_s_ = std::min(commanded_s_, state_.robot.robot_time_s);  // a reset sets robot time back
   if (!stopped_by_silence_ && state_.robot.robot_time_s - commanded_s_ > hello_.command_timeout_s) {
     stopped_by_silence_ = true;
     port_.stop_robot();

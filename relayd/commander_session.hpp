@@ -1,7 +1,7 @@
-// Who commands the robot: opens and closes sessions, numbers States, drops what is old, and stops the robot when its
-// commander falls silent. docs/relay-protocol.md has the rules. No sockets, no clock of its own.
+// Decides who commands the robot: opens and closes sessions, numbers States, drops old commands, and stops the robot
+// when its commander falls silent. docs/relay-protocol.md has the rules. No sockets, no clock of its own.
 //
-// Thread safety: one object, one thread. Nothing allocates but the words of a refusal.
+// Thread safety: one object, one thread. Only the text of a refusal allocates.
 #pragma once
 
 #include <array>
@@ -19,24 +19,23 @@
 
 namespace kenaf::relayd {
 
-// What a session asks of the relay around it.
+// Requirements of a session on the relay around it.
 class SessionPort {
  public:
   virtual void send(const Address& to, const protocol::relay::Datagram& datagram) = 0;
-  // Starts a session with the world, which CommanderSession::on_world_ready() or on_world_lost() answers, at once or
-  // later.
+  // Starts a session with the world; CommanderSession::on_world_ready() or on_world_lost() follows, at once or later.
   virtual void open_world(const protocol::relay::Hello& hello) = 0;
   virtual void close_world() = 0;  // stops the robot and lets robot time run
   virtual void drive(const protocol::relay::Command& command, std::optional<std::int64_t> world_frame) = 0;
   virtual void stop_robot() = 0;
-  // False where the world server cannot answer; otherwise CommanderSession::on_pong() follows.
+  // Returns false if the world server cannot answer; otherwise CommanderSession::on_pong() follows.
   virtual bool ping_world(std::uint32_t id) = 0;
 
  protected:
   ~SessionPort() = default;
 };
 
-// The settings of a world session as they are in force.
+// The settings of a world session in force.
 struct WorldReady {
   double robot_time_s = 0;
   double period_s = 0.2;
@@ -53,7 +52,7 @@ class CommanderSession {
   static constexpr Duration kWorldMustOpenIn = std::chrono::seconds(5);
   static constexpr Duration kHeartbeat = std::chrono::milliseconds(100);  // a State at least that often
   static constexpr Duration kLostResend = std::chrono::milliseconds(50);
-  static constexpr Duration kForgetEnded = std::chrono::seconds(1);  // a Hello of it until then is a late copy
+  static constexpr Duration kForgetEnded = std::chrono::seconds(1);  // a Hello of the session until then is late
 
   explicit CommanderSession(SessionPort& port) : port_(port) {}
 
@@ -62,14 +61,15 @@ class CommanderSession {
   void on_frame(const WorldFrame& frame, TimePoint now);
   void on_pong(std::uint32_t id, TimePoint now);
   void on_world_lost(std::string_view why, TimePoint now);
-  // Time went by. While the world gives no sign of life there are no heartbeats: its silence is the commander's to see.
+  // Handles the passing of time. While the world gives no sign of life there are no heartbeats, so that the commander
+  // notices.
   void on_time(TimePoint now, bool world_is_alive);
   // The relay ends: tells the commander and stops the robot.
   void shut_down(TimePoint now);
 
-  // When on_time() has something to do next.
+  // Returns the next time at which on_time() has work.
   std::optional<TimePoint> next_deadline() const;
-  // The session that commands the robot or is about to, 0 = none.
+  // Returns the session that commands the robot or is about to, 0 = none.
   std::uint64_t session() const { return is_open() ? hello_.session : 0; }
   bool is_opening() const { return phase_ == Phase::opening; }
   const Address& commander() const { return commander_; }
@@ -101,10 +101,10 @@ class CommanderSession {
   Address commander_;
   TimePoint opened_, heard_, sent_;
 
-  protocol::relay::State state_{};       // as it was sent last
+  protocol::relay::State state_{};       // as last sent
   std::int64_t frame_offset_ = 0;        // State.frame = the world's frame + this
-  std::uint32_t late_before_ = 0;        // what the world counted before the session
-  std::uint32_t late_counted_here_ = 0;  // for a world server that does not count
+  std::uint32_t late_before_ = 0;        // the world's count before the session
+  std::uint32_t late_counted_here_ = 0;  // counted here for a world server that does not count
   bool world_counts_late_ = false;
   double commanded_s_ = 0;  // robot time of the newest Command
   bool stopped_by_silence_ = false;

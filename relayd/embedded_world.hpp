@@ -12,7 +12,8 @@
 
 namespace kenaf::relayd {
 
-// Runs from construction to destruction, on a free loopback port. The constructor throws std::runtime_error in words.
+// Runs from construction to destruction, on a free loopback port. The constructor throws std::runtime_error with a text
+// for the user.
 class EmbeddedWorldServer {
  public:
   explicit EmbeddedWorldServer(const EmbeddedWorld& options);

@@ -1,4 +1,4 @@
-// Keeps hostile input from filling the disk: at most one line a second of each kind, the others are counted.
+// Keeps hostile input from filling the disk: at most one line a second of each kind; the others are counted.
 //
 // Thread safety: one for each kind of line and thread.
 #pragma once
@@ -14,7 +14,7 @@ class LogLimiter {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  // nullopt: keep quiet. Otherwise write the line and say that as many before it were held back.
+  // nullopt: suppress the line. Otherwise write it, and report how many before it were suppressed.
   std::optional<std::uint64_t> allow(TimePoint now = std::chrono::steady_clock::now()) {
     if (last_ && now - *last_ < std::chrono::seconds(1)) {
       ++held_back_;

@@ -1,5 +1,5 @@
-// The hand-over between the relay's threads: one thread puts, one thread takes, neither ever waits for the other or
-// takes a lock, and nothing is allocated.
+// Hand-over between the relay's threads: one thread puts, one takes; neither waits for the other or takes a lock, and
+// nothing allocates.
 #pragma once
 
 #include <sys/eventfd.h>
@@ -29,7 +29,7 @@ class Waker {
     const std::uint64_t one = 1;
     [[maybe_unused]] const ssize_t written = ::write(fd_.get(), &one, sizeof one);
   }
-  // By the woken thread, before it looks for what woke it: what is put afterwards wakes it again.
+  // Called by the woken thread before it checks its mail: anything put afterwards wakes it again.
   void clear() {
     std::uint64_t count = 0;
     [[maybe_unused]] const ssize_t got = ::read(fd_.get(), &count, sizeof count);
@@ -46,20 +46,20 @@ template <class T, std::size_t kCapacity>
 class Mailbox {
  public:
   explicit Mailbox(Waker& taker) : taker_(taker) {}
-  // Lets go of what was put and never taken: Boost 1.74's queue of fixed capacity does not.
+  // Destroys items that were put but never taken: Boost 1.74's queue of fixed capacity does not.
   ~Mailbox() {
     queue_.consume_all([](T&) {});
   }
   Mailbox(const Mailbox&) = delete;
   Mailbox& operator=(const Mailbox&) = delete;
 
-  // False where it is full: `item` was not taken.
+  // Returns false, without taking `item`, if the queue is full.
   bool put(const T& item) {
     const bool taken = queue_.push(item);
     taker_.wake();
     return taken;
   }
-  // Calls f(T&) for what is there now, oldest first.
+  // Calls f(T&) for each item present now, oldest first.
   template <class F>
   void take_all(F&& f) {
     for (std::size_t left = queue_.read_available(); left > 0; --left) queue_.consume_one(f);

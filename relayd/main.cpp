@@ -1,4 +1,4 @@
-// kenaf-relayd: between a program on libkenaf_sim and a world server.
+// kenaf-relayd: relay between a program on libkenaf_sim and a world server.
 #include <signal.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
@@ -20,7 +20,7 @@ void on_signal(int) {
   relay_to_stop->stop();
 }
 
-// As long as it lives; then signals are ignored, as the program is about to end.
+// Stops the relay on signals during its lifetime; afterwards signals are ignored, as the program is about to end.
 class StopOnSignals {
  public:
   explicit StopOnSignals(kenaf::relayd::Relay& relay) {
@@ -40,7 +40,7 @@ class StopOnSignals {
   }
 };
 
-// Written aside and renamed, so that who waits for the file never reads half of it.
+// Written to a temporary file and renamed, so that a waiting reader never sees half of it.
 void write_port_file(const std::string& path, std::uint16_t port) {
   const std::string aside = path + ".new";
   if (!(std::ofstream(aside) << port << '\n' << std::flush)) {
@@ -52,18 +52,22 @@ void write_port_file(const std::string& path, std::uint16_t port) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Help, version and wrong options end the program here.
   int exit_status = 0;
   auto options = kenaf::relayd::read_options(argc, argv, exit_status);
   if (!options) return exit_status;
   spdlog::set_default_logger(spdlog::stderr_color_mt("kenaf-relayd"));
   spdlog::set_level(spdlog::level::from_str(options->log_level));
 
+  // With --embedded the world server is in this process, on a port of its own; it outlives the relay.
   try {
     std::unique_ptr<kenaf::relayd::EmbeddedWorldServer> world;
     if (options->embedded) {
       world = std::make_unique<kenaf::relayd::EmbeddedWorldServer>(*options->embedded);
       options->relay.world_server = {"127.0.0.1", world->port()};
     }
+
+    // The socket is bound before the port file says so; run() lasts until a signal.
     kenaf::relayd::Relay relay(options->relay);
     const StopOnSignals stop_on_signals(relay);
     spdlog::info("listening on {}", to_text(relay.address()));

@@ -9,7 +9,7 @@ namespace kenaf::relayd {
 
 namespace {
 
-// CLI11 takes a returned text as what is wrong.
+// CLI11 takes a returned text as the error.
 template <class Parse>
 std::string words_of(Parse parse, const std::string& text) {
   try {
@@ -20,7 +20,7 @@ std::string words_of(Parse parse, const std::string& text) {
   }
 }
 
-// A name becomes part of a message of blank separated words within braces.
+// A name becomes part of a message whose words are separated by blanks, within braces.
 std::string check_name(const std::string& text) {
   const bool plain = !text.empty() && text.find_first_of("{} \t\r\n") == std::string::npos;
   return plain ? "" : "'" + text + "' is empty or holds blanks or braces";
@@ -57,7 +57,7 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
       ->excludes(start_option);
   app.add_option("--log-level", options.log_level, "trace, debug, info, warn, error or off")
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
-      ->transform(CLI::Transformer({{"warning", "warn"}}).description(""))  // the word that is logged
+      ->transform(CLI::Transformer({{"warning", "warn"}}).description(""))  // the word used in the log
       ->capture_default_str();
   bool is_embedded = false;
   auto* embedded_flag =

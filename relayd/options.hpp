@@ -25,7 +25,7 @@ struct Options {
   std::optional<EmbeddedWorld> embedded;
 };
 
-// Prints help, version or what was wrong and sets `exit_status`; then there are no options.
+// Prints help, version or the error and sets `exit_status`; then returns no options.
 std::optional<Options> read_options(int argc, const char* const* argv, int& exit_status);
 
 }  // namespace kenaf::relayd

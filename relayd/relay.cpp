@@ -24,10 +24,10 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kPingWorldEvery = 250ms;  // when it tells nothing by itself
-constexpr auto kWorldIsAlive = 600ms;    // after a sign of life: two pings and some
+constexpr auto kPingWorldEvery = 250ms;  // when it sends nothing by itself
+constexpr auto kWorldIsAlive = 600ms;    // after a sign of life: two pings plus a margin
 constexpr auto kWorldIsLost = 2s;        // extended: not even a ping was answered
-constexpr auto kPlainWorldIsLost = 5s;   // plain: it may be paused, but cannot say so
+constexpr auto kPlainWorldIsLost = 5s;   // plain: it may be paused without being able to say so
 constexpr std::size_t kMostPending = 1 << 18;
 constexpr std::int64_t kOwnPing = -1;  // the id of the relay's own pings; a commander's are not negative
 
@@ -48,7 +48,7 @@ void Relay::run() {
   std::thread link(&WorldLink::run, &link_, std::cref(threads_end_));
   while (true) {
     sender_waker_.clear();
-    if (stopping_) break;  // asked after clear(), which would take the call to stop away
+    if (stopping_) break;  // requested after clear(), which would discard the wake-up of stop()
     take_mail();
     const TimePoint now = Clock::now();
     watch_world(now);
@@ -129,7 +129,7 @@ void Relay::take_datagram(std::size_t bytes, const Address& from) {
 void Relay::take_mail() {
   events_.take_all([this](WorldEvent& event) {
     std::visit([this](const auto& kind) { take(kind); }, event);
-    event = WorldPong{};  // lets go of a socket now, not when its place in the queue is used again
+    event = WorldPong{};  // releases a socket now, not when its queue slot is reused
   });
   arrivals_.take_all([this](Arrival& arrival) { session_.on_datagram(arrival.datagram, arrival.from, Clock::now()); });
 }
@@ -163,14 +163,14 @@ void Relay::take(const SessionAnswer& answer) {
 void Relay::take(const LinkUp& up) {
   if (up.request != wanted_link_) return;
   world_ = up;
-  unanswered_sessions_ = 0;  // what the last connection left unanswered it took with it
+  unanswered_sessions_ = 0;  // answers still due from the last connection were lost with it
   world_heard_ = world_pinged_ = Clock::now();
   spdlog::info("connected to the world server at {}:{}{}", options_.world_server.host, options_.world_server.port,
                up.extended ? "" : ", a plain USARSim server: no lock step, its own rate");
   if (session_.is_opening()) {
     session_.on_world_ready(up.ready, world_heard_);
   } else {
-    close_world();  // what was asked for is no longer wanted
+    close_world();  // the request is no longer wanted
   }
 }
 
@@ -181,7 +181,7 @@ void Relay::take(const LinkDown& down) {
   session_.on_world_lost(down.why, Clock::now());
 }
 
-// A connection that breaks shows itself; one that only falls silent has to be asked.
+// A broken connection shows itself; a silent one has to be asked.
 void Relay::watch_world(TimePoint now) {
   if (!world_) return;
   const auto silence = now - world_heard_;
@@ -225,7 +225,7 @@ void Relay::flush() {
   if (sent >= 0) {
     out_.erase(0, static_cast<std::size_t>(sent));
   } else if (errno != EAGAIN && errno != EINTR) {
-    out_.clear();  // broken; the link's thread sees it too and says why
+    out_.clear();  // broken; the link's thread notices it too and reports the reason
   }
 }
 
@@ -236,7 +236,7 @@ void Relay::request_link(const WorldSession& session) {
   if (link_.requests().put({wanted_link_ + 1, session})) ++wanted_link_;
 }
 
-// --- what the session asks for
+// --- requests of the session
 
 void Relay::send(const Address& to, const protocol::relay::Datagram& datagram) {
   std::array<std::byte, protocol::relay::kMaxDatagramBytes> bytes;
@@ -245,14 +245,14 @@ void Relay::send(const Address& to, const protocol::relay::Datagram& datagram) {
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(to.ipv4);
   address.sin_port = htons(to.port);
-  // One that cannot be sent is a lost one, which the protocol bears.
+  // A datagram that cannot be sent counts as lost, which the protocol tolerates.
   ::sendto(udp_.get(), bytes.data(), size, MSG_DONTWAIT, reinterpret_cast<const sockaddr*>(&address), sizeof address);
 }
 
 void Relay::open_world(const protocol::relay::Hello& hello) {
   const WorldSession wanted{hello.period_s, hello.lockstep, hello.command_timeout_s};
   if (!world_ || hello.reset_robot) {
-    request_link(wanted);  // a robot is put back by leaving the world and entering it again
+    request_link(wanted);  // leaving and re-entering the world puts the robot back
   } else if (world_->extended) {
     write_world_session(out_, wanted);
     ++unanswered_sessions_;

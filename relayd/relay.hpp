@@ -1,11 +1,11 @@
-// The relay: three threads and what they hand each other.
+// The relay: three threads and the messages between them.
 //
 //   commands (UDP) -> receiver --Arrivals--> sender --> world server (TCP), States (UDP)
 //   sensors (TCP) --> world link --WorldEvents--> sender
 //
-// The receiver reads and checks datagrams as they come. The world link reads the sensor stream and makes States of it.
-// The sender, woken by either or by its next deadline, decides and writes: everything that is sent to anybody goes
-// through it, so nothing needs a lock. run() is the sender's thread.
+// The receiver reads and checks datagrams as they arrive. The world link reads the sensor stream and converts it to
+// States. The sender, woken by either or by its next deadline, decides and writes: all output goes through it, so no
+// lock is needed. run() is the sender's thread.
 #pragma once
 
 #include <array>
@@ -32,15 +32,15 @@ struct RelayOptions {
 
 class Relay : private SessionPort {
  public:
-  // Binds. Throws std::runtime_error in words.
+  // Binds the socket. Throws std::runtime_error with a text for the user.
   explicit Relay(const RelayOptions& options);
 
-  // Where it listens.
+  // The address it listens on.
   const Address& address() const { return address_; }
 
-  // Relays until stop(); then tells the commander, stops the robot, and returns with all threads ended.
+  // Relays until stop(); then tells the commander, stops the robot, and returns after all threads have ended.
   void run();
-  // From any thread or a signal handler.
+  // May be called from any thread or a signal handler.
   void stop();
 
  private:
@@ -79,7 +79,7 @@ class Relay : private SessionPort {
   const RelayOptions options_;
   Address address_;
   Descriptor udp_;
-  std::atomic<bool> stopping_{false};     // asked to end
+  std::atomic<bool> stopping_{false};     // asked to stop
   std::atomic<bool> threads_end_{false};  // the other two may end: the robot has been stopped
 
   Waker sender_waker_;
@@ -89,7 +89,7 @@ class Relay : private SessionPort {
 
   // The receiver's.
   Waker receiver_waker_;
-  std::array<std::byte, protocol::relay::kMaxDatagramBytes + 1> received_;  // one more, so that a longer one shows
+  std::array<std::byte, protocol::relay::kMaxDatagramBytes + 1> received_;  // one more, to detect longer ones
   Arrival arrival_;
   LogLimiter log_malformed_, log_overflow_;
 
@@ -100,7 +100,7 @@ class Relay : private SessionPort {
   int unanswered_sessions_ = 0;  // CONTROL {Type Session} sent; only the answer to the newest counts
   WorldReady newest_;            // time and interval of the newest frame, for a server that announces neither
   TimePoint world_heard_, world_pinged_;
-  std::string out_;  // to the world server, not yet taken by its socket
+  std::string out_;  // for the world server, not yet taken by its socket
 };
 
 }  // namespace kenaf::relayd

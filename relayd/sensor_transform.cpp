@@ -15,7 +15,7 @@ namespace {
 using protocol::frames::Vector3;
 using protocol::usarsim::MessageView;
 
-// No sensor of this robot comes near; a line beyond it is garbage, and products of what is below it stay finite.
+// No sensor of this robot comes near this; a line beyond it is garbage, and products of values below it stay finite.
 constexpr double kMostOfAnything = 1e12;
 
 bool read(const MessageView& message, std::string_view key, std::span<double> out) {
@@ -54,7 +54,7 @@ bool SensorTransform::take(const MessageView& message) {
   } else if (message.is("STA")) {
     return take_status(message);
   } else if (message.is("GEO")) {
-    // Of the robot: no other GEO has a wheel.
+    // GEO of the robot: no other has a wheel.
     const auto radius = read(message, "WheelRadius");
     if (radius && *radius > 1e-3 && *radius < 10) wheel_radius_m_ = radius;
   } else if (message.is("CONF") && is_type(message, "Encoder")) {
@@ -90,7 +90,7 @@ void SensorTransform::take_sensor(const MessageView& message) {
     state.acceleration_mps2 = protocol::frames::rep103_vector_from_usarsim(acceleration);
     note(robot::kHasInertial);
   } else if (is_type(message, "Tachometer")) {
-    // A robot with more wheels lists them in an order only it knows.
+    // A robot with more wheels lists them in an unknown order.
     std::array<double, robot::kTrackCount> spin_radps;
     if (read(message, "Vel", spin_radps)) spin_radps_ = spin_radps;
   } else if (is_type(message, "Drives")) {
@@ -145,7 +145,7 @@ bool SensorTransform::take_status(const MessageView& message) {
   frame_.interval_s = frame_.number == 0 ? 0 : *time - state.robot_time_s;
   state.robot_time_s = *time;
   const auto number = read(message, "Frame");
-  // The world tells that it was paused, or goes on, by another STA of the same frame: what was new in that still is.
+  // The world reports a pause or its end by another STA of the same frame: values new in that frame still are.
   if (number && std::llround(*number) == frame_.number)
     new_fields_ |= known_fields_ & ~(state.fields >> robot::kHeldShift);
   frame_.numbered = number.has_value();
@@ -173,7 +173,7 @@ bool SensorTransform::take_status(const MessageView& message) {
   return true;
 }
 
-// Here and not where the ticks are read: the wheel radius may come after them, and only STA has a time.
+// Done here and not on the ticks: the wheel radius may come after them, and only STA has a time.
 void SensorTransform::finish_tracks() {
   ticks_interval_s_ += frame_.interval_s;
   const bool has_new_ticks = std::exchange(has_new_ticks_, false);

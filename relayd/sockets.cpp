@@ -21,7 +21,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Room for the commands of a second at 1 kHz, should the relay be held up. The kernel may grant less.
+// Holds one second of commands at 1 kHz if the relay is held up. The kernel may grant less.
 constexpr int kReceiveBufferBytes = 1 << 20;
 
 sockaddr_in to_sockaddr(const Address& address) {
@@ -32,7 +32,7 @@ sockaddr_in to_sockaddr(const Address& address) {
   return out;
 }
 
-// 0, or the errno with which the connection failed.
+// Returns 0, or the errno of the failed connection.
 int finish_connect(int fd, Clock::time_point until, int cancel_fd) {
   std::array<pollfd, 2> watched{{{fd, POLLOUT, 0}, {cancel_fd, POLLIN, 0}}};
   const int ready = ::poll(watched.data(), watched.size(), poll_timeout(until));
@@ -108,7 +108,7 @@ std::optional<Descriptor> connect_tcp(std::span<const Endpoint> endpoints, Clock
     Descriptor fd(::socket(endpoint.address.ss_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
     error = fd.get() < 0 ? errno : 0;
     if (error == 0 && ::connect(fd.get(), reinterpret_cast<const sockaddr*>(&endpoint.address), endpoint.size) != 0) {
-      // an address that is silent leaves as much time to each that follows
+      // a silent address leaves each of the following ones the same share of the time
       const Clock::time_point now = Clock::now();
       const Clock::time_point until = now + (deadline - now) / static_cast<std::int64_t>(endpoints.size() - i);
       error = errno == EINPROGRESS ? finish_connect(fd.get(), until, cancel_fd) : errno;

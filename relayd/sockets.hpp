@@ -1,5 +1,5 @@
-// Plain POSIX sockets: owned descriptors, IPv4 addresses, and the few ways the relay opens a socket.
-// Functions throw std::runtime_error with words for a user unless they say otherwise.
+// POSIX sockets: owned descriptors, IPv4 addresses, and the ways in which the relay opens sockets. Functions throw
+// std::runtime_error with a text for the user unless stated otherwise.
 #pragma once
 
 #include <sys/socket.h>
@@ -46,24 +46,24 @@ struct HostPort {
 };
 // "HOST:PORT", also "[v6]:PORT".
 HostPort parse_host_port(std::string_view text);
-// The same where the host is a dotted IPv4 address or "localhost".
+// The same, restricted to a dotted IPv4 address or "localhost".
 Address parse_address(std::string_view text);
 
-// A bound UDP socket that does not block; `bound` becomes the address it got.
+// Returns a bound, non-blocking UDP socket; `bound` becomes its address.
 Descriptor open_udp(const Address& address, Address& bound);
 
-// For poll(): milliseconds until then, rounded up so that it does not return just before the time; a minute at most.
+// For poll(): milliseconds until `until`, rounded up so that poll() does not return just before it; a minute at most.
 int poll_timeout(std::chrono::steady_clock::time_point until);
 
-// What connect() takes, of whatever family.
+// An address for connect(), of any family.
 struct Endpoint {
   sockaddr_storage address{};
   socklen_t size = 0;
 };
 
-// A TCP connection to the first of `endpoints` that takes it, which does not block, with TCP_NODELAY. Waits until
-// `deadline` at most, shared among the endpoints, and no longer once `cancel_fd` is readable: nullopt, which says
-// nothing about the server.
+// Connects by TCP to the first of `endpoints` that accepts; the socket is non-blocking, with TCP_NODELAY. Waits until
+// `deadline` at most, shared among the endpoints. Returns nullopt once `cancel_fd` is readable, which says nothing
+// about the server.
 std::optional<Descriptor> connect_tcp(std::span<const Endpoint> endpoints,
                                       std::chrono::steady_clock::time_point deadline, int cancel_fd);
 

@@ -1,5 +1,5 @@
-// From a fresh connection to a robot in the world: what is asked in which order, and when the answers suffice. Works
-// with servers that know the extensions and with those that do not. No sockets, no clock of its own.
+// From a new connection to a robot in the world: requests, their order, and which answers suffice. Works with servers
+// with and without the extensions. No sockets, no clock of its own.
 //
 //   server: NFO                  (or nothing for 1 s)
 //   relay:  CONTROL Session, INIT, GETCONF and GETGEO Robot, GETCONF Encoder, in one piece. The session comes first, so
@@ -25,7 +25,7 @@ struct RobotPlacement {
   std::string class_name = "USARBot.Kenaf";
   std::string name = "Kenaf";
   std::string start;                          // name of a start pose
-  std::optional<std::array<double, 6>> pose;  // x, y, z, roll, pitch, yaw in the world (REP 103); before `start`
+  std::optional<std::array<double, 6>> pose;  // x, y, z, roll, pitch, yaw in the world (REP 103); overrides `start`
 };
 
 // The answer to CONTROL {Type Session}.
@@ -42,8 +42,8 @@ class WorldHandshake {
 
   WorldHandshake(const RobotPlacement& placement, const WorldSession& session, TimePoint connected);
 
-  // Both append to `out` what is to be sent. on_message() gets every message of the server until result() tells;
-  // `is_frame`: it was a STA that SensorTransform understood.
+  // Both append the output to `out`. on_message() must get every message of the server until result() is known;
+  // `is_frame`: it was a STA that SensorTransform accepted.
   void on_message(const protocol::usarsim::MessageView& message, bool is_frame, TimePoint now, std::string& out);
   void on_time(TimePoint now, std::string& out);
 

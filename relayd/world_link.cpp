@@ -25,7 +25,7 @@ constexpr auto kLeaveWithin = 500ms;
 constexpr std::chrono::milliseconds kFirstPause = 50ms;
 constexpr std::chrono::milliseconds kLongestPause = 1s;
 
-// The few lines of a handshake always fit a fresh socket's buffer.
+// The few lines of a handshake always fit a new socket's buffer.
 void send_whole(int fd, const std::string& text) {
   if (text.empty()) return;
   const ssize_t sent = ::send(fd, text.data(), text.size(), MSG_NOSIGNAL);
@@ -34,7 +34,7 @@ void send_whole(int fd, const std::string& text) {
   }
 }
 
-// Closes, and waits until the server has done so too: then the robot is out of the world and its place is free.
+// Closes, and waits until the server has closed too: then the robot is out of the world and its place is free.
 void leave(int fd) {
   ::shutdown(fd, SHUT_WR);
   std::array<char, 4096> rest;
@@ -72,7 +72,7 @@ void WorldLink::run(const std::atomic<bool>& stopping) {
       why = error.what();
     }
     if (stopping) return;
-    if (take_requests() || why.empty()) {  // what failed is no answer to what is asked for now
+    if (take_requests() || why.empty()) {  // the failure does not concern the newer request
       pause = kFirstPause;
       continue;
     }
@@ -89,9 +89,10 @@ void WorldLink::run(const std::atomic<bool>& stopping) {
   }
 }
 
-// One connection from its beginning to its end. Returns or throws why it ended; empty: a new one was asked for, or the
-// relay stops.
+// Serves one connection from beginning to end. Returns or throws the reason for its end; empty: a new one was
+// requested, or the relay stops.
 std::string WorldLink::serve(const std::atomic<bool>& stopping) {
+  // Resolves the name and connects; a newer request or the end of the relay interrupts both.
   take_requests();
   if (stopping) return {};
   const auto deadline = Clock::now() + kConnectWithin;
@@ -103,16 +104,22 @@ std::string WorldLink::serve(const std::atomic<bool>& stopping) {
                         WorldHandshake(placement_, request_.session, Clock::now())};
   std::array<char, 65536> bytes;
   std::array<pollfd, 2> watched{{{connection.socket->get(), POLLIN, 0}, {waker_.fd(), POLLIN, 0}}};
+
+  // Until the handshake is complete, poll() ends at its deadline; afterwards only the socket or the waker ends it.
   while (true) {
     const bool shaking = !connection.handed_over;
     if (::poll(watched.data(), watched.size(), shaking ? poll_timeout(connection.handshake.deadline()) : -1) < 0 &&
         errno != EINTR) {
       return std::strerror(errno);
     }
+
+    // On a newer request or at the end: leave, so that the robot is out of the world before the next connection.
     if (watched[1].revents != 0 && (take_requests() || stopping)) {
       leave(connection.socket->get());
       return {};
     }
+
+    // Reads whole lines; an oversized one is skipped and counted.
     if (watched[0].revents != 0) {
       const ssize_t got = ::recv(connection.socket->get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
       if (got == 0) return "it closed the connection";
@@ -122,6 +129,8 @@ std::string WorldLink::serve(const std::atomic<bool>& stopping) {
       }
       while (const auto line = connection.lines.next()) read_line(*line, connection);
     }
+
+    // The handshake may also end without a message, at its deadline.
     if (!connection.handed_over) finish_handshake(connection);
     if (connection.handshake.result() == WorldHandshake::Result::failed) return connection.handshake.failure();
   }
@@ -148,7 +157,7 @@ void WorldLink::read_line(std::string_view line, Connection& connection) {
   }
 }
 
-// Sends what the handshake wants sent; where it is complete, hands the connection to the sender.
+// Sends the handshake's output; once the handshake is complete, hands the connection to the sender.
 void WorldLink::finish_handshake(Connection& connection) {
   connection.handshake.on_time(Clock::now(), connection.out);
   send_whole(connection.socket->get(), connection.out);
@@ -174,7 +183,7 @@ void WorldLink::finish_handshake(Connection& connection) {
   put(frame);
 }
 
-// A sender that is held up holds up the world, through TCP, rather than losing what it told.
+// If the sender is held up, this holds up the world through TCP rather than losing its messages.
 void WorldLink::put(WorldEvent event) {
   while (!events_.put(event) && !*stopping_) std::this_thread::sleep_for(100us);
 }

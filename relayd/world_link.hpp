@@ -1,5 +1,5 @@
-// The relay's second thread: keeps a connection to the world server, and turns what comes over it into WorldEvents.
-// Once it has handed a connection over with LinkUp it only reads; all later writing is the sender's.
+// The relay's second thread: keeps a connection to the world server and converts its messages to WorldEvents. After it
+// has handed a connection over with LinkUp it only reads; the sender does all further writing.
 #pragma once
 
 #include <atomic>
@@ -17,15 +17,15 @@
 
 namespace kenaf::relayd {
 
-// Asks for a fresh connection with these settings; a connection of an earlier request is closed.
+// Requests a new connection with these settings; a connection of an earlier request is closed.
 struct LinkRequest {
   std::uint64_t number = 0;
   WorldSession session;
 };
 
 struct LinkUp {
-  std::uint64_t request = 0;           // the one it fulfils
-  std::shared_ptr<Descriptor> socket;  // closed when its last owner lets go
+  std::uint64_t request = 0;           // the request it fulfils
+  std::shared_ptr<Descriptor> socket;  // closed when its last owner releases it
   double wheel_radius_m = 0;
   bool extended = false;
   WorldReady ready;
@@ -46,11 +46,11 @@ class WorldLink {
  public:
   WorldLink(const HostPort& server, const RobotPlacement& placement, WorldEvents& events);
 
-  // Connects, with patience, until `stopping` is set and waker() woken.
+  // Connects, retrying as needed, until `stopping` is set and waker() woken.
   void run(const std::atomic<bool>& stopping);
 
   Waker& waker() { return waker_; }
-  LinkRequests& requests() { return requests_; }  // the sender puts
+  LinkRequests& requests() { return requests_; }  // filled by the sender
 
  private:
   struct Connection;

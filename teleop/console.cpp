@@ -1,5 +1,5 @@
-// The operator's console on the control PC: keyboard and gamepad in, wishes out, and what the robot says on a screen.
-// It knows the control process alone, and no robot: the same console drives simulation and robot. docs/operator.md.
+// The operator's console on the control PC: keyboard and gamepad in, wishes out, the robot's status on a screen. It
+// knows only the control process and no robot: the same console drives simulation and robot. docs/operator.md.
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
@@ -69,16 +69,19 @@ class Console {
     if (!options.script.empty()) player_.emplace(script_of(options.script));
     if (!options.plain && !player_) terminal_ = std::make_unique<Terminal>();
   }
-  // Whatever ended it: the robot stands at once, not only after the silence.
+  // Whatever the reason for the end: the robot stops at once, not only after the silence.
   ~Console() {
     for (int i = 0; i < 3; ++i) send(Bye{session_});
   }
 
-  // The exit status.
+  // Returns the exit status.
   int run() {
+    // Each turn waits for a datagram or a key, 10 ms at most (kTurn_ms), then handles all inputs.
     while (stop_requested == 0 && !desk_.wants_to_quit()) {
       wait();
       take_statuses();
+
+      // Input: the gamepad always, the keys of the terminal or the script in their place.
       for (const Action action : gamepad_.read(now_s())) act(action);
       desk_.set_sticks(gamepad_.sticks());
       if (terminal_) {
@@ -96,6 +99,8 @@ class Console {
         }
         if (turn.finished) return 0;
       }
+
+      // Output, each at its own rate: the wish, which is also the sign of life, and the screen.
       if (now_s() >= next_wish_s_) send_wish();
       if (now_s() >= next_show_s_) show();
     }
@@ -123,7 +128,7 @@ class Console {
   }
 
   void take_statuses() {
-    std::array<std::byte, kMaxDatagramBytes + 1> buffer;  // one more than any of ours: a longer one shows
+    std::array<std::byte, kMaxDatagramBytes + 1> buffer;  // one more than the largest datagram, to detect longer ones
     Peer from;
     for (int i = 0; i < 100; ++i) {
       const std::optional<std::size_t> size = socket_.receive(buffer, from);
@@ -217,6 +222,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
 
+  // Each of these signals only ends the loop, so that the terminal is restored and the robot told to stop.
   struct sigaction action {};
   action.sa_handler = on_signal;
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaction(number, &action, nullptr);

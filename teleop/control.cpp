@@ -1,6 +1,6 @@
-// The control process on the robot's PC: takes the operator's wishes from the network and drives the robot through
+// The control process on the robot's PC: receives the operator's wishes from the network and drives the robot through
 // hrt.h. Linked twice: operator_control_sim drives the simulation, operator_control_real the robot. docs/operator.md
-// says how to start it and what it does when.
+// describes its start and behaviour.
 #include <fmt/format.h>
 #include <kenaf/hrt.h>
 #include <poll.h>
@@ -28,10 +28,10 @@ namespace {
 
 using namespace kenaf::teleop;
 
-constexpr int kTurn_ms = 10;  // of the loop: a cycle of the robot
+constexpr int kTurn_ms = 10;  // loop period: one cycle of the robot
 constexpr double kStatusPeriod_s = 0.05;
-constexpr double kLogPeriod_s = 1;      // of lines about what the network brings: it may bring much
-constexpr int kDatagramsInATurn = 100;  // so that a flood cannot hold up the robot
+constexpr double kLogPeriod_s = 1;      // between log lines caused by the network, which may bring many
+constexpr int kDatagramsInATurn = 100;  // a flood must not hold up the robot
 
 struct Options {
   std::string listen = "127.0.0.1:45460", port_file;
@@ -67,10 +67,10 @@ class Control {
   }
 
  private:
-  // True: an emergency stop is among them.
+  // Returns true if an emergency stop is among them.
   bool take_datagrams() {
     bool emergency_pressed = false;
-    std::array<std::byte, kMaxDatagramBytes + 1> buffer;  // one more than any of ours: a longer one shows
+    std::array<std::byte, kMaxDatagramBytes + 1> buffer;  // one more than the largest datagram, to detect longer ones
     Peer from;
     for (int i = 0; i < kDatagramsInATurn; ++i) {
       const std::optional<std::size_t> size = socket_.receive(buffer, from);
@@ -96,12 +96,12 @@ class Control {
       const std::string words = fmt::format("the console at {} has the robot, heard {:.1f} s ago", to_text(console_),
                                             now_s() - seat_.heard_s);
       log_seldom(fmt::format("console at {}: {}", to_text(from), words));
-      if (now_s() - taken_sent_s_ >= kStatusPeriod_s) {  // a flood is not answered by a flood
+      if (now_s() - taken_sent_s_ >= kStatusPeriod_s) {  // do not answer a flood by a flood
         taken_sent_s_ = now_s();
         send(Taken{wish.session, text_of(words)}, from);
       }
     } else if (admission == Admission::newest) {
-      console_ = from;  // it may have got another address
+      console_ = from;  // its address may have changed
       if (seat_.session != session_before) log(fmt::format("the console at {} has the robot", to_text(from)));
     }
     return wish.emergency_stop && admission != Admission::old;
@@ -123,7 +123,7 @@ class Control {
     if (driving_.mode == Mode::emergency_stop && mode_before != Mode::emergency_stop) log("emergency stop");
   }
 
-  // How old what the operator saw was when he wished what he wishes.
+  // Returns the age of the operator's view when he made his newest wish.
   double view_age_s() const {
     const std::uint32_t seen = seat_.wish ? seat_.wish->newest_status : 0;
     const bool is_known = seen != 0 && seen <= status_sequence_ && status_sequence_ - seen < status_sent_at_s_.size();
@@ -132,6 +132,7 @@ class Control {
   }
 
   void send_status() {
+    // Addressee, and the wishes received: from these the console computes loss and delay of the link.
     status_sent_s_ = now_s();
     Status status{};
     status.session = seat_.session;
@@ -140,9 +141,13 @@ class Control {
     status.newest_wish = seat_.wish ? seat_.wish->sequence : 0;
     status.wish_age_s = now_s() - seat_.heard_s;
     status.wishes_received = seat_.received;
+
+    // The decisions of this turn.
     status.mode = driving_.mode;
     status.halt = driving_.halt;
     status.flipper_order = driving_.flipper_order;
+
+    // The robot's measurements, commands in force, and health of its own link.
     const auto flag = [&](std::uint32_t bit, bool set) { status.flags |= set ? bit : 0; };
     flag(kSimulated, std::string_view(hrt_library()) == "sim");
     flag(kPaused, (state_.activity & HRT_PAUSED) != 0);
@@ -164,6 +169,8 @@ class Control {
     status.pose_mm = {state_.pose_x_mm, state_.pose_y_mm, state_.pose_z_mm};
     status.robot_round_trip_ms = state_.round_trip_ms;
     status.late_cycles = static_cast<std::uint32_t>(state_.late_cycles);
+
+    // Texts: this process' newest message, and the robot's warning.
     status.message = text_of(robot_.message());
     std::array<char, kMaxTextBytes> warning{};
     if (driving_.mode != Mode::no_robot) (void)hrt_get_warning(warning.data(), warning.size());
@@ -190,12 +197,12 @@ class Control {
   Seat seat_;
   Driving driving_;
   Peer console_;
-  std::uint32_t status_sequence_ = 0;           // of all consoles: one that comes back drops what is older than it saw
-  std::array<double, 256> status_sent_at_s_{};  // by the sequence's last byte: 12 s of statuses
+  std::uint32_t status_sequence_ = 0;  // shared by all consoles: one that returns drops older ones than it has seen
+  std::array<double, 256> status_sent_at_s_{};  // indexed by the sequence's last byte: 12 s of statuses
   double status_sent_s_ = 0, taken_sent_s_ = 0, logged_s_ = 0;
 };
 
-// Written aside and renamed, so that who waits for the file never reads half of it.
+// Written to a temporary file and renamed, so that a waiting reader never sees half of it.
 void write_port_file(const std::string& path, std::uint16_t port) {
   const std::string aside = path + ".new";
   if (!(std::ofstream(aside) << port << '\n' << std::flush)) throw std::runtime_error("cannot write " + aside);
@@ -236,6 +243,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
 
+  // A signal only ends the loop: the robot is then stopped and closed as usual.
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigaction(SIGINT, &action, nullptr);

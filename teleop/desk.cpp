@@ -9,9 +9,8 @@ namespace kenaf::teleop {
 namespace {
 
 constexpr std::array<double, 6> kSpeeds_mmps{50, 100, 150, 200, 300, 400};
-constexpr double kTurnShare =
-    0.8;                           // of the speed, for the tracks of a turn in place: they slip, and tear at the ground
-constexpr double kArcShare = 0.4;  // of the speed, for the inner track of an arc
+constexpr double kTurnShare = 0.8;  // share of the speed, for a turn in place: tracks slip and tear up the ground
+constexpr double kArcShare = 0.4;   // share of the speed, for the inner track of an arc
 
 double next_speed(double speed_mmps) {
   const auto next = std::ranges::upper_bound(kSpeeds_mmps, speed_mmps);
@@ -47,7 +46,7 @@ std::array<double, kTrackCount> shares_of(Action action) {
   }
 }
 
-// Both tracks within the speed, and in the ratio that the sticks ask for.
+// Both tracks within the speed, in the ratio requested by the sticks.
 std::array<double, kTrackCount> shares_of(const Sticks& sticks) {
   const double turn = kTurnShare * sticks.turn;
   const double left = sticks.forward - turn, right = sticks.forward + turn;
@@ -66,7 +65,7 @@ void Desk::act(Action action, double now_s, const Status* newest) {
     return order_flippers(posture.flipper_deg, std::string(posture.name));
   }
   if (action >= Action::front_left_up && action <= Action::rear_right_down) {
-    if (newest == nullptr) return;  // nobody knows where they are
+    if (newest == nullptr) return;  // the flippers' positions are unknown
     const auto index = static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::front_left_up);
     return nudge(1u << (index / 2), index % 2 == 0 ? kNudge_deg : -kNudge_deg, *newest);
   }
@@ -110,7 +109,7 @@ void Desk::act(Action action, double now_s, const Status* newest) {
 void Desk::nudge(unsigned flippers, double by_deg, const Status& newest) {
   constexpr unsigned kAll = (1u << kFlipperCount) - 1;
   const bool all_told = (newest.flippers_commanded & kAll) == kAll;
-  // the order names all four: one whose angle nobody knows would be sent to 0
+  // the order names all four: a flipper at an unknown angle would be sent to 0
   if (!ordered_deg_ && !all_told && (newest.fields & kHasFlippers) == 0) return;
   std::array<double, kFlipperCount> deg{};
   for (std::size_t i = 0; i < kFlipperCount; ++i) {

@@ -1,5 +1,5 @@
-// What the operator's inputs add up to: from keys and gamepad to the wish that is sent. Plain state and functions; the
-// caller brings the time, seconds of one steady clock.
+// Combines the operator's inputs: from keys and gamepad to the wish that is sent. Plain state and functions; the caller
+// passes the time, seconds of one steady clock.
 #pragma once
 
 #include <array>
@@ -23,14 +23,14 @@ class Desk {
  public:
   explicit Desk(const KeyTiming& timing = {}, double speed_mmps = 200);
 
-  // An action of keyboard, gamepad or script. `newest`: the control process' newest status, null while there is none:
-  // postures and nudges start from where the flippers were sent last.
+  // An action of keyboard, gamepad or script. `newest`: the control process' newest status, null before the first:
+  // postures and nudges start from the last ordered flipper angles.
   void act(Action action, double now_s, const Status* newest);
   void set_sticks(const Sticks& sticks) { sticks_ = sticks; }
-  // Every status that comes: a halt forgets what was ordered before it, a latch that is gone need not be released.
+  // Must get every status: a halt discards earlier flipper orders, and a released latch needs no release any more.
   void hear(const Status& status);
 
-  // Session, sequence and newest_status are the sender's to fill.
+  // The sender fills session, sequence and newest_status.
   Wish wish(double now_s) const;
 
   double speed_mmps() const { return speed_mmps_; }
@@ -46,7 +46,7 @@ class Desk {
   DriveKey key_;
   Sticks sticks_;
   double speed_mmps_;
-  std::optional<std::array<double, kFlipperCount>> ordered_deg_;  // unless a halt came since
+  std::optional<std::array<double, kFlipperCount>> ordered_deg_;  // unless a halt came since then
   std::array<double, kFlipperCount> sent_deg_{};
   std::uint32_t flipper_order_ = 0;
   std::string posture_ = "not chosen";

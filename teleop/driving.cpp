@@ -11,7 +11,7 @@ bool is_standing(Mode mode) {
   return mode != Mode::ready && mode != Mode::driving;
 }
 
-// Towards `target`, through 0 where the direction changes.
+// Ramps towards `target`, through 0 if the direction changes.
 double ramp(double speed, double target, double dt_s, const DrivingLimits& limits) {
   const bool speeds_up = speed * target >= 0 && std::abs(target) > std::abs(speed);
   const double step = (speeds_up ? limits.speed_up_mmps2 : limits.slow_down_mmps2) * dt_s;
@@ -24,10 +24,12 @@ void next_mode(Driving& driving, const Situation& now, const Wish* wish, const D
     driving.mode = Mode::halted;
     driving.halt = why;
   };
+  // The state before this turn; a wish of another session takes the robot over.
   const bool was_standing = is_standing(driving.mode);
   const bool another_console = wish != nullptr && wish->session != driving.session;
   if (another_console) driving.session = wish->session;
 
+  // In order of priority: the latching emergency stop, the robot's link, a new console, the wish.
   if (now.emergency_pressed) {
     driving.mode = Mode::emergency_stop;
   } else if (driving.mode == Mode::emergency_stop) {
@@ -38,10 +40,13 @@ void next_mode(Driving& driving, const Situation& now, const Wish* wish, const D
     halt(driving.had_robot ? Halt::robot_lost : Halt::start);
   } else if (another_console) {
     halt(Halt::start);
+    // No valid wish: the console is silent, or the operator's view was too old. A standing robot keeps its earlier
+    // reason, unless the view is too old now.
   } else if (wish == nullptr) {
     const bool is_silent = !now.seat.wish || now.now_s - now.seat.heard_s > limits.silence_s;
     const bool is_late = !is_silent && std::isfinite(now.view_age_s);
     if (!was_standing || is_late) halt(is_silent ? Halt::silence : Halt::late);
+    // A valid wish: a halt ends only with the dead-man released; from ready on the dead-man decides.
   } else if (!was_standing || !wish->deadman) {
     driving.mode = wish->deadman ? Mode::driving : Mode::ready;
   }
@@ -60,7 +65,7 @@ Order decide(Driving& driving, const Situation& now, const DrivingLimits& limits
   if (is_standing(driving.mode)) {
     order.stop = !is_standing(before);
     driving.track_mmps = {};
-    if (now.seat.wish) driving.flipper_order = now.seat.wish->flipper_order;  // passed over
+    if (now.seat.wish) driving.flipper_order = now.seat.wish->flipper_order;  // skipped
     return order;
   }
   if (is_standing(before)) driving.flipper_order = wish->flipper_order;

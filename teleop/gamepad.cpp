@@ -14,9 +14,9 @@ namespace kenaf::teleop {
 namespace {
 
 constexpr double kFullStick = 32767;
-constexpr double kRest = 0.12;  // a stick that is let go may stay so far from its middle
+constexpr double kRest = 0.12;  // a released stick may rest this far from its centre
 constexpr int kDevices = 8;
-constexpr double kCrossPeriod_s = 0.05;  // a held cross acts as a key that repeats
+constexpr double kCrossPeriod_s = 0.05;  // a held cross repeats like a key
 
 enum Axis : unsigned { kLeftStickY = 1, kRightStickX = 3, kCrossX = 6, kCrossY = 7 };
 constexpr unsigned kEmergencyButton = 1, kDeadmanButton = 4;
@@ -32,7 +32,7 @@ constexpr auto kButtons = std::to_array<std::pair<unsigned, Action>>({
     {10, Action::posture_5},                     // right stick
 });
 
-// 0 within kRest, from there on rising to 1 without a jump.
+// 0 within kRest, then rising continuously to 1.
 double deflection(int value) {
   const double share = std::clamp(value / kFullStick, -1.0, 1.0);
   return std::copysign(std::max(0.0, (std::abs(share) - kRest) / (1 - kRest)), share);
@@ -47,8 +47,8 @@ std::optional<Action> action_of_cross(unsigned axis, int value) {
 }  // namespace
 
 std::optional<Action> GamepadState::take(const js_event& event) {
-  // Where everything is when the device is opened, and again after the kernel had to drop events: what was let go of
-  // meanwhile counts, and what was pressed only where it stops.
+  // Positions reported when the device is opened, and again after the kernel had to drop events: releases count,
+  // presses only if they stop the robot.
   const bool is_initial = (event.type & JS_EVENT_INIT) != 0;
   const int type = event.type & ~JS_EVENT_INIT;
   if (type == JS_EVENT_AXIS) {
@@ -112,7 +112,7 @@ std::vector<Action> Gamepad::read(double now_s) {
     } else if (got < 0 && (errno == EAGAIN || errno == EINTR)) {
       break;
     } else {
-      close();  // unplugged, or no gamepad
+      close();  // unplugged, or not a gamepad
       look_again_s_ = now_s + 1;
     }
   }

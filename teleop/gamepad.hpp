@@ -1,5 +1,6 @@
-// A gamepad by Linux' joystick interface (/dev/input/js*, the kernel's Documentation/input/joydev/joystick-api.rst):
-// plugged in and out at any time. Axes and buttons are those of the kernel's xpad driver.
+// A gamepad through Linux' joystick interface (/dev/input/js*, the kernel's
+// Documentation/input/joydev/joystick-api.rst), plugged in and out at any time. Axes and buttons are those of the
+// kernel's xpad driver.
 //
 //   left shoulder (LB)   dead-man: hold it to drive        left stick up/down, right stick left/right   drive, turn
 //   A  flat   X  climb front   Y  over the edge   right stick pressed  climb rear
@@ -19,13 +20,12 @@
 
 namespace kenaf::teleop {
 
-// What the gamepad's events add up to. A dead-man that is held when the gamepad is plugged in counts only once it
-// was let go and pressed. The kernel tells where everything is when the device is opened, and again where it had to
-// drop events because nobody read them: then a dead-man or a cross that is let go of counts, and a pressed emergency
-// stop does.
+// State derived from the gamepad's events. A dead-man held when the gamepad is plugged in counts only after it was
+// released and pressed. The kernel reports all positions when the device is opened, and again if it had to drop unread
+// events: then releases of dead-man and cross count, and a pressed emergency stop does.
 class GamepadState {
  public:
-  // The action of a button that was pressed, if it has one.
+  // Returns the action of a pressed button, if it has one.
   std::optional<Action> take(const js_event& event);
   const Sticks& sticks() const { return sticks_; }
   std::optional<Action> cross() const { return cross_; }  // of the cross while it is held
@@ -35,7 +35,7 @@ class GamepadState {
   std::optional<Action> cross_;
 };
 
-// The device: found, opened, read, and looked for again after it went. Thread safety: belongs to one thread.
+// The device: found, opened, read, and searched for again after it was unplugged. Thread safety: one thread.
 class Gamepad {
  public:
   // `path`: the device; "" takes the first /dev/input/js*; "none" never looks.
@@ -44,11 +44,11 @@ class Gamepad {
   Gamepad(const Gamepad&) = delete;
   Gamepad& operator=(const Gamepad&) = delete;
 
-  // What came since the last call. Without a device it looks for one, at most once a second; one that went leaves its
-  // sticks at rest and the dead-man let go.
+  // Returns the actions since the last call. Without a device it searches for one, at most once a second; an unplugged
+  // one leaves its sticks at rest and the dead-man released.
   std::vector<Action> read(double now_s);
   const Sticks& sticks() const { return state_.sticks(); }
-  const std::string& name() const { return name_; }  // "" where there is none
+  const std::string& name() const { return name_; }  // "" if there is none
 
  private:
   void open();

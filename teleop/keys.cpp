@@ -8,7 +8,7 @@ namespace kenaf::teleop {
 
 namespace {
 
-// Emergency stop needs no shift key, its release does.
+// The emergency stop needs no shift key, its release does.
 constexpr auto kKeys = std::to_array<std::pair<std::string_view, Action>>({
     {"w", Action::forward},
     {"up", Action::forward},
@@ -18,7 +18,7 @@ constexpr auto kKeys = std::to_array<std::pair<std::string_view, Action>>({
     {"left", Action::turn_left},
     {"d", Action::turn_right},
     {"right", Action::turn_right},
-    {"home", Action::forward_left},  // as they lie on a keypad
+    {"home", Action::forward_left},  // arranged as on a keypad
     {"page_up", Action::forward_right},
     {"end", Action::backward_left},
     {"page_down", Action::backward_right},

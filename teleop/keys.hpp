@@ -1,10 +1,10 @@
-// What each key means, and the dead-man of a keyboard.
+// The meaning of each key, and the dead-man of a keyboard.
 //
-// A terminal reports that a key was pressed and, while it is held, repeats it; it never reports that it was let go. So
-// a key that drives counts as held for `first_s` after it was pressed, which bridges the keyboard's delay before it
-// repeats, and for `repeat_s` after each repeat. With the defaults a robot stands at most 0.6 s after a short touch and
-// 0.2 s after a key that was held is let go (plus the link). A keyboard that repeats later than 0.6 s or seldomer than
-// five times a second makes the robot stutter, never run on.
+// A terminal reports that a key was pressed and, while it is held, repeats it; it never reports its release. So a
+// driving key counts as held for `first_s` after it was pressed, which bridges the keyboard's initial delay, and for
+// `repeat_s` after each repeat. With the defaults a robot stops at most 0.6 s after a short press and 0.2 s after the
+// release of a held key (plus the link). A keyboard that starts repeating later than 0.6 s, or repeats less than five
+// times a second, makes the robot stutter but never run on.
 #pragma once
 
 #include <optional>
@@ -49,8 +49,8 @@ enum class Action : unsigned char {
 };
 bool drives(Action action);
 
-// Keys by name: a printable character itself, else "space", "up", "down", "left", "right", "home", "end", "page_up",
-// "page_down", "ctrl_c". nullopt: the key means nothing.
+// Keys by name: a printable character itself, otherwise "space", "up", "down", "left", "right", "home", "end",
+// "page_up", "page_down", "ctrl_c". nullopt: the key has no meaning.
 std::optional<Action> action_of_key(std::string_view key);
 
 struct KeyTiming {
@@ -63,8 +63,8 @@ class DriveKey {
  public:
   explicit DriveKey(const KeyTiming& timing = {}) : timing_(timing) {}
 
-  // A key came that drives. The same again within the time it is held is its repeat, another one takes its place: a
-  // keyboard repeats only the last one pressed.
+  // A driving key arrived. The same key within its hold time is its repeat; another one replaces it, since a keyboard
+  // repeats only the last key pressed.
   void press(Action action, double now_s);
   void let_go() { held_.reset(); }
   std::optional<Action> held(double now_s) const;

@@ -26,8 +26,8 @@ bool is_printable(char character) {
   return character >= ' ' && character <= '~';
 }
 
-// Each overload lists the payload of one kind in its order on the wire. The Writer and the Reader walk the same list,
-// so they cannot disagree. The session is part of the header.
+// Each overload lists the payload of one kind in wire order. The Writer and the Reader walk the same list, so they
+// cannot disagree. The session is part of the header.
 void walk(auto& io, Wish& m) {
   io.counter(m.sequence);
   io.integer(m.newest_status);
@@ -40,6 +40,7 @@ void walk(auto& io, Wish& m) {
 }
 
 void walk(auto& io, Status& m) {
+  // Numbers of the link, then the decision, then the robot's state in the order of hrt_state, then the texts.
   io.counter(m.sequence);
   io.integer(m.newest_wish);
   io.number(m.wish_age_s, kMaxMeasured);
@@ -109,7 +110,7 @@ class Writer {
   std::size_t used_ = 0;
 };
 
-// Keeps the first error; what is read after it is 0.
+// Keeps the first error; values read after it are 0.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -182,7 +183,7 @@ class Reader {
   DecodeError error_ = DecodeError::none;
 };
 
-// The kind on the wire counts from 1 in the order of the variant.
+// The kind on the wire is the index in the variant plus 1.
 template <class Message>
 DecodeError read_payload(Reader& reader, std::uint64_t session, Datagram& out) {
   Message message{};

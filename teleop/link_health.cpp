@@ -6,7 +6,7 @@ namespace kenaf::teleop {
 
 namespace {
 
-// Doubled datagrams can make more arrive than were sent.
+// Duplicated datagrams can make more arrive than were sent.
 double percent_lost(std::uint32_t due, std::uint32_t received) {
   if (due == 0) return 0;
   return 100.0 * (due - std::min(due, received)) / due;
@@ -23,7 +23,7 @@ bool LinkHealth::heard(const Status& status, double now_s) {
   ++statuses_received_;
   const bool is_known = status.newest_wish <= newest_sent_ && newest_sent_ - status.newest_wish < sent_at_s_.size();
   if (newest_ && status.sequence <= newest_->sequence) {
-    // A control process that was started again counts anew; a datagram that is only late echoes no newer wish.
+    // A restarted control process counts anew; a datagram that is merely late echoes no newer wish.
     if (!is_known || status.newest_wish <= newest_->wish) return false;
     window_.clear();
   }

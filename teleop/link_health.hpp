@@ -1,5 +1,5 @@
-// How the link to the control process is, from the datagrams alone. Plain state; the caller brings the time, seconds of
-// one steady clock.
+// Quality of the link to the control process, from the datagrams alone. Plain state; the caller passes the time,
+// seconds of one steady clock.
 #pragma once
 
 #include <array>
@@ -14,15 +14,14 @@ namespace kenaf::teleop {
 class LinkHealth {
  public:
   void sent(std::uint32_t sequence, double now_s);
-  // True: it is the newest so far, and counts.
+  // Returns true if it is the newest so far, and counts.
   bool heard(const Status& status, double now_s);
 
   // Seconds since the newest status; nullopt before the first.
   std::optional<double> silence_s(double now_s) const;
-  // Of the newest status that echoes a wish it had not echoed before, without the time that the control process kept
-  // it.
+  // Round trip of the newest status that echoes a new wish, without the time that the control process kept the wish.
   std::optional<double> round_trip_s() const { return round_trip_s_; }
-  // Lost datagrams in percent, over the last kWindow_s; 0 where nothing was due.
+  // Lost datagrams in percent over the last kWindow_s; 0 if none was due.
   double loss_up_percent() const;
   double loss_down_percent() const;
   std::uint32_t newest_status() const { return newest_ ? newest_->sequence : 0; }
@@ -34,7 +33,7 @@ class LinkHealth {
     std::uint32_t newest_wish, wishes_received, newest_status, statuses_received;
   };
 
-  std::array<double, 256> sent_at_s_{};  // by the sequence's last byte: 12 s of wishes
+  std::array<double, 256> sent_at_s_{};  // indexed by the sequence's last byte: 12 s of wishes
   std::uint32_t newest_sent_ = 0;
   struct Newest {
     std::uint32_t sequence, wish;

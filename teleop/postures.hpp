@@ -1,5 +1,5 @@
-// The flippers' postures that have a key, in degrees: front left, front right, rear left, rear right. 3 to 5 are those
-// in which an operator climbs a step (share/manoeuvres/step-flippers.toml).
+// The flipper postures that have a key, in degrees: front left, front right, rear left, rear right. Postures 3 to 5 are
+// those with which an operator climbs a step (share/manoeuvres/step-flippers.toml).
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ inline constexpr std::array<Posture, 6> kPostures{{
     {"tall", {-70, -70, -70, -70}},           // body off the ground
 }};
 
-inline constexpr double kNudge_deg = 3;  // a press or a repeat of a key that moves a flipper
+inline constexpr double kNudge_deg = 3;  // per press or repeat of a key that moves a flipper
 inline constexpr double kMaxNudged_deg = 180;
 
 }  // namespace kenaf::teleop

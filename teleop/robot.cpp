@@ -15,12 +15,12 @@ std::string words_of(int result) {
   return fmt::format("{}: {}", hrt_error_name(result), hrt_last_error());
 }
 
-// A recording may be incomplete, or drives did not show that they stopped.
+// A recording may be incomplete, or drives may not have confirmed that they stopped.
 void log_close(int result) {
   if (result != HRT_OK) fmt::print(stderr, "operator_control: the robot was closed, but {}\n", words_of(result));
 }
 
-// "run.csv" for the first time, then "run-2.csv": a robot that was lost does not cost the recording until then.
+// "run.csv" for the first time, then "run-2.csv": losing the robot does not cost the recording so far.
 std::string recording(const std::string& path, int times_opened) {
   if (path.empty() || times_opened <= 1) return path;
   const std::filesystem::path first(path);
@@ -40,13 +40,13 @@ Robot::~Robot() {
 
 void Robot::begin_opening() {
   hrt_config config = config_;
-  if (times_opened_ > 0) config.reset_robot = 0;  // it goes on from where it was lost
+  if (times_opened_ > 0) config.reset_robot = 0;  // it continues from where it was lost
   std::snprintf(config.record, sizeof config.record, "%s", recording(record_, times_opened_ + 1).c_str());
   if (message_.empty()) message_ = "the robot is being opened";
   opening_ = std::async(std::launch::async, [config] {
     log_close(hrt_close());
     const int result = hrt_kenaf_init_with(&config);
-    return Opened{result, result == HRT_OK ? "" : words_of(result)};  // words are kept for each thread
+    return Opened{result, result == HRT_OK ? "" : words_of(result)};  // error texts are kept per thread
   });
 }
 

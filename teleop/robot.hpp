@@ -1,5 +1,5 @@
-// The robot behind hrt.h, opened and opened again in a thread of its own: opening waits for seconds, and the control
-// process owes its console an answer twenty times a second meanwhile.
+// The robot behind hrt.h, opened and reopened in a separate thread: opening takes seconds, and the control process must
+// keep answering its console twenty times a second meanwhile.
 #pragma once
 
 #include <kenaf/hrt.h>
@@ -12,19 +12,19 @@
 
 namespace kenaf::teleop {
 
-// Thread safety: belongs to one thread.
+// Thread safety: one thread.
 class Robot {
  public:
   using Clock = std::chrono::steady_clock;
 
-  explicit Robot(const hrt_config& config);  // begins to open it
+  explicit Robot(const hrt_config& config);  // starts opening it
   ~Robot();                                  // stops and closes it
 
-  // The newest state, and whether the robot is open. One that was lost or could not be opened is opened again after a
-  // second; it stays where it is then, and its recording goes on in a second file (run-2.csv).
+  // Returns the newest state, and whether the robot is open. A robot that was lost or could not be opened is opened
+  // again after a second; it then stays where it is, and its recording continues in a second file (run-2.csv).
   bool look(hrt_state& state);
   void carry_out(const Order& order);
-  const std::string& message() const { return message_; }  // what happened last, for people
+  const std::string& message() const { return message_; }  // the last event, as text
 
  private:
   struct Opened {

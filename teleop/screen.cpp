@@ -10,10 +10,10 @@ namespace kenaf::teleop {
 
 namespace {
 
-constexpr double kSilent_s = 0.5;  // so long without a status is shown as silence
+constexpr double kSilent_s = 0.5;  // a pause of this length without a status is shown as silence
 constexpr std::string_view kRule = "--------------------------------------------------------------------------------";
 
-// Nominal measures of the robot, for the drawing alone: pivots, flippers, height of body and belts.
+// Nominal dimensions of the robot, for the drawing only: pivots, flippers, height of body and belts.
 constexpr double kPivotX_mm = 225, kFlipper_mm = 145, kBodyTop_mm = 90, kBelly_mm = -90, kPivotZ_mm = -25;
 constexpr double kColumn_mm = 30, kRow_mm = 60;  // a character is about twice as high as wide
 constexpr std::size_t kPostureRows = 9, kPostureColumns = 38;
@@ -22,7 +22,7 @@ struct Point {
   double x_mm, z_mm;
 };
 
-// Draws into the field of the posture; its middle is the body's.
+// Draws into the posture field; the body is at its centre.
 class SideView {
  public:
   SideView(Canvas& canvas, std::size_t row, std::size_t column, double nose_up_rad)
@@ -46,7 +46,7 @@ class SideView {
  private:
   Point turned(Point p) const { return {cos_ * p.x_mm - sin_ * p.z_mm, sin_ * p.x_mm + cos_ * p.z_mm}; }
   static char stroke(double dx_mm, double dz_mm) {
-    // a character's own slopes are 0, 2 and infinite
+    // the slopes that characters can show are 0, 2 and infinite
     const double steep = std::abs(dz_mm) / std::max(1e-9, std::abs(dx_mm));
     if (steep < 0.7) return '-';
     if (steep > 5) return '|';
@@ -80,6 +80,7 @@ Tone tone_of(Mode mode) {
 }
 
 std::string words_of(const Status& status) {
+  // The mode says it all but for a halt, for which the reason says how it ends.
   switch (status.mode) {
     case Mode::no_robot:
       return "NO ROBOT";

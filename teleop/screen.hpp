@@ -1,5 +1,5 @@
-// The console's screen as characters, and its one line for --plain: pure functions of what is known. The terminal that
-// shows it is terminal.hpp.
+// The console's screen as characters, and its one line for --plain: pure functions of the known state. terminal.hpp
+// displays it.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ inline constexpr std::size_t kRows = 24, kColumns = 80;
 
 enum class Tone : unsigned char { plain, dim, title, good, warning, alarm };
 
-// 24 lines of 80 characters, printable ASCII only: no terminal and no locale is asked for more, and nothing that came
-// by the network can steer the terminal.
+// 24 lines of 80 characters, printable ASCII only: works on every terminal and locale, and no text from the network can
+// control the terminal.
 struct Canvas {
   struct Cell {
     char character = ' ';
@@ -26,26 +26,26 @@ struct Canvas {
   };
   std::array<std::array<Cell, kColumns>, kRows> cells{};
 
-  // What does not fit is cut; what is not printable becomes '?'.
+  // Text that does not fit is truncated; non-printable characters become '?'.
   void put(std::size_t row, std::size_t column, std::string_view text, Tone tone = Tone::plain);
   std::string line(std::size_t row) const;
 };
 
 struct View {
   std::string_view control;                 // address of the control process
-  std::string_view camera;                  // where its pictures are; "" = nowhere
+  std::string_view camera;                  // address of its pictures; "" = none
   std::string_view gamepad;                 // name; "" = none
   const Status* status = nullptr;           // the newest; null before the first
-  std::optional<std::string_view> taken{};  // the robot is another console's: whose
+  std::optional<std::string_view> taken{};  // the robot belongs to another console: its description
   const LinkHealth& health;
   const Desk& desk;
-  const Wish& wish;  // as it is sent now
+  const Wish& wish;  // as it would be sent now
   double now_s;
 };
 
 // The robot from its left side, nose to the right: body, belts and flippers at their angles and at its pitch. 9 rows
-// and 38 columns beginning at (row, column). Front flippers '\', '/' or '-' as they lie; a pair that differs shows
-// both.
+// and 38 columns beginning at (row, column). Front flippers '\', '/' or '-' according to their angle; a pair at
+// different angles shows both.
 void draw_posture(Canvas& canvas, std::size_t row, std::size_t column, const Status& status);
 
 Canvas draw_screen(const View& view);

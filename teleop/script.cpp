@@ -15,14 +15,14 @@ namespace {
 
 constexpr double kFirstRepeat_s = 0.4, kRepeat_s = 0.04;  // a keyboard's
 constexpr double kNotices_s = 1.0, kLetsGo_s = 0.5;       // a person's
-constexpr double kPatience_s = 15;                        // without a word from the robot
+constexpr double kPatience_s = 15;                        // without a status from the robot
 
 constexpr std::array kNames{"time_s",          "x_mm",     "y_mm",    "z_mm",
                             "nose_up_deg",     "roll_deg", "yaw_deg", "track_mmps",
                             "flipper_off_deg", "battery_v"};
 constexpr std::array kModes{Mode::no_robot, Mode::emergency_stop, Mode::halted, Mode::ready, Mode::driving};
 
-// How far the flippers are from where they were sent; infinite until the control process has heard of it.
+// Largest distance of a flipper from its ordered angle; infinite until the control process has received the order.
 double flippers_off_deg(const Status& status, const Desk& desk) {
   if (status.flipper_order != desk.flipper_order()) return std::numeric_limits<double>::infinity();
   double largest = 0;
@@ -33,7 +33,7 @@ double flippers_off_deg(const Status& status, const Desk& desk) {
   return largest;
 }
 
-// Nothing where it was not measured: the 0 that stands there then is no reading.
+// nullopt if it was not measured: the 0 in its place is no reading.
 std::optional<double> value_of(std::string_view name, const Status& status, const Desk& desk) {
   const auto measured = [&](std::uint32_t field, double value) {
     return (status.fields & field) != 0 ? std::optional(value) : std::nullopt;
@@ -126,19 +126,24 @@ class LineReader {
 };
 
 Step read_step(LineReader& reader, int line, std::string_view text) {
+  // "SECONDS KEY": a key press at a given time.
   Step step{.kind = Step::Kind::press, .line = line};
   if (const auto at = LineReader::number_of(reader.peek())) {
     step.seconds = reader.seconds("a time");
     step.text = reader.key();
     return step;
   }
+
+  // Otherwise a command, each with its own arguments.
   const std::string_view command = reader.word("a command");
   if (command == "press") {
+    // "press KEY [TIMES]"
     step.text = reader.key();
     const double times = reader.at_end() ? 1 : reader.number("how often");
     if (times != std::floor(times) || times < 1 || times > 1000) reader.fail("a key is pressed 1 to 1000 times");
     step.times = static_cast<int>(times);
   } else if (command == "hold") {
+    // "hold KEY for SECONDS" or "hold KEY until CONDITION within SECONDS"
     step.kind = Step::Kind::hold;
     step.text = reader.key();
     if (!drives(*action_of_key(step.text))) reader.fail(fmt::format("the key '{}' is not one to hold", step.text));
@@ -147,6 +152,7 @@ Step read_step(LineReader& reader, int line, std::string_view text) {
     if (how == "for") step.seconds = reader.seconds("a time");
     if (how == "until") reader.until(step);
   } else if (command == "wait") {
+    // "wait SECONDS" or "wait until CONDITION within SECONDS"
     step.kind = Step::Kind::wait;
     if (reader.peek() == "until") {
       reader.word("'until'");
@@ -155,6 +161,7 @@ Step read_step(LineReader& reader, int line, std::string_view text) {
       step.seconds = reader.seconds("a time");
     }
   } else if (command == "say") {
+    // "say TEXT": takes the rest of the line verbatim, not word by word.
     step.kind = Step::Kind::say;
     const std::size_t begin = text.find("say") + 3;
     step.text = text.substr(std::min(text.find_first_not_of(" \t", begin), text.size()));
@@ -200,7 +207,7 @@ void Player::begin_step(double now_s) {
   halt_seen_s_.reset();
 }
 
-// Lets go and presses again where the robot halted. In any other case the key repeats.
+// Releases and presses again after a halt of the robot. Otherwise the key repeats.
 void Player::press_held(Action action, double now_s, const Status* newest, Turn& turn) {
   const bool waits = newest != nullptr && newest->mode == Mode::halted;
   if (!waits) halt_seen_s_.reset();
@@ -210,7 +217,7 @@ void Player::press_held(Action action, double now_s, const Status* newest, Turn&
       next_press_s_.reset();
       return;
     }
-    halt_seen_s_ = now_s;  // pressed again below; he looks again
+    halt_seen_s_ = now_s;  // pressed again below; the operator looks again
   }
   if (next_press_s_ && now_s < *next_press_s_) return;
   next_press_s_ = now_s + (next_press_s_ ? kRepeat_s : kFirstRepeat_s);
@@ -249,7 +256,7 @@ Player::Turn Player::turn(double now_s, const Status* newest, double silent_s, c
         if (step.kind == Step::Kind::hold) press_held(*action_of_key(step.text), now_s, newest, turn);
         return turn;
       }
-      if (step.kind == Step::Kind::hold) turn.pressed.push_back(Action::stand);  // let go
+      if (step.kind == Step::Kind::hold) turn.pressed.push_back(Action::stand);  // release
     } else if (now_s < step_began_s_ + step.seconds) {
       if (step.kind == Step::Kind::hold) press_held(*action_of_key(step.text), now_s, newest, turn);
       return turn;

@@ -1,5 +1,5 @@
-// Which console has the robot, and which of its wishes counts. Plain values; the caller brings the time: wall-clock
-// seconds of any steady clock, because a network knows no robot time.
+// Decides which console has the robot, and which of its wishes counts. Plain values; the caller passes the time:
+// wall-clock seconds of any steady clock, because a network does not follow robot time.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,22 @@ namespace kenaf::teleop {
 struct Seat {
   std::uint64_t session = 0;   // 0: nobody has the robot
   std::optional<Wish> wish{};  // the newest one
-  double heard_s = 0;          // when it came
-  std::uint32_t received = 0;  // wishes of this session, old ones too
-  std::uint64_t left = 0;      // the session that said Bye last
+  double heard_s = 0;          // its time of arrival
+  std::uint32_t received = 0;  // wishes of this session, including late ones
+  std::uint64_t left = 0;      // the last session that said Bye
 };
 
 enum class Admission : std::uint8_t {
-  newest,  // it counts: from the console that has the robot, which a free seat gives to whoever asks first
-  old,     // overtaken or doubled on the way, or by its session's Bye: dropped, and no sign of life either
+  newest,  // it counts: from the console that has the robot; a free seat goes to the first to ask
+  old,     // overtaken or duplicated, or after its session's Bye: dropped, and no sign of life
   taken,   // another console has the robot
 };
 
-// A console that was silent for `takeover_s` loses the robot to the next one that asks; until then it finds its place
-// again. A stray wish of a console long gone takes a free seat for as long, but moves nothing: see decide().
+// A console silent for `takeover_s` loses the robot to the next one that asks; until then it may return. A stray wish
+// of a former console takes a free seat for that time, but moves nothing: see decide().
 Admission admit(Seat& seat, const Wish& wish, double now_s, double takeover_s);
 
-// The console has left: the seat is free. Somebody else's Bye changes nothing.
+// The console has left: the seat is free. Another console's Bye changes nothing.
 void leave(Seat& seat, std::uint64_t session);
 
 }  // namespace kenaf::teleop

@@ -12,7 +12,7 @@ namespace kenaf::teleop {
 
 namespace {
 
-constexpr int kEscape_ms = 25;  // after an escape: what comes later is no part of a key's sequence
+constexpr int kEscape_ms = 25;  // later bytes after an escape are not part of a key's sequence
 constexpr int kCtrlC = 3, kEscape = 27;
 
 void define_tones() {
@@ -25,7 +25,7 @@ void define_tones() {
   init_pair(static_cast<short>(Tone::alarm), COLOR_RED, -1);
 }
 
-// Readable without colours too.
+// Also readable without colours.
 attr_t attributes_of(Tone tone) {
   const attr_t colour = has_colors() ? static_cast<attr_t>(COLOR_PAIR(static_cast<int>(tone))) : 0;
   switch (tone) {
@@ -72,9 +72,8 @@ std::string name_of_key(int key) {
   }
 }
 
-// After an escape: takes the rest of a key's sequence that terminfo does not know (control-left is "\x1b[1;5D"), whose
-// digits would be keys of their own. A key that was pressed after Esc, or with Alt, stays: it may be the emergency
-// stop.
+// After an escape: consumes the rest of a key sequence unknown to terminfo (control-left is "\x1b[1;5D"), whose digits
+// would be keys of their own. A key pressed after Esc, or with Alt, is kept: it may be the emergency stop.
 void skip_unknown_sequence() {
   const auto is_of_sequence = [](int byte) { return byte >= ' ' && byte <= '~'; };
   int byte = getch();
@@ -96,7 +95,7 @@ Terminal::Terminal() {
     const char* name = std::getenv("TERM");
     throw std::runtime_error(fmt::format("the terminal '{}' (TERM) is not known here", name == nullptr ? "" : name));
   }
-  raw();  // control-S must not stop the console, control-C is a key
+  raw();  // control-S must not stop the console; control-C is a key
   noecho();
   keypad(stdscr, TRUE);
   nodelay(stdscr, TRUE);

@@ -1,4 +1,4 @@
-// The terminal, by ncurses: shows a Canvas, reads keys by the names of keys.hpp. One per process: ncurses has a global
+// The terminal, by ncurses: shows a Canvas, reads keys by the names of keys.hpp. One per process: ncurses has global
 // state.
 #pragma once
 
@@ -11,14 +11,14 @@ namespace kenaf::teleop {
 
 class Terminal {
  public:
-  Terminal();   // throws std::runtime_error where standard output is no terminal, or one that nobody knows
-  ~Terminal();  // as it was before
+  Terminal();   // throws std::runtime_error if standard output is no terminal, or one of an unknown type
+  ~Terminal();  // restores the terminal
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  // Says so instead where the terminal is smaller than the canvas.
+  // Shows a message instead if the terminal is smaller than the canvas.
   void show(const Canvas& canvas);
-  // A key that came, without waiting; nullopt: none did. Unknown ones are "?", whatever bytes the terminal sends for
+  // Returns a pending key without waiting; nullopt: none. Unknown keys are "?", whatever bytes the terminal sends for
   // them.
   std::optional<std::string> key();
 };

@@ -82,7 +82,7 @@ std::uint16_t UdpSocket::port() const {
   Peer own;
   own.size = sizeof own.address;
   if (::getsockname(descriptor_, reinterpret_cast<sockaddr*>(&own.address), &own.size) != 0) return 0;
-  // the port lies at the same place in both families' addresses
+  // the port is at the same offset in the addresses of both families
   return ntohs(reinterpret_cast<const sockaddr_in&>(own.address).sin_port);
 }
 
@@ -90,7 +90,7 @@ std::optional<std::size_t> UdpSocket::receive(std::span<std::byte> buffer, Peer&
   from.size = sizeof from.address;
   ssize_t got = -1;
   do {
-    // an error here is a late word about an earlier datagram that nobody took (ECONNREFUSED): it is no datagram
+    // an error here is a delayed report about an earlier datagram that nobody received (ECONNREFUSED), not a datagram
     got = ::recvfrom(descriptor_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from.address),
                      &from.size);
   } while (got < 0 && (errno == ECONNREFUSED || errno == EINTR));

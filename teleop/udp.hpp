@@ -1,5 +1,5 @@
-// A UDP socket, IPv4 or IPv6, that never blocks and never fails on what the network does: a datagram that cannot be
-// sent is one that was lost. Thread safety: a socket belongs to one thread.
+// A UDP socket, IPv4 or IPv6, that never blocks and never fails on network errors: a datagram that cannot be sent
+// counts as lost. Thread safety: one socket, one thread.
 #pragma once
 
 #include <sys/socket.h>
@@ -12,21 +12,21 @@
 
 namespace kenaf::teleop {
 
-// Where a datagram came from or goes to.
+// Source or destination of a datagram.
 struct Peer {
   sockaddr_storage address{};
   socklen_t size = 0;
 };
 std::string to_text(const Peer& peer);  // "10.0.0.5:45460"
 
-// "HOST:PORT", "[V6]:PORT"; names are looked up. Throws std::runtime_error with words for a user.
+// "HOST:PORT", "[V6]:PORT"; names are resolved. Throws std::runtime_error with a text for the user.
 Peer resolve(const std::string& host_port);
 
 class UdpSocket {
  public:
-  // For whoever is to be found: bound to `local`; port 0 takes a free one. Throws std::runtime_error.
+  // A server socket bound to `local`; port 0 takes a free one. Throws std::runtime_error.
   static UdpSocket bound_to(const Peer& local);
-  // For whoever looks for `remote`: hears nobody else. Throws std::runtime_error.
+  // A client socket that receives only from `remote`. Throws std::runtime_error.
   static UdpSocket connected_to(const Peer& remote);
   ~UdpSocket();
   UdpSocket(UdpSocket&& other) noexcept;
@@ -35,10 +35,10 @@ class UdpSocket {
   int descriptor() const { return descriptor_; }
   std::uint16_t port() const;
 
-  // One datagram that has come, cut to `buffer`; nullopt: none is there.
+  // Returns one received datagram, truncated to `buffer`; nullopt if there is none.
   std::optional<std::size_t> receive(std::span<std::byte> buffer, Peer& from) const;
   void send(std::span<const std::byte> datagram, const Peer& to) const;
-  void send(std::span<const std::byte> datagram) const;  // of a connected one
+  void send(std::span<const std::byte> datagram) const;  // for a connected socket
 
  private:
   explicit UdpSocket(int family);

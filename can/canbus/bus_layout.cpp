@@ -20,7 +20,7 @@ Frame frame_of(const Pdo& pdo) {
   return frame;
 }
 
-// One kind of frame of the bus and how often it comes.
+// One kind of frame on the bus and its rate.
 struct Traffic {
   Frame frame;
   double per_s;
@@ -43,7 +43,7 @@ std::vector<Traffic> traffic_of(const RobotBus& bus, double period_s) {
     ++nodes;
   }
   if (bus.gyro) {
-    // as the device has it: eight bytes at most, once a SYNC
+    // as configured in the device: eight bytes at most, once per SYNC
     all.push_back({{.length = canopen::kMaxFrameBytes}, cycles_per_s});
     ++nodes;
   }

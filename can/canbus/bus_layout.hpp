@@ -1,8 +1,8 @@
-// Which process data each node of a robot's bus sends and takes, and what a cycle of it costs. docs/can-robot.md has it
-// as a table; nothing else knows where in a frame a value stands.
+// The process data that each node of a robot's bus sends and receives, and the bus load of a cycle. docs/can-robot.md
+// has it as a table; no other code knows the position of a value in a frame.
 //
-// A cycle begins with SYNC: the nodes latch and send what they measured at it; the master answers with commands, which
-// the drives take at the next SYNC.
+// A cycle begins with SYNC: the nodes latch and send their measurements; the master answers with commands, which take
+// effect at the next SYNC.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,21 @@
 
 namespace kenaf::canbus {
 
-// Of one drive. All of a cycle's frames fit 500 kbit/s at 100 Hz in less than half of its time.
+// PDOs of one drive. All frames of a cycle fit 500 kbit/s at 100 Hz in less than half of its time.
 struct DrivePdos {
   canopen::Pdo state;            // TPDO1, each SYNC: statusword, position
-  canopen::Pdo effort;           // TPDO2: tracks at each SYNC velocity, current; flippers at each fifth current
-  canopen::Pdo battery;          // TPDO3, each tenth SYNC, of the left track alone: the voltage of its supply
-  canopen::Pdo command;          // RPDO1, taken at SYNC: controlword and target velocity or position
-  bool has_effort, has_battery;  // false: not used, where the description says that drives have no currents, no voltage
+  canopen::Pdo effort;           // TPDO2: tracks each SYNC velocity, current; flippers each fifth SYNC current
+  canopen::Pdo battery;          // TPDO3, each tenth SYNC, left track only: its supply voltage
+  canopen::Pdo command;          // RPDO1, in force from SYNC: controlword and target velocity or position
+  bool has_effort, has_battery;  // false: not used, if the description says that drives have no currents or no voltage
 };
 DrivePdos pdos_of(const RobotBus& bus, std::size_t drive);
 canopen::Pdo inclinometer_pdo();  // TPDO1, each SYNC: longitudinal, lateral slope
 
-// The identifiers that the master has to hear: what its nodes send, SYNC, and another master's heartbeat.
+// Returns the identifiers that the master must receive: its nodes' frames, SYNC, and another master's heartbeat.
 std::vector<std::uint16_t> ids_to_hear(const RobotBus& bus);
 
-// Bits a second on the wire, with as many stuff bits as there can be, at this period; heartbeats are part of it.
+// Returns bits per second on the wire, with the maximum of stuff bits, at this period; heartbeats included.
 double worst_case_bits_per_s(const RobotBus& bus, double period_s);
 double frames_per_s(const RobotBus& bus, double period_s);
 

@@ -23,7 +23,7 @@ using canopen::NodeId;
 constexpr double kTurn_rad = 2 * std::numbers::pi;
 constexpr Range kCounts{.min = -1e9, .max = 1e9};
 constexpr Range kAngle{.min = -kTurn_rad, .max = kTurn_rad};
-// What is longer than this is not a stop: a commander that fell silent must not be noticed by what the robot ran into.
+// A longer stop is not acceptable: a collision must not be the first sign of a silent commander.
 constexpr double kLongestStop_s = 0.2;
 constexpr int kBitRate = 500'000;
 
@@ -42,7 +42,7 @@ int read_direction(TomlReader& table, std::string_view key = "direction") {
   return direction;
 }
 
-// Motor, encoder and gear of one kind of drive. `turns_per_unit`: of the motor, for 1 m of track or 1 rad of flipper.
+// Motor, encoder and gear of one kind of drive. `turns_per_unit`: motor turns for 1 m of track or 1 rad of flipper.
 DriveOnBus read_kind(TomlReader& table, double turns_per_unit) {
   DriveOnBus drive{};
   drive.units.counts_per_unit = table.number("counts_per_turn", {.min = 1, .max = 1e8}) * turns_per_unit;
@@ -55,7 +55,7 @@ double motor_turns(TomlReader& table) {
   return table.number("gear_ratio", {.min = 1e-3, .max = 1e5});
 }
 
-// Of one drive of its kind: where it is on the bus, and which way it turns.
+// One drive of its kind: its place on the bus, and its direction of rotation.
 DriveOnBus read_drive(TomlReader table, DriveOnBus drive) {
   drive.node = static_cast<NodeId>(table.integer("node", 1, canopen::kMaxNode));
   const int direction = read_direction(table);
@@ -66,7 +66,7 @@ DriveOnBus read_drive(TomlReader table, DriveOnBus drive) {
   return drive;
 }
 
-// What the drive's numbers of 32 bits must be able to say.
+// Checks that the limits fit the drive's 32-bit numbers.
 void check_numbers(TomlReader& table, const DriveOnBus& drive) {
   const double most = std::numeric_limits<std::int32_t>::max();
   const auto check = [&](std::string_view key, double value, const char* what) {
@@ -185,6 +185,7 @@ void check_nodes(TomlReader& table, const RobotBus& bus) {
 }  // namespace
 
 RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for_errors) {
+  // A description without [can] is for simulation only.
   const toml::table root = description::parse_toml(toml_text, name_for_errors);
   TomlReader file(root, "", name_for_errors);
   if (!file.has("can")) {
@@ -192,6 +193,8 @@ RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for
         fmt::format("{}: has no table [can], which says what is on the robot's CAN bus", name_for_errors));
   }
   TomlReader table = file.table("can");
+
+  // The bus and its master. A silence of two heartbeats at least, so that one that is late stops nothing.
   RobotBus bus{};
   bus.interface = table.text("interface");
   if (bus.interface.empty() || bus.interface.size() > 15) table.fail("interface", "must be of 1 to 15 characters");
@@ -201,15 +204,20 @@ RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for
   bus.master_silence_s = table.number("master_silence_s", {.min = 0.01, .max = 0.2});
   if (bus.master_silence_s < 2 * bus.master_heartbeat_s)
     table.fail("master_silence_s", "is less than two heartbeats: one late heartbeat would stop the robot");
+  // Heartbeats, measured quantities and answer time-out of the nodes.
   bus.node_heartbeat_s = table.number("node_heartbeat_s", {.min = 0.01, .max = 10});
   bus.has_currents = !table.has("currents") || table.boolean("currents");
   bus.has_battery = !table.has("battery") || table.boolean("battery");
   bus.answer_s = table.number("answer_s", {.min = 0.01, .max = 10});
+
+  // Drives take speeds, limits and radius from the tables that the simulator reads too.
   if (file.has("track")) bus.track_gauge_m = 2 * file.table("track").vector3("left_center_m").y();
   read_tracks(table.table("track"), file.table("drive"), bus);
   if (!file.has("flipper"))
     table.fail("flipper", "has no [flipper] in this description: this library drives robots with four");
   read_flippers(table.table("flipper"), file.table("flipper"), file.table("servo"), bus);
+
+  // Optional sensors; finally, node ids must be unique.
   if (table.has("inclinometer")) bus.inclinometer = read_inclinometer(table.table("inclinometer"));
   if (table.has("gyro")) bus.gyro = read_gyro(table.table("gyro"));
   check_nodes(table, bus);

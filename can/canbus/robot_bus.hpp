@@ -1,10 +1,10 @@
-// What is on a robot's CAN bus: the table [can] of its description, with what of the rest of the description belongs to
-// it. docs/can-robot.md explains every key. Read by the master (libkenaf_real) and by the simulated drives (candrives).
+// The contents of a robot's CAN bus: the table [can] of its description, with related parts of the rest.
+// docs/can-robot.md explains every key. Read by the master (libkenaf_real) and by the simulated drives (candrives).
 //
 // Units: SI at the robot (surface speed of a track, angle of a flipper, 0 = straight out, positive tip up); a drive's
-// own units on the bus. The functions at the end convert between the two, and nothing else does.
+// own units on the bus. Only the functions at the end convert between the two.
 //
-// Thread safety: values and pure functions, but for load_robot_bus, which reads the environment and files.
+// Thread safety: values and pure functions, except load_robot_bus, which reads the environment and files.
 #pragma once
 
 #include <array>
@@ -28,7 +28,7 @@ constexpr bool is_track(std::size_t drive) {
   return drive < robot::kTrackCount;
 }
 
-// How a drive counts, and where it may go.
+// Units and range of a drive.
 struct DriveUnits {
   double counts_per_unit;        // position: counts for 1 m of track or 1 rad of flipper, with the direction's sign
   double zero_counts = 0;        // position at 0 m or 0 rad
@@ -37,7 +37,7 @@ struct DriveUnits {
 };
 
 struct Homing {
-  std::int8_t method;  // CiA 402, table of homing methods: 37 = where it is now; others move
+  std::int8_t method;  // CiA 402, table of homing methods: 37 = at the present position; others move
   double home_rad;     // flipper's angle at the home position
   int offset_direction =
       1;  // +1: at home the drive's position is its object 0x607C; -1: minus that, as others read CiA 402
@@ -52,14 +52,14 @@ struct DriveOnBus {
   DriveUnits units;
   // m/s or rad/s and their derivatives
   double max_speed, acceleration, quick_stop_deceleration;
-  double min_position, max_position;  // of a flipper; tracks: without meaning
-  std::optional<Homing> homing;       // flippers; nullopt: its encoder is absolute
+  double min_position, max_position;  // flippers only
+  std::optional<Homing> homing;       // flippers; nullopt: the encoder is absolute
 };
 
 struct InclinometerAxis {
   bool lateral;     // CiA 410: the slope along the sensor's lateral axis; false: along its longitudinal axis
-  int direction;    // +1 or -1: of the sensor's slope to the robot's angle (roll, pitch: positive nose down)
-  double zero_rad;  // the sensor's slope, after direction, where the robot is level
+  int direction;    // +1 or -1: from the sensor's slope to the robot's angle (roll, pitch: positive nose down)
+  double zero_rad;  // the sensor's slope, after direction, when the robot is level
 };
 
 struct InclinometerOnBus {
@@ -69,41 +69,41 @@ struct InclinometerOnBus {
 
 struct GyroOnBus {
   canopen::NodeId node;
-  std::uint8_t pdo;  // 1 to 4: which of its TPDOs, as the device itself is configured; nothing is written to it
-  std::uint8_t first_bit, bits;  // where the yaw rate stands in it: a signed number, little-endian
+  std::uint8_t pdo;              // 1 to 4: number of the TPDO, as configured in the device; nothing is written to it
+  std::uint8_t first_bit, bits;  // position of the yaw rate in it: a signed little-endian number
   double units_per_radps;        // with the sign that makes a turn to the left positive
 };
 
 struct RobotBus {
   std::string interface;   // "can0"
-  int bit_rate;            // bits a second, as the interface is brought up: what of it a cycle may fill
+  int bit_rate;            // bits per second, as the interface is configured; used for the bus load
   canopen::NodeId master;  // the node id whose heartbeat the drives watch
   double master_heartbeat_s,
       master_silence_s;     // sent so often; after this long without it the drives stop by themselves
-  double node_heartbeat_s;  // how often nodes send theirs
+  double node_heartbeat_s;  // period of the nodes' heartbeats
   double answer_s;          // patience for each answer during set-up
   bool has_currents = true,
        has_battery = true;  // the drives measure their current, the left track's the voltage of its supply
-  double track_gauge_m;     // between the tracks' centre lines; 0: the description does not say it
-  double speed_loop_s;      // time constant of the track drives' own speed control: for simulated ones alone
+  double track_gauge_m;     // between the tracks' centre lines; 0: not in the description
+  double speed_loop_s;      // time constant of the track drives' own speed control: for simulated ones only
   std::array<DriveOnBus, kDriveCount> drives;
   std::optional<InclinometerOnBus> inclinometer;
   std::optional<GyroOnBus> gyro;
 };
 
-// A shipped name ("kenaf") or a path of a TOML file. Throws DescriptionError with file, line and column: no table
-// [can], a key that is missing, unknown or out of its range, a node id used twice, values that do not go together (a
-// target that a drive's 32-bit number cannot hold; a silence shorter than two heartbeats; a stop that takes longer than
-// 0.2 s: see longest_stop_s).
+// Takes a shipped name ("kenaf") or the path of a TOML file. Throws DescriptionError with file, line and column: no
+// table [can], a key that is missing, unknown or out of range, a node id used twice, values that contradict each other
+// (a target beyond a drive's 32-bit numbers; a silence shorter than two heartbeats; a stop longer than 0.2 s: see
+// longest_stop_s).
 RobotBus load_robot_bus(const std::string& name_or_path);
 RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for_errors);
 
-// From the moment in which the master falls silent until the slowest track stands: master_silence_s and its quick stop
-// from full speed.
+// Returns the time from the master's last sign of life until the slowest track stands: master_silence_s plus a quick
+// stop from full speed.
 double longest_stop_s(const RobotBus& bus);
 
-// Track travel in m or flipper angle in rad, and speeds. To the drive: rounded to the nearest; the caller keeps within
-// the limits.
+// Converts track travel in m or flipper angle in rad, and speeds. Rounded to the nearest towards the drive; the caller
+// keeps within the limits.
 std::int32_t position_to_drive(const DriveUnits& units, double position);
 double position_from_drive(const DriveUnits& units, std::int32_t counts);
 std::int32_t velocity_to_drive(const DriveUnits& units, double velocity);

@@ -48,7 +48,7 @@ Time read_clock(clockid_t clock) {
 struct BothClocks {
   Time wall, monotonic;
 };
-// At one moment: a program that is held up between the two would see its wall clock set.
+// Read together: a delay between the two would look like a step of the wall clock.
 BothClocks read_both_clocks() {
   constexpr int kTries = 3;
   BothClocks clocks{};
@@ -79,7 +79,7 @@ int open_socket(int type, int protocol, const char* kind, const char* module) {
   }
 }
 
-// The address of an interface that is there, is one for CAN, and is up.
+// Returns the address of an interface; fails if it does not exist, is not a CAN interface, or is down.
 sockaddr_can address_of(int descriptor, const std::string& interface) {
   ifreq request{};
   interface.copy(request.ifr_name, IFNAMSIZ - 1);
@@ -114,13 +114,13 @@ can_frame to_kernel(const Frame& frame) {
   return out;
 }
 
-// Standard data frames only.
+// Accepts standard data frames only.
 std::optional<Frame> from_kernel(const can_frame& frame) {
   if ((frame.can_id & (CAN_EFF_FLAG | CAN_RTR_FLAG | CAN_ERR_FLAG)) != 0 || frame.can_dlc > CAN_MAX_DLEN) return {};
   return canopen::make_frame(static_cast<std::uint16_t>(frame.can_id & CAN_SFF_MASK), {frame.data, frame.can_dlc});
 }
 
-// What the broadcast manager shall do with the SYNC; `frame` is needed to set it up.
+// Gives the broadcast manager an order about the SYNC; `frame` is needed to set it up.
 bool order_sync(int broadcast_manager, std::uint32_t opcode, Time period, const can_frame* frame) {
   bcm_msg_head head{};
   head.opcode = opcode;
@@ -158,7 +158,7 @@ void SocketBus::open(std::span<const std::uint16_t> ids) {
   raw_ = open_socket(SOCK_RAW, CAN_RAW, "raw", "can_raw");
   if (!ids.empty()) {
     std::vector<can_filter> filters;
-    // the flags take part in the comparison: standard data frames of exactly this identifier
+    // the flags are compared too: standard data frames with exactly this identifier
     for (const std::uint16_t id : ids)
       filters.push_back({.can_id = id, .can_mask = CAN_SFF_MASK | CAN_EFF_FLAG | CAN_RTR_FLAG});
     set_option(raw_, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(), filters.size());
@@ -199,7 +199,7 @@ void SocketBus::send(const Frame& frame) {
   const Time latest = now() + kLongestSend;
   while (write(raw_, &out, sizeof out) < 0) {
     if (errno == EINTR) continue;
-    // ENOBUFS is the interface's queue, for which there is nothing to wait on but time
+    // ENOBUFS: the interface's queue is full, and no event reports free room in it
     if (errno != ENOBUFS && errno != EAGAIN) lost(errno);
     if (now() > latest) {
       throw canopen::BusFull(
@@ -227,8 +227,10 @@ std::optional<ReceivedFrame> SocketBus::receive(Time until) {
 }
 
 std::optional<ReceivedFrame> SocketBus::read_frame() {
+  // Skips everything but CANopen frames, until one is found or the socket is empty.
   while (true) {
     can_frame frame{};
+    // The frame, and beside it, as a control message, the kernel's time stamp.
     iovec data{.iov_base = &frame, .iov_len = sizeof frame};
     alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(timespec))> control{};
     msghdr message{};
@@ -236,19 +238,27 @@ std::optional<ReceivedFrame> SocketBus::read_frame() {
     message.msg_iovlen = 1;
     message.msg_control = control.data();
     message.msg_controllen = control.size();
+
+    // An empty socket is no error; any other error means that the interface is lost.
     const ssize_t bytes = recvmsg(raw_, &message, 0);
     if (bytes < 0 && errno == EINTR) continue;
     if (bytes < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return std::nullopt;
     if (bytes < 0) lost(errno);
     if (bytes != static_cast<ssize_t>(sizeof frame)) continue;
+
+    // Error frame of the driver: kept for BusFull's message; only bus off is fatal.
     if ((frame.can_id & CAN_ERR_FLAG) != 0) {
       last_warning_ = describe_error_frame(frame.can_id);
       if ((frame.can_id & CAN_ERR_BUSOFF) != 0)
         throw BusError(fmt::format("CAN interface '{}': {}", interface_, last_warning_));
       continue;
     }
+
+    // Skips frames with 29-bit identifiers and remote frames.
     const std::optional<Frame> received = from_kernel(frame);
     if (!received) continue;
+    // The kernel stamps by the wall clock; both clocks, read together, turn that into the monotonic time of the
+    // reception.
     Time at = now();
     for (const cmsghdr* part = CMSG_FIRSTHDR(&message); part;
          part = CMSG_NXTHDR(&message, const_cast<cmsghdr*>(part))) {
@@ -268,7 +278,7 @@ void SocketBus::start_sync(Time period) {
 }
 
 void SocketBus::stop_sync() {
-  // fails where the interface took the order with it: then there is no SYNC either
+  // fails if the interface is gone, and the order with it: then there is no SYNC either
   order_sync(broadcast_manager_, TX_DELETE, {}, nullptr);
 }
 

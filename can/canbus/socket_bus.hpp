@@ -1,5 +1,5 @@
 // A CAN bus through SocketCAN: CAN_RAW for frames, with filters, error frames and the kernel's time stamps, and CAN_BCM
-// for the SYNC, which the kernel sends by its own timer. Documentation/networking/can.rst of the Linux kernel.
+// for the SYNC, which the kernel sends by its own timer. Source: Documentation/networking/can.rst of the Linux kernel.
 //
 // Thread safety: as canopen::Bus.
 #pragma once
@@ -13,8 +13,8 @@
 
 namespace kenaf::canbus {
 
-// The bus cannot be had at all: no SocketCAN in the kernel, no such interface, not for CAN, down. In words, with what
-// to do.
+// The bus is not available at all: no SocketCAN in the kernel, no such interface, not a CAN interface, or down. The
+// text says what to do.
 class NoBus : public canopen::BusError {
  public:
   using canopen::BusError::BusError;
@@ -22,7 +22,7 @@ class NoBus : public canopen::BusError {
 
 class SocketBus final : public canopen::Bus {
  public:
-  // Receives standard data frames with one of the identifiers `ids` (at most 512), none: all; and the controller's
+  // Receives standard data frames with one of the identifiers `ids` (at most 512; none: all), and the controller's
   // error frames. Throws NoBus.
   explicit SocketBus(const std::string& interface, std::span<const std::uint16_t> ids = {});
   ~SocketBus() override;
@@ -30,7 +30,7 @@ class SocketBus final : public canopen::Bus {
   SocketBus& operator=(const SocketBus&) = delete;
 
   canopen::Time now() const override;
-  // Where the interface's queue is full, waits for room, 20 ms at most.
+  // Waits for room if the interface's queue is full, 20 ms at most.
   void send(const canopen::Frame& frame) override;
   std::optional<canopen::ReceivedFrame> receive(canopen::Time until) override;
   void start_sync(canopen::Time period) override;
@@ -50,7 +50,7 @@ class SocketBus final : public canopen::Bus {
                               // the bus?"
 };
 
-// What a controller's error frame says, in words. <linux/can/error.h>
+// Describes a controller's error frame. <linux/can/error.h>
 std::string describe_error_frame(std::uint32_t can_id);
 
 }  // namespace kenaf::canbus

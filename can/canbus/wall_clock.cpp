@@ -6,7 +6,7 @@ namespace {
 using canopen::Time;
 
 constexpr Time kOldest = std::chrono::seconds(1);
-// More than clocks drift apart between two frames, and less than would make a drive silent.
+// More than the drift of the clocks between two frames, and less than would make a drive seem silent.
 constexpr Time kStep = std::chrono::milliseconds(5);
 
 }  // namespace

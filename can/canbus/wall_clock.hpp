@@ -1,7 +1,7 @@
-// When a frame was received, on a clock that never goes back, from the kernel's time stamp, which is of the wall clock.
+// Time of reception on a monotonic clock, from the kernel's time stamp, which is wall-clock time.
 //
-// Only a frame's age is taken from the wall clock, for it may be set while the program runs (NTP, an operator): an age
-// that spans such a step is wrong by the step, and a robot that believes it finds its drives silent.
+// Only a frame's age is taken from the wall clock, because the clock may be set while the program runs (NTP, an
+// operator): an age across such a step is wrong by the step, and would make drives seem silent.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@
 namespace kenaf::canbus {
 
 struct WallClock {
-  std::optional<canopen::Time> ahead;   // of the other clock, when it was looked at last
-  std::optional<canopen::Time> set_at;  // when it was last seen to have been set, on the other clock
+  std::optional<canopen::Time> ahead;   // lead over the other clock at the last look
+  std::optional<canopen::Time> set_at;  // last time at which a step was detected, on the other clock
 };
 
-// `stamp`: the frame's, of the wall clock; `wall_now` and `now`: both clocks at one moment. A stamp that says nothing
-// (ahead of the clock, more than a second old, from before the clock was set) is as good as none: `now`.
+// `stamp`: the frame's, wall clock; `wall_now` and `now`: both clocks at one moment. Returns `now` for an implausible
+// stamp (in the future, more than a second old, from before the clock was set).
 canopen::Time received_at(WallClock& clock, canopen::Time stamp, canopen::Time wall_now, canopen::Time now);
 
 }  // namespace kenaf::canbus

@@ -1,8 +1,8 @@
-// A node's object dictionary: what a master can read and write of it, by SDO one object at a time, by PDO in the
-// control loop. CiA 301, 7.4.
+// A node's object dictionary: the objects that a master can read and write, by SDO one at a time, by PDO in the control
+// loop. CiA 301, 7.4.
 //
-// The dictionary keeps the values and the general rules (exists, may be written, has this length, lies within these
-// limits); what else a write must meet, and what follows from it, the node says itself: on_check and on_written.
+// The dictionary keeps the values and the general rules (existence, access, length, limits); the node adds its own
+// rules and reactions through on_check and on_written.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@
 namespace kenaf::candrives {
 
 enum class Access : std::uint8_t { read_only, read_write };
-enum class Mappable : std::uint8_t { no, transmit, receive, both };  // into which PDOs, as the node sees them
+enum class Mappable : std::uint8_t { no, transmit, receive, both };  // kinds of PDO, as seen by the node
 
 struct ObjectLimits {
   std::int64_t min, max;
 };
-ObjectLimits range_of(canopen::ObjectType type);  // of everything that fits; not for text
+ObjectLimits range_of(canopen::ObjectType type);  // the full range of the type; not for text
 
 struct ObjectEntry {
   canopen::ObjectType type{};
@@ -37,25 +37,24 @@ struct ObjectEntry {
 
 class Dictionary {
  public:
-  // `value` is the object's value after a reset too. Limits: all that fits the type.
+  // `value` is also the value after a reset. Limits: the full range of the type.
   void add(const canopen::MappedObject& object, Access access, Mappable mappable, std::int64_t value);
   void add(const canopen::MappedObject& object, Access access, Mappable mappable, std::int64_t value,
            ObjectLimits limits);
   void add_text(canopen::ObjectAddress object, std::string text);
 
-  const ObjectEntry* find(canopen::ObjectAddress object) const;  // nullptr: there is none
-  // Of an object that there is, else std::out_of_range. set: by the node itself, without any check.
+  const ObjectEntry* find(canopen::ObjectAddress object) const;  // nullptr if there is none
+  // Throws std::out_of_range if there is no such object. set: by the node itself, without any check.
   std::int64_t value(canopen::ObjectAddress object) const;
   void set(canopen::ObjectAddress object, std::int64_t value);
-  // All objects with an index from `first` to `last` as they were added.
+  // Resets all objects with an index from `first` to `last` to their initial values.
   void reset(std::uint16_t first, std::uint16_t last);
 
-  // As a master reads and writes by SDO.
+  // Read and write as a master does by SDO.
   std::variant<canopen::ObjectBytes, canopen::SdoAbort> read(canopen::ObjectAddress object) const;
   std::optional<canopen::SdoAbort> write(canopen::ObjectAddress object, std::span<const std::uint8_t> bytes);
-  // As PDOs write: all values are in the dictionary before on_written hears of the first, so that a controlword finds
-  // the target beside it, whatever the order in the PDO. A value that would be refused by SDO is left out: a PDO has no
-  // answer.
+  // Writes as PDOs do: all values are in the dictionary before the first on_written, so that a controlword finds its
+  // target, whatever their order in the PDO. A value that SDO would refuse is skipped: a PDO has no answer.
   struct Number {
     canopen::ObjectAddress object;
     std::int64_t value;
@@ -63,7 +62,7 @@ class Dictionary {
   void write_together(std::span<const Number> numbers);
 
   std::function<std::optional<canopen::SdoAbort>(canopen::ObjectAddress, std::int64_t)> on_check;
-  std::function<void(canopen::ObjectAddress, std::int64_t)> on_written;  // the value is in the dictionary already
+  std::function<void(canopen::ObjectAddress, std::int64_t)> on_written;  // called after the value is in the dictionary
 
  private:
   std::optional<canopen::SdoAbort> missing(canopen::ObjectAddress object) const;
@@ -74,7 +73,7 @@ class Dictionary {
       return static_cast<std::size_t>(object.index) << 8 | object.sub;
     }
   };
-  std::unordered_map<canopen::ObjectAddress, ObjectEntry, Hash> entries_;  // asked many times a step
+  std::unordered_map<canopen::ObjectAddress, ObjectEntry, Hash> entries_;  // looked up many times per step
 };
 
 }  // namespace kenaf::candrives

@@ -39,7 +39,7 @@ Drive::Drive(const DriveSetup& setup, const Measured& motor)
   on_reset();
 }
 
-// Also after reset node while the motor turned: without power its brake holds it.
+// Also after a node reset while the motor turned: without power its brake holds it.
 void Drive::on_reset() {
   power_.reset();
   error_code_ = 0;
@@ -49,13 +49,17 @@ void Drive::on_reset() {
 
 void Drive::step(Time step) {
   const double step_s = std::chrono::duration<double>(step).count();
+  // The self-test takes one step; a newly written mode takes effect now.
   power_.self_test_passed();
   motion_.set_mode(static_cast<DriveMode>(option(object::mode)), motor_);
+
+  // By state: follow the targets, stop on the ramp that an option code names, or hold.
   switch (power_.state()) {
     case PowerState::operation_enabled:
       motion_.operate(motor_, step_s);
       return watch_following(step_s);
     case PowerState::quick_stop_active: {
+      // Codes 1 and 5 stop on the profile ramp, the others on the quick stop ramp; 1 and 2 then switch the drive off.
       const std::int64_t code = option(object::quick_stop_option);
       const bool by_profile = code == kSlowDownRamp || code == kSlowDownAndStay;
       const bool stands = motion_.slow_down(by_profile ? SlowDown::profile_ramp : SlowDown::quick_stop_ramp, step_s);

@@ -1,7 +1,7 @@
-// A motor drive as a CANopen slave: CiA 402. Its parts are the power state machine (power_states.hpp), what it demands
-// of its motor (motion.hpp) and its objects (drive_objects.hpp); here they are put together.
+// A motor drive as a CANopen slave: CiA 402. Combines the power state machine (power_states.hpp), the motion demand
+// (motion.hpp) and the objects (drive_objects.hpp).
 //
-// It knows its motor in counts of the encoder alone; robot_slaves.cpp has the border to the plant.
+// It knows its motor only in encoder counts; motor_border.hpp converts to the plant's units.
 #pragma once
 
 #include "can/candrives/motion.hpp"
@@ -14,31 +14,31 @@ struct DriveSetup {
   canopen::NodeId node;
   std::string name;
   MotorScale scale;
-  bool absolute_encoder;                        // false: position 0 where the motor is at power on, until homing
-  bool has_current = true, has_voltage = true;  // false: it lacks the objects 0x6075 and 0x6078; 0x6079
+  bool absolute_encoder;                        // false: position 0 is where the motor is at power on, until homing
+  bool has_current = true, has_voltage = true;  // false: without the objects 0x6075 and 0x6078; 0x6079
 };
 
 class Drive final : public Slave {
  public:
-  // `motor`: where it is before the drive has power.
+  // `motor`: its state before the drive has power.
   Drive(const DriveSetup& setup, const Measured& motor);
 
   canopen::PowerState power_state() const { return power_.state(); }
   bool is_powered() const { return power_.is_powered(); }
   const Demand& demand() const { return motion_.demand(); }
-  // The motor shall be at demand().position; else: turn at demand().velocity.
+  // True: the motor must be at demand().position; false: it must turn at demand().velocity.
   bool holds_position() const;
 
-  // The motor as it is now; also while the drive has no power.
+  // The motor's present state; also while the drive has no power.
   void measure(const Measured& motor) { motor_ = motor; }
-  // One step of the state machine's own transitions and of the demand.
+  // One step of the state machine's internal transitions and of the demand.
   void step(canopen::Time step);
 
-  // Its power is gone: the brake holds the motor.
+  // The power is lost: the brake holds the motor.
   void cut_power() { on_reset(); }
-  // An error of the drive itself: fault reaction, fault, emergency message.
+  // An internal error of the drive: fault reaction, fault, emergency message.
   void fail(std::uint16_t error_code);
-  // From here on controlwords come and change nothing.
+  // While deaf, controlwords are received but have no effect.
   void set_deaf(bool deaf) { deaf_ = deaf; }
 
  private:
@@ -56,7 +56,7 @@ class Drive final : public Slave {
   Measured motor_;
   PowerStates power_;
   Motion motion_;
-  std::uint16_t error_code_ = 0;  // that made the fault
+  std::uint16_t error_code_ = 0;  // the cause of the fault
   double outside_window_s_ = 0;
   bool deaf_ = false;
 };

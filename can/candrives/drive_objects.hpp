@@ -1,4 +1,4 @@
-// The object dictionary of the simulated drives beyond what every node has, and the PDOs that they come with.
+// The object dictionary of the simulated drives beyond the common objects, and their default PDOs.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace kenaf::candrives {
 
-// Those of the profile that a master of this project has no use for, but a drive has.
+// Objects of the profile that drives have but this project's master does not use.
 namespace object {
 using namespace canopen::object;
 using canopen::MappedObject;
@@ -22,23 +22,23 @@ inline constexpr MappedObject shutdown_option{{0x605b, 0}, ObjectType::integer16
     velocity_threshold{{0x606f, 0}, ObjectType::unsigned16}, following_error{{0x60f4, 0}, ObjectType::integer32};
 }  // namespace object
 
-// Quick stop option codes, object 0x605a, that the drives have beside kQuickStopAndStay.
+// Quick stop option codes, object 0x605a, supported besides kQuickStopAndStay.
 inline constexpr std::int16_t kDisableDrive = 0, kSlowDownRamp = 1, kQuickStopRamp = 2, kSlowDownAndStay = 5;
-// Abort connection option codes, object 0x6007, beside kAbortByQuickStop.
+// Abort connection option codes, object 0x6007, besides kAbortByQuickStop.
 inline constexpr std::int16_t kAbortNoAction = 0, kAbortByFault = 1, kAbortByDisableVoltage = 2;
 
-// What CiA 402 leaves to the drive: 0x6078 with 0x6075, and 0x6079.
+// Objects that CiA 402 leaves optional: 0x6078 with 0x6075, and 0x6079.
 struct OptionalDriveObjects {
   bool current, voltage;
 };
-// Values are as from a factory: gentle ramps, low speeds. What fits the robot its master writes.
+// Values are factory defaults: gentle ramps, low speeds. The master writes those that fit the robot.
 void add_drive_objects(Dictionary& objects, OptionalDriveObjects has);
 
-// CiA 402-2, default PDO mapping: the controlword and what goes with it, the statusword and what goes with it. Only the
-// first of each kind is valid at first.
+// CiA 402-2, default PDO mapping: the controlword and its companions, the statusword and its companions. Initially only
+// the first of each kind is valid.
 std::vector<DefaultPdo> drive_pdos();
 
-// nullopt: the profile and these drives know the value. Limits of a number are in its entry already.
+// nullopt: the profile and these drives support the value. Numeric limits are already in its entry.
 std::optional<canopen::SdoAbort> check_drive_object(canopen::ObjectAddress object, std::int64_t value);
 
 }  // namespace kenaf::candrives

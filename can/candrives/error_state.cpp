@@ -32,7 +32,7 @@ void ErrorState::raise(std::uint16_t error_code) {
   if (present_.emplace(error_code, bits).second) say(error_code);
 }
 
-// "Error reset or no error": its register tells what is left.
+// "Error reset or no error": its register shows the remaining errors.
 void ErrorState::clear(std::uint16_t error_code) {
   if (present_.erase(error_code) > 0) say(canopen::kErrorNone);
 }

@@ -1,5 +1,5 @@
-// A node's errors: which are there now, the error register that they make, and the emergency messages that say so when
-// one comes and when one goes. CiA 301, 7.2.7.
+// A node's errors: those present, the resulting error register, and the emergency messages sent when an error occurs or
+// disappears. CiA 301, 7.2.7.
 #pragma once
 
 #include <map>
@@ -13,8 +13,8 @@ namespace kenaf::candrives {
 inline constexpr std::uint8_t kErrorGeneric = 0x01, kErrorCurrent = 0x02, kErrorVoltage = 0x04,
                               kErrorTemperature = 0x08, kErrorCommunication = 0x10, kErrorDeviceProfile = 0x20,
                               kErrorManufacturer = 0x80;
-// The bit of an error code's class: 0x2xxx current, 0x3xxx voltage, 0x4xxx temperature, 0x81xx and 0x82xx
-// communication, 0x84xx to 0x86xx device profile, 0xFxxx manufacturer; none of another. CiA 301, table 26; CiA 402-2,
+// Returns the bit of an error code's class: 0x2xxx current, 0x3xxx voltage, 0x4xxx temperature, 0x81xx and 0x82xx
+// communication, 0x84xx to 0x86xx device profile, 0xFxxx manufacturer; none for others. CiA 301, table 26; CiA 402-2,
 // error codes.
 std::uint8_t register_bit_of(std::uint16_t error_code);
 
@@ -22,16 +22,16 @@ class ErrorState {
  public:
   explicit ErrorState(canopen::NodeId node) : node_(node) {}
 
-  // An error that is there already, or is not there to go, changes nothing.
+  // Raising a present error, or clearing an absent one, changes nothing.
   void raise(std::uint16_t error_code);
   void clear(std::uint16_t error_code);
-  // Gone, unsaid: its cause was reset.
+  // Removes it without a message: its cause was reset.
   void forget(std::uint16_t error_code) { present_.erase(error_code); }
-  // All of them gone, unsaid: the node has started anew.
+  // Removes all without a message: the node has restarted.
   void reset();
 
   std::uint8_t error_register() const;
-  // What has not been sent yet, in order.
+  // Returns the messages not yet sent, in order.
   std::vector<canopen::Frame> take_messages();
 
  private:

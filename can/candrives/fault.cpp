@@ -15,7 +15,7 @@ bool is_pdo_of(const Frame& frame, NodeId node) {
   return std::ranges::any_of(canopen::kTransmitPdoId, [&](std::uint16_t first) { return frame.id == first + node; });
 }
 
-// An answer to a segment's request: its specifier, bits 7 to 5, is 0 for an upload and 1 for a download.
+// True if the frame answers a segment request: its specifier, bits 7 to 5, is 0 for an upload and 1 for a download.
 bool answers_segment(const Frame& frame) {
   return frame.data[0] >> 5 <= 1;
 }

@@ -32,13 +32,13 @@ constexpr std::array kKinds = std::to_array<Named>({{"silent", FaultKind::silent
 
 constexpr std::string_view kBlanks = " \t\r";
 
-// Words of a line, one taken after another.
+// The words of a line, consumed one after another.
 class Line {
  public:
   explicit Line(std::string_view text) : text_(text), rest_(text) { skip_blanks(); }
   bool empty() const { return rest_.empty(); }
 
-  // Takes `words` if they are next.
+  // Consumes `words` if they are next.
   bool take(std::string_view words) {
     if (!rest_.starts_with(words)) return false;
     if (rest_.size() > words.size() && kBlanks.find(rest_[words.size()]) == kBlanks.npos) return false;
@@ -125,12 +125,15 @@ FaultKind take_kind(Line& line) {
 }  // namespace
 
 PlannedFault parse_fault(std::string_view words, const canbus::RobotBus& bus) {
+  // WHO WHAT, with a code if the kind takes one.
   Line line(words);
   PlannedFault planned;
   planned.fault.node = take_node(line, bus);
   planned.fault.kind = take_kind(line);
   if (planned.fault.kind == FaultKind::error)
     planned.fault.error_code = static_cast<std::uint16_t>(take_number(line, "an error code", 0xffff));
+
+  // When: "at SECONDS", now (the line ends or goes on with "for"), or "SECONDS after motion".
   const auto take_lasting = [&] {
     if (!line.take("for")) return false;
     planned.lasts = take_seconds(line, "after 'for'");
@@ -145,6 +148,8 @@ PlannedFault parse_fault(std::string_view words, const canbus::RobotBus& bus) {
     if (!line.take("after motion")) line.fail("after the seconds there must be 'after motion'");
     planned.after_motion = true;
   }
+
+  // Duration; any remaining words are an error.
   take_lasting();
   if (!line.empty()) line.fail("'" + std::string(line.next()) + "' is not understood");
   return planned;

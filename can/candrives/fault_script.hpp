@@ -1,4 +1,4 @@
-// Faults in words, and when they shall come: `node 3 silent at 5`, `track left fault 0x2310 0.5 after motion for 2`.
+// Faults as text, with their times: `node 3 silent at 5`, `track left fault 0x2310 0.5 after motion for 2`.
 //
 //   WHO WHAT [at SECONDS | SECONDS after motion] [for SECONDS]
 //
@@ -22,22 +22,22 @@ namespace kenaf::candrives {
 struct PlannedFault {
   Fault fault;
   canopen::Time delay{};
-  bool after_motion = false;  // else since the program began
-  bool at_once = false;       // no time was said
+  bool after_motion = false;  // otherwise since the program began
+  bool at_once = false;       // no time was given
   std::optional<canopen::Time> lasts;
 };
 
-// Throws std::invalid_argument: what of it is not understood, and what would be.
+// Throws std::invalid_argument saying what is not understood, and what would be.
 PlannedFault parse_fault(std::string_view words, const canbus::RobotBus& bus);
 
-// Which faults are due.
+// Determines which faults are due.
 class FaultScript {
  public:
   explicit FaultScript(canopen::Time start) : start_(start) {}
   void add(const PlannedFault& planned, canopen::Time now);
   void on_motion(canopen::Time now);  // a track turns; the first call counts
   std::vector<Fault> due(canopen::Time now);
-  canopen::Time deadline() const;  // of the next; Time::max(): none is waiting for a time
+  canopen::Time deadline() const;  // of the next fault; Time::max(): none waits for a time
 
  private:
   struct Entry {

@@ -1,5 +1,5 @@
-// A yaw-rate gyro as a CANopen slave. There is no device profile for one: it has an object of its manufacturer, 0x2000,
-// whose sub-indices 1 to 8 are the bytes of its PDO, with the yaw rate among their bits, where the configuration says.
+// A yaw-rate gyro as a CANopen slave. There is no device profile for gyros: it has a manufacturer-specific object,
+// 0x2000, whose sub-indices 1 to 8 are the bytes of its PDO, with the yaw rate at the configured bits.
 #pragma once
 
 #include "can/canbus/robot_bus.hpp"

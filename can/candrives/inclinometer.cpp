@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t kHundredthDegree = 10;  // object 0x6000: thousandths of a degree
 // Device type, bits 16 to 23: two axes with 16 and 32 bits.
 constexpr std::uint32_t kTwoAxes = 0x00020000 | canopen::kProfileInclinometer;
-constexpr std::uint16_t kInhibit100us = 100;  // 10 ms: a slope changes all the time
+constexpr std::uint16_t kInhibit100us = 100;  // 10 ms: a slope changes continually
 
 std::vector<DefaultPdo> pdos() {
   return {
@@ -29,7 +29,7 @@ std::vector<DefaultPdo> pdos() {
        0}};
 }
 
-// The other way round than canbus::InclinometerAxis tells: angle = direction * slope - zero.
+// Inverse of the equation of canbus::InclinometerAxis, angle = direction * slope - zero.
 double slope_of(const canbus::InclinometerAxis& axis, double angle_rad) {
   return axis.direction * (angle_rad + axis.zero_rad);
 }
@@ -56,7 +56,7 @@ void Inclinometer::measure(double roll_rad, double pitch_rad) {
   (setup_.pitch.lateral ? lateral_rad_ : longitudinal_rad_) = slope_of(setup_.pitch, pitch_rad);
 }
 
-// A slope that its number cannot hold stays at the number's end.
+// A slope out of range of its number saturates.
 void Inclinometer::refresh() {
   const double units_per_rad =
       180 / std::numbers::pi * 1000 / static_cast<double>(objects().value(canopen::object::slope_resolution.object));

@@ -1,5 +1,5 @@
-// An inclinometer with two axes as a CANopen slave: CiA 410. Slopes are the robot's roll and pitch, turned and shifted
-// as the sensor is mounted.
+// A two-axis inclinometer as a CANopen slave: CiA 410. Slopes are the robot's roll and pitch, rotated and offset
+// according to the sensor's mounting.
 #pragma once
 
 #include "can/canbus/robot_bus.hpp"

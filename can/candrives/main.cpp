@@ -28,7 +28,7 @@ void stop_on_signals() {
   action.sa_handler = on_signal;
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGINT, &action, nullptr);
-  // in the background of a terminal there is no input, which is no reason to stand still
+  // in the background of a terminal there is no input, which must not stop the program
   signal(SIGTTIN, SIG_IGN);
 }
 
@@ -47,10 +47,11 @@ WHAT: silent, power loss, fault CODE, following error, deaf, sdo abort, sdo late
 As: --fault "node 3 silent at 5" --fault "track left fault 0x2310 0.5 after motion")";
 
 std::optional<Options> read_options(int argc, char** argv, int& exit_status) {
+  // Ideal motors exclude the options of the physics.
   Options options;
   CLI::App app(
       "The drives, inclinometer and gyro of a robot as CANopen slaves (CiA 402, CiA 410) on a CAN interface.\n"
-      "Their motors turn the tracks and flippers of a simulated robot. docs/can-drives.md tells more.",
+      "Their motors turn the tracks and flippers of a simulated robot. docs/can-tools.md tells more.",
       "kenaf-candrives");
   app.set_version_flag("--version", KENAF_VERSION);
   app.add_option("--interface", options.interface, "CAN interface (default: the one in the robot's description)");
@@ -78,11 +79,13 @@ std::optional<Options> read_options(int argc, char** argv, int& exit_status) {
 }
 
 void run(const Options& options) {
+  // Read everything that may be wrong before touching the bus.
   const canbus::RobotBus bus = canbus::load_robot_bus(options.robot);
   const std::string interface = options.interface.empty() ? bus.interface : options.interface;
   std::vector<candrives::PlannedFault> faults;
   for (const std::string& words : options.faults) faults.push_back(candrives::parse_fault(words, bus));
 
+  // The plant: ideal motors with the robot's gauge, or the robot in a simulated world, whose path may be logged.
   std::optional<candrives::PathLog> log;
   std::unique_ptr<candrives::Plant> plant;
   std::string where = interface + ": robot " + options.robot;
@@ -102,6 +105,7 @@ void run(const Options& options) {
     where += " in world " + options.world;
   }
 
+  // Serve the bus until a signal. The service reopens the socket as the interface comes and goes.
   candrives::Service service(bus, *plant, where);
   for (const auto& fault : faults) service.plan(fault);
   service.run([&] { return std::make_unique<canbus::SocketBus>(interface); }, stop_asked);

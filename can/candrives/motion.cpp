@@ -13,8 +13,8 @@ using canopen::MappedObject;
 namespace {
 
 constexpr double kNoWindow = 0xffffffff;
-constexpr std::uint16_t kControlRelative = 1 << 6;  // profile position: from where the last target was
-constexpr std::uint16_t kStatusOfMode = 1 << 12;    // what bit 12 means depends on the mode
+constexpr std::uint16_t kControlRelative = 1 << 6;  // profile position: relative to the previous target
+constexpr std::uint16_t kStatusOfMode = 1 << 12;    // bit 12, whose meaning depends on the mode
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void Motion::set_mode(DriveMode mode, const Measured& motor) {
   if (mode == mode_) return;
   const double speed = demand_.velocity;
   begin(motor);
-  demand_.velocity = speed;  // the new mode takes over from it
+  demand_.velocity = speed;  // the new mode continues from it
   mode_ = mode;
 }
 
@@ -85,7 +85,7 @@ void Motion::on_target_position() {
 // ---- the modes ----
 
 void Motion::operate(const Measured& motor, double step_s) {
-  if (mode_ != DriveMode::profile_position) internal_limit_ = false;  // there it is the set-point's
+  if (mode_ != DriveMode::profile_position) internal_limit_ = false;  // there it belongs to the set-point
   switch (mode_) {
     case DriveMode::profile_position:
       return operate_profile_position(step_s);
@@ -113,14 +113,14 @@ void Motion::operate_profile_velocity(double step_s) {
   const auto range = limits();
   if (!range || target == 0) return ramp_to_velocity(demand_, target, profile_ramps(), step_s);
   const double end = target > 0 ? range->max : range->min;
-  if ((end - demand_.position) * target <= 0) {  // beyond it already
+  if ((end - demand_.position) * target <= 0) {  // already beyond it
     internal_limit_ = true;
     return ramp_to_velocity(demand_, 0, profile_ramps(), step_s);
   }
   if (move_to_position(demand_, end, std::abs(target), profile_ramps(), step_s)) internal_limit_ = true;
 }
 
-// In even steps to each target within the interpolation period; a target that came late is followed as fast as allowed.
+// Moves in even steps to each target within the interpolation period; a late target is followed as fast as allowed.
 void Motion::operate_cyclic_position(double step_s) {
   if (!cyclic_target_) return ramp_to_velocity(demand_, 0, profile_ramps(), step_s);
   const double target = clipped_target(number(object::target_position) - static_cast<double>(offset_));
@@ -167,27 +167,32 @@ std::int32_t Motion::position(const Measured& motor) const {
 }
 
 std::uint16_t Motion::statusword_bits(const Measured& motor) const {
+  // Bit 10: target reached; bits 12 and 13: by mode, CiA 402-2. Outside of homing, bit 13 is the following error.
   const bool demand_stands = demand_.velocity == 0;
   bool reached = false, mode_bit = false, error = is_outside_window(motor);
   switch (mode_) {
     case DriveMode::profile_position:
+      // Bit 12: the set-point is acknowledged. Reached: none is under way and the motor is within the position window.
       reached = demand_stands && (halted() || !set_point_) &&
                 std::abs(motor.position - demand_.position) <= number(object::position_window);
       mode_bit = acknowledged_ || next_set_point_.has_value();
       break;
     case DriveMode::profile_velocity: {
+      // Bit 12: speed is zero, that is, below the threshold. Reached: at the target, ramp and motor.
       const double target = halted() ? 0 : velocity(object::target_velocity);
       reached = demand_.velocity == target && std::abs(motor.velocity - target) <= velocity(object::velocity_window);
       mode_bit = std::abs(motor.velocity) <= velocity(object::velocity_threshold);
       break;
     }
     case DriveMode::homing:
+      // Bit 12: homing attained; bit 13: homing error. Reached: it does not move, whether attained or not.
       reached = demand_stands && !homing_.is_moving();
       mode_bit = homing_.phase() == Homing::Phase::attained;
       error = homing_.phase() == Homing::Phase::failed;
       break;
     case DriveMode::cyclic_position:
     case DriveMode::cyclic_velocity:
+      // Bit 12: the drive follows the command value.
       mode_bit = true;
       break;
   }

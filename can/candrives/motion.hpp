@@ -1,8 +1,8 @@
-// What a drive demands of its motor while operation is enabled, in each of its modes, and how it slows down. CiA 402-2:
+// The motor demand of a drive while operation is enabled, in each of its modes, and its slowing down. CiA 402-2:
 // profile position, profile velocity, homing, cyclic synchronous position and velocity mode.
 //
-// Positions: counts of the encoder since power on. The objects' positions differ from them by an offset, which homing
-// sets, so that homing moves no demand.
+// Positions are encoder counts since power on. The objects' positions differ from them by an offset, which homing sets,
+// so that homing does not move the demand.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@
 
 namespace kenaf::candrives {
 
-// What the drive knows of its motor.
+// Measurements of the motor available to the drive.
 struct Measured {
   double position = 0, velocity = 0;  // counts, counts per second
   double current_a = 0, supply_v = 0;
   bool negative_switch = false, positive_switch = false;
 };
 
-// Units of the velocity and acceleration objects, which need not be those of the position.
+// Units of the velocity and acceleration objects, which may differ from that of the position.
 struct MotorScale {
   double counts_per_velocity_unit = 1, counts_per_acceleration_unit = 1;
   double homing_max_lag = 0;      // counts
@@ -35,28 +35,29 @@ class Motion {
  public:
   Motion(const Dictionary& objects, const MotorScale& scale) : objects_(&objects), scale_(scale) {}
 
-  // At rest where the motor is; objects' position = encoder's position + `offset`.
+  // At rest at the motor's position; objects' position = encoder position + `offset`.
   void reset(const Measured& motor, std::int64_t offset);
-  // Operation is enabled from here on: nothing of before is followed.
+  // Operation is enabled from here on: earlier commands are not followed.
   void begin(const Measured& motor);
   void set_mode(canopen::DriveMode mode, const Measured& motor);
   canopen::DriveMode mode() const { return mode_; }
 
-  // Bits 4, 5, 6 and 8. `enabled`: else only the edges are remembered.
+  // Bits 4, 5, 6 and 8. Unless `enabled`, only the edges are remembered.
   void on_controlword(std::uint16_t controlword, bool enabled, const Measured& motor);
   void on_target_position();  // object 0x607a was written
 
-  // One step, by state: operation enabled; quick stop or fault reaction (true: stands still); all others.
+  // One step, by state: operation enabled; quick stop or fault reaction (true: at standstill); all others.
   void operate(const Measured& motor, double step_s);
   bool slow_down(SlowDown ramp, double step_s);
   void hold() { demand_.velocity = 0; }
 
   const Demand& demand() const { return demand_; }
-  // The object 0x6064: a number of 32 bits, which wraps.
+  // Object 0x6064: a 32-bit number that wraps.
   std::int32_t position(const Measured& motor) const;
   // Bits 10 to 13 while operation is enabled.
   std::uint16_t statusword_bits(const Measured& motor) const;
-  // The motor is further from the demand than the following error window, object 0x6065, in a mode that has one.
+  // True if the motor is further from the demand than the following error window, object 0x6065, in a mode that has
+  // one.
   bool is_outside_window(const Measured& motor) const;
 
  private:
@@ -69,7 +70,7 @@ class Motion {
   bool halted() const;
   double clipped_target(double position);
   double clipped_velocity(double velocity);
-  // Encoder positions of object 0x607d; nullopt: no limits, both 0 or not in order.
+  // Encoder positions of object 0x607d; nullopt: no limits, because both are 0 or out of order.
   struct Range {
     double min, max;
   };
@@ -86,9 +87,9 @@ class Motion {
   std::int64_t offset_ = 0;
   std::uint16_t controlword_ = 0;
   bool internal_limit_ = false;
-  std::optional<double> set_point_, next_set_point_;  // profile position: under way, and waiting for its turn
+  std::optional<double> set_point_, next_set_point_;  // profile position: active, and queued
   bool acknowledged_ = false;
-  double cyclic_left_s_ = 0;  // cyclic position: until the target is to be reached
+  double cyclic_left_s_ = 0;  // cyclic position: time left to reach the target
   bool cyclic_target_ = false;
   Homing homing_;
 };

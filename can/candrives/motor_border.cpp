@@ -7,7 +7,7 @@ namespace kenaf::candrives {
 
 namespace {
 
-constexpr double kTrackPositionGain_ps = 20;  // speed for a distance, chosen: settles within a few cycles
+constexpr double kTrackPositionGain_ps = 20;  // speed per distance, chosen: settles within a few cycles
 constexpr double kHomingMaxLag_rad = 0.1;     // chosen: five times the lag of a free flipper at homing speed
 
 double to_counts(const canbus::DriveUnits& units, double position) {

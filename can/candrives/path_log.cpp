@@ -24,7 +24,7 @@ void PathLog::write(double t_s, const std::function<physics::RobotTruth()>& trut
   const Eigen::Vector3d& p = truth.X_WB.p;
   file_ << fmt::format("{:.3f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n", t_s, p.x(), p.y(), p.z(),
                        angles_rad.x(), angles_rad.y(), angles_rad.z(), truth.track_m[0], truth.track_m[1]);
-  if (++lines_ % 100 == 0) flush();  // who follows the file is a second behind at most
+  if (++lines_ % 100 == 0) flush();  // a reader that follows the file is a second behind at most
 }
 
 void PathLog::flush() {

@@ -1,4 +1,4 @@
-// Where the simulated robot really was: a line of comma-separated values each 10 ms.
+// True path of the simulated robot: a line of comma-separated values each 10 ms.
 #pragma once
 
 #include <fstream>
@@ -13,13 +13,13 @@ inline constexpr double kPathPeriod_s = 0.01;
 
 class PathLog {
  public:
-  // Throws std::runtime_error where the file cannot be written.
+  // Throws std::runtime_error if the file cannot be written.
   explicit PathLog(const std::string& file);
   ~PathLog();
   PathLog(const PathLog&) = delete;
   PathLog& operator=(const PathLog&) = delete;
-  // Writes a line if a period has passed since the last; only then it asks for the truth. Where the file can no longer
-  // be written, stderr is told once, and the rest is missing: the drives go on.
+  // Writes a line if a period has passed since the last; only then calls truth_now. If the file can no longer be
+  // written, reports it once on stderr and skips the rest: the drives continue.
   void write(double t_s, const std::function<physics::RobotTruth()>& truth_now);
 
  private:

@@ -19,7 +19,7 @@ bool PowerStates::is_powered() const {
          state_ == PowerState::fault_reaction_active;
 }
 
-// CiA 402-2, statusword: bits 0 to 3, 5 and 6 by state. Bit 5 is 0 while a quick stop is made or asked for.
+// CiA 402-2, statusword: bits 0 to 3, 5 and 6 by state. Bit 5 is 0 while a quick stop is active or requested.
 std::uint16_t PowerStates::statusword_bits() const {
   switch (state_) {
     case PowerState::switch_on_disabled:

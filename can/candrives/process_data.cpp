@@ -29,15 +29,20 @@ bool is_restricted(std::uint32_t id) {
 
 ProcessData::ProcessData(canopen::NodeId node, Dictionary& objects, const std::vector<DefaultPdo>& pdos)
     : objects_(&objects) {
+  // The records are plain objects; check() has the rules by which they change.
   const auto add = [&](std::uint16_t index, std::uint8_t sub, ObjectType type, Access access, std::int64_t value) {
     objects.add({{index, sub}, type}, access, Mappable::no, value);
   };
   for (const DefaultPdo& with : pdos) {
     const canopen::Pdo& pdo = with.pdo;
     const bool transmit = pdo.direction == canopen::PdoDirection::transmit;
+
+    // Indices: receive 0x1400 and 0x1600, transmit 0x1800 and 0x1a00, plus number - 1.
     State state{.communication = static_cast<std::uint16_t>((transmit ? 0x1800 : 0x1400) + pdo.number - 1),
                 .mapping = static_cast<std::uint16_t>((transmit ? 0x1a00 : 0x1600) + pdo.number - 1),
                 .transmit = transmit};
+
+    // Communication record; sub-index 0 is the highest sub-index that it has.
     const std::uint32_t id =
         cob_id(pdo, node) | (transmit ? canopen::kPdoNoRemoteRequest : 0) | (with.valid ? 0 : canopen::kPdoInvalid);
     add(state.communication, 0, ObjectType::unsigned8, Access::read_only, transmit ? kEventTimer : kTransmission);
@@ -47,6 +52,8 @@ ProcessData::ProcessData(canopen::NodeId node, Dictionary& objects, const std::v
       add(state.communication, kInhibit, ObjectType::unsigned16, Access::read_write, with.inhibit_100us);
       add(state.communication, kEventTimer, ObjectType::unsigned16, Access::read_write, with.event_ms);
     }
+
+    // Mapping record: all eight entries exist, those beyond the count are 0.
     add(state.mapping, 0, ObjectType::unsigned8, Access::read_write, static_cast<std::int64_t>(pdo.objects.size()));
     for (std::uint8_t sub = 1; sub <= kMaxMapped; ++sub) {
       const std::uint32_t entry = sub <= pdo.objects.size() ? canopen::mapping_entry(pdo.objects[sub - 1u]) : 0;
@@ -69,7 +76,7 @@ std::optional<SdoAbort> ProcessData::check(ObjectAddress object, std::int64_t va
   return std::nullopt;
 }
 
-// While the PDO is valid, nothing but its validity may change. Bit 29, an identifier of 29 bits, is not supported.
+// While the PDO is valid, only its validity may change. Bit 29 (29-bit identifier) is not supported.
 std::optional<SdoAbort> ProcessData::check_cob_id(const State& state, std::int64_t value) const {
   const auto now = static_cast<std::uint32_t>(objects_->value({state.communication, kCobId}));
   const auto wanted = static_cast<std::uint32_t>(value);

@@ -7,9 +7,9 @@
 //     3  inhibit time, 100 us (TPDO)
 //     5  event timer, ms (TPDO)
 //
-// Order of a change (CiA 301, 7.5.2.36 and 7.5.2.38): PDO invalid, count to 0, objects, count, PDO valid. Another order
-// is refused. Transmission types (7.5.2.35 and 7.5.2.37): 0 = at the SYNC after a change, 1 to 240 = at each n-th SYNC,
-// 254 and 255 = when the data changes or the event timer has run out; for an RPDO 0 to 240 = what came is taken at the
+// Order of a change (CiA 301, 7.5.2.36 and 7.5.2.38): PDO invalid, count to 0, objects, count, PDO valid. Any other
+// order is refused. Transmission types (7.5.2.35 and 7.5.2.37): 0 = at the SYNC after a change, 1 to 240 = at every
+// n-th SYNC, 254 and 255 = when the data changes or the event timer expires; for an RPDO 0 to 240 = takes effect at the
 // next SYNC, 254 and 255 = at once. Remote requests (252, 253) are refused, as CiA 301 advises against them.
 #pragma once
 
@@ -23,7 +23,7 @@ namespace kenaf::candrives {
 
 using Frames = std::vector<canopen::Frame>;
 
-// A PDO as a node has it before anybody writes to it.
+// A PDO in the node's initial configuration.
 struct DefaultPdo {
   canopen::Pdo pdo;
   bool valid = true;
@@ -32,27 +32,27 @@ struct DefaultPdo {
 
 class ProcessData {
  public:
-  // Adds the records of `pdos`: a node has those PDOs and no others. The dictionary outlives this object.
+  // Adds the records of `pdos`: the node has these PDOs and no others. The dictionary must outlive this object.
   ProcessData(canopen::NodeId node, Dictionary& objects, const std::vector<DefaultPdo>& pdos);
 
-  // The rules of the two records above; nullopt too where the object is none of theirs.
+  // Checks the rules of the two records above; nullopt also if the object belongs to neither.
   std::optional<canopen::SdoAbort> check(canopen::ObjectAddress object, std::int64_t value) const;
 
-  // After a write to `object`: a PDO that was changed begins anew.
+  // Called after a write to `object`: a changed PDO restarts.
   void on_written(canopen::ObjectAddress object);
-  // The node begins to be operational: all of them begin anew, nothing of before is taken or sent.
+  // The node becomes operational: all PDOs restart, and earlier data are neither used nor sent.
   void begin();
 
   enum class Reception { not_for_me, taken, too_short };
   Reception on_frame(const canopen::Frame& frame);
-  // What synchronous RPDOs brought is written, then synchronous TPDOs are sent. `refresh` brings what is measured into
-  // the dictionary, between the two.
+  // Writes data received by synchronous RPDOs, then sends synchronous TPDOs. `refresh`, called between the two, brings
+  // measurements into the dictionary.
   void on_sync(canopen::Time now, const std::function<void()>& refresh, Frames& out);
-  // Event-driven TPDOs whose data has changed, or whose event timer has run out.
+  // Sends event-driven TPDOs whose data has changed or whose event timer has expired.
   void on_time(canopen::Time now, Frames& out);
   // Next event timer; Time::max(): none.
   canopen::Time deadline() const;
-  // Some TPDO follows its data, so that the data should be kept up to date.
+  // True if some TPDO is sent on change, so that the data should be kept up to date.
   bool follows_data() const;
 
  private:
@@ -60,8 +60,8 @@ class ProcessData {
     std::uint16_t communication, mapping;  // indices of the two records
     bool transmit;
     std::array<std::uint8_t, 8> received{};
-    bool pending = false;    // received, and not taken yet
-    std::uint8_t syncs = 0;  // since it was transmitted last
+    bool pending = false;    // received, not yet in force
+    std::uint8_t syncs = 0;  // since the last transmission
     std::optional<canopen::Frame> sent{};
     canopen::Time sent_at{};
   };

@@ -11,7 +11,7 @@ void ramp_to_velocity(Demand& demand, double velocity, const Ramps& ramps, doubl
   const bool grows = before * velocity >= 0 && std::abs(velocity) > std::abs(before);
   const double change = (grows ? ramps.acceleration : ramps.deceleration) * step_s;
   double after = std::abs(velocity - before) <= change ? velocity : before + std::copysign(change, velocity - before);
-  if (before * after < 0) after = 0;  // a change of direction passes standstill
+  if (before * after < 0) after = 0;  // a change of direction passes through standstill
   demand.velocity = after;
   demand.position += (before + after) / 2 * step_s;
 }
@@ -20,8 +20,8 @@ bool move_to_position(Demand& demand, double position, double max_speed, const R
   const double distance = position - demand.position;
   const double direction = distance < 0 ? -1 : 1;
   const double rest = std::abs(distance), speed = demand.velocity * direction;
-  // The speed v after this step from which the deceleration d just stops at the position:
-  // (speed + v) / 2 step + v^2 / (2 d) = rest.
+  // The speed v after this step from which deceleration d stops exactly at the position: (speed + v) / 2 step + v^2 /
+  // (2 d) = rest.
   const double d = ramps.deceleration, half = d * step_s / 2;
   const double under_root = half * half + 2 * d * (rest - speed * step_s / 2);
   const double allowed = under_root > half * half ? std::sqrt(under_root) - half : 0;

@@ -13,7 +13,7 @@ physics::WorldDescription world_description(const std::string& world) {
   return physics::load_world(world, unsupported);
 }
 
-// No sensor but that of the drives, which has currents, voltage and the servos' encoders, in each step.
+// Keeps only the drive sensor, which measures currents, voltage and servo angles, in each step.
 physics::RobotDescription with_drive_sensor(physics::RobotDescription robot) {
   std::erase_if(robot.sensors, [](const auto& sensor) { return sensor.type != physics::SensorType::drives; });
   if (robot.sensors.empty()) {
@@ -46,7 +46,7 @@ RobotPlant::RobotPlant(const std::string& robot, const std::string& world, doubl
 void RobotPlant::advance(canopen::Time step, const PlantCommand& command) {
   robot::Command told;
   told.track_speed_mps = command.track_mps;
-  // beyond its stop a joint would be told a direction, which may be reached the other way round
+  // beyond its stop a joint angle is a direction, which could be reached the other way round
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
     told.flipper[i] = {robot::JointMode::angle, std::clamp(command.flipper_rad[i], min_flipper_rad_, max_flipper_rad_)};
   world_.set_command(robot_, told);
@@ -60,6 +60,8 @@ void RobotPlant::advance(canopen::Time step, const PlantCommand& command) {
 void RobotPlant::observe() {
   if (const std::string& fault = world_.fault(robot_); !fault.empty())
     throw std::runtime_error("the simulation of the robot has failed: " + fault);
+
+  // The true motion. Encoders count belt travel times their factor; the gyro sees w_B = R_WB^T w_W, its z component.
   const physics::RobotTruth truth = world_.truth(robot_);
   const Eigen::Vector3d angles_rad = physics::roll_pitch_yaw(truth.X_WB.q);
   const Eigen::Vector3d w_WB_B = truth.X_WB.q.conjugate() * truth.w_WB_radps;
@@ -73,6 +75,8 @@ void RobotPlant::observe() {
   state_.roll_rad = angles_rad.x();
   state_.pitch_rad = angles_rad.y();
   state_.yaw_rate_radps = w_WB_B.z();
+
+  // The drives' own sensor has the currents, and measures voltage and servo angles in place of the true values above.
   samples_.clear();
   world_.read_sensors(robot_, samples_);
   for (const physics::SensorSample& sample : samples_) {

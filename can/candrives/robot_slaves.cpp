@@ -12,8 +12,8 @@ using canopen::Time;
 
 namespace {
 
-// So far the plant may be behind while a motor turns and nobody sends anything: every step by itself would be a wake-up
-// each millisecond, and all that lies between two SYNCs would have to be made up for before the second is answered.
+// Largest lag of the plant while a motor turns and nobody sends. Less would wake up every millisecond; more would delay
+// the answer to a SYNC, before which all time since the last one would have to be simulated.
 constexpr Time kMaxBehind = std::chrono::milliseconds(2);
 
 }  // namespace
@@ -61,7 +61,7 @@ void RobotSlaves::on_time(Time now, Frames& out) {
   advance(now, out);
 }
 
-// In the order of time: steps of the plant, and whatever a node has to do by itself.
+// In order of time: steps of the plant, and the nodes' own actions.
 void RobotSlaves::advance(Time now, Frames& out) {
   for (Time next = next_event(); next <= now; next = next_event()) {
     if (next == next_step_) {
@@ -158,6 +158,7 @@ void RobotSlaves::inject(const Fault& fault, Time now, Frames& out) {
 }
 
 void RobotSlaves::inject(const Fault& fault, Node& node, Time now) {
+  // Drive faults go to the drive; frame faults set flags for serve() and pass_on(); garbage belongs to the bus.
   Drive* drive = as_drive(node);
   switch (fault.kind) {
     case FaultKind::silent:
@@ -197,7 +198,7 @@ void RobotSlaves::inject(const Fault& fault, Node& node, Time now) {
   }
 }
 
-// Any identifier, length and data.
+// Random identifier, length and data.
 Frame RobotSlaves::garbage() {
   Frame frame{.id = static_cast<std::uint16_t>(random_() & 0x7ff), .length = static_cast<std::uint8_t>(random_() % 9)};
   for (std::size_t i = 0; i < frame.length; ++i) frame.data[i] = static_cast<std::uint8_t>(random_());

@@ -1,8 +1,8 @@
-// All nodes of a robot's bus, but for its master, and what their motors turn: drives, inclinometer, gyro, and one
+// All nodes of a robot's bus except its master, and the mechanics behind them: drives, inclinometer, gyro, and one
 // plant.
 //
-// Frames and times in, frames out. Time runs in steps of 1 ms in which ramps and plant advance; calls that come late
-// make up for all steps since, so that what happens does not depend on when the calls come. Times never go back.
+// Frames and times in, frames out. Time advances in 1 ms steps of ramps and plant; late calls make up for all missed
+// steps, so that the result does not depend on when the calls come. Times never decrease.
 #pragma once
 
 #include <memory>
@@ -23,20 +23,20 @@ inline constexpr canopen::Time kStep = std::chrono::milliseconds(1);
 
 class RobotSlaves {
  public:
-  // All nodes get power at `start`; the first on_time has their boot-up messages. The plant outlives this object.
+  // All nodes get power at `start`; the first on_time has their boot-up messages. The plant must outlive this object.
   RobotSlaves(const canbus::RobotBus& bus, Plant& plant, canopen::Time start);
 
-  // A frame of the master, or of anybody else.
+  // A frame of the master or of another node.
   void on_frame(const canopen::Frame& frame, canopen::Time now, Frames& out);
   void on_time(canopen::Time now, Frames& out);
-  // When on_time should be called next. A later call loses nothing, but its frames are late.
+  // Returns when on_time should be called next. A later call loses nothing, but its frames are late.
   canopen::Time deadline() const;
 
   void inject(const Fault& fault, canopen::Time now, Frames& out);
 
   std::size_t node_count() const { return nodes_.size(); }
   const Drive& drive(std::size_t index) const { return *drives_[index]; }
-  // Of a node that there is; nullptr: none has this id.
+  // Returns the node with this id; nullptr if there is none.
   const Slave* slave(canopen::NodeId node) const;
 
  private:
@@ -56,7 +56,7 @@ class RobotSlaves {
   void pass_on(const Node& node, const Frames& from_node, canopen::Time now, Frames& out);
   void inject(const Fault& fault, Node& node, canopen::Time now);
   Drive* as_drive(const Node& node) const;
-  canopen::Time next_of_nodes() const;  // what they have to do by themselves; the plant aside
+  canopen::Time next_of_nodes() const;  // the nodes' own next actions, without the plant
   canopen::Time next_event() const;
   canopen::Frame garbage();
 
@@ -70,7 +70,7 @@ class RobotSlaves {
   canopen::Time next_step_;
   std::vector<LateFrame> late_;
   std::optional<canopen::Time> next_garbage_;
-  std::mt19937 random_;  // of the garbage: the same in every run
+  std::mt19937 random_;  // for garbage: the same in every run
 };
 
 }  // namespace kenaf::candrives

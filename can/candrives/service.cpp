@@ -19,7 +19,7 @@ using canopen::Time;
 
 namespace {
 
-constexpr Time kLookAround = std::chrono::milliseconds(50);  // at input and signals
+constexpr Time kLookAround = std::chrono::milliseconds(50);  // period of checks of input and signals
 constexpr Time kReopen = std::chrono::milliseconds(100);
 constexpr Time kMuchTooLate = std::chrono::milliseconds(100);
 constexpr double kMoves_mps = 0.001;
@@ -29,7 +29,7 @@ Time clock_now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
-// The states in which a drive stays; it passes through the others on its way up.
+// States in which a drive stays; the others are only passed through.
 bool is_worth_a_line(PowerState state) {
   return state == PowerState::switch_on_disabled || state == PowerState::operation_enabled ||
          state == PowerState::quick_stop_active || state == PowerState::fault;
@@ -88,7 +88,7 @@ void Service::serve(canopen::Bus& bus, const std::atomic<bool>& stop) {
     if (received) {
       up_to(received->at, &received->frame, out);
     } else {
-      // not up to the clock's time: if this program was held up, frames of before may have come since
+      // not up to the current time: if this program was held up, earlier frames may have arrived since
       up_to(until, nullptr, out);
       read_input();
     }
@@ -108,7 +108,7 @@ void Service::live_without_bus() {
   report_states();
 }
 
-// A frame's time stamp may lie before what was served last: time never goes back.
+// A frame's time stamp may lie before the time already served: time never goes back.
 void Service::up_to(Time now, const canopen::Frame* frame, Frames& out) {
   const Time before = now_, began = clock_now();
   now_ = std::max(now_, now);
@@ -148,7 +148,7 @@ void Service::read_input() {
         warn("{}", error.what());
       }
     }
-    if (input_.size() > 1000) input_.clear();  // no fault has so many words
+    if (input_.size() > 1000) input_.clear();  // no fault text is this long
   }
 }
 
@@ -162,7 +162,7 @@ void Service::report_states() {
   }
 }
 
-// Lateness alone may be another program's doing, for a moment; the ratio tells whether it is ours.
+// Lateness alone may be caused briefly by another program; the ratio shows whether it is ours.
 void Service::watch_speed(Time before, Time began) {
   const Time ended = clock_now();
   spent_ += ended - began;

@@ -1,9 +1,9 @@
-// Serves a robot's nodes on a bus in real time: frames as they come, faults as they are due, and on the terminal what
-// happens.
+// Serves a robot's nodes on a bus in real time: frames as they arrive, faults as they fall due, and events on the
+// terminal.
 //
-// One thread. It sleeps until a frame comes or a node has something to do by itself; the plant is brought up to date
-// then, so that nothing has to wake up for each of its steps. A bus that goes down comes up again some time, and the
-// nodes live on meanwhile, as real ones do.
+// One thread. It sleeps until a frame arrives or a node has something to do; only then the plant is brought up to date,
+// which saves a wake-up for each of its steps. A bus that goes down may come up again, and the nodes continue
+// meanwhile, as real ones do.
 #pragma once
 
 #include <atomic>
@@ -21,11 +21,11 @@ using OpenBus = std::function<std::unique_ptr<canopen::Bus>()>;  // throws BusEr
 
 class Service {
  public:
-  // `where`: "vcan0: robot kenaf in world flat", for the line that says that all nodes are up.
+  // `where`: "vcan0: robot kenaf in world flat", for the line reporting that all nodes are up.
   Service(const canbus::RobotBus& bus, Plant& plant, std::string where);
 
   void plan(const PlannedFault& fault);
-  // Until `stop`. Lines on standard input are faults. Throws BusError if the bus cannot be had at the start.
+  // Runs until `stop`. Lines on standard input are faults. Throws BusError if the bus is not available at the start.
   void run(const OpenBus& open, const std::atomic<bool>& stop);
 
  private:
@@ -40,11 +40,11 @@ class Service {
   canbus::RobotBus bus_;
   Plant* plant_;
   std::string where_;
-  canopen::Time start_, now_;  // up to when the nodes have been served
+  canopen::Time start_, now_;  // time up to which the nodes have been served
   RobotSlaves slaves_;
   FaultScript faults_;
   std::array<canopen::PowerState, canbus::kDriveCount> reported_{};
-  std::string input_;  // of a line that is not whole yet
+  std::string input_;  // incomplete line
   bool input_open_ = true, said_slow_ = false;
   canopen::Time spent_{}, simulated_{};
 };

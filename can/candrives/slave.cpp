@@ -16,11 +16,11 @@ using canopen::Time;
 
 namespace {
 
-// Objects of the communication profile; a reset of the communication resets them alone.
+// Objects of the communication profile; a communication reset affects only these.
 constexpr std::uint16_t kFirstCommunicationObject = 0x1000, kLastCommunicationObject = 0x1fff;
 constexpr std::uint16_t kFirstDeviceObject = 0x2000, kLastDeviceObject = 0x9fff;
 
-// What a node does in NMT when its master is lost, object 0x1029:1.
+// NMT reaction of a node to the loss of its master, object 0x1029:1.
 enum CommunicationErrorBehaviour : std::int64_t { kToPreOperational = 0, kStay = 1, kStop = 2 };
 
 void add_communication_objects(Dictionary& objects, canopen::NodeId node, const DeviceIdentity& identity) {
@@ -80,7 +80,7 @@ void Slave::boot(Time now, Frames& out) {
 
 void Slave::reset_communication() {
   objects_.reset(kFirstCommunicationObject, kLastCommunicationObject);
-  errors_.forget(canopen::kErrorHeartbeat);  // the watch is off again; boot-up is the first that is said
+  errors_.forget(canopen::kErrorHeartbeat);  // the watch is off again; boot-up is the first message
   sdo_ = canopen::SdoServer(node_, object_access());
   next_heartbeat_ = master_lost_at_ = Time::max();
   heartbeat_changed_ = false;
@@ -103,7 +103,7 @@ void Slave::on_order(NmtCommand command, Time now, Frames& out) {
     case NmtCommand::reset_node:
       return power_on(now, out);
     case NmtCommand::reset_communication:
-      on_connection_lost();  // before the objects that say what to do are lost
+      on_connection_lost();  // before the objects that configure the reaction are reset
       reset_communication();
       return boot(now, out);
   }
@@ -112,7 +112,9 @@ void Slave::on_order(NmtCommand command, Time now, Frames& out) {
 // ---- frames ----
 
 void Slave::on_frame(const Frame& frame, Time now, Frames& out) {
+  // The master's heartbeat may have expired before this frame came.
   watch_master(now);
+  // By kind: NMT for this node or all, heartbeats, SYNC, SDO (not while stopped), and PDOs (operational only).
   if (const auto order = canopen::nmt_order_from(frame)) {
     if (order->node == 0 || order->node == node_) on_order(order->command, now, out);
   } else if (const auto heartbeat = canopen::heartbeat_from(frame)) {
@@ -147,7 +149,7 @@ void Slave::on_sync(const Frame& frame, Time now, Frames& out) {
 
 // ---- heartbeats ----
 
-// The watch begins with the first heartbeat that is heard. CiA 301, 7.2.8.2.2.
+// The watch begins with the first received heartbeat. CiA 301, 7.2.8.2.2.
 void Slave::on_heartbeat(const canopen::Heartbeat& heartbeat, Time now) {
   const std::int64_t watched = objects_.value(canopen::object::consumer_heartbeat_1.object);
   const auto patience = std::chrono::milliseconds(watched & 0xffff);
@@ -183,7 +185,7 @@ void Slave::on_time(Time now, Frames& out) {
 }
 
 void Slave::send_messages(Time now, Frames& out) {
-  const Frames messages = errors_.take_messages();  // a stopped node has none
+  const Frames messages = errors_.take_messages();  // a stopped node sends none
   if (state_ != NmtState::stopped) out.insert(out.end(), messages.begin(), messages.end());
   if (state_ != NmtState::operational || !process_data_.follows_data()) return;
   refresh();

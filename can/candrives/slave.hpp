@@ -1,4 +1,4 @@
-// One CANopen node without its device profile: what every slave on a bus does. CiA 301.
+// One CANopen node without its device profile: the behaviour common to all slaves. CiA 301.
 //
 //   NMT          boot-up message, pre-operational, operational, stopped; the two resets                   7.2.8, 7.3.2
 //   SDO          its object dictionary, read and written by the master                                    7.2.4
@@ -13,8 +13,8 @@
 //             ^                                     ^             NMT and heartbeats in all.
 //             +-------------------------------------+
 //
-// A device profile derives from it and adds objects, and what happens when they are written. Frames and times go in,
-// frames come out; no clock and no socket is here. Not copied or moved: its parts refer to each other.
+// A device profile derives from it and adds objects and reactions to writes. Frames and times go in, frames come out;
+// no clock and no socket. Neither copyable nor movable: its parts refer to each other.
 #pragma once
 
 #include <string>
@@ -44,29 +44,29 @@ class Slave {
   canopen::NmtState state() const { return state_; }
   const Dictionary& objects() const { return objects_; }
 
-  // All objects as they are at first, then the boot-up message.
+  // All objects at their initial values, then the boot-up message.
   void power_on(canopen::Time now, Frames& out);
   void on_frame(const canopen::Frame& frame, canopen::Time now, Frames& out);
-  // Heartbeats, the watch over the master's, event-driven PDOs, and messages of errors that came since the last call.
+  // Sends heartbeats, event-driven PDOs and messages of new errors, and watches the master's heartbeat.
   void on_time(canopen::Time now, Frames& out);
-  // When on_time has something to do, as far as it is known by now; Time::max(): not before a frame comes.
+  // Returns when on_time has something to do, as far as known now; Time::max(): not before a frame arrives.
   canopen::Time deadline() const;
-  // It sends PDOs whenever its data change, so that on_time should be called after every change of the data.
+  // True if it sends PDOs on data changes, so that on_time should be called after every change.
   bool follows_data() const;
 
  protected:
-  // Objects of the device profile are added in the constructor of the deriving class.
+  // The deriving class adds the objects of its device profile in its constructor.
   Dictionary& dictionary() { return objects_; }
   ErrorState& errors() { return errors_; }
 
-  // Power on or reset node; objects have their first values.
+  // Power on or node reset; objects have their initial values.
   virtual void on_reset() {}
-  // Brings measured values into the dictionary, before they are read or sent.
+  // Brings measurements into the dictionary before they are read or sent.
   virtual void refresh() {}
   virtual std::optional<canopen::SdoAbort> check_write(canopen::ObjectAddress, std::int64_t) { return std::nullopt; }
   virtual void on_write(canopen::ObjectAddress, std::int64_t) {}
-  // The master is gone or has cut the connection: its heartbeat was lost, or NMT stop or a reset of the communication
-  // came. CiA 402-2, abort connection option code, has this list.
+  // The master is gone or has cut the connection: heartbeat lost, NMT stop, or communication reset; the list of CiA
+  // 402-2, abort connection option code.
   virtual void on_connection_lost() {}
 
  private:
@@ -89,8 +89,8 @@ class Slave {
   ErrorState errors_;
   canopen::NmtState state_ = canopen::NmtState::boot_up;
   canopen::Time next_heartbeat_ = canopen::Time::max();
-  canopen::Time master_lost_at_ = canopen::Time::max();  // max: it has not been heard yet, or is lost already
-  bool heartbeat_changed_ = false;                       // object 0x1017 was written: it begins at once
+  canopen::Time master_lost_at_ = canopen::Time::max();  // max: not received yet, or already lost
+  bool heartbeat_changed_ = false;                       // object 0x1017 was written: takes effect at once
 };
 
 }  // namespace kenaf::candrives

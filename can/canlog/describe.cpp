@@ -72,7 +72,7 @@ std::string emergency_words(const Frame& frame, const std::string& name) {
 
 // ---- process data ----
 
-// Where a drive counts backwards, nothing is not "-0".
+// Avoids "-0" for a drive that counts backwards.
 double without_minus_zero(double value) {
   return value + 0.0;
 }
@@ -90,7 +90,7 @@ std::string velocity_words(std::int64_t velocity, std::size_t drive, const Netwo
   return fmt::format("{:.3g} {}", speed, canbus::is_track(drive) ? "m/s" : "rad/s");
 }
 
-// The bits of a statusword that are the same in every mode, beyond the state.
+// The statusword bits, beyond the state, that have the same meaning in every mode.
 std::string status_words(std::uint16_t statusword) {
   std::string words(describe(canopen::power_state_of(statusword)));
   if ((statusword & canopen::kStatusWarning) != 0) words += ", warning";
@@ -156,6 +156,7 @@ std::string pdo_words(const Frame& frame, const Address& address, const Network&
 }  // namespace
 
 std::string describe(const Frame& frame, const Network& network) {
+  // By the service that the identifier stands for in CiA 301's predefined connection set.
   const Address address = address_of(frame.id);
   const std::string name = network.name(address.node);
   switch (address.service) {

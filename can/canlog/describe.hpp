@@ -1,4 +1,4 @@
-// What each frame of a bus says, in words: one line, for a person who reads a log.
+// Describes each frame of a bus in one line, for readers of a log.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace kenaf::canlog {
 
-// "NMT start flipper rear left", "track left: operation enabled, position 1234 counts (0.0034 m)". By the frame alone,
-// whatever came before; of a frame that is not what its identifier promises it says so.
+// "NMT start flipper rear left", "track left: operation enabled, position 1234 counts (0.0034 m)". Depends on the frame
+// alone; a frame that does not fit its identifier is described as such.
 std::string describe(const canopen::Frame& frame, const Network& network);
-// And of lines that are no data frames what they are.
+// The same for any line; lines that are no data frames are described by their kind.
 std::string describe(const LogFrame& logged, const Network& network);
 
 }  // namespace kenaf::canlog

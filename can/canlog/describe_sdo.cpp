@@ -15,7 +15,7 @@ namespace {
 using canopen::Frame;
 namespace sdo = canopen::sdo;
 
-// The value in the first frame of a transfer: a number, or how long it will be.
+// The value in the first frame of a transfer: a number, or its announced length.
 std::string initiated(const Frame& frame) {
   if (sdo::is_expedited(frame)) {
     const auto bytes = sdo::expedited_value(frame);

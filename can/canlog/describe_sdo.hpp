@@ -1,4 +1,4 @@
-// Words for the frames of SDO transfers, eight bytes each. CiA 301, 7.2.4.3.
+// Describes the frames of SDO transfers, eight bytes each. CiA 301, 7.2.4.3.
 #pragma once
 
 #include <string>

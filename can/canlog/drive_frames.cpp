@@ -11,7 +11,7 @@ struct Pair {
   std::int64_t first, second;
 };
 
-// Both frames are a word of 16 bits and a number of 32.
+// Both frames are a 16-bit word and a 32-bit number.
 std::optional<Pair> pair_from(const canopen::Frame& frame, const Network& network, const canopen::MappedObject& word) {
   const KnownPdo* known = network.pdo(frame.id);
   if (known == nullptr || !known->drive || known->pdo.objects.front().object != word.object) return std::nullopt;

@@ -1,4 +1,4 @@
-// The frames of a drive in the loop, as numbers.
+// The frames of a drive in the control loop, decoded.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct DriveCommand {
   std::uint16_t controlword;
   std::int32_t target;  // position or velocity, in the drive's units
 };
-// nullopt: the frame is no command PDO of a drive, or has not its length.
+// nullopt: the frame is no command PDO of a drive, or has the wrong length.
 std::optional<DriveCommand> drive_command_from(const canopen::Frame& frame, const Network& network);
 
 struct DriveStatus {

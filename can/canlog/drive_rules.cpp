@@ -40,7 +40,7 @@ bool DriveRules::could_be(const LogFrame& logged, const Drive& drive, Holds hold
   return drive.before && logged.at - drive.shown->at <= options_.crossing && holds(*drive.before);
 }
 
-// ---- what the drive is told ----
+// ---- commands ----
 
 void DriveRules::on_command(const LogFrame& logged, const DriveCommand& command) {
   Drive& drive = drives_[command.drive];
@@ -96,7 +96,7 @@ void DriveRules::check_target(const LogFrame& logged, const DriveCommand& comman
                 describe(drive.shown->state()), drive.shown->status.position);
 }
 
-// Bit 4 asks, bit 12 acknowledges: the one may rise while the other is 0, and fall once it is 1.
+// Bit 4 requests, bit 12 acknowledges: bit 4 may rise only while bit 12 is 0, and fall once it is 1.
 void DriveRules::check_set_point(const LogFrame& logged, const DriveCommand& command, const Drive& drive) {
   if (drive.mode != DriveMode::profile_position || !drive.shown || !drive.command) return;
   const auto is_enabled = [](std::uint16_t word) { return order_of(word) == DriveOrder::enable; };
@@ -115,7 +115,7 @@ void DriveRules::check_set_point(const LogFrame& logged, const DriveCommand& com
                       : "raised while the drive still acknowledges the one before");
 }
 
-// ---- what the drive shows ----
+// ---- states shown by the drive ----
 
 void DriveRules::on_status(const LogFrame& logged, const DriveStatus& status) {
   Drive& drive = drives_[status.drive];
@@ -138,7 +138,7 @@ void DriveRules::check_transition(const LogFrame& logged, const DriveStatus& sta
     findings_.add(logged, rule::statusword, "{} shows statusword {:#06x}, which is no state", name, status.statusword);
     return;
   }
-  // where statuswords are missing, states between may be too
+  // if statuswords are missing, intermediate states may be too
   if (!drive.shown || drive.shown->state() == to || syncs_ - drive.shown->sync > 1) return;
   const PowerState from = drive.shown->state();
   if (from == PowerState::undefined) return;

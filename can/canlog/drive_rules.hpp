@@ -12,7 +12,7 @@ namespace kenaf::canlog {
 
 class DriveRules {
  public:
-  // All must outlive this.
+  // All arguments must outlive this.
   DriveRules(const Network& network, const CheckOptions& options, Findings& findings);
 
   void on_frame(const LogFrame& logged);
@@ -28,11 +28,11 @@ class DriveRules {
   };
   struct Drive {
     canopen::DriveMode mode;
-    std::optional<Shown> shown{}, before{};  // its newest statusword, and the one before
+    std::optional<Shown> shown{}, before{};  // its newest statusword, and the previous one
     std::optional<DriveCommand> command{};   // the newest
-    std::set<DriveOrder> orders{};           // given since it showed its present state, and the one in force then
-    bool followed = false;                   // every order since its start, or since the first that is here
-    bool ended = false;                      // told to stop; until it is enabled anew
+    std::set<DriveOrder> orders{};           // given since it showed its present state, plus the one in force then
+    bool followed = false;                   // every order since its start, or since the first one in the log
+    bool ended = false;                      // told to stop; until it is enabled again
   };
   void on_command(const LogFrame& logged, const DriveCommand& command);
   void on_status(const LogFrame& logged, const DriveStatus& status);
@@ -41,7 +41,7 @@ class DriveRules {
   void check_target(const LogFrame& logged, const DriveCommand& command, const Drive& drive);
   void check_set_point(const LogFrame& logged, const DriveCommand& command, const Drive& drive);
   void check_transition(const LogFrame& logged, const DriveStatus& status, const Drive& drive);
-  // Whether `holds` is true of what the drive showed last, or of what it showed before where the two frames may have
+  // True if `holds` is true for the drive's newest statusword, or for the previous one if the two frames may have
   // crossed.
   template <class Holds>
   bool could_be(const LogFrame& logged, const Drive& drive, Holds holds) const;

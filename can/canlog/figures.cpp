@@ -23,10 +23,10 @@ double seconds(Time time) {
   return std::chrono::duration<double>(time).count();
 }
 
-// What came between one SYNC and the next.
+// Traffic between one SYNC and the next.
 struct Cycle {
   Time sync_at;
-  std::size_t frame;  // the SYNC's place in the log
+  std::size_t frame;  // index of the SYNC in the log
   std::optional<Time> last_answer{}, last_command{};
   std::set<std::size_t> commanded{};  // drives
 };
@@ -50,7 +50,7 @@ std::vector<Cycle> cycles_of(const Log& log, const Network& network) {
 Traffic traffic_of(const Log& log, std::size_t first, std::size_t last) {
   Traffic traffic;
   double bits = 0, worst_case = 0;
-  for (std::size_t i = first; i < last; ++i) {  // without the last, whose end is after the stretch's
+  for (std::size_t i = first; i < last; ++i) {  // without the last frame, which ends after the stretch
     const LogFrame& logged = log.frames[i];
     if (logged.kind != CandumpKind::data) continue;
     ++traffic.frames;
@@ -92,7 +92,7 @@ void add_cycle_times(const std::vector<Cycle>& cycles, Figures& figures) {
   figures.command_time = spread_of(std::move(commands_s));
 }
 
-// A cycle that begins after the first motion and whose next SYNC comes before the last.
+// Counts cycles that begin after the first motion and whose next SYNC comes before the last motion.
 void add_late_commands(const Log& log, const Network& network, const std::vector<Cycle>& cycles, Figures& figures) {
   for (const LoopSpan& span : loop_spans(log, network)) {
     auto cycle = std::ranges::lower_bound(cycles, span.first, {}, &Cycle::frame);

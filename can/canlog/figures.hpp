@@ -1,4 +1,4 @@
-// A recorded bus in figures: how full it is, how regular its SYNC, how quick the answers.
+// Statistics of a recorded bus: load, regularity of SYNC, answer times.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@
 
 namespace kenaf::canlog {
 
-// Of a number of times.
+// Percentiles of a set of times.
 struct Spread {
   double median_s = 0, p99_s = 0, max_s = 0;
 };
-// The smallest value that is not less than half, and than 99 of a hundred, of all; nullopt of none.
+// Median and p99: the smallest value not less than 50 % and 99 % of all values, respectively; nullopt for none.
 std::optional<Spread> spread_of(std::vector<double> values_s);
 
 // A stretch of the log, from the start of its first frame to that of its last.
@@ -23,28 +23,28 @@ struct Traffic {
   double duration_s = 0;
   std::size_t frames = 0;
   double frames_per_s = 0;
-  double bits_per_s = 0;             // with the stuff bits that each frame has
-  double worst_case_bits_per_s = 0;  // with as many as its length allows
+  double bits_per_s = 0;             // with the stuff bits of each frame
+  double worst_case_bits_per_s = 0;  // with the maximum of stuff bits for its length
 };
 
 struct Figures {
   Traffic all;
-  std::optional<Traffic> with_sync;  // from the first SYNC to the last: the loop, and power-up and end around it
-  std::size_t other_frames = 0;      // of other kinds than CANopen's; not in the traffic
+  std::optional<Traffic> with_sync;  // from the first SYNC to the last: the loop, with power-up and shutdown
+  std::size_t other_frames = 0;      // kinds that CANopen does not use; not in the traffic
   std::size_t error_messages = 0;    // of the CAN driver
 
   std::size_t cycles = 0;              // SYNCs
   std::optional<double> period_s;      // median of the times between two SYNCs
-  std::size_t gaps = 0;                // longer than 1.5 periods: not in the jitter
-  std::optional<Spread> sync_jitter;   // how far each of the others is from the period
+  std::size_t gaps = 0;                // longer than 1.5 periods: excluded from the jitter
+  std::optional<Spread> sync_jitter;   // deviation of the others from the period
   std::optional<Spread> answer_time;   // SYNC to the last TPDO of its cycle
   std::optional<Spread> command_time;  // SYNC to the last RPDO of its cycle
   std::size_t driven_cycles = 0;       // from the first motion to the last
-  std::size_t late_commands = 0;       // of those: SYNCs before which not every drive had got a new command
+  std::size_t late_commands = 0;       // number of these SYNCs before which not every drive had received a new command
 };
 Figures figures_of(const Log& log, const Network& network);
 
-// Lines for a person. `bit_rate` in bits a second.
+// Formats the figures as lines of text. `bit_rate` in bits per second.
 std::string to_text(const Figures& figures, double bit_rate);
 
 }  // namespace kenaf::canlog

@@ -1,4 +1,4 @@
-// Where the parts of the check put what they find, and what all of them are told.
+// Shared by the parts of the check: where they report findings, and their common inputs.
 #pragma once
 
 #include <fmt/format.h>
@@ -23,13 +23,13 @@ class Findings {
   std::vector<Violation> found_;
 };
 
-// An SDO write that the node has confirmed.
+// An SDO write confirmed by the node.
 struct WrittenObject {
   canopen::NodeId node;
   canopen::ObjectAddress object;
   canopen::ObjectBytes value;
 
-  // Little-endian, of four bytes at most.
+  // Little-endian, four bytes at most.
   std::uint32_t number() const { return canopen::get_unsigned(value, 0, std::min<std::size_t>(value.size(), 4)); }
 };
 

@@ -37,7 +37,7 @@ bool FrameRules::check(const LogFrame& logged, const Address& address) {
 
 bool FrameRules::check_kind(const LogFrame& logged) {
   if (logged.kind == canopen::CandumpKind::data) return true;
-  // what the driver says of the wire is not on it
+  // driver messages about the wire are not frames on it
   if (logged.kind != canopen::CandumpKind::error && strange_kinds_.insert(logged.kind).second)
     findings_.add(logged, rule::identifier, "{} is on the bus", describe(logged.kind));
   return false;
@@ -88,7 +88,7 @@ bool FrameRules::check_length(const LogFrame& logged, const Address& address) {
       const auto mapped = setup_.mapped_bytes(logged.frame.id);
       if (mapped) return expect(*mapped, *mapped);
       if (!network_.is_gyro(logged.frame.id)) return true;
-      // its other content is its maker's
+      // the rest of the frame is manufacturer-specific
       const canbus::GyroOnBus& gyro = *network_.bus().gyro;
       return expect((gyro.first_bit + gyro.bits + 7u) / 8, canopen::kMaxFrameBytes);
     }

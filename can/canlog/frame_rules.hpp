@@ -1,4 +1,4 @@
-// The rules that a frame keeps or breaks by itself: identifier, length, content.
+// The rules that can be checked on a single frame: identifier, length, content.
 #pragma once
 
 #include <set>
@@ -10,11 +10,11 @@ namespace kenaf::canlog {
 
 class FrameRules {
  public:
-  // All must outlive this.
+  // All arguments must outlive this.
   FrameRules(const Network& network, const PdoSetup& setup, Findings& findings)
       : network_(network), setup_(setup), findings_(findings) {}
 
-  // False: the frame is not what its identifier promises, and nothing more can be said of it.
+  // Returns false if the frame does not fit its identifier, so that nothing more can be checked.
   bool check(const LogFrame& logged, const Address& address);
 
  private:
@@ -26,7 +26,7 @@ class FrameRules {
   const Network& network_;
   const PdoSetup& setup_;
   Findings& findings_;
-  // each said once: who is on the bus without having to sends again and again
+  // each reported once: an unexpected sender repeats itself
   std::set<std::uint16_t> strange_ids_;
   std::set<canopen::CandumpKind> strange_kinds_;
 };

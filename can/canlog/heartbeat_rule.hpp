@@ -1,5 +1,5 @@
-// The heartbeats that nodes watch for, by their object 0x1016: never further apart than they allow. CiA 301, 7.5.2.19;
-// the watch begins with the first heartbeat after it was asked for (7.2.8.3.2.2).
+// The heartbeats that nodes watch, by their object 0x1016, never come further apart than allowed. CiA 301, 7.5.2.19;
+// the watch begins with the first heartbeat after its configuration (7.2.8.3.2.2).
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// A recorded bus in memory: the frames of a log of `candump -L`, each with its line.
+// A recorded bus in memory: the frames of a `candump -L` log, with their line numbers.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,26 @@
 namespace kenaf::canlog {
 
 struct LogFrame {
-  std::size_t line;  // from 1 on
+  std::size_t line;  // counted from 1
   canopen::Time at;
   canopen::CandumpKind kind;
-  canopen::Frame frame;  // of kind data; else empty
+  canopen::Frame frame;  // for kind data; otherwise empty
 };
 
 struct BadLine {
   std::size_t line;
-  std::string words;  // what is wrong with it
+  std::string words;  // the error in the line
 };
 
 struct Log {
   std::string interface {};        // empty: no line was read
   std::vector<LogFrame> frames{};  // in the order of the file
   std::vector<BadLine> bad_lines{};
-  std::size_t other_interfaces = 0;  // lines that were left out
+  std::size_t other_interfaces = 0;  // lines skipped
 };
 
-// Empty lines and those that begin with '#' are passed over; a line that cannot be read costs that line. Of `interface`
-// alone, or, where that is empty, of the interface of the first line: a log of two buses is two logs.
+// Skips empty lines and those that begin with '#'; an unreadable line is dropped and reported. Reads frames of
+// `interface` only or, if that is empty, of the interface of the first line: a log of two buses is two logs.
 Log read_log(std::istream& in, const std::string& interface = {});
 
 }  // namespace kenaf::canlog

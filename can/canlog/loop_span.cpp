@@ -21,7 +21,7 @@ struct Followed {
   std::optional<DriveCommand> last{};
 };
 
-// Whether `command` asks the drive to move.
+// True if `command` asks the drive to move.
 bool is_motion(const DriveCommand& command, const Followed& drive) {
   if (order_of(command.controlword) != DriveOrder::enable || drive.state != PowerState::operation_enabled) return false;
   const auto set_point = [](std::uint16_t word) { return (word & canopen::kControlNewSetPoint) != 0; };
@@ -43,18 +43,22 @@ bool is_motion(const DriveCommand& command, const Followed& drive) {
 }  // namespace
 
 std::vector<LoopSpan> loop_spans(const Log& log, const Network& network) {
+  // SDO writes are tracked only because they may change a drive's mode; their findings are ignored here.
   const CheckOptions options;
   Findings ignored;
   SdoDialogue dialogue(network, options, ignored);
   std::array<Followed, canbus::kDriveCount> drives{};
   for (std::size_t i = 0; i < drives.size(); ++i) drives[i].mode = network.bus().drives[i].mode;
 
+  // A span reaches from the first command that moves a drive to the newest such command.
   std::vector<LoopSpan> spans;
   bool within = false;
   for (std::size_t i = 0; i < log.frames.size(); ++i) {
     const LogFrame& logged = log.frames[i];
     if (logged.kind != canopen::CandumpKind::data) continue;
     const Address address = address_of(logged.frame.id);
+
+    // Tracks the drives' modes and states, on which the meaning of a command depends.
     if (const auto written = dialogue.on_frame(logged, address)) {
       const auto drive = network.drive_of(written->node);
       if (drive && written->object == canopen::object::mode.object)
@@ -62,8 +66,12 @@ std::vector<LoopSpan> loop_spans(const Log& log, const Network& network) {
     }
     if (const auto status = drive_status_from(logged.frame, network))
       drives[status->drive].state = canopen::power_state_of(status->statusword);
+
+    // Any NMT order but start ends the control loop, and with it the span.
     if (const auto order = canopen::nmt_order_from(logged.frame); order && order->command != canopen::NmtCommand::start)
       within = false;
+
+    // The rest concerns commands to drives.
     const auto command = drive_command_from(logged.frame, network);
     if (!command) continue;
     Followed& drive = drives[command->drive];

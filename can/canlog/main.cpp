@@ -1,10 +1,10 @@
-// kenaf-canlog: a recorded CAN bus in words, held against the standards' rules, and in figures.
+// kenaf-canlog: describes a recorded CAN bus, checks it against the standards' rules, and computes statistics.
 //
 //   kenaf-canlog square.log | less
 //   candump -L can0 | kenaf-canlog --figures
 //   kenaf-canlog --check --robot kenaf square.log
 //
-// Exit status: 0, 1 where --check found a rule broken, 2 bad input, or what comes out cannot be written.
+// Exit status: 0; 1 if --check found a violation; 2 for bad input, or if the output cannot be written.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -49,7 +49,7 @@ canopen::Time from_ms(double ms) {
   return std::chrono::round<canopen::Time>(std::chrono::duration<double, std::milli>(ms));
 }
 
-// The times are those since the first frame.
+// Times are relative to the first frame.
 void print_words(const canlog::Log& log, const canlog::Network& network) {
   for (const canlog::LogFrame& logged : log.frames)
     fmt::print("{:12.6f}  {}\n", seconds(logged.at - log.frames.front().at), describe(logged, network));
@@ -73,7 +73,7 @@ bool print_violations(const Options& options, const canlog::Log& log, const canl
   return found.empty();
 }
 
-// What was printed may not have gone anywhere, on a full disk.
+// The output may have been lost, for example on a full disk.
 void finish_output() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
     throw std::runtime_error("standard output cannot be written; is its disk full?");
@@ -126,7 +126,7 @@ int main(int argc, char** argv) {
   try {
     return run(options);
   } catch (const std::exception& error) {
-    // not fmt::print, which throws where standard error is on the full disk too
+    // not fmt::print, which throws if standard error is on the full disk too
     std::fprintf(stderr, "kenaf-canlog: %s\n", error.what());
     return kBadInput;
   }

@@ -10,7 +10,7 @@ using canopen::Pdo;
 namespace {
 
 struct Range {
-  std::uint16_t base;  // with the node's id added: the identifier
+  std::uint16_t base;  // plus the node id: the identifier
   Service service;
   std::uint8_t pdo = 0;
 };

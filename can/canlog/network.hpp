@@ -1,5 +1,5 @@
-// What an identifier of the bus stands for: the service and the node by CiA 301's predefined connection set (7.3.3
-// to 7.3.5), the node's name and the process data by the robot's description.
+// The meaning of an identifier on the bus: service and node by CiA 301's predefined connection set (7.3.3 to 7.3.5),
+// the node's name and process data by the robot's description.
 #pragma once
 
 #include <cstdint>
@@ -28,14 +28,14 @@ enum class Service : std::uint8_t {
 
 struct Address {
   Service service;
-  canopen::NodeId node;  // 0: of no single node
-  std::uint8_t pdo;      // 1 to 4, of a PDO
+  canopen::NodeId node;  // 0: no single node
+  std::uint8_t pdo;      // 1 to 4, for a PDO
 };
 Address address_of(std::uint16_t cob_id);
 
-// Which of the robot's PDOs: what is in it, and of which drive.
+// One of the robot's PDOs: its contents, and the drive it belongs to.
 struct KnownPdo {
-  canopen::Pdo pdo;  // of the gyro: no objects, for its device decides what else is in the frame
+  canopen::Pdo pdo;  // for the gyro: no objects, since its device determines the rest of the frame
   canopen::NodeId node;
   std::optional<std::size_t> drive;
 };
@@ -47,9 +47,9 @@ class Network {
   const canbus::RobotBus& bus() const { return bus_; }
   bool is_known(canopen::NodeId node) const { return names_.contains(node); }
   bool is_master(canopen::NodeId node) const { return node == bus_.master; }
-  // "flipper front left"; "node 9" of one that the description does not know.
+  // "flipper front left"; "node 9" for a node that the description does not know.
   std::string name(canopen::NodeId node) const;
-  // With the master.
+  // Includes the master.
   const std::map<canopen::NodeId, std::string>& names() const { return names_; }
 
   const std::map<std::uint16_t, KnownPdo>& pdos() const { return pdos_; }

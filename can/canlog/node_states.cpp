@@ -48,7 +48,7 @@ void NodeStates::enter(Node& node, NmtState state, canopen::Time at) {
   node.reported = false;
 }
 
-// An order to all nodes is one to each that the description knows; the master follows its own orders by itself.
+// An order to all nodes counts for each node of the description; the master executes its own orders by itself.
 void NodeStates::on_order(const LogFrame& logged) {
   const auto order = canopen::nmt_order_from(logged.frame);
   if (!order) return;

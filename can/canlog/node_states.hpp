@@ -1,4 +1,4 @@
-// Which NMT state each node is in, followed from orders and heartbeats; and the rules about it. CiA 301, 7.3.2.
+// The NMT state of each node, tracked from orders and heartbeats, and the rules about it. CiA 301, 7.3.2.
 #pragma once
 
 #include <map>
@@ -10,20 +10,20 @@ namespace kenaf::canlog {
 
 class NodeStates {
  public:
-  // All must outlive this.
+  // All arguments must outlive this.
   NodeStates(const Network& network, const CheckOptions& options, Findings& findings)
       : network_(network), options_(options), findings_(findings) {}
 
   void on_frame(const LogFrame& logged, const Address& address);
 
-  // Since before `at`, with time for frames to cross; false where the log does not tell.
+  // True if it was operational before `at`, allowing for crossing frames; false if the log does not tell.
   bool was_operational(canopen::NodeId node, canopen::Time at) const;
-  // Whether this very frame made the node forget its set-up: an order to reset it, or its boot-up.
+  // True if this frame made the node lose its set-up: an order to reset it, or its boot-up.
   static bool is_restart(const LogFrame& logged, const Address& address, canopen::NodeId node);
 
  private:
   struct Node {
-    std::optional<canopen::NmtState> state;  // boot_up: it was reset, and has not said so yet
+    std::optional<canopen::NmtState> state;  // boot_up: it was reset and has not reported yet
     canopen::Time since{};
     bool reported = false;  // one violation for each reset
   };

@@ -1,5 +1,5 @@
-// How the nodes' PDOs are set up, followed from what is written to them, and the rule about its order. CiA
-// 301, 7.5.2.35 to 38.
+// The configuration of the nodes' PDOs, tracked from the writes to them, and the rule about its order. CiA 301,
+// 7.5.2.35 to 38.
 #pragma once
 
 #include <map>
@@ -11,25 +11,24 @@ namespace kenaf::canlog {
 
 class PdoSetup {
  public:
-  // All must outlive this.
+  // All arguments must outlive this.
   PdoSetup(const Network& network, Findings& findings) : network_(network), findings_(findings) {}
 
   void on_write(const LogFrame& logged, const WrittenObject& written);
   void on_restart(canopen::NodeId node);
-  // The node becomes operational: from now on its PDOs are used.
+  // The node becomes operational: its PDOs are in use from now on.
   void on_start(const LogFrame& logged, canopen::NodeId node);
 
-  // Of a PDO that was mapped in this log; else what the layout says; nullopt: the layout does not have it, or leaves it
-  // to the device.
+  // As mapped in this log, otherwise as in the layout; nullopt: not in the layout, or left to the device.
   std::optional<std::size_t> mapped_bytes(std::uint16_t cob_id) const;
-  // 1 to 240: at each n-th SYNC. nullopt: neither written nor in the layout.
+  // 1 to 240: at every n-th SYNC. nullopt: neither written nor in the layout.
   std::optional<std::uint8_t> transmission(std::uint16_t cob_id) const;
 
  private:
   struct Key {
     canopen::NodeId node;
     bool transmit;
-    unsigned number;  // from 1 on
+    unsigned number;  // counted from 1
     auto operator<=>(const Key&) const = default;
   };
   struct Record {
@@ -38,7 +37,7 @@ class PdoSetup {
     std::optional<std::uint8_t> transmission{};
     std::optional<std::uint8_t> count{};
     std::map<std::uint8_t, std::uint32_t> entries{};
-    bool mapped = false;  // the mapping was written, in whichever order
+    bool mapped = false;  // the mapping was written, in any order
   };
   static std::optional<Key> key_of(const WrittenObject& written);
   static std::string name(const Key& key, const Network& network);

@@ -8,8 +8,7 @@ using canopen::PowerState;
 
 namespace {
 
-// Away from operation a drive may go by itself as well: when its supply fails, its master is lost, an option code says
-// so.
+// A drive may also leave operation by itself: on supply failure, loss of its master, or as an option code says.
 const std::vector<PowerTransition>& table() {
   using enum PowerState;
   using enum DriveOrder;
@@ -55,7 +54,7 @@ bool has_transition(PowerState state, DriveOrder order) {
   switch (order) {
     case DriveOrder::disable_voltage:
     case DriveOrder::quick_stop:
-    case DriveOrder::fault_reset:  // which has a rule of its own
+    case DriveOrder::fault_reset:  // has its own rule
       return true;
     case DriveOrder::shutdown:
       return state == switch_on_disabled || state == ready_to_switch_on || state == switched_on ||

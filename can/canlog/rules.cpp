@@ -16,7 +16,7 @@
 namespace kenaf::canlog {
 namespace {
 
-// Every part follows the bus in its own way; here is who hears of what, in which order.
+// Each part tracks the bus in its own way; the Checker determines which parts get which frames, and in which order.
 class Checker {
  public:
   Checker(const Network& network, const CheckOptions& options)

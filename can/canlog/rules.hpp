@@ -1,8 +1,8 @@
-// Holds a recorded bus against the standards' rules. docs/can-log.md has them as a table, with what each needs to be
-// judged.
+// Checks a recorded bus against the standards' rules. docs/can-tools.md has them as a table, with the evidence that
+// each needs.
 //
-// Only what the log itself shows is judged: of a log that begins in the middle, nothing is said about a node's state
-// before that state was on the bus.
+// Only evidence in the log is judged: for a log that begins in the middle, a node's state is not judged before it was
+// on the bus.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ namespace kenaf::canlog {
 struct Rule {
   std::string_view name;    // "sdo-dialogue"
   std::string_view source;  // standard and section
-  std::string_view words;   // what it asks for
+  std::string_view words;   // the requirement
 };
 
 namespace rule {
@@ -63,14 +63,14 @@ struct Violation {
 struct CheckOptions {
   std::optional<canopen::Time> sdo_answer{};  // nullopt: answer_s of the description
   std::optional<canopen::Time>
-      sync_window{};  // nullopt: what was written to 0x1007; where nothing was, until the next SYNC
-  // Frames of two senders that wait at the same time cross: what one shows so shortly before another is sent could not
-  // be known to its sender. The longest frame takes 0.27 ms at 500 kbit/s.
+      sync_window{};  // nullopt: as written to 0x1007; if nothing was written, until the next SYNC
+  // Frames of two senders that wait at the same time cross: what one sender shows less than this before another sends
+  // cannot be known to that other. The longest frame takes 0.27 ms at 500 kbit/s.
   canopen::Time crossing = std::chrono::milliseconds(1);
-  // A heartbeat has the lowest priority and may have waited: one that contradicts an order counts once the order is so
-  // old.
+  // A heartbeat has the lowest priority and may have waited: one that contradicts an order counts only once the order
+  // is this old.
   canopen::Time heartbeat_wait = std::chrono::milliseconds(50);
-  double hold_tolerance_rad = 0.01;  // of a flipper that is told to stay where it is
+  double hold_tolerance_rad = 0.01;  // for a flipper told to stay where it is
 };
 
 // In the order of the log.

@@ -57,7 +57,7 @@ void SdoDialogue::on_request(const LogFrame& logged, NodeId node) {
     transfer = {};
     return;
   }
-  // after the time for an answer is over the master may try again
+  // after the answer time-out the master may retry
   if (transfer.request && !transfer.late) {
     findings_.add(logged, rule::sdo_dialogue, "{} is asked again before it has answered line {}", network_.name(node),
                   transfer.request->line);

@@ -1,5 +1,5 @@
-// The SDO transfers of a bus, followed frame by frame, and the rules about them. CiA 301, 7.2.4. Block transfers are
-// not followed: nothing is said of a node from one until its next expedited or segmented transfer.
+// The SDO transfers of a bus, tracked frame by frame, and their rules. CiA 301, 7.2.4. Block transfers are not tracked:
+// after one, nothing is judged for the node until its next expedited or segmented transfer.
 #pragma once
 
 #include <map>
@@ -11,12 +11,12 @@ namespace kenaf::canlog {
 
 class SdoDialogue {
  public:
-  // All must outlive this.
+  // All arguments must outlive this.
   SdoDialogue(const Network& network, const CheckOptions& options, Findings& findings);
 
-  // The write that this frame has completed.
+  // Returns the write that this frame has completed.
   std::optional<WrittenObject> on_frame(const LogFrame& logged, const Address& address);
-  // A node that was reset has forgotten its transfer.
+  // A reset node has lost its transfer.
   void on_restart(canopen::NodeId node) { nodes_[node] = {}; }
   void on_end(const LogFrame& last);
 
@@ -25,12 +25,12 @@ class SdoDialogue {
   struct Transfer {
     Kind kind = Kind::none;
     canopen::ObjectAddress object{};
-    canopen::ObjectBytes value{};       // of a write
-    bool segmented = false;             // a first answer has come, segments follow
-    bool last_segment = false;          // the one under way
+    canopen::ObjectBytes value{};       // for a write
+    bool segmented = false;             // the first answer has come, segments follow
+    bool last_segment = false;          // of the transfer under way
     bool toggle = false;                // of the next or present segment
-    std::optional<LogFrame> request{};  // not answered yet
-    bool late = false;                  // and that has been said
+    std::optional<LogFrame> request{};  // not yet answered
+    bool late = false;                  // its lateness has been reported
   };
   void on_request(const LogFrame& logged, canopen::NodeId node);
   void begin(const LogFrame& logged, canopen::NodeId node, Kind kind);

@@ -1,5 +1,5 @@
-// Synchronous PDOs: one at each SYNC that is theirs, within the window. CiA 301, 7.2.2.2 and 7.2.2.3. Those of the gyro
-// are left out: its device decides when it sends.
+// Synchronous PDOs: one at each of its SYNCs, within the window. CiA 301, 7.2.2.2 and 7.2.2.3. The gyro's are exempt:
+// its device decides when it sends.
 #pragma once
 
 #include <map>
@@ -13,7 +13,7 @@ namespace kenaf::canlog {
 
 class SyncRules {
  public:
-  // All must outlive this.
+  // All arguments must outlive this.
   SyncRules(const Network& network, const CheckOptions& options, const NodeStates& states, const PdoSetup& setup,
             Findings& findings)
       : network_(network), options_(options), states_(states), setup_(setup), findings_(findings) {}
@@ -24,13 +24,13 @@ class SyncRules {
 
  private:
   struct Sent {
-    unsigned syncs = 0;     // since the last transmission, or since it can send
-    bool in_phase = false;  // at which SYNCs it sends is known
+    unsigned syncs = 0;     // since the last transmission, or since it could send
+    bool in_phase = false;  // the SYNCs at which it sends are known
   };
   void on_sync(const LogFrame& logged);
   void on_pdo(const LogFrame& logged);
   std::string name(std::uint16_t cob_id) const;
-  // nullopt: not synchronous, or not known to be
+  // nullopt: not synchronous, or unknown
   std::optional<unsigned> each(std::uint16_t cob_id) const;
 
   const Network& network_;
@@ -40,7 +40,7 @@ class SyncRules {
   Findings& findings_;
   std::optional<LogFrame> sync_;
   std::optional<canopen::Time> written_window_;
-  std::map<std::uint16_t, Sent> sent_;  // of nodes that were operational at the last SYNC
+  std::map<std::uint16_t, Sent> sent_;  // for nodes that were operational at the last SYNC
 };
 
 }  // namespace kenaf::canlog

@@ -12,7 +12,7 @@ void append(std::vector<bool>& bits, unsigned value, unsigned count) {
   for (unsigned i = count; i-- > 0;) bits.push_back((value >> i & 1) != 0);
 }
 
-// From the start of frame to the data's end.
+// From the start of frame to the end of the data.
 std::vector<bool> covered_by_crc(const canopen::Frame& frame) {
   std::vector<bool> bits{false};
   append(bits, frame.id, 11);

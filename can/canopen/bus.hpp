@@ -1,7 +1,7 @@
-// A bus as a master or a slave uses it: it sends frames and waits for frames. Two implementations: SocketCAN's
-// (can/canbus/socket_bus.hpp) and one in the tests, whose slaves and time are in the same process.
+// A bus as seen by a master or a slave: sends frames and waits for frames. Two implementations: SocketCAN
+// (can/canbus/socket_bus.hpp) and one in the tests, with slaves and time in the same process.
 //
-// Thread safety: interrupt may be called from any thread; all else belongs to one.
+// Thread safety: interrupt may be called from any thread; everything else is for one thread.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,14 @@
 
 namespace kenaf::canopen {
 
-// The bus as a whole no longer works: interface down or gone, bus off. In words, with what to do.
+// The whole bus no longer works: interface down or gone, or bus off. The text says what to do.
 class BusError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// It takes no frame now, and may take one later: so far nobody acknowledges any, or the controller is to be back on the
-// bus soon.
+// The bus accepts no frame now, but may later: nobody has acknowledged one yet, or the controller is about to return to
+// the bus.
 class BusFull : public BusError {
  public:
   using BusError::BusError;
@@ -26,20 +26,20 @@ class BusFull : public BusError {
 
 struct ReceivedFrame {
   Frame frame;
-  Time at;  // when it was on the bus
+  Time at;  // time of reception
 };
 
 class Bus {
  public:
   virtual ~Bus() = default;
   virtual Time now() const = 0;
-  // Throws BusError; BusFull, having waited a little.
+  // Throws BusError; BusFull after a short wait.
   virtual void send(const Frame& frame) = 0;
-  // The next frame of another node, or a SYNC of start_sync; nullopt once `until` has come or interrupt() was called
+  // Returns the next frame of another node, or a SYNC of start_sync; nullopt at `until`, or if interrupt() was called
   // since the last call. Throws BusError.
   virtual std::optional<ReceivedFrame> receive(Time until) = 0;
-  // Sends a SYNC at once and then every `period`, by a clock that does not wait for this program; it ends with the
-  // program. Throws BusError.
+  // Sends a SYNC at once and then every `period`, by a clock independent of this program; it ends with the program.
+  // Throws BusError.
   virtual void start_sync(Time period) = 0;
   virtual void stop_sync() = 0;
   virtual void interrupt() = 0;

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kErrorFlag = 1u << 29, kMaxExtendedId = (1u << 29) - 1, kMaxId = 0x7ff;
 constexpr std::size_t kStandardDigits = 3, kExtendedDigits = 8, kMaxFdBytes = 64, kMaxInterface = 15;
 constexpr std::size_t kMaxSecondsDigits = 10;
-constexpr std::int64_t kMaxSeconds = 9'000'000'000;  // more do not fit in nanoseconds of 64 bits
+constexpr std::int64_t kMaxSeconds = 9'000'000'000;  // larger values do not fit in 64-bit nanoseconds
 
 int digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -41,7 +41,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// The first word of `rest`, which becomes what follows it.
+// Returns the first word of `rest` and removes it.
 std::string_view take_word(std::string_view& rest) {
   const auto end = static_cast<std::size_t>(std::ranges::find_if(rest, is_blank) - rest.begin());
   const std::string_view word = rest.substr(0, end);
@@ -64,7 +64,7 @@ Time parse_time(std::string_view word) {
   return std::chrono::seconds(decimal(whole)) + Time(nanoseconds);
 }
 
-// Pairs of hexadecimal digits, points between them; nullopt: something else, or more than `most`.
+// Pairs of hexadecimal digits, optionally separated by points; nullopt: anything else, or more than `most`.
 std::optional<std::vector<std::uint8_t>> parse_bytes(std::string_view text, std::size_t most) {
   std::vector<std::uint8_t> bytes;
   while (!text.empty()) {
@@ -97,7 +97,7 @@ bool is_fd(std::string_view data) {
   return data.size() >= 2 && data[0] == '#' && digit(data[1]) >= 0 && parse_bytes(data.substr(2), kMaxFdBytes);
 }
 
-// Bytes of a classic frame, without the raw length code that may follow eight of them.
+// Bytes of a classic frame, without the raw length code that may follow eight bytes.
 std::optional<std::vector<std::uint8_t>> parse_classic(std::string_view data) {
   const std::size_t mark = data.find('_');
   const auto bytes = parse_bytes(data.substr(0, mark), kMaxFrameBytes);
@@ -108,6 +108,7 @@ std::optional<std::vector<std::uint8_t>> parse_classic(std::string_view data) {
 }
 
 void parse_frame(std::string_view word, CandumpLine& line) {
+  // IDENTIFIER#DATA; the number of the identifier's digits says whether it has 11 or 29 bits.
   const std::size_t mark = word.find('#');
   if (mark == std::string_view::npos) throw BadCandumpLine(fmt::format("\"{}\" is no frame such as 1A5#2C01", word));
   const std::optional<std::uint32_t> id = parse_id(word.substr(0, mark));
@@ -115,6 +116,8 @@ void parse_frame(std::string_view word, CandumpLine& line) {
     throw BadCandumpLine(fmt::format(
         "\"{}\" is no identifier: three hexadecimal digits up to 7FF, or eight up to 3FFFFFFF", word.substr(0, mark)));
   }
+
+  // The kind, by data and identifier. Error frames have 29 bits with the error flag, and always bytes.
   const std::string_view data = word.substr(mark + 1);
   const bool extended = mark == kExtendedDigits, error = extended && (*id & kErrorFlag) != 0;
   const auto bytes = parse_classic(data);

@@ -2,7 +2,7 @@
 
 namespace kenaf::canopen {
 
-// Bits 0 to 3, 5 and 6 make the state; some states leave bit 5 (no quick stop) open. CiA 402-2, statusword, state
+// Bits 0 to 3, 5 and 6 give the state; some states leave bit 5 (no quick stop) undefined. CiA 402-2, statusword, state
 // coding.
 PowerState power_state_of(std::uint16_t statusword) {
   switch (statusword & 0x4f) {
@@ -63,7 +63,7 @@ std::uint16_t control_towards_operation(PowerState state, std::uint16_t previous
       return kControlEnable;  // 4
     case PowerState::fault:
       return (previous & kControlFaultReset) != 0 ? std::uint16_t{0} : kControlFaultReset;  // 15
-    case PowerState::quick_stop_active:  // 12; 16, back to operation enabled, is optional, and not meant here
+    case PowerState::quick_stop_active:  // 12; 16, back to operation enabled, is optional and not used here
     case PowerState::not_ready:
     case PowerState::fault_reaction_active:
     case PowerState::undefined:
@@ -101,7 +101,7 @@ std::uint16_t SetPointHandshake::step(std::int32_t target, std::uint16_t statusw
   if (raised_) {
     raised_ = !acknowledged;
   } else if (!acknowledged && (!begun_ || target != handed_over_)) {
-    // the drive takes what stands beside the edge: a target that changes later needs an edge of its own
+    // the drive takes the target present at the edge: a later change needs a new edge
     begun_ = raised_ = true;
     handed_over_ = target;
   }

@@ -25,12 +25,12 @@ enum class PowerState : std::uint8_t {
   quick_stop_active,
   fault_reaction_active,
   fault,
-  undefined,  // bits that are none of the above
+  undefined,  // bits that match none of the above
 };
 PowerState power_state_of(std::uint16_t statusword);
 std::string_view describe(PowerState state);  // "switch on disabled"
 
-// Statusword, object 0x6041: beyond the state.
+// Statusword, object 0x6041: bits beyond the state.
 inline constexpr std::uint16_t kStatusVoltageEnabled = 1 << 4, kStatusWarning = 1 << 7, kStatusRemote = 1 << 9,
                                kStatusTargetReached = 1 << 10, kStatusInternalLimit = 1 << 11,
                                kStatusSetPointAcknowledged = 1 << 12,  // profile position
@@ -41,12 +41,12 @@ inline constexpr std::uint16_t kStatusVoltageEnabled = 1 << 4, kStatusWarning = 
 inline constexpr std::uint16_t kControlShutdown = 0x0006, kControlSwitchOn = 0x0007, kControlEnable = 0x000f,
                                kControlQuickStop = 0x0002, kControlDisableVoltage = 0x0000, kControlFaultReset = 0x0080;
 inline constexpr std::uint16_t kControlNewSetPoint = 1 << 4,  // profile position; starts homing
-    kControlChangeAtOnce = 1 << 5,                            // profile position: do not finish the one before
+    kControlChangeAtOnce = 1 << 5,                            // profile position: replace the set-point under way
     kControlHalt = 1 << 8;
 
-// The controlword that leads from `state` one transition nearer to operation enabled; from fault: 0 and the fault reset
-// in turn, for the reset is taken on the rising edge of bit 7 (`previous` is the controlword that was sent last).
-// Without any bit to go on (not ready, fault reaction, undefined) it is 0. From quick stop active it leaves by "disable
+// Returns the controlword that leads from `state` one transition closer to operation enabled; in fault, 0 and the fault
+// reset alternate, because the reset acts on the rising edge of bit 7 (`previous` is the last controlword sent).
+// Returns 0 in states without a way on (not ready, fault reaction, undefined). Quick stop active is left by "disable
 // voltage".
 std::uint16_t control_towards_operation(PowerState state, std::uint16_t previous);
 
@@ -63,11 +63,11 @@ bool is_supported(DriveMode mode, std::uint32_t supported_drive_modes);
 bool is_position(DriveMode mode);  // of the two that hrt's flippers use; homing is neither
 
 // Hands a new target to a drive in profile position mode: the set-point handshake of bits 4 and 5 of the controlword
-// and bit 12 of the statusword, with "change at once", so that a newer target replaces the one under way. A drive that
-// has left operation enabled has dropped its target: begin with a new one of these.
+// and bit 12 of the statusword, with "change at once", so that a newer target replaces the active one. A drive that has
+// left operation enabled has dropped its target: start with a new handshake.
 class SetPointHandshake {
  public:
-  // The bits to be added to kControlEnable together with `target`, one call for each cycle.
+  // Returns the bits to add to kControlEnable along with `target`; one call per cycle.
   std::uint16_t step(std::int32_t target, std::uint16_t statusword);
 
  private:
@@ -96,8 +96,9 @@ inline constexpr MappedObject controlword{{0x6040, 0}, ObjectType::unsigned16},
     interpolation_exponent{{0x60c2, 2}, ObjectType::integer8};
 }  // namespace object
 
-// Quick stop option code: slow down on the quick stop ramp and stay in quick stop active, with torque: flippers keep
-// holding the robot. Abort connection option code: the same quick stop when the master's heartbeat or the bus is lost.
+// Quick stop option code: slow down on the quick stop ramp and stay in quick stop active, with torque, so that flippers
+// keep holding the robot. Abort connection option code: the same quick stop on loss of the master's heartbeat or of the
+// bus.
 inline constexpr std::int16_t kQuickStopAndStay = 6, kAbortByQuickStop = 3;
 
 }  // namespace kenaf::canopen

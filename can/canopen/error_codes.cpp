@@ -6,8 +6,8 @@
 namespace kenaf::canopen {
 namespace {
 
-// A code that ends in 00 stands for its group, one that ends in 000 for its class. CiA 402-2 leaves the words to the
-// device in some rows (supplies U4 to U9, contacts, fuses S4 to S9): those are named by their group.
+// A code ending in 00 stands for its group, one ending in 000 for its class. CiA 402-2 leaves some texts to the device
+// (supplies U4 to U9, contacts, fuses S4 to S9): these are named by their group.
 constexpr std::pair<std::uint16_t, std::string_view> kErrorWords[] = {
     // CiA 301, table 26
     {0x1000, "generic error"},

@@ -33,7 +33,7 @@ std::optional<std::int32_t> bits_of(const Frame& frame, unsigned first_bit, unsi
   if (first_bit + bits > 8u * frame.length) return std::nullopt;
   std::uint64_t all = 0;
   for (unsigned i = 0; i < frame.length; ++i) all |= std::uint64_t{frame.data[i]} << (8 * i);
-  // to the top and back: the second shift repeats the sign
+  // shift to the top and back: the second shift extends the sign
   return static_cast<std::int32_t>(static_cast<std::int64_t>(all << (64 - first_bit - bits)) >> (64 - bits));
 }
 

@@ -1,4 +1,4 @@
-// A classic CAN data frame with an 11-bit identifier, as CANopen uses it, and the little-endian numbers in it.
+// A classic CAN data frame with an 11-bit identifier, as used by CANopen, and the little-endian numbers in it.
 //
 // CANopen's standards, as cited in this room: CiA 301 version 4.2 (application layer), CiA 402 (IEC 61800-7-201,
 // drives), CiA 410 (inclinometers). Everything in this room is free of sockets and clocks: frames and times go in,
@@ -15,7 +15,7 @@
 
 namespace kenaf::canopen {
 
-// Since any moment that stays the same while the program runs; never goes back.
+// Time since an arbitrary moment that is fixed while the program runs; monotonic.
 using Time = std::chrono::nanoseconds;
 
 inline constexpr std::uint8_t kMaxFrameBytes = 8;
@@ -27,21 +27,21 @@ struct Frame {
   bool operator==(const Frame&) const = default;
 };
 
-// Frame{id, data.size(), data}. At most eight bytes: more are a defect of the caller, and std::length_error.
+// Returns Frame{id, data.size(), data}. Throws std::length_error for more than eight bytes, a defect of the caller.
 Frame make_frame(std::uint16_t id, std::span<const std::uint8_t> data);
 
-// `bytes` (1 to 4) little-endian bytes from `at`; the caller has checked that they are there.
+// Reads `bytes` (1 to 4) little-endian bytes from `at`; the caller must check that they exist.
 std::uint32_t get_unsigned(std::span<const std::uint8_t> data, std::size_t at, std::size_t bytes);
 std::int32_t get_signed(std::span<const std::uint8_t> data, std::size_t at, std::size_t bytes);
-// Two's complement for negative values; what does not fit in `bytes` is cut off.
+// Two's complement for negative values; truncated to `bytes`.
 void put(std::span<std::uint8_t> data, std::size_t at, std::size_t bytes, std::uint32_t value);
 
-// The signed number of `bits` bits from `first_bit` on of a frame that holds it; nullopt where it is shorter.
+// Returns the signed number of `bits` bits at `first_bit`; nullopt if the frame is too short.
 std::optional<std::int32_t> bits_of(const Frame& frame, unsigned first_bit, unsigned bits);
 
-// Bits of the frame on the wire, with as many stuff bits as there can be at most, and the three bits of space after it:
-// 47 + 8 n + floor((34 + 8 n - 1) / 4) (Tindell and Burns, "Guaranteeing message latencies on CAN", 1994, as corrected
-// by Davis et al., "Controller Area Network schedulability analysis", 2007, eq. 2).
+// Bits of the frame on the wire, with the maximum of stuff bits and the three-bit interframe space: 47 + 8 n +
+// floor((34 + 8 n - 1) / 4) (Tindell and Burns, "Guaranteeing message latencies on CAN", 1994, as corrected by Davis et
+// al., "Controller Area Network schedulability analysis", 2007, eq. 2).
 int worst_case_bits(const Frame& frame);
 
 }  // namespace kenaf::canopen

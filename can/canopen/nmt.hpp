@@ -1,5 +1,5 @@
-// Network management: which node a frame is of, states, commands, heartbeat, SYNC. CiA 301, 7.2.5 (SYNC), 7.2.8 (NMT)
-// and 7.3.3 (predefined connection set). Thread safety: values and pure functions.
+// Network management: sender of a frame, states, commands, heartbeat, SYNC. CiA 301, 7.2.5 (SYNC), 7.2.8 (NMT) and
+// 7.3.3 (predefined connection set). Thread safety: values and pure functions.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace kenaf::canopen {
 using NodeId = std::uint8_t;  // 1 to 127
 inline constexpr NodeId kMaxNode = 127;
 
-// COB-IDs of the predefined connection set; those with a node add its id.
+// COB-IDs of the predefined connection set; for services of a node, plus its id.
 inline constexpr std::uint16_t kNmtCommandId = 0x000, kSyncId = 0x080, kEmergencyId = 0x080;
 inline constexpr std::uint16_t kTransmitPdoId[4] = {0x180, 0x280, 0x380, 0x480};
 inline constexpr std::uint16_t kReceivePdoId[4] = {0x200, 0x300, 0x400, 0x500};
@@ -36,7 +36,7 @@ struct NmtOrder {
 };
 
 Frame encode(const NmtOrder& order);
-// nullopt: another identifier, not two bytes, a command that CiA 301 lacks, a node above 127.
+// nullopt: another identifier, not two bytes, a command not in CiA 301, or a node above 127.
 std::optional<NmtOrder> nmt_order_from(const Frame& frame);
 
 struct Heartbeat {
@@ -45,12 +45,12 @@ struct Heartbeat {
 };
 
 Frame encode(const Heartbeat& heartbeat);
-// nullopt: another identifier, not one byte, a state that CiA 301 lacks (bit 7 is node guarding's toggle bit, 0 here).
+// nullopt: another identifier, not one byte, or a state not in CiA 301 (bit 7 is node guarding's toggle bit, 0 here).
 std::optional<Heartbeat> heartbeat_from(const Frame& frame);
 
-// A SYNC without counter, the form of a SYNC producer whose object 0x1019 is 0.
+// A SYNC without counter, as of a SYNC producer whose object 0x1019 is 0.
 inline constexpr Frame kSync{.id = kSyncId};
-// With a counter byte it is a SYNC too.
+// A SYNC with a counter byte counts too.
 bool is_sync(const Frame& frame);
 
 }  // namespace kenaf::canopen

@@ -1,4 +1,4 @@
-// An entry of an object dictionary: its address, its type, its value as it stands on the wire. CiA 301, 7.4.
+// An entry of an object dictionary: address, type, and value as on the wire. CiA 301, 7.4.
 #pragma once
 
 #include <compare>
@@ -22,9 +22,10 @@ bool is_signed(ObjectType type);
 
 using ObjectBytes = std::vector<std::uint8_t>;  // little-endian
 
-// A number as the type's bytes. std::out_of_range where it does not fit, with type and value; not for text.
+// Encodes a number in the type's bytes. Throws std::out_of_range, with type and value, if it does not fit; not for
+// text.
 ObjectBytes encode_number(ObjectType type, std::int64_t value);
-// The number that the bytes are; the caller has checked that there are byte_count(type) of them.
+// Decodes a number; the caller must check that there are byte_count(type) bytes.
 std::int64_t decode_number(ObjectType type, std::span<const std::uint8_t> bytes);
 
 }  // namespace kenaf::canopen

@@ -1,4 +1,4 @@
-// What both ends of a service data object transfer share: abort codes. CiA 301, 7.2.4.
+// Shared by both ends of a service data object transfer: abort codes. CiA 301, 7.2.4.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace kenaf::canopen {
 
-// The largest value that either end takes: what a drive says of itself is shorter, and memory stays bounded.
+// The largest value accepted by either end: longer than any text of a drive, and memory stays bounded.
 inline constexpr std::size_t kMaxSdoBytes = 1024;
 
 enum class SdoAbort : std::uint32_t {
@@ -35,7 +35,7 @@ enum class SdoAbort : std::uint32_t {
   not_in_this_state = 0x08000022,
 };
 
-// CiA 301's words for a code, table 22; "unknown abort code" for what is none.
+// CiA 301's text for a code, table 22; "unknown abort code" for any other.
 std::string_view describe(SdoAbort code);
 
 }  // namespace kenaf::canopen

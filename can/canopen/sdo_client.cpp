@@ -45,7 +45,7 @@ std::optional<Frame> SdoClient::on_time(Time now) {
   return give_up(SdoAbort::timed_out);
 }
 
-// An answer with another specifier than the awaited one is of a transfer before this one: it came late.
+// An answer with an unexpected specifier belongs to an earlier transfer and came late.
 std::optional<Frame> SdoClient::next_after(const Frame& answer) {
   const std::uint8_t specifier = sdo::specifier(answer);
   switch (awaits_) {

@@ -1,4 +1,4 @@
-// The other end of SDO transfers: a node that lets its objects be read and written. Expedited and segmented, as
+// Server end of SDO transfers: a node that lets its objects be read and written. Expedited and segmented, as
 // sdo_client.hpp; a block transfer is refused with "command specifier not valid". CiA 301, 7.2.4.3.
 #pragma once
 
@@ -12,11 +12,11 @@
 
 namespace kenaf::canopen {
 
-// The node's object dictionary, as the server sees it.
+// The node's object dictionary, as seen by the server.
 struct ObjectAccess {
   std::function<std::variant<ObjectBytes, SdoAbort>(ObjectAddress)> read;
-  // Called once for a transfer, with the whole value. All four bytes, where a client writes in one frame without saying
-  // how many of them count (CiA 301 allows it).
+  // Called once per transfer, with the whole value. All four bytes if a client writes in one frame without indicating
+  // the size (CiA 301 allows it).
   std::function<std::optional<SdoAbort>(ObjectAddress, std::span<const std::uint8_t>)> write;
 };
 
@@ -24,8 +24,8 @@ class SdoServer {
  public:
   SdoServer(NodeId node, ObjectAccess objects) : node_(node), objects_(std::move(objects)) {}
 
-  // The answer to a request to this node; nullopt where the frame is none, or an abort, which has no answer. A request
-  // of another length than eight bytes is no SDO (CiA 301, 7.2.4.3.1). A new transfer ends the one before it.
+  // Returns the answer to a request to this node; nullopt if the frame is none, or an abort, which has no answer. A
+  // request of another length than eight bytes is no SDO (CiA 301, 7.2.4.3.1). A new transfer ends the previous one.
   std::optional<Frame> on_frame(const Frame& frame);
 
  private:
@@ -45,7 +45,7 @@ class SdoServer {
   ObjectAddress object_{};
   ObjectBytes value_;                       // to be read, or written so far
   std::size_t read_ = 0;                    // bytes of value_
-  std::optional<std::uint32_t> announced_;  // bytes that a segmented write was said to have
+  std::optional<std::uint32_t> announced_;  // size announced for a segmented write
   bool toggle_ = false;
 };
 

@@ -1,9 +1,9 @@
-// The bytes of SDO frames, for the two ends in this room and for who reads a log of their dialogue. CiA 301, 7.2.4.3.3
-// to 7.2.4.3.7 and 7.2.4.3.17.
+// The bytes of SDO frames, for both ends in this room and for readers of a log. CiA 301, 7.2.4.3.3 to 7.2.4.3.7 and
+// 7.2.4.3.17.
 //
 //   byte 0, bits 7 to 5: command specifier
 //   initiate:  bits 3 and 2 = bytes of 4 to 7 without data, bit 1 = expedited (the value is in bytes 4 to 7),
-//              bit 0 = the size is indicated (by bits 3 and 2, or where not expedited by bytes 4 to 7)
+//              bit 0 = the size is indicated (by bits 3 and 2, or, if not expedited, by bytes 4 to 7)
 //              bytes 1 to 3 = index and sub-index
 //   segment:   bit 4 = toggle, bits 3 to 1 = bytes of 1 to 7 without data, bit 0 = no more segments
 #pragma once
@@ -16,7 +16,7 @@
 
 namespace kenaf::canopen::sdo {
 
-// A download writes, an upload reads. The same specifier means another thing in a request than in an answer.
+// A download writes, an upload reads. The same specifier has different meanings in a request and in an answer.
 inline constexpr std::uint8_t kDownloadSegment = 0x00, kDownload = 0x20, kUpload = 0x40, kUploadSegment = 0x60,
                               kAbort = 0x80;
 inline constexpr std::uint8_t kUploadSegmentAnswer = 0x00, kDownloadSegmentAnswer = 0x20, kUploadAnswer = 0x40,
@@ -44,7 +44,7 @@ inline Frame initiate(std::uint16_t id, std::uint8_t command, ObjectAddress obje
   return frame;
 }
 
-// Begins the transfer of `value`: expedited where it fits, else with its size.
+// Begins the transfer of `value`: expedited if it fits, otherwise with its size.
 inline Frame initiate_with(std::uint16_t id, std::uint8_t command, ObjectAddress object, const ObjectBytes& value) {
   if (value.empty() || value.size() > kExpeditedBytes)
     return initiate(id, command | kSizeIndicated, object, static_cast<std::uint32_t>(value.size()));
@@ -63,13 +63,13 @@ inline std::span<const std::uint8_t> expedited_value(const Frame& frame) {
   return std::span(frame.data).subspan(4, kExpeditedBytes - (indicated ? frame.data[0] >> 2 & 3 : 0));
 }
 
-// The size that the first frame of a segmented transfer says; nullopt: it says none.
+// The size announced by the first frame of a segmented transfer; nullopt if it has none.
 inline std::optional<std::uint32_t> announced_size(const Frame& frame) {
   if ((frame.data[0] & kSizeIndicated) == 0) return std::nullopt;
   return get_unsigned(frame.data, 4, 4);
 }
 
-// A segment with as much of `rest` as it takes.
+// A segment with as much of `rest` as fits.
 inline Frame segment(std::uint16_t id, std::uint8_t command, std::span<const std::uint8_t> rest) {
   const std::size_t bytes = std::min(rest.size(), kSegmentBytes);
   Frame frame{.id = id, .length = 8};
@@ -87,8 +87,8 @@ inline std::span<const std::uint8_t> segment_bytes(const Frame& frame) {
   return std::span(frame.data).subspan(1, kSegmentBytes - (frame.data[0] >> 1 & 7));
 }
 
-// Appends a segment's bytes to `value`, or says why not. A segment without a byte that is not the last is refused: such
-// segments could go on for ever.
+// Appends a segment's bytes to `value`, or returns why not. An empty segment that is not the last is refused: such
+// segments could continue for ever.
 inline std::optional<SdoAbort> append(ObjectBytes& value, std::optional<std::uint32_t> announced, const Frame& frame) {
   const std::span<const std::uint8_t> bytes = segment_bytes(frame);
   const std::size_t size = value.size() + bytes.size();

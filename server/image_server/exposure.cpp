@@ -8,7 +8,7 @@ namespace kenaf::image_server {
 
 namespace {
 
-// Of a step: more than what rounding does to a product, less than what matters.
+// In steps: above the rounding error of a product, below any relevant difference.
 constexpr double kRounding = 1e-6;
 
 }  // namespace
@@ -25,7 +25,7 @@ std::uint64_t step_of(Tick tick, double time_step_s, double rate_hz) {
 bool exposes_at(const DueCamera& camera, std::uint64_t step, double time_step_s) {
   if (!camera.last) return true;
   const Tick tick = tick_at(step, time_step_s, camera.rate_hz);
-  // a tick is shorter than a step where the time step is long and the rate high
+  // a tick is shorter than a step if the time step is long and the rate high
   return tick != *camera.last && step_of(tick, time_step_s, camera.rate_hz) == step;
 }
 

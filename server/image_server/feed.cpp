@@ -30,21 +30,21 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using FramePtr = std::shared_ptr<const Frame>;
 
-// Robots come and go, readers lose interest, while time stands still too: so often it is looked at all the same.
+// Robots come and go and readers lose interest even while time is stopped: period of the check in that case.
 constexpr std::chrono::milliseconds kLookAnyway{100};
 
 Clock::duration seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
 }
 
-// What the world's thread needs to answer, also when the feed is gone meanwhile.
+// State that the world's thread needs to answer, even if the feed is gone by then.
 struct Exchange {
-  camera::SnapshotTaker taker;  // the world's thread alone
-  // A request waits for the world's thread: there is never a second one. At once: not only when the next exposure falls
-  // due.
+  camera::SnapshotTaker taker;  // for the world's thread only
+  // queued: a request waits for the world's thread; there is never a second one. at_once: do not wait for the next
+  // exposure to fall due.
   std::atomic<bool> queued = false, at_once = false;
   std::mutex mutex;
-  std::function<void(std::shared_ptr<Exposure>)> take;  // hands on to the feed's thread; empty: it has ended
+  std::function<void(std::shared_ptr<Exposure>)> take;  // hands over to the feed's thread; empty: the feed has ended
 
   void answer(const world_server::Simulation& simulation, const std::shared_ptr<Exposure>& out) {
     expose(simulation, taker, *out);
@@ -73,7 +73,7 @@ struct Feed::Implementation {
 
   world_server::WorldServer& world;
 
-  // For any thread.
+  // For any thread, with the mutex.
   struct View {
     Clock::time_point wanted;
     std::optional<CameraId> camera;
@@ -85,19 +85,19 @@ struct Feed::Implementation {
   };
   mutable std::mutex mutex;
   std::map<std::string, View, std::less<>> views;
-  std::map<CameraId, Shown> shown;  // of the cameras that are drawn
+  std::map<CameraId, Shown> shown;  // of the cameras being drawn
   std::mutex listeners_mutex;
   std::map<std::uint64_t, std::function<void()>> listeners;
   std::uint64_t last_listener = 0;
 
-  // Of the feed's thread.
+  // For the feed's thread only.
   struct Drawn {
     std::unique_ptr<camera::Renderer> renderer;  // while somebody looks
     std::optional<Tick> last;
     std::uint64_t number = 0;
     double rate_hz = 0;
     bool wanted = false, faulty = false;
-    bool left_out = false;  // the last exposure, as it was late
+    bool left_out = false;  // the last exposure, because it was late
   };
   struct Waiting {
     Clock::time_point until;
@@ -118,28 +118,36 @@ struct Feed::Implementation {
   std::thread thread;
 };
 
-// A view that nobody asked for before: the world is asked at once what it is.
+// A view requested for the first time: asks the world at once what it shows.
 void Feed::Implementation::wake() {
   awake = true;
   ask(true);
 }
 
-// One answer is expected at a time: a newer request takes the place of one that still waits for its step.
+// One answer is awaited at a time: a newer request replaces one that still waits for its step.
 void Feed::Implementation::ask(bool at_once) {
+  // Time-out for the answer: if none comes, asks again, for the present state.
   look_timer.expires_after(kLookAnyway);
   look_timer.async_wait([this](boost::system::error_code cancelled) {
     if (!cancelled && awake) ask(true);
   });
   if (at_once) exchange->at_once = true;
+
+  // The cameras being viewed; without any there is no next exposure to wait for.
   std::vector<DueCamera> cameras;
   for (const auto& [id, camera] : drawn) {
     if (camera.wanted && !camera.faulty) cameras.push_back({camera.rate_hz, camera.last});
   }
   if (!at_once && cameras.empty()) return;
+
+  // A request not yet read by the world's thread also covers this one.
   if (exchange->queued.exchange(true)) return;
+  // Reuses the memory of an earlier answer if it is free.
   auto exposure = spare ? std::move(spare) : std::make_shared<Exposure>();
   spare = nullptr;
   exposure->asked = ++asked;
+
+  // On the world's thread: requests a call at the step of the next exposure, or at once.
   world.ask([exchange = exchange, exposure, cameras = std::move(cameras)](world_server::Simulation& simulation) {
     exchange->queued = false;
     std::uint64_t step = simulation.world.step_count();
@@ -162,12 +170,12 @@ void Feed::Implementation::take(std::shared_ptr<Exposure> exposure) {
     wanted = wanted || camera.wanted;
     if (!camera.wanted || camera.faulty) continue;
     if (!exposes_at({camera.rate_hz, camera.last}, exposure->step, exposure->time_step_s)) continue;
-    // Half a period late already: the next one is fresher. Never twice running, or a busy machine would show nothing.
+    // Half a period late already: the next one is fresher. Never twice in a row, or a busy machine would show nothing.
     const bool late = camera.last && exposure->speed > 0 && waited > seconds(0.5 / (camera.rate_hz * exposure->speed));
     camera.left_out = late && !camera.left_out;
     if (!camera.left_out) due.push_back(id);
     const Tick tick = tick_at(exposure->step, exposure->time_step_s, camera.rate_hz);
-    // after a reset time begins anew, and numbers go on
+    // after a reset time restarts, while numbers continue
     camera.number += camera.last && tick > *camera.last ? tick - *camera.last : 1;
     camera.last = tick;
   }
@@ -175,15 +183,15 @@ void Feed::Implementation::take(std::shared_ptr<Exposure> exposure) {
     const std::lock_guard lock(mutex);
     if (views.empty() && !wanted) return fall_asleep();
   }
-  // Where the clock sets the pace, the next exposure is asked for before this one is drawn: if drawing is late, it
-  // still is in time.
+  // If the clock sets the pace, request the next exposure before drawing this one: even if drawing is late, the request
+  // is not.
   if (newest && exposure->speed > 0) ask(false);
   if (!due.empty()) draw(*exposure, due);
   if (newest && exposure->speed == 0) ask_later(*exposure);
   spare = std::move(exposure);
 }
 
-// Forgets what nobody asks for any more, and finds out what the other views show.
+// Forgets views nobody requests any more, and determines what the others show.
 void Feed::Implementation::settle_views(const Exposure& exposure) {
   const auto& robots = exposure.world.robots;
   std::set<CameraId> wanted;
@@ -212,7 +220,7 @@ void Feed::Implementation::settle_views(const Exposure& exposure) {
   for (auto& [id, camera] : drawn) {
     camera.wanted = wanted.contains(id);
     if (camera.wanted) continue;
-    // its number stays, so that no reader meets it twice
+    // its number is kept, so that no reader sees it twice
     camera.renderer.reset();
     camera.last.reset();
     camera.faulty = false;
@@ -225,7 +233,7 @@ void Feed::Implementation::draw(const Exposure& exposure, const std::vector<Came
     if (!scene) scene = std::make_unique<camera::Scene>(world.world_description());
     scene->update(exposure.world);
   } catch (const std::exception& error) {
-    scene.reset();  // it may be half of the one world, half of the other
+    scene.reset();  // it may be partly updated
     for (const CameraId& id : due) stand_still(id, error.what());
     return;
   }
@@ -275,7 +283,7 @@ void Feed::Implementation::stand_still(CameraId id, const std::string& why) {
   tell();
 }
 
-// The clock sets no pace: the rate does, by the wall clock.
+// If the clock sets no pace, the rate does, by the wall clock.
 void Feed::Implementation::ask_later(const Exposure& exposure) {
   double rate_hz = 1 / std::chrono::duration<double>(kLookAnyway).count();
   for (const auto& [id, camera] : drawn) {
@@ -288,6 +296,7 @@ void Feed::Implementation::ask_later(const Exposure& exposure) {
 }
 
 void Feed::Implementation::publish_due() {
+  // Publishes frames whose latency has passed, unless a newer one is shown; the earliest of the others sets the timer.
   bool published = false;
   const Clock::time_point now = Clock::now();
   Clock::time_point next = Clock::time_point::max();
@@ -305,6 +314,8 @@ void Feed::Implementation::publish_due() {
       published = true;
     }
   }
+
+  // Listeners are told without the mutex: they call look().
   std::erase_if(waiting, [&](const Waiting& entry) { return entry.until <= now; });
   if (published) tell();
   if (waiting.empty()) return;
@@ -314,7 +325,7 @@ void Feed::Implementation::publish_due() {
   });
 }
 
-// With the mutex held: who asks from now on wakes it again.
+// Called with the mutex held: a request from now on wakes it again.
 void Feed::Implementation::fall_asleep() {
   awake = false;
   waiting.clear();
@@ -329,7 +340,7 @@ void Feed::Implementation::tell() {
   for (const auto& [number, told] : listeners) told();
 }
 
-// With the mutex held: forgets the view of no camera that was asked for longest ago. False: all show one.
+// Called with the mutex held: forgets the oldest view that shows no camera. Returns false if all show one.
 bool Feed::Implementation::make_room() {
   auto oldest = views.end();
   for (auto entry = views.begin(); entry != views.end(); ++entry) {
@@ -352,7 +363,7 @@ Feed::Feed(world_server::WorldServer& world) : impl_(std::make_unique<Implementa
         feed->io.run();
         return;
       } catch (const std::exception& error) {
-        spdlog::error("cameras: {}", error.what());  // of one picture; the next is tried
+        spdlog::error("cameras: {}", error.what());  // concerns one picture; the next is tried
       }
     }
   });
@@ -368,6 +379,7 @@ Feed::~Feed() {
 }
 
 Feed::Look Feed::look(std::string_view view) {
+  // Finds or creates the view, and notes that it is wanted now.
   Look out;
   bool is_new = false;
   {
@@ -381,6 +393,7 @@ Feed::Look Feed::look(std::string_view view) {
     }
     Implementation::View& entry = found->second;
     entry.wanted = Clock::now();
+    // Its camera's newest frame, and why there is none or no newer one.
     out.none = entry.none;
     if (entry.camera) {
       if (const auto shown = impl_->shown.find(*entry.camera); shown != impl_->shown.end()) {
@@ -389,6 +402,8 @@ Feed::Look Feed::look(std::string_view view) {
       }
     }
   }
+
+  // wake() belongs to the feed's thread.
   if (is_new) asio::post(impl_->io, [feed = impl_.get()] { feed->wake(); });
   return out;
 }

@@ -1,14 +1,14 @@
 // The pictures of all cameras of a world server, drawn on one thread, for any number of readers.
 //
-// A reader asks for a view by its name (view_name.hpp) whenever he wants to see it, and is told when there is something
-// new. What nobody has asked for during kWanted_s is not drawn; while nobody looks at all, the world is not asked
-// either, and the thread sleeps. At each exposure (exposure.hpp) the world's thread hands over a snapshot, microseconds
-// of its time; the scene then follows it once for all cameras that expose together.
+// A reader requests a view by its name (view_name.hpp) whenever it wants to see it, and is notified of new frames.
+// Views that were not requested for kWanted_s are not drawn; without any, the world is not asked either, and the thread
+// sleeps. At each exposure (exposure.hpp) the world's thread hands over a snapshot, which takes microseconds; the scene
+// is then updated once for all cameras that expose together.
 //
-// A frame is published once its camera's latency has passed, in robot time: at twice the speed after half of it. Where
-// time stands still, or goes as fast as it can, it is published as soon as it is drawn. Speed 0: at most rate_hz
-// pictures a second of wall-clock time. What is not drawn in time is left out, and the frames' numbers say so; nothing
-// queues up.
+// A frame is published once its camera's latency has passed, in robot time: at twice the speed after half of it. If
+// time is stopped or runs as fast as possible, it is published as soon as it is drawn. Speed 0: at most rate_hz
+// pictures per second of wall-clock time. Pictures that cannot be drawn in time are skipped, which shows in the frames'
+// numbers; no queue builds up.
 #pragma once
 
 #include <functional>
@@ -26,28 +26,29 @@ class Feed {
  public:
   static constexpr double kWanted_s = 2;  // of wall-clock time
   static constexpr std::size_t kMostViews =
-      256;  // asked for at the same time, those of no camera forgotten first; further ones are refused
+      256;  // at the same time; views without a camera are forgotten first, further ones are refused
 
-  // The world server must be there until this has ended; whether it runs does not matter.
+  // The world server must outlive this; it need not be running.
   explicit Feed(world_server::WorldServer& world);
   ~Feed();
   Feed(const Feed&) = delete;
   Feed& operator=(const Feed&) = delete;
 
-  // What follows is for any thread, and waits for nothing but other such calls.
+  // The functions below are for any thread, and wait only for other such calls.
 
   struct Look {
     std::shared_ptr<const Frame> frame;  // the newest of the view; null: none yet
-    std::string none;                    // why there is none, and will be none; empty: it will come
+    std::string none;                    // why there is no frame and will be none; empty: it will come
   };
-  // Counts as asking. A camera whose picture could not be drawn stands still: `none` says why, beside its last frame.
+  // Counts as a request. A camera whose picture could not be drawn stands still: `none` says why, beside its last
+  // frame.
   Look look(std::string_view view);
 
-  // The newest frame of each camera that is drawn now. Does not count as asking.
+  // Returns the newest frame of each camera being drawn. Does not count as a request.
   std::vector<std::shared_ptr<const Frame>> newest() const;
 
-  // `told` is called on the feed's thread whenever look() may have something new for somebody, until the returned
-  // handle is gone; from then on never. It must only hand on: neither wait, nor let go of a handle.
+  // `told` is called on the feed's thread whenever look() may have something new, and never after the returned handle
+  // is released. It must only hand over: neither wait nor release a handle.
   std::shared_ptr<void> listen(std::function<void()> told);
 
  private:

@@ -22,9 +22,9 @@ using Clock = std::chrono::steady_clock;
 using FramePtr = std::shared_ptr<const Frame>;
 
 constexpr std::uint8_t kWords = 255;
-// Handed to the system in one piece.
+// Handed to the system in one call.
 constexpr std::size_t kMostAtOnce = 1 << 20;
-// While a request waits, its view is asked for so often: more often than the feed forgets it.
+// Period at which a waiting request asks for its view: shorter than the feed's memory.
 constexpr std::chrono::milliseconds kLookAgain{250};
 
 Clock::duration duration_of(double s) {
@@ -58,12 +58,12 @@ class ImageConnection final : public ImageReader, public std::enable_shared_from
   std::array<char, 4096> received_;
   ImageRequestParser parser_;
 
-  std::optional<ImageRequest> request_;  // the newest that has no answer yet; those before it are forgotten
+  std::optional<ImageRequest> request_;  // the newest without an answer; earlier ones are dropped
   Clock::time_point asked_, words_until_{};
-  CameraId had_{};  // the last frame that was sent, and its number
+  CameraId had_{};  // the last frame sent, and its number
   std::uint64_t had_number_ = 0;
 
-  // What is on its way: header, start, rest.
+  // Data being sent: header, start, rest.
   FramePtr frame_;
   bool sending_ = false;
   std::array<std::uint8_t, 5> header_{};
@@ -103,7 +103,7 @@ void ImageConnection::look() {
   if (!open_ || !request_ || sending_) return;
   const Feed::Look seen = desk_.feed.look(request_->view);
   const Clock::time_point now = Clock::now();
-  // A client of 2008 expects a picture and knows no words: it has nothing to do but wait for one.
+  // A client of 2008 expects a picture and understands no text answers: it can only wait for one.
   const bool waits_for_picture = !request_->knows_words;
   if (!seen.none.empty() && !waits_for_picture) {
     if (now < words_until_) return look_later(words_until_ - now);
@@ -126,9 +126,12 @@ void ImageConnection::look_later(Clock::duration after) {
 }
 
 void ImageConnection::answer(const FramePtr& frame) {
+  // Remembered, so that the next request waits for another frame; held, because out_ points into it.
   had_ = frame->id;
   had_number_ = frame->number;
   frame_ = frame;
+
+  // A part: raw pixels, cut out for this client alone.
   if (request_->kind == ImageRequest::Kind::part) {
     auto part = raw_picture(frame->picture, request_->x, request_->y, request_->width, request_->height);
     if (part.empty()) return send_words("that part lies outside of the picture");
@@ -136,12 +139,18 @@ void ImageConnection::answer(const FramePtr& frame) {
     out_ = {asio::const_buffer(), asio::const_buffer(), asio::buffer(*made_)};
     return send(static_cast<std::uint8_t>(ImageType::raw), made_->size());
   }
+
+  // The whole picture, in the server's type unless the request asks for JPEG.
   const ImageType type = request_->kind == ImageRequest::Kind::jpeg ? ImageType::good : desk_.type;
+  // Raw: made once for all clients.
   if (type == ImageType::raw) {
     made_ = desk_.make(frame);
     out_ = {asio::const_buffer(), asio::const_buffer(), asio::buffer(*made_)};
     return send(static_cast<std::uint8_t>(type), made_->size());
   }
+
+  // JPEG: the frame's own, or one of another quality encoded once for all clients. Its start is replaced by one with
+  // the frame note, whose age is that of this moment.
   std::span<const std::uint8_t> jpeg = frame->jpeg;
   if (type != ImageType::good) {
     made_ = desk_.make(frame);
@@ -179,7 +188,7 @@ void ImageConnection::send(std::uint8_t type, std::size_t size) {
     self->made_.reset();
     self->frame_.reset();
     if (error) return self->close();
-    self->asked_ = Clock::now();  // of what was asked for meanwhile
+    self->asked_ = Clock::now();  // for the request that came meanwhile
     self->look();
   });
 }
@@ -204,7 +213,7 @@ void ImageConnection::close() {
 }  // namespace
 
 Bytes ImageDesk::make(const std::shared_ptr<const Frame>& frame) {
-  if (made.size() > 2 * limits.connections) made.clear();  // of robots that are gone
+  if (made.size() > 2 * limits.connections) made.clear();  // entries of robots that are gone
   Made& last = made[frame->id];
   if (last.frame == frame) return last.bytes;
   if (type == ImageType::raw) {
@@ -215,7 +224,7 @@ Bytes ImageDesk::make(const std::shared_ptr<const Frame>& frame) {
     const auto jpeg = encoder.encode(frame->picture, jpeg_quality(type, 80));
     last.bytes = std::make_shared<const std::vector<std::uint8_t>>(jpeg.begin(), jpeg.end());
   }
-  last.frame = frame;  // not before: what is above may throw
+  last.frame = frame;  // not earlier: the code above may throw
   return last.bytes;
 }
 

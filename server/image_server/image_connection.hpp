@@ -1,4 +1,4 @@
-// One reader of the image server, and what all of them share. On the image server's thread alone.
+// One reader of the image server, and the state shared by all. For the image server's thread only.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
@@ -16,7 +16,7 @@ using Bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
 
 class ImageReader {
  public:
-  // There may be something new.
+  // A new frame may be available.
   virtual void look() = 0;
 
  protected:
@@ -31,17 +31,17 @@ struct ImageDesk {
   std::vector<ImageReader*> readers{};
   camera::JpegEncoder encoder{};
 
-  // What was made of a camera's newest frame for one reader is every other's too.
+  // Encoded data of a camera's newest frame, shared by all readers.
   struct Made {
     std::shared_ptr<const Frame> frame;
     Bytes bytes;
   };
   std::map<CameraId, Made> made{};
-  // The frame as `type` says: raw, or a JPEG of that quality.
+  // Returns the frame in the format of `type`: raw, or a JPEG of that quality.
   Bytes make(const std::shared_ptr<const Frame>& frame);
 };
 
-// Serves until the reader is gone or does not read; meanwhile it is in desk.readers.
+// Serves until the reader is gone or stops reading; meanwhile it is in desk.readers.
 void serve_images(ImageDesk& desk, boost::asio::ip::tcp::socket socket);
 
 }  // namespace kenaf::image_server

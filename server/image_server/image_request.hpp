@@ -1,8 +1,7 @@
-// What a client of the image server sends: USARSim's OK and U, and what was added to it. docs/cameras.md has the
-// protocol.
+// Requests of the image server's clients: USARSim's OK and U, and Kenaf's additions. docs/cameras.md has the protocol.
 //
-// One byte at a time, as they may come; what is no request is skipped, as USARSim's server did. Holds 255 bytes at
-// most.
+// Parses byte by byte, as requests may arrive in pieces; anything else is skipped, as USARSim's server did. Holds at
+// most 255 bytes.
 //
 // Thread safety: none.
 #pragma once
@@ -18,14 +17,14 @@ namespace kenaf::image_server {
 struct ImageRequest {
   enum class Kind { picture, part, jpeg };  // OK, U, J
   Kind kind = Kind::picture;
-  std::uint32_t x = 0, y = 0, width = 0, height = 0;  // of a part, as sent: whatever
+  std::uint32_t x = 0, y = 0, width = 0, height = 0;  // of a part, as sent: unchecked
   std::string view{};                                 // V's bytes as sent; empty: the default
-  bool knows_words = false;  // the client has sent V or J, so it knows what was added to USARSim's protocol
+  bool knows_words = false;  // the client has sent V or J, so it knows Kenaf's additions to the protocol
 };
 
 class ImageRequestParser {
  public:
-  // Takes bytes from the front of `bytes`, until a request is whole or none are left.
+  // Consumes bytes from the front of `bytes`, until a request is complete or none are left.
   std::optional<ImageRequest> take(std::string_view& bytes);
 
  private:
@@ -33,7 +32,7 @@ class ImageRequestParser {
 
   State state_ = State::idle;
   std::array<unsigned char, 16> part_{};
-  std::size_t count_ = 0, length_ = 0;  // of what is under way
+  std::size_t count_ = 0, length_ = 0;  // of the request under way
   std::string coming_, view_;
   bool knows_words_ = false;
 };

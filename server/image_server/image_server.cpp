@@ -76,7 +76,7 @@ void ImageServer::Implementation::serve() {
       io.run();
       return;
     } catch (const std::exception& error) {
-      spdlog::error("image server: {}", error.what());  // of one connection; the others are served on
+      spdlog::error("image server: {}", error.what());  // concerns one connection; the others are still served
     }
   }
 }

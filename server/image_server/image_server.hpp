@@ -1,5 +1,5 @@
-// USARSim's image server (UPIS) with the pictures of a Feed: over TCP, for clients that know nothing of Kenaf and for
-// those that do. docs/cameras.md has the protocol. On a thread of its own.
+// USARSim's image server (UPIS) with the pictures of a Feed: over TCP, for clients with and without knowledge of Kenaf.
+// docs/cameras.md has the protocol. On its own thread.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,17 @@ namespace kenaf::image_server {
 
 struct ImageServerLimits {
   std::size_t connections = 64;    // further ones are closed at once
-  double repeat_s = 0.9;           // without a new frame the old one is sent again: within a second
-  double first_s = 10;             // without any frame words are sent
-  double words_apart_s = 0.1;      // between two answers in words
-  double unread_s = 10;            // a reader that takes no byte for so long is closed
-  int send_buffer_bytes = 262144;  // the system's; the more, the older is what a slow reader sees
+  double repeat_s = 0.9;           // without a new frame the old one is sent again after this: within a second
+  double first_s = 10;             // without any frame a text is sent after this
+  double words_apart_s = 0.1;      // between two text answers
+  double unread_s = 10;            // a reader that takes no byte for this long is closed
+  int send_buffer_bytes = 262144;  // of the system; the larger, the older the pictures of a slow reader
 };
 
 class ImageServer {
  public:
-  // Listens, and serves from then on. Throws std::runtime_error in words. The feed must be there until this has ended.
+  // Listens and serves from construction on. Throws std::runtime_error with a text for the user. The feed must outlive
+  // this.
   ImageServer(Feed& feed, const std::string& address, std::uint16_t port, ImageType type,
               const ImageServerLimits& limits = {});
   ~ImageServer();

@@ -1,4 +1,4 @@
-// The cameras of a world server as programs start them: the feed, and the image server beside it.
+// The cameras of a world server as started by programs: the feed, and the image server.
 #pragma once
 
 #include <memory>
@@ -11,11 +11,11 @@ namespace kenaf::image_server {
 
 struct ServedCameras {
   std::unique_ptr<Feed> feed;                 // null: the cameras are off
-  std::unique_ptr<ImageServer> image_server;  // null: it is off, or could not listen; ends before the feed
+  std::unique_ptr<ImageServer> image_server;  // null: it is off, or could not listen; destroyed before the feed
 };
 
-// Says in the log where the image server is, or why it is not there, and the program goes on without it. `world` must
-// be there until what is returned has ended.
+// Logs the address of the image server, or why it is not available; the program continues without it. `world` must
+// outlive the result.
 ServedCameras open_cameras(world_server::WorldServer& world, const CameraOptions& options, const std::string& address);
 
 }  // namespace kenaf::image_server

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostNamed = 16;
 
-// A reader's bytes, fit to be sent back as words.
+// A reader's bytes, made safe for a text answer.
 std::string quoted(std::string_view text) {
   std::string out(text.substr(0, 80));
   std::ranges::replace_if(
@@ -34,7 +34,7 @@ std::optional<CameraId> find_view(const std::vector<camera::RobotSnapshot>& robo
   const bool names_robot = slash != std::string_view::npos;
   const std::string_view robot_name = view.substr(0, names_robot ? slash : 0);
   const std::string_view camera_name = view.substr(names_robot ? slash + 1 : 0);
-  for (auto found = robots.rbegin(); found != robots.rend(); ++found) {  // clang 14 knows no std::views::reverse
+  for (auto found = robots.rbegin(); found != robots.rend(); ++found) {  // clang 14 lacks std::views::reverse
     const camera::RobotSnapshot& robot = *found;
     if (names_robot && !is_meant(robot, robot_name)) continue;
     const auto& cameras = robot.description->cameras;

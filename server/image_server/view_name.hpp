@@ -1,10 +1,10 @@
-// Which camera a reader means. Pure functions.
+// Determines which camera a reader means. Pure functions.
 //
 //   ROBOT/CAMERA   that camera of that robot; of several robots of one name, the one placed last
 //   #N/CAMERA      that camera of the robot N, by RobotId, whatever its name
 //   CAMERA         that camera of the robot placed last that has one
 //   (empty)        the first camera of the robot placed last that has one
-// Names are compared without case, as USARSim does. What a view shows changes as robots come and go.
+// Names are compared without case, as in USARSim. A view may show different cameras as robots come and go.
 #pragma once
 
 #include <optional>
@@ -17,13 +17,13 @@
 
 namespace kenaf::image_server {
 
-// "#N", by which find_view() means that robot alone.
+// Returns "#N", which find_view() resolves to that robot only.
 std::string view_of(physics::RobotId robot);
 
-// `robots`: in the order in which they were placed. Empty: there is no such camera now.
+// `robots`: in the order of their placement. Empty: there is no such camera now.
 std::optional<CameraId> find_view(const std::vector<camera::RobotSnapshot>& robots, std::string_view view);
 
-// Why find_view() finds nothing, and what there is instead; at most some 1000 bytes.
+// Explains why find_view() finds nothing, and lists what there is; at most some 1000 bytes.
 std::string no_such_view(const std::vector<camera::RobotSnapshot>& robots, std::string_view view);
 
 }  // namespace kenaf::image_server

@@ -1,4 +1,5 @@
-// Who may look and drive. Pure, but for make_token(). docs/live-view.md says against whom each rule stands.
+// Access control for viewing and driving. Pure, except make_token(). docs/live-view.md explains the threat behind each
+// rule.
 #pragma once
 
 #include <string>
@@ -6,20 +7,21 @@
 
 namespace kenaf::live {
 
-// 128 random bits as 32 hexadecimal digits. Throws std::runtime_error where the system gives none.
+// Returns 128 random bits as 32 hexadecimal digits. Throws std::runtime_error if the system provides none.
 std::string make_token();
 
-// In a time that depends on the lengths alone.
+// Takes a time that depends only on the lengths.
 bool equal_in_constant_time(std::string_view a, std::string_view b);
 
-// A Host header that names an address, localhost or this machine: not one that somebody's name server points here.
-// `own_name`: the machine's name, "" where it has none.
+// True if a Host header names an address, localhost or this machine, not a name that a foreign name server points here.
+// `own_name`: the machine's name, "" if it has none.
 bool host_allowed(std::string_view host, std::string_view own_name);
 
-// The page that asks came from this server: `origin` is http:// or https:// and `host`. Empty: no browser asks.
+// True if the requesting page came from this server: `origin` is http:// or https:// and `host`. Empty: no browser
+// asks.
 bool origin_allowed(std::string_view origin, std::string_view host);
 
-// The value of `key` in "a=1&b=2"; "" where it is missing. Nothing is decoded: a token needs no escapes.
+// Returns the value of `key` in "a=1&b=2"; "" if it is missing. Nothing is decoded: a token needs no escapes.
 std::string_view query_value(std::string_view query, std::string_view key);
 
 }  // namespace kenaf::live

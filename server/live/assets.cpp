@@ -33,7 +33,7 @@ void add(Assets& assets, const std::string& path, const fs::path& file) {
   if (const std::string_view type = type_of(file); !type.empty()) assets[path] = {type, read_file(file)};
 }
 
-// three.js, which is installed beside the page, or where the build found it.
+// three.js, installed beside the page, or where the build found it.
 fs::path three_file(const fs::path& page, const char* installed, const char* built_with) {
   fs::path file = page / "three" / installed;
   return fs::exists(file) ? file : fs::path(built_with);
@@ -55,7 +55,7 @@ Assets load_assets(std::string_view first_page) {
     if (entry.is_regular_file() && entry.path().extension() != ".html") add(assets, "/" + name, entry.path());
   }
   add(assets, "/", page / first_page);
-  // At the places from which the second names the first.
+  // At the paths by which the second imports the first.
   add(assets, "/three/build/three.module.js", three_file(page, "three.module.js", KENAF_THREE_MODULE));
   add(assets, "/three/examples/jsm/controls/OrbitControls.js",
       three_file(page, "OrbitControls.js", KENAF_THREE_CONTROLS));

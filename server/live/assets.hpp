@@ -1,4 +1,4 @@
-// The page's files, read once: what is not among them is not served, so no path leads out of their folders.
+// The page's files, read once: no other file is served, so no path leads out of their folders.
 #pragma once
 
 #include <functional>
@@ -14,8 +14,8 @@ struct Asset {
 };
 using Assets = std::map<std::string, Asset, std::less<>>;  // by path: "/", "/page.css", "/three/build/three.module.js"
 
-// From share/kenaf/page; three.js from there too, or the system's, with which this was built. Throws std::runtime_error
-// where there is no page. `first_page`, such as "index.html", is served as "/", and no other page.
+// Reads share/kenaf/page, with three.js from there or from the system with which this was built. Throws
+// std::runtime_error if there is no page. Of the pages only `first_page`, such as "index.html", is served, as "/".
 Assets load_assets(std::string_view first_page);
 
 }  // namespace kenaf::live

@@ -1,4 +1,4 @@
-// What every answer of the live view says beside its content, so that a browser keeps it to the page.
+// Headers of every answer of the live view that make a browser restrict the page.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace kenaf::live {
 
-// Nothing is loaded from elsewhere, whatever somebody manages to write into the page.
+// Nothing is loaded from elsewhere, even if foreign text is injected into the page.
 inline constexpr std::pair<const char*, const char*> kSafetyHeaders[] = {
     {"Content-Security-Policy",
      "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; base-uri 'none'; "
@@ -17,7 +17,7 @@ inline constexpr std::pair<const char*, const char*> kSafetyHeaders[] = {
     {"Cross-Origin-Resource-Policy", "same-origin"},
 };
 
-// As lines of a header.
+// The same as header lines.
 inline std::string safety_headers() {
   std::string out;
   for (const auto& [name, value] : kSafetyHeaders) out += std::string(name) + ": " + value + "\r\n";

@@ -17,7 +17,7 @@ namespace beast = boost::beast;
 namespace http = beast::http;
 using beast::error_code;
 
-// A phone may take so long for the largest file.
+// A phone may take this long for the largest file.
 constexpr std::chrono::seconds kLongestWrite{60};
 
 constexpr std::string_view kWords = "text/plain; charset=utf-8";
@@ -41,7 +41,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   bool token_fits(std::string_view query) const {
     return site_.token.empty() || equal_in_constant_time(query_value(query, "token"), site_.token);
   }
-  // `bytes` must stay: of the site, of `kept_`, or a literal.
+  // `bytes` must stay valid: part of the site, of `kept_`, or a literal.
   void send(http::status status, std::string_view type, std::string_view bytes);
   void refuse(http::status status, std::string_view why) {
     keep_ = false;
@@ -53,7 +53,7 @@ class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
   http::response<Body> response_;
-  std::shared_ptr<const std::string> kept_;  // what is sent
+  std::shared_ptr<const std::string> kept_;  // data being sent
   bool keep_ = true;
 };
 
@@ -66,7 +66,7 @@ void HttpConnection::read() {
   http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](error_code error, std::size_t) {
     if (!error) return self->handle();
     if (error == http::error::header_limit) self->refuse(http::status::request_header_fields_too_large, "too long\n");
-    // whatever else it was, there is nobody to talk to
+    // on any other error there is no peer left
   });
 }
 

@@ -1,4 +1,4 @@
-// A browser's connection: the page's files, and the doors to what the site answers itself.
+// A browser's connection: the page's files, and the site's own routes.
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
@@ -7,7 +7,7 @@
 
 namespace kenaf::live {
 
-// Serves until the browser is gone, silent or wrong, or somebody has taken the connection over.
+// Serves until the browser is gone, silent or misbehaves, or the connection is taken over.
 void serve_http(Site& site, boost::asio::ip::tcp::socket socket);
 
 }  // namespace kenaf::live

@@ -1,5 +1,5 @@
-// What all pages of the live view share, beside its site. On the view's thread alone, but for the members of `world`
-// that are for any thread.
+// State shared by all pages of the live view, beside its site. For the view's thread only, except the members of
+// `world` that are for any thread.
 #pragma once
 
 #include <boost/asio/post.hpp>
@@ -29,26 +29,26 @@ struct Hub {
   const std::shared_ptr<const std::string> scene;
   image_server::Feed* const cameras = nullptr;  // null: they are off
 
-  // By it a page that was open before sees that this is another server, with another world.
+  // Lets a page that was open before detect that this is another server, with another world.
   const std::uint32_t server_number = std::random_device{}();
   std::uint32_t last_operator = 0;
   std::vector<Viewer*> viewers{};
   std::vector<PictureReader*> picture_readers{};
-  std::shared_ptr<const std::string> inventory{};  // as of the newest state
+  std::shared_ptr<const std::string> inventory{};  // for the newest state
   std::function<void()> viewer_came{};
 
-  // Near the end, so that it ends before the others: what its handlers hold knows them.
+  // Near the end, so that it is destroyed before the others: its handlers refer to them.
   Site site;
 
-  // Whom the world owes an answer. They are kept here, by number, and not in the world's queue: that one drops what it
-  // no longer carries out on its own thread, or after all of this has ended. They end before the site: they are its
-  // connections.
+  // Callbacks awaiting an answer of the world. They are kept here, by number, and not in the world's queue: the queue
+  // would destroy those it no longer carries out on its own thread, or after this has ended. They are destroyed before
+  // the site, whose connections they are.
   std::map<std::uint64_t, std::function<void()>> waiting{};
   std::uint64_t last_question = 0;
   std::shared_ptr<const bool> here = std::make_shared<const bool>(true);
 
-  // Has the world's thread carry `request` out, and then this one `done` with what it returned; neither, where the
-  // world begins to run only after this has ended.
+  // Has the world's thread carry out `request`, and then this thread call `done` with its result; neither, if the world
+  // starts to run only after this has ended.
   template <typename Request, typename Done>
   void ask(Request request, Done done) {
     auto answer = std::make_shared<std::invoke_result_t<Request&, world_server::Simulation&>>();

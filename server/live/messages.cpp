@@ -28,7 +28,7 @@ void write_cameras(Writer& out, const RobotState& robot) {
   out.close(']');
 }
 
-// Where they look, and how old the newest picture is.
+// Directions of the cameras, and the age of the newest picture.
 void write_camera_states(Writer& out, const RobotState& robot, std::span<const FrameAge> frames) {
   if (robot.cameras.empty()) return;
   out.key("cameras").open('[');

@@ -1,4 +1,4 @@
-// What the server tells a page: one JSON object a message. docs/live-view.md has the keys. Pure functions.
+// Messages from the server to a page: one JSON object each. docs/live-view.md has the keys. Pure functions.
 #pragma once
 
 #include <cstdint>
@@ -11,18 +11,18 @@
 
 namespace kenaf::live {
 
-// Raised by one where a page of before would misunderstand.
+// Incremented when a page of an earlier version would misunderstand.
 inline constexpr int kViewProtocol = 2;
 
-// `server`: another one each time a server is started. `pictures`: whether robots' cameras can be seen.
+// `server`: a new number for each start of a server. `pictures`: whether the robots' cameras can be viewed.
 std::string hello_message(world_server::OperatorId you, std::uint32_t server, std::string_view world,
                           double time_step_s, double operator_silence_s, bool pictures);
-// What a robot or a box is, beside how it moves: sent when one comes or leaves.
+// The fixed properties of robots and boxes: sent when one comes or leaves.
 std::string inventory_message(const world_server::WorldState& state);
-// Whether a page that has the inventory of `a` needs that of `b`.
+// Returns whether the inventory of `a` is still valid for `b`.
 bool same_inventory(const world_server::WorldState& a, const world_server::WorldState& b);
-// How everything moves. `number` counts the messages, `reached` is robot time by wall-clock time.
-// `frames`: of the cameras that somebody looks through, wherever.
+// The motion of everything. `number` counts the messages, `reached` is robot time per wall-clock time. `frames`: of all
+// cameras being viewed, by any page.
 struct FrameAge {
   image_server::CameraId id;
   std::uint64_t number;

@@ -22,9 +22,9 @@ using Clock = std::chrono::steady_clock;
 using FramePtr = std::shared_ptr<const image_server::Frame>;
 
 constexpr std::string_view kBoundary = "kenaf-frame";
-// What the system keeps of unread pictures; the more, the older is what a slow browser shows.
+// System buffer for unread pictures; the larger, the older the pictures in a slow browser.
 constexpr int kUnreadPictures_bytes = 131072;
-// While a picture is waited for, its camera is asked for so often.
+// Period at which a waiting picture's camera is requested.
 constexpr std::chrono::milliseconds kAskAgain{250};
 constexpr std::chrono::seconds kRepeat{1}, kLongestWait{10};
 
@@ -77,7 +77,7 @@ class PictureConnection final : public PictureReader, public std::enable_shared_
   asio::steady_timer ask_again_, unread_;
   std::array<char, 512> received_;
   Clock::time_point asked_ = Clock::now();
-  FramePtr frame_;  // the last that was sent, or is on its way
+  FramePtr frame_;  // the last one sent, or being sent
   bool begun_ = false, sending_ = false, open_ = true;
   std::string head_, tail_;
   std::array<asio::const_buffer, 3> out_;
@@ -92,7 +92,7 @@ void PictureConnection::start() {
   look();
 }
 
-// Whatever it still says is dropped; what counts is when it goes.
+// Further input is discarded; only the end of the connection matters.
 void PictureConnection::watch_for_end() {
   socket_.async_read_some(asio::buffer(received_), [self = shared_from_this()](error_code error, std::size_t) {
     if (!self->open_) return;
@@ -142,7 +142,7 @@ void PictureConnection::send(const FramePtr& frame) {
           kBoundary, safety_headers(), kBoundary);
     }
     head_ += about + "\r\n";
-    // browsers show a part once they have seen where it ends
+    // browsers show a part once they have seen its end
     tail_ = fmt::format("\r\n--{}\r\n", kBoundary);
   }
   head_ += start;

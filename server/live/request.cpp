@@ -30,7 +30,7 @@ std::uint32_t robot(const json& object) {
   return static_cast<std::uint32_t>(number(object, "robot", 1, 4294967295.0));
 }
 
-// Four numbers, null for a flipper that stays where it is.
+// Four numbers, null for a flipper that keeps its command.
 void read_flippers(const json& object, const char* key, robot::JointMode mode, robot::Command& command) {
   const auto found = object.find(key);
   if (found == object.end()) return;

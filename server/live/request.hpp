@@ -1,4 +1,4 @@
-// What a page can ask for: one JSON object a message. docs/live-view.md has the keys.
+// Requests of a page: one JSON object per message. docs/live-view.md has the keys.
 #pragma once
 
 #include <cstdint>
@@ -42,12 +42,12 @@ struct LookRequest {
 };  // finite numbers
 struct PingRequest {
   double t;
-};  // comes back as it is
+};  // echoed unchanged
 
 using Request = std::variant<PauseRequest, StepRequest, SpeedRequest, ResetRequest, PlaceRequest, TakeRequest,
                              LetGoRequest, RemoveRequest, DriveRequest, LookRequest, PingRequest>;
 
-// std::string: why `text` is no request.
+// std::string: the reason why `text` is no request.
 std::variant<Request, std::string> parse_request(std::string_view text);
 
 }  // namespace kenaf::live

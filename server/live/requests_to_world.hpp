@@ -1,4 +1,4 @@
-// Carries out what a page asked for, on the world's thread.
+// Carries out a page's requests, on the world's thread.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace kenaf::live {
 
-// What to tell the page; empty: nothing. PingRequest is none of the world's business.
+// Returns the answer to the page; empty: none. PingRequest does not concern the world.
 std::string carry_out(world_server::Simulation& simulation, world_server::OperatorId who, const Request& request);
 
 }  // namespace kenaf::live

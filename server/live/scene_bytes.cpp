@@ -28,6 +28,7 @@ void append_pose(std::string& out, const physics::Pose& X) {
 }  // namespace
 
 std::string scene_bytes(const physics::WorldDescription& world) {
+  // Static boxes only: a box with mass is part of the state.
   std::string out, boxes;
   std::uint32_t box_count = 0;
   for (const physics::Box& box : world.boxes) {
@@ -36,10 +37,14 @@ std::string scene_bytes(const physics::WorldDescription& world) {
     append_vector(boxes, box.size_m);
     append_pose(boxes, box.X_WBox);
   }
+
+  // Header: magic, then how many planes, boxes and meshes follow.
   append(out, kSceneMagic);
   append(out, static_cast<std::uint32_t>(world.planes.size()));
   append(out, box_count);
   append(out, static_cast<std::uint32_t>(world.meshes.size()));
+
+  // The planes' poses, then the boxes with size and pose, then each mesh: counts, vertices, triangles as indices.
   for (const physics::GroundPlane& plane : world.planes) append_pose(out, plane.X_WP);
   out += boxes;
   for (const physics::TriangleMesh& mesh : world.meshes) {

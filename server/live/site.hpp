@@ -1,7 +1,7 @@
-// What a server of pages knows and its connections share: the page's files, who may ask, and how a path is answered
-// that is no file. The live view and the playback of recorded runs are two such sites (view.cpp, gap/playback/).
+// State of a page server that its connections share: the page's files, access rights, and routes for paths that are no
+// files. The live view and the playback of recorded runs are two such sites (view.cpp, gap/playback/).
 //
-// On the server's thread alone (server/live/web_server.hpp).
+// For the server's thread only (server/live/web_server.hpp).
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -24,14 +24,14 @@ namespace kenaf::live {
 struct SiteLimits {
   std::size_t connections = 128;  // of browsers; further ones are closed at once
   std::size_t header_bytes = 8192;
-  double quiet_s = 10;  // without a request: the connection is closed
+  double quiet_s = 10;  // without a request, after which the connection is closed
 };
 
-// A GET that Host, Origin and token let in.
+// A GET accepted by the checks of Host, Origin and token.
 using PageRequest = boost::beast::http::request<boost::beast::http::empty_body>;
 struct Visit {
   const PageRequest& request;
-  std::string_view rest;  // of the path behind its first part: "/3" of "/playback/3"
+  std::string_view rest;  // the path after its first part: "/3" of "/playback/3"
   std::string_view query;
 };
 
@@ -40,13 +40,13 @@ struct Reply {
   std::string_view type;  // a literal
   std::shared_ptr<const std::string> bytes;
 };
-// "There is no such file.", and other short words for a person.
+// "There is no such file.", and other short texts for people.
 Reply reply_in_words(boost::beast::http::status status, std::string_view words);
 
-// The connection is somebody else's from now on: a WebSocket's, or a stream's. He counts in Site::connections.
+// Another owner takes over the connection: a WebSocket or a stream. It still counts in Site::connections.
 using TakeOver = std::function<void(boost::beast::tcp_stream, PageRequest)>;
 
-// Returns at once; what takes long is prepared elsewhere, and the page asks again.
+// Returns at once; lengthy work is prepared elsewhere, and the page asks again.
 using Route = std::function<std::variant<Reply, TakeOver>(const Visit&)>;
 
 struct Site {
@@ -54,11 +54,11 @@ struct Site {
   const std::string token;     // empty: none is needed
   const std::string own_name;  // of this machine
   const Assets assets;
-  std::map<std::string, Route, std::less<>> routes{};  // by the path's first part: "/ws"; all need the token
+  std::map<std::string, Route, std::less<>> routes{};  // by the path's first part: "/ws"; all require the token
 
   std::size_t connections = 0;
 
-  // Last, so that it ends first: what its handlers hold knows the others.
+  // Last, so that it is destroyed first: its handlers refer to the others.
   boost::asio::io_context io{1};
 };
 

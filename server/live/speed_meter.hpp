@@ -1,4 +1,4 @@
-// How fast robot time passes, over the last second. Thread safety: a value.
+// Measures how fast robot time passes, over the last second. Thread safety: a value.
 #pragma once
 
 #include <deque>
@@ -9,8 +9,8 @@ class SpeedMeter {
  public:
   static constexpr double kWindow_s = 1;
 
-  // Robot time by wall-clock time, as of this reading; 0 while there are not two. Robot time that goes back starts
-  // anew.
+  // Returns robot time per wall-clock time, up to this reading; 0 before the second one. Restarts if robot time goes
+  // back.
   double read(double wall_s, double time_s) {
     if (!readings_.empty() && time_s < readings_.back().time_s) readings_.clear();
     readings_.push_back({wall_s, time_s});

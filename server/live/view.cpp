@@ -95,14 +95,14 @@ struct View::Implementation {
 
   Hub hub;
   asio::steady_timer next_look{hub.site.io};
-  // Handed to the world's thread and back: it belongs to one of the two at a time.
+  // Passed to the world's thread and back: owned by one of the two at a time.
   world_server::WorldState state;
-  world_server::WorldState told;  // whose inventory the viewers have
-  bool looking = false;           // a look is under way or will be
+  world_server::WorldState told;  // the state whose inventory the viewers have
+  bool looking = false;           // a request for the state is under way or planned
   std::uint64_t states = 0;
   SpeedMeter speed;
   std::shared_ptr<void> told_of_frames;
-  WebServer server;  // last: its thread ends before what it uses
+  WebServer server;  // last: its thread ends before the members it uses
 };
 
 void View::Implementation::look() {
@@ -169,7 +169,7 @@ std::unique_ptr<View> open_view(world_server::WorldServer& world, const ViewOpti
     auto view = std::make_unique<View>(world, options, ViewLimits{}, cameras);
     const std::string url = view->url();
     spdlog::info("live view: {}", url);
-    // A token that was made is known from here alone, however little is logged.
+    // A generated token is announced only here, so it must not depend on the log level.
     const bool made_token = options.token.empty() && url.find("#token=") != std::string::npos;
     if (made_token && !spdlog::should_log(spdlog::level::info)) fmt::print(stderr, "live view: {}\n", url);
     return view;

@@ -1,7 +1,6 @@
-// The live view: a page in a browser that shows the world of a WorldServer and drives in it. docs/live-view.md is the
-// page for people.
+// The live view: a browser page that shows the world of a WorldServer and drives in it. Described in docs/live-view.md.
 //
-// HTTP and WebSocket on a thread of its own, which asks the world's thread and is never waited for by it.
+// HTTP and WebSocket on a separate thread, which asks the world's thread; the world never waits for it.
 #pragma once
 
 #include <cstdint>
@@ -16,19 +15,19 @@
 namespace kenaf::live {
 
 struct ViewLimits : SiteLimits {
-  std::size_t viewers = 64;          // of its connections, WebSockets
-  std::size_t pictures = 64;         // of its connections, readers of a camera's pictures
-  std::size_t message_bytes = 4096;  // that a page sends
-  std::size_t unread_answers = 32;   // then a page is let go; of states it keeps the newest only
+  std::size_t viewers = 64;          // connections that are WebSockets
+  std::size_t pictures = 64;         // connections that read a camera's pictures
+  std::size_t message_bytes = 4096;  // per message of a page
+  std::size_t unread_answers = 32;   // more, and the page is disconnected; of states it keeps only the newest
   double period_s = 1.0 / 30;        // between states
-  int requests_per_s = 100;          // of a viewer; then it waits
+  int requests_per_s = 100;          // per viewer; beyond that it waits
 };
 
 class View {
  public:
-  // Listens, and serves from then on. Throws std::runtime_error in words. The world must be there until this has ended,
-  // and this must end while world.run() is not under way. The cameras must be there as long; null: there are none to
-  // see.
+  // Listens and serves from construction on. Throws std::runtime_error with a text for the user. The world must outlive
+  // this, and this must end while world.run() is not active. The cameras must outlive this too; null: none are
+  // available.
   View(world_server::WorldServer& world, const ViewOptions& options, const ViewLimits& limits = {},
        image_server::Feed* cameras = nullptr);
   ~View();
@@ -36,7 +35,7 @@ class View {
   View& operator=(const View&) = delete;
 
   std::uint16_t port() const;
-  // What to open in a browser, with the token, where one is needed.
+  // The address to open in a browser, with the token, if one is needed.
   std::string url() const;
 
  private:
@@ -44,8 +43,8 @@ class View {
   std::unique_ptr<Implementation> impl_;
 };
 
-// As programs start it: says in the log where it is, or why it is not there, and the program goes on without it. With a
-// token that was made it says on standard error where it is, if the log does not.
+// As started by programs: logs its address, or why it is not available; the program continues without it. With a
+// generated token it prints the address on standard error if the log does not show it.
 std::unique_ptr<View> open_view(world_server::WorldServer& world, const ViewOptions& options,
                                 image_server::Feed* cameras);
 

@@ -20,7 +20,7 @@ namespace websocket = beast::websocket;
 using beast::error_code;
 using Clock = std::chrono::steady_clock;
 
-// What the system keeps of unread states; the more, the older is what a slow page sees.
+// System buffer for unread states; the larger, the older the states on a slow page.
 constexpr int kSendBuffer_bytes = 65536;
 
 class OpenViewer final : public Viewer, public std::enable_shared_from_this<OpenViewer> {
@@ -69,7 +69,7 @@ void OpenViewer::start(PageRequest upgrade) {
   auto& tcp = beast::get_lowest_layer(socket_);
   tcp.socket().set_option(boost::asio::socket_base::send_buffer_size(kSendBuffer_bytes), ignored);
   tcp.socket().set_option(boost::asio::ip::tcp::no_delay(true), ignored);
-  tcp.expires_never();  // the WebSocket has time-outs of its own
+  tcp.expires_never();  // the WebSocket has its own time-outs
   const auto quiet =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(hub_.site.limits.quiet_s));
   socket_.set_option(websocket::stream_base::timeout{quiet, quiet, true});
@@ -81,7 +81,7 @@ void OpenViewer::start(PageRequest upgrade) {
 }
 
 void OpenViewer::welcome() {
-  if (hub_.viewers.size() >= hub_.limits.viewers) return;  // others were quicker
+  if (hub_.viewers.size() >= hub_.limits.viewers) return;  // others were faster
   open_ = true;
   hub_.viewers.push_back(this);
   const auto& world = hub_.world;
@@ -100,7 +100,7 @@ void OpenViewer::read() {
   });
 }
 
-// The next is read when this one is done, so a viewer has one request under way, and no queue of them grows.
+// The next request is read when this one is done, so a viewer has one request under way, and no queue grows.
 void OpenViewer::take(std::string_view text) {
   const auto parsed = parse_request(text);
   received_.clear();

@@ -1,4 +1,5 @@
-// A page that looks on: its WebSocket. States that it does not read in time are dropped, all but the newest.
+// A page that views the world: its WebSocket. Of the states that it does not read in time, all but the newest are
+// dropped.
 #pragma once
 
 #include <boost/beast/core/tcp_stream.hpp>
@@ -13,16 +14,16 @@ using Message = std::shared_ptr<const std::string>;
 
 class Viewer {
  public:
-  // The newest state; one before it that has not been sent yet is dropped.
+  // Sends the newest state; an earlier one not yet sent is dropped.
   virtual void show(const Message& state) = 0;
-  // Is sent whatever happens; a viewer that leaves too many unread is let go.
+  // Always sent; a viewer that leaves too many unread is disconnected.
   virtual void tell(const Message& message) = 0;
 
  protected:
   ~Viewer() = default;
 };
 
-// Answers the upgrade, and is in hub.viewers while it is open.
+// Answers the upgrade; the viewer is in hub.viewers while it is open.
 void start_viewer(Hub& hub, boost::beast::tcp_stream stream, PageRequest upgrade);
 
 }  // namespace kenaf::live

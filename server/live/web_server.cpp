@@ -39,7 +39,7 @@ std::string machine_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-// On loopback every program is this machine's, and browsers are kept to their own pages by Host and Origin.
+// On loopback every program belongs to this machine, and Host and Origin restrict browsers to their own pages.
 std::string token_for(const ViewOptions& options) {
   if (!options.token.empty() || asio::ip::make_address(options.address).is_loopback()) return options.token;
   return make_token();
@@ -76,7 +76,7 @@ void WebServer::Implementation::serve() {
       site.io.run();
       return;
     } catch (const std::exception& error) {
-      spdlog::error("page: {}", error.what());  // of one connection; the others are served on
+      spdlog::error("page: {}", error.what());  // concerns one connection; the others are still served
     }
   }
 }

@@ -1,4 +1,4 @@
-// Listens where the options say, and serves a site on a thread of its own.
+// Listens where the options say, and serves a site on its own thread.
 #pragma once
 
 #include <cstdint>
@@ -10,25 +10,25 @@
 
 namespace kenaf::live {
 
-// The token of the options; where they have none, one is made unless only this machine's programs can ask.
-// Throws std::runtime_error in words.
+// Returns the token of the options; if they have none, generates one unless only programs of this machine can connect.
+// Throws std::runtime_error with a text for the user.
 std::string token_for(const ViewOptions& options);
-// "" where the system does not say.
+// "" if the system does not provide it.
 std::string machine_name();
 
 class WebServer {
  public:
-  // Listens. Throws std::runtime_error in words. `site` must outlive this.
+  // Listens. Throws std::runtime_error with a text for the user. `site` must outlive this.
   WebServer(Site& site, const ViewOptions& options);
-  // Stops serving: no handler of `site` runs any more.
+  // Stops serving: no handler of `site` runs afterwards.
   ~WebServer();
   WebServer(const WebServer&) = delete;
   WebServer& operator=(const WebServer&) = delete;
 
-  // Serves from now on; the site is its thread's. Once.
+  // Serves from now on; the site then belongs to its thread. Call once.
   void start();
   std::uint16_t port() const;
-  // What to open in a browser, with the token, where one is needed.
+  // The address to open in a browser, with the token, if one is needed.
   std::string url() const;
 
  private:

@@ -14,7 +14,7 @@
 
 namespace {
 
-// Written aside and renamed: who finds the file finds the whole number in it.
+// Written to a temporary file and renamed, so that a reader finds the whole number.
 void write_port_file(const std::filesystem::path& path, std::uint16_t port) {
   std::filesystem::path aside = path;
   aside += ".new";
@@ -63,13 +63,13 @@ int main(int argc, char** argv) {
   app.add_option("--log-level", log_level, "What is logged")
       ->capture_default_str()
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
-      ->transform(CLI::Transformer({{"warning", "warn"}}).description(""));  // the word that is logged
+      ->transform(CLI::Transformer({{"warning", "warn"}}).description(""));  // the word used in the log
   CLI11_PARSE(app, argc, argv);
   options.udk_dialect = dialect == "udk";
   spdlog::set_level(spdlog::level::from_str(log_level));
   spdlog::flush_on(spdlog::level::info);
 
-  // Blocked in every thread, so that only the one that waits for them gets them.
+  // Blocked in every thread, so that only the waiting thread gets them.
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
       spdlog::critical("{}", error.what());
       status = 1;
     }
-    pthread_kill(stopper.native_handle(), SIGTERM);  // where it was not a signal that ended it
+    pthread_kill(stopper.native_handle(), SIGTERM);  // in case no signal ended it
     stopper.join();
     return status;
   } catch (const std::exception& error) {

@@ -28,7 +28,7 @@ void Clock::skip(double wall_s) {
   wall_s_ = wall_s;
 }
 
-// A millionth of a step is forgiven: the sum of many short waits is not exactly their total.
+// A millionth of a step is tolerated: the sum of many short waits is not exactly their total.
 bool Clock::step_due() const {
   return !paused_ && (speed_ == 0 || owed_s_ >= time_step_s_ * (1 - 1e-6));
 }

@@ -1,4 +1,4 @@
-// How fast robot time passes: a factor of wall-clock time, as fast as it goes, or not at all.
+// The pace of robot time: a factor of wall-clock time, as fast as possible, or stopped.
 //
 // Pure: wall-clock time comes in as an argument, in seconds of any steady clock. Thread safety: a value.
 #pragma once
@@ -7,11 +7,11 @@ namespace kenaf::world_server {
 
 class Clock {
  public:
-  // Wall-clock time that is caught up after a delay; what is older is dropped, so that a slow machine falls behind
-  // instead of stepping in ever longer bursts.
+  // Wall-clock time that is caught up after a delay; older time is dropped, so that a slow machine falls behind instead
+  // of stepping in ever longer bursts.
   static constexpr double kCatchUp_s = 0.1;
 
-  // `speed` times real time; 0 = as fast as it goes.
+  // `speed` times real time; 0 = as fast as possible.
   Clock(double time_step_s, double speed);
 
   double speed() const { return speed_; }
@@ -19,13 +19,13 @@ class Clock {
   bool paused() const { return paused_; }
   void set_paused(bool paused) { paused_ = paused; }
 
-  // Lets wall-clock time pass. Returns the robot time that was dropped, 0 where the simulation keeps up.
+  // Lets wall-clock time pass. Returns the robot time dropped, 0 if the simulation keeps up.
   double pass(double wall_s);
-  // Lets wall-clock time pass without any robot time: nobody needs it.
+  // Lets wall-clock time pass without robot time, because nobody needs it.
   void skip(double wall_s);
   bool step_due() const;
   void stepped();
-  // When the next step falls due, where none is due now and nothing is paused.
+  // Time of the next step, if none is due now and the clock is not paused.
   double next_step_wall_s() const;
 
  private:

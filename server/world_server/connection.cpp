@@ -37,7 +37,7 @@ void Connection::read() {
     if (error) return self->close();
     try {
       self->simulation_.receive(self->session_, {self->received_.data(), count}, steady_seconds());
-    } catch (const std::exception& failure) {  // whatever one client sends, the others' world goes on
+    } catch (const std::exception& failure) {  // one client's input must not end the world of the others
       spdlog::error("{}: closed, what it sent cannot be obeyed: {}", self->session_.peer, failure.what());
       return self->close();
     }

@@ -14,12 +14,12 @@ double steady_seconds();
 
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  // `closed` is called once, when the client is gone or was let go.
+  // `closed` is called once, when the client is gone or was disconnected.
   Connection(boost::asio::ip::tcp::socket socket, Simulation& simulation, std::string peer,
              std::function<void(Connection&)> closed);
 
   void start();
-  // Hands to the system what the session wants sent, as far as it takes it now; the rest follows by itself.
+  // Hands the session's output to the system, as far as it accepts it now; the rest follows automatically.
   void flush();
   void close();
 
@@ -32,7 +32,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   Session& session_;
   std::function<void(Connection&)> closed_;
   bool open_ = true;
-  bool waiting_ = false;  // until the socket takes more
+  bool waiting_ = false;  // until the socket accepts more
   std::array<char, 16384> received_;
 };
 

@@ -8,7 +8,7 @@ Formats formats_of(Dialect dialect) {
   const NumberFormat two{2, false}, four{4, false};
   if (dialect == Dialect::ut2004) return {two, two, four, two, two, four, four};
   const NumberFormat cut_two{2, true}, cut_three{3, true}, cut_four{4, true};
-  // INS writes its vectors as the engine does: two digits.
+  // INS writes its vectors like the engine: two digits.
   return {cut_four, cut_four, cut_four, cut_three, two, cut_two, cut_four};
 }
 

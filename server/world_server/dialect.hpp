@@ -1,5 +1,5 @@
-// The two historic dialects of the USARSim protocol, as far as they write numbers differently. Sources: recorded lines
-// of a UT2004 server (2007) and of a UDK server (2014), and the UDK server's sensor classes.
+// The two historic dialects of the USARSim protocol, as far as their number formats differ. Sources: recorded lines of
+// a UT2004 server (2007) and of a UDK server (2014), and the UDK server's sensor classes.
 //
 // Thread safety: values.
 #pragma once
@@ -21,7 +21,7 @@ struct Formats {
 };
 
 Formats formats_of(Dialect dialect);
-// The same number of digits for everything, rounded.
+// The same number of decimals for everything, rounded.
 Formats formats_with(int decimals);
 
 }  // namespace kenaf::world_server

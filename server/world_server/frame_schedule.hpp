@@ -1,5 +1,5 @@
-// When one connection gets its outputs, and the lock-step barrier: world steps and numbers, no sockets, no world.
-// docs/world-server-protocol.md, section Extensions, is the contract. Thread safety: a value.
+// Output schedule of one connection, and the lock-step barrier: world steps and numbers, no sockets, no world.
+// docs/world-server-protocol.md, section Extensions, specifies it. Thread safety: a value.
 #pragma once
 
 #include <cstdint>
@@ -9,31 +9,31 @@ namespace kenaf::world_server {
 
 class FrameSchedule {
  public:
-  enum class Answer { in_time, late, ahead };  // ahead: of a frame that was not sent yet
+  enum class Answer { in_time, late, ahead };  // ahead: for a frame not yet sent
 
-  // An output at once, further ones `period_steps` apart; `numbered` ones are frames 1, 2, 3, ...
+  // First output at once, further ones `period_steps` apart; `numbered` ones are frames 1, 2, 3, ...
   void start(std::uint64_t step, std::uint64_t period_steps, bool numbered);
-  // The next output at `step`, the numbers go on: the world was put back to its start.
+  // Next output at `step`, while numbers continue: the world was reset to its start.
   void restart_at(std::uint64_t step);
   void set_lockstep(bool lockstep);
 
   std::uint64_t period_steps() const { return period_steps_; }
   bool numbered() const { return numbered_; }
   bool lockstep() const { return lockstep_; }
-  std::uint64_t frame() const { return frame_; }  // the newest that was sent, 0 = none yet
+  std::uint64_t frame() const { return frame_; }  // the newest one sent, 0 = none yet
   std::uint64_t late() const { return late_; }    // answers that came after their frame
 
   bool due(std::uint64_t step) const { return step >= next_step_ && !holds(step); }
-  // The output is being sent; after it the schedule waits for the answer.
+  // The output is being sent; then the schedule waits for the answer.
   void begin_frame(std::uint64_t step);
-  // A command with {Frame n} came; `ends_answer`: it was a DRIVE.
+  // A command with {Frame n} was received; `ends_answer`: it was a DRIVE.
   Answer take_answer(std::uint64_t frame, bool ends_answer);
 
-  // Lock step: the next frame may not begin yet, and with it the world may not pass `step`.
+  // Lock step: true if the next frame may not begin yet, so that the world may not pass `step`.
   bool holds(std::uint64_t step) const;
-  // For a schedule that holds a world that would go on: true once it waited for `longest_wait_s`; then it lets go.
+  // For a schedule that holds a world ready to step: true after a wait of `longest_wait_s`, after which it lets go.
   bool let_go(double wall_s, double longest_wait_s);
-  // Since when let_go() was false.
+  // Time of the first false result of let_go() in this wait.
   std::optional<double> holds_since_wall_s() const { return holds_since_wall_s_; }
 
  private:

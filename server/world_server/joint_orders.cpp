@@ -44,9 +44,12 @@ std::optional<robot::Flipper> find_flipper(std::string_view name) {
 
 robot::JointCommand joint_command(const physics::RobotDescription& description, const physics::RobotTruth& truth,
                                   robot::Flipper flipper, JointOrder order, double value) {
+  // flipper.front() describes all four flippers. The value is converted to positive tip up.
   const physics::FlipperDescription& joint = description.flipper.front();
   const physics::FlipperServoDescription& servo = description.servo;
   const double tip_up = protocol::frames::tip_up_from_usarsim_flipper(flipper, value);
+
+  // Commands are clamped to the joint's range and to what its servo can do.
   const auto angle = [&](double rad) {
     return robot::JointCommand{robot::JointMode::angle, std::clamp(rad, joint.min_angle_rad, joint.max_angle_rad)};
   };
@@ -57,6 +60,8 @@ robot::JointCommand joint_command(const physics::RobotDescription& description, 
   const auto torque = [&](double nm) {
     return robot::JointCommand{robot::JointMode::torque, std::clamp(nm, -servo.max_torque_nm, servo.max_torque_nm)};
   };
+
+  // Relative orders start from the present true state, not from the previous command.
   switch (order) {
     case JointOrder::angle:
       return angle(tip_up);

@@ -1,4 +1,4 @@
-// USARSim's orders to a flipper joint, as DRIVE {Name n} {Order i} {Value v} and SET {Type Joint} give them.
+// USARSim's orders to a flipper joint, from DRIVE {Name n} {Order i} {Value v} and SET {Type Joint}.
 #pragma once
 
 #include <array>
@@ -23,15 +23,15 @@ enum class JointOrder {
 // "Angle", "RelVelocity", "10", ...; UDK's "Target" is an angle.
 std::optional<JointOrder> parse_joint_order(std::string_view text);
 
-// The order in which UT2004 lists the joints in STA, and {Name AllJoints} {Params a,b,c,d} is read.
+// The joint order in STA of UT2004, and of {Name AllJoints} {Params a,b,c,d}.
 inline constexpr std::array kUsarsimJoints = {robot::kFrontRight, robot::kFrontLeft, robot::kRearRight,
                                               robot::kRearLeft};
 
 // "FRFlipper" and so on, without case.
 std::optional<robot::Flipper> find_flipper(std::string_view name);
 
-// The joint command for `value` (USARSim's sign), within what the robot can do; `truth` is what relative orders start
-// from.
+// Returns the joint command for `value` (USARSim's sign), limited to the robot's abilities; relative orders start from
+// `truth`.
 robot::JointCommand joint_command(const physics::RobotDescription& description, const physics::RobotTruth& truth,
                                   robot::Flipper flipper, JointOrder order, double value);
 

@@ -1,4 +1,4 @@
-// Keeps a hostile or broken client from filling the log: a few lines at once, then one for each interval.
+// Keeps a hostile or broken client from filling the log: a few lines at once, then one per interval.
 //
 // Thread safety: a value.
 #pragma once
@@ -13,7 +13,7 @@ class LogLimiter {
   explicit LogLimiter(double burst = 1, double interval_s = 5)
       : burst_(burst), interval_s_(interval_s), allowance_(burst) {}
 
-  // True: write the line, and say that `suppressed()` others were not written.
+  // True: write the line, and report that `suppressed()` others were not written.
   bool allow(double wall_s) {
     allowance_ = std::min(burst_, allowance_ + std::max(0.0, wall_s - last_wall_s_) / interval_s_);
     last_wall_s_ = wall_s;

@@ -7,10 +7,10 @@ namespace kenaf::world_server {
 
 struct ServerOptions {
   std::string world = "flat";   // a shipped name or an SDF file
-  std::string robot = "kenaf";  // a shipped name or a TOML file: what USARBot.Kenaf is
+  std::string robot = "kenaf";  // a shipped name or a TOML file: the robot of class USARBot.Kenaf
   std::string listen_address = "127.0.0.1";
   std::uint16_t port = 3000;  // 0: any free one
-  double speed = 1;           // times real time; 0 = as fast as it goes
+  double speed = 1;           // times real time; 0 = as fast as possible
   bool udk_dialect = false;
   std::uint64_t seed = 1;  // of the sensors' noise
   double time_step_s = 0.001;

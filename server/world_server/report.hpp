@@ -1,13 +1,13 @@
-// What the server tells a client about its robot; each function appends whole messages to session.out.
+// Reports to a client about its robot; each function appends whole messages to session.out.
 #pragma once
 
 #include "server/world_server/simulation.hpp"
 
 namespace kenaf::world_server {
 
-// SEN: every sensor that has something to report.
+// SEN: every sensor with new data.
 void write_sensors(Simulation& simulation, Session& session);
-// The same of given samples, in the order of the UT2004 server. Range scans are left turned round.
+// The same for given samples, in the order of the UT2004 server. Reverses range scans in place.
 void write_samples(std::vector<physics::SensorSample>& samples, const std::vector<physics::SensorDescription>& sensors,
                    Dialect dialect, const Formats& formats, bool extended, std::string& out);
 // MISSTA (UT2004) or ASTA (UDK): a line for each mission package.

@@ -1,5 +1,5 @@
-// GETGEO and GETCONF: where things are mounted, and what they can do. Always answered: a type that the robot does not
-// have is echoed, as UT2004 did; UDK left its client waiting.
+// GETGEO and GETCONF: mounting positions and abilities. Always answered: a type that the robot does not have is echoed,
+// as by UT2004; UDK did not answer.
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +25,7 @@ std::string_view short_class_name(const physics::RobotDescription& robot) {
   return name.substr(name.rfind('.') + 1);  // npos + 1 is 0
 }
 
-// Over everything but the flippers, which move.
+// Dimensions without the flippers, which move.
 protocol::frames::Vector3 dimensions_m(const physics::RobotDescription& robot) {
   const double half_height_m = robot.body.size_m.z() / 2;
   const double top_m = std::max(half_height_m, robot.track.p_BT_m.z() + robot.track.end_radius_m);
@@ -47,7 +47,7 @@ void write_robot_geometry(MessageWriter& writer, const physics::RobotDescription
       .end();
 }
 
-// MaxSpeed is the spin of the driven wheel in rad/s, as clients use it to scale DRIVE.
+// MaxSpeed is the spin of the driven wheel in rad/s, with which clients scale DRIVE.
 void write_robot_configuration(MessageWriter& writer, const physics::RobotDescription& robot, Dialect dialect,
                                protocol::usarsim::NumberFormat format) {
   writer.begin("CONF");
@@ -63,7 +63,7 @@ void write_robot_configuration(MessageWriter& writer, const physics::RobotDescri
       .end();
 }
 
-// `mount`: what turns it; empty: it is fixed on the robot.
+// `mount`: the part that turns it; empty: fixed on the robot.
 void add_mount(MessageWriter& writer, Dialect dialect, std::string_view name, const physics::Pose& X_B,
                const physics::RobotDescription& robot, protocol::usarsim::NumberFormat format,
                std::string_view mount = {}) {
@@ -115,7 +115,7 @@ bool write_sensors(MessageWriter& writer, const Simulation& simulation, const Se
   for (const SensorDescription& sensor : robot.sensors) {
     if (!protocol::usarsim::equal_ignoring_case(physics::usarsim_type_name(sensor.type), request.type)) continue;
     const bool encoder = sensor.type == SensorType::encoder;
-    // An encoder sensor is known by its two sides.
+    // An encoder sensor is listed by its two sides.
     for (const std::string_view side : {"ECLeft", "ECRight"}) {
       const std::string_view name = encoder ? side : std::string_view(sensor.name);
       if (!request.name.empty() && !protocol::usarsim::equal_ignoring_case(name, request.name)) continue;
@@ -133,7 +133,7 @@ bool write_sensors(MessageWriter& writer, const Simulation& simulation, const Se
   return found;
 }
 
-// A line for each package, as clients of UT2004 read them.
+// One line for each package, as clients of UT2004 read them.
 bool write_mission_packages(MessageWriter& writer, const Simulation& simulation, const Session& session,
                             const Request& request) {
   const physics::RobotDescription& robot = *session.robot->description;
@@ -148,6 +148,7 @@ bool write_mission_packages(MessageWriter& writer, const Simulation& simulation,
     } else {
       writer.text("Name", package.name);
     }
+    // One group for each link; its parent is the link before it, -1 for the first.
     for (std::size_t link = 0; link < package.links.size(); ++link) {
       writer.integer("Link", static_cast<std::int64_t>(link) + 1);
       if (request.geometry) {
@@ -156,6 +157,7 @@ bool write_mission_packages(MessageWriter& writer, const Simulation& simulation,
         writer.text("JointType", "Revolute")
             .number("MaxSpeed", package.links[link].max_speed_radps, format)
             .number("MaxTorque", 0, format)
+            // The sign of the angle differs from USARSim's, so minimum and maximum change places.
             .number("MinValue", protocol::frames::usarsim_link_from_rep103(package.links[link].max_rad), format)
             .number("MaxValue", protocol::frames::usarsim_link_from_rep103(package.links[link].min_rad), format);
       }
@@ -165,11 +167,13 @@ bool write_mission_packages(MessageWriter& writer, const Simulation& simulation,
   return found;
 }
 
-// {Type Joint}: USARSim had no word for where its flippers are, so this one is this server's own.
+// {Type Joint}: USARSim has no request for flipper positions, so this one is specific to this server.
 bool write_flippers(MessageWriter& writer, const Session& session, const Request& request) {
   const physics::RobotDescription& robot = *session.robot->description;
   if (!robot.has_flippers()) return false;
   const physics::FlipperDescription& flipper = robot.flipper.front();
+
+  // One message for all flippers that match; none if no name matches.
   const protocol::usarsim::NumberFormat format = session.formats.value;
   bool found = false;
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
@@ -180,12 +184,15 @@ bool write_flippers(MessageWriter& writer, const Session& session, const Request
     found = true;
     writer.text("Name", name);
     if (request.geometry) {
+      // The description has the front left flipper's pivot; the others are its mirror images in the planes x = 0 and y
+      // = 0.
       const bool rear = which == robot::kRearLeft || which == robot::kRearRight;
       const bool right = which == robot::kFrontRight || which == robot::kRearRight;
       const Eigen::Vector3d mirror(rear ? -1 : 1, right ? -1 : 1, 1);
       writer.numbers("Location", wire_vector(flipper.p_BPivot_m.cwiseProduct(mirror)), format)
           .number("Length", flipper.length_m, format);
     } else {
+      // USARSim's angle may run the other way, so the converted limits are put in order.
       const double a = protocol::frames::usarsim_flipper_from_tip_up(which, flipper.min_angle_rad);
       const double b = protocol::frames::usarsim_flipper_from_tip_up(which, flipper.max_angle_rad);
       writer.text("JointType", "Revolute")
@@ -199,10 +206,12 @@ bool write_flippers(MessageWriter& writer, const Session& session, const Request
   return found;
 }
 
-// A camera that a package turns is where it is while the package's links are at 0.
+// A camera turned by a package is reported at its position with the package's links at 0.
 bool write_cameras(MessageWriter& writer, const Simulation& simulation, const Session& session,
                    const Request& request) {
   const physics::RobotDescription& robot = *session.robot->description;
+
+  // One message for all cameras that match; none if no name matches.
   const protocol::usarsim::NumberFormat format = session.formats.value;
   bool found = false;
   for (std::size_t i = 0; i < robot.cameras.size(); ++i) {

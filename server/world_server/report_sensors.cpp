@@ -1,4 +1,4 @@
-// SEN in both dialects. Which message carries a time, and how names and values are grouped, is as recorded.
+// SEN in both dialects. Which messages carry a time, and the grouping of names and values, follow recorded lines.
 #include <algorithm>
 #include <cmath>
 
@@ -15,13 +15,13 @@ using physics::SensorType;
 using protocol::usarsim::MessageWriter;
 using protocol::usarsim::NumberFormat;
 
-// The order of the UT2004 server; what it did not have follows.
+// The order of the UT2004 server, followed by sensors it did not have.
 constexpr std::array kOrder = {SensorType::sonar,    SensorType::range_scanner, SensorType::ins,
                                SensorType::odometry, SensorType::encoder,       SensorType::ground_truth,
                                SensorType::gps,      SensorType::tachometer,    SensorType::imu,
                                SensorType::touch,    SensorType::drives};
 
-// One message of one sensor: what is needed to write it.
+// One message of one sensor, with everything needed to write it.
 struct Report {
   MessageWriter& writer;
   const Formats& formats;
@@ -79,7 +79,7 @@ void write(const Report& report, const physics::EncoderReading& reading) {
   }
 }
 
-// Yaw turns right where it is positive.
+// Positive yaw is a turn to the right.
 void write(const Report& report, const physics::OdometryReading& reading) {
   const std::array pose = {reading.x_m, -reading.y_m, -reading.yaw_rad};
   report.named(false).numbers("Pose", pose, report.formats.value).end();
@@ -92,12 +92,12 @@ void write(const Report& report, const physics::TachometerReading& reading) {
       .end();
 }
 
-// UDK's way; UT2004 has all sonars in one message.
+// As UDK; UT2004 has all sonars in one message.
 void write(const Report& report, const physics::SonarReading& reading) {
   report.named(true).number("Range", reading.range_m, report.formats.value).end();
 }
 
-// From the right end to the left one; turned round in place.
+// From the right end to the left one; reversed in place.
 void write(const Report& report, physics::RangeScanReading& reading) {
   std::ranges::reverse(reading.range_m);
   report.begin(true, report.formats.scan_time)
@@ -174,7 +174,7 @@ void write_samples(std::vector<SensorSample>& samples, const std::vector<SensorD
       write_sonars_together(writer, formats, samples, sensors);
       continue;
     }
-    // USARSim had no such sensor, so only those hear of it who know this server.
+    // USARSim had no such sensor, so only clients that know this server get it.
     if (type == SensorType::drives && !extended) continue;
     for (SensorSample& sample : samples) {
       const SensorDescription& sensor = sensors[sample.sensor];

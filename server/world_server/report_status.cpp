@@ -66,7 +66,7 @@ void write_status(const Simulation& simulation, Session& session) {
         .integer("FrontSteer", 0)
         .integer("RearSteer", 0);
     write_joints(writer, robot, truth,
-                 formats.value);  // UDK had no word for them; a client skips what it does not know
+                 formats.value);  // UDK did not report them; clients skip unknown keys
   }
   if (session.extended) {
     const FrameSchedule& schedule = session.schedule;

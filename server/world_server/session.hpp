@@ -1,4 +1,4 @@
-// One connection, without its socket: what the client asked for and what it shall be sent.
+// One connection, without its socket: the client's settings and its pending output.
 #pragma once
 
 #include <array>
@@ -22,62 +22,62 @@ struct SessionRobot {
   std::string name;
   const physics::RobotDescription* description;
   robot::Command command;   // the client's; in force unless an operator holds the robot
-  bool normalized = false;  // the client's speeds are per cent of the fastest; sticky
+  bool normalized = false;  // the client's speeds are percentages of the maximum; sticky
   bool light = false;
-  bool fault_told = false;  // that its simulation went wrong
+  bool fault_told = false;  // the failure of its simulation was reported
   struct {
     double speed = 0, front_rad = 0, rear_rad = 0;
-  } ackermann;  // as the client sent them last
+  } ackermann;  // last received values
   struct {
     double linear_mps = 0, clockwise_radps = 0;
   } body_velocity;
   std::vector<double> camera_field_of_view_rad;  // of each camera of the description, as zoomed; within its limits
 };
 
-// The client's command is over: a later DRIVE that names only a part of a curve finds the rest of it at 0.
+// The client's command has ended: a later DRIVE that names only part of a curve finds the rest of it at 0.
 inline void forget_curve(SessionRobot& robot) {
   robot.ackermann = {};
   robot.body_velocity = {};
 }
 
-// The stop of somebody who is silent, which is commanded in every step, for command_loss may take any one of them, and
-// once in a step: each command is a draw of command_loss, and how often a step is looked at is up to the wall clock.
+// The stop of a silent commander, repeated in every step, because command_loss may drop any single command, but only
+// once per step: each command is a draw of command_loss, and how often a step is examined depends on the wall clock.
 class SilenceStop {
  public:
-  // The first time in this step; true.
+  // Returns true on the first call in this step.
   bool due(std::uint64_t step) { return std::exchange(commanded_in_, step) != step; }
-  // He has spoken. In a pause he may do so and fall silent in one step, again and again.
+  // The commander has spoken. During a pause he may speak and fall silent again within one step.
   void over() { commanded_in_.reset(); }
 
  private:
   std::optional<std::uint64_t> commanded_in_;
 };
 
-// Somebody who drives by hand: a connection of the live view. Never used twice in one server.
+// Somebody driving by hand: a connection of the live view. Never reused within one server.
 enum class OperatorId : std::uint32_t {};
 
-// While an operator holds a robot; server/world_server/manual_drive.hpp has the rules.
+// An operator's hold on a robot; server/world_server/manual_drive.hpp has the rules.
 struct ManualHold {
   OperatorId holder;
-  robot::Command command;  // in force, in place of the client's
+  robot::Command command;  // in force, replacing the client's
   double last_word_wall_s;
-  bool silent = false;  // the command is to stand, until he says something
+  bool silent = false;  // stopped until the next command
   SilenceStop stop{};
 };
 
 struct Session {
-  std::uint32_t id = 0;  // never used twice in one server
+  std::uint32_t id = 0;  // never reused within one server
   std::string peer;      // for log lines
   protocol::usarsim::LineSplitter lines;
   std::string out;     // not yet handed to the socket
-  bool close = false;  // the client is beyond hope
+  bool close = false;  // the connection must be closed
 
   Formats formats{};
-  bool extended = false;  // asked for CONTROL {Type Session}
+  bool extended = false;  // sent CONTROL {Type Session}
   bool world_controller = false;
   std::optional<SessionRobot> robot;
   std::optional<ManualHold> hold;
-  bool placed_by_operator = false;  // no client is behind it
+  bool placed_by_operator = false;  // it has no client
   FrameSchedule schedule;
   std::string deferred;  // lines that take effect when the next frame begins
 

@@ -14,10 +14,10 @@ namespace kenaf::world_server {
 
 namespace {
 
-// Lines kept for the next frame; an honest client sends one or two.
+// Limit on lines kept for the next frame; a correct client sends one or two.
 constexpr std::size_t kMostDeferredBytes = 65536;
 
-// What the servers' timers were: UT2004's msgTimer, measured 0.2 s; UDK's StatusTimer 0.1 s.
+// Default timers of the historic servers: UT2004's msgTimer, measured 0.2 s; UDK's StatusTimer 0.1 s.
 double default_period_s(Dialect dialect) {
   return dialect == Dialect::ut2004 ? 0.2 : 0.1;
 }
@@ -32,7 +32,7 @@ physics::World make_world(const ServerOptions& options) {
   for (const std::string& element : unsupported) spdlog::warn("world {}: ignored: {}", options.world, element);
   physics::PhysicsSettings settings;
   settings.time_step_s = options.time_step_s;
-  // There is one world, so it is the one that the effects of --robot make, whoever else comes to drive in it.
+  // There is one world, so it has the effects of --robot, whatever other robots join.
   const physics::Effects effects = physics::load_robot(options.robot).effects;
   return physics::World(physics::with_terrain_effects(nominal, effects), settings, options.seed);
 }
@@ -60,7 +60,7 @@ Simulation::Simulation(const ServerOptions& server_options)
   if (!(options.speed >= 0 && std::isfinite(options.speed))) {
     throw std::runtime_error("the speed is a factor of real time, 0 or more (0: as fast as it goes)");
   }
-  // Read now, so that a wrong file ends the start and not somebody's INIT.
+  // Loaded now, so that a wrong file fails at the start and not at a client's INIT.
   descriptions_.emplace(options.robot, physics::load_robot(options.robot));
 }
 
@@ -101,8 +101,8 @@ void Simulation::receive(Session& session, std::string_view bytes, double now_wa
       session.close = true;
       return;
     }
-    // Here and not once all lines are obeyed: a packet has room for hundreds of requests of long answers, and all of
-    // them would hold up the world.
+    // Checked per line: a packet may hold hundreds of requests with long answers, and executing them all would stall
+    // the world.
     if (session.out.size() > kMostUnread_bytes) {
       spdlog::warn("{}: closed: more than {} MiB wait for it", session.peer, kMostUnread_bytes >> 20);
       session.close = true;
@@ -112,6 +112,7 @@ void Simulation::receive(Session& session, std::string_view bytes, double now_wa
 }
 
 void Simulation::handle_line(Session& session, std::string_view line) {
+  // Garbage is counted: receive() closes a connection that sends too much of it.
   MessageView message;
   const protocol::usarsim::ParseError error = protocol::usarsim::parse_message(line, message);
   if (error == protocol::usarsim::ParseError::empty) return;
@@ -126,6 +127,9 @@ void Simulation::handle_line(Session& session, std::string_view line) {
     complain(*this, session, "an unknown verb is ignored", line);
     return;
   }
+
+  // An answer to a numbered frame: in time, it is kept until the next frame begins; late, it takes effect at once; a
+  // frame that was not sent yet cannot be answered.
   const auto frame = number_of(message, "Frame");
   if (entry->takes_frame && frame && session.schedule.numbered()) {
     if (!(*frame >= 0 && *frame < 1e15)) return complain(*this, session, "no such frame", line);
@@ -142,6 +146,8 @@ void Simulation::handle_line(Session& session, std::string_view line) {
         break;
     }
   }
+
+  // All others take effect at once.
   entry->verb(*this, session, message);
 }
 
@@ -152,7 +158,7 @@ void Simulation::send_due(Session& session) {
   const std::uint64_t step = world.step_count();
   if (!session.schedule.due(step)) return watch_silence(session);
 
-  // What was meant for the frame that begins now.
+  // Executes the commands for the frame that begins now.
   due_lines_.clear();
   std::swap(due_lines_, session.deferred);
   for (std::string_view rest = due_lines_; !rest.empty();) {
@@ -179,7 +185,7 @@ void Simulation::watch_silence(Session& session) {
   SessionRobot& robot = *session.robot;
   robot.command.track_speed_mps = {};
   forget_curve(robot);
-  // A flipper that was told a speed or a torque would go on; one that was told an angle holds it.
+  // A flipper with a speed or torque command would continue; one with an angle command holds it.
   for (robot::JointCommand& joint : robot.command.flipper) {
     if (joint.mode != robot::JointMode::angle) joint = {robot::JointMode::brake, 0};
   }
@@ -224,7 +230,7 @@ Simulation::Progress Simulation::advance(double now_wall_s) {
   if (!stepping && !clock.step_due()) return {false, clock.next_step_wall_s()};
   std::optional<double> until_wall_s;
   if (held_by_lockstep(until_wall_s)) {
-    dropped_s_ = 0;  // it is the client that takes its time
+    dropped_s_ = 0;  // the client causes the delay
     return {false, until_wall_s};
   }
   if (dropped_s_ > 0.5 * clock.speed() && behind_log_.allow(wall_s)) {
@@ -277,7 +283,7 @@ void Simulation::tell_faults() {
 void Simulation::set_paused(bool paused) {
   if (clock.paused() == paused) return;
   clock.set_paused(paused);
-  // While time stands still no output falls due, so a client would never learn why it hears nothing.
+  // While time is stopped no output falls due, so a client would never learn the reason for the silence.
   for (const auto& session : sessions) {
     if (session->robot && session->extended && session->schedule.frame() > 0) write_status(*this, *session);
   }
@@ -289,7 +295,7 @@ void Simulation::call_at(const void* owner, std::uint64_t step, std::function<vo
   call_due(world.step_count());
 }
 
-// They may ask for further calls.
+// The calls may request further calls.
 void Simulation::call_due(std::uint64_t step) {
   std::vector<Call> due;
   for (const Call& call : calls_) {
@@ -302,6 +308,7 @@ void Simulation::call_due(std::uint64_t step) {
 }
 
 void Simulation::reset() {
+  // The world's time is 0 again; pending step requests are answered as failed.
   world.reset();
   for (const StepRequest& request : step_requests_) {
     if (Session* session = find_session(request.session)) {
@@ -309,6 +316,8 @@ void Simulation::reset() {
     }
   }
   step_requests_.clear();
+
+  // Each connection restarts: frames from step 0, no deferred commands, no silence.
   for (const auto& session : sessions) {
     session->deferred.clear();
     session->last_command_step = 0;
@@ -316,6 +325,8 @@ void Simulation::reset() {
     session->stop.over();
     session->schedule.restart_at(0);
     if (!session->robot) continue;
+
+    // Each robot gets its resting command and initial fields of view; an operator's hold continues, stopped.
     session->robot->command = resting_command(*session->robot->description);
     forget_curve(*session->robot);
     session->robot->normalized = false;
@@ -326,6 +337,8 @@ void Simulation::reset() {
     }
     apply_command(*session);
   }
+
+  // Pending calls refer to the old time: make all of them now.
   call_due(kNever);
 }
 

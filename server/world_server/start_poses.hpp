@@ -1,4 +1,4 @@
-// Where robots are placed.
+// Placement of robots.
 #pragma once
 
 #include <optional>
@@ -9,12 +9,12 @@
 
 namespace kenaf::world_server {
 
-// The start pose of that name, without case; nullptr: there is none.
+// Returns the start pose with that name, ignoring case; nullptr if there is none.
 const physics::StartPose* find_start_pose(const physics::WorldDescription& world, std::string_view name);
-// The first start pose that is at least `clear_m` away from every robot; the first of all where none is.
+// Returns the first start pose at least `clear_m` away from every robot, or the first of all if there is none.
 const physics::StartPose& free_start_pose(const physics::World& world, double clear_m = 1.0);
 
-// The session's robot, at rest.
+// Places the session's robot, at rest.
 void place_robot(Simulation& simulation, Session& session, const physics::RobotDescription& description,
                  const std::string& name, const physics::Pose& X_WB);
 

@@ -1,6 +1,6 @@
-// What a client can ask for, one function for each verb. Each obeys `message` for `session`, and writes its answer,
-// where the protocol has one, to session.out. What cannot be obeyed is ignored, as USARSim does, with at most one
-// line in five seconds in the log.
+// Requests of a client, one function per verb. Each executes `message` for `session`, and writes its answer, if the
+// protocol has one, to session.out. Requests that cannot be executed are ignored, as in USARSim, with at most one log
+// line in five seconds.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ struct VerbEntry {
   Verb verb;
   bool takes_frame;  // may carry {Frame n}
 };
-// nullptr: no such verb.
+// nullptr if there is no such verb.
 const VerbEntry* find_verb(const MessageView& message);
 
 // verbs_session.cpp
@@ -34,29 +34,29 @@ void move_mission_package(Simulation&, Session&, const MessageView&);  // MISPKG
 // verbs_control.cpp
 void control(Simulation&, Session&, const MessageView&);
 void ping(Simulation&, Session&, const MessageView&);
-// verbs_world.cpp: CONTROL's requests about objects; false: `type` is none of them
+// verbs_world.cpp: CONTROL's requests about objects; returns false if `type` is none of them
 bool control_world(Simulation&, Session&, const MessageView&, std::string_view type);
 // report_geometry.cpp
 void get_geometry(Simulation&, Session&, const MessageView&);
 void get_configuration(Simulation&, Session&, const MessageView&);
 
 using Reason = std::string_view;  // why a verb failed
-constexpr Reason kDone;           // it did not
+constexpr Reason kDone;           // it succeeded
 
-// The value of `key`, "" where it is missing.
+// Returns the value of `key`, "" if it is missing.
 std::string_view text_of(const MessageView& message, std::string_view key);
 std::optional<double> number_of(const MessageView& message, std::string_view key);
 std::optional<bool> bool_of(const MessageView& message, std::string_view key);
 bool is_any_of(std::string_view text, std::initializer_list<std::string_view> words);  // without case
-// What a client sent, fit for a log line or an answer: printable, and not longer than 64 characters.
+// Makes a client's text safe for a log line or an answer: printable, at most 64 characters.
 std::string printable(std::string_view text);
 
 inline constexpr std::string_view kNoRobotYet = "a command before INIT placed a robot is ignored";
 
-// A warning about what a client sent, `text`: the first is a line in the log, more within 5 s are counted.
+// Warns about a client's input `text`: the first warning is logged, further ones within 5 s are counted.
 void complain(const Simulation&, Session&, std::string_view what, std::string_view text);
 
-// RES {Time t} {Type type} {Name name} {Status OK}, or {Status Failed} {Reason reason} where a reason is given.
+// RES {Time t} {Type type} {Name name} {Status OK}, or {Status Failed} {Reason reason} if a reason is given.
 void answer(const Simulation&, Session&, std::string_view type, std::string_view name, std::string_view reason = {});
 
 }  // namespace kenaf::world_server

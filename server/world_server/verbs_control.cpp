@@ -1,4 +1,4 @@
-// CONTROL's requests about time and about the connection itself, and PING. docs/world-server-protocol.md, Extensions.
+// CONTROL's requests about time and the connection itself, and PING. docs/world-server-protocol.md, Extensions.
 #include <spdlog/spdlog.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ Reason set_speed(Simulation& simulation, const Session& session, const MessageVi
   return kDone;
 }
 
-// A key that is there must make sense; nothing is changed unless all do.
+// A key that is present must be valid; nothing is changed unless all are.
 template <typename Value>
 bool reads(const MessageView& message, std::string_view key, std::optional<Value> value, double least, double most) {
   if (!message.find(key)) return true;
@@ -44,6 +44,7 @@ bool reads(const MessageView& message, std::string_view key, std::optional<Value
 }
 
 Reason set_session(Simulation& simulation, Session& session, const MessageView& message) {
+  // Read and check all keys before any of them takes effect.
   const auto period_s = number_of(message, "Period");
   const auto lockstep = bool_of(message, "Lockstep");
   const auto timeout_s = number_of(message, "CommandTimeout");
@@ -55,6 +56,8 @@ Reason set_session(Simulation& simulation, Session& session, const MessageView& 
   }
   if (!reads(message, "Precision", precision, 0, kMostDecimals)) return "Precision is not from 0 to 15 digits";
 
+  // From here on the client uses the extensions. A period starts numbered frames and drops deferred commands; the
+  // command time-out counts from now.
   session.extended = true;
   const std::uint64_t now = simulation.world.step_count();
   if (precision) session.formats = formats_with(static_cast<int>(*precision));
@@ -79,7 +82,7 @@ void answer_session(const Simulation& simulation, Session& session) {
       .text("Status", "OK")
       .number("Period", static_cast<double>(session.schedule.period_steps()) * simulation.world.settings().time_step_s,
               session.formats.value)
-      .boolean("Lockstep", session.schedule.numbered() && session.schedule.lockstep())  // it waits for frames only
+      .boolean("Lockstep", session.schedule.numbered() && session.schedule.lockstep())  // it waits only for frames
       .end();
 }
 
@@ -96,7 +99,7 @@ void control(Simulation& simulation, Session& session, const MessageView& messag
     simulation.set_paused(false);
   } else if (is_any_of(type, {"Step"})) {
     reason = step(simulation, session, message);
-    if (reason.empty()) return;  // answered when it is done
+    if (reason.empty()) return;  // answered on completion
   } else if (is_any_of(type, {"Speed"})) {
     reason = set_speed(simulation, session, message);
   } else if (is_any_of(type, {"Reset"})) {

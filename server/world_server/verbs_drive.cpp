@@ -10,10 +10,10 @@ namespace kenaf::world_server {
 
 namespace {
 
-// A steering angle beyond it would be a turn on the spot.
+// A larger steering angle would be a turn on the spot.
 constexpr double kSteepestSteer_rad = 1.2;
 
-// Of a body velocity as clients send it, m/s and rad/s: more than any robot does, and few enough for sums of them.
+// Limit on a client's body velocity, m/s and rad/s: more than any robot reaches, and small enough for sums.
 constexpr double kFastestAsked = 100;
 
 double clamped_speed(const SessionRobot& robot, double speed_mps) {
@@ -21,7 +21,7 @@ double clamped_speed(const SessionRobot& robot, double speed_mps) {
   return std::clamp(speed_mps, -most, most);
 }
 
-// A wheel speed as clients send it: rad/s, or per cent of the fastest.
+// A wheel speed as sent by clients: rad/s, or percent of the maximum.
 double surface_speed(const SessionRobot& robot, double value) {
   const physics::TrackDriveDescription& drive = robot.description->drive;
   const double speed_mps = robot.normalized ? value / 100 * drive.max_speed_mps
@@ -29,7 +29,7 @@ double surface_speed(const SessionRobot& robot, double value) {
   return clamped_speed(robot, speed_mps);
 }
 
-// Where one side cannot run as fast as that, both run slower: the robot is late, but on the curve that was asked for.
+// If one side cannot run that fast, both run slower: the robot is late, but stays on the requested curve.
 void set_body_velocity(SessionRobot& robot, double linear_mps, double clockwise_radps) {
   const double turn_mps = clockwise_radps * robot.description->track_gauge_m() / 2;
   const double faster_side_mps = std::abs(linear_mps) + std::abs(turn_mps);
@@ -49,7 +49,8 @@ void drive_skid(SessionRobot& robot, const MessageView& message) {
   }
 }
 
-// The bicycle model about the tracks' contact length; USARSim's steering angle turns right where it is positive.
+// The bicycle model with the tracks' contact length L as wheel base: yaw rate = v (tan front - tan rear) / L. A
+// positive steering angle of USARSim turns right.
 void drive_ackermann(SessionRobot& robot, const MessageView& message) {
   auto& held = robot.ackermann;
   held.speed = number_of(message, "Speed").value_or(held.speed);
@@ -64,7 +65,7 @@ void drive_ackermann(SessionRobot& robot, const MessageView& message) {
   set_body_velocity(robot, speed_mps, speed_mps * (slope(held.front_rad) - slope(held.rear_rad)) / wheel_base_m);
 }
 
-// What the protocol has for omnidirectional and flying robots; tracks can do two of its four.
+// The protocol's form for omnidirectional and flying robots; tracks can follow two of its four components.
 void drive_body_velocity(SessionRobot& robot, const MessageView& message) {
   auto& held = robot.body_velocity;
   held.linear_mps = number_of(message, "LinearVelocity").value_or(held.linear_mps);
@@ -73,18 +74,22 @@ void drive_body_velocity(SessionRobot& robot, const MessageView& message) {
                     std::clamp(held.clockwise_radps, -kFastestAsked, kFastestAsked));
 }
 
-// {Name n} opens a set, {Order}, {Value} and {Steer} fill it; what is missing is 0. Flippers do not steer.
+// {Name n} starts a set, {Order}, {Value} and {Steer} fill it; missing values are 0. Flippers do not steer.
 void drive_joints(Simulation& simulation, SessionRobot& robot, const MessageView& message) {
   if (!robot.description->has_flippers()) return;
+  // One truth for the whole message: relative orders of several flippers start from the same moment.
   const physics::RobotTruth truth = simulation.world.truth(robot.id);
   std::optional<robot::Flipper> flipper;
   auto order = std::optional(JointOrder::angle);
   double value = 0;
+  // A set with an unknown flipper or order is skipped; the others take effect.
   const auto finish = [&] {
     if (flipper && order) {
       robot.command.flipper[*flipper] = joint_command(*robot.description, truth, *flipper, *order, value);
     }
   };
+
+  // The next Name ends a set; the end of the message ends the last one.
   for (const protocol::usarsim::Group& group : message.all()) {
     if (is_any_of(group.key, {"Name"})) {
       finish();
@@ -100,7 +105,7 @@ void drive_joints(Simulation& simulation, SessionRobot& robot, const MessageView
   finish();
 }
 
-// UT2004 turned a fallen robot over by a torque. Here it is put back upright where it lies.
+// UT2004 righted a fallen robot by a torque. Here it is put upright where it lies.
 void right_itself(Simulation& simulation, const SessionRobot& robot) {
   constexpr double kFallen = 0.7;  // cosine of the tilt
   physics::Pose X_WB = simulation.world.truth(robot.id).X_WB;

@@ -1,4 +1,4 @@
-// INIT and what may come before it.
+// INIT and the requests allowed before it.
 #include <spdlog/spdlog.h>
 
 #include "server/world_server/start_poses.hpp"
@@ -9,7 +9,7 @@ namespace kenaf::world_server {
 
 namespace {
 
-// nullopt: a start pose was asked for that the world does not have.
+// nullopt: the requested start pose does not exist in this world.
 std::optional<physics::Pose> wanted_pose(const Simulation& simulation, Session& session, const MessageView& message) {
   if (const auto start = message.find("Start")) {
     const physics::StartPose* pose = find_start_pose(simulation.world.description(), *start);
@@ -54,7 +54,7 @@ void init(Simulation& simulation, Session& session, const MessageView& message) 
   place_robot(simulation, session, *description, name, *X_WB);
   const std::uint64_t step = simulation.world.step_count();
   session.last_command_step = step;
-  // What a Session asked for before INIT holds.
+  // Settings of a Session request before INIT are kept.
   session.schedule.start(step, session.schedule.period_steps(), session.schedule.numbered());
   if (!simulation.connection_log.allow(simulation.wall_s)) return;
   const Eigen::Vector3d p_WB = simulation.world.truth(session.robot->id).X_WB.p;

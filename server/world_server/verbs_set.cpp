@@ -40,14 +40,14 @@ Reason set_joint(Simulation& simulation, Session& session, const MessageView& me
   return kDone;
 }
 
-// Applies `what` to every sensor of the type and, where one is given, of the name.
+// Applies `what` to every sensor of the type and, if given, of the name.
 template <typename What>
 Reason for_sensors(const SessionRobot& robot, std::string_view type, std::string_view name, What what) {
   Reason reason = "no such sensor on this robot";
   for (std::size_t i = 0; i < robot.description->sensors.size(); ++i) {
     const physics::SensorDescription& sensor = robot.description->sensors[i];
     if (!protocol::usarsim::equal_ignoring_case(physics::usarsim_type_name(sensor.type), type)) continue;
-    // UT2004's encoder has a name for each side, but is one sensor here.
+    // UT2004's encoder has a name for each side, but is a single sensor here.
     const bool encoder = sensor.type == physics::SensorType::encoder;
     if (!name.empty() && !encoder && !protocol::usarsim::equal_ignoring_case(sensor.name, name)) continue;
     what(i);
@@ -70,7 +70,7 @@ Reason set_ins(Simulation& simulation, const SessionRobot& robot, const MessageV
                      [&](std::size_t i) { simulation.world.reset_sensor(robot.id, i, pose); });
 }
 
-// All cameras where none is named, as with sensors.
+// Applies to all cameras if none is named, as with sensors.
 Reason set_camera(SessionRobot& robot, const MessageView& message) {
   const auto field_of_view = number_of(message, "Params");
   if (!is_any_of(text_of(message, "Opcode"), {"Zoom", "FOV"})) return "unknown Opcode";
@@ -100,7 +100,7 @@ Reason obey_set(Simulation& simulation, Session& session, const MessageView& mes
   }
   if (is_any_of(type, {"INS"})) return set_ins(simulation, robot, message);
   if (is_any_of(type, {"RangeScanner"})) {
-    // The scanners here scan by themselves; the next scan comes when it is due.
+    // The scanners here scan automatically; the next scan comes when it is due.
     if (!is_any_of(opcode, {"SCAN"})) return "unknown Opcode";
     return for_sensors(robot, type, text_of(message, "Name"), [](std::size_t) {});
   }
@@ -131,7 +131,7 @@ void move_mission_package(Simulation& simulation, Session& session, const Messag
   if (package == packages.end()) return;
   const auto package_index = static_cast<std::size_t>(package - packages.begin());
 
-  // {Link i} opens a set, {Value} and {Order} fill it.
+  // {Link i} starts a set, {Value} and {Order} fill it.
   std::optional<double> link;
   double value = 0;
   auto order = std::optional(JointOrder::angle);
@@ -140,7 +140,7 @@ void move_mission_package(Simulation& simulation, Session& session, const Messag
     const auto index = static_cast<std::size_t>(*link) - 1;
     const double now_rad = simulation.world.mission_link_rad(robot.id, package_index, index);
     const double wanted_rad = protocol::frames::rep103_link_from_usarsim(value);
-    double angle_rad = now_rad;  // brake, and what a camera mount cannot do
+    double angle_rad = now_rad;  // brake, and orders that a camera mount cannot execute
     if (*order == JointOrder::angle) angle_rad = wanted_rad;
     if (*order == JointOrder::relative_angle) angle_rad = now_rad + wanted_rad;
     if (*order == JointOrder::speed && wanted_rad > 0) angle_rad = package->links[index].max_rad;

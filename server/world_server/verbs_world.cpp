@@ -1,5 +1,5 @@
-// CONTROL's requests about objects, after the UDK server's WorldController. Objects are boxes; what else USARSim could
-// create or animate is refused with a reason.
+// CONTROL's requests about objects, modelled on the UDK server's WorldController. Objects are boxes; other objects and
+// animations of USARSim are refused with a reason.
 #include <algorithm>
 
 #include "server/world_server/verbs.hpp"
@@ -10,7 +10,7 @@ namespace kenaf::world_server {
 namespace {
 
 constexpr std::size_t kMostObjects = 1000;
-constexpr double kDensity_kgpm3 = 100;  // of a box that may fall: light enough for a robot to push
+constexpr double kDensity_kgpm3 = 100;  // of movable boxes: light enough for a robot to push
 
 auto find_object(Simulation& simulation, std::string_view name) {
   return std::ranges::find_if(simulation.objects, [name](const WorldObject& object) {
@@ -31,6 +31,7 @@ bool is_box_class(std::string_view class_name) {
 }
 
 Reason create(Simulation& simulation, const MessageView& message) {
+  // Check everything first: a request that is refused leaves no half-made object.
   const std::string_view class_name = text_of(message, "ClassName");
   if (!is_box_class(class_name))
     return "only boxes can be created (a class name that ends in Box, Block, Cube or Crate)";
@@ -46,6 +47,8 @@ Reason create(Simulation& simulation, const MessageView& message) {
   if (std::ranges::any_of(size_m, [](double size) { return !(size >= 0.001 && size <= 1000); })) {
     return "Scale is not from 0.001 to 1000";
   }
+
+  // Fixed unless the request asks for physics; then its mass follows from its volume.
   physics::Box box;
   box.name = name;
   box.size_m = vector_from(size_m);
@@ -67,7 +70,7 @@ Reason kill(Simulation& simulation, const MessageView& message) {
   return kDone;
 }
 
-// Without a range, or where both ends are equal, all of them.
+// Applies to all objects if there is no range, or if both ends are equal.
 Reason kill_all(Simulation& simulation, const MessageView& message) {
   protocol::frames::Vector3 least{}, most{};
   for (const auto& [key, corner] : {std::pair{"MinPos", &least}, std::pair{"MaxPos", &most}}) {
@@ -85,22 +88,27 @@ Reason kill_all(Simulation& simulation, const MessageView& message) {
   return kDone;
 }
 
-// Steps to somewhere add up, and what falls off the ground falls on: the world itself takes no such pose.
+// Relative moves add up, and what falls off the ground keeps falling: the world rejects poses this far away.
 bool is_too_far(const physics::Pose& X_W) {
   return !X_W.q.coeffs().allFinite() || !(X_W.p.cwiseAbs().maxCoeff() <= kFarthest);
 }
 
-// Of an object, or of a robot by its name. What is not given stays.
+// Moves an object, or a robot by its name. Components that are not given are kept.
 Reason move(Simulation& simulation, const MessageView& message, bool relative) {
+  // Each key may be missing, but not malformed.
   const auto location = read_location(message, "Location");
   const auto rotation = read_rotation(message, "Rotation");
   if (!location && message.find("Location")) return "Location is not x,y,z";
   if (!rotation && message.find("Rotation")) return "Rotation is not roll,pitch,yaw";
+
+  // Relative: the location is added in the world's axes, the rotation is about the object's own.
   const auto moved = [&](physics::Pose X_W) {
     if (location) X_W.p = relative ? Eigen::Vector3d(X_W.p + *location) : *location;
     if (rotation) X_W.q = relative ? (X_W.q * *rotation).normalized() : *rotation;
     return X_W;
   };
+
+  // Objects come first; a robot is moved only if no object has its name.
   const std::string_view name = text_of(message, "Name");
   if (const auto object = find_object(simulation, name); object != simulation.objects.end()) {
     const physics::Pose X_WBox = moved(simulation.world.box_pose(object->box));
@@ -118,14 +126,16 @@ Reason move(Simulation& simulation, const MessageView& message, bool relative) {
   return "no object or robot of that name";
 }
 
-// One line for all objects that match, as the UDK server wrote it, and the robot of that name.
+// One line with all matching objects, as the UDK server wrote it, and the robot of that name.
 void get_status(const Simulation& simulation, Session& session, const MessageView& message) {
+  // A key that is missing or empty matches all.
   const auto matches = [&](std::string_view key, std::string_view text) {
     const std::string_view wanted = text_of(message, key);
     return wanted.empty() || protocol::usarsim::equal_ignoring_case(wanted, text);
   };
   protocol::usarsim::MessageWriter writer(session.out);
   writer.begin("STA");
+  // Objects first, one group of keys for each.
   for (const WorldObject& object : simulation.objects) {
     if (!matches("Name", object.name) || !matches("ClassName", object.class_name)) continue;
     const physics::Pose X_WBox = simulation.world.box_pose(object.box);
@@ -135,6 +145,8 @@ void get_status(const Simulation& simulation, Session& session, const MessageVie
         .numbers("Location", wire_vector(X_WBox.p), format)
         .numbers("Rotation", wire_angles(X_WBox.q), format);
   }
+
+  // Then the robot of that name; without a name no robot is listed.
   for (const auto& other : simulation.sessions) {
     if (!other->robot || !protocol::usarsim::equal_ignoring_case(other->robot->name, text_of(message, "Name")))
       continue;

@@ -1,4 +1,4 @@
-// Eigen and physics values across the border to USARSim's z-down frames; the signs are formats/protocol/frames.hpp's.
+// Converts Eigen and physics values to and from USARSim's z-down frames; the signs are in formats/protocol/frames.hpp.
 #pragma once
 
 #include <optional>
@@ -22,17 +22,16 @@ inline protocol::frames::Vector3 wire_vector(const Eigen::Vector3d& v) {
 inline protocol::frames::Vector3 wire_angles(const Eigen::Vector3d& roll_pitch_yaw) {
   return protocol::frames::usarsim_angles_from_rep103(array_from(roll_pitch_yaw));
 }
-// Each in [0, 2 pi), as the UT2004 server and UDK's INS have them.
+// Each in [0, 2 pi), as in the UT2004 server and UDK's INS.
 protocol::frames::Vector3 wire_positive_angles(const Eigen::Vector3d& roll_pitch_yaw);
 inline protocol::frames::Vector3 wire_angles(const Eigen::Quaterniond& q) {
   return wire_angles(physics::roll_pitch_yaw(q));
 }
 
-// Farther away, in m on an axis, physics would lose its precision.
+// Beyond this distance, in m on an axis, physics would lose its precision.
 inline constexpr double kFarthest = 1e5;
 
-// A vector or a rotation that a client sent; nullopt where the group is missing, not three numbers, or beyond
-// kFarthest.
+// Reads a client's vector or rotation; nullopt if the group is missing, not three numbers, or beyond kFarthest.
 std::optional<Eigen::Vector3d> read_location(const protocol::usarsim::MessageView& message, std::string_view key);
 std::optional<Eigen::Quaterniond> read_rotation(const protocol::usarsim::MessageView& message, std::string_view key);
 

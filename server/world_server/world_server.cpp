@@ -22,9 +22,9 @@ using boost::system::error_code;
 
 namespace {
 
-// Robots, world controllers and a few that only look.
+// Robots, world controllers and a few observers.
 constexpr std::size_t kMostConnections = 2 * kMostRobots;
-// Steps go on without a look at the sockets, and sockets are served without a step, at most for so long.
+// Longest time for steps without serving the sockets, and for sockets without a step.
 constexpr double kSteppingSlice_s = 100e-6;
 constexpr double kServingSlice_s = 500e-6;
 
@@ -70,7 +70,7 @@ struct WorldServer::Implementation {
   tcp::acceptor acceptor;
   asio::steady_timer accept_again{io};
   asio::steady_timer wake_timer{io};
-  std::optional<double> armed_s;  // what wake_timer waits for
+  std::optional<double> armed_s;  // time for which wake_timer is set
   std::vector<std::shared_ptr<Connection>> connections;
   LogLimiter connection_log{20, 0.5};
   std::atomic<bool> stopping = false;
@@ -83,7 +83,7 @@ void WorldServer::Implementation::accept() {
       welcome(std::move(socket));
       return accept();
     }
-    // Most often too many open files: trying at once would only burn the processor.
+    // Mostly too many open files: retrying at once would only use processor time.
     if (connection_log.allow(steady_seconds())) spdlog::error("cannot accept a client: {}", error.message());
     accept_again.expires_after(std::chrono::milliseconds(100));
     accept_again.async_wait([this](error_code cancelled) {
@@ -118,7 +118,7 @@ void WorldServer::Implementation::serve_sockets() {
 }
 
 void WorldServer::Implementation::flush() {
-  // By index from the end: a connection that breaks leaves the list.
+  // By index from the end: a broken connection removes itself from the list.
   for (std::size_t i = connections.size(); i-- > 0;) {
     if (i < connections.size()) std::shared_ptr(connections[i])->flush();
   }
@@ -141,7 +141,7 @@ void WorldServer::Implementation::close_all() {
   wake_timer.cancel();
   accept_again.cancel();
   while (!connections.empty()) std::shared_ptr(connections.back())->close();
-  io.poll();  // the handlers of what was closed
+  io.poll();  // runs the handlers of closed connections
 }
 
 WorldServer::WorldServer(const ServerOptions& options) : impl_(std::make_unique<Implementation>(options)) {}

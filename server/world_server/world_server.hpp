@@ -1,7 +1,6 @@
-// The world server: a simulated world behind the USARSim protocol. docs/world-server-protocol.md is the page for
-// people.
+// The world server: a simulated world behind the USARSim protocol. Described in docs/world-server-protocol.md.
 //
-// One thread, that which calls run(), owns the world, the clock and all connections.
+// The thread that calls run() owns the world, the clock and all connections.
 #pragma once
 
 #include <cstdint>
@@ -20,24 +19,25 @@ struct Simulation;
 
 class WorldServer {
  public:
-  // Loads the world and the robot, binds and listens. Throws std::runtime_error, in words, where one of it fails.
+  // Loads the world and the robot, binds and listens. Throws std::runtime_error with a text for the user if any of it
+  // fails.
   explicit WorldServer(const ServerOptions& options);
   ~WorldServer();
   WorldServer(const WorldServer&) = delete;
   WorldServer& operator=(const WorldServer&) = delete;
 
-  // Where it listens: the one that was asked for, or the free one that was found.
+  // The port it listens on: the requested one, or the free one found.
   std::uint16_t port() const;
-  // Neither ever changes: for any thread.
+  // These never change: for any thread.
   const physics::WorldDescription& world_description() const;
   double time_step_s() const;
   // Serves until stop(); then every connection is closed.
   void run();
-  // From any thread, at any time; run() returns soon, or at once where it is called later.
+  // May be called from any thread, at any time; run() returns soon, or at once if called later.
   void stop();
-  // From any thread, at any time: the thread in run() carries `request` out between two steps of the world, within half
-  // a millisecond or so, also while time stands still. Never where run() has returned. The world waits for it:
-  // microseconds.
+  // May be called from any thread, at any time: the thread in run() carries out `request` between two steps of the
+  // world, within about half a millisecond, even while time is stopped. Never after run() has returned. The world waits
+  // for the request, which must take only microseconds.
   void ask(std::function<void(Simulation&)> request);
 
  private:

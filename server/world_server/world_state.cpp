@@ -28,11 +28,14 @@ void read_robot(const Simulation& simulation, const Session& session, RobotState
   const SessionRobot& robot = *session.robot;
   const physics::RobotTruth truth = simulation.world.truth(robot.id);
   const physics::DriveCurrents currents = simulation.world.drive_currents(robot.id);
+  // Identity and fixed dimensions.
   state.id = session.id;
   state.robot = robot.id;
   state.name = robot.name;
   state.class_name = robot.description->usarsim_class;
   state.dimensions = physics::dimensions_of(*robot.description);
+
+  // True motion and the drives' measurements.
   state.X_WB = truth.X_WB;
   state.v_WB_mps = truth.v_WB_mps;
   state.track_mps = truth.track_mps;
@@ -42,15 +45,20 @@ void read_robot(const Simulation& simulation, const Session& session, RobotState
   state.flipper_a = currents.flipper_a;
   state.battery_v = truth.battery_v;
   state.battery_left_s = truth.battery_left_s;
+
+  // The command in force: an operator's hold replaces the client's.
   state.command = session.hold ? session.hold->command : robot.command;
   state.has_client = !session.placed_by_operator;
   state.client_silent = session.silent;
+  // Robot time since the last command; min() keeps the unsigned difference from wrapping.
   state.client_silent_s = static_cast<double>(simulation.world.step_count() -
                                               std::min(simulation.world.step_count(), session.last_command_step)) *
                           simulation.world.settings().time_step_s;
   state.late_answers = session.schedule.late();
   state.holder = session.hold ? session.hold->holder : OperatorId{0};
   state.holder_silent = session.hold && session.hold->silent;
+
+  // Failure of its simulation, and its cameras.
   state.fault = simulation.world.fault(robot.id);
   state.cameras.resize(robot.description->cameras.size());
   for (std::size_t i = 0; i < state.cameras.size(); ++i) read_camera(simulation, robot, i, state.cameras[i]);

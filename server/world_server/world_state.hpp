@@ -1,9 +1,8 @@
-// What the simulation shows of itself: a plain value, for other threads to look at while the world goes on.
+// The visible state of the simulation: a plain value that other threads can read while the world continues.
 //
-// SI units, radians, frames of REP 103. Thread safety: a value. Nobody publishes it by himself: who wants to see hands
-// an empty one, or an old one, to the world's thread (WorldServer::ask) and gets it back filled. So it costs nothing
-// while nobody looks, whoever looks sets the rate, no lock exists that the world could wait for, and an old one is
-// filled without allocating.
+// SI units, radians, frames of REP 103. Thread safety: a value. It is not published: a reader passes an empty or old
+// one to the world's thread (WorldServer::ask) and gets it back filled. So it costs nothing without readers, the reader
+// sets the rate, the world never waits for a lock, and refilling an old one does not allocate.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +23,11 @@ struct CameraState {
   struct Link {
     double min_rad, max_rad, angle_rad;
   };
-  std::optional<Link> pan, tilt;  // where a mount turns it
+  std::optional<Link> pan, tilt;  // present angles, if a mount turns it
 };
 
 struct RobotState {
-  std::uint32_t id = 0;       // of its session: never used twice in one server
+  std::uint32_t id = 0;       // of its session: never reused within one server
   physics::RobotId robot{0};  // in the world; likewise
   std::string name, class_name;
   physics::RobotDimensions dimensions;
@@ -41,14 +40,14 @@ struct RobotState {
   bool has_client = false;         // false: an operator placed it
   bool client_silent = false;      // its CommandTimeout has passed
   double client_silent_s = 0;      // robot time since its last command
-  std::uint64_t late_answers = 0;  // of its frames
+  std::uint64_t late_answers = 0;  // to its frames
   OperatorId holder{0};            // 0: nobody drives it by hand
   bool holder_silent = false;
   std::string fault;                 // empty: none
   std::vector<CameraState> cameras;  // in the order of its description
 };
 
-// A box that may be elsewhere than the world's description has it.
+// A box that may have moved from its place in the world's description.
 struct BoxState {
   std::uint32_t id = 0;
   Eigen::Vector3d size_m{0, 0, 0};
@@ -56,16 +55,16 @@ struct BoxState {
 };
 
 struct WorldState {
-  double wall_s = 0;  // when it was read, of a steady clock
+  double wall_s = 0;  // time of reading, on a steady clock
   double time_s = 0;  // robot time
   std::uint64_t step = 0;
   bool paused = false;
-  double speed = 0;                // times real time that is wanted; 0: as fast as it goes
-  std::vector<RobotState> robots;  // in the order of their coming
+  double speed = 0;                // requested, times real time; 0: as fast as possible
+  std::vector<RobotState> robots;  // in order of connection
   std::vector<BoxState> boxes;
 };
 
-// As the world is at simulation.wall_s.
+// Reads the world at simulation.wall_s.
 void read_state(const Simulation& simulation, WorldState& state);
 
 }  // namespace kenaf::world_server
