@@ -26,6 +26,7 @@ if ! git rev-parse --quiet --verify "$since^{tree}" >/dev/null 2>&1; then
   echo "check: there is no $since to compare with; formatting alone was checked"
   exit 0
 fi
+mkdir -p build
 cmake --preset debug -B build/check -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ >build/check.log 2>&1 || { cat build/check.log >&2; exit 1; }
 mapfile -t files < <(git diff --name-only --diff-filter=d "$since" -- '*.cpp' '*.hpp' '*.c' ':!bench/engines' ':!tests/fuzz')
 
