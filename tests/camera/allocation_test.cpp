@@ -8,7 +8,7 @@
 using namespace kenaf::camera;
 using kenaf::test::heap_calls;
 
-TEST_CASE("A1: the third picture allocates nothing") {
+TEST_CASE("The third picture allocates nothing") {
   const auto world = world_of("step-200");
   WorldSnapshot snapshot = snapshot_of(world);
   snapshot.robots.push_back(kenaf_at(pose(0, 0, 0.09)));

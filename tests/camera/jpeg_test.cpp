@@ -16,7 +16,7 @@ double mean_error(const Picture& a, const Picture& b) {
 
 }  // namespace
 
-TEST_CASE("J1: a picture survives JPEG within a few levels, fewer the higher the quality") {
+TEST_CASE("A picture survives JPEG within a few levels, fewer the higher the quality") {
   const auto world = world_of("step-200");
   WorldSnapshot snapshot = snapshot_of(world);
   snapshot.robots.push_back(kenaf_at(pose(0, 0, 0.09)));
@@ -38,7 +38,7 @@ TEST_CASE("J1: a picture survives JPEG within a few levels, fewer the higher the
   CHECK(mean_error(picture, decode_jpeg(encoder.encode(picture, 20))) > error_80);
 }
 
-TEST_CASE("J2: a quality out of range, and a file that is no JPEG, are refused") {
+TEST_CASE("A quality out of range, and a file that is no JPEG, are refused") {
   JpegEncoder encoder;
   const Picture grey{16, 16, std::vector<std::uint8_t>(3 * 16 * 16, 128)};
   CHECK_THROWS_AS(encoder.encode(grey, 0), std::invalid_argument);

@@ -8,7 +8,7 @@
 using namespace kenaf::camera;
 using std::numbers::pi;
 
-TEST_CASE("L1: ahead is the middle, left is left, above is above") {
+TEST_CASE("Ahead is the middle, left is left, above is above") {
   const View view = eye(pose(1, 2, 3));
   const auto middle = project(view, {6, 2, 3});
   CHECK(middle->u == Approx(320));
@@ -22,7 +22,7 @@ TEST_CASE("L1: ahead is the middle, left is left, above is above") {
   CHECK(project(eye(pose(1, 2, 3, 0, 0.1, 0)), {6, 2, 3})->v < 240);  // nose down: what was ahead is above
 }
 
-TEST_CASE("L2: a field of view of 90 degrees ends at 45 degrees, and a pixel is as high as wide") {
+TEST_CASE("A field of view of 90 degrees ends at 45 degrees, and a pixel is as high as wide") {
   const View view{{640, 480, pi / 2}, {}};
   CHECK(focal_length_px(view.lens) == Approx(320));
   CHECK(project(view, {1, 1, 0})->u == Approx(0).margin(1e-9));
@@ -33,7 +33,7 @@ TEST_CASE("L2: a field of view of 90 degrees ends at 45 degrees, and a pixel is 
   CHECK_FALSE(in_picture(view.lens, {100, 480}));
 }
 
-TEST_CASE("L3: a point on a pixel's ray is projected onto the pixel") {
+TEST_CASE("A point on a pixel's ray is projected onto the pixel") {
   const View view{{320, 200, 1.3}, pose(-3, 1, 0.4, 0.3, -0.5, 2.1)};
   for (const double depth : {0.01, 1.0, 300.0}) {
     for (const Pixel pixel : {Pixel{0.5, 0.5}, {160, 100}, {319.5, 12.25}, {-40, 260}}) {
@@ -47,7 +47,7 @@ TEST_CASE("L3: a point on a pixel's ray is projected onto the pixel") {
   }
 }
 
-TEST_CASE("L4: what is behind the camera or beside it has no picture") {
+TEST_CASE("What is behind the camera or beside it has no picture") {
   const View view = eye(pose(0, 0, 1));
   CHECK_FALSE(project(view, {-1, 0, 1}));
   CHECK_FALSE(project(view, {0, 3, 1}));

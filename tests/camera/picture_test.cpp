@@ -33,7 +33,7 @@ int upper_edge_row(const Picture& picture, int column) {
 
 }  // namespace
 
-TEST_CASE("P1: the upper edge of a step is within 2 pixels of where geometry projects it") {
+TEST_CASE("The upper edge of a step is within 2 pixels of where geometry projects it") {
   struct Place {
     const char* world;
     double height_m, x, z, pitch, yaw;
@@ -56,7 +56,7 @@ TEST_CASE("P1: the upper edge of a step is within 2 pixels of where geometry pro
   }
 }
 
-TEST_CASE("P2: a box hides what is behind it, and nothing else") {
+TEST_CASE("A box hides what is behind it, and nothing else") {
   const auto world = level_ground();
   const View view = eye(pose(0, 0, 0.3));
   WorldSnapshot snapshot;
@@ -72,7 +72,7 @@ TEST_CASE("P2: a box hides what is behind it, and nothing else") {
   CHECK(brightness(in_front, 270, 180) == brightness(alone, 270, 180));
 }
 
-TEST_CASE("P3: a shadow lies on the side away from the sun, as far as the box is high") {
+TEST_CASE("A shadow lies on the side away from the sun, as far as the box is high") {
   const auto world = level_ground();
   const View view = eye(pose(0, 0, 4, 0, pi / 2));  // from above
   Scene scene(world, {-1, 1, 2});  // sun behind to the left: a shadow of 0.4 m goes 0.2 m ahead and 0.2 m to the right
@@ -88,7 +88,7 @@ TEST_CASE("P3: a shadow lies on the side away from the sun, as far as the box is
     CHECK(brightness_at(with, view, p) == brightness_at(without, view, p));
 }
 
-TEST_CASE("P4: the upper run of a belt goes forward where the track drives forward, and repeats after a lug") {
+TEST_CASE("The upper run of a belt goes forward where the track drives forward, and repeats after a lug") {
   const auto world = level_ground();
   WorldSnapshot snapshot;
   snapshot.robots.push_back(kenaf_at(pose(0, 0, 0.09)));
@@ -118,7 +118,7 @@ TEST_CASE("P4: the upper run of a belt goes forward where the track drives forwa
   CHECK(largest <= 2);
 }
 
-TEST_CASE("P5: looking ahead the front camera sees nothing of its robot, tilted down, its hull") {
+TEST_CASE("Looking ahead the front camera sees nothing of its robot, tilted down, its hull") {
   const auto world = level_ground();
   WorldSnapshot snapshot;
   const RobotSnapshot robot = kenaf_at(pose(0, 0, 0.09));
@@ -136,7 +136,7 @@ TEST_CASE("P5: looking ahead the front camera sees nothing of its robot, tilted 
   CHECK(rgb[0] > 2 * rgb[2]);
 }
 
-TEST_CASE("P6: the picture is that of a ray through each pixel, but for a few") {
+TEST_CASE("The picture is that of a ray through each pixel, but for a few") {
   const auto [name, limit] =
       GENERATE(table<const char*, double>({{"step-200", 0.0005}, {"step-field", 0.001}, {"hills", 0.002}}));
   const auto world = world_of(name);
@@ -151,7 +151,7 @@ TEST_CASE("P6: the picture is that of a ray through each pixel, but for a few") 
   }
 }
 
-TEST_CASE("P6: what is smaller than a cell is not missed, wherever in a cell it is") {
+TEST_CASE("What is smaller than a cell is not missed, wherever in a cell it is") {
   const auto world = level_ground();
   WorldSnapshot snapshot;
   for (int i = 0; i < 9; ++i)  // 12 to 44 m away, 1.2 to 5 pixels wide
@@ -164,7 +164,7 @@ TEST_CASE("P6: what is smaller than a cell is not missed, wherever in a cell it 
   CHECK(differing_share(picture_of(scene, view), picture_of(world, {}, view), 8) > 0);
 }
 
-TEST_CASE("P6: a speck that is hardly ahead of the camera's plane and far aside changes nothing") {
+TEST_CASE("A speck that is hardly ahead of the camera's plane and far aside changes nothing") {
   const auto world = level_ground();
   const View view = eye(pose(0, 0, 0.3));
   // 549 * 4e6 / 0.02 = 1e11 pixels to the right, 24 pixels wide
@@ -173,7 +173,7 @@ TEST_CASE("P6: a speck that is hardly ahead of the camera's plane and far aside 
   CHECK(picture_of(world, snapshot, view).rgb == picture_of(world, {}, view).rgb);
 }
 
-TEST_CASE("P7: far ground keeps its colour when the camera moves, near ground shows it") {
+TEST_CASE("Far ground keeps its colour when the camera moves, near ground shows it") {
   const Scene scene(level_ground());
   const Picture a = picture_of(scene, eye(pose(0, 0, 0.18))), b = picture_of(scene, eye(pose(0.25, 0.25, 0.18)));
   // the horizon is row 240; 549 * 0.18 / 5 = 20 rows below it the ground is 5 m away
@@ -188,7 +188,7 @@ TEST_CASE("P7: far ground keeps its colour when the camera moves, near ground sh
   CHECK(largest(300, 479) > 30);
 }
 
-TEST_CASE("P8: a scene that has followed changes shows the same as a new one") {
+TEST_CASE("A scene that has followed changes shows the same as a new one") {
   const auto world = world_of("step-200");
   WorldSnapshot first = snapshot_of(world), last = first;
   first.boxes.push_back(box_at(7, {0.2, 0.2, 0.2}, pose(0.7, 0.1, 0.1), false));

@@ -19,7 +19,7 @@ std::vector<double> scan_of(const Scene& scene, const RangeScan& request) {
 
 }  // namespace
 
-TEST_CASE("G1: a wall at 1 m is 1 / cos of the angle away, from the left to the right, beyond the range is nothing") {
+TEST_CASE("A wall at 1 m is 1 / cos of the angle away, from the left to the right, beyond the range is nothing") {
   // the step of 200 mm has its face at x = 1 m, 2 m wide
   const auto world = world_of("step-200");
   Scene scene(world);
@@ -34,7 +34,7 @@ TEST_CASE("G1: a wall at 1 m is 1 / cos of the angle away, from the left to the 
   CHECK(scan_of(scene, {pose(0, 0, 0.1, 0, pi / 6), 1, 1, 10, std::nullopt})[0] == Approx(0.2).margin(1e-5));
 }
 
-TEST_CASE("G2: in a step field and on hills the rays end where the physics' rays end") {
+TEST_CASE("In a step field and on hills the rays end where the physics' rays end") {
   for (const char* name : {"step-field", "hills"}) {
     physics::World world(world_of(name), {}, 1);
     WorldSnapshot snapshot;
@@ -58,7 +58,7 @@ TEST_CASE("G2: in a step field and on hills the rays end where the physics' rays
   }
 }
 
-TEST_CASE("G3: a ray passes through the robot that it is told to ignore, and meets what is behind") {
+TEST_CASE("A ray passes through the robot that it is told to ignore, and meets what is behind") {
   const auto world = world_of("step-200");
   WorldSnapshot snapshot = snapshot_of(world);
   snapshot.robots.push_back(kenaf_at(pose(0, 0, 0.09)));

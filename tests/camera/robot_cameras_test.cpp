@@ -11,7 +11,7 @@ using Catch::Contains;
 namespace physics = kenaf::physics;
 using std::numbers::pi;
 
-TEST_CASE("R1: Kenaf has a camera that pans, tilts and zooms, and a bird's eye, other robots may have none") {
+TEST_CASE("Kenaf has a camera that pans, tilts and zooms, and a bird's eye, other robots may have none") {
   const physics::RobotDescription kenaf = physics::load_robot("kenaf");
   const physics::CameraDescription* front = find_camera(kenaf, "Camera");
   const physics::CameraDescription* above = find_camera(kenaf, "BirdsEye");
@@ -27,7 +27,7 @@ TEST_CASE("R1: Kenaf has a camera that pans, tilts and zooms, and a bird's eye, 
   CHECK(physics::load_robot("p2dx").cameras.empty());
 }
 
-TEST_CASE("R2: a camera goes where its robot goes") {
+TEST_CASE("A camera goes where its robot goes") {
   // at (2, 1, 0.09), turned to the left: the package, 0.20 ahead and 0.09 up in B, is at y + 0.20
   const RobotSnapshot robot = kenaf_at(pose(2, 1, 0.09, 0, 0, pi / 2));
   const physics::Pose front = camera_pose(robot, *find_camera(*robot.description, "Camera"));
@@ -44,7 +44,7 @@ TEST_CASE("R2: a camera goes where its robot goes") {
   CHECK(nose->v > 240);
 }
 
-TEST_CASE("R3: panned to the left, what was ahead is on the right, tilted down, above, zoomed in, larger") {
+TEST_CASE("Panned to the left, what was ahead is on the right, tilted down, above, zoomed in, larger") {
   RobotSnapshot robot = kenaf_at(pose(0, 0, 0.09));
   const physics::CameraDescription& camera = *find_camera(*robot.description, "Camera");
   const Eigen::Vector3d ahead(3, 0, 0.18), aside(3, 0.3, 0.18);
@@ -84,7 +84,7 @@ std::string error_with(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-TEST_CASE("R4: what is wrong with a camera is said with its place") {
+TEST_CASE("What is wrong with a camera is said with its place") {
   CHECK_THAT(error_with("mount = \"CameraPanTilt\"", "mount = \"Arm\""),
              Contains("no [[mission_package]] of that name"));
   CHECK_THAT(error_with("mount = \"CameraPanTilt\"", "mount = \"CameraPanTilt\"\nmount_m = [0, 0, 0]"),

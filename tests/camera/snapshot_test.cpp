@@ -7,7 +7,7 @@ using namespace kenaf;
 using namespace kenaf::camera;
 namespace physics = kenaf::physics;
 
-TEST_CASE("N1: robots, belts, arms, camera mounts and boxes are where the world has them") {
+TEST_CASE("Robots, belts, arms, camera mounts and boxes are where the world has them") {
   physics::WorldDescription description = level_ground();
   description.boxes.push_back({"wall", {0.2, 2, 1}, pose(3, 0, 0.5), 1, 0});
   description.boxes.push_back({"parcel", {0.2, 0.2, 0.2}, pose(2, 1, 0.1), 1, 1});
@@ -39,7 +39,7 @@ TEST_CASE("N1: robots, belts, arms, camera mounts and boxes are where the world 
   CHECK((snapshot.boxes[1].X_WBox.p - Eigen::Vector3d(2, 1, 0.1)).norm() < 1e-3);  // it has settled
 }
 
-TEST_CASE("N2: the next snapshot has what came and what moved, and not what went, descriptions are shared") {
+TEST_CASE("The next snapshot has what came and what moved, and not what went, descriptions are shared") {
   physics::World world(level_ground(), {}, 1);
   const physics::RobotDescription kenaf = physics::load_robot("kenaf");
   const physics::RobotId first = world.add_robot(kenaf, "first", pose(0, 0, 0.1));
@@ -62,7 +62,7 @@ TEST_CASE("N2: the next snapshot has what came and what moved, and not what went
   CHECK(before.robots[0].description->name == "kenaf");  // a snapshot outlives the robot
 }
 
-TEST_CASE("N3: a robot with a fault is shown where it last was whole") {
+TEST_CASE("A robot with a fault is shown where it last was whole") {
   physics::WorldDescription pit;
   pit.boxes.push_back({"floor", {4, 4, 1}, pose(0, 0, -0.5), 1, 0});
   physics::World world(pit, {}, 1);

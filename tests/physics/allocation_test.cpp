@@ -29,7 +29,7 @@ long allocations_in(World& world, double time_s, RobotId robot, std::vector<Sens
 
 }  // namespace
 
-TEST_CASE("M0: an allocation is counted") {
+TEST_CASE("An allocation is counted") {
   const long before = heap_calls();
   void* memory = ::operator new(1000);  // called by its name, so that no compiler leaves it out
   const long counted = heap_calls() - before;
@@ -90,21 +90,21 @@ long allocations_of(const Drive& way, const Effects& effects) {
 
 }  // namespace
 
-TEST_CASE("M1: after the first, no step allocates") {
+TEST_CASE("After the first, no step allocates") {
   for (const Drive& way : kDrives) {
     INFO(way.world);
     CHECK(allocations_of(way, {}) == 0);
   }
 }
 
-TEST_CASE("M1: nor does it with effects") {
+TEST_CASE("Nor does it with effects") {
   for (const Drive& way : kDrives) {
     INFO(way.world);
     CHECK(allocations_of(way, some_effects()) == 0);
   }
 }
 
-TEST_CASE("M3: nor where robots meet head on and climb each other") {
+TEST_CASE("Nor where robots meet head on and climb each other") {
   World world(ground(), {}, 1);
   const RobotDescription kenaf = load_robot("kenaf");
   const RobotId a = world.add_robot(kenaf, "a", {{-0.8, 0.05, 0.1}, Eigen::Quaterniond::Identity()});
@@ -118,7 +118,7 @@ TEST_CASE("M3: nor where robots meet head on and climb each other") {
   CHECK(std::abs(roll_pitch_yaw(truth_a.X_WB.q).y()) + std::abs(roll_pitch_yaw(truth_b.X_WB.q).y()) > 0.1);
 }
 
-TEST_CASE("M3: nor where a robot falls on another, and on its back") {
+TEST_CASE("Nor where a robot falls on another, and on its back") {
   World world(ground(), {}, 1);
   const RobotDescription kenaf = load_robot("kenaf");
   const RobotId below = world.add_robot(kenaf, "below", {{0, 0, 0.1}, Eigen::Quaterniond::Identity()});
@@ -129,7 +129,7 @@ TEST_CASE("M3: nor where a robot falls on another, and on its back") {
   CHECK(allocations_in(world, 3, below, nullptr) == 0);
 }
 
-TEST_CASE("M3: nor where a robot pushes boxes on each other and against a wall") {
+TEST_CASE("Nor where a robot pushes boxes on each other and against a wall") {
   WorldDescription description = ground();
   description.boxes.push_back(fixed_box({0.2, 2, 0.4}, {1.3, 0, 0.2}));
   for (const double x_m : {0.75, 1.0})
@@ -141,7 +141,7 @@ TEST_CASE("M3: nor where a robot pushes boxes on each other and against a wall")
   CHECK(allocations_in(world, 3, robot, nullptr) == 0);
 }
 
-TEST_CASE("M4: nor where three robots fall on each other in a field of pallets") {
+TEST_CASE("Nor where three robots fall on each other in a field of pallets") {
   std::vector<std::string> unsupported;
   const WorldDescription description = load_world("step-field", unsupported);
   World world(description, {}, 1);
@@ -156,7 +156,7 @@ TEST_CASE("M4: nor where three robots fall on each other in a field of pallets")
   CHECK(allocations_in(world, 2, world.robots().front(), nullptr) == 0);
 }
 
-TEST_CASE("M4: nor where sixteen robots turn among each other") {
+TEST_CASE("Nor where sixteen robots turn among each other") {
   World world(ground(), {}, 1);
   const RobotDescription kenaf = load_robot("kenaf");
   for (int i = 0; i < 16; ++i) {
@@ -168,7 +168,7 @@ TEST_CASE("M4: nor where sixteen robots turn among each other") {
   CHECK(allocations_in(world, 1, world.robots().front(), nullptr) == 0);
 }
 
-TEST_CASE("M2: reading sensors allocates nothing but what a range scan holds") {
+TEST_CASE("Reading sensors allocates nothing but what a range scan holds") {
   World world(ground(), {}, 1);
   RobotDescription description = load_robot("kenaf");
   std::erase_if(description.sensors, [](const SensorDescription& s) { return s.type == SensorType::range_scanner; });

@@ -30,7 +30,7 @@ double share_of(const std::vector<BeltTouch>& touches) {
 
 }  // namespace
 
-TEST_CASE("G1: on level ground a belt touches along its run, with equal parts of its length behind each point") {
+TEST_CASE("On level ground a belt touches along its run, with equal parts of its length behind each point") {
   std::vector<BeltTouch> out;
   touch_plane(belt(), {0, 0, 1}, -0.0499, out);  // pressed in by 0.1 mm
   REQUIRE(out.size() == 10);
@@ -49,7 +49,7 @@ TEST_CASE("G1: on level ground a belt touches along its run, with equal parts of
   CHECK(out.empty());
 }
 
-TEST_CASE("G2: an edge presses into an arc along the arc's own normal") {
+TEST_CASE("An edge presses into an arc along the arc's own normal") {
   // the edge 45 degrees below the front disc's centre, 0.2 mm inside
   const double r = 0.05 - 2e-4, c = std::sqrt(0.5);
   const auto out = on_box(belt(), {1, 1, 1}, {0.4 + r * c + 0.5, 0, -r * c - 0.5});
@@ -63,7 +63,7 @@ TEST_CASE("G2: an edge presses into an arc along the arc's own normal") {
   CHECK(share_of(out) == Approx(2));
 }
 
-TEST_CASE("G3: a belt half on a box is carried by that half, up to the box's edge") {
+TEST_CASE("A belt half on a box is carried by that half, up to the box's edge") {
   // the box ends at x = 0.25, its top is 0.1 mm inside the belt
   const auto out = on_box(belt(), {1, 1, 1}, {-0.25, 0, -0.0499 - 0.5});
   double front = -1;
@@ -75,7 +75,7 @@ TEST_CASE("G3: a belt half on a box is carried by that half, up to the box's edg
   CHECK(front == Approx(0.25));
 }
 
-TEST_CASE("G4: a wall beside pushes sideways, and a wall ahead back") {
+TEST_CASE("A wall beside pushes sideways, and a wall ahead back") {
   // 0.3 mm of the belt's side are in a wall that stands along it
   for (const double side : {-1.0, 1.0}) {
     const auto out = on_box(belt(), {4, 1, 1}, {0, side * (0.04 + 0.5 - 3e-4), 0});
@@ -93,7 +93,7 @@ TEST_CASE("G4: a wall beside pushes sideways, and a wall ahead back") {
   }
 }
 
-TEST_CASE("G5: the vertical edge of a wall's corner is met between the slices") {
+TEST_CASE("The vertical edge of a wall's corner is met between the slices") {
   // a pillar turned by 45 degrees, its edge 0.2 mm inside the front disc's foremost line, at y = 0.02
   const double half_diagonal = 0.1 * std::sqrt(2.0) / 2;
   const auto out = on_box(belt(), {0.1, 0.1, 1}, {0.45 - 2e-4 + half_diagonal, 0.02, 0}, std::numbers::pi / 4);
@@ -103,7 +103,7 @@ TEST_CASE("G5: the vertical edge of a wall's corner is met between the slices") 
   CHECK(out[0].p_T.y() == Approx(0.02));
 }
 
-TEST_CASE("G6: level ground of triangles carries as a plane does, and its seams are not felt") {
+TEST_CASE("Level ground of triangles carries as a plane does, and its seams are not felt") {
   // two triangles with a seam across the belt's middle, 0.1 mm inside
   const double z = -0.0499;
   const btVector3 a(-1, -1, z), b(1, -1, z), c(1, 1, z), d(-1, 1, z);
@@ -120,7 +120,7 @@ TEST_CASE("G6: level ground of triangles carries as a plane does, and its seams 
   }
 }
 
-TEST_CASE("G6: a world's last triangle is not taken for its first") {
+TEST_CASE("A world's last triangle is not taken for its first") {
   const double z = -0.0499;
   TriangleInT first{{{-1, -2, z}, {2, 0, z}, {-1, 2, z}}, {0, 0, 1}, {}, {}, 0}, far = first;
   far.index = 1u << 20;  // a world has up to 2^21; numbers of 32 bits have 12 for the place within a triangle
@@ -133,7 +133,7 @@ TEST_CASE("G6: a world's last triangle is not taken for its first") {
     CHECK(of_far[i].feature == of_first[i].feature + (std::uint64_t{1} << 32));
 }
 
-TEST_CASE("G7: a flipper's outline is two discs and their tangents") {
+TEST_CASE("A flipper's outline is two discs and their tangents") {
   // large disc of 55 mm at the pivot, small one of 40 mm at 145 mm: the tangent leans by asin(15 / 145)
   const BeltShape flipper{
       .radius = {0.055, 0.040}, .length = 0.145, .half_width = 0.02, .p_BodyT = {0, 0, 0}, .pieces = 2, .surface = {}};

@@ -21,7 +21,7 @@ double slide_m(double friction, double time_s) {
 
 }  // namespace
 
-TEST_CASE("B1: a body falls as semi-implicit Euler integrates gravity") {
+TEST_CASE("A body falls as semi-implicit Euler integrates gravity") {
   WorldDescription empty;
   World world(empty, {}, 1);
   const BoxId box = world.add_box(loose_box({0.1, 0.1, 0.1}, {{0, 0, 100}, Eigen::Quaterniond::Identity()}, 1, 1));
@@ -30,7 +30,7 @@ TEST_CASE("B1: a body falls as semi-implicit Euler integrates gravity") {
   CHECK(world.box_pose(box).p.z() == Approx(100 - kGravity * 1e-6 * 1000 * 1001 / 2).epsilon(1e-12));
 }
 
-TEST_CASE("B2: a block slides with g (sin a - mu cos a)") {
+TEST_CASE("A block slides with g (sin a - mu cos a)") {
   for (const double mu : {0.0, 0.3, 0.5}) {
     const double a = kGravity * (0.5 - mu * std::sqrt(3.0) / 2);
     // 1 %: the first millimetres while it settles
@@ -38,19 +38,19 @@ TEST_CASE("B2: a block slides with g (sin a - mu cos a)") {
   }
 }
 
-TEST_CASE("B3: a block holds where mu is above the slope's tangent, 0.577, and slides below") {
+TEST_CASE("A block holds where mu is above the slope's tangent, 0.577, and slides below") {
   CHECK(std::abs(slide_m(0.6, 5)) < 1e-4);
   CHECK(slide_m(0.55, 2) == Approx(kGravity * (0.5 - 0.55 * std::sqrt(3.0) / 2) * 2).epsilon(0.05));
 }
 
-TEST_CASE("B4: a block at rest on level ground stays") {
+TEST_CASE("A block at rest on level ground stays") {
   World world(ground(), {}, 1);
   const BoxId box = world.add_box(loose_box({0.3, 0.2, 0.1}, {{1, 2, 0.05}, rotation_from({0, 0, 0.4})}, 5, 1));
   run(world, 10);
   CHECK((world.box_pose(box).p - Eigen::Vector3d(1, 2, 0.05)).norm() < 1e-4);
 }
 
-TEST_CASE("B5: a loose box turns as a uniform box of its size does, from its first step on") {
+TEST_CASE("A loose box turns as a uniform box of its size does, from its first step on") {
   for (const bool turned : {false, true}) {
     Scene scene({}, {});
     const Pose X_WBox{{0, 0, 5}, rotation_from({0, 0, turned ? std::numbers::pi / 2 : 0})};

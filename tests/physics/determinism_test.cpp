@@ -60,7 +60,7 @@ std::uint64_t drive_around(World& world) {
 
 }  // namespace
 
-TEST_CASE("D1: two worlds, and one that was reset, run alike to the last bit") {
+TEST_CASE("Two worlds, and one that was reset, run alike to the last bit") {
   World first = make_world(), second = make_world();
   const std::uint64_t expected = drive_around(first);
   CHECK(drive_around(second) == expected);
@@ -69,7 +69,7 @@ TEST_CASE("D1: two worlds, and one that was reset, run alike to the last bit") {
   CHECK(drive_around(first) == expected);
 }
 
-TEST_CASE("D2: worlds on two threads do not meet") {
+TEST_CASE("Worlds on two threads do not meet") {
   World reference = make_world();
   const std::uint64_t expected = drive_around(reference);
   std::array<std::uint64_t, 2> got{};
@@ -109,7 +109,7 @@ std::uint64_t hash_in_company(const robot::Command& own, int others, const robot
 
 }  // namespace
 
-TEST_CASE("D3: on a plane another robot far away changes no bit, whatever it does") {
+TEST_CASE("On a plane another robot far away changes no bit, whatever it does") {
   const robot::Command stand{}, straight = drive(0.3, 0.3), curve = drive(0.3, 0.1), spin = drive(0.3, -0.3);
   for (const robot::Command& own : {straight, curve}) {
     const std::uint64_t alone = hash_in_company(own, 0);
@@ -121,7 +121,7 @@ TEST_CASE("D3: on a plane another robot far away changes no bit, whatever it doe
   }
 }
 
-TEST_CASE("D3: nor does a loose box far away that falls and tumbles") {
+TEST_CASE("Nor does a loose box far away that falls and tumbles") {
   const auto hash = [](bool box) {
     World world(ground(), {}, 1);
     if (box) world.add_box(loose_box({0.5, 0.3, 0.2}, {{10, 0, 2}, rotation_from({0.5, 0.3, 0})}, 5, 0.5));
@@ -177,7 +177,7 @@ std::uint64_t hash_of(const GoldenScene& scene) {
 
 }  // namespace
 
-TEST_CASE("D4: every compiler makes the same bits, on one thread and on four") {
+TEST_CASE("Every compiler makes the same bits, on one thread and on four") {
   std::array<std::uint64_t, std::size(kGolden)> got{};
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < got.size(); ++i) threads.emplace_back([&, i] { got[i] = hash_of(kGolden[i]); });

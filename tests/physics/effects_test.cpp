@@ -66,7 +66,7 @@ bool is_of_tracking(const EffectInfo& effect) {
 
 }  // namespace
 
-TEST_CASE("E1: at its neutral value no effect changes a bit", "[long]") {
+TEST_CASE("At its neutral value no effect changes a bit", "[long]") {
   const std::uint64_t nominal = drive_with({}).hash;
   CHECK(drive_with({}).hash == nominal);
   for (const EffectInfo& effect : effect_catalogue()) {
@@ -80,8 +80,7 @@ TEST_CASE("E1: at its neutral value no effect changes a bit", "[long]") {
   }
 }
 
-TEST_CASE("E2: at any other value every effect but those of tracking changes what the robot does or measures",
-          "[long]") {
+TEST_CASE("At any other value every effect but those of tracking changes what the robot does or measures", "[long]") {
   const std::uint64_t nominal = drive_with({}).hash;
   for (const EffectInfo& effect : effect_catalogue()) {
     for (const EffectParameter& parameter : effect.parameters) {
@@ -96,7 +95,7 @@ TEST_CASE("E2: at any other value every effect but those of tracking changes wha
   }
 }
 
-TEST_CASE("E3: an effect comes out of nothing: a millionth of its range moves the robot by less than 2 mm", "[long]") {
+TEST_CASE("An effect comes out of nothing: a millionth of its range moves the robot by less than 2 mm", "[long]") {
   const Eigen::Vector3d nominal = drive_with({}).end;
   for (const EffectInfo& effect : effect_catalogue()) {
     if (effect.name == "command_loss") continue;  // that a command is lost is chance, not a matter of how much
@@ -110,7 +109,7 @@ TEST_CASE("E3: an effect comes out of nothing: a millionth of its range moves th
   }
 }
 
-TEST_CASE("E4: an effect is set by name, and what is wrong is said") {
+TEST_CASE("An effect is set by name, and what is wrong is said") {
   Effects effects;
   set_effect(effects, "command_delay:delay_s=0.05");
   CHECK(effects.command_delay_s == 0.05);

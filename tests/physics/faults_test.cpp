@@ -7,7 +7,7 @@
 using namespace kenaf::physics;
 using Catch::Contains;
 
-TEST_CASE("F1: a robot without ground under it leaves the world, and can be put back") {
+TEST_CASE("A robot without ground under it leaves the world, and can be put back") {
   WorldDescription pit = ground();
   pit.planes.clear();
   pit.boxes.push_back(fixed_box({4, 4, 1}, {0, 0, -0.5}));
@@ -61,7 +61,7 @@ TEST_CASE("F2, F3: a robot whose numbers end is named, and its neighbour drives 
   CHECK(alone.q.coeffs() == beside.q.coeffs());
 }
 
-TEST_CASE("F4: after a fault sensors report a robot that stands, in numbers, and a teleport begins anew") {
+TEST_CASE("After a fault sensors report a robot that stands, in numbers, and a teleport begins anew") {
   RobotDescription wild = load_robot("kenaf");
   wild.body.inertia_kgm2 = {1e-310, 1e-310, 1e-310};
   World world(ground(), {}, 1);
@@ -91,7 +91,7 @@ TEST_CASE("F4: after a fault sensors report a robot that stands, in numbers, and
   CHECK_THAT(world.fault(id), Contains("no number"));
 }
 
-TEST_CASE("F5: a loose box under a robot that is no number stays a box, and carries the next robot") {
+TEST_CASE("A loose box under a robot that is no number stays a box, and carries the next robot") {
   RobotDescription wild = load_robot("kenaf");
   wild.body.inertia_kgm2 = {1e-310, 1e-310, 1e-310};
   World world(ground(), {}, 1);

@@ -6,7 +6,7 @@
 using namespace kenaf;
 using namespace kenaf::physics;
 
-TEST_CASE("F1: a flipper turns to its angle at its speed limit and stays") {
+TEST_CASE("A flipper turns to its angle at its speed limit and stays") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   world.set_command(id, drive(0, 0, 1.9, 1.9));
@@ -22,7 +22,7 @@ TEST_CASE("F1: a flipper turns to its angle at its speed limit and stays") {
   for (const double angle : world.truth(id).flipper_rad) CHECK(angle == Approx(1.9).margin(1e-3));
 }
 
-TEST_CASE("F2: flippers lift the robot as their geometry says") {
+TEST_CASE("Flippers lift the robot as their geometry says") {
   World world(ground(), {}, 1);
   const RobotDescription robot = load_robot("kenaf");
   const RobotId id = world.add_robot(robot, "a", {});
@@ -39,7 +39,7 @@ TEST_CASE("F2: flippers lift the robot as their geometry says") {
   for (const double torque : truth.flipper_nm) CHECK(std::abs(torque) < 20.0);
 }
 
-TEST_CASE("F2: the front pair alone raises the nose") {
+TEST_CASE("The front pair alone raises the nose") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   world.set_command(id, drive(0, 0, -1.0, 1));
@@ -47,7 +47,7 @@ TEST_CASE("F2: the front pair alone raises the nose") {
   CHECK(roll_pitch_yaw(world.truth(id).X_WB.q).y() < -0.15);  // nose up is negative
 }
 
-TEST_CASE("F3: the torque limit holds, and a servo too weak lifts nothing") {
+TEST_CASE("The torque limit holds, and a servo too weak lifts nothing") {
   World world(ground(), {}, 1);
   RobotDescription robot = load_robot("kenaf");
   robot.servo.max_torque_nm = 2;
@@ -60,7 +60,7 @@ TEST_CASE("F3: the torque limit holds, and a servo too weak lifts nothing") {
   CHECK(std::abs(roll_pitch_yaw(world.truth(id).X_WB.q).y()) < 0.03);
 }
 
-TEST_CASE("F4: speed, torque and brake modes") {
+TEST_CASE("Speed, torque and brake modes") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   robot::Command command = drive(0, 0);
@@ -83,7 +83,7 @@ TEST_CASE("F4: speed, torque and brake modes") {
   CHECK(world.truth(id).flipper_radps[robot::kFrontLeft] == Approx(1.5).epsilon(0.01));
 }
 
-TEST_CASE("F5: a flipper goes through the whole of its travel and stops at its end") {
+TEST_CASE("A flipper goes through the whole of its travel and stops at its end") {
   World world(ground(), {}, 1);
   RobotDescription robot = load_robot("kenaf");
   robot.flipper.front().max_angle_rad = 2.8;
@@ -95,7 +95,7 @@ TEST_CASE("F5: a flipper goes through the whole of its travel and stops at its e
   for (const double angle : world.truth(id).flipper_rad) CHECK(angle == Approx(2.8).margin(0.01));
 }
 
-TEST_CASE("F6: a driven flipper belt carries the robot on its flippers") {
+TEST_CASE("A driven flipper belt carries the robot on its flippers") {
   for (const bool driven : {true, false}) {
     World world(ground(), {}, 1);
     RobotDescription robot = load_robot("kenaf");

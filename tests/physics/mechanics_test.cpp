@@ -40,7 +40,7 @@ constexpr PhysicsSettings kStiff{.contact_stiffness_npm = 2e8};
 }  // namespace
 
 // From v to standstill by friction alone: 0.4^2 / (2 * 0.1 * 9.80665) = 81.6 mm.
-TEST_CASE("M1: a robot whose belts stop at once slides for v^2 / (2 mu g)") {
+TEST_CASE("A robot whose belts stop at once slides for v^2 / (2 mu g)") {
   const double mu = 0.1, v = 0.4;
   RobotDescription robot = plain_tracks(mu);
   robot.drive.time_constant_s = 0;
@@ -61,7 +61,7 @@ TEST_CASE("M1: a robot whose belts stop at once slides for v^2 / (2 mu g)") {
 }
 
 // The centre is above the edge at atan(b / h) = atan(0.1 / 0.3) = 18.43 degrees. 0.2 degrees to either side: kStiff.
-TEST_CASE("M2: a block on a slope tips at the angle whose tangent is its width by its height") {
+TEST_CASE("A block on a slope tips at the angle whose tangent is its width by its height") {
   const Eigen::Vector3d size(0.1, 0.2, 0.3);
   const double edge = std::atan(size.x() / size.z());
   for (const double off : {-0.2 * kDegree, 0.2 * kDegree}) {
@@ -77,7 +77,7 @@ TEST_CASE("M2: a block on a slope tips at the angle whose tangent is its width b
 }
 
 // 1 mm to either side: its edge gives way, and the block with it, by 0.1 mm.
-TEST_CASE("M3: a block that is pushed over an edge tips once its centre is beyond it") {
+TEST_CASE("A block that is pushed over an edge tips once its centre is beyond it") {
   for (const double beyond_m : {-1e-3, 1e-3}) {
     World world(ground(), {}, 1);
     world.add_box(fixed_box({1, 1, 1}, {-0.5, 0, 0.5}));
@@ -91,7 +91,7 @@ TEST_CASE("M3: a block that is pushed over an edge tips once its centre is beyon
 
 // It tips over the end of its belly, (length / 2 - end radius) from its centre, or over a track's outer edge. 0.5
 // degrees to either side: a robot is put down 0.01 mm above the ground, which is 0.4 degrees as in kStiff.
-TEST_CASE("M4: a robot on a slope tips over its belly's end, or over its track's edge, where its centre is above it") {
+TEST_CASE("A robot on a slope tips over its belly's end, or over its track's edge, where its centre is above it") {
   const double height_m = 0.34;
   const RobotDescription robot = tall_robot(height_m);
   const double half_length = robot.track.length_m / 2 - robot.track.end_radius_m;
@@ -116,7 +116,7 @@ TEST_CASE("M4: a robot on a slope tips over its belly's end, or over its track's
 }
 
 // tan 30 = 0.5774; 1 % of it to either side. Held for 5 s: what creeps is not held.
-TEST_CASE("M5: block and robot hold on a slope where mu is 1 % above its tangent, and slide where it is 1 % below",
+TEST_CASE("Block and robot hold on a slope where mu is 1 % above its tangent, and slide where it is 1 % below",
           "[long]") {
   const double slope = 30 * kDegree;
   const Pose X_WP = slope_frame(slope);
@@ -147,7 +147,7 @@ TEST_CASE("M5: block and robot hold on a slope where mu is 1 % above its tangent
   }
 }
 
-TEST_CASE("M6: with stopped belts a robot slides as a block of its mass and friction does, whichever way it points") {
+TEST_CASE("With stopped belts a robot slides as a block of its mass and friction does, whichever way it points") {
   const double slope = 30 * kDegree, mu = 0.3;
   const Pose X_WP = slope_frame(slope);
   const RobotDescription robot = plain_tracks(mu);
@@ -168,7 +168,7 @@ TEST_CASE("M6: with stopped belts a robot slides as a block of its mass and fric
   }
 }
 
-TEST_CASE("M7: belts whose motors give nothing move no robot") {
+TEST_CASE("Belts whose motors give nothing move no robot") {
   RobotDescription robot = load_robot("kenaf");
   robot.drive.max_force_n = 1e-9;
   World world(ground(), {}, 1);
@@ -182,7 +182,7 @@ TEST_CASE("M7: belts whose motors give nothing move no robot") {
   CHECK(std::abs(world.truth(id).track_mps[robot::kLeft]) < 1e-4);
 }
 
-TEST_CASE("M8: it is friction that moves a robot: without it the belts run and the robot stays") {
+TEST_CASE("It is friction that moves a robot: without it the belts run and the robot stays") {
   World world(ground(0), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   run(world, 0.5);

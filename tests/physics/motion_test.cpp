@@ -45,7 +45,7 @@ double x_of(const Robot& robot) {
 
 }  // namespace
 
-TEST_CASE("V1: a robot that is set in motion goes on at that speed from the first step on") {
+TEST_CASE("A robot that is set in motion goes on at that speed from the first step on") {
   Robot robot = settled(load_robot("kenaf"));
   const double start_m = x_of(robot);
   robot.world.set_in_motion(robot.id, ahead(0.3), drive(0.3, 0.3));
@@ -64,7 +64,7 @@ TEST_CASE("V1: a robot that is set in motion goes on at that speed from the firs
   CHECK(x_of(robot) - start_m == Approx(0.3).margin(3e-4));
 }
 
-TEST_CASE("V1: where body and belts do not fit, friction decides") {
+TEST_CASE("Where body and belts do not fit, friction decides") {
   Robot robot = settled(plain_tracks(0.5));
   const double start_m = x_of(robot);
   RobotMotion motion = ahead(0.4);
@@ -75,7 +75,7 @@ TEST_CASE("V1: where body and belts do not fit, friction decides") {
   CHECK(x_of(robot) - start_m == Approx(0.16 / (2 * 0.5 * kGravity)).margin(5e-4));
 }
 
-TEST_CASE("V2: a command that is late, is scaled or ramps was on its way already") {
+TEST_CASE("A command that is late, is scaled or ramps was on its way already") {
   RobotDescription description = load_robot("kenaf");
   description.effects.command_delay_s = 0.1;
   description.effects.command_gain = 0.8;
@@ -91,7 +91,7 @@ TEST_CASE("V2: a command that is late, is scaled or ramps was on its way already
   CHECK(speed() == Approx(0.14).margin(2e-3));
 }
 
-TEST_CASE("V2: what a command asks for beyond the present speed, the drive still has to do") {
+TEST_CASE("What a command asks for beyond the present speed, the drive still has to do") {
   Robot robot = settled(load_robot("kenaf"));
   robot.world.set_in_motion(robot.id, ahead(0.1), drive(0.4, 0.4));
   run(robot.world, 0.05);
@@ -99,7 +99,7 @@ TEST_CASE("V2: what a command asks for beyond the present speed, the drive still
   CHECK(robot.world.truth(robot.id).track_mps[robot::kRight] == Approx(0.4 - 0.3 * std::exp(-1)).margin(3e-3));
 }
 
-TEST_CASE("V3: sensors see a robot that moves, and no blow") {
+TEST_CASE("Sensors see a robot that moves, and no blow") {
   RobotDescription description = load_robot("kenaf");
   for (SensorDescription& sensor : description.sensors)
     sensor.noise_mps2 = sensor.noise_radps = sensor.bias_radps = sensor.noise_rad = 0;
@@ -122,7 +122,7 @@ TEST_CASE("V3: sensors see a robot that moves, and no blow") {
   CHECK(seen > 1);
 }
 
-TEST_CASE("V4: a prescribed belt has exactly that speed after every step, whatever its motor") {
+TEST_CASE("A prescribed belt has exactly that speed after every step, whatever its motor") {
   RobotDescription weak = load_robot("kenaf");
   weak.drive.max_force_n = 0.1;
   weak.drive.max_speed_mps = 0.05;
@@ -135,7 +135,7 @@ TEST_CASE("V4: a prescribed belt has exactly that speed after every step, whatev
   }
 }
 
-TEST_CASE("V4: a robot on belts of speed v that moves so already comes v t far") {
+TEST_CASE("A robot on belts of speed v that moves so already comes v t far") {
   for (const double speed_mps : {0.3, -0.3, 1.5}) {
     Robot robot = settled(load_robot("kenaf"));
     const double start_m = x_of(robot);
@@ -148,7 +148,7 @@ TEST_CASE("V4: a robot on belts of speed v that moves so already comes v t far")
   }
 }
 
-TEST_CASE("V4: from rest, friction takes the body along and no more") {
+TEST_CASE("From rest, friction takes the body along and no more") {
   Robot robot = settled(plain_tracks(0.5));
   const double start_m = x_of(robot);
   robot.world.prescribe(robot.id, belts(0.4, 0.4));
@@ -157,7 +157,7 @@ TEST_CASE("V4: from rest, friction takes the body along and no more") {
   CHECK(x_of(robot) - start_m == Approx(0.4 - 0.16 / (2 * 0.5 * kGravity)).margin(5e-4));
 }
 
-TEST_CASE("V5: the faster left track turns it right, and mirrored belts drive the mirrored path") {
+TEST_CASE("The faster left track turns it right, and mirrored belts drive the mirrored path") {
   const auto driven = [](double left_mps, double right_mps) {
     Robot robot = settled(load_robot("kenaf"));
     robot.world.prescribe(robot.id, belts(left_mps, right_mps));
@@ -174,7 +174,7 @@ TEST_CASE("V5: the faster left track turns it right, and mirrored belts drive th
   CHECK(yaw_of(back_left) < -0.3);  // backwards, the faster right track turns it right
 }
 
-TEST_CASE("V6: belts that run back bring the robot back") {
+TEST_CASE("Belts that run back bring the robot back") {
   // symmetric in time: up, down, and the same with the other sign. Slow enough that mass plays no part: at 0.5 m/s²
   // the body lags behind friction's balance by v / (mu g) = 30 ms of what changes, the same on both ways.
   Robot robot = settled(load_robot("kenaf"));
@@ -193,7 +193,7 @@ TEST_CASE("V6: belts that run back bring the robot back") {
   CHECK(std::abs(yaw_of(end) - yaw_of(start)) < 5e-3);
 }
 
-TEST_CASE("V7: a prescribed belt says what force the ground asks of it") {
+TEST_CASE("A prescribed belt says what force the ground asks of it") {
   const double slope = 0.2;
   Robot robot = settled(plain_tracks(1), 1, -slope);
   robot.world.prescribe(robot.id, belts(0.1, 0.1));
@@ -208,7 +208,7 @@ TEST_CASE("V7: a prescribed belt says what force the ground asks of it") {
   CHECK(sum_n / 1000 == Approx(weight_n * std::sin(slope)).epsilon(0.01));
 }
 
-TEST_CASE("V7: a drive that is let go follows its command from the speed at that moment") {
+TEST_CASE("A drive that is let go follows its command from the speed at that moment") {
   Robot robot = settled(load_robot("kenaf"));
   robot.world.set_command(robot.id, drive(0, 0));
   robot.world.prescribe(robot.id, belts(0.3, 0.3));
@@ -218,7 +218,7 @@ TEST_CASE("V7: a drive that is let go follows its command from the speed at that
   CHECK(robot.world.truth(robot.id).track_mps[robot::kLeft] == Approx(0.3 * std::exp(-1)).margin(3e-3));
 }
 
-TEST_CASE("V8: prescribed flippers follow, under load and beyond what a servo can do") {
+TEST_CASE("Prescribed flippers follow, under load and beyond what a servo can do") {
   RobotDescription description = load_robot("kenaf");
   description.servo.max_torque_nm = 0.1;
   description.servo.max_speed_radps = 0.1;
@@ -240,7 +240,7 @@ TEST_CASE("V8: prescribed flippers follow, under load and beyond what a servo ca
 }
 
 // The encoder sits at the servo: what it measured says nothing of the play and the give behind it, so they stay.
-TEST_CASE("V8: of prescribed flippers the servo is where it is told, and the arm gives way as under any other torque") {
+TEST_CASE("Of prescribed flippers the servo is where it is told, and the arm gives way as under any other torque") {
   constexpr double kGive_radpnm = 0.02, kPlay_rad = 0.04;
   for (const double play_rad : {0.0, kPlay_rad}) {
     RobotDescription description = load_robot("kenaf");
@@ -267,7 +267,7 @@ TEST_CASE("V8: of prescribed flippers the servo is where it is told, and the arm
   }
 }
 
-TEST_CASE("V9: with belts and flippers prescribed, command and drives change no bit of what the body does", "[long]") {
+TEST_CASE("With belts and flippers prescribed, command and drives change no bit of what the body does", "[long]") {
   const auto path = [](const RobotDescription& description, const robot::Command& command) {
     World world(ground(), {}, 1);
     const RobotId id = world.add_robot(description, "a", {});
@@ -300,7 +300,7 @@ TEST_CASE("V9: with belts and flippers prescribed, command and drives change no 
   }
 }
 
-TEST_CASE("V10: what is no speed is refused, a teleport ends what was prescribed") {
+TEST_CASE("What is no speed is refused, a teleport ends what was prescribed") {
   Robot robot = settled(load_robot("kenaf"));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(robot.world.set_in_motion(robot.id, ahead(nan), drive(0, 0)), std::invalid_argument);

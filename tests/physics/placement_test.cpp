@@ -8,7 +8,7 @@
 using namespace kenaf;
 using namespace kenaf::physics;
 
-TEST_CASE("P1: a robot in the ground is lifted until it is free") {
+TEST_CASE("A robot in the ground is lifted until it is free") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {{1, 2, -0.5}, rotation_from({0, 0, 0.5})});
   const RobotTruth truth = world.truth(id);
@@ -19,7 +19,7 @@ TEST_CASE("P1: a robot in the ground is lifted until it is free") {
   CHECK(yaw_of(truth.X_WB) == Approx(0.5));
 }
 
-TEST_CASE("P1: a robot in a box is lifted onto it, one in the air stays there") {
+TEST_CASE("A robot in a box is lifted onto it, one in the air stays there") {
   WorldDescription description = ground();
   description.boxes.push_back(fixed_box({2, 2, 0.4}, {0, 0, 0.2}));
   World world(description, {}, 1);
@@ -31,7 +31,7 @@ TEST_CASE("P1: a robot in a box is lifted onto it, one in the air stays there") 
   CHECK(world.truth(inside).X_WB.p.z() == Approx(0.49).margin(1e-3));
 }
 
-TEST_CASE("P1: a robot in a box as high as a house is lifted onto it too") {
+TEST_CASE("A robot in a box as high as a house is lifted onto it too") {
   WorldDescription description = ground();
   description.boxes.push_back(fixed_box({4, 4, 30}, {0, 0, 15}));
   World world(description, {}, 1);
@@ -43,7 +43,7 @@ TEST_CASE("P1: a robot in a box as high as a house is lifted onto it too") {
   CHECK(world.truth(id).X_WB.p.z() == Approx(30.09).margin(1e-3));
 }
 
-TEST_CASE("P1: a robot dropped from 50 mm comes to rest") {
+TEST_CASE("A robot dropped from 50 mm comes to rest") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {{0, 0, 0.14}, Eigen::Quaterniond::Identity()});
   run(world, 2);
@@ -51,7 +51,7 @@ TEST_CASE("P1: a robot dropped from 50 mm comes to rest") {
   CHECK(world.truth(id).v_WB_mps.norm() < 1e-4);
 }
 
-TEST_CASE("P1: a robot placed in or deep below a mesh is lifted onto it and stands there") {
+TEST_CASE("A robot placed in or deep below a mesh is lifted onto it and stands there") {
   // a floor of triangles at 0.3 m, solid below
   WorldDescription description = ground();
   description.meshes.push_back(
@@ -67,7 +67,7 @@ TEST_CASE("P1: a robot placed in or deep below a mesh is lifted onto it and stan
   }
 }
 
-TEST_CASE("P1: a robot stands on shipped hills and rubble") {
+TEST_CASE("A robot stands on shipped hills and rubble") {
   for (const char* name : {"hills", "rubble-mesh"}) {
     std::vector<std::string> unsupported;
     World world(load_world(name, unsupported), {}, 1);
@@ -84,7 +84,7 @@ TEST_CASE("P1: a robot stands on shipped hills and rubble") {
   }
 }
 
-TEST_CASE("P2: a teleported robot is at rest at its new place") {
+TEST_CASE("A teleported robot is at rest at its new place") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   world.set_command(id, drive(0.3, 0.3));
@@ -98,7 +98,7 @@ TEST_CASE("P2: a teleported robot is at rest at its new place") {
   CHECK((world.truth(id).X_WB.p - Eigen::Vector3d(5, 5, 0.09)).norm() < 2e-3);
 }
 
-TEST_CASE("P3: sixteen robots in one world, each on its own way") {
+TEST_CASE("Sixteen robots in one world, each on its own way") {
   std::vector<std::string> unsupported;
   const WorldDescription flat = load_world("flat", unsupported);
   REQUIRE(flat.start_poses.size() == 16);
@@ -119,7 +119,7 @@ TEST_CASE("P3: sixteen robots in one world, each on its own way") {
   run(world, 0.1);
 }
 
-TEST_CASE("P3: robots meet") {
+TEST_CASE("Robots meet") {
   World world(ground(), {}, 1);
   const RobotId a = world.add_robot(load_robot("p2at"), "a", {});
   const RobotId b = world.add_robot(load_robot("p2at"), "b", {{1, 0, 0}, rotation_from({0, 0, std::numbers::pi})});
@@ -129,7 +129,7 @@ TEST_CASE("P3: robots meet") {
   CHECK((world.truth(a).X_WB.p - world.truth(b).X_WB.p).norm() > 0.45);
 }
 
-TEST_CASE("P4: rays") {
+TEST_CASE("Rays") {
   WorldDescription description = ground();
   description.boxes.push_back(fixed_box({1, 1, 1}, {3, 0, 0.5}));
   World world(description, {}, 1);
@@ -147,7 +147,7 @@ TEST_CASE("P4: rays") {
   CHECK(world.cast_ray({0, 0, 0.09}, {1, 0, 0}, 10, id)->distance_m == Approx(2.5).margin(2e-3));
 }
 
-TEST_CASE("P4: rays meet meshes, from either side") {
+TEST_CASE("Rays meet meshes, from either side") {
   WorldDescription description;
   description.meshes.push_back(roof(0.5));
   World world(description, {}, 1);
@@ -160,7 +160,7 @@ TEST_CASE("P4: rays meet meshes, from either side") {
   CHECK_FALSE(world.cast_ray({3, 0.5, 3}, {0, 0, -1}, 10));
 }
 
-TEST_CASE("P5: boxes come, move and go") {
+TEST_CASE("Boxes come, move and go") {
   World world(ground(), {}, 1);
   const BoxId id = world.add_box(fixed_box({1, 1, 1}, {3, 0, 0.5}));
   CHECK(world.cast_ray({0, 0, 0.5}, {1, 0, 0}, 10));
@@ -172,7 +172,7 @@ TEST_CASE("P5: boxes come, move and go") {
   CHECK_THROWS_AS(world.remove_box(id), std::out_of_range);
 }
 
-TEST_CASE("P6: a mission package's links turn at their speed, within their limits") {
+TEST_CASE("A mission package's links turn at their speed, within their limits") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   world.set_mission_link(id, 0, 0, 1.5);
@@ -184,7 +184,7 @@ TEST_CASE("P6: a mission package's links turn at their speed, within their limit
   CHECK(world.mission_link_rad(id, 0, 1) == Approx(-0.7853981));
 }
 
-TEST_CASE("P7: what is no pose, no number or no robot is refused") {
+TEST_CASE("What is no pose, no number or no robot is refused") {
   World world(ground(), {}, 1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(world.add_robot(load_robot("kenaf"), "a", {{nan, 0, 0}, Eigen::Quaterniond::Identity()}),
@@ -198,7 +198,7 @@ TEST_CASE("P7: what is no pose, no number or no robot is refused") {
   CHECK_THROWS_AS(World(ground(), {.time_step_s = 0}, 1), std::invalid_argument);
 }
 
-TEST_CASE("P8: what leaves takes its contacts with it, before the next step too") {
+TEST_CASE("What leaves takes its contacts with it, before the next step too") {
   World world(ground(), {}, 1);
   const RobotId first = world.add_robot(load_robot("kenaf"), "a", {});
   const BoxId crate = world.add_box(loose_box({0.2, 0.2, 0.2}, {{2, 0, 0.1}, Eigen::Quaterniond::Identity()}, 1, 1));

@@ -32,7 +32,7 @@ T read_one(World& world, RobotId id) {
 
 }  // namespace
 
-TEST_CASE("S1: a sensor reports once a period, and at every call where it has none") {
+TEST_CASE("A sensor reports once a period, and at every call where it has none") {
   RobotDescription robot = load_robot("kenaf");
   robot.sensors = {sensor_of(SensorType::ground_truth), sensor_of(SensorType::ins)};
   robot.sensors[1].period_s = 0.05;
@@ -54,7 +54,7 @@ TEST_CASE("S1: a sensor reports once a period, and at every call where it has no
   CHECK(reports[1] == 20);
 }
 
-TEST_CASE("S2: noise is white, of its sigma, bias is drawn once, other names, other noise") {
+TEST_CASE("Noise is white, of its sigma, bias is drawn once, other names, other noise") {
   SensorDescription sensor = sensor_of(SensorType::ins);
   sensor.noise_rad = 0.01;
   sensor.noise_m = 0.02;
@@ -87,7 +87,7 @@ TEST_CASE("S2: noise is white, of its sigma, bias is drawn once, other names, ot
   CHECK(std::abs(mean - other_sum / kSamples) > 1e-3);
 }
 
-TEST_CASE("S2: the generator is normal") {
+TEST_CASE("The generator is normal") {
   NoiseSource noise(1, "robot", "sensor");
   int within = 0;
   constexpr int kDraws = 100000;
@@ -95,7 +95,7 @@ TEST_CASE("S2: the generator is normal") {
   CHECK(within / double(kDraws) == Approx(0.6827).margin(0.005));
 }
 
-TEST_CASE("S3: a late sensor reports what was") {
+TEST_CASE("A late sensor reports what was") {
   SensorDescription sensor = sensor_of(SensorType::ground_truth);
   sensor.delay_s = 0.03;
   World world(ground(), {}, 1);
@@ -112,7 +112,7 @@ TEST_CASE("S3: a late sensor reports what was") {
   CHECK(std::get<GroundTruthReading>(samples.front().reading).p_WB_m.x() == x[269]);
 }
 
-TEST_CASE("S4: encoders count the sprocket's turning, odometry and tachometer follow") {
+TEST_CASE("Encoders count the sprocket's turning, odometry and tachometer follow") {
   RobotDescription robot = load_robot("kenaf");
   robot.sensors = {sensor_of(SensorType::encoder), sensor_of(SensorType::odometry), sensor_of(SensorType::tachometer)};
   World world(ground(), {}, 1);
@@ -133,7 +133,7 @@ TEST_CASE("S4: encoders count the sprocket's turning, odometry and tachometer fo
   CHECK(tachometer.angle_rad[robot::kLeft] == Approx(travel / 0.065));
 }
 
-TEST_CASE("S5: an inertial sensor feels gravity's reaction, acceleration and turning") {
+TEST_CASE("An inertial sensor feels gravity's reaction, acceleration and turning") {
   SensorDescription sensor = sensor_of(SensorType::imu);
   sensor.period_s = 0.01;
   World world(ground(), {}, 1);
@@ -155,7 +155,7 @@ TEST_CASE("S5: an inertial sensor feels gravity's reaction, acceleration and tur
         Approx(world.truth(id).w_WB_radps.z()).epsilon(1e-6));
 }
 
-TEST_CASE("S6: a sonar sees the nearest in its cone, a scanner from left to right") {
+TEST_CASE("A sonar sees the nearest in its cone, a scanner from left to right") {
   WorldDescription description = ground();
   description.boxes.push_back(fixed_box({0.2, 1, 2}, {2.1, 0, 1}));  // ahead, face at x = 2
   description.boxes.push_back(fixed_box({1, 0.2, 2}, {0, 1.6, 1}));  // to the left, face at y = 1.5
@@ -184,7 +184,7 @@ TEST_CASE("S6: a sonar sees the nearest in its cone, a scanner from left to righ
   CHECK(scan[180] == 4);
 }
 
-TEST_CASE("S7: GPS: x is east, y is north, and a roof takes the fix") {
+TEST_CASE("GPS: x is east, y is north, and a roof takes the fix") {
   World world(ground(), {}, 1);
   const RobotId id =
       world.add_robot(with_sensor(sensor_of(SensorType::gps)), "a", {{0, 1000, 0}, Eigen::Quaterniond::Identity()});
@@ -198,7 +198,7 @@ TEST_CASE("S7: GPS: x is east, y is north, and a roof takes the fix") {
   CHECK_FALSE(read_one<GpsReading>(world, id).fix);
 }
 
-TEST_CASE("S8: a touch sensor feels an obstacle at its mount, and not the ground") {
+TEST_CASE("A touch sensor feels an obstacle at its mount, and not the ground") {
   WorldDescription description = ground();
   description.boxes.push_back(fixed_box({0.2, 1, 1}, {0.5, 0, 0.5}));
   SensorDescription sensor = sensor_of(SensorType::touch);
@@ -226,7 +226,7 @@ TEST_CASE("S8: a touch sensor feels an obstacle at its mount, and not the ground
   CHECK_FALSE(read_one<TouchReading>(world, id).touched);
 }
 
-TEST_CASE("S9: currents follow force, the battery sags with them and runs down") {
+TEST_CASE("Currents follow force, the battery sags with them and runs down") {
   RobotDescription robot = with_sensor(sensor_of(SensorType::drives));
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(robot, "a", {});
@@ -253,7 +253,7 @@ TEST_CASE("S9: currents follow force, the battery sags with them and runs down")
   CHECK(truth.battery_left_s == Approx(3600 - 2));
 }
 
-TEST_CASE("S9: an arm that rests on its mechanical stop carries the robot without current") {
+TEST_CASE("An arm that rests on its mechanical stop carries the robot without current") {
   // arms that can go no higher than 0.6 rad below the belts, servos limp: the ground presses those that it rests on
   // against their stops
   RobotDescription robot = with_sensor(sensor_of(SensorType::drives));
@@ -272,7 +272,7 @@ TEST_CASE("S9: an arm that rests on its mechanical stop carries the robot withou
   for (const double current : read_one<DrivesReading>(world, id).flipper_a) CHECK(current < 0.01);
 }
 
-TEST_CASE("S10: a reset sensor starts from zero, an INS from the pose it is told") {
+TEST_CASE("A reset sensor starts from zero, an INS from the pose it is told") {
   RobotDescription robot = load_robot("kenaf");
   robot.sensors = {sensor_of(SensorType::encoder), sensor_of(SensorType::odometry), sensor_of(SensorType::ins)};
   World world(ground(), {}, 1);

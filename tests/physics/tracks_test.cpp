@@ -7,7 +7,7 @@
 using namespace kenaf;
 using namespace kenaf::physics;
 
-TEST_CASE("T1: robot and belt reach the commanded speed within 0.1 %") {
+TEST_CASE("Robot and belt reach the commanded speed within 0.1 %") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   world.set_command(id, drive(0.2, 0.2));
@@ -21,7 +21,7 @@ TEST_CASE("T1: robot and belt reach the commanded speed within 0.1 %") {
   CHECK(world.truth(id).v_WB_mps.x() == Approx(-0.2).epsilon(1e-3));
 }
 
-TEST_CASE("T1: tracks that drive alike do not pull against each other") {
+TEST_CASE("Tracks that drive alike do not pull against each other") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   world.set_command(id, drive(0.2, 0.2));
@@ -30,7 +30,7 @@ TEST_CASE("T1: tracks that drive alike do not pull against each other") {
   CHECK(std::abs(world.truth(id).track_force_n[robot::kRight]) < 0.5);
 }
 
-TEST_CASE("T2: a stopped belt is plain friction") {
+TEST_CASE("A stopped belt is plain friction") {
   const double slope = std::numbers::pi / 6;
   const auto slide_m = [slope](double friction, double yaw) {
     World world(ground(1, slope), {}, 1);
@@ -47,7 +47,7 @@ TEST_CASE("T2: a stopped belt is plain friction") {
   }
 }
 
-TEST_CASE("T2: a robot without a command stays where it is") {
+TEST_CASE("A robot without a command stays where it is") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   run(world, 0.5);
@@ -56,7 +56,7 @@ TEST_CASE("T2: a robot without a command stays where it is") {
   CHECK((world.truth(id).X_WB.p - before.p).norm() < 1e-4);
 }
 
-TEST_CASE("T3: 3 mm/s does not fall asleep") {
+TEST_CASE("3 mm/s does not fall asleep") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   world.set_command(id, drive(0.003, 0.003));
@@ -64,7 +64,7 @@ TEST_CASE("T3: 3 mm/s does not fall asleep") {
   CHECK(world.truth(id).X_WB.p.x() == Approx(0.003 * 19.95).margin(2e-4));
 }
 
-TEST_CASE("T4: a belt drives the same way whichever body Bullet calls the first") {
+TEST_CASE("A belt drives the same way whichever body Bullet calls the first") {
   for (const bool robot_first : {true, false}) {
     for (const double mass_kg : {0.0, 1e5}) {
       World world(ground(), {}, 1);
@@ -83,7 +83,7 @@ TEST_CASE("T4: a belt drives the same way whichever body Bullet calls the first"
   }
 }
 
-TEST_CASE("T5: side faces do not drive") {
+TEST_CASE("Side faces do not drive") {
   World world(ground(), {}, 1);
   // on its left side: the outer face of the left track is down
   const RobotId id = world.add_robot(plain_tracks(1), "a", {{0, 0, 0.2}, rotation_from({-std::numbers::pi / 2, 0, 0})});
@@ -94,7 +94,7 @@ TEST_CASE("T5: side faces do not drive") {
   CHECK((world.truth(id).X_WB.p - before).norm() < 5e-3);
 }
 
-TEST_CASE("T6: a belt's speed adds to that of the ground under it") {
+TEST_CASE("A belt's speed adds to that of the ground under it") {
   // a slab of the robot's own mass on ground without friction: momentum stays 0, so each gets half of 0.2 m/s
   World world(ground(0), {}, 1);
   const BoxId slab = world.add_box(loose_box({3, 2, 0.1}, {{0, 0, 0.05}, Eigen::Quaterniond::Identity()}, 15, 1));
@@ -133,7 +133,7 @@ double uniform_pressure_turn_radps(const RobotDescription& robot, double speed_m
 
 }  // namespace
 
-TEST_CASE("T7: the turning rate comes out of the load's spread") {
+TEST_CASE("The turning rate comes out of the load's spread") {
   for (const char* name : {"kenaf", "p2at"}) {
     RobotDescription robot = load_robot(name);
     robot.flipper.clear();
@@ -160,7 +160,7 @@ TEST_CASE("T7: the turning rate comes out of the load's spread") {
 // The same sum over the points that a belt stands on: on both of its edges, a piece's length apart, half the load at
 // the ends. Nothing is left between this and the simulation but how far the turn has settled after 1 s, far below 0.1
 // %.
-TEST_CASE("T7: the turning rate is that of the contacts' own loads") {
+TEST_CASE("The turning rate is that of the contacts' own loads") {
   for (const int pieces : {1, 2, 6}) {
     RobotDescription robot = plain_tracks(1);
     robot.track.pieces = pieces;
@@ -191,7 +191,7 @@ TEST_CASE("T7: the turning rate is that of the contacts' own loads") {
   }
 }
 
-TEST_CASE("T7: a slow turn is a turn") {
+TEST_CASE("A slow turn is a turn") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   world.set_command(id, drive(-0.006, 0.006));
@@ -200,7 +200,7 @@ TEST_CASE("T7: a slow turn is a turn") {
   CHECK(world.truth(id).w_WB_radps.z() > 0.015);  // 0.06 rad/s if nothing slipped
 }
 
-TEST_CASE("T8: a world turned by any angle gives the same run", "[long]") {
+TEST_CASE("A world turned by any angle gives the same run", "[long]") {
   const auto run_turned = [](double yaw) {
     WorldDescription description = ground();
     const Eigen::Quaterniond q = rotation_from({0, 0, yaw});
@@ -226,7 +226,7 @@ TEST_CASE("T8: a world turned by any angle gives the same run", "[long]") {
 
 // Climbing multiplies what rounding makes different: 1 mm is far above that, and far below what axes that mattered
 // would do.
-TEST_CASE("T8: a world turned by any angle gives the same climb over a step, and over a ridge of triangles", "[long]") {
+TEST_CASE("A world turned by any angle gives the same climb over a step, and over a ridge of triangles", "[long]") {
   const bool mesh = GENERATE(false, true);
   const auto climb = [mesh](double yaw) {
     const Eigen::Quaterniond q = rotation_from({0, 0, yaw});
@@ -259,7 +259,7 @@ TEST_CASE("T8: a world turned by any angle gives the same climb over a step, and
   }
 }
 
-TEST_CASE("T9: no more traction than the motor or the ground can give") {
+TEST_CASE("No more traction than the motor or the ground can give") {
   // against a wall: the belts slip on the ground, or stall
   const auto wall_force = [](double max_force_n, double friction) {
     WorldDescription description = ground();
@@ -278,7 +278,7 @@ TEST_CASE("T9: no more traction than the motor or the ground can give") {
   CHECK(stalled.track_mps[robot::kLeft] == Approx(0).margin(1e-3));
 }
 
-TEST_CASE("T9: an incline that needs more than the motors have is not climbed") {
+TEST_CASE("An incline that needs more than the motors have is not climbed") {
   // m g sin a of 15 kg on 20 degrees: 50.3 N, 25.2 N for each track
   const double slope = -20 * std::numbers::pi / 180;
   const auto climbed_m = [slope](double max_force_n) {
@@ -296,8 +296,7 @@ TEST_CASE("T9: an incline that needs more than the motors have is not climbed") 
   CHECK(climbed_m(40) == Approx(0.195).margin(0.01));
 }
 
-TEST_CASE("T10: with its front flippers up Kenaf climbs steps of 100 and 200 mm, at half the time step alike",
-          "[long]") {
+TEST_CASE("With its front flippers up Kenaf climbs steps of 100 and 200 mm, at half the time step alike", "[long]") {
   for (const int height_mm : {100, 200}) {
     std::vector<std::string> unsupported;
     const WorldDescription step = load_world("step-" + std::to_string(height_mm), unsupported);
@@ -319,7 +318,7 @@ TEST_CASE("T10: with its front flippers up Kenaf climbs steps of 100 and 200 mm,
   }
 }
 
-TEST_CASE("T10: without flippers and with little friction it does not") {
+TEST_CASE("Without flippers and with little friction it does not") {
   // To raise the nose the front needs mu N1 > W / 2 on the step's face, and N1 <= mu (W - mu N1) is all that the
   // ground gives: mu^2 / (1 + mu^2) > 1 / 2, mu > 1. A friction of 0.6 is far below.
   std::vector<std::string> unsupported;

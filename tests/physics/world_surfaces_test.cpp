@@ -121,7 +121,7 @@ const std::string kColour = from_hex(  // 2 x 2 pixels
 
 }  // namespace
 
-TEST_CASE("U1: a cylinder is closed, outward, and its chords stay within 1 mm") {
+TEST_CASE("A cylinder is closed, outward, and its chords stay within 1 mm") {
   const TriangleMesh mesh = mesh_of("<cylinder><radius>0.15</radius><length>2</length></cylinder>");
   CHECK(is_closed(mesh));
   CHECK(mesh.friction == 0.7);
@@ -132,7 +132,7 @@ TEST_CASE("U1: a cylinder is closed, outward, and its chords stay within 1 mm") 
   CHECK(bounds(mesh).min().z() == Approx(-1));
 }
 
-TEST_CASE("U1: spheres, capsules and ellipsoids are closed and of the right volume") {
+TEST_CASE("Spheres, capsules and ellipsoids are closed and of the right volume") {
   const TriangleMesh sphere = mesh_of("<sphere><radius>0.5</radius></sphere>");
   CHECK(is_closed(sphere));
   CHECK(volume(sphere) < 4.0 / 3 * kPi * std::pow(0.5, 3));
@@ -146,7 +146,7 @@ TEST_CASE("U1: spheres, capsules and ellipsoids are closed and of the right volu
   CHECK(volume(ellipsoid) == Approx(4.0 / 3 * kPi * 0.5 * 0.2 * 0.1).epsilon(6e-3));
 }
 
-TEST_CASE("U1: all shapes' sides face outward, wherever they are cut") {
+TEST_CASE("All shapes' sides face outward, wherever they are cut") {
   for (const char* shape :
        {"<cylinder><radius>0.1</radius><length>1</length></cylinder>", "<sphere><radius>0.1</radius></sphere>",
         "<capsule><radius>0.1</radius><length>1</length></capsule>"}) {
@@ -158,7 +158,7 @@ TEST_CASE("U1: all shapes' sides face outward, wherever they are cut") {
   }
 }
 
-TEST_CASE("U1: a polyline is extruded upward, in either sense of rotation") {
+TEST_CASE("A polyline is extruded upward, in either sense of rotation") {
   // an L of 3 unit squares
   const std::string l_shape =
       "<point>0 0</point><point>2 0</point><point>2 1</point><point>1 1</point><point>1 2</point><point>0 2</point>";
@@ -174,7 +174,7 @@ TEST_CASE("U1: a polyline is extruded upward, in either sense of rotation") {
   CHECK(volume(turned) == Approx(1.5));
 }
 
-TEST_CASE("U1: a shape stands where its model puts it") {
+TEST_CASE("A shape stands where its model puts it") {
   // lies along y, 1 m ahead
   const TriangleMesh mesh =
       mesh_of("<cylinder><radius>0.1</radius><length>4</length></cylinder>", "", "1 0 0 1.5707963267948966 0 0");
@@ -182,7 +182,7 @@ TEST_CASE("U1: a shape stands where its model puts it") {
   CHECK(bounds(mesh).min().x() == Approx(0.9).margin(1e-3));
 }
 
-TEST_CASE("U2: an OBJ mesh, its scale, and triangles turned outward") {
+TEST_CASE("An OBJ mesh, its scale, and triangles turned outward") {
   const TemporaryFolder folder;
   write_file(folder / "right.obj", tetrahedron_obj());
   fs::create_directory(folder / "meshes");
@@ -197,7 +197,7 @@ TEST_CASE("U2: an OBJ mesh, its scale, and triangles turned outward") {
   CHECK(bounds(scaled).min().isApprox(Eigen::Vector3d(0, 0, -1)));
 }
 
-TEST_CASE("U2: polygons are cut into triangles, what has no area is dropped and said") {
+TEST_CASE("Polygons are cut into triangles, what has no area is dropped and said") {
   const TemporaryFolder folder;
   write_file(folder / "quad.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 1 0 0\nf 1 2 3 4\nf 1 5 2\nl 1 2\n");
   std::vector<std::string> unsupported;
@@ -209,7 +209,7 @@ TEST_CASE("U2: polygons are cut into triangles, what has no area is dropped and 
   CHECK(unsupported[1].find("t.sdf:3: 1 triangles without area") == 0);
 }
 
-TEST_CASE("U2: neighbours that disagree on what is outside are named") {
+TEST_CASE("Neighbours that disagree on what is outside are named") {
   const TemporaryFolder folder;
   write_file(folder / "odd.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 4 3\n");
   std::vector<std::string> unsupported;
@@ -218,7 +218,7 @@ TEST_CASE("U2: neighbours that disagree on what is outside are named") {
   CHECK(unsupported[0].find("do not agree on which side") != std::string::npos);
 }
 
-TEST_CASE("U2: an STL mesh, as text and in binary") {
+TEST_CASE("An STL mesh, as text and in binary") {
   const TemporaryFolder folder;
   write_file(folder / "text.stl",
              "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
@@ -237,7 +237,7 @@ TEST_CASE("U2: an STL mesh, as text and in binary") {
   }
 }
 
-TEST_CASE("U2: a Collada mesh: unit, nodes, submesh") {
+TEST_CASE("A Collada mesh: unit, nodes, submesh") {
   const TemporaryFolder folder;
   write_file(folder / "cm.dae", collada(node("a", "100 0 0") + node("b", "0 500 0"), "0.01"));
   const TriangleMesh both = mesh_of("<mesh><uri>cm.dae</uri></mesh>", folder.path());
@@ -253,7 +253,7 @@ TEST_CASE("U2: a Collada mesh: unit, nodes, submesh") {
             .find("t.sdf:3: \"cm.dae\" has no submesh \"c\"") == 0);
 }
 
-TEST_CASE("U3: a height map: the top row is +y, the brightest pixel is as high as its size says") {
+TEST_CASE("A height map: the top row is +y, the brightest pixel is as high as its size says") {
   const TemporaryFolder folder;
   write_file(folder / "grey8.png", kGrey8);
   const TriangleMesh mesh =
@@ -275,7 +275,7 @@ TEST_CASE("U3: a height map: the top row is +y, the brightest pixel is as high a
   }
 }
 
-TEST_CASE("U3: 16 bits are read whole, high byte first") {
+TEST_CASE("16 bits are read whole, high byte first") {
   const TemporaryFolder folder;
   write_file(folder / "grey16.png", kGrey16);
   const TriangleMesh mesh = mesh_of("<heightmap><uri>grey16.png</uri><size>1 1 40</size></heightmap>", folder.path());
@@ -285,7 +285,7 @@ TEST_CASE("U3: 16 bits are read whole, high byte first") {
   CHECK(second == Approx(0.258));
 }
 
-TEST_CASE("U4: files are found in the world's folder, however they are named") {
+TEST_CASE("Files are found in the world's folder, however they are named") {
   const TemporaryFolder folder;
   fs::create_directory(folder / "meshes");
   write_file(folder / "meshes/a.obj", tetrahedron_obj());
@@ -295,7 +295,7 @@ TEST_CASE("U4: files are found in the world's folder, however they are named") {
             .triangles.size() == 4);
 }
 
-TEST_CASE("U4: nothing outside of the world's folder is read") {
+TEST_CASE("Nothing outside of the world's folder is read") {
   const TemporaryFolder outer;
   write_file(outer / "secret.obj", tetrahedron_obj());
   fs::create_directory(outer / "meshes");
@@ -317,7 +317,7 @@ TEST_CASE("U4: nothing outside of the world's folder is read") {
   CHECK(error_of_shape("<mesh><uri>mine.obj</uri></mesh>", "").find("has no folder") != std::string::npos);
 }
 
-TEST_CASE("U5: sizes that cannot be are refused with their line") {
+TEST_CASE("Sizes that cannot be are refused with their line") {
   for (const char* shape :
        {"<sphere><radius>0</radius></sphere>", "<sphere><radius>nan</radius></sphere>",
         "<cylinder><radius>1</radius><length>-1</length></cylinder>",
@@ -331,7 +331,7 @@ TEST_CASE("U5: sizes that cannot be are refused with their line") {
   }
 }
 
-TEST_CASE("U5: files that are not what they should be are refused with the line that names them") {
+TEST_CASE("Files that are not what they should be are refused with the line that names them") {
   const TemporaryFolder folder;
   const auto mesh_error = [&](const std::string& name, const std::string& bytes) {
     write_file(folder / name, bytes);
@@ -353,7 +353,7 @@ TEST_CASE("U5: files that are not what they should be are refused with the line 
   CHECK(map_error(kColour).find("grey picture of 8 or 16 bits") != std::string::npos);
 }
 
-TEST_CASE("U5: what would eat memory or stack is refused first") {
+TEST_CASE("What would eat memory or stack is refused first") {
   const TemporaryFolder folder;
   const auto error = [&](const std::string& name, const std::string& bytes) {
     write_file(folder / name, bytes);
@@ -383,7 +383,7 @@ TEST_CASE("U5: what would eat memory or stack is refused first") {
 }
 
 // The accessor goes over 3 x 3 = 9 numbers of the array "pa", which is on line 5.
-TEST_CASE("U5: a Collada file cannot say that an array is longer than it is") {
+TEST_CASE("A Collada file cannot say that an array is longer than it is") {
   const std::string array = R"(<float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array>)";
   const auto error = [&](const std::string& is) { return collada_error(array, is); };
   CHECK(error(array) == "");
@@ -404,7 +404,7 @@ TEST_CASE("U5: a Collada file cannot say that an array is longer than it is") {
              Catch::Contains("has an <accessor> in an <accessor>"));
 }
 
-TEST_CASE("U5: Collada with a document type, skins or animations is refused, empty libraries of them are not") {
+TEST_CASE("Collada with a document type, skins or animations is refused, empty libraries of them are not") {
   const std::string root = "<COLLADA ", geometries = "<library_geometries>";
   CHECK_THAT(collada_error(root, "<!DOCTYPE COLLADA [<!ATTLIST float_array count CDATA \"9\">]>\n" + root),
              Catch::Contains("has a document type"));
@@ -416,7 +416,7 @@ TEST_CASE("U5: Collada with a document type, skins or animations is refused, emp
   CHECK(with_library("<library_controllers/><library_animations/>") == "");
 }
 
-TEST_CASE("U5: a polygon of more than 500 corners is not cut") {
+TEST_CASE("A polygon of more than 500 corners is not cut") {
   const auto error = [](int corners) -> std::string {
     std::string text, face = "f";
     for (int i = 0; i < corners; ++i) {
@@ -435,7 +435,7 @@ TEST_CASE("U5: a polygon of more than 500 corners is not cut") {
   CHECK_THAT(error(501), Catch::Contains("a polygon of 501 corners") && Catch::Contains("triangulate it"));
 }
 
-TEST_CASE("U5: lines and points count as triangles do, in every instance") {
+TEST_CASE("Lines and points count as triangles do, in every instance") {
   std::string text = collada(node("a", "0 0 0") + node("b", "1 0 0"));
   const std::string end = "</triangles>";
   text.insert(text.find(end) + end.size(),

@@ -24,7 +24,7 @@ RollOut drive(const std::string& manoeuvre) {
 
 }  // namespace
 
-TEST_CASE("A1: 1 m straight ahead, then it stands") {
+TEST_CASE("1 m straight ahead, then it stands") {
   // 0.2 m/s for 5 s; what the speed loop's lag costs at the start it gives back at the end
   const RollOut out = drive("straight");
   CHECK(out.end.X_WB.p.x() == Approx(1).margin(0.001));
@@ -33,7 +33,7 @@ TEST_CASE("A1: 1 m straight ahead, then it stands") {
   CHECK(out.end.v_WB_mps.norm() < 1e-3);
 }
 
-TEST_CASE("A2: a turn of 0.25 rad on the spot, to either side") {
+TEST_CASE("A turn of 0.25 rad on the spot, to either side") {
   for (const double side : {1.0, -1.0}) {
     Manoeuvre turn = rollout::load_manoeuvre("turn-in-place");
     REQUIRE(turn.phases.size() == 3);  // stand, turn, rest
@@ -48,7 +48,7 @@ TEST_CASE("A2: a turn of 0.25 rad on the spot, to either side") {
   }
 }
 
-TEST_CASE("A3: up 12 stairs of 75 mm by 175 mm") {
+TEST_CASE("Up 12 stairs of 75 mm by 175 mm") {
   const RollOut out = drive("stairs");
   CHECK(out.succeeded);
   CHECK(out.end.X_WB.p.z() == Approx(12 * 0.075 + 0.09).margin(0.005));
@@ -66,7 +66,7 @@ TEST_CASE("A3: up 12 stairs of 75 mm by 175 mm") {
   CHECK(sum / rows == Approx(-std::atan(75.0 / 175)).margin(0.05));
 }
 
-TEST_CASE("A4: over a half cylinder of 150 mm") {
+TEST_CASE("Over a half cylinder of 150 mm") {
   Manoeuvre over;
   over.world = "half-cylinder";
   over.phases = {
@@ -79,7 +79,7 @@ TEST_CASE("A4: over a half cylinder of 150 mm") {
 
 // Kenaf's own friction of 1.3 pulls its bare tracks over: to raise the nose at a wall takes more than 1 (T10 of
 // tests/physics/tracks_test.cpp). gz-sim's vehicle has 0.7, and so has Kenaf here.
-TEST_CASE("A5: with a friction of 0.7 the tilted box needs flippers") {
+TEST_CASE("With a friction of 0.7 the tilted box needs flippers") {
   physics::RobotDescription robot = physics::load_robot("kenaf");
   robot.track.friction_along = robot.track.friction_across = 0.7;
   robot.flipper.front().friction_along = robot.flipper.front().friction_across = 0.7;
@@ -94,7 +94,7 @@ TEST_CASE("A5: with a friction of 0.7 the tilted box needs flippers") {
   CHECK(stuck.end.X_WB.p.x() < 1);  // it leans against the box: its centre has not come over the edge
 }
 
-TEST_CASE("A6: with its belts off the robot does not move, on the ground, on a slope or at the box") {
+TEST_CASE("With its belts off the robot does not move, on the ground, on a slope or at the box") {
   physics::RobotDescription off = physics::load_robot("kenaf");
   off.drive.max_force_n = 1e-9;
   for (const char* name : {"straight", "turn-in-place", "stairs", "tilted-box"}) {

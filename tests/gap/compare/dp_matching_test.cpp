@@ -84,7 +84,7 @@ TEST_CASE("M1, M2: of all ways the cheapest, on random runs of 1 to 6 frames") {
   }
 }
 
-TEST_CASE("M3: equal runs match frame by frame and cost nothing, standing or moving") {
+TEST_CASE("Equal runs match frame by frame and cost nothing, standing or moving") {
   for (const Path& path : {climb(50, 0.02), Path(20, Vector2d(0.3, 0.1))}) {
     const Matching matching = match_paths(path, path);
     CHECK(matching.cost_m == 0);
@@ -93,13 +93,13 @@ TEST_CASE("M3: equal runs match frame by frame and cost nothing, standing or mov
   }
 }
 
-TEST_CASE("M3: exchanging the runs keeps the cost") {
+TEST_CASE("Exchanging the runs keeps the cost") {
   std::mt19937 random(2);
   const Path a = random_path(random, 40), b = random_path(random, 55);
   CHECK(match_paths(a, b).cost_m == Approx(match_paths(b, a).cost_m).epsilon(1e-12));
 }
 
-TEST_CASE("M4: a run that starts 7 frames late costs nothing, and its frames match 7 later") {
+TEST_CASE("A run that starts 7 frames late costs nothing, and its frames match 7 later") {
   const Path real = climb(40, 0.02);
   Path sim(7, real.front());
   sim.insert(sim.end(), real.begin(), real.end());
@@ -110,7 +110,7 @@ TEST_CASE("M4: a run that starts 7 frames late costs nothing, and its frames mat
   }
 }
 
-TEST_CASE("M4: a run half as fast along the same path matches with a slope of 2") {
+TEST_CASE("A run half as fast along the same path matches with a slope of 2") {
   const Path real = climb(30, 0.02), sim = climb(59, 0.01);
   const Matching matching = match_paths(real, sim);
   // Every other simulated frame lies on a real one; those between are at most half a step from it. A step is at most
@@ -121,7 +121,7 @@ TEST_CASE("M4: a run half as fast along the same path matches with a slope of 2"
   }
 }
 
-TEST_CASE("M5: a run 30 mm above the other has a mean error of 30 mm") {
+TEST_CASE("A run 30 mm above the other has a mean error of 30 mm") {
   Path real, sim;
   for (int i = 0; i < 40; ++i) {
     real.emplace_back(0.01 * i, 0.1);
@@ -132,7 +132,7 @@ TEST_CASE("M5: a run 30 mm above the other has a mean error of 30 mm") {
   CHECK(matching.pairs.size() == 40);
 }
 
-TEST_CASE("M6: within a band, a wide one changes nothing, one too narrow is widened") {
+TEST_CASE("Within a band, a wide one changes nothing, one too narrow is widened") {
   std::mt19937 random(3);
   const Path a = random_path(random, 60), b = random_path(random, 45);
   const Matching all = match_paths(a, b);
@@ -150,7 +150,7 @@ TEST_CASE("M6: within a band, a wide one changes nothing, one too narrow is wide
   CHECK(is_a_way(match_paths(random_path(random, 1), random_path(random, 9), 0).pairs, 1, 9));
 }
 
-TEST_CASE("M6: a band makes runs matchable that are too long without one") {
+TEST_CASE("A band makes runs matchable that are too long without one") {
   const std::size_t frames = 20000;  // 4e8 pairs, 20001 * 21 in the band
   const Path path = climb(frames, 1e-4);
   CHECK(weighed_pairs(frames, frames, std::nullopt) == frames * frames);

@@ -93,7 +93,7 @@ std::string body_of_answer(const std::string& answer) {
 
 }  // namespace
 
-TEST_CASE("P1: a column at other times") {
+TEST_CASE("A column at other times") {
   runs::Run run{{"t_s", "x_m", "yaw_rad"}, {{5, 5.1, 5.2, 6.5}, {1, kNotMeasured, 3, 4}, {3.1, -3.1, -3.1, -3.1}}};
   const PlayedTimes times{0, 0.1, 0.15, 0.2, 0.5, 1.5, 1.6};
   // the cells are 0.2 s and 1.3 s apart: the median is 1.3 s of two, so no hole is longer than 3 times that
@@ -116,14 +116,14 @@ TEST_CASE("P1: a column at other times") {
   CHECK(through[2] == Approx(2.5));
 }
 
-TEST_CASE("P2: a long run is thinned") {
+TEST_CASE("A long run is thinned") {
   const PlayedTimes eleven{3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
   CHECK(shown_times(eleven, 11) == PlayedTimes{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10});
   CHECK(shown_times(eleven, 4) == PlayedTimes{0, 3, 6, 10});  // every third, and the last
   CHECK(shown_times(PlayedTimes{7}, 4) == PlayedTimes{0});
 }
 
-TEST_CASE("P3: dead reckoning where no pose was measured") {
+TEST_CASE("Dead reckoning where no pose was measured") {
   const physics::RobotDescription kenaf = physics::load_robot("kenaf");
   const auto metre = [](double t_s) { return t_s; };
   const auto ahead = reckon(test::made_run(1.001, 0.01, {{"track_left_m", metre}, {"track_right_m", metre}}), kenaf);
@@ -150,7 +150,7 @@ TEST_CASE("P3: dead reckoning where no pose was measured") {
   CHECK_FALSE(reckon(test::made_run(1, 0.01, {{"track_left_m", metre}}), kenaf));
 }
 
-TEST_CASE("P3: dead reckoning where tracks and angles have holes, or the angles are the posture sensor's") {
+TEST_CASE("Dead reckoning where tracks and angles have holes, or the angles are the posture sensor's") {
   const physics::RobotDescription kenaf = physics::load_robot("kenaf");
   const auto metre = [](double t_s) { return t_s; };
   // encoders that count from 5 m and tell it from 0.1 s on: from 5.1 to 5.99 m
@@ -183,7 +183,7 @@ TEST_CASE("P3: dead reckoning where tracks and angles have holes, or the angles 
   CHECK(slow->yaw_rad.back() == Approx(1.75).margin(0.03));
 }
 
-TEST_CASE("P4: a report's phases and whose they are") {
+TEST_CASE("A report's phases and whose they are") {
   const ReportedPlaces places = parse_reported_places(kReport);
   CHECK(places.verdict == "named");
   CHECK(places.named == std::vector<std::string>{"drive_lag"});
@@ -205,7 +205,7 @@ TEST_CASE("P4: a report's phases and whose they are") {
   CHECK_THROWS_WITH(parse_reported_places(backwards), Catch::Contains("from 0.8 s to 0 s"));
 }
 
-TEST_CASE("P5: what a page is told of a run") {
+TEST_CASE("What a page is told of a run") {
   const Recorded recorded;
   const Playback playback = recorded.load();
   const json list = json::parse(playback_json(playback));
@@ -243,7 +243,7 @@ TEST_CASE("P5: what a page is told of a run") {
   CHECK(run["notes"].empty());
 }
 
-TEST_CASE("P5: without a pose the page is told so, and where dead reckoning has the robot") {
+TEST_CASE("Without a pose the page is told so, and where dead reckoning has the robot") {
   const Recorded recorded;
   const Playback playback = recorded.load();
   const json run = json::parse(played_run_json(playback, 2, prepare_run(playback, 2)));
@@ -276,7 +276,7 @@ TEST_CASE("P5: without a pose the page is told so, and where dead reckoning has 
   CHECK(bare["notes"].dump().find("no commands") != std::string::npos);
 }
 
-TEST_CASE("P5: a corrected robot beside the nominal one, and a file that its dataset knows") {
+TEST_CASE("A corrected robot beside the nominal one, and a file that its dataset knows") {
   const Recorded recorded;
   std::ofstream(recorded.folder / "report/robot.toml")
       << std::ifstream(std::string(KENAF_SOURCE_DIR) + "/share/robots/kenaf.toml").rdbuf()
@@ -293,7 +293,7 @@ TEST_CASE("P5: a corrected robot beside the nominal one, and a file that its dat
   CHECK(behind == Approx(0.06).margin(0.005));
 }
 
-TEST_CASE("P6: what is made is made once and kept, and what fails is told and tried again") {
+TEST_CASE("What is made is made once and kept, and what fails is told and tried again") {
   std::atomic<int> made = 0;
   Shelf shelf(10, [&](std::size_t n) {
     if (++made == 2) throw std::runtime_error("out of order");
@@ -318,7 +318,7 @@ TEST_CASE("P6: what is made is made once and kept, and what fails is told and tr
   CHECK(made == 4);
 }
 
-TEST_CASE("P6: what a page may ask for") {
+TEST_CASE("What a page may ask for") {
   const auto path = [](std::string_view text) {
     const auto found = parse_playback_path(text);
     if (!found) return std::string("none");
@@ -332,7 +332,7 @@ TEST_CASE("P6: what a page may ask for") {
     CHECK(path(none) == "none");
 }
 
-TEST_CASE("P6: a page asks for the list, a run and its world, by the rules of the live view") {
+TEST_CASE("A page asks for the list, a run and its world, by the rules of the live view") {
   const Recorded recorded;
   PlaybackServer server(recorded.load(), {true, "127.0.0.1", 0, "sesame"});
   CHECK(server.url().ends_with("/#token=sesame"));
@@ -371,7 +371,7 @@ TEST_CASE("P6: a page asks for the list, a run and its world, by the rules of th
   CHECK(gone_file.find("c.csv") != std::string::npos);
 }
 
-TEST_CASE("P7: kenaf-gap play says what is wrong, and ends when it is told to") {
+TEST_CASE("Kenaf-gap play says what is wrong, and ends when it is told to") {
   const Recorded recorded;
   std::ofstream(recorded.folder / "bad.csv") << "t_s,x_m\n0,1\n0,2\n";
   std::filesystem::create_directory(recorded.folder / "other");

@@ -43,7 +43,7 @@ void check_on_time(const Frame& earlier, const Frame& later) {
 
 }  // namespace
 
-TEST_CASE("F1: frames are of whole thirtieths of robot time, counted, and published after the latency") {
+TEST_CASE("Frames are of whole thirtieths of robot time, counted, and published after the latency") {
   const double speed = GENERATE(1.0, 0.0, 3.0);
   CameraWorld world("flat", speed);
   Robot robot(world, "R1");
@@ -64,7 +64,7 @@ TEST_CASE("F1: frames are of whole thirtieths of robot time, counted, and publis
   }
 }
 
-TEST_CASE("F1: cameras of one rate show the same moment") {
+TEST_CASE("Cameras of one rate show the same moment") {
   CameraWorld world;
   Robot robot(world, "R1");
   const auto both = [&] {
@@ -74,7 +74,7 @@ TEST_CASE("F1: cameras of one rate show the same moment") {
   CHECK(support::eventually(both));
 }
 
-TEST_CASE("F2: nothing is drawn while nobody looks, nor 2 s after the last look") {
+TEST_CASE("Nothing is drawn while nobody looks, nor 2 s after the last look") {
   CameraWorld world;
   Robot robot(world, "R1");
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -88,7 +88,7 @@ TEST_CASE("F2: nothing is drawn while nobody looks, nor 2 s after the last look"
   CHECK(again->robot_time_s > frame->robot_time_s + 1);
 }
 
-TEST_CASE("F2: listeners are told of frames until they let go") {
+TEST_CASE("Listeners are told of frames until they let go") {
   CameraWorld world;
   Robot robot(world, "R1");
   std::atomic<int> told = 0;
@@ -103,7 +103,7 @@ TEST_CASE("F2: listeners are told of frames until they let go") {
   CHECK(told == then);
 }
 
-TEST_CASE("F3: where time stands still the first picture comes, and then stays") {
+TEST_CASE("Where time stands still the first picture comes, and then stays") {
   CameraWorld world;
   Robot robot(world, "R1");
   robot.ask("CONTROL {Type Pause}");
@@ -116,7 +116,7 @@ TEST_CASE("F3: where time stands still the first picture comes, and then stays")
   CHECK(stepped->robot_time_s <= frame->robot_time_s + 0.1001);
 }
 
-TEST_CASE("F3: after a reset time begins anew, and numbers go on") {
+TEST_CASE("After a reset time begins anew, and numbers go on") {
   CameraWorld world;
   Robot robot(world, "R1");
   FramePtr frame = next_frame(world.feed, "");
@@ -132,7 +132,7 @@ TEST_CASE("F3: after a reset time begins anew, and numbers go on") {
   CHECK(first->number > frame->number);
 }
 
-TEST_CASE("F3: robots come and leave while they are watched") {
+TEST_CASE("Robots come and leave while they are watched") {
   CameraWorld world;
   CHECK(words_for(world.feed, "") == "there is no robot in the world, and so no camera");
   for (int round = 0; round < 3; ++round) {
@@ -155,7 +155,7 @@ TEST_CASE("F3: robots come and leave while they are watched") {
   CHECK(support::eventually([&] { return !world.feed.look("").none.empty(); }));
 }
 
-TEST_CASE("F3: names of no camera, however many are asked for, shut nobody out") {
+TEST_CASE("Names of no camera, however many are asked for, shut nobody out") {
   CameraWorld world;
   Robot robot(world, "R1");
   for (std::size_t i = 0; i < 3 * Feed::kMostViews; ++i)
@@ -163,7 +163,7 @@ TEST_CASE("F3: names of no camera, however many are asked for, shut nobody out")
   CHECK(world.feed.look("R1/Camera").none.empty());
 }
 
-TEST_CASE("F3: more views than anybody needs are refused, and forgotten") {
+TEST_CASE("More views than anybody needs are refused, and forgotten") {
   CameraWorld world;
   Robot robot(world, "R1");
   // all names of one camera: their case does not matter
@@ -182,7 +182,7 @@ TEST_CASE("F3: more views than anybody needs are refused, and forgotten") {
   CHECK(support::eventually([&] { return world.feed.look("R1/Camera").frame != nullptr; }));  // 2 s later
 }
 
-TEST_CASE("F4: a feed ends while the world is not run, and while it draws") {
+TEST_CASE("A feed ends while the world is not run, and while it draws") {
   {
     world_server::WorldServer server(CameraWorld::options("flat", 1));
     Feed feed(server);

@@ -101,7 +101,7 @@ std::size_t resident_bytes() {
 
 }  // namespace
 
-TEST_CASE("I1: OK, split or not, is answered by the picture that the renderer draws") {
+TEST_CASE("OK, split or not, is answered by the picture that the renderer draws") {
   CameraWorld world("step-200", 1, ImageType::raw);
   Robot robot(world, "R1");
   robot.ask("CONTROL {Type Pause}");
@@ -117,7 +117,7 @@ TEST_CASE("I1: OK, split or not, is answered by the picture that the renderer dr
   CHECK(picture_of(image).rgb == expected.rgb);
 }
 
-TEST_CASE("I2: a JPEG has the type that was chosen, and its quality") {
+TEST_CASE("A JPEG has the type that was chosen, and its quality") {
   CameraWorld world("step-200", 1, ImageType::good);
   Robot robot(world, "R1");
   robot.ask("CONTROL {Type Pause}");
@@ -152,7 +152,7 @@ TEST_CASE("I2: a JPEG has the type that was chosen, and its quality") {
   CHECK(client.ask("OK").type == 0);
 }
 
-TEST_CASE("I3: parts are of the raw picture, cut at its border, and nonsense is answered in words") {
+TEST_CASE("Parts are of the raw picture, cut at its border, and nonsense is answered in words") {
   CameraWorld world("step-200");
   Robot robot(world, "R1");
   robot.ask("CONTROL {Type Pause}");
@@ -176,7 +176,7 @@ TEST_CASE("I3: parts are of the raw picture, cut at its border, and nonsense is 
   CHECK(client.ask("OK").type == 2);
 }
 
-TEST_CASE("I4: each OK brings a newer frame, which says its number, its robot time and its age") {
+TEST_CASE("Each OK brings a newer frame, which says its number, its robot time and its age") {
   CameraWorld world;
   Robot robot(world, "R1");
   ImageClient client(world.port());
@@ -194,7 +194,7 @@ TEST_CASE("I4: each OK brings a newer frame, which says its number, its robot ti
   }
 }
 
-TEST_CASE("I4: without a new frame the old one comes again, within a second and so much older") {
+TEST_CASE("Without a new frame the old one comes again, within a second and so much older") {
   CameraWorld world;
   Robot robot(world, "R1");
   robot.ask("CONTROL {Type Pause}");
@@ -207,7 +207,7 @@ TEST_CASE("I4: without a new frame the old one comes again, within a second and 
   CHECK(second.age_ms >= first.age_ms + 890);
 }
 
-TEST_CASE("I4: requests that pile up are one, and a silent reader has nothing drawn") {
+TEST_CASE("Requests that pile up are one, and a silent reader has nothing drawn") {
   CameraWorld world;
   Robot robot(world, "R1");
   ImageClient silent(world.port());
@@ -221,7 +221,7 @@ TEST_CASE("I4: requests that pile up are one, and a silent reader has nothing dr
   CHECK_FALSE(client.hears(1500));  // the four others would have been answered a second after it
 }
 
-TEST_CASE("I5: V chooses what is shown, also with two robots, and words say what there is") {
+TEST_CASE("V chooses what is shown, also with two robots, and words say what there is") {
   CameraWorld world;
   ImageClient client(world.port());
   Image image = client.ask("J");
@@ -250,7 +250,7 @@ TEST_CASE("I5: V chooses what is shown, also with two robots, and words say what
   CHECK(shown("") == "R1/Camera");
 }
 
-TEST_CASE("I5: an OK of a client that knows no words waits for the first picture, however long") {
+TEST_CASE("An OK of a client that knows no words waits for the first picture, however long") {
   ImageServerLimits limits;
   limits.first_s = 0.1;
   const bool chooses_a_part_first = GENERATE(false, true);  // U is as old as OK
@@ -263,7 +263,7 @@ TEST_CASE("I5: an OK of a client that knows no words waits for the first picture
   CHECK(client.read().type == 2);
 }
 
-TEST_CASE("I5: robots may leave in mid-frame") {
+TEST_CASE("Robots may leave in mid-frame") {
   CameraWorld world("flat", 0, ImageType::raw);
   ImageClient slow(world.port(), 4096), quick(world.port());
   for (int round = 0; round < 5; ++round) {
@@ -279,7 +279,7 @@ TEST_CASE("I5: robots may leave in mid-frame") {
   }
 }
 
-TEST_CASE("I6: garbage is skipped, and nobody else is disturbed") {
+TEST_CASE("Garbage is skipped, and nobody else is disturbed") {
   CameraWorld world;
   Robot robot(world, "R1");
   ImageClient client(world.port());
@@ -293,7 +293,7 @@ TEST_CASE("I6: garbage is skipped, and nobody else is disturbed") {
   }
 }
 
-TEST_CASE("I6: so many readers are served and no more") {
+TEST_CASE("So many readers are served and no more") {
   ImageServerLimits limits;
   limits.connections = 3;
   CameraWorld world("flat", 1, ImageType::good, limits);
@@ -318,7 +318,7 @@ TEST_CASE("I6: so many readers are served and no more") {
   }));
 }
 
-TEST_CASE("I6: fifty readers that do not read take a frame each at most, and are let go") {
+TEST_CASE("Fifty readers that do not read take a frame each at most, and are let go") {
   ImageServerLimits limits;
   limits.unread_s = 3;
   limits.connections = 51;
@@ -349,7 +349,7 @@ TEST_CASE("I6: fifty readers that do not read take a frame each at most, and are
   CHECK(client.ask().type == 0);
 }
 
-TEST_CASE("I7: the edge of a step is where geometry has it, turned by MISPKG and zoomed by SET") {
+TEST_CASE("The edge of a step is where geometry has it, turned by MISPKG and zoomed by SET") {
   CameraWorld world("step-200");
   Robot robot(world, "R1");
   // To the right and up, as USARSim has it: the robot stays at rest meanwhile.
