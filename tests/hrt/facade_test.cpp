@@ -75,7 +75,7 @@ hrt_config unhurried() {
 
 }  // namespace
 
-TEST_CASE("F1 forward is x, left is y, a left turn raises yaw, millimetres and degrees") {
+TEST_CASE("Forward is x, left is y, a left turn raises yaw, millimetres and degrees") {
   const auto robot = use_fake_robot();
   const Open open;
   REQUIRE(hrt_go_forward(200) == HRT_OK);
@@ -102,7 +102,7 @@ TEST_CASE("F1 forward is x, left is y, a left turn raises yaw, millimetres and d
   CHECK(hrt_show_status() == HRT_OK);
 }
 
-TEST_CASE("F1 track speeds and flipper angles reach the transport in metres and radians, in order") {
+TEST_CASE("Track speeds and flipper angles reach the transport in metres and radians, in order") {
   const auto robot = use_fake_robot();
   const Open open;
   REQUIRE(hrt_set_tracks(100, -50) == HRT_OK);
@@ -126,7 +126,7 @@ TEST_CASE("F1 track speeds and flipper angles reach the transport in metres and 
   }
 }
 
-TEST_CASE("F1 sleeping counts robot time and takes whole cycles") {
+TEST_CASE("Sleeping counts robot time and takes whole cycles") {
   const auto robot = use_fake_robot();
   const Open open;
   const double start_s = hrt_time();
@@ -141,7 +141,7 @@ TEST_CASE("F1 sleeping counts robot time and takes whole cycles") {
   CHECK(state.time_s - start_s == Approx(0.53));
 }
 
-TEST_CASE("F2 without a robot every call says so") {
+TEST_CASE("Without a robot every call says so") {
   hrt_state state = hrt_state_init();
   CHECK(hrt_go_forward(1) == HRT_E_NOT_INITIALISED);
   CHECK(hrt_turning(1) == HRT_E_NOT_INITIALISED);
@@ -164,7 +164,7 @@ TEST_CASE("F2 without a robot every call says so") {
   CHECK(hrt_close() == HRT_OK);
 }
 
-TEST_CASE("F2 bad arguments are named and change nothing") {
+TEST_CASE("Bad arguments are named and change nothing") {
   const auto robot = use_fake_robot();
   const Open open;
   for (const double bad : {kNaN, kInfinity, -kInfinity, 1e7, -1e7}) {
@@ -198,7 +198,7 @@ TEST_CASE("F2 bad arguments are named and change nothing") {
   CHECK(robot->commands.front().flipper_mask == 0);
 }
 
-TEST_CASE("F2 every error has a name, and only those") {
+TEST_CASE("Every error has a name, and only those") {
   CHECK(std::string(hrt_error_name(HRT_OK)) == "HRT_OK");
   CHECK(std::string(hrt_error_name(HRT_E_STUCK)) == "HRT_E_STUCK");
   for (int error = HRT_E_INTERNAL; error <= HRT_E_NOT_INITIALISED; ++error) {
@@ -209,7 +209,7 @@ TEST_CASE("F2 every error has a name, and only those") {
   CHECK(std::string(hrt_version()) == "0.1.0");
 }
 
-TEST_CASE("F2 a second init is busy, a closed robot can be opened again") {
+TEST_CASE("A second init is busy, a closed robot can be opened again") {
   use_fake_robot();
   {
     const Open open;
@@ -221,7 +221,7 @@ TEST_CASE("F2 a second init is busy, a closed robot can be opened again") {
   CHECK(hrt_go_forward(10) == HRT_OK);
 }
 
-TEST_CASE("F2 F3 blocked tracks are stuck, and stand afterwards") {
+TEST_CASE("Blocked tracks are stuck, and stand afterwards") {
   PlantSettings settings;
   settings.tracks_blocked = true;
   const auto robot = use_fake_robot(settings);
@@ -235,7 +235,7 @@ TEST_CASE("F2 F3 blocked tracks are stuck, and stand afterwards") {
   CHECK(hrt_turning(30) == HRT_E_STUCK);
 }
 
-TEST_CASE("F2 F3 a broken link ends every call, and a new init opens anew") {
+TEST_CASE("A broken link ends every call, and a new init opens anew") {
   const auto robot = use_fake_robot();
   robot->lost_at_frame = 40;
   {
@@ -260,7 +260,7 @@ TEST_CASE("F2 F3 a broken link ends every call, and a new init opens anew") {
   CHECK(robot->closed);
 }
 
-TEST_CASE("F3 a wait for states that ends without hrt_close() ends every call") {
+TEST_CASE("A wait for states that ends without hrt_close() ends every call") {
   const auto robot = use_fake_robot();
   const Open open(unhurried());
   int result = HRT_OK;
@@ -276,7 +276,7 @@ TEST_CASE("F3 a wait for states that ends without hrt_close() ends every call") 
   CHECK(hrt_sleep(1) == HRT_E_INTERNAL);
 }
 
-TEST_CASE("F3 another thread stops a motion, and a second motion is busy") {
+TEST_CASE("Another thread stops a motion, and a second motion is busy") {
   const auto robot = use_fake_robot();
   const Open open(unhurried());
   int result = HRT_OK;
@@ -299,7 +299,7 @@ TEST_CASE("F3 another thread stops a motion, and a second motion is busy") {
   CHECK(state.commanded_track_mmps[0] == 0);
 }
 
-TEST_CASE("F3 direct track speeds take over from a motion") {
+TEST_CASE("Direct track speeds take over from a motion") {
   const auto robot = use_fake_robot();
   const Open open(unhurried());
   int result = HRT_OK;
@@ -310,7 +310,7 @@ TEST_CASE("F3 direct track speeds take over from a motion") {
   CHECK(result == HRT_E_STOPPED);
 }
 
-TEST_CASE("F3 closing ends the calls of other threads") {
+TEST_CASE("Closing ends the calls of other threads") {
   const auto robot = use_fake_robot();
   const hrt_config config = unhurried();
   REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
@@ -326,7 +326,7 @@ TEST_CASE("F3 closing ends the calls of other threads") {
   CHECK(robot->closed);
 }
 
-TEST_CASE("F3 a robot that is being closed asks its transport nothing more") {
+TEST_CASE("A robot that is being closed asks its transport nothing more") {
   const auto fake = use_fake_robot();
   kenaf::hrt::Robot robot(kenaf::hrt::make_transport(), hrt_config_default());
   kenaf::hrt::Snapshot snapshot;
@@ -339,7 +339,7 @@ TEST_CASE("F3 a robot that is being closed asks its transport nothing more") {
   CHECK(snapshot.measured.frame > 0);
 }
 
-TEST_CASE("F3 flippers that do not arrive are named, and hrt_stop leaves them where they are") {
+TEST_CASE("Flippers that do not arrive are named, and hrt_stop leaves them where they are") {
   const auto robot = use_fake_robot();
   const Open open;
   CHECK(hrt_wait_flippers(1, 0) == HRT_OK);  // none was ever commanded
@@ -354,7 +354,7 @@ TEST_CASE("F3 flippers that do not arrive are named, and hrt_stop leaves them wh
   CHECK(state.commanded_flipper_deg[0] == 0);
 }
 
-TEST_CASE("F3 lost cycles are counted") {
+TEST_CASE("Lost cycles are counted") {
   const auto robot = use_fake_robot();
   robot->skipped_frame = 5;
   const Open open;
@@ -364,7 +364,7 @@ TEST_CASE("F3 lost cycles are counted") {
   CHECK(state.lost_cycles == 1);
 }
 
-TEST_CASE("F4 in lock step the same program gives the same commands however long it thinks") {
+TEST_CASE("In lock step the same program gives the same commands however long it thinks") {
   const auto drive = [](int longest_thought_us) {
     PlantSettings settings;
     settings.turn_efficiency = 0.6;
@@ -413,7 +413,7 @@ TEST_CASE("F4 in lock step the same program gives the same commands however long
   }
 }
 
-TEST_CASE("F4 two threads that take turns give the same run as well") {
+TEST_CASE("Two threads that take turns give the same run as well") {
   // The commands of the first 50 cycles, in which both threads are at work; none where this machine was too busy for
   // the two of them to begin in the same cycle.
   const auto drive = [](std::chrono::milliseconds thought) {
@@ -455,7 +455,7 @@ TEST_CASE("F4 two threads that take turns give the same run as well") {
   }
 }
 
-TEST_CASE("F4 a program that waits on the wall clock goes on after the hold") {
+TEST_CASE("A program that waits on the wall clock goes on after the hold") {
   const auto robot = use_fake_robot();
   const Open open;
   const double before_s = hrt_time();
@@ -463,7 +463,7 @@ TEST_CASE("F4 a program that waits on the wall clock goes on after the hold") {
   CHECK(hrt_go_forward(10) == HRT_OK);
 }
 
-TEST_CASE("F4 a program that waits for a processor is waited for") {
+TEST_CASE("A program that waits for a processor is waited for") {
   // On one processor with it, a neighbour takes 1024 parts of 1039 (sched(7): nice 0 and 19) for three times hold_s.
   // Where this machine is so busy that it takes nearly as long as the longest hold, it tells nothing.
   cpu_set_t all, one;
@@ -508,7 +508,7 @@ TEST_CASE("F4 a program that waits for a processor is waited for") {
   }
 }
 
-TEST_CASE("F5 track speeds hold while the program calls, and stop command_timeout_s after its last call") {
+TEST_CASE("Track speeds hold while the program calls, and stop command_timeout_s after its last call") {
   const auto robot = use_fake_robot();
   hrt_config config = hrt_config_default();
   config.command_timeout_s = 0.3;
@@ -524,7 +524,7 @@ TEST_CASE("F5 track speeds hold while the program calls, and stop command_timeou
   CHECK(state.commanded_track_mmps[0] == 0);  // stopped for good, until commanded anew
 }
 
-TEST_CASE("F5 tracks that were stopped by silence are said to be, until they are commanded anew") {
+TEST_CASE("Tracks that were stopped by silence are said to be, until they are commanded anew") {
   const auto robot = use_fake_robot();
   robot->lockstep = false;
   robot->runs_alone = true;
@@ -562,7 +562,7 @@ TEST_CASE("F5 tracks that were stopped by silence are said to be, until they are
   }
 }
 
-TEST_CASE("F5 a sleep of no time counts as a call") {
+TEST_CASE("A sleep of no time counts as a call") {
   // Where this thread was kept from calling for half of the timeout, which is a hundred cycles, it tells nothing.
   for (bool told = false; !told;) {
     const auto robot = use_fake_robot();
@@ -588,7 +588,7 @@ TEST_CASE("F5 a sleep of no time counts as a call") {
   }
 }
 
-TEST_CASE("F5 and they stop as early where the world is reset meanwhile") {
+TEST_CASE("And they stop as early where the world is reset meanwhile") {
   const auto robot = use_fake_robot();
   robot->reset_at_frame = 205;
   hrt_config config = hrt_config_default();
@@ -602,7 +602,7 @@ TEST_CASE("F5 and they stop as early where the world is reset meanwhile") {
   CHECK(frame <= 233);
 }
 
-TEST_CASE("F1 F6 where the world is reset, sleeping and a recording go on") {
+TEST_CASE("Where the world is reset, sleeping and a recording go on") {
   const kenaf::support::TemporaryFolder folder;
   const std::string file = (folder.path() / "run.csv").string();
   const auto robot = use_fake_robot();
@@ -625,7 +625,7 @@ TEST_CASE("F1 F6 where the world is reset, sleeping and a recording go on") {
   CHECK(run.column("robot_time_s").back() == Approx(after.time_s));
 }
 
-TEST_CASE("F6 a recording has every cycle once, with what was commanded and measured") {
+TEST_CASE("A recording has every cycle once, with what was commanded and measured") {
   const kenaf::support::TemporaryFolder folder;
   const std::string file = (folder.path() / "run.csv").string();
   const auto robot = use_fake_robot();
@@ -664,7 +664,7 @@ TEST_CASE("F6 a recording has every cycle once, with what was commanded and meas
   CHECK(flipper[1] == Approx(10 * kDegree));
 }
 
-TEST_CASE("F6 a recording ends with the cycle in which hrt_close() is called, however late the robot hears of it") {
+TEST_CASE("A recording ends with the cycle in which hrt_close() is called, however late the robot hears of it") {
   const auto rows_of = [](int late_interrupts) {
     const kenaf::support::TemporaryFolder folder;
     const std::string file = (folder.path() / "run.csv").string();
@@ -683,7 +683,7 @@ TEST_CASE("F6 a recording ends with the cycle in which hrt_close() is called, ho
   for (const int late : {0, 1, 3}) CHECK(rows_of(late) == 11);
 }
 
-TEST_CASE("F6 a recording of many cycles loses none, begins at the newest cycle and ends on request") {
+TEST_CASE("A recording of many cycles loses none, begins at the newest cycle and ends on request") {
   const kenaf::support::TemporaryFolder folder;
   const std::string file = (folder.path() / "run.csv").string();
   use_fake_robot();
@@ -717,7 +717,7 @@ TEST_CASE("F6 a recording of many cycles loses none, begins at the newest cycle 
   CHECK(run.row_count() > 12000);
 }
 
-TEST_CASE("F2 a recording that cannot be begun is an error of init") {
+TEST_CASE("A recording that cannot be begun is an error of init") {
   const auto robot = use_fake_robot();
   hrt_config config = hrt_config_default();
   std::string("/nonexistent/folder/run.csv").copy(config.record, sizeof config.record - 1);

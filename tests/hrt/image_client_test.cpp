@@ -56,7 +56,7 @@ void check_failure(const std::string& server, int code, const std::string& words
 
 }  // namespace
 
-TEST_CASE("I1 a name is selected, then pictures are asked for one at a time, without a name 'J' is all that is sent") {
+TEST_CASE("A name is selected, then pictures are asked for one at a time, without a name 'J' is all that is sent") {
   std::mutex mutex;
   std::vector<std::string> heard;
   const Bytes8 red = plain_jpeg(64, 48, 200, 0, 0);
@@ -95,7 +95,7 @@ TEST_CASE("I1 a name is selected, then pictures are asked for one at a time, wit
   CHECK(select[1] == "J");
 }
 
-TEST_CASE("I2 number, robot time, name and pixels are the server's, the age counts from the request at least") {
+TEST_CASE("Number, robot time, name and pixels are the server's, the age counts from the request at least") {
   const Bytes8 green = plain_jpeg(64, 48, 0, 180, 0);
   FakeImageServer server([&](Client& connection) {
     while (const auto kind = connection.request()) {
@@ -124,7 +124,7 @@ TEST_CASE("I2 number, robot time, name and pixels are the server's, the age coun
   CHECK(get(picture, nullptr, 0.3) == HRT_E_TIMEOUT);
 }
 
-TEST_CASE("I2 the next picture is not requested long before it can be there") {
+TEST_CASE("The next picture is not requested long before it can be there") {
   const Bytes8 red = plain_jpeg(64, 48, 200, 0, 0);
   std::atomic<int> too_soon = 0, pictures = 0;
   FakeImageServer server([&](Client& connection) {
@@ -146,7 +146,7 @@ TEST_CASE("I2 the next picture is not requested long before it can be there") {
   CHECK(too_soon <= pictures / 3);
 }
 
-TEST_CASE("I3 a server that knows 'OK' alone is asked so after a second, its pictures are counted here") {
+TEST_CASE("A server that knows 'OK' alone is asked so after a second, its pictures are counted here") {
   std::atomic<int> asked = 0, selected = 0;
   const Bytes8 blue = plain_jpeg(64, 48, 0, 0, 180);
   FakeImageServer server([&](Client& connection) {
@@ -169,7 +169,7 @@ TEST_CASE("I3 a server that knows 'OK' alone is asked so after a second, its pic
   CHECK(selected == 0);
 }
 
-TEST_CASE("I3 raw pictures are blue, green, red, in rows of whole 4 bytes") {
+TEST_CASE("Raw pictures are blue, green, red, in rows of whole 4 bytes") {
   FakeImageServer server([&](Client& connection) {
     while (const auto kind = connection.request()) {
       // 1 x 2 pixels: 3 bytes and 1 of padding a row.
@@ -185,7 +185,7 @@ TEST_CASE("I3 raw pictures are blue, green, red, in rows of whole 4 bytes") {
   CHECK(std::vector<int>(pixels, pixels + 6) == std::vector<int>{30, 20, 10, 60, 50, 40});
 }
 
-TEST_CASE("I3 a picture that a server sends unasked at the begin does not end the asking") {
+TEST_CASE("A picture that a server sends unasked at the begin does not end the asking") {
   const Bytes8 grey = plain_jpeg(64, 48, 90, 90, 90);
   FakeImageServer server([&](Client& connection) {
     connection.answer(3, grey);
@@ -198,7 +198,7 @@ TEST_CASE("I3 a picture that a server sends unasked at the begin does not end th
   REQUIRE(get(picture) == HRT_OK);
 }
 
-TEST_CASE("I4 no such camera: the server's words") {
+TEST_CASE("No such camera: the server's words") {
   FakeImageServer server([](Client& connection) {
     const std::string words = "robot kenaf has no camera 'Camera'; it has:\nBirdsEye";
     while (const auto kind = connection.request())
@@ -208,7 +208,7 @@ TEST_CASE("I4 no such camera: the server's words") {
                 "camera 'Camera': robot kenaf has no camera 'Camera'; it has: BirdsEye");
 }
 
-TEST_CASE("I4 whatever else a server does wrong") {
+TEST_CASE("Whatever else a server does wrong") {
   const Bytes8 jpeg = plain_jpeg(64, 48, 1, 2, 3);
   const auto misbehave = [&](const std::function<void(Client&)>& answer, const std::string& words) {
     FakeImageServer server([&](Client& connection) {
@@ -232,7 +232,7 @@ TEST_CASE("I4 whatever else a server does wrong") {
   misbehave([](Client& c) { c.send({"\x03\x03\xff\xff\xff\xff\xd8", 7}); }, "says nothing more");
 }
 
-TEST_CASE("I4 a server that goes away is named, and asked anew by the next call") {
+TEST_CASE("A server that goes away is named, and asked anew by the next call") {
   std::atomic<bool> serves = false;
   const Bytes8 red = plain_jpeg(64, 48, 200, 0, 0);
   FakeImageServer server([&](Client& connection) {
@@ -250,7 +250,7 @@ TEST_CASE("I4 a server that goes away is named, and asked anew by the next call"
   CHECK(server.connections() == 2);
 }
 
-TEST_CASE("I4 nobody there, and no address") {
+TEST_CASE("Nobody there, and no address") {
   std::string gone;
   {
     const FakeImageServer server([](Client&) {});

@@ -56,7 +56,7 @@ struct Ride {
 
 }  // namespace
 
-TEST_CASE("M1 a distance is reached within 1 mm, forward and backward") {
+TEST_CASE("A distance is reached within 1 mm, forward and backward") {
   for (const double distance_m : {0.1, -0.1, 1.0, -0.03, 0.004}) {
     Ride ride({});
     const MotionStep end = ride.forward(distance_m);
@@ -69,13 +69,13 @@ TEST_CASE("M1 a distance is reached within 1 mm, forward and backward") {
   }
 }
 
-TEST_CASE("M1 a distance within the tolerance moves nothing") {
+TEST_CASE("A distance within the tolerance moves nothing") {
   Ride ride({});
   CHECK(ride.forward(0).code == HRT_OK);
   CHECK(ride.plant.x_m == 0);
 }
 
-TEST_CASE("M2 the profile: full speed is held, never passed, and the ride takes the time it should") {
+TEST_CASE("The profile: full speed is held, never passed, and the ride takes the time it should") {
   Ride ride({});
   CHECK(ride.forward(2.0).code == HRT_OK);
   CHECK(ride.top_speed_mps == Approx(0.2).epsilon(1e-9));
@@ -86,7 +86,7 @@ TEST_CASE("M2 the profile: full speed is held, never passed, and the ride takes 
   CHECK(ride.duration_s == Approx(10.65).margin(0.15));
 }
 
-TEST_CASE("M2 speed over distance is the square root of twice the deceleration, exponential at the end") {
+TEST_CASE("Speed over distance is the square root of twice the deceleration, exponential at the end") {
   const Approach approach{0.2, 0.4, 5, 0.003};
   CHECK(approach.speed(10, 0.2, 0.01) == Approx(0.2));
   CHECK(approach.speed(0.04, 0.2, 0.01) == Approx(std::sqrt(2 * 0.4 * 0.04)));
@@ -105,7 +105,7 @@ TEST_CASE("M2 speed over distance is the square root of twice the deceleration, 
   CHECK(approach.duration_s(0.025) == Approx(1.5));
 }
 
-TEST_CASE("M3 the heading is held where one track makes 4 % less ground than the other") {
+TEST_CASE("The heading is held where one track makes 4 % less ground than the other") {
   const PlantSettings settings{.turn_efficiency = 0.6, .ground_per_belt = {1.0, 0.96}};
   Ride held(settings);
   CHECK(held.forward(1.0).code == HRT_OK);
@@ -120,7 +120,7 @@ TEST_CASE("M3 the heading is held where one track makes 4 % less ground than the
   CHECK(alone.plant.yaw_rad == Approx(-0.12).margin(0.003));
 }
 
-TEST_CASE("M3 a heading that is off at the start is taken back, also when driving backward") {
+TEST_CASE("A heading that is off at the start is taken back, also when driving backward") {
   for (const double distance_m : {0.5, -0.5}) {
     Ride ride({.turn_efficiency = 0.6, .yaw_start_rad = 3 * kOneDegree});
     ride.goal_rad = 0;
@@ -129,7 +129,7 @@ TEST_CASE("M3 a heading that is off at the start is taken back, also when drivin
   }
 }
 
-TEST_CASE("M4 a turn is reached within 0.3 degrees although the tracks slip") {
+TEST_CASE("A turn is reached within 0.3 degrees although the tracks slip") {
   for (const double efficiency : {1.0, 0.7, 0.45}) {
     for (const double degrees : {90.0, -90.0, 180.0, 360.0, -720.0, 5.0}) {
       Ride ride({.turn_efficiency = efficiency, .yaw_start_rad = 170 * kOneDegree});
@@ -141,7 +141,7 @@ TEST_CASE("M4 a turn is reached within 0.3 degrees although the tracks slip") {
   }
 }
 
-TEST_CASE("M4 positive is to the left: the right track drives forward") {
+TEST_CASE("Positive is to the left: the right track drives forward") {
   Ride ride({});
   TurnInPlace turn(ride.limits, 90 * kOneDegree, ride.now);
   (void)turn.step(ride.now);
@@ -151,7 +151,7 @@ TEST_CASE("M4 positive is to the left: the right track drives forward") {
   CHECK(step.track_speed_mps[1] == -step.track_speed_mps[0]);
 }
 
-TEST_CASE("M5 without a posture sensor a turn is the encoders' times turn_efficiency") {
+TEST_CASE("Without a posture sensor a turn is the encoders' times turn_efficiency") {
   PlantSettings settings{.turn_efficiency = 0.6, .has_posture = false};
   Ride calibrated(settings, 0.6);
   CHECK(calibrated.turn(90 * kOneDegree).code == HRT_OK);
@@ -161,7 +161,7 @@ TEST_CASE("M5 without a posture sensor a turn is the encoders' times turn_effici
   CHECK(uncalibrated.plant.yaw_rad / kOneDegree == Approx(0.6 * 90).margin(0.3));
 }
 
-TEST_CASE("M6 blocked tracks are stuck after stuck_time_s of robot time") {
+TEST_CASE("Blocked tracks are stuck after stuck_time_s of robot time") {
   for (const double period_s : {0.01, 0.002}) {
     Ride ride({.period_s = period_s, .tracks_blocked = true});
     const MotionStep forward = ride.forward(0.1);
@@ -172,13 +172,13 @@ TEST_CASE("M6 blocked tracks are stuck after stuck_time_s of robot time") {
   }
 }
 
-TEST_CASE("M6 noise of the posture sensor is no progress") {
+TEST_CASE("Noise of the posture sensor is no progress") {
   Ride ride({.yaw_noise_rad = 0.1 * kOneDegree, .tracks_blocked = true});
   CHECK(ride.turn(90 * kOneDegree).code == HRT_E_STUCK);
   CHECK(ride.duration_s < 3);
 }
 
-TEST_CASE("M6 a track current above the limit is stuck before any encoder shows it") {
+TEST_CASE("A track current above the limit is stuck before any encoder shows it") {
   Ride ride({.idle_a = 5});  // tracks spin in front of a wall: they travel, but pull hard
   ride.limits.stuck_current_a = 4;
   const MotionStep end = ride.forward(1.0);
@@ -187,7 +187,7 @@ TEST_CASE("M6 a track current above the limit is stuck before any encoder shows 
   CHECK(ride.duration_s == Approx(1.0).margin(0.02));
 }
 
-TEST_CASE("M6 a robot that gets on, but far too slowly, runs into the time limit") {
+TEST_CASE("A robot that gets on, but far too slowly, runs into the time limit") {
   Ride ride({.max_track_mps = 0.002});
   const MotionStep end = ride.forward(1.0);
   CHECK(end.code == HRT_E_TIMEOUT);
@@ -195,7 +195,7 @@ TEST_CASE("M6 a robot that gets on, but far too slowly, runs into the time limit
   CHECK(ride.duration_s == Approx(3 * 6.5 + 5).margin(0.05));
 }
 
-TEST_CASE("M6 tracks that need 10 mm/s to get going are pushed until they do") {
+TEST_CASE("Tracks that need 10 mm/s to get going are pushed until they do") {
   Ride ride({.dead_band_mps = 0.01});
   CHECK(ride.forward(0.1).code == HRT_OK);
   CHECK(std::abs(ride.plant.x_m - 0.1) <= 0.001);
@@ -203,7 +203,7 @@ TEST_CASE("M6 tracks that need 10 mm/s to get going are pushed until they do") {
   CHECK(std::abs(ride.plant.yaw_rad / kOneDegree - 45) <= 0.3);
 }
 
-TEST_CASE("M7 a square of 100 mm closes within 10 mm and 2 degrees: slip, noise, off-centre turns, unequal tracks") {
+TEST_CASE("A square of 100 mm closes within 10 mm and 2 degrees: slip, noise, off-centre turns, unequal tracks") {
   Ride ride({.turn_efficiency = 0.55,
              .ground_per_belt = {0.98, 0.96},
              .turn_centre_m = 0.02,

@@ -129,7 +129,7 @@ int get_rgb(hrt_picture& picture, double timeout_s = 20) {
 
 }  // namespace
 
-TEST_CASE("P1 RGB is what the camera gave, rows from the top") {
+TEST_CASE("RGB is what the camera gave, rows from the top") {
   const OpenScene open;
   open.scene->show(four_pixels());
   hrt_picture picture = hrt_picture_init();
@@ -146,7 +146,7 @@ TEST_CASE("P1 RGB is what the camera gave, rows from the top") {
   CHECK(std::vector<int>(room, room + 12) == std::vector<int>{255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255});
 }
 
-TEST_CASE("P1 a camera's own JPEG is handed on byte by byte, and decoded for RGB") {
+TEST_CASE("A camera's own JPEG is handed on byte by byte, and decoded for RGB") {
   const OpenScene open;
   const Bytes8 jpeg = plain_jpeg(40, 30, 10, 200, 90);
   open.scene->show(jpeg_picture(jpeg));
@@ -166,7 +166,7 @@ TEST_CASE("P1 a camera's own JPEG is handed on byte by byte, and decoded for RGB
   }
 }
 
-TEST_CASE("P1 a webcam's Motion JPEG, which leaves out the standard Huffman tables, is decoded") {
+TEST_CASE("A webcam's Motion JPEG, which leaves out the standard Huffman tables, is decoded") {
   const OpenScene open;
   Bytes8 jpeg = plain_jpeg(32, 32, 10, 200, 90);
   // Without its segments DHT (FF C4), which TurboJPEG writes where they are the standard's.
@@ -189,7 +189,7 @@ TEST_CASE("P1 a webcam's Motion JPEG, which leaves out the standard Huffman tabl
   CHECK(std::abs(room[2] - 90) < 4);
 }
 
-TEST_CASE("P1 YUYV by BT.601, as RGB and as JPEG") {
+TEST_CASE("YUYV by BT.601, as RGB and as JPEG") {
   const OpenScene open;
   CameraPicture yuyv;
   yuyv.encoding = CameraPicture::Encoding::yuyv;
@@ -221,7 +221,7 @@ TEST_CASE("P1 YUYV by BT.601, as RGB and as JPEG") {
   CHECK(int{rgb[rgb.size() - 2]} < 16);
 }
 
-TEST_CASE("P1 robot time and age") {
+TEST_CASE("Robot time and age") {
   const OpenScene open(false);  // a robot that waits for nobody, as the real one
   REQUIRE(hrt_wait_cycle(nullptr) == HRT_OK);
   CameraPicture picture = four_pixels();
@@ -244,7 +244,7 @@ TEST_CASE("P1 robot time and age") {
   CHECK(got.time_s == 7.5);
 }
 
-TEST_CASE("P2 each picture once, always the newest, and 0 for any") {
+TEST_CASE("Each picture once, always the newest, and 0 for any") {
   const OpenScene open;
   hrt_picture picture = hrt_picture_init();
   CHECK(get_rgb(picture, 0) == HRT_E_TIMEOUT);
@@ -268,7 +268,7 @@ TEST_CASE("P2 each picture once, always the newest, and 0 for any") {
   later.join();
 }
 
-TEST_CASE("P2 threads get their pictures each for itself") {
+TEST_CASE("Threads get their pictures each for itself") {
   const OpenScene open;
   std::atomic<int> wrong = 0;
   std::atomic<std::uint64_t> seen[3] = {0, 0, 0};
@@ -294,7 +294,7 @@ TEST_CASE("P2 threads get their pictures each for itself") {
   CHECK(wrong == 0);
 }
 
-TEST_CASE("P3 a buffer that is too small is told the size, and the picture is not lost") {
+TEST_CASE("A buffer that is too small is told the size, and the picture is not lost") {
   const OpenScene open;
   open.scene->show(four_pixels());
   hrt_picture picture = hrt_picture_init();
@@ -311,7 +311,7 @@ TEST_CASE("P3 a buffer that is too small is told the size, and the picture is no
   CHECK(picture.number == 1);
 }
 
-TEST_CASE("P3 wrong arguments") {
+TEST_CASE("Wrong arguments") {
   hrt_picture picture = hrt_picture_init();
   CHECK(get_rgb(picture) == HRT_E_NOT_INITIALISED);
   const OpenScene open;
@@ -329,7 +329,7 @@ TEST_CASE("P3 wrong arguments") {
   CHECK_THAT(hrt_last_error(), Catch::Contains("hrt_picture_init()"));
 }
 
-TEST_CASE("P4 a camera that fails says so once, is opened anew by the next call, and the robot goes on") {
+TEST_CASE("A camera that fails says so once, is opened anew by the next call, and the robot goes on") {
   const OpenScene open;
   open.scene->show(four_pixels());
   hrt_picture picture = hrt_picture_init();
@@ -345,7 +345,7 @@ TEST_CASE("P4 a camera that fails says so once, is opened anew by the next call,
   CHECK(open.scene->closed == 1);
 }
 
-TEST_CASE("P4 a damaged picture is refused in words, and the next one is taken") {
+TEST_CASE("A damaged picture is refused in words, and the next one is taken") {
   const OpenScene open;
   Bytes8 cut = plain_jpeg(640, 480, 10, 20, 30);
   cut.resize(cut.size() / 2);
@@ -373,7 +373,7 @@ TEST_CASE("P4 a damaged picture is refused in words, and the next one is taken")
   CHECK(picture.number == 4);
 }
 
-TEST_CASE("P5 robot time runs on while a picture is waited for, track speeds hold, hrt_stop ends nothing") {
+TEST_CASE("Robot time runs on while a picture is waited for, track speeds hold, hrt_stop ends nothing") {
   const OpenScene open;
   REQUIRE(hrt_set_tracks(100, 100) == HRT_OK);
   const double start_s = hrt_time();
@@ -391,7 +391,7 @@ TEST_CASE("P5 robot time runs on while a picture is waited for, track speeds hol
   other.join();
 }
 
-TEST_CASE("P5 hrt_close ends a wait, and so does a link that breaks") {
+TEST_CASE("Hrt_close ends a wait, and so does a link that breaks") {
   {
     const OpenScene open;
     std::thread closer([&] {
@@ -412,7 +412,7 @@ TEST_CASE("P5 hrt_close ends a wait, and so does a link that breaks") {
   CHECK_THAT(hrt_last_error(), Catch::Contains("the fake link broke"));
 }
 
-TEST_CASE("P6 no picture, no camera, and one that is not asked any more is told to pause") {
+TEST_CASE("No picture, no camera, and one that is not asked any more is told to pause") {
   const OpenScene open;
   REQUIRE(hrt_go_forward(10) == HRT_OK);
   CHECK(open.scene->opened == 0);

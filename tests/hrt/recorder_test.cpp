@@ -87,7 +87,7 @@ std::string recording_in(const support::TemporaryFolder& folder) {
 
 }  // namespace
 
-TEST_CASE("R1 R2 a disk that stalls for as many cycles as the queue holds costs neither a wait nor a row") {
+TEST_CASE("A disk that stalls for as many cycles as the queue holds costs neither a wait nor a row") {
   const support::TemporaryFolder folder;
   StalledDisk disk(recording_in(folder));
   Recorder recorder(recording_in(folder), false);
@@ -101,7 +101,7 @@ TEST_CASE("R1 R2 a disk that stalls for as many cycles as the queue holds costs 
   for (std::size_t i = 0; i < kRows; ++i) REQUIRE(run.column("frame")[i] == static_cast<double>(i));
 }
 
-TEST_CASE("R1 R3 one that stalls for longer loses rows, still without a wait, and the recording says how many") {
+TEST_CASE("One that stalls for longer loses rows, still without a wait, and the recording says how many") {
   const support::TemporaryFolder folder;
   std::ofstream(recording_in(folder)) << "of before";
   StalledDisk disk(recording_in(folder));
@@ -128,7 +128,7 @@ TEST_CASE("R1 R3 one that stalls for longer loses rows, still without a wait, an
   CHECK(text == "of before");
 }
 
-TEST_CASE("R1 R2 a robot that does not wait for its program is answered in every cycle while the disk stalls") {
+TEST_CASE("A robot that does not wait for its program is answered in every cycle while the disk stalls") {
   const support::TemporaryFolder folder;
   StalledDisk disk(recording_in(folder));
   const auto robot = hrt::test::use_fake_robot();
@@ -151,7 +151,7 @@ TEST_CASE("R1 R2 a robot that does not wait for its program is answered in every
   }
 }
 
-TEST_CASE("R1 cycles go on while the disk makes the file of a recording") {
+TEST_CASE("Cycles go on while the disk makes the file of a recording") {
   const support::TemporaryFolder folder;
   StalledDisk disk(recording_in(folder), false);
   const auto robot = hrt::test::use_fake_robot();
@@ -237,7 +237,7 @@ TEST_CASE("a robot that is being closed is busy until it is") {
   CHECK(hrt_close() == HRT_OK);
 }
 
-TEST_CASE("R3 a recording that gets no row leaves the file of its name as it is") {
+TEST_CASE("A recording that gets no row leaves the file of its name as it is") {
   const support::TemporaryFolder folder;
   std::ofstream(recording_in(folder)) << "of before";
   { const Recorder recorder(recording_in(folder), false); }
@@ -246,7 +246,7 @@ TEST_CASE("R3 a recording that gets no row leaves the file of its name as it is"
   CHECK(text == "of before");
 }
 
-TEST_CASE("R5 a value that is only held is not recorded as measured") {
+TEST_CASE("A value that is only held is not recorded as measured") {
   robot::State state = state_of(7);
   state.posture_rad = {0.1, 0.2, 0.3};
   state.battery_v = 24;
@@ -261,7 +261,7 @@ TEST_CASE("R5 a value that is only held is not recorded as measured") {
   CHECK(std::isnan(cell("track_left_m")));
 }
 
-TEST_CASE("R5 a recording that begins between two cycles has the command in force in its first row") {
+TEST_CASE("A recording that begins between two cycles has the command in force in its first row") {
   const support::TemporaryFolder folder;
   const auto robot = hrt::test::use_fake_robot();
   robot->lockstep = false;
@@ -284,7 +284,7 @@ TEST_CASE("R5 a recording that begins between two cycles has the command in forc
   CHECK(hrt_close() == HRT_OK);
 }
 
-TEST_CASE("R4 KENAF_RECORD records the same as the call, from the first cycle on") {
+TEST_CASE("KENAF_RECORD records the same as the call, from the first cycle on") {
   const support::TemporaryFolder folder;
   const std::string by_variable = (folder.path() / "variable.csv").string(),
                     by_call = (folder.path() / "call.csv").string();

@@ -81,7 +81,7 @@ struct ChildEndsHere {
 
 }  // namespace
 
-TEST_CASE("R1 a bad network gives the same commands as a good one") {
+TEST_CASE("A bad network gives the same commands as a good one") {
   int dropped = 0;
   const std::vector<protocol::relay::Command> good = run_corner({}, dropped);
   CHECK(dropped == 0);
@@ -100,7 +100,7 @@ TEST_CASE("R1 a bad network gives the same commands as a good one") {
   }
 }
 
-TEST_CASE("R1 a first state that was lost is asked for") {
+TEST_CASE("A first state that was lost is asked for") {
   FakeRelay::Behaviour behaviour;
   behaviour.first_state_lost = true;
   FakeRelay relay(behaviour);
@@ -110,7 +110,7 @@ TEST_CASE("R1 a first state that was lost is asked for") {
   CHECK(hrt_close() == HRT_OK);
 }
 
-TEST_CASE("R2 a first state that never comes is waited for as long as a relay") {
+TEST_CASE("A first state that never comes is waited for as long as a relay") {
   FakeRelay::Behaviour behaviour;
   behaviour.no_state = true;
   FakeRelay relay(behaviour);
@@ -124,7 +124,7 @@ TEST_CASE("R2 a first state that never comes is waited for as long as a relay") 
   CHECK_THAT(hrt_last_error(), Catch::Contains("first state has not come within"));
 }
 
-TEST_CASE("R2 what the configuration says is what Hello asks for") {
+TEST_CASE("What the configuration says is what Hello asks for") {
   FakeRelay relay({});
   hrt_config config = config_for(relay.address());
   config.period_s = 0.02;
@@ -139,7 +139,7 @@ TEST_CASE("R2 what the configuration says is what Hello asks for") {
   CHECK_FALSE(hello.reset_robot);
 }
 
-TEST_CASE("R2 no relay: the error says what to start, after connect_timeout_s") {
+TEST_CASE("No relay: the error says what to start, after connect_timeout_s") {
   std::string address;
   {
     const FakeRelay gone({});
@@ -154,14 +154,14 @@ TEST_CASE("R2 no relay: the error says what to start, after connect_timeout_s") 
              Catch::Contains(address) && Catch::Contains("start kenaf-relayd") && Catch::Contains("nobody listens"));
 }
 
-TEST_CASE("R2 a host that has also an IPv6 address is reached where the relay listens") {
+TEST_CASE("A host that has also an IPv6 address is reached where the relay listens") {
   FakeRelay relay({});
   const hrt_config config = config_for("localhost:" + std::to_string(relay.port()));
   REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
   CHECK(hrt_close() == HRT_OK);
 }
 
-TEST_CASE("R2 an address that is none is an error of the configuration") {
+TEST_CASE("An address that is none is an error of the configuration") {
   for (const char* address :
        {"127.0.0.1", "127.0.0.1:", "127.0.0.1:port", "127.0.0.1:0", "127.0.0.1:65536", "127.0.0.1:-1", ":1"}) {
     const hrt_config config = config_for(address);
@@ -170,7 +170,7 @@ TEST_CASE("R2 an address that is none is an error of the configuration") {
   }
 }
 
-TEST_CASE("R2 a refusal carries the relay's words") {
+TEST_CASE("A refusal carries the relay's words") {
   FakeRelay::Behaviour behaviour;
   behaviour.refuse = protocol::relay::RefusedReason::busy;
   behaviour.words = "another commander has the robot";
@@ -180,7 +180,7 @@ TEST_CASE("R2 a refusal carries the relay's words") {
   CHECK_THAT(hrt_last_error(), Catch::Contains("another commander has the robot"));
 }
 
-TEST_CASE("R2 a relay that has no world server yet is asked again") {
+TEST_CASE("A relay that has no world server yet is asked again") {
   FakeRelay::Behaviour behaviour;
   behaviour.refuse = protocol::relay::RefusedReason::no_world_server;
   behaviour.refuse_times = 3;
@@ -199,7 +199,7 @@ TEST_CASE("R2 a relay that has no world server yet is asked again") {
   CHECK_THAT(hrt_last_error(), Catch::Contains("start kenaf-world"));
 }
 
-TEST_CASE("R3 a link that falls silent is an error within a second") {
+TEST_CASE("A link that falls silent is an error within a second") {
   FakeRelay::Behaviour behaviour;
   behaviour.silent_from_frame = 20;
   FakeRelay relay(behaviour);
@@ -214,7 +214,7 @@ TEST_CASE("R3 a link that falls silent is an error within a second") {
   CHECK(relay.byes() > 0);
 }
 
-TEST_CASE("R3 a lost world server, a forgotten session and a vanished relay are told apart at once") {
+TEST_CASE("A lost world server, a forgotten session and a vanished relay are told apart at once") {
   SECTION("world server lost") {
     FakeRelay::Behaviour behaviour;
     behaviour.world_lost_at_frame = 20;
@@ -247,7 +247,7 @@ TEST_CASE("R3 a lost world server, a forgotten session and a vanished relay are 
   (void)hrt_close();
 }
 
-TEST_CASE("R3 a world whose time stands still without being paused is an error, not a hang") {
+TEST_CASE("A world whose time stands still without being paused is an error, not a hang") {
   FakeRelay::Behaviour behaviour;
   behaviour.frozen_from_frame = 20;
   FakeRelay relay(behaviour);
@@ -259,7 +259,7 @@ TEST_CASE("R3 a world whose time stands still without being paused is an error, 
   (void)hrt_close();
 }
 
-TEST_CASE("R4 a paused world is waited for") {
+TEST_CASE("A paused world is waited for") {
   FakeRelay::Behaviour behaviour;
   behaviour.pause_at_frame = 20;
   behaviour.pause_states = 30;  // at one for each resend, every 32 ms: about a second
@@ -276,7 +276,7 @@ TEST_CASE("R4 a paused world is waited for") {
   CHECK(hrt_close() == HRT_OK);
 }
 
-TEST_CASE("R4 the round trip is measured") {
+TEST_CASE("The round trip is measured") {
   FakeRelay relay({});
   const hrt_config config = config_for(relay.address());
   REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
@@ -288,7 +288,7 @@ TEST_CASE("R4 the round trip is measured") {
   CHECK(hrt_close() == HRT_OK);
 }
 
-TEST_CASE("R4 a relay hears from a commander that thinks, and robot time stands still meanwhile") {
+TEST_CASE("A relay hears from a commander that thinks, and robot time stands still meanwhile") {
   FakeRelay relay({});
   sim::RelayTransport transport;
   transport.open(config_for(relay.address()));
@@ -307,7 +307,7 @@ TEST_CASE("R4 a relay hears from a commander that thinks, and robot time stands 
   CHECK(state->frame == 3);
 }
 
-TEST_CASE("R5 closing says goodbye three times") {
+TEST_CASE("Closing says goodbye three times") {
   FakeRelay relay({});
   const hrt_config config = config_for(relay.address());
   REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
@@ -316,7 +316,7 @@ TEST_CASE("R5 closing says goodbye three times") {
   CHECK(relay.byes() == 3);
 }
 
-TEST_CASE("R5 a child of fork() that calls exit() leaves its parent's robot alone") {
+TEST_CASE("A child of fork() that calls exit() leaves its parent's robot alone") {
   FakeRelay relay({});
   const hrt_config config = config_for(relay.address());
   REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);

@@ -29,7 +29,7 @@ TEST_CASE("A robot without ground under it leaves the world, and can be put back
   CHECK(world.truth(lost).X_WB.p.x() == Approx(0.39).margin(5e-3));
 }
 
-TEST_CASE("F2, F3: a robot whose numbers end is named, and its neighbour drives on to the same bits") {
+TEST_CASE("A robot whose numbers end is named, and its neighbour drives on to the same bits") {
   RobotDescription wild = load_robot("kenaf");
   std::string expected;
   SECTION("explodes: belts that pull with ten times its weight reach 50 m/s in 0.5 s") {

@@ -62,7 +62,7 @@ Observer::Sighting wait_for_motion(Observer& observer) {
 
 }  // namespace
 
-TEST_CASE("F1 F2 the world server dies and comes back") {
+TEST_CASE("The world server dies and comes back") {
   Chain chain("3");
   support::Process program = chain.start_program("square_sim");
   Observer observer(chain.world_port());
@@ -87,7 +87,7 @@ TEST_CASE("F1 F2 the world server dies and comes back") {
   CHECK(again == 0);
 }
 
-TEST_CASE("F3 the robot stands within 0.5 s of robot time after its program was killed") {
+TEST_CASE("The robot stands within 0.5 s of robot time after its program was killed") {
   Chain chain("1");
   support::Process program = chain.start_program("square_sim");
   Observer observer(chain.world_port());
@@ -110,7 +110,7 @@ TEST_CASE("F3 the robot stands within 0.5 s of robot time after its program was 
   CHECK(last_moving->time_s - killed.time_s < 0.5);
 }
 
-TEST_CASE("F4 a second commander is refused with a reason") {
+TEST_CASE("A second commander is refused with a reason") {
   Chain chain("3");
   const auto record = chain.folder() / "first.csv";
   support::Process first = chain.start_program("square_sim", {{"KENAF_RECORD", record.string()}});
@@ -125,7 +125,7 @@ TEST_CASE("F4 a second commander is refused with a reason") {
   CHECK(first.wait() == 0);
 }
 
-TEST_CASE("F5 the relay dies") {
+TEST_CASE("The relay dies") {
   Chain chain("1");
   support::Process program = chain.start_program("square_sim");
   Observer observer(chain.world_port());

@@ -43,7 +43,7 @@ double distance_to(const std::vector<Pose2>& path, double x_m, double y_m) {
 
 }  // namespace
 
-TEST_CASE("S1 S2 S5 the square closes, goes round its corners, and both servers end cleanly") {
+TEST_CASE("The square closes, goes round its corners, and both servers end cleanly") {
   Chain chain("0");
   const std::vector<Pose2> path = drive_square(chain);
   const Pose2 start = path.front(), end = path.back();
@@ -63,7 +63,7 @@ TEST_CASE("S1 S2 S5 the square closes, goes round its corners, and both servers 
   CHECK(chain.world().wait() == 0);
 }
 
-TEST_CASE("S3 half, double and full speed drive the same path", "[long]") {
+TEST_CASE("Half, double and full speed drive the same path", "[long]") {
   Chain half("0.5"), twice("2"), full("0");
   // At the same time: those at half and double speed mostly wait for the clock.
   support::Process slow = start_square(half), fast = start_square(twice);
@@ -80,7 +80,7 @@ TEST_CASE("S3 half, double and full speed drive the same path", "[long]") {
   }
 }
 
-TEST_CASE("S4 garbage at both ports during the run changes nothing") {
+TEST_CASE("Garbage at both ports during the run changes nothing") {
   Chain quiet("0");
   const std::vector<Pose2> reference = drive_square(quiet);
 

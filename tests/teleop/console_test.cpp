@@ -54,7 +54,7 @@ constexpr unsigned kButton = 1, kAxis = 2, kInitial = 0x80;
 
 }  // namespace
 
-TEST_CASE("K1 a key is held by its repeats") {
+TEST_CASE("A key is held by its repeats") {
   DriveKey key;
   CHECK_FALSE(key.held(10));
   key.press(Action::forward, 10);
@@ -75,7 +75,7 @@ TEST_CASE("K1 a key is held by its repeats") {
   CHECK_FALSE(key.held(30.2));
 }
 
-TEST_CASE("K1 keys have the meaning that the screen says, emergency needs no shift, its release does") {
+TEST_CASE("Keys have the meaning that the screen says, emergency needs no shift, its release does") {
   CHECK(action_of_key("w") == Action::forward);
   CHECK(action_of_key("up") == Action::forward);
   CHECK(action_of_key("page_down") == Action::backward_right);
@@ -87,7 +87,7 @@ TEST_CASE("K1 keys have the meaning that the screen says, emergency needs no shi
   CHECK_FALSE(action_of_key(""));
 }
 
-TEST_CASE("K2 keys and speed make the wish") {
+TEST_CASE("Keys and speed make the wish") {
   Desk desk;  // 200 mm/s
   CHECK_FALSE(desk.wish(10).deadman);
   desk.act(Action::forward, 10, nullptr);
@@ -113,7 +113,7 @@ TEST_CASE("K2 keys and speed make the wish") {
   CHECK_FALSE(desk.wish(12).deadman);
 }
 
-TEST_CASE("K2 a gamepad's sticks go before keys, and never beyond the speed") {
+TEST_CASE("A gamepad's sticks go before keys, and never beyond the speed") {
   Desk desk;
   desk.act(Action::forward, 10, nullptr);
   desk.set_sticks({.deadman = true, .forward = -0.5, .turn = 0});
@@ -126,7 +126,7 @@ TEST_CASE("K2 a gamepad's sticks go before keys, and never beyond the speed") {
   CHECK(desk.wish(10.7).track_mmps == std::array{0.0, 0.0});
 }
 
-TEST_CASE("K3 the emergency stop and its release") {
+TEST_CASE("The emergency stop and its release") {
   Desk desk;
   desk.act(Action::forward, 10, nullptr);
   desk.act(Action::emergency_stop, 10.1, nullptr);
@@ -145,7 +145,7 @@ TEST_CASE("K3 the emergency stop and its release") {
   CHECK_FALSE(desk.wish(103).release_emergency);
 }
 
-TEST_CASE("K4 postures and nudges") {
+TEST_CASE("Postures and nudges") {
   Desk desk;
   Status status = status_in(Mode::ready);
   status.fields = kHasFlippers;
@@ -175,7 +175,7 @@ TEST_CASE("K4 postures and nudges") {
   CHECK(desk.wish(20).flipper_deg == std::array{40.0, 40.0, 0.0, 3.0});
 }
 
-TEST_CASE("K4 a nudge does nothing while the angle of one flipper is not known") {
+TEST_CASE("A nudge does nothing while the angle of one flipper is not known") {
   Desk desk;
   Status status = status_in(Mode::ready);
   status.flippers_commanded = 0b0111;
@@ -190,7 +190,7 @@ TEST_CASE("K4 a nudge does nothing while the angle of one flipper is not known")
   CHECK(desk.wish(10).flipper_order == 2);
 }
 
-TEST_CASE("G1 a gamepad by the kernel's events") {
+TEST_CASE("A gamepad by the kernel's events") {
   GamepadState pad;
   CHECK_FALSE(pad.take(event(kButton | kInitial, 4, 1)));
   CHECK_FALSE(pad.sticks().deadman);  // held since before it was plugged in
@@ -217,7 +217,7 @@ TEST_CASE("G1 a gamepad by the kernel's events") {
   CHECK_FALSE(pad.cross());
 }
 
-TEST_CASE("G1 after dropped events what was let go of is let go of, and the emergency stop is not lost") {
+TEST_CASE("After dropped events what was let go of is let go of, and the emergency stop is not lost") {
   GamepadState pad;
   pad.take(event(kButton, 4, 1));
   pad.take(event(kAxis, 7, -32767));
@@ -238,7 +238,7 @@ TEST_CASE("G1 after dropped events what was let go of is let go of, and the emer
   CHECK_FALSE(pad.take(event(kButton | kInitial, 1, 0)));
 }
 
-TEST_CASE("G1 a gamepad that is unplugged while it drives lets go of the dead-man, plugged in again it counts anew") {
+TEST_CASE("A gamepad that is unplugged while it drives lets go of the dead-man, plugged in again it counts anew") {
   // A pipe with a name gives the same bytes, and the same end, as a device that is unplugged.
   const support::TemporaryFolder folder;
   const std::string path = folder.path() / "js0";
@@ -274,7 +274,7 @@ TEST_CASE("G1 a gamepad that is unplugged while it drives lets go of the dead-ma
   ::close(device);
 }
 
-TEST_CASE("G1 a device that is none, or goes, leaves the dead-man let go") {
+TEST_CASE("A device that is none, or goes, leaves the dead-man let go") {
   Gamepad missing("/nonexistent/js0");
   CHECK(missing.read(10).empty());
   CHECK(missing.name().empty());
@@ -284,7 +284,7 @@ TEST_CASE("G1 a device that is none, or goes, leaves the dead-man let go") {
   CHECK_FALSE(empty.sticks().deadman);
 }
 
-TEST_CASE("H1 round trip without the time that the control process kept the wish") {
+TEST_CASE("Round trip without the time that the control process kept the wish") {
   LinkHealth health;
   Status status = status_in(Mode::ready);
   CHECK_FALSE(health.silence_s(10));
@@ -307,7 +307,7 @@ TEST_CASE("H1 round trip without the time that the control process kept the wish
   CHECK(*health.round_trip_s() == Approx(0.2));
 }
 
-TEST_CASE("H1 statuses of a control process that was started again count, late ones of before do not") {
+TEST_CASE("Statuses of a control process that was started again count, late ones of before do not") {
   LinkHealth health;
   Status status = status_in(Mode::ready);
   for (std::uint32_t i = 1; i <= 50; ++i) {
@@ -331,7 +331,7 @@ TEST_CASE("H1 statuses of a control process that was started again count, late o
   CHECK(health.heard(status, 20.2));
 }
 
-TEST_CASE("H1 losses over the last seconds") {
+TEST_CASE("Losses over the last seconds") {
   LinkHealth health;
   Status status = status_in(Mode::ready);
   for (std::uint32_t i = 1; i <= 101; ++i) {

@@ -71,7 +71,7 @@ const std::array<double, kTrackCount> kStand{0, 0};
 
 }  // namespace
 
-TEST_CASE("T1 only the newest wish counts") {
+TEST_CASE("Only the newest wish counts") {
   Seat seat;
   CHECK(admit(seat, wish_of(1, 5, true, 100), 10, 2) == Admission::newest);
   CHECK(admit(seat, wish_of(1, 4, true, 200), 11, 2) == Admission::old);
@@ -83,7 +83,7 @@ TEST_CASE("T1 only the newest wish counts") {
   CHECK(seat.heard_s == 11.5);
 }
 
-TEST_CASE("T2 the robot is taken until its console was silent for long enough, or left") {
+TEST_CASE("The robot is taken until its console was silent for long enough, or left") {
   Seat seat;
   CHECK(admit(seat, wish_of(1, 7), 10, 2) == Admission::newest);
   CHECK(admit(seat, wish_of(2, 1), 11.99, 2) == Admission::taken);
@@ -102,7 +102,7 @@ TEST_CASE("T2 the robot is taken until its console was silent for long enough, o
   CHECK(admit(seat, wish_of(2, 5), 20, 2) == Admission::old);
 }
 
-TEST_CASE("D1 a console that begins with the dead-man held does not drive") {
+TEST_CASE("A console that begins with the dead-man held does not drive") {
   Loop loop;
   CHECK(loop.driving.mode == Mode::no_robot);
   for (int i = 0; i < 5; ++i) CHECK(loop.drive().track_mmps == kStand);
@@ -114,7 +114,7 @@ TEST_CASE("D1 a console that begins with the dead-man held does not drive") {
   CHECK(loop.driving.mode == Mode::driving);
 }
 
-TEST_CASE("D2 silence stops the robot after 0.5 s, not before, D1 it goes on after the dead-man was let go") {
+TEST_CASE("Silence stops the robot after 0.5 s, not before, D1 it goes on after the dead-man was let go") {
   Loop loop;
   loop.make_ready();
   loop.reach(200);
@@ -138,7 +138,7 @@ TEST_CASE("D2 silence stops the robot after 0.5 s, not before, D1 it goes on aft
   CHECK(loop.drive().track_mmps[kLeft] == Approx(10));  // from rest, by the ramp
 }
 
-TEST_CASE("D2 a console that leaves stops the robot at once") {
+TEST_CASE("A console that leaves stops the robot at once") {
   Loop loop;
   loop.make_ready();
   loop.reach(200);
@@ -146,7 +146,7 @@ TEST_CASE("D2 a console that leaves stops the robot at once") {
   CHECK(loop.turn().stop);
 }
 
-TEST_CASE("D1 a robot that was lost and found stands until the dead-man was let go") {
+TEST_CASE("A robot that was lost and found stands until the dead-man was let go") {
   Loop loop;
   loop.make_ready();
   loop.reach(200);
@@ -161,7 +161,7 @@ TEST_CASE("D1 a robot that was lost and found stands until the dead-man was let 
   CHECK(loop.drive().track_mmps != kStand);
 }
 
-TEST_CASE("D1 under another console it stands until that one's dead-man was let go") {
+TEST_CASE("Under another console it stands until that one's dead-man was let go") {
   Loop loop;
   loop.make_ready();
   loop.reach(200);
@@ -174,7 +174,7 @@ TEST_CASE("D1 under another console it stands until that one's dead-man was let 
   CHECK(loop.driving.mode == Mode::halted);
 }
 
-TEST_CASE("D3 the emergency stop latches") {
+TEST_CASE("The emergency stop latches") {
   Loop loop;
   loop.make_ready();
   loop.reach(200);
@@ -207,7 +207,7 @@ TEST_CASE("D3 the emergency stop latches") {
   CHECK(loop.drive().track_mmps != kStand);
 }
 
-TEST_CASE("D3 an emergency stop of a console without the robot counts, its release does not") {
+TEST_CASE("An emergency stop of a console without the robot counts, its release does not") {
   Loop loop;
   loop.make_ready();
   loop.reach(200);
@@ -226,7 +226,7 @@ TEST_CASE("D3 an emergency stop of a console without the robot counts, its relea
   CHECK(loop.driving.mode == Mode::halted);
 }
 
-TEST_CASE("D4 speeds are cut and follow the ramps, through rest where the direction changes") {
+TEST_CASE("Speeds are cut and follow the ramps, through rest where the direction changes") {
   Loop loop;
   loop.make_ready();
   CHECK(loop.drive(1000).track_mmps[kLeft] == Approx(10));
@@ -241,7 +241,7 @@ TEST_CASE("D4 speeds are cut and follow the ramps, through rest where the direct
   CHECK(loop.driving.mode == Mode::ready);
 }
 
-TEST_CASE("D5 wishes made on an old view halt the robot, though they come without a gap") {
+TEST_CASE("Wishes made on an old view halt the robot, though they come without a gap") {
   Loop loop;
   loop.limits.view_s = 1;
   loop.make_ready();
@@ -259,7 +259,7 @@ TEST_CASE("D5 wishes made on an old view halt the robot, though they come withou
   CHECK(loop.drive().track_mmps != kStand);
 }
 
-TEST_CASE("D5 a console that has seen nothing yet cannot drive, nor can what a dead one left in the network") {
+TEST_CASE("A console that has seen nothing yet cannot drive, nor can what a dead one left in the network") {
   Loop loop;
   loop.view_age_s = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 5; ++i) {
@@ -270,7 +270,7 @@ TEST_CASE("D5 a console that has seen nothing yet cannot drive, nor can what a d
   CHECK(loop.driving.halt == Halt::start);
 }
 
-TEST_CASE("D6 a posture is carried out once") {
+TEST_CASE("A posture is carried out once") {
   Loop loop;
   loop.make_ready();
   Wish posture = wish_of(1, 0);

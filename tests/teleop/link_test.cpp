@@ -105,12 +105,12 @@ Bytes with_number(Bytes bytes, std::size_t at, double value) {
 
 }  // namespace
 
-TEST_CASE("L1 Wish is 79 bytes") {
+TEST_CASE("Wish is 79 bytes") {
   check_bytes(some_wish(), "4b 4e 4f 50 01 01 4f 00 " + kSession + "03 00 00 00 02 00 00 00 01 00 00 " + kOne +
                                kMinusOne + "01 00 00 00 " + kHalf + zeros(8) + kTwo + zeros(8));
 }
 
-TEST_CASE("L1 Status is 617 bytes") {
+TEST_CASE("Status is 617 bytes") {
   const std::string texts = "02 68 69 " + zeros(158) + "00 " + zeros(160);
   check_bytes(some_status(), "4b 4e 4f 50 01 02 69 02 " + kSession + "04 00 00 00 03 00 00 00 " + kHalf +
                                  "02 00 00 00 05 02 " + "41 00 00 00 01 00 00 00 " + kTwo + zeros(8) + kMinusOne +
@@ -118,12 +118,12 @@ TEST_CASE("L1 Status is 617 bytes") {
                                  zeros(24 + 24 + 8) + zeros(4) + texts);
 }
 
-TEST_CASE("L1 Taken is 177 bytes, Bye 16") {
+TEST_CASE("Taken is 177 bytes, Bye 16") {
   check_bytes(Taken{kSessionValue, text_of("ab")}, "4b 4e 4f 50 01 03 b1 00 " + kSession + "02 61 62 " + zeros(158));
   check_bytes(Bye{kSessionValue}, "4b 4e 4f 50 01 04 10 00 " + kSession);
 }
 
-TEST_CASE("L2 cut anywhere, or with a byte too many, it is refused") {
+TEST_CASE("Cut anywhere, or with a byte too many, it is refused") {
   for (const Datagram& datagram : {Datagram(some_wish()), Datagram(some_status())}) {
     Bytes whole = encoded(datagram);
     for (std::size_t length = 0; length < whole.size(); ++length) {
@@ -138,7 +138,7 @@ TEST_CASE("L2 cut anywhere, or with a byte too many, it is refused") {
   }
 }
 
-TEST_CASE("L2 a wrong header is refused by its reason") {
+TEST_CASE("A wrong header is refused by its reason") {
   const auto with_byte = [](std::size_t at, int value) {
     Bytes bytes = encoded(some_wish());
     bytes[at] = static_cast<std::byte>(value);
@@ -154,7 +154,7 @@ TEST_CASE("L2 a wrong header is refused by its reason") {
   CHECK(with_byte(kDeadmanAt, 2) == DecodeError::bad_value);
 }
 
-TEST_CASE("L2 numbers that no operator wishes are refused: NaN, infinity, beyond what hrt.h takes") {
+TEST_CASE("Numbers that no operator wishes are refused: NaN, infinity, beyond what hrt.h takes") {
   const Bytes wish = encoded(some_wish());
   CHECK(error_of(with_number(wish, kLeftTrackAt, std::nan(""))) == DecodeError::not_finite);
   CHECK(error_of(with_number(wish, kLeftTrackAt, -HUGE_VAL)) == DecodeError::not_finite);
@@ -164,7 +164,7 @@ TEST_CASE("L2 numbers that no operator wishes are refused: NaN, infinity, beyond
   CHECK(error_of(with_number(wish, kFlippersAt, 361)) == DecodeError::out_of_range);
 }
 
-TEST_CASE("L2 a mode, a halt, bits or a text that are none are refused") {
+TEST_CASE("A mode, a halt, bits or a text that are none are refused") {
   const auto with_byte = [](std::size_t at, int value) {
     Bytes bytes = encoded(some_status());
     bytes[at] = static_cast<std::byte>(value);
@@ -182,7 +182,7 @@ TEST_CASE("L2 a mode, a halt, bits or a text that are none are refused") {
   CHECK(with_byte(message_at + 1, 0x1b) == DecodeError::bad_value);  // escape: would steer the terminal
 }
 
-TEST_CASE("L3 what is sent can be read") {
+TEST_CASE("What is sent can be read") {
   Wish wish = some_wish();
   wish.track_mmps = {std::nan(""), -1e9};
   wish.flipper_deg = {1e9, HUGE_VAL, 0, 0};

@@ -47,7 +47,7 @@ bool has(const std::string& text, std::string_view part) {
 
 }  // namespace
 
-TEST_CASE("V1 text is cut at the edge and cannot steer the terminal") {
+TEST_CASE("Text is cut at the edge and cannot steer the terminal") {
   Canvas canvas;
   canvas.put(3, 70, "abc\x1b[2Jdefghijkl");
   CHECK(canvas.line(3).size() == 80);
@@ -57,7 +57,7 @@ TEST_CASE("V1 text is cut at the edge and cannot steer the terminal") {
   CHECK(canvas.line(23).empty());
 }
 
-TEST_CASE("V2 what stands on the screen") {
+TEST_CASE("What stands on the screen") {
   Scene scene;
   scene.health.sent(1, 9.7);
   scene.status.newest_wish = 1;
@@ -94,7 +94,7 @@ TEST_CASE("V2 what stands on the screen") {
   CHECK(draw_screen(view).line(1) == " link   ok  round trip 200 ms   lost up 0 %  down 0 %   heard 0.10 s ago");
 }
 
-TEST_CASE("V2 what was not measured is not shown as a number") {
+TEST_CASE("What was not measured is not shown as a number") {
   Scene scene;
   scene.status.fields = 0;
   const std::string text = text_of_screen(draw_screen(scene.view(10)));
@@ -110,7 +110,7 @@ TEST_CASE("V2 what was not measured is not shown as a number") {
   CHECK(has(plain_line(scene.view(10)), "  nose up 23.4  flippers 58 58 -20 -20  battery 25.6 V"));
 }
 
-TEST_CASE("V3 the posture is drawn as it is") {
+TEST_CASE("The posture is drawn as it is") {
   // Level, front flippers straight up, rear ones straight out. The field is 9 rows and 38 columns, its middle row 4 and
   // column 19; 30 mm a column, 60 mm a row. The front pivot at x = 225 mm, z = -25 mm is column 19 + 8 = 27 (7.5 rounds
   // up), row 4; the flipper's tip, 1.3 * 145 mm above it, is at 163 mm, row 4 - 3 = 1; the rear one reaches to

@@ -36,7 +36,7 @@ std::string refusal(std::string_view text) {
 
 }  // namespace
 
-TEST_CASE("P1 every line is read") {
+TEST_CASE("Every line is read") {
   const Script script = read_script(
       "# what an operator does\n\n2.5 w\npress + 2\r\nhold w for 1.5\n  hold s until x_mm > -940.5 within 8\nwait 0.5\n"
       "wait until mode is ready within 5\nsay at  the step");
@@ -52,7 +52,7 @@ TEST_CASE("P1 every line is read") {
   CHECK(read_script("").empty());
 }
 
-TEST_CASE("P1 what is none is refused with its line") {
+TEST_CASE("What is none is refused with its line") {
   CHECK(refusal("press w\njump\n") == "line 2: 'jump' is none of press, hold, wait, say and no time");
   CHECK(refusal("press y") == "line 1: the key 'y' means nothing");
   CHECK(refusal("hold 3 for 1") == "line 1: the key '3' is not one to hold");
@@ -67,7 +67,7 @@ TEST_CASE("P1 what is none is refused with its line") {
   CHECK(refusal("press w 0") == "line 1: a key is pressed 1 to 1000 times");
 }
 
-TEST_CASE("P2 a held key repeats as a keyboard's, and is let go") {
+TEST_CASE("A held key repeats as a keyboard's, and is let go") {
   Player player(read_script("hold w for 0.6\n"));
   const Desk desk;
   std::vector<double> pressed_s;
@@ -88,7 +88,7 @@ TEST_CASE("P2 a held key repeats as a keyboard's, and is let go") {
   CHECK(pressed_s[5] == Approx(0.56).margin(0.031));  // turns of 10 ms round each period up
 }
 
-TEST_CASE("P1 P3 conditions are asked of the newest status, within counts the robot's time") {
+TEST_CASE("Conditions are asked of the newest status, within counts the robot's time") {
   const Desk desk;
   Player player(read_script("wait until nose_up_deg > 20 within 2\nsay up\n"));
   CHECK_FALSE(player.turn(0, nullptr, 0, desk).finished);
@@ -113,7 +113,7 @@ TEST_CASE("P1 P3 conditions are asked of the newest status, within counts the ro
   CHECK(alone.turn(15.1, nullptr, 0, desk).failed == "line 1: no word from the robot for 15 s");
 }
 
-TEST_CASE("P1 flippers are there only once the control process has heard of them") {
+TEST_CASE("Flippers are there only once the control process has heard of them") {
   Desk desk;
   const Condition there{"flipper_off_deg", '<', 5, {}};
   Status status = status_at(1);
@@ -129,7 +129,7 @@ TEST_CASE("P1 flippers are there only once the control process has heard of them
   CHECK(holds(there, status, desk));
 }
 
-TEST_CASE("P5 of what was not measured no condition holds") {
+TEST_CASE("Of what was not measured no condition holds") {
   const Desk desk;
   Status status = status_at(1);
   const auto holds_beside_zero = [&](const std::string& name) {
@@ -151,7 +151,7 @@ TEST_CASE("P5 of what was not measured no condition holds") {
   CHECK(holds({"time_s", '>', 0.5, {}}, status, desk));
 }
 
-TEST_CASE("P4 after a halt he notices, lets go, and presses again") {
+TEST_CASE("After a halt he notices, lets go, and presses again") {
   const Desk desk;
   Player player(read_script("hold w for 10\n"));
   Status status = status_at(1, Mode::driving);

@@ -121,7 +121,7 @@ void check_on_top(const runs::Run& run) {
 
 }  // namespace
 
-TEST_CASE("O1 an operator climbs a step of 200 mm over 100 ms of latency and 5 % of loss") {
+TEST_CASE("An operator climbs a step of 200 mm over 100 ms of latency and 5 % of loss") {
   Desk desk;
   support::LossyProxy proxy(desk.control_port(), 1, kBadNetwork);
   Process console = desk.console(proxy.port(), kStepScript);
@@ -131,7 +131,7 @@ TEST_CASE("O1 an operator climbs a step of 200 mm over 100 ms of latency and 5 %
   check_on_top(desk.recording());
 }
 
-TEST_CASE("O2 the link cut in mid-climb: the robot holds its place until the operator has let go and pressed again") {
+TEST_CASE("The link cut in mid-climb: the robot holds its place until the operator has let go and pressed again") {
   Desk desk;
   // Watches the statuses on their way to the console, as one who stands by: when the nose is 20 degrees up, it cuts.
   std::atomic<bool> is_steep{false}, was_halted_by_silence{false};
@@ -183,7 +183,7 @@ TEST_CASE("O2 the link cut in mid-climb: the robot holds its place until the ope
   check_on_top(run);
 }
 
-TEST_CASE("O3 garbage, a second console, a killed one and its successor") {
+TEST_CASE("Garbage, a second console, a killed one and its successor") {
   Desk desk;
   Process first = desk.console(desk.control_port(), desk.script("wait until mode is ready within 20\n"
                                                                 "say has the robot\nhold w for 60\n"));
@@ -220,7 +220,7 @@ TEST_CASE("O3 garbage, a second console, a killed one and its successor") {
   CHECK(value_at(run, "cmd_track_left_mps", end_of(run)) == 0);
 }
 
-TEST_CASE("O4 the relay dies and comes back") {
+TEST_CASE("The relay dies and comes back") {
   Desk desk;
   Process console = desk.console(desk.control_port(), desk.script("wait until mode is ready within 20\n"
                                                                   "say one\n"
@@ -248,7 +248,7 @@ TEST_CASE("O4 the relay dies and comes back") {
   CHECK(desk.log("control").find("robot_lost") != std::string::npos);
 }
 
-TEST_CASE("O5 a network that is too slow moves nothing") {
+TEST_CASE("A network that is too slow moves nothing") {
   Desk desk;
   support::LossyProxy proxy(desk.control_port(), 3, {.lost = 0, .doubled = 0, .delayed = 0, .latency = 600ms});
   Process console = desk.console(proxy.port(), desk.script("wait until mode is halted within 20\nhold w for 2\n"));

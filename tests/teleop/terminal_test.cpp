@@ -139,7 +139,7 @@ Status some_status(Mode mode) {
 
 }  // namespace
 
-TEST_CASE("C1 C2 keys in a terminal become wishes, statuses a screen") {
+TEST_CASE("Keys in a terminal become wishes, statuses a screen") {
   ConsoleInTerminal console;
   REQUIRE(console.eventually([&] { return console.wish().sequence > 2; }));
   CHECK_FALSE(console.wish().deadman);
@@ -178,7 +178,7 @@ TEST_CASE("C1 C2 keys in a terminal become wishes, statuses a screen") {
   CHECK(console.eventually([&] { return console.said_bye(); }));
 }
 
-TEST_CASE("C5 keys that the terminal's description lacks do nothing, and a key after Esc is not lost") {
+TEST_CASE("Keys that the terminal's description lacks do nothing, and a key after Esc is not lost") {
   ConsoleInTerminal console("screen");  // which knows no key with control or shift
   REQUIRE(console.eventually([&] { return console.screen_has("operator's console"); }));
   // control-left, shift-F5, F5 of Linux' console, control-End: in each is the key of a posture or of the emergency stop
@@ -196,7 +196,7 @@ TEST_CASE("C5 keys that the terminal's description lacks do nothing, and a key a
   CHECK(console.wish().flipper_order == 2);
 }
 
-TEST_CASE("C3 a signal or a key ends it, and leaves the terminal as it was") {
+TEST_CASE("A signal or a key ends it, and leaves the terminal as it was") {
   for (const int number : {0, SIGTERM, SIGHUP, SIGINT}) {
     ConsoleInTerminal console;
     REQUIRE(console.eventually([&] { return console.screen_has("operator's console"); }));
@@ -210,7 +210,7 @@ TEST_CASE("C3 a signal or a key ends it, and leaves the terminal as it was") {
   }
 }
 
-TEST_CASE("C4 without a terminal it says what to do") {
+TEST_CASE("Without a terminal it says what to do") {
   const kenaf::support::TemporaryFolder folder;
   kenaf::support::Process console({kProgram, "--gamepad", "none"}, folder.path() / "log");
   CHECK(console.wait() == 2);

@@ -33,17 +33,17 @@ Vector3 rotate(const Vector3& angles, const Vector3& v) {
 
 }  // namespace
 
-TEST_CASE("F1 a point ahead, left and above has y and z negative in USARSim") {
+TEST_CASE("A point ahead, left and above has y and z negative in USARSim") {
   CHECK(usarsim_vector_from_rep103({1, 2, 3}) == Vector3{1, -2, -3});
   CHECK(rep103_vector_from_usarsim({1, -2, -3}) == Vector3{1, 2, 3});
 }
 
-TEST_CASE("F2 right side down keeps its sign, nose down and counter-clockwise change theirs") {
+TEST_CASE("Right side down keeps its sign, nose down and counter-clockwise change theirs") {
   CHECK(usarsim_angles_from_rep103({0.1, 0.2, 0.3}) == Vector3{0.1, -0.2, -0.3});
   CHECK(rep103_angles_from_usarsim({0.1, -0.2, -0.3}) == Vector3{0.1, 0.2, 0.3});
 }
 
-TEST_CASE("F3 rotating and then changing frames is changing frames and then rotating") {
+TEST_CASE("Rotating and then changing frames is changing frames and then rotating") {
   for (const Vector3& angles : {Vector3{0.3, 0, 0}, Vector3{0, 0.3, 0}, Vector3{0, 0, 0.3}, Vector3{0.4, -1.1, 2.5},
                                 Vector3{-3.0, 0.7, -0.2}}) {
     for (const Vector3& v : {Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}}) {
@@ -54,7 +54,7 @@ TEST_CASE("F3 rotating and then changing frames is changing frames and then rota
   }
 }
 
-TEST_CASE("F4 a USARSim robot that looks down a slope to its right") {
+TEST_CASE("A USARSim robot that looks down a slope to its right") {
   // Nose up is positive in USARSim: a nose that points down reports a negative pitch, +0.5 of ours.
   // Clockwise from above is positive in USARSim: a robot that turned right reports a positive yaw, -1 of ours.
   const Vector3 ours = rep103_angles_from_usarsim({0, -0.5, 1});
@@ -64,7 +64,7 @@ TEST_CASE("F4 a USARSim robot that looks down a slope to its right") {
   CHECK(nose[1] < 0);  // to the right
 }
 
-TEST_CASE("F5 angles come back wrapped to more than -pi and at most pi") {
+TEST_CASE("Angles come back wrapped to more than -pi and at most pi") {
   // A recorded UT2004 line has {Orientation 0.00,6.28,6.28}: level, 0.0032 short of the whole turn.
   const Vector3 level = rep103_angles_from_usarsim({0, 6.28, 6.28});
   CHECK(level[1] == Approx(2 * pi - 6.28));
@@ -72,7 +72,7 @@ TEST_CASE("F5 angles come back wrapped to more than -pi and at most pi") {
   CHECK(usarsim_angles_from_rep103({0, 0, pi})[2] == pi);
 }
 
-TEST_CASE("F6 raising all four flippers is front negative, rear positive") {
+TEST_CASE("Raising all four flippers is front negative, rear positive") {
   // UsarCommander's "front up": MULTIDRIVE {FRFlipper -0.5*h} {FLFlipper -0.5*h} {RRFlipper +0.5*h} {RLFlipper +0.5*h}.
   struct Case {
     robot::Flipper flipper;
@@ -89,7 +89,7 @@ TEST_CASE("F6 raising all four flippers is front negative, rear positive") {
   }
 }
 
-TEST_CASE("F7 a sprocket of 0.05 m that spins with 2 rad/s moves its belt with 0.1 m/s") {
+TEST_CASE("A sprocket of 0.05 m that spins with 2 rad/s moves its belt with 0.1 m/s") {
   CHECK(surface_speed_from_spin(2, 0.05) == Approx(0.1));
   CHECK(spin_from_surface_speed(0.1, 0.05) == Approx(2));
   CHECK(spin_from_surface_speed(-0.1, 0.05) == Approx(-2));

@@ -70,7 +70,7 @@ bool is_a_way(const std::vector<FramePair>& pairs, std::size_t real_count, std::
 
 }  // namespace
 
-TEST_CASE("M1, M2: of all ways the cheapest, on random runs of 1 to 6 frames") {
+TEST_CASE("Of all ways the cheapest, on random runs of 1 to 6 frames") {
   std::mt19937 random(1);
   for (std::size_t n = 1; n <= 6; ++n) {
     for (std::size_t m = 1; m <= 6; ++m) {
