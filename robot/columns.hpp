@@ -1,5 +1,5 @@
 // The columns of a recorded run: a table with a row for each, used by recorders, diagnosis, report, playback and the
-// page docs/run-format.md. A new channel needs a row here, and a source of its values: hrt/recorder.cpp for the robot,
+// page docs/logs.md. A new channel needs a row here, and a source of its values: hrt/recorder.cpp for the robot,
 // rollout/run_recorder.cpp for the simulator.
 //
 // Thread safety: constants and pure functions.

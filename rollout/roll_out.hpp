@@ -30,7 +30,7 @@ struct RollOutOptions {
 };
 
 struct RollOut {
-  runs::Run run;           // columns of docs/run-format.md
+  runs::Run run;           // columns of docs/logs.md
   bool succeeded = false;  // by the manoeuvre's own criterion; false without one
   bool gave_up = false;    // the operator did (Phase::give_up)
   std::string fault;       // World::fault(), if it ended the simulation early; else empty

@@ -1,4 +1,4 @@
-// A `kenaf-runs/1` dataset: a folder with `dataset.toml` and one CSV file per run. docs/run-format.md describes it.
+// A `kenaf-runs/1` dataset: a folder with `dataset.toml` and one CSV file per run. docs/logs.md describes it.
 //
 // Thread safety: values and pure functions.
 #pragma once

@@ -1,5 +1,5 @@
 // One run of a `kenaf-runs/1` dataset: a CSV file with named columns in SI units, one row per sample time.
-// docs/run-format.md describes the format. Real logs and simulated logs share it.
+// docs/logs.md describes the format. Real logs and simulated logs share it.
 //
 // Frames: world x forward at the start, y left, z up; body x forward, y left, z up; pitch positive nose down.
 //

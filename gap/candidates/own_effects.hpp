@@ -1,5 +1,5 @@
 // User-defined effects: a TOML file lists which numbers of a robot's description move together, and how far.
-// docs/own-effects.md lists every key. Thread safety: pure functions.
+// docs/effects.md lists every key. Thread safety: pure functions.
 #pragma once
 
 #include <filesystem>

@@ -24,7 +24,7 @@ struct Row {
 
 // The rows of the page's table of columns, one for each name in their first cell.
 std::vector<Row> rows_of_page() {
-  std::ifstream page(KENAF_SOURCE_DIR "/docs/run-format.md");
+  std::ifstream page(KENAF_SOURCE_DIR "/docs/logs.md");
   const std::regex name("`([a-z0-9_]+)`"), cells(R"(\| (`[^|]*) \| ([^|]*) \|.*)");
   std::vector<Row> rows;
   bool inside = false;

@@ -10,7 +10,7 @@ using kenaf::test::TemporaryFolder;
 
 namespace {
 
-// The example of docs/run-format.md.
+// The example of docs/logs.md.
 const std::string kExample = R"(format = "kenaf-runs/1"
 source = "real"
 robot  = "kenaf"

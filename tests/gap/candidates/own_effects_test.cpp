@@ -12,7 +12,7 @@ using physics::RobotDescription;
 
 namespace {
 
-// That of docs/own-effects.md.
+// That of docs/effects.md.
 const std::string kLoad = R"([[effect]]
 name = "load_behind"
 summary = "a load on the deck, 0.2 m behind the body's centre of mass"
@@ -61,7 +61,7 @@ std::string error_with(const std::string& from, const std::string& to) {
 }  // namespace
 
 TEST_CASE("The worked example of the documentation is what is tested here") {
-  CHECK(test::read_file(std::string(KENAF_SOURCE_DIR) + "/docs/own-effects.md").find(kLoad) != std::string::npos);
+  CHECK(test::read_file(std::string(KENAF_SOURCE_DIR) + "/docs/effects.md").find(kLoad) != std::string::npos);
 }
 
 TEST_CASE("An effect of one's own moves its numbers together") {
