@@ -1,5 +1,5 @@
-// A1 After the first two of a size, to draw a picture allocates nothing. A program of its own, because it counts every
-// allocation of the process. Not built with sanitizers, which do the same.
+// Drawing a picture allocates nothing once two pictures of the same size have been drawn. This is a program of its own,
+// because it counts every allocation of the process. It is not built with sanitizers, which replace the same functions.
 #include <catch2/catch.hpp>
 
 #include "tests/camera/scenes.hpp"

@@ -1,4 +1,5 @@
-// J1 what is encoded is decoded within the error that its quality allows; J2 what is wrong is said.
+// A decoded picture differs from the encoded one by a mean error that its quality bounds and that falls as the quality
+// rises. The encoder refuses a quality out of range, and the decoder refuses bytes that are no JPEG.
 #include <catch2/catch.hpp>
 
 #include "camera/jpeg.hpp"

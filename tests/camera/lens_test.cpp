@@ -1,5 +1,6 @@
-// L1 where the axis, and what lies left and above of it, are in the picture; L2 angles; L3 projection and ray undo each
-// other; L4 what is behind has no picture.
+// The lens model projects points to the pixels that trigonometry gives: the axis to the middle, y to the left, z
+// upward, and 45 degrees to the edge of a field of view of 90 degrees. Projection and ray undo each other, and points
+// behind the camera have no pixel.
 #include <catch2/catch.hpp>
 #include <numbers>
 

@@ -1,6 +1,7 @@
-// What a picture shows: P1 an edge is where geometry has it; P2 what is in front hides what is behind; P3 shadows; P4
-// belts run; P5 a camera sees its own robot where geometry says so; P6 cells that are filled are right; P7 ground that
-// is far does not flicker; P8 the scene follows what comes, goes and moves.
+// Pictures are checked against geometry: edges, occlusion, shadows, the lugs of a running belt and the robot's own hull
+// lie where projection by hand puts them. A ray through every pixel is the reference for the faster rendering by cells,
+// and a scene built anew is the reference for one that has followed changes. Ground that is far away keeps its colour
+// while the camera moves.
 #include <catch2/catch.hpp>
 #include <numbers>
 

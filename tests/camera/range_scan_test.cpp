@@ -1,4 +1,5 @@
-// G1 distances by hand; G2 the physics' own rays agree; G3 a scanner looks through its own robot.
+// Scanned distances equal those worked out by hand for a flat wall and for level ground, and those of the physics' own
+// rays in uneven worlds. A scanner looks through the robot that it is told to ignore.
 #include <catch2/catch.hpp>
 #include <numbers>
 

@@ -1,4 +1,6 @@
-// R1 what cameras the shipped robots have; R2 where they are; R3 pan, tilt and zoom; R4 what is wrong in a description.
+// The cameras of the shipped robots stand and turn with their robot as the mounts in its description say, and pan, tilt
+// and zoom move the picture the way geometry demands. Every fault in a description of a camera is reported with its
+// place.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <numbers>

@@ -1,4 +1,5 @@
-// A snapshot is what the world is at that moment: N1 robots and boxes, N2 coming and going, N3 a robot with a fault.
+// A snapshot holds the world as it is at that moment. Poses of robots and boxes are compared with the world's own, also
+// after some came, went or moved. A robot with a fault stays where it last was whole.
 #include <catch2/catch.hpp>
 
 #include "tests/camera/scenes.hpp"

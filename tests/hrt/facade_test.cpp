@@ -1,7 +1,6 @@
-// hrt.h from outside, on a robot whose physics is known.
-//   F1 units and signs at the border; F2 every error code where the header promises it; F3 nothing hangs, nothing
-//   crashes F4 lock step: a program's run does not depend on how long it thinks; F5 silence stops; F6 recordings are
-//   complete
+// These tests use hrt.h from outside, on a robot whose physics is known. They check units and signs at the border,
+// every error code where the header promises it, and that no call hangs or crashes. In lock step the commands of a
+// program must not depend on how long it thinks, silence stops the tracks, and recordings are complete.
 #include <sched.h>
 #include <sys/resource.h>
 

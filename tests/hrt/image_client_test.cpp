@@ -1,7 +1,6 @@
-// libkenaf_sim's camera client below hrt_get_picture, against a server of pictures that the test speaks for byte by
-// byte.
-//   I1 what is requested; I2 what a picture says of itself, and its age; I3 servers of USARSim's; I4 whatever a server
-//   does wrong ends in words, and the robot goes on
+// libkenaf_sim's camera client is tested below hrt_get_picture, against a server of pictures that the test speaks for
+// byte by byte. The tests check the requests, the number, robot time and age that a picture states, and servers that
+// know only USARSim's own protocol. Whatever a server does wrong ends in words, and the robot goes on.
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>

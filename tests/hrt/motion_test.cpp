@@ -1,8 +1,8 @@
-// The motions as pure state machines, against a plant whose behaviour is known in closed form.
-//   M1 a goal is reached within its tolerance, whatever the sign; M2 the speed profile is the one promised
-//   M3 the heading is held by the posture sensor where the tracks differ; M4 a turn is the posture sensor's, past 180
-//   degrees too, however much the tracks slip; M5 without a posture sensor the encoders and turn_efficiency count
-//   M6 stuck, overcurrent and time-out are told apart, in robot time; M7 a square closes
+// The motions are tested as pure state machines, against a plant whose behaviour is known in closed form. Goals are
+// reached within their tolerance whatever the sign, rides take the time that the speed profile predicts, and a square
+// closes. The posture sensor holds the heading where the tracks differ and measures turns, past 180 degrees too,
+// however much the tracks slip; without it the encoders and turn_efficiency count. Stuck, overcurrent and time-out are
+// told apart, in robot time.
 #include <catch2/catch.hpp>
 #include <numbers>
 

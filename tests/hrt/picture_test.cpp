@@ -1,6 +1,6 @@
-// hrt_get_picture from outside, with cameras whose pictures are known.
-//   P1 what is written; P2 which picture, and how long it is waited for; P3 arguments; P4 cameras that fail; P5
-//   pictures and the cycle; P6 a program that asks for none pays nothing, and one that stops asking ceases to pay
+// These tests use hrt_get_picture from outside, with cameras whose pictures are known. They check the bytes that are
+// written, which picture a call returns and how long it waits for it, wrong arguments, and cameras that fail. Pictures
+// must not disturb the cycle: a program that asks for none pays nothing, and one that stops asking ceases to pay.
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <chrono>

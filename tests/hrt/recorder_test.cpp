@@ -1,7 +1,7 @@
-// A recording beside the cycle, on a disk that stalls: a pipe that nobody reads stands for it, so that how long it
-// stalls is the test's to say and not a clock's.
-//   R1 no cycle waits for the disk; R2 what the queue holds is not lost; R3 what is lost is counted and said; R4 the
-//   environment variable records as the call does; R5 a row has what was measured for it and the command in force
+// A recording runs beside the cycle, on a disk that stalls: a pipe that nobody reads stands for the disk, so that the
+// test and not a clock decides how long it stalls. No cycle may wait for the disk, rows are lost only beyond the length
+// of the queue, and every loss is counted and reported. A row holds the values that were measured for it and the
+// command in force, and the environment variable records as the call does.
 #include "hrt/recorder.hpp"
 
 #include <fcntl.h>

@@ -1,6 +1,6 @@
-// libkenaf_sim's transport below the whole library, against a fake relay.
-//   R1 loss, doubling and reordering change nothing but latency; R2 who is not there, or refuses, is named with what to
-//   do; R3 a link that breaks is known in time; R4 what looks like a break and is none goes on; R5 the session ends
+// libkenaf_sim's transport is tested below the whole library, against a fake relay. Loss, doubling and reordering
+// change nothing but latency. A relay that is absent or refuses is named together with the remedy, a broken link is
+// known in time, and a pause that only looks like a break ends nothing. Closing ends the session.
 #include <sys/wait.h>
 #include <unistd.h>
 

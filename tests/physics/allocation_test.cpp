@@ -1,7 +1,8 @@
-// After the first, no step allocates: M1 of a robot on any ground, with and without effects, M3 of robots that meet, of
-// what they push and of what comes near later, M4 of many robots. M2 Nor does reading sensors other than range
-// scanners. A program of its own, because it counts every allocation of the process: Bullet's, C++'s and C's all end in
-// these functions, which stand before those of the C library. Not built with sanitizers, which do the same.
+// After the first step no step allocates: for a robot on any ground, with and without effects, for robots that meet,
+// the boxes that they push and bodies that come near later, and for many robots. Reading sensors other than range
+// scanners allocates nothing either. This is a program of its own, because it counts every allocation of the process:
+// Bullet's, C++'s and C's all end in these functions, which stand before those of the C library. It is not built with
+// sanitizers, which replace them too.
 #include <catch2/catch.hpp>
 #include <new>
 

@@ -1,5 +1,6 @@
-// Where a belt touches. G1 level ground, G2 an edge under an arc, G3 half on a box, G4 a wall beside, G5 a corner,
-// G6 triangles, G7 a flipper's outline.
+// The contact points of a belt, their normals and their shares of the belt's length follow from the geometry of two
+// discs and their tangents. They are checked on planes, boxes, edges, walls and triangles, where each can be worked out
+// by hand.
 #include "physics/dynamics/belt_contacts.hpp"
 
 #include <catch2/catch.hpp>

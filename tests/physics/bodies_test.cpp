@@ -1,4 +1,6 @@
-// B1 falling, B2 sliding down a slope, B3 holding on a slope, B4 resting, B5 turning: what mechanics says of a block.
+// A block falls, slides, holds, rests and turns as mechanics predicts. The references are closed forms: the sum of
+// semi-implicit Euler steps, g (sin a - mu cos a) on a slope, the friction angle, and the moments of inertia of a
+// uniform box.
 #include <catch2/catch.hpp>
 
 #include "physics/dynamics/scene.hpp"

@@ -1,5 +1,6 @@
-// E1 neutral values, E2 every effect acts, E3 an effect ends at its neutral value, E4 written as NAME:PARAMETER=VALUE.
-// What each effect does is in the tests of its stage.
+// No effect changes a bit at its neutral value, every effect acts at any other value, and its action fades to nothing
+// as the value approaches neutral. Effects are written as NAME:PARAMETER=VALUE, and mistakes in that are reported. The
+// tests of each stage check how its effects act.
 #include <catch2/catch.hpp>
 #include <cstring>
 

@@ -1,5 +1,6 @@
-// F1 a robot that falls out of the world, F2 one that explodes, F3 one that is no number: each is named, and harms no
-// other. F4 what it reports then, F5 what it stood on.
+// A robot that falls out of the world, explodes or loses its numbers is named and harms no other robot. Its neighbour
+// must drive the same bits as without it, its sensors report finite numbers, and the ground or box under it carries the
+// next robot.
 #include <catch2/catch.hpp>
 
 #include "tests/physics/scenes.hpp"

@@ -1,4 +1,6 @@
-// F1 speed limit, F2 lifting, F3 torque limit, F4 modes, F5 limits of travel, F6 the flipper's own belt.
+// Flippers turn at their speed limit, lift the robot as far as the geometry of arm and tip predicts, and give up at
+// their torque limit. Each mode and the ends of travel are checked, and so is the flipper's own belt, which carries the
+// robot.
 #include <catch2/catch.hpp>
 
 #include "tests/physics/scenes.hpp"

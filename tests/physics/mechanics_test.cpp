@@ -1,6 +1,7 @@
-// What mechanics says of blocks and robots where they stand, stop and tip. M1 stopping distance, M2 a block on its
-// edge, M3 a block over an edge, M4 a robot on its edge, M5 holding on a slope, M6 stopped belts beside a block, M7
-// belts without drive, M8 belts without friction.
+// Blocks and robots stand, stop and tip where rigid-body mechanics says. The references are closed forms: v^2 / (2 mu
+// g) for the stopping distance, the angle at which the centre of mass stands above the edge for tipping, and the
+// friction angle for holding. A robot on stopped belts slides as a block does, and neither belts without drive nor
+// belts without friction move it.
 #include <catch2/catch.hpp>
 
 #include "tests/physics/scenes.hpp"

@@ -1,6 +1,7 @@
-// A robot that is set in motion, and belts and flippers that do what they are told exactly: V1 it goes on as it was, V2
-// what is on its way to the drives, V3 sensors, V4 prescribed belts, V5 directions, V6 back again, V7 forces, V8
-// flippers, V9 command and drives play no part, V10 what is refused.
+// A robot that is set in motion goes on from the first step as if it had always moved, with the commands on their way
+// to the drives and without a blow to the sensors. Belts and flippers with prescribed motion follow it exactly. Their
+// paths are checked against v t, friction's limits, mirror images and a course that is symmetric in time; the body
+// ignores command and drives meanwhile, and wrong values are refused.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>

@@ -1,5 +1,6 @@
-// P1 lifted until free, P2 teleport, P3 many robots, P4 rays, P5 boxes, P6 mission packages, P7 bad calls,
-// P8 leaving.
+// A placed or teleported robot is lifted until it is free and then comes to rest, on boxes, meshes and shipped worlds,
+// and many robots share one world. Rays, boxes and mission packages are checked against positions known from the
+// descriptions. Bad calls are refused, and a body that leaves takes its contacts with it.
 #include <catch2/catch.hpp>
 #include <limits>
 

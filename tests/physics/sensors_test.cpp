@@ -1,4 +1,6 @@
-// S1 rate, S2 noise and bias, S3 delay, S4 to S9 what each kind of sensor measures, S10 reset.
+// Each kind of sensor reports the values that the robot's known motion or a scene of known distances implies. The tests
+// also check its rate, its delay, its reset, and the statistics of its noise and bias against those of a normal
+// distribution.
 #include <catch2/catch.hpp>
 
 #include "physics/noise.hpp"

@@ -1,5 +1,7 @@
-// T1 belt speed, T2 a stopped belt, T3 very slow, T4 body order, T5 side faces, T6 moving ground, T7 turning,
-// T8 no axis is special, T9 force limits, T10 climbing.
+// Tracks drive, hold, turn and climb as far as friction and motors allow. The references are closed forms: the belt's
+// commanded speed, momentum shared between belt and ground, the turning rate at which the moment of friction vanishes,
+// and the forces needed on an incline and at a step. A world turned by any angle gives the same run, as no axis is
+// special.
 #include <catch2/catch.hpp>
 
 #include "tests/physics/scenes.hpp"

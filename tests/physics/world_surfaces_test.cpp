@@ -1,5 +1,6 @@
-// Shapes, meshes and height maps as triangles: U1 shapes, U2 meshes, U3 height maps, U4 where files are looked up,
-// U5 what is refused.
+// Shapes, meshes and height maps become triangles. Their volumes, chords, orientation and heights are checked against
+// the closed forms of the shapes and the pixels of small pictures. Files are found in the world's folder only, and any
+// file or size that makes no sense is refused with its place.
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>

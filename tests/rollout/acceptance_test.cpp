@@ -77,7 +77,7 @@ TEST_CASE("Over a half cylinder of 150 mm") {
   CHECK(out.end.X_WB.p.z() == Approx(0.09).margin(0.01));
 }
 
-// Kenaf's own friction of 1.3 pulls its bare tracks over: to raise the nose at a wall takes more than 1 (T10 of
+// Kenaf's own friction of 1.3 pulls its bare tracks over: to raise the nose at a wall takes more than 1 (the climbs of
 // tests/physics/tracks_test.cpp). gz-sim's vehicle has 0.7, and so has Kenaf here.
 TEST_CASE("With a friction of 0.7 the tilted box needs flippers") {
   physics::RobotDescription robot = physics::load_robot("kenaf");

@@ -1,9 +1,8 @@
-// What happens to the chain when a part of it dies. Claims:
-//   F1 World server killed during a run: the program gets an error within 1 s and ends by itself.
-//   F2 World server started again: the relay reconnects and a new run succeeds, nothing else restarted.
-//   F3 User program killed: the robot stands within 0.5 s of robot time.
-//   F4 A second commander is refused, with words that say why; the first one is not disturbed.
-//   F5 The relay killed: the program gets an error and ends by itself.
+// A part of the chain of processes dies. If the world server is killed during a run, the program gets an error within 1
+// s and ends by itself; once the server is started again, the relay reconnects and a new run succeeds with nothing else
+// restarted. If the user program is killed, the robot stands within 0.5 s of robot time; if the relay is killed, the
+// program gets an error and ends by itself. A second commander is refused with words that say why, and the first one is
+// not disturbed.
 #include <signal.h>
 
 #include <algorithm>

@@ -1,8 +1,7 @@
-// The whole chain of processes drives the square example. Claims:
-//   S1 The square of 100 mm sides closes within 10 mm and 2 degrees, by the simulator's ground truth.
-//   S2 The path goes round the corners of the square: (0,0), (100,0), (100,100), (0,100) mm, turning left.
-//   S3 Half, double and full speed of the world server give the same path within 1 mm; being in lock step, the same
-//   bits. S4 Garbage thrown at both ports during the run changes nothing. S5 Both servers end with status 0 on SIGTERM.
+// The whole chain of processes drives the square example. By the simulator's ground truth the square of 100 mm sides
+// goes round the corners (0,0), (100,0), (100,100), (0,100) mm, turning left, and closes within 10 mm and 2 degrees.
+// Half, double and full speed of the world server give the same path within 1 mm, and being in lock step, the same
+// bits; garbage thrown at both ports during the run changes nothing. Both servers end with status 0 on SIGTERM.
 #include <signal.h>
 
 #include <algorithm>

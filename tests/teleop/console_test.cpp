@@ -1,10 +1,9 @@
-// The console's side, without terminal, clock and sockets. Claims:
-//   K1 A key drives 0.6 s after it was pressed and 0.2 s after each repeat; another key takes its place.
-//   K2 Speeds and directions add up to the wish; nothing without the dead-man.
-//   K3 The emergency stop stays pressed until it is released; the release is asked for until the latch is gone.
-//   K4 A nudge starts from the angles sent last, after a halt from those the robot holds; never from one that nobody
-//   knows. G1 A gamepad's events by the kernel's layout; its dead-man counts only once it was pressed anew. H1 Round
-//   trip and losses, from the numbers in the datagrams.
+// The console's side is tested without terminal, clock and sockets. A key drives 0.6 s after it was pressed and 0.2 s
+// after each repeat, speeds and directions add up to the wish, and nothing drives without the dead-man; a gamepad
+// speaks by the kernel's layout, and its dead-man counts only once it was pressed anew. The emergency stop stays
+// pressed until it is released, and the release is asked for until the latch is gone. A nudge starts from the angles
+// sent last, after a halt from those the robot holds, and never from one that nobody knows; round trip and losses
+// follow from the numbers in the datagrams.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>

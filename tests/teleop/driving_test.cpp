@@ -1,14 +1,10 @@
-// Who has the robot and what is done with it, without clock and sockets. Claims:
-//   T1 Only the newest wish counts; old and doubled ones are dropped and are no sign of life.
-//   T2 A second console is told that the robot is taken, until the first was silent for long enough or has left.
-//   D1 At the start, after silence, after a lost robot, under another console: nothing moves until the dead-man was
-//      seen released; then it drives.
-//   D2 Silence stops tracks and flippers at once, and only then.
-//   D3 The emergency stop latches, comes from any console, and is released only by the one that drives, dead-man let
-//      go.
-//   D4 Speeds are cut to the limit and follow the ramps.
-//   D5 A wish counts only where the operator saw the robot no longer ago than the limit.
-//   D6 A posture is carried out once; one that was ordered while the robot stood halted is never carried out.
+// The rules of who has the robot and how it is driven are tested without clock and sockets. Only the newest wish
+// counts, and only where the operator saw the robot no longer ago than the limit; old and doubled wishes are dropped
+// and are no sign of life, and silence stops tracks and flippers as soon as it reaches its limit, not before. After a
+// start, a silence, a lost robot or a change of console nothing moves until the dead-man was seen released, and a
+// second console waits until the first was silent for long enough or has left. The emergency stop latches, any console
+// may press it, but only the one that drives releases it, with the dead-man let go; speeds are cut to the limit and
+// follow the ramps, and a posture is carried out once, and never if it was ordered while the robot stood halted.
 #include "teleop/driving.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,8 +1,7 @@
-// The bytes of every kind, written by hand from the layout of docs/operator.md, and what hostile bytes are told.
-// Claims:
-//   L1 Each kind has the length and the bytes of the layout, and reads back to what writes them again.
-//   L2 Whatever is cut, prolonged or changed beyond its range is refused, by its reason.
-//   L3 What is sent can be read: numbers beyond their limits are written as the limit, text as printable ASCII.
+// The bytes of every kind of datagram are written by hand from the layout of docs/operator.md, and each must read back
+// to the values that write the same bytes again. A datagram that is cut, prolonged or changed beyond its range is
+// refused with its reason. Everything that is sent can be read: numbers beyond their limits are written as the limit,
+// text as printable ASCII.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>

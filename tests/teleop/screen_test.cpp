@@ -1,7 +1,6 @@
-// What the console shows, as characters. Claims:
-//   V1 Nothing reaches beyond 80 x 24, and nothing but printable ASCII.
-//   V2 What a person must see stands in words: mode, halt, silence, who has the robot.
-//   V3 The posture is drawn as it is: front flippers up are above the body's front.
+// The console's screen is tested as characters: it stays within 80 x 24 and within printable ASCII. Mode, halt, silence
+// and the holder of the robot stand there in words, and the posture is drawn as it is, so that front flippers that are
+// up lie above the body's front.
 #include "teleop/screen.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,9 +1,7 @@
-// The operator on paper, turned by hand every 10 ms. Claims:
-//   P1 Lines are read or refused with their number.
-//   P2 A held key is pressed as a keyboard does: at once, after 0.4 s, then every 40 ms; and let go at the end.
-//   P3 `within` counts the robot's time; silence has a limit of its own.
-//   P4 After a halt he notices, lets go, and presses again.
-//   P5 Nobody sees what was not measured.
+// A script stands in for the operator and is turned by hand every 10 ms. A held key is pressed as a keyboard does, at
+// once, after 0.4 s, then every 40 ms, and is let go at the end; `within` counts the robot's time, and silence has a
+// limit of its own. After a halt the operator notices, lets go and presses again, and he sees nothing that was not
+// measured. Lines that make no sense are refused with their number.
 #include "teleop/script.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,18 +1,16 @@
-// An operator over a bad network, with all programs as processes: world server and relay in one, the control process, a
-// lossy proxy with 100 ms each way and 5 % loss, the console playing a script. Claims:
-//   O1 He climbs the step of 200 mm and ends on top.
-//   O2 The link cut in mid-climb: the robot stops and holds its place, though he holds the key; when the link is back
-//      it still stands, until he lets go and presses again; then he gets on top.
-//   O3 Garbage, a second console, a console that is killed and one that is started again: the control process lives,
-//      and nobody moves the robot who should not.
-//   O4 The relay killed and started again: the control process says so and has the robot again.
-//   O5 Over a network that takes 0.6 s each way nothing moves: what he sees is older than the 1 s that is allowed.
+// An operator works over a bad network, with all programs as processes: world server and relay in one, the control
+// process, a lossy proxy with 100 ms each way and 5 % loss, the console playing a script. He climbs the step of 200 mm
+// and ends on top; if the link is cut in mid-climb, the robot stops and holds its place, though he holds the key, and
+// when the link is back it still stands until he lets go and presses again. Garbage, a second console, and a console
+// that is killed and started again neither end the control process nor move the robot against its holder, and a relay
+// that is killed and started again is reported and has the robot again. Over a network that takes 0.6 s each way
+// nothing moves, as the operator's view is older than the 1 s that is allowed.
 //
 // Clocks: the operator, his link and its silence are on the wall's clock, because a network and a person are; the
 // robot's path is measured in the robot's time, by what the control process recorded. A simulation in lock step never
 // runs faster than the wall here (speed 1), so a machine that is held up makes the robot's part slower and no limit
 // below tighter. Where the console itself is held up for longer than the silence, the robot halts, and the operator
-// presses again as O2 asks him to.
+// presses again as he does after a cut link.
 #include <signal.h>
 
 #include <algorithm>

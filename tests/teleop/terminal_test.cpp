@@ -1,12 +1,9 @@
-// The console in a terminal of 80 x 24, as a process: the test holds the terminal's other end and the control process'
-// socket. Claims:
-//   C1 A key becomes a wish with the dead-man held, which ends when the key no longer comes; E presses the emergency
-//      stop.
-//   C2 The screen shows what the status says; a terminal that becomes too small is told so, and keys act even so.
-//   C3 Ended by a key or by a signal, it says Bye and leaves the terminal as it was.
-//   C4 Without a terminal it says what to do.
-//   C5 The bytes of a key that the terminal's description lacks are no keys of their own.
-// Nothing here is asked to come within a time: each is waited for, at most 20 s.
+// The console runs in a terminal of 80 x 24, as a process: the test holds the terminal's other end and the control
+// process' socket. A key becomes a wish with the dead-man held, which ends when the key no longer comes, E presses the
+// emergency stop, and the screen shows the status. The console reports a terminal that is too small while its keys
+// still act, leaves the terminal as it was when a key or signal ends it, says what to do without one, and takes no
+// bytes of a key that the terminal's description lacks for keys of their own. No test asks for anything within a time:
+// each waits for it, at most 20 s.
 #include <pty.h>
 #include <signal.h>
 #include <sys/ioctl.h>

@@ -1,13 +1,7 @@
-// Signs between REP 103 (x forward, y left, z up) and USARSim (x forward, y right, z down).
-//
-// Claims
-//   F1 forward keeps its sign; left and up become negative
-//   F2 roll keeps its sign; nose down and counter-clockwise become negative
-//   F3 the angle map agrees with the vector map for every rotation, not only about one axis
-//   F4 what a USARSim server reports reads as what it means
-//   F5 angles come back in (-pi, pi], from UT2004's 0..2pi too
-//   F6 tip up is negative for USARSim's front flippers, positive for its rear ones
-//   F7 spin times radius is surface speed
+// Signs and angles are converted between REP 103 (x forward, y left, z up) and USARSim (x forward, y right, z down).
+// Left and up become negative, and so do nose down and counter-clockwise; the angle map must agree with the vector map
+// for every rotation, not only about one axis. Angles come back in (-pi, pi], also from UT2004's 0..2pi. Tip up is
+// negative for USARSim's front flippers and positive for its rear ones, and spin times radius is surface speed.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>

@@ -1,10 +1,7 @@
-// DP matching. What must hold:
-//   M1  corner to corner, one step (1, 0), (0, 1) or (1, 1) at a time
-//   M2  no other way costs less (all ways tried, on small cases)
-//   M3  equal runs: the diagonal, cost 0; exchanging the runs keeps the cost
-//   M4  waiting costs nothing: a delayed start, a run half as fast
-//   M5  a constant offset across the path is the mean error
-//   M6  a band keeps pairs near the even course, and never leaves none
+// DP matching leads from corner to corner by steps (1, 0), (0, 1) or (1, 1), and small cases prove it optimal by trying
+// every way. Equal runs match on the diagonal at cost 0, exchanging the runs keeps the cost, waiting costs nothing (a
+// delayed start, a run half as fast), and a constant offset across the path is the mean error. A band keeps pairs near
+// the even course, and never leaves none.
 #include "gap/compare/dp_matching.hpp"
 
 #include <algorithm>

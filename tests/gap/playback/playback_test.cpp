@@ -1,12 +1,8 @@
-// What the playback page is told of recorded runs, and over which rules it is told.
-//
-// P1. Columns at other times: straight between measured cells, angles the short way, nothing in a hole.
-// P2. A long run is thinned, its first and last time stay.
-// P3. Where no pose was measured, dead reckoning by tracks and yaw; where not even that, nothing.
-// P4. A report's phases belong to their run, or to the one repeat that the report has in its place.
-// P5. A run's JSON has the recorded poses, times and marks as they are in the files, and its simulations at the same
-// times. P6. Host, Origin and token as with the live view; runs are made once, when somebody asks. P7. Wrong input ends
-// with status 2 and words; SIGTERM with 0.
+// The playback page is given recorded runs under the rules of the live view (Host, Origin and token), and each run is
+// made once, when somebody asks for it. Values at other times lie straight between measured cells, take the short way
+// for angles and are empty in a hole; where no pose was measured, dead reckoning by tracks and yaw stands in for it. A
+// long run is thinned, but keeps its first and last time. The expected poses, times, marks and phases come from small
+// recorded files and their report; wrong input ends the program with status 2 and words, SIGTERM with 0.
 #include "gap/playback/playback.hpp"
 
 #include <atomic>

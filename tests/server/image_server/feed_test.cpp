@@ -1,5 +1,6 @@
-// F1 what is asked for is drawn, at the camera's rate in robot time, and shows the moment that it says; F2 what nobody
-// asks for is not; F3 robots and worlds may change under it; F4 it ends whenever it is told to.
+// The feed draws only the views that somebody asks for, at the camera's rate in robot time, and each picture shows the
+// moment that it states. Robots may come and go and the world may be reset under it, and the feed ends whenever it is
+// told to.
 #include "server/image_server/feed.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,5 +1,6 @@
-// USARSim's protocol and what was added to it, through real sockets: I1 OK and raw pictures; I2 JPEG; I3 parts; I4
-// pacing; I5 views and words; I6 hostile and slow readers; I7 what is in the picture.
+// These tests speak USARSim's image protocol and its extensions through real sockets. They compare raw pictures, JPEGs
+// and parts with the renderer's own output, and edges in them with geometry. They check pacing, the choice of views,
+// answers in words, and that hostile or slow readers disturb nobody else.
 #include "server/image_server/image_server.hpp"
 
 #include <unistd.h>
