@@ -51,7 +51,7 @@ std::string environment_error(std::map<std::string, std::string> variables) {
 
 }  // namespace
 
-TEST_CASE("the defaults are the ones the header states, and valid") {
+TEST_CASE("The defaults are the ones the header states, and valid") {
   const hrt_config config = hrt_config_default();
   CHECK_NOTHROW(check_config(config));
   CHECK(config.period_s == 0.01);
@@ -64,7 +64,7 @@ TEST_CASE("the defaults are the ones the header states, and valid") {
   CHECK(std::string(config.camera_server) == "127.0.0.1:5003");
 }
 
-TEST_CASE("a program of the first header has a shorter config, and what it lacks is as by default") {
+TEST_CASE("A program of the first header has a shorter config, and what it lacks is as by default") {
   // Its hrt_config ended where camera_server begins now; what lies behind it is not the library's.
   alignas(hrt_config) unsigned char memory[sizeof(hrt_config)];
   std::memset(memory, 0x5a, sizeof memory);
@@ -84,7 +84,7 @@ TEST_CASE("a program of the first header has a shorter config, and what it lacks
   CHECK_THROWS_WITH(whole_config(config), Catch::Contains("hrt_config_default()"));
 }
 
-TEST_CASE("a file sets every kind of key") {
+TEST_CASE("A file sets every kind of key") {
   hrt_config config = default_config();
   apply_toml(R"(
 # a comment
@@ -105,7 +105,7 @@ record = "recordings/run.csv"
   CHECK(std::string(config.record) == "recordings/run.csv");
 }
 
-TEST_CASE("what is wrong in a file is named with line and column, and nothing is changed") {
+TEST_CASE("What is wrong in a file is named with line and column, and nothing is changed") {
   CHECK_THAT(toml_error("\n\nperiode_s = 0.01\n"), Catch::StartsWith("kenaf.toml:3:1: unknown key 'periode_s'"));
   CHECK_THAT(toml_error("period_s = 5\n"),
              Catch::StartsWith("kenaf.toml:1:12: period_s must be from 0.001 to 1, not 5"));
@@ -123,7 +123,7 @@ TEST_CASE("what is wrong in a file is named with line and column, and nothing is
   CHECK_THAT(toml_error("period_s = = 3"), Catch::StartsWith("kenaf.toml:1:12: "));
 }
 
-TEST_CASE("the environment overrides the file") {
+TEST_CASE("The environment overrides the file") {
   const kenaf::support::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "mine.toml";
   std::ofstream(file) << "period_s = 0.02\ncommand_timeout_s = 1\n";
@@ -143,7 +143,7 @@ TEST_CASE("the environment overrides the file") {
   CHECK(std::string(config.robot) == "marmotte");
 }
 
-TEST_CASE("the variables have the same names in every locale") {
+TEST_CASE("The variables have the same names in every locale") {
   // a Turkish i has its dot as a capital too
   if (std::setlocale(LC_CTYPE, "tr_TR.UTF-8") == nullptr) {
     WARN("skipped: there is no locale tr_TR.UTF-8");
@@ -155,7 +155,7 @@ TEST_CASE("the variables have the same names in every locale") {
   CHECK(config.period_s == 0.02);
 }
 
-TEST_CASE("a personal file applies where nothing else does, and a named file must be there") {
+TEST_CASE("A personal file applies where nothing else does, and a named file must be there") {
   const kenaf::support::TemporaryFolder home;
   std::filesystem::create_directories(home.path() / ".config/kenaf");
   std::ofstream(home.path() / ".config/kenaf/kenaf.toml") << "period_s = 0.04\n";
@@ -177,7 +177,7 @@ TEST_CASE("a personal file applies where nothing else does, and a named file mus
   CHECK(config.period_s == 0.04);
 }
 
-TEST_CASE("what is wrong in the environment is named by its variable") {
+TEST_CASE("What is wrong in the environment is named by its variable") {
   CHECK(environment_error({{"KENAF_PERIOD_S", "1e9"}}) ==
         "environment variable KENAF_PERIOD_S: period_s must be from 0.001 to 1, not 1000000000");
   CHECK_THAT(environment_error({{"KENAF_PERIOD_S", "0.01s"}}), Catch::Contains("'0.01s' is not a number"));
@@ -187,7 +187,7 @@ TEST_CASE("what is wrong in the environment is named by its variable") {
   CHECK_THAT(environment_error({{"KENAF_RELAY", std::string(500, 'x')}}), Catch::Contains("at most 127 bytes"));
 }
 
-TEST_CASE("a cycle longer than the commands' timeout is refused, wherever the two come from") {
+TEST_CASE("A cycle longer than the commands' timeout is refused, wherever the two come from") {
   const std::string both = "period_s, 0.2, must not be above command_timeout_s, 0.1";
   hrt_config config = default_config();
   const hrt_config before = config;
@@ -207,7 +207,7 @@ TEST_CASE("a cycle longer than the commands' timeout is refused, wherever the tw
   CHECK_THAT(hrt_last_error(), Catch::StartsWith(both));
 }
 
-TEST_CASE("a config that a program made up is refused, member by member") {
+TEST_CASE("A config that a program made up is refused, member by member") {
   hrt_config config = hrt_config_default();
   config.stuck_time_s = 0;
   CHECK(hrt_kenaf_init_with(&config) == HRT_E_ARGUMENT);

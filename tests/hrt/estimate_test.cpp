@@ -25,7 +25,7 @@ robot::State state_at(std::uint32_t frame, double left_m, double right_m) {
 
 }  // namespace
 
-TEST_CASE("a quarter circle by the encoders ends a radius ahead and a radius to the left") {
+TEST_CASE("A quarter circle by the encoders ends a radius ahead and a radius to the left") {
   // Tracks 0.2 m apart on circles of 0.4 and 0.6 m: the centre drives a circle of 0.5 m.
   Estimator estimator({0.2, 1});
   const double quarter = std::numbers::pi / 2;
@@ -40,7 +40,7 @@ TEST_CASE("a quarter circle by the encoders ends a radius ahead and a radius to 
   CHECK(last.travel_m == Approx(7 + 0.5 * quarter));
 }
 
-TEST_CASE("posture's yaw is unwrapped, and odometry begins at 0 whatever the yaw") {
+TEST_CASE("Posture's yaw is unwrapped, and odometry begins at 0 whatever the yaw") {
   Estimator estimator({0.2, 1});
   Estimate last;
   for (std::uint32_t i = 0; i <= 2000; ++i) {
@@ -54,7 +54,7 @@ TEST_CASE("posture's yaw is unwrapped, and odometry begins at 0 whatever the yaw
   CHECK(last.odometry_yaw_rad == Approx(-5 * std::numbers::pi).margin(1e-6));
 }
 
-TEST_CASE("up a slope the odometry counts the ground plan") {
+TEST_CASE("Up a slope the odometry counts the ground plan") {
   Estimator estimator({0.2, 1});
   Estimate last;
   for (std::uint32_t i = 0; i <= 100; ++i) {
@@ -66,7 +66,7 @@ TEST_CASE("up a slope the odometry counts the ground plan") {
   CHECK(last.odometry_x_m == Approx(0.5));
 }
 
-TEST_CASE("a sensor that begins late or pauses makes nothing jump") {
+TEST_CASE("A sensor that begins late or pauses makes nothing jump") {
   Estimator estimator({0.2, 1});
   robot::State nothing{};
   nothing.frame = 1;
@@ -91,7 +91,7 @@ TEST_CASE("a sensor that begins late or pauses makes nothing jump") {
   CHECK(now.heading_rad == Approx(0.2));  // from 1 to 1.2 it turned
 }
 
-TEST_CASE("a posture sensor slower than the cycle is followed as fast as one that is not") {
+TEST_CASE("A posture sensor slower than the cycle is followed as fast as one that is not") {
   Estimator estimator({0.2, 1});
   robot::State state = state_at(1, 0, 0);
   state.fields |= robot::kHasPosture;
@@ -105,7 +105,7 @@ TEST_CASE("a posture sensor slower than the cycle is followed as fast as one tha
 }
 
 TEST_CASE(
-    "a posture sensor that is lost leaves the heading to the encoders, and one that comes back makes it not jump") {
+    "A posture sensor that is lost leaves the heading to the encoders, and one that comes back makes it not jump") {
   Estimator estimator({0.2, 1});
   const auto state = [](std::uint32_t cycle, double right_m, std::optional<double> yaw_rad) {
     robot::State out = state_at(cycle, 0, right_m);
@@ -129,7 +129,7 @@ TEST_CASE(
   CHECK(now.odometry_yaw_rad == Approx(0.7));
 }
 
-TEST_CASE("time goes on where the robot's clock is put back, and the same to the last bit where it is not") {
+TEST_CASE("Time goes on where the robot's clock is put back, and the same to the last bit where it is not") {
   Estimator estimator({0.2, 1});
   Estimate now;
   for (std::uint32_t i = 1; i <= 100; ++i) {
@@ -148,7 +148,7 @@ TEST_CASE("time goes on where the robot's clock is put back, and the same to the
   CHECK(now.t_s == Approx(1.0));
 }
 
-TEST_CASE("the tracks stand while they move less than the encoders resolve") {
+TEST_CASE("The tracks stand while they move less than the encoders resolve") {
   Estimator estimator({0.2, 1});
   (void)estimator.update(state_at(1, 0, 0));
   CHECK(estimator.update(state_at(2, 0.0002, 0)).still_s == Approx(0.01));

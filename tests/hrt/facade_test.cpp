@@ -587,7 +587,7 @@ TEST_CASE("A sleep of no time counts as a call") {
   }
 }
 
-TEST_CASE("And they stop as early where the world is reset meanwhile") {
+TEST_CASE("Track speeds stop as early where the world is reset meanwhile") {
   const auto robot = use_fake_robot();
   robot->reset_at_frame = 205;
   hrt_config config = hrt_config_default();

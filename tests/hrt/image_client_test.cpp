@@ -197,7 +197,7 @@ TEST_CASE("A picture that a server sends unasked at the begin does not end the a
   REQUIRE(get(picture) == HRT_OK);
 }
 
-TEST_CASE("No such camera: the server's words") {
+TEST_CASE("A camera that there is not is an error in the server's words") {
   FakeImageServer server([](Client& connection) {
     const std::string words = "robot kenaf has no camera 'Camera'; it has:\nBirdsEye";
     while (const auto kind = connection.request())
@@ -207,7 +207,7 @@ TEST_CASE("No such camera: the server's words") {
                 "camera 'Camera': robot kenaf has no camera 'Camera'; it has: BirdsEye");
 }
 
-TEST_CASE("Whatever else a server does wrong") {
+TEST_CASE("Whatever else a server does wrong ends in words") {
   const Bytes8 jpeg = plain_jpeg(64, 48, 1, 2, 3);
   const auto misbehave = [&](const std::function<void(Client&)>& answer, const std::string& words) {
     FakeImageServer server([&](Client& connection) {
@@ -249,7 +249,7 @@ TEST_CASE("A server that goes away is named, and asked anew by the next call") {
   CHECK(server.connections() == 2);
 }
 
-TEST_CASE("Nobody there, and no address") {
+TEST_CASE("A server that is not there, and an address that is none, are named") {
   std::string gone;
   {
     const FakeImageServer server([](Client&) {});

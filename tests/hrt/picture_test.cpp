@@ -189,7 +189,7 @@ TEST_CASE("A webcam's Motion JPEG, which leaves out the standard Huffman tables,
   CHECK(std::abs(room[2] - 90) < 4);
 }
 
-TEST_CASE("YUYV by BT.601, as RGB and as JPEG") {
+TEST_CASE("YUYV is converted by BT.601, to RGB and to JPEG") {
   const OpenScene open;
   CameraPicture yuyv;
   yuyv.encoding = CameraPicture::Encoding::yuyv;
@@ -221,7 +221,7 @@ TEST_CASE("YUYV by BT.601, as RGB and as JPEG") {
   CHECK(int{rgb[rgb.size() - 2]} < 16);
 }
 
-TEST_CASE("Robot time and age") {
+TEST_CASE("A picture tells its robot time and its age") {
   const OpenScene open(false);  // a robot that waits for nobody, as the real one
   REQUIRE(hrt_wait_cycle(nullptr) == HRT_OK);
   CameraPicture picture = four_pixels();
@@ -311,7 +311,7 @@ TEST_CASE("A buffer that is too small is told the size, and the picture is not l
   CHECK(picture.number == 1);
 }
 
-TEST_CASE("Wrong arguments") {
+TEST_CASE("Wrong arguments are refused") {
   hrt_picture picture = hrt_picture_init();
   CHECK(get_rgb(picture) == HRT_E_NOT_INITIALISED);
   const OpenScene open;
@@ -391,7 +391,7 @@ TEST_CASE("Robot time runs on while a picture is waited for, track speeds hold, 
   other.join();
 }
 
-TEST_CASE("Hrt_close ends a wait, and so does a link that breaks") {
+TEST_CASE("hrt_close ends a wait, and so does a link that breaks") {
   {
     const OpenScene open;
     std::thread closer([&] {
@@ -412,7 +412,7 @@ TEST_CASE("Hrt_close ends a wait, and so does a link that breaks") {
   CHECK_THAT(hrt_last_error(), Catch::Contains("the fake link broke"));
 }
 
-TEST_CASE("No picture, no camera, and one that is not asked any more is told to pause") {
+TEST_CASE("A camera is opened for a picture only, and one that is not asked any more is told to pause") {
   const OpenScene open;
   REQUIRE(hrt_go_forward(10) == HRT_OK);
   CHECK(open.scene->opened == 0);

@@ -101,7 +101,7 @@ TEST_CASE("A disk that stalls for as many cycles as the queue holds costs neithe
   for (std::size_t i = 0; i < kRows; ++i) REQUIRE(run.column("frame")[i] == static_cast<double>(i));
 }
 
-TEST_CASE("One that stalls for longer loses rows, still without a wait, and the recording says how many") {
+TEST_CASE("A disk that stalls for longer loses rows, still without a wait, and the recording says how many") {
   const support::TemporaryFolder folder;
   std::ofstream(recording_in(folder)) << "of before";
   StalledDisk disk(recording_in(folder));
@@ -170,7 +170,7 @@ TEST_CASE("Cycles go on while the disk makes the file of a recording") {
   CHECK(disk.written().row_count() >= 10);
 }
 
-TEST_CASE("closing a robot that does not show that it stopped says so, and the recording is whole all the same") {
+TEST_CASE("Closing a robot that does not show that it stopped says so, and the recording is whole all the same") {
   const support::TemporaryFolder folder;
   const auto robot = hrt::test::use_fake_robot();
   robot->close_error = "closed, but track right (node 2) did not stop";
@@ -187,7 +187,7 @@ TEST_CASE("closing a robot that does not show that it stopped says so, and the r
   CHECK(hrt_close() == HRT_OK);
 }
 
-TEST_CASE("a lost robot is closed before a new one is opened, also while its recording waits for the disk") {
+TEST_CASE("A lost robot is closed before a new one is opened, also while its recording waits for the disk") {
   const support::TemporaryFolder folder;
   StalledDisk disk(recording_in(folder));
   const auto lost = hrt::test::use_fake_robot();
@@ -217,7 +217,7 @@ TEST_CASE("a lost robot is closed before a new one is opened, also while its rec
   CHECK(hrt_close() == HRT_OK);
 }
 
-TEST_CASE("a robot that is being closed is busy until it is") {
+TEST_CASE("A robot that is being closed is busy until it is") {
   const support::TemporaryFolder folder;
   StalledDisk disk(recording_in(folder));
   hrt::test::use_fake_robot()->lockstep = false;

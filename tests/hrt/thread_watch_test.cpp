@@ -18,7 +18,7 @@ const std::string kBefore = " 1 2 3 4 5 6 7 8 9 10 ";  // the ten fields between
 
 }  // namespace
 
-TEST_CASE("a line of stat: state, and user and system time in ticks") {
+TEST_CASE("A line of stat: state, and user and system time in ticks") {
   const double tick_s = 1.0 / static_cast<double>(sysconf(_SC_CLK_TCK));
   const auto asleep = read_thread_stat("42 (square_sim) S" + kBefore + "7 5 0 0");
   REQUIRE(asleep);
@@ -33,7 +33,7 @@ TEST_CASE("a line of stat: state, and user and system time in ticks") {
   }
 }
 
-TEST_CASE("a thread that waits for a processor spends nothing, one that works spends what it works") {
+TEST_CASE("A thread that waits for a processor spends nothing, one that works spends what it works") {
   ThreadWatch watch;
   watch.look(ThreadLook{false, 1.00}, 10);
   watch.look(ThreadLook{false, 1.00}, 11);  // a second without a processor
@@ -42,7 +42,7 @@ TEST_CASE("a thread that waits for a processor spends nothing, one that works sp
   CHECK(watch.spent_s() == Approx(0.02));
 }
 
-TEST_CASE("a thread that sleeps spends the time that was watched, and no more") {
+TEST_CASE("A thread that sleeps spends the time that was watched, and no more") {
   ThreadWatch watch;
   watch.look(ThreadLook{true, 0}, 10);
   CHECK(watch.spent_s() == 0);
@@ -54,7 +54,7 @@ TEST_CASE("a thread that sleeps spends the time that was watched, and no more") 
   CHECK(watch.spent_s() == Approx(0.01 + ThreadWatch::kLongestLook_s));
 }
 
-TEST_CASE("threads of this process are seen as they are") {
+TEST_CASE("Threads of this process are seen as they are") {
   CHECK_FALSE(look_at_thread(gettid())->asleep);
   std::atomic<pid_t> sleeper = 0;
   std::atomic<bool> wakes = false;

@@ -64,7 +64,7 @@ std::string device_error(const std::string& device) {
 
 }  // namespace
 
-TEST_CASE("a description's cameras, with the keys that are the simulator's passed over") {
+TEST_CASE("A description's cameras, with the keys that are the simulator's passed over") {
   const auto cameras = parse_cameras(kFront + kMast + "[body]\nmass_kg = 3\n", "robot.toml");
   REQUIRE(cameras.size() == 2);
   CHECK(cameras[0].name == "Front");
@@ -79,7 +79,7 @@ TEST_CASE("a description's cameras, with the keys that are the simulator's passe
   CHECK(load_cameras("kenaf").size() == 2);
 }
 
-TEST_CASE("what is wrong with a camera is named with its place") {
+TEST_CASE("What is wrong with a camera is named with its place") {
   const auto with = [](std::string text, const std::string& from, const std::string& to) {
     return text.replace(text.find(from), from.size(), to);
   };
@@ -91,7 +91,7 @@ TEST_CASE("what is wrong with a camera is named with its place") {
   CHECK_THAT(error_of(kFront + with(kFront, "Front", "Rear")), Catch::Contains("device of another camera"));
 }
 
-TEST_CASE("a camera is chosen by name, without a name the first, else it is said what there is") {
+TEST_CASE("A camera is chosen by name, without a name the first, else it is said what there is") {
   const auto cameras = parse_cameras(kFront + kMast, "robot.toml");
   CHECK(choose_camera(cameras, "", "r").name == "Front");
   CHECK(choose_camera(cameras, "Front", "r").name == "Front");
@@ -101,7 +101,7 @@ TEST_CASE("a camera is chosen by name, without a name the first, else it is said
   CHECK_THAT(choice_error("", ""), Catch::Contains("robot 'my-robot' has no camera"));
 }
 
-TEST_CASE("a buffer's picture: rows without their padding, Motion JPEG as it is, nothing where it is not whole") {
+TEST_CASE("A buffer's picture: rows without their padding, Motion JPEG as it is, nothing where it is not whole") {
   // 2 x 2 pixels of YUYV: 4 bytes a row, 6 from row to row; the last row may end without padding
   const std::vector<std::uint8_t> padded{1, 2, 3, 4, 0, 0, 5, 6, 7, 8};
   CHECK(bytes_of_buffer(Encoding::yuyv, 2, 2, 6, padded) == std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6, 7, 8});
@@ -113,7 +113,7 @@ TEST_CASE("a buffer's picture: rows without their padding, Motion JPEG as it is,
   CHECK_FALSE(bytes_of_buffer(Encoding::jpeg, 320, 180, 0, {}));
 }
 
-TEST_CASE("a device that is not there, or is none, is named") {
+TEST_CASE("A device that is not there, or is none, is named") {
   CHECK_THAT(device_error("/dev/video-of-nobody"),
              Catch::Contains("camera 'Front': /dev/video-of-nobody does not exist"));
   CHECK_THAT(device_error("/dev/null"), Catch::Contains("/dev/null is no video device"));

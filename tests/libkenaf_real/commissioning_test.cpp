@@ -6,7 +6,7 @@
 using namespace kenaf;
 using namespace kenaf::real;
 
-TEST_CASE("the time between targets is in milliseconds where it is a whole number of them, else as fine as it fits") {
+TEST_CASE("The time between targets is in milliseconds where it is a whole number of them, else as fine as it fits") {
   canbus::RobotBus bus = canbus::load_robot_bus("kenaf");
   bus.drives[0].mode = canopen::DriveMode::cyclic_velocity;
   struct Case {

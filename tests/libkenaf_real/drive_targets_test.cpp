@@ -30,7 +30,7 @@ ProcessImage image_at(const canbus::RobotBus& bus, std::int32_t counts) {
 
 }  // namespace
 
-TEST_CASE("without a command flippers keep where they are, and tracks stand") {
+TEST_CASE("Without a command flippers keep where they are, and tracks stand") {
   const canbus::RobotBus bus = bus_with(DriveMode::cyclic_velocity, DriveMode::cyclic_position);
   const ProcessImage image = image_at(bus, 12345);
   DriveTargets targets(bus, image);
@@ -43,7 +43,7 @@ TEST_CASE("without a command flippers keep where they are, and tracks stand") {
   }
 }
 
-TEST_CASE("a cyclic track speed is ramped by the description's acceleration, a profile one is the drive's to ramp") {
+TEST_CASE("A cyclic track speed is ramped by the description's acceleration, a profile one is the drive's to ramp") {
   hrt::DriveCommand command;
   command.track_speed_mps = {0.2, -0.2};
   const canbus::RobotBus cyclic = bus_with(DriveMode::cyclic_velocity, DriveMode::cyclic_position);
@@ -63,7 +63,7 @@ TEST_CASE("a cyclic track speed is ramped by the description's acceleration, a p
 }
 
 TEST_CASE(
-    "a speed beyond the limit is cut to it, a flipper goes to the same direction within its range as the simulated one "
+    "A speed beyond the limit is cut to it, a flipper goes to the same direction within its range as the simulated one "
     "does") {
   const canbus::RobotBus bus = bus_with(DriveMode::profile_velocity, DriveMode::profile_position);
   const ProcessImage image = image_at(bus, 0);
@@ -79,7 +79,7 @@ TEST_CASE(
   CHECK((orders[3].controlword & canopen::kControlNewSetPoint) == 0);  // was never told anything: no set-point
 }
 
-TEST_CASE("a flipper that stands outside of its limits stays there until it is told, and then goes as its ramp does") {
+TEST_CASE("A flipper that stands outside of its limits stays there until it is told, and then goes as its ramp does") {
   for (const DriveMode mode : {DriveMode::cyclic_position, DriveMode::profile_position}) {
     const canbus::RobotBus bus = bus_with(DriveMode::cyclic_velocity, mode);
     const std::int32_t outside = position_to_drive(bus.drives[2].units, 4);  // its range ends at pi
@@ -103,7 +103,7 @@ TEST_CASE("a flipper that stands outside of its limits stays there until it is t
   }
 }
 
-TEST_CASE("a position ramp reaches its target in the time of its trapezoid and does not go beyond") {
+TEST_CASE("A position ramp reaches its target in the time of its trapezoid and does not go beyond") {
   // 1 rad at 1.5 rad/s and 15 rad/s^2: 0.1 s up, 0.1 s down, 0.15 rad together; 0.85 rad at full speed: 0.567 s; in all
   // 0.767 s
   PositionRamp ramp;
@@ -121,7 +121,7 @@ TEST_CASE("a position ramp reaches its target in the time of its trapezoid and d
   CHECK(time_s == Approx(0.767).margin(0.05));  // whole steps, and the last ones are slow
 }
 
-TEST_CASE("a target that comes nearer than the way to stop is gone back to, within the acceleration") {
+TEST_CASE("A target that comes nearer than the way to stop is gone back to, within the acceleration") {
   PositionRamp ramp;
   for (int k = 0; k < 30; ++k) ramp.step(1, 1.5, 15, 0.01);
   for (int k = 0; k < 200; ++k) {

@@ -57,7 +57,7 @@ void recover(RobotOnBus& robot) {
 
 }  // namespace
 
-TEST_CASE("a master that dies, or hangs, stops the robot within 0.14 s") {
+TEST_CASE("A master that dies, or hangs, stops the robot within 0.14 s") {
   for (int cycles = 30; cycles < 34; ++cycles) {  // at each moment between two heartbeats
     RobotOnBus robot;
     robot.open();
@@ -71,7 +71,7 @@ TEST_CASE("a master that dies, or hangs, stops the robot within 0.14 s") {
   }
 }
 
-TEST_CASE("a drive that falls silent is named, and the others stop at once") {
+TEST_CASE("A drive that falls silent is named, and the others stop at once") {
   for (std::size_t drive = 0; drive < canbus::kDriveCount; ++drive) {
     RobotOnBus robot;
     robot.open();
@@ -93,7 +93,7 @@ TEST_CASE("a drive that falls silent is named, and the others stop at once") {
   }
 }
 
-TEST_CASE("a drive in fault is named with its error, and the others stop at once") {
+TEST_CASE("A drive in fault is named with its error, and the others stop at once") {
   RobotOnBus robot;
   robot.open();
   robot.run(30, drive_at(0.2, 0.2));
@@ -108,7 +108,7 @@ TEST_CASE("a drive in fault is named with its error, and the others stop at once
   recover(robot);  // a fault reset is enough
 }
 
-TEST_CASE("a drive that lost its supply is named as restarted or silent, and comes back") {
+TEST_CASE("A drive that lost its supply is named as restarted or silent, and comes back") {
   RobotOnBus robot;
   robot.open();
   robot.run(30, drive_at(0.2, 0.2));
@@ -120,7 +120,7 @@ TEST_CASE("a drive that lost its supply is named as restarted or silent, and com
   recover(robot);
 }
 
-TEST_CASE("an interface that goes down ends the loop, and the drives stop by themselves") {
+TEST_CASE("An interface that goes down ends the loop, and the drives stop by themselves") {
   RobotOnBus robot;
   robot.open();
   robot.run(30, drive_at(0.2, 0.2));
@@ -135,7 +135,7 @@ TEST_CASE("an interface that goes down ends the loop, and the drives stop by the
   recover(robot);
 }
 
-TEST_CASE("an inclinometer or a gyro that falls silent takes the posture away, says so, and the robot goes on") {
+TEST_CASE("An inclinometer or a gyro that falls silent takes the posture away, says so, and the robot goes on") {
   for (const auto& [node, name] :
        {std::pair<canopen::NodeId, std::string>{7, "inclinometer (node 7)"}, {8, "gyro (node 8)"}}) {
     RobotOnBus robot;
@@ -155,7 +155,7 @@ TEST_CASE("an inclinometer or a gyro that falls silent takes the posture away, s
   }
 }
 
-TEST_CASE("a turn that is made while a sensor of the posture is silent counts, and counts once") {
+TEST_CASE("A turn that is made while a sensor of the posture is silent counts, and counts once") {
   struct Case {
     int silent_cycles;
     double margin_rad;
@@ -189,7 +189,7 @@ TEST_CASE("a turn that is made while a sensor of the posture is silent counts, a
   }
 }
 
-TEST_CASE("a drive that sends PDOs of the wrong length is as good as silent") {
+TEST_CASE("A drive that sends PDOs of the wrong length is as good as silent") {
   RobotOnBus robot;
   robot.open();
   robot.run(30, drive_at(0.2, 0.2));
@@ -197,7 +197,7 @@ TEST_CASE("a drive that sends PDOs of the wrong length is as good as silent") {
   CHECK_THAT(drive_until_lost(robot).text, Catch::Contains("track left (node 1) is silent"));
 }
 
-TEST_CASE("a drive that does not act on controlwords does not get enabled, by name") {
+TEST_CASE("A drive that does not act on controlwords does not get enabled, by name") {
   RobotOnBus robot;
   robot.wire.inject({FaultKind::deaf, 4});
   const Loss loss = opening(robot);
@@ -207,7 +207,7 @@ TEST_CASE("a drive that does not act on controlwords does not get enabled, by na
   CHECK(robot.stands());
 }
 
-TEST_CASE("set-up names node, object and reason where SDO goes wrong") {
+TEST_CASE("Set-up names node, object and reason where SDO goes wrong") {
   struct Case {
     FaultKind kind;
     const char* says;
@@ -226,7 +226,7 @@ TEST_CASE("set-up names node, object and reason where SDO goes wrong") {
   }
 }
 
-TEST_CASE("a node that is not there is named, and all that are missing with it") {
+TEST_CASE("A node that is not there is named, and all that are missing with it") {
   RobotOnBus robot;
   robot.wire.inject({FaultKind::silent, 2});
   robot.wire.inject({FaultKind::silent, 7});

@@ -17,7 +17,7 @@ void run(Heading& heading, double rate_radps, double roll_rad, double pitch_rad,
 
 }  // namespace
 
-TEST_CASE("a turn to the left is positive, and wraps at half a turn") {
+TEST_CASE("A turn to the left is positive, and wraps at half a turn") {
   Heading heading;
   run(heading, 0.5, 0, 0, false, 2);
   CHECK(heading.yaw_rad() == Approx(1.0));
@@ -25,7 +25,7 @@ TEST_CASE("a turn to the left is positive, and wraps at half a turn") {
   CHECK(heading.yaw_rad() == Approx(4.0 - 2 * kPi));
 }
 
-TEST_CASE("a bias that was learnt while the robot stood leaves no drift") {
+TEST_CASE("A bias that was learnt while the robot stood leaves no drift") {
   Heading heading;
   run(heading, 0.01, 0, 0, true, 0.5);
   // 0.2 s settle first, at the bias's full rate; from the first sample after them the mean is the bias; one sample more
@@ -37,14 +37,14 @@ TEST_CASE("a bias that was learnt while the robot stood leaves no drift") {
   CHECK(heading.yaw_rad() - before == Approx(1.0));
 }
 
-TEST_CASE("a robot that is turned by hand while its tracks stand does not teach a bias") {
+TEST_CASE("A robot that is turned by hand while its tracks stand does not teach a bias") {
   Heading heading;
   run(heading, 0.3, 0, 0, true, 2);
   CHECK(heading.bias_radps() == 0);
   CHECK(heading.yaw_rad() == Approx(0.6));
 }
 
-TEST_CASE("on a slope of 60 degrees half of the turn about the body's axis is felt as twice the yaw") {
+TEST_CASE("On a slope of 60 degrees half of the turn about the body's axis is felt as twice the yaw") {
   // yaw rate of z-y-x angles: r cos(roll) / cos(pitch), here r / 0.5
   Heading heading;
   run(heading, 0.1, 0, kPi / 3, false, 1);

@@ -41,7 +41,7 @@ std::int32_t longest_step(const RobotOnBus& robot, std::uint16_t command_id) {
 
 }  // namespace
 
-TEST_CASE("a program that was held up for longer than its drives wait for it says nothing but quick stop") {
+TEST_CASE("A program that was held up for longer than its drives wait for it says nothing but quick stop") {
   // held up while it waits for a state, and between the state and its answer
   for (const bool has_state : {false, true}) {
     RobotOnBus robot;
@@ -69,7 +69,7 @@ TEST_CASE("a program that was held up for longer than its drives wait for it say
   }
 }
 
-TEST_CASE("a program that was held up for less than that goes on") {
+TEST_CASE("A program that was held up for less than that goes on") {
   RobotOnBus robot;
   robot.open();
   robot.run(50, drive_at(0.2, 0.2));
@@ -79,7 +79,7 @@ TEST_CASE("a program that was held up for less than that goes on") {
   CHECK(robot.all_are(PowerState::operation_enabled));
 }
 
-TEST_CASE("what was missed in a short hold-up is not made up for in one period") {
+TEST_CASE("What was missed in a short hold-up is not made up for in one period") {
   const ChangedRobot cyclic({{"profile velocity", "cyclic velocity"}, {"profile position", "cyclic position"}});
   for (const bool has_state : {false, true}) {
     RobotOnBus robot(cyclic.path());

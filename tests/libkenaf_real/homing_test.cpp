@@ -30,7 +30,7 @@ bool begins_homing(const canopen::Frame& frame, Sender sender) {
 
 }  // namespace
 
-TEST_CASE("a drive that fails while flippers are homed stops the others at once, and is named with its error") {
+TEST_CASE("A drive that fails while flippers are homed stops the others at once, and is named with its error") {
   const ChangedRobot description = homed_by(towards_switch());
   RobotOnBus robot(description.path());
   std::optional<canopen::Time> begun, failed;
@@ -56,7 +56,7 @@ TEST_CASE("a drive that fails while flippers are homed stops the others at once,
   for (const std::size_t i : {0u, 1u, 2u, 3u, 5u}) CHECK(robot.power(i) == PowerState::quick_stop_active);
 }
 
-TEST_CASE("homing is not taken for done by what a drive says of the one before") {
+TEST_CASE("Homing is not taken for done by what a drive says of the one before") {
   const ChangedRobot description = homed_by(towards_switch());
   RobotOnBus robot(description.path());
   std::optional<canopen::Time> begun;
@@ -74,7 +74,7 @@ TEST_CASE("homing is not taken for done by what a drive says of the one before")
   CHECK(robot.wire.now() > *begun + std::chrono::seconds(6));
 }
 
-TEST_CASE("a drive that takes the home offset the other way round is named, and opens with the description's key") {
+TEST_CASE("A drive that takes the home offset the other way round is named, and opens with the description's key") {
   // Where offset_direction is -1, home then reads minus the offset: the simulated drives of that description do so.
   std::string negated = kHomeHere;
   const std::string key = "\noffset_direction = -1";
@@ -97,7 +97,7 @@ TEST_CASE("a drive that takes the home offset the other way round is named, and 
   for (const double angle_rad : robot.run(2, {}).flipper_rad) CHECK(angle_rad == Approx(0.7).margin(1e-3));
 }
 
-TEST_CASE("homing that moves is checked for the sign of the home offset") {
+TEST_CASE("Homing that moves is checked for the sign of the home offset") {
   std::string negated = towards_switch();
   negated.insert(negated.find("\nhome_rad"), "\noffset_direction = -1");
   const ChangedRobot plus = homed_by(towards_switch()), minus = homed_by(negated);

@@ -33,7 +33,7 @@ class DeadBus final : public canopen::Bus {
 
 }  // namespace
 
-TEST_CASE("a robot that is switched on while it is opened is waited for") {
+TEST_CASE("A robot that is switched on while it is opened is waited for") {
   RobotOnBus robot;
   CanTransport transport([&](const std::string&, std::span<const std::uint16_t>) {
     return std::make_unique<DeadBus>(robot.wire, std::chrono::seconds(2));
@@ -42,7 +42,7 @@ TEST_CASE("a robot that is switched on while it is opened is waited for") {
   CHECK(robot.all_are(canopen::PowerState::operation_enabled));
 }
 
-TEST_CASE("a robot that is not switched on is named, and what the bus says, after can_timeout_s") {
+TEST_CASE("A robot that is not switched on is named, and what the bus says, after can_timeout_s") {
   RobotOnBus robot;
   robot.config.can_timeout_s = 3;
   CanTransport transport([&](const std::string&, std::span<const std::uint16_t>) {

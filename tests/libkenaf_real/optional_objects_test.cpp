@@ -28,7 +28,7 @@ std::string error_of_opening(RobotOnBus& robot) {
 
 }  // namespace
 
-TEST_CASE("a robot whose drives do not measure voltage or current opens, and says what it does not know") {
+TEST_CASE("A robot whose drives do not measure voltage or current opens, and says what it does not know") {
   struct Case {
     std::string keys;
     std::uint32_t lacks;
@@ -50,7 +50,7 @@ TEST_CASE("a robot whose drives do not measure voltage or current opens, and say
   }
 }
 
-TEST_CASE("a drive that lacks what the description wants of it is refused with the key that does without") {
+TEST_CASE("A drive that lacks what the description wants of it is refused with the key that does without") {
   const canopen::NodeId left_track = 1;
   for (const std::string key : {"battery", "currents"}) {
     const ChangedRobot lacking = robot_with(key + " = false");
@@ -61,7 +61,7 @@ TEST_CASE("a drive that lacks what the description wants of it is refused with t
   }
 }
 
-TEST_CASE("currents without the unit that they are in are none") {
+TEST_CASE("Currents without the unit that they are in are none") {
   RobotOnBus robot;
   robot.wire.alter = [](canopen::Frame& frame, candrives::Sender) {
     // node 4's answer to reading 0x6075: "no such object", SDO abort 0x06020000

@@ -29,7 +29,7 @@ hrt::Error error_of_closing(RobotOnBus& robot) {
 
 }  // namespace
 
-TEST_CASE("closing stops a track also where its first order to stop is lost") {
+TEST_CASE("Closing stops a track also where its first order to stop is lost") {
   RobotOnBus robot;
   robot.open();
   robot.run(50, drive_at(0.2, 0.2));
@@ -45,7 +45,7 @@ TEST_CASE("closing stops a track also where its first order to stop is lost") {
   CHECK(robot.all_are(PowerState::quick_stop_active));
 }
 
-TEST_CASE("closing leaves a drive that does not stop to its own watch, and names it") {
+TEST_CASE("Closing leaves a drive that does not stop to its own watch, and names it") {
   RobotOnBus robot;
   robot.open();
   robot.run(50, drive_at(0.2, 0.2));
@@ -61,7 +61,7 @@ TEST_CASE("closing leaves a drive that does not stop to its own watch, and names
   CHECK(robot.all_are(PowerState::quick_stop_active));
 }
 
-TEST_CASE("drives that hold the robot keep their torque while the next program takes them over") {
+TEST_CASE("Drives that hold the robot keep their torque while the next program takes them over") {
   enum class End { closed, killed, interface_down };
   for (const End end : {End::closed, End::killed, End::interface_down}) {
     RobotOnBus robot;
@@ -101,7 +101,7 @@ TEST_CASE("drives that hold the robot keep their torque while the next program t
   }
 }
 
-TEST_CASE("a drive that has not been heard yet is not told anything") {
+TEST_CASE("A drive that has not been heard yet is not told anything") {
   RobotOnBus robot;
   robot.open();
   robot.transport.close();

@@ -19,7 +19,7 @@ Frame frame(std::uint16_t id, std::initializer_list<std::uint8_t> data) {
 
 }  // namespace
 
-TEST_CASE("a drive's state: statusword and position, little-endian and signed") {
+TEST_CASE("A drive's state: statusword and position, little-endian and signed") {
   ProcessImage image(kBus);
   // TPDO1 of node 2: 0x180 + 2; statusword 0x1637; position -2 = 0xfffffffe
   image.on_frame({frame(0x182, {0x37, 0x16, 0xfe, 0xff, 0xff, 0xff}), milliseconds(5)});
@@ -29,7 +29,7 @@ TEST_CASE("a drive's state: statusword and position, little-endian and signed") 
   CHECK_FALSE(image.drive(0).state_at);
 }
 
-TEST_CASE("a frame of the wrong length is as if it had not come") {
+TEST_CASE("A frame of the wrong length is as if it had not come") {
   ProcessImage image(kBus);
   image.on_frame({frame(0x182, {0x37, 0x16, 1, 0, 0}), milliseconds(5)});
   image.on_frame({frame(0x182, {0x37, 0x16, 1, 0, 0, 0, 0}), milliseconds(5)});
@@ -37,7 +37,7 @@ TEST_CASE("a frame of the wrong length is as if it had not come") {
   CHECK(image.drive(1).statusword == 0);
 }
 
-TEST_CASE("tracks send speed and current, flippers current, the left track the voltage") {
+TEST_CASE("Tracks send speed and current, flippers current, the left track the voltage") {
   ProcessImage image(kBus);
   image.on_frame({frame(0x281, {0x10, 0x27, 0, 0, 0x18, 0xfc}), milliseconds(1)});  // 10000; -1000 of a thousand
   CHECK(image.drive(0).velocity == 10000);
@@ -48,7 +48,7 @@ TEST_CASE("tracks send speed and current, flippers current, the left track the v
   CHECK(image.battery_v() == Approx(25.9));
 }
 
-TEST_CASE("an emergency stays until it is cleared") {
+TEST_CASE("An emergency stays until it is cleared") {
   ProcessImage image(kBus);
   image.on_frame({frame(0x83, {0x10, 0x23, 0x03, 0, 0, 0, 0, 0}), milliseconds(1)});
   REQUIRE(image.drive(2).emergency);
@@ -57,7 +57,7 @@ TEST_CASE("an emergency stays until it is cleared") {
   CHECK_FALSE(image.drive(2).emergency);
 }
 
-TEST_CASE("a boot-up message is a restart once restarts are watched for") {
+TEST_CASE("A boot-up message is a restart once restarts are watched for") {
   ProcessImage image(kBus);
   image.on_frame({frame(0x704, {0}), milliseconds(1)});
   image.watch_restarts();
@@ -68,7 +68,7 @@ TEST_CASE("a boot-up message is a restart once restarts are watched for") {
   CHECK(image.drive(3).restarted);
 }
 
-TEST_CASE("a cycle is complete once all have answered its SYNC") {
+TEST_CASE("A cycle is complete once all have answered its SYNC") {
   ProcessImage image(kBus);
   const auto answer = [&](Time at) {
     for (std::uint16_t node = 1; node <= 6; ++node)

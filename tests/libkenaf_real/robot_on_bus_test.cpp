@@ -15,7 +15,7 @@ using namespace kenaf;
 using namespace kenaf::real;
 using canopen::PowerState;
 
-TEST_CASE("opening enables all drives and moves nothing") {
+TEST_CASE("Opening enables all drives and moves nothing") {
   RobotOnBus robot;
   robot.open();
   CHECK(robot.all_are(PowerState::operation_enabled));
@@ -30,7 +30,7 @@ TEST_CASE("opening enables all drives and moves nothing") {
   CHECK(robot.transport.warning().empty());
 }
 
-TEST_CASE("both tracks forward are forward, and as far as their ramp lets them") {
+TEST_CASE("Both tracks forward are forward, and as far as their ramp lets them") {
   RobotOnBus robot;
   robot.open();
   const robot::State before = robot.run(1, drive_at(0.2, 0.2));
@@ -48,7 +48,7 @@ TEST_CASE("both tracks forward are forward, and as far as their ramp lets them")
   CHECK(after.late_commands == 0);
 }
 
-TEST_CASE("a flipper goes to its angle in the time of its trapezoid, the others stay") {
+TEST_CASE("A flipper goes to its angle in the time of its trapezoid, the others stay") {
   RobotOnBus robot;
   robot.open();
   hrt::DriveCommand command;
@@ -71,7 +71,7 @@ TEST_CASE("a flipper goes to its angle in the time of its trapezoid, the others 
   CHECK(state.flipper_rad[robot::kRearLeft] == Approx(0.5).margin(1e-3));
 }
 
-TEST_CASE("roll, pitch and yaw have the robot's signs") {
+TEST_CASE("Roll, pitch and yaw have the robot's signs") {
   RobotOnBus robot;
   robot.open();
   robot.plant.roll_rad = 0.1;    // left side up
@@ -86,7 +86,7 @@ TEST_CASE("roll, pitch and yaw have the robot's signs") {
   CHECK(state.posture_rad[2] - before_rad == Approx(0.5).margin(0.01));
 }
 
-TEST_CASE("a turn that is too slow for the encoders to be seen as one is no bias of the gyro") {
+TEST_CASE("A turn that is too slow for the encoders to be seen as one is no bias of the gyro") {
   RobotOnBus robot;
   robot.open();
   // 1 mm/s at a gauge of 0.2 m: 0.01 rad/s; what was measured in the first two cycles is from before
@@ -99,7 +99,7 @@ TEST_CASE("a turn that is too slow for the encoders to be seen as one is no bias
   CHECK(state.posture_rad[2] - before_rad == Approx(0.1).margin(0.004));  // a unit of the gyro in 10 s: 0.003 rad
 }
 
-TEST_CASE("travel goes on where a drive's counter wraps") {
+TEST_CASE("Travel goes on where a drive's counter wraps") {
   RobotOnBus robot;
   robot.open();
   // 2^31 counts are 5.9 km: the wrap is made by letting the counter start just below it
@@ -118,7 +118,7 @@ TEST_CASE("travel goes on where a drive's counter wraps") {
   CHECK(state.track_m[0] == Approx(0.2 * 1.98 - 0.004).margin(0.003));
 }
 
-TEST_CASE("closing stops the tracks, holds the flippers, and leaves no drive in fault") {
+TEST_CASE("Closing stops the tracks, holds the flippers, and leaves no drive in fault") {
   RobotOnBus robot;
   robot.open();
   robot.run(50, drive_at(0.3, -0.3));
@@ -134,7 +134,7 @@ TEST_CASE("closing stops the tracks, holds the flippers, and leaves no drive in 
   CHECK(robot.all_are(PowerState::operation_enabled));
 }
 
-TEST_CASE("a bus that has a master already is refused") {
+TEST_CASE("A bus that has a master already is refused") {
   RobotOnBus robot;
   robot.open();
   CanTransport second(
@@ -149,7 +149,7 @@ TEST_CASE("a bus that has a master already is refused") {
   }
 }
 
-TEST_CASE("an interrupt ends the wait for a state") {
+TEST_CASE("An interrupt ends the wait for a state") {
   RobotOnBus robot;
   robot.open();
   robot.run(3, {});
@@ -157,7 +157,7 @@ TEST_CASE("an interrupt ends the wait for a state") {
   CHECK_FALSE(robot.transport.wait_state());
 }
 
-TEST_CASE("a robot with cyclic modes drives the same way, on the master's ramps") {
+TEST_CASE("A robot with cyclic modes drives the same way, on the master's ramps") {
   const ChangedRobot cyclic({{"profile velocity", "cyclic velocity"}, {"profile position", "cyclic position"}});
   RobotOnBus robot(cyclic.path());
   robot.open();
@@ -174,7 +174,7 @@ TEST_CASE("a robot with cyclic modes drives the same way, on the master's ramps"
   CHECK(after.flipper_rad[robot::kFrontLeft] == 0);
 }
 
-TEST_CASE("flippers without absolute encoders are homed where they stand, or at their switch") {
+TEST_CASE("Flippers without absolute encoders are homed where they stand, or at their switch") {
   const ChangedRobot here({{"\n[can.inclinometer]", kHomeHere + "\n[can.inclinometer]"}});
   RobotOnBus robot(here.path());
   robot.open();
@@ -187,7 +187,7 @@ TEST_CASE("flippers without absolute encoders are homed where they stand, or at 
   CHECK(robot.run(150, command).flipper_rad[robot::kFrontLeft] == Approx(0.2).margin(1e-3));
 }
 
-TEST_CASE("a program that answers too late is told so, cycle by cycle") {
+TEST_CASE("A program that answers too late is told so, cycle by cycle") {
   RobotOnBus robot;
   robot.open();
   robot.run(5, {});
@@ -198,7 +198,7 @@ TEST_CASE("a program that answers too late is told so, cycle by cycle") {
   CHECK(state.late_commands == 1);
 }
 
-TEST_CASE("what was late while the robot was opened is not counted as the program's") {
+TEST_CASE("What was late while the robot was opened is not counted as the program's") {
   RobotOnBus robot;
   bool was_held_up = false;  // with its first orders: two SYNCs go by
   robot.wire.alter = [&](canopen::Frame& frame, candrives::Sender sender) {
@@ -211,7 +211,7 @@ TEST_CASE("what was late while the robot was opened is not counted as the progra
   CHECK(robot.run(2, {}).late_commands == 0);
 }
 
-TEST_CASE("a SYNC that stops is a link that is lost") {
+TEST_CASE("A SYNC that stops is a link that is lost") {
   RobotOnBus robot;
   robot.open();
   robot.run(5, {});
@@ -225,7 +225,7 @@ TEST_CASE("a SYNC that stops is a link that is lost") {
   }
 }
 
-TEST_CASE("a track_gauge_mm that is not the described robot's is warned of") {
+TEST_CASE("A track_gauge_mm that is not the described robot's is warned of") {
   // the shipped robot's tracks are 0.2 m apart, which is the default
   for (const auto& [gauge_mm, says] : {std::pair{205.0, ""}, {250.0, "track_gauge_mm is 250"}}) {
     RobotOnBus robot;
@@ -243,7 +243,7 @@ TEST_CASE("a track_gauge_mm that is not the described robot's is warned of") {
   }
 }
 
-TEST_CASE("a period that the bus cannot carry, or that is too long to notice a drive's silence in time, is refused") {
+TEST_CASE("A period that the bus cannot carry, or that is too long to notice a drive's silence in time, is refused") {
   struct Case {
     double period_s;
     const char* says;
@@ -270,7 +270,7 @@ TEST_CASE("a period that the bus cannot carry, or that is too long to notice a d
   }
 }
 
-TEST_CASE("a bus of twice the bit rate takes a shorter period") {
+TEST_CASE("A bus of twice the bit rate takes a shorter period") {
   canbus::RobotBus bus = canbus::load_robot_bus("kenaf");
   // 1964.5 bits / 0.004 s + 8450 a second: 500 kbit/s
   CHECK_THROWS_AS(check_period(bus, 0.004), hrt::Error);

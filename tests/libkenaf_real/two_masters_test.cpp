@@ -36,7 +36,7 @@ Refusal refusal_of(const std::function<void()>& call) {
 
 }  // namespace
 
-TEST_CASE("a master is heard from the end of its listening on, however long its nodes take to start") {
+TEST_CASE("A master is heard from the end of its listening on, however long its nodes take to start") {
   RobotOnBus robot;
   robot.wire.alter = [&](canopen::Frame& frame, Sender sender) {
     return sender != Sender::slaves || !is_boot_up(frame) || robot.wire.now() > milliseconds(1000);
@@ -53,7 +53,7 @@ TEST_CASE("a master is heard from the end of its listening on, however long its 
   CHECK(last > milliseconds(1070));
 }
 
-TEST_CASE("a master that turns up while the nodes start, or the drives are enabled, ends the opening") {
+TEST_CASE("A master that turns up while the nodes start, or the drives are enabled, ends the opening") {
   for (const canopen::Time when : {milliseconds(200), milliseconds(1300)}) {
     RobotOnBus robot;
     bool others_turn = false;
@@ -68,7 +68,7 @@ TEST_CASE("a master that turns up while the nodes start, or the drives are enabl
   }
 }
 
-TEST_CASE("a SYNC without a master is named with what may keep it going") {
+TEST_CASE("A SYNC without a master is named with what may keep it going") {
   RobotOnBus robot;
   robot.wire.start_sync(milliseconds(10));
   const Refusal refusal = refusal_of([&] { robot.open(); });
@@ -76,7 +76,7 @@ TEST_CASE("a SYNC without a master is named with what may keep it going") {
   CHECK_THAT(refusal.text, Catch::Contains("a SYNC is on can0") && Catch::Contains("forked"));
 }
 
-TEST_CASE("a second master's heartbeat in the loop stops the robot at once") {
+TEST_CASE("A second master's heartbeat in the loop stops the robot at once") {
   RobotOnBus robot;
   robot.open();
   robot.run(50, drive_at(0.2, 0.2));

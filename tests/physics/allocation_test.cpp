@@ -98,14 +98,14 @@ TEST_CASE("After the first, no step allocates") {
   }
 }
 
-TEST_CASE("Nor does it with effects") {
+TEST_CASE("No step allocates with effects") {
   for (const Drive& way : kDrives) {
     INFO(way.world);
     CHECK(allocations_of(way, some_effects()) == 0);
   }
 }
 
-TEST_CASE("Nor where robots meet head on and climb each other") {
+TEST_CASE("No step allocates where robots meet head on and climb each other") {
   World world(ground(), {}, 1);
   const RobotDescription kenaf = load_robot("kenaf");
   const RobotId a = world.add_robot(kenaf, "a", {{-0.8, 0.05, 0.1}, Eigen::Quaterniond::Identity()});
@@ -119,7 +119,7 @@ TEST_CASE("Nor where robots meet head on and climb each other") {
   CHECK(std::abs(roll_pitch_yaw(truth_a.X_WB.q).y()) + std::abs(roll_pitch_yaw(truth_b.X_WB.q).y()) > 0.1);
 }
 
-TEST_CASE("Nor where a robot falls on another, and on its back") {
+TEST_CASE("No step allocates where a robot falls on another, and on its back") {
   World world(ground(), {}, 1);
   const RobotDescription kenaf = load_robot("kenaf");
   const RobotId below = world.add_robot(kenaf, "below", {{0, 0, 0.1}, Eigen::Quaterniond::Identity()});
@@ -130,7 +130,7 @@ TEST_CASE("Nor where a robot falls on another, and on its back") {
   CHECK(allocations_in(world, 3, below, nullptr) == 0);
 }
 
-TEST_CASE("Nor where a robot pushes boxes on each other and against a wall") {
+TEST_CASE("No step allocates where a robot pushes boxes on each other and against a wall") {
   WorldDescription description = ground();
   description.boxes.push_back(fixed_box({0.2, 2, 0.4}, {1.3, 0, 0.2}));
   for (const double x_m : {0.75, 1.0})
@@ -142,7 +142,7 @@ TEST_CASE("Nor where a robot pushes boxes on each other and against a wall") {
   CHECK(allocations_in(world, 3, robot, nullptr) == 0);
 }
 
-TEST_CASE("Nor where three robots fall on each other in a field of pallets") {
+TEST_CASE("No step allocates where three robots fall on each other in a field of pallets") {
   std::vector<std::string> unsupported;
   const WorldDescription description = load_world("step-field", unsupported);
   World world(description, {}, 1);
@@ -157,7 +157,7 @@ TEST_CASE("Nor where three robots fall on each other in a field of pallets") {
   CHECK(allocations_in(world, 2, world.robots().front(), nullptr) == 0);
 }
 
-TEST_CASE("Nor where sixteen robots turn among each other") {
+TEST_CASE("No step allocates where sixteen robots turn among each other") {
   World world(ground(), {}, 1);
   const RobotDescription kenaf = load_robot("kenaf");
   for (int i = 0; i < 16; ++i) {

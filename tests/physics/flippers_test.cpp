@@ -62,7 +62,7 @@ TEST_CASE("The torque limit holds, and a servo too weak lifts nothing") {
   CHECK(std::abs(roll_pitch_yaw(world.truth(id).X_WB.q).y()) < 0.03);
 }
 
-TEST_CASE("Speed, torque and brake modes") {
+TEST_CASE("Speed, torque and brake modes do what they are named for") {
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(load_robot("kenaf"), "a", {});
   robot::Command command = drive(0, 0);

@@ -99,7 +99,7 @@ TEST_CASE("A teleported robot is at rest at its new place") {
   CHECK((world.truth(id).X_WB.p - Eigen::Vector3d(5, 5, 0.09)).norm() < 2e-3);
 }
 
-TEST_CASE("Sixteen robots in one world, each on its own way") {
+TEST_CASE("Sixteen robots in one world go each their own way") {
   std::vector<std::string> unsupported;
   const WorldDescription flat = load_world("flat", unsupported);
   REQUIRE(flat.start_poses.size() == 16);
@@ -120,7 +120,7 @@ TEST_CASE("Sixteen robots in one world, each on its own way") {
   run(world, 0.1);
 }
 
-TEST_CASE("Robots meet") {
+TEST_CASE("Robots that meet do not pass through each other") {
   World world(ground(), {}, 1);
   const RobotId a = world.add_robot(load_robot("p2at"), "a", {});
   const RobotId b = world.add_robot(load_robot("p2at"), "b", {{1, 0, 0}, rotation_from({0, 0, std::numbers::pi})});
@@ -130,7 +130,7 @@ TEST_CASE("Robots meet") {
   CHECK((world.truth(a).X_WB.p - world.truth(b).X_WB.p).norm() > 0.45);
 }
 
-TEST_CASE("Rays") {
+TEST_CASE("Rays meet boxes and the ground within their range, and nothing else") {
   WorldDescription description = ground();
   description.boxes.push_back(fixed_box({1, 1, 1}, {3, 0, 0.5}));
   World world(description, {}, 1);

@@ -261,7 +261,7 @@ TEST_CASE("A world turned by any angle gives the same climb over a step, and ove
   }
 }
 
-TEST_CASE("No more traction than the motor or the ground can give") {
+TEST_CASE("Tracks have no more traction than the motor or the ground can give") {
   // against a wall: the belts slip on the ground, or stall
   const auto wall_force = [](double max_force_n, double friction) {
     WorldDescription description = ground();
@@ -320,7 +320,7 @@ TEST_CASE("With its front flippers up Kenaf climbs steps of 100 and 200 mm, at h
   }
 }
 
-TEST_CASE("Without flippers and with little friction it does not") {
+TEST_CASE("Without flippers and with little friction Kenaf climbs no step") {
   // To raise the nose the front needs mu N1 > W / 2 on the step's face, and N1 <= mu (W - mu N1) is all that the
   // ground gives: mu^2 / (1 + mu^2) > 1 / 2, mu > 1. A friction of 0.6 is far below.
   std::vector<std::string> unsupported;

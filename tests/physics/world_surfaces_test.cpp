@@ -183,7 +183,7 @@ TEST_CASE("A shape stands where its model puts it") {
   CHECK(bounds(mesh).min().x() == Approx(0.9).margin(1e-3));
 }
 
-TEST_CASE("An OBJ mesh, its scale, and triangles turned outward") {
+TEST_CASE("An OBJ mesh is scaled, and its triangles are turned outward") {
   const TemporaryFolder folder;
   write_file(folder / "right.obj", tetrahedron_obj());
   fs::create_directory(folder / "meshes");
@@ -219,7 +219,7 @@ TEST_CASE("Neighbours that disagree on what is outside are named") {
   CHECK(unsupported[0].find("do not agree on which side") != std::string::npos);
 }
 
-TEST_CASE("An STL mesh, as text and in binary") {
+TEST_CASE("An STL mesh is read as text and in binary") {
   const TemporaryFolder folder;
   write_file(folder / "text.stl",
              "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
@@ -238,7 +238,7 @@ TEST_CASE("An STL mesh, as text and in binary") {
   }
 }
 
-TEST_CASE("A Collada mesh: unit, nodes, submesh") {
+TEST_CASE("A Collada mesh is read with its unit, nodes and submesh") {
   const TemporaryFolder folder;
   write_file(folder / "cm.dae", collada(node("a", "100 0 0") + node("b", "0 500 0"), "0.01"));
   const TriangleMesh both = mesh_of("<mesh><uri>cm.dae</uri></mesh>", folder.path());

@@ -37,7 +37,7 @@ auto now() {
 
 }  // namespace
 
-TEST_CASE("a look-up that takes for ever ends when it is cancelled, and at its deadline") {
+TEST_CASE("A look-up that takes for ever ends when it is cancelled, and at its deadline") {
   SilentServer names;
   AddressLookup lookup = names.lookup();
   const HostPort server{"world.example", 3000};
@@ -56,7 +56,7 @@ TEST_CASE("a look-up that takes for ever ends when it is cancelled, and at its d
   CHECK(*names.asked == 2);
 }
 
-TEST_CASE("why a name has no address is said") {
+TEST_CASE("Why a name has no address is said") {
   SilentServer names;
   AddressLookup lookup = names.lookup();
   names.says.set_exception(std::make_exception_ptr(std::runtime_error("there is no such name")));
@@ -64,7 +64,7 @@ TEST_CASE("why a name has no address is said") {
   CHECK_THROWS_WITH(lookup.find({"world.example", 3000}, now() + 1h, cancel.fd()), "there is no such name");
 }
 
-TEST_CASE("an address in digits is looked up nowhere") {
+TEST_CASE("An address in digits is looked up nowhere") {
   const SilentServer names;
   AddressLookup lookup = names.lookup();
   const Waker cancel;

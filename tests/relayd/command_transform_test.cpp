@@ -17,13 +17,13 @@ std::string written(const protocol::relay::Command& command, double radius_m, st
 
 }  // namespace
 
-TEST_CASE("speeds become wheel spins: v / r, left and right kept apart") {
+TEST_CASE("Speeds become wheel spins: v / r, left and right kept apart") {
   const protocol::relay::Command command{1, 1, 1, {0.1, -0.3}, 0, {}};
   CHECK(written(command, 0.05, std::nullopt) == "DRIVE {Left 2.000000000000} {Right -6.000000000000}\r\n");
   CHECK(written(command, 0.05, 17) == "DRIVE {Left 2.000000000000} {Right -6.000000000000} {Frame 17}\r\n");
 }
 
-TEST_CASE("flippers: tip up is negative in front and positive in the rear, DRIVE ends the answer") {
+TEST_CASE("Flippers: tip up is negative in front and positive in the rear, DRIVE ends the answer") {
   const protocol::relay::Command command{1, 1, 1, {0, 0}, 0b1111, {0.1, 0.2, 0.3, 0.4}};
   CHECK(written(command, 0.05, 3) ==
         "MULTIDRIVE {FLFlipper -0.100000000000} {FRFlipper -0.200000000000} {RLFlipper 0.300000000000} "
@@ -31,12 +31,12 @@ TEST_CASE("flippers: tip up is negative in front and positive in the rear, DRIVE
         "DRIVE {Left 0.000000000000} {Right 0.000000000000} {Frame 3}\r\n");
 }
 
-TEST_CASE("a flipper that the mask leaves out is not mentioned") {
+TEST_CASE("A flipper that the mask leaves out is not mentioned") {
   const protocol::relay::Command command{1, 1, 1, {0, 0}, 0b0100, {1, 1, 0.5, 1}};
   CHECK(written(command, 0.05, std::nullopt).starts_with("MULTIDRIVE {RLFlipper 0.500000000000}\r\nDRIVE "));
 }
 
-TEST_CASE("stop, session settings and ping") {
+TEST_CASE("Stop, session settings and ping are written as the world server reads them") {
   std::string out;
   write_stop(out);
   write_world_session(out, {0.01, true, 0.5});
@@ -48,7 +48,7 @@ TEST_CASE("stop, session settings and ping") {
         "PING {Id 7}\r\n");
 }
 
-TEST_CASE("what no Kenaf can do is out of range, up to the limits is not") {
+TEST_CASE("What no Kenaf can do is out of range, up to the limits is not") {
   protocol::relay::Command command{1, 1, 1, {10, -10}, 15, {100, -100, 100, -100}};
   CHECK(out_of_range(command) == nullptr);
   command.track_speed_mps[1] = -10.001;

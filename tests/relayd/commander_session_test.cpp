@@ -90,7 +90,7 @@ TEST_CASE_METHOD(Fixture,
   CHECK(port.opened == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "another commander is refused, and told who commands and for how long") {
+TEST_CASE_METHOD(Fixture, "Another commander is refused, and told who commands and for how long") {
   open();
   now += 12s;
   hello(kSecond, 8);
@@ -106,7 +106,7 @@ TEST_CASE_METHOD(Fixture, "another commander is refused, and told who commands a
   CHECK(session.session() == 7);
 }
 
-TEST_CASE_METHOD(Fixture, "strangers get a hundred answers a second in all, and the commander all of his") {
+TEST_CASE_METHOD(Fixture, "Strangers get a hundred answers a second in all, and the commander all of his") {
   const auto answers = [this](const auto& each) {
     const std::size_t before = port.sent.size();
     for (int i = 0; i < 10000; ++i) each(Address{0x0a000000u + static_cast<std::uint32_t>(i), 1111});
@@ -126,7 +126,7 @@ TEST_CASE_METHOD(Fixture, "strangers get a hundred answers a second in all, and 
         }) == 100);
 }
 
-TEST_CASE_METHOD(Fixture, "an unknown session is told so, an unknown Bye is nobody's") {
+TEST_CASE_METHOD(Fixture, "An unknown session is told so, an unknown Bye is nobody's") {
   command(1, 0, 99);
   CHECK(refused() == protocol::relay::RefusedReason::unknown_session);
   from(kFirst, protocol::relay::Ping{99, 1});
@@ -136,7 +136,7 @@ TEST_CASE_METHOD(Fixture, "an unknown session is told so, an unknown Bye is nobo
   CHECK(port.sent.empty());
 }
 
-TEST_CASE_METHOD(Fixture, "a Hello out of range is refused in words") {
+TEST_CASE_METHOD(Fixture, "A Hello out of range is refused in words") {
   from(kFirst, protocol::relay::Hello{7, 2.0, 0.5, true, false});
   CHECK(refused() == protocol::relay::RefusedReason::bad_request);
   CHECK(port.opened == 0);
@@ -158,7 +158,7 @@ TEST_CASE_METHOD(Fixture, "States count from 1, whatever the world counts from, 
   CHECK(newest<protocol::relay::State>()->acknowledged == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "a frame that is told again is no new one: the world paused") {
+TEST_CASE_METHOD(Fixture, "A frame that is told again is no new one: the world paused") {
   open();
   frame(1, 1.0);
   WorldFrame again{{}, 1, true, 0};
@@ -170,7 +170,7 @@ TEST_CASE_METHOD(Fixture, "a frame that is told again is no new one: the world p
   CHECK_FALSE(newest<protocol::relay::State>()->robot.stopped_by_silence);
 }
 
-TEST_CASE_METHOD(Fixture, "only a new Command reaches the world, a repeated one brings the newest State again") {
+TEST_CASE_METHOD(Fixture, "Only a new Command reaches the world, a repeated one brings the newest State again") {
   open();
   frame(1, 1.0);
   command(1, 1);
@@ -192,14 +192,14 @@ TEST_CASE_METHOD(Fixture, "only a new Command reaches the world, a repeated one 
   CHECK(port.driven.size() == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "a Command before the first State takes effect at once") {
+TEST_CASE_METHOD(Fixture, "A Command before the first State takes effect at once") {
   open();
   command(1, 0);
   REQUIRE(port.driven.size() == 1);
   CHECK_FALSE(port.driven[0].second);
 }
 
-TEST_CASE_METHOD(Fixture, "an absurd Command is refused and does not count as one") {
+TEST_CASE_METHOD(Fixture, "An absurd Command is refused and does not count as one") {
   open();
   frame(1, 1.0);
   from(kFirst, protocol::relay::Command{7, 1, 1, {10.5, 0}, 0, {}});
@@ -209,7 +209,7 @@ TEST_CASE_METHOD(Fixture, "an absurd Command is refused and does not count as on
   CHECK(port.driven.size() == 1);
 }
 
-TEST_CASE_METHOD(Fixture, "without Commands for the time-out of robot time the robot is stopped, once") {
+TEST_CASE_METHOD(Fixture, "Without Commands for the time-out of robot time the robot is stopped, once") {
   open();
   frame(1, 1.0);
   command(1, 1);
@@ -227,7 +227,7 @@ TEST_CASE_METHOD(Fixture, "without Commands for the time-out of robot time the r
   CHECK(port.driven.size() == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "a second of wall-clock silence ends the session, the next commander is served") {
+TEST_CASE_METHOD(Fixture, "A second of wall-clock silence ends the session, the next commander is served") {
   open();
   frame(1, 1.0);
   pass(999ms);
@@ -258,7 +258,7 @@ TEST_CASE_METHOD(Fixture, "Bye ends it at once, a late copy of its Hello does no
   CHECK(port.opened == 2);
 }
 
-TEST_CASE_METHOD(Fixture, "the newest State is the heartbeat while the world lives, and only then") {
+TEST_CASE_METHOD(Fixture, "The newest State is the heartbeat while the world lives, and only then") {
   open();
   frame(1, 1.0);
   port.sent.clear();
@@ -271,7 +271,7 @@ TEST_CASE_METHOD(Fixture, "the newest State is the heartbeat while the world liv
   CHECK(*session.next_deadline() == now + 100ms);
 }
 
-TEST_CASE_METHOD(Fixture, "a lost world server is told until the commander leaves, others may begin") {
+TEST_CASE_METHOD(Fixture, "A lost world server is told until the commander leaves, others may begin") {
   open();
   frame(1, 1.0);
   session.on_world_lost("gone", now);
@@ -304,7 +304,7 @@ TEST_CASE_METHOD(Fixture, "a lost world server is told until the commander leave
   }
 }
 
-TEST_CASE_METHOD(Fixture, "a world server that cannot be opened refuses, with its reason") {
+TEST_CASE_METHOD(Fixture, "A world server that cannot be opened refuses, with its reason") {
   hello(kFirst, 7);
   session.on_world_lost("no world server at 127.0.0.1:3000: Connection refused", now);
   CHECK(refused() == protocol::relay::RefusedReason::no_world_server);
@@ -315,7 +315,7 @@ TEST_CASE_METHOD(Fixture, "a world server that cannot be opened refuses, with it
   CHECK(session.session() == 0);
 }
 
-TEST_CASE_METHOD(Fixture, "where the world cannot be pinged the relay answers itself") {
+TEST_CASE_METHOD(Fixture, "Where the world cannot be pinged the relay answers itself") {
   open();
   from(kFirst, protocol::relay::Ping{7, 3});
   CHECK(newest<protocol::relay::Pong>() == nullptr);
@@ -326,7 +326,7 @@ TEST_CASE_METHOD(Fixture, "where the world cannot be pinged the relay answers it
   CHECK(newest<protocol::relay::Pong>()->id == 4);
 }
 
-TEST_CASE_METHOD(Fixture, "a relay that ends tells its commander and stops the robot") {
+TEST_CASE_METHOD(Fixture, "A relay that ends tells its commander and stops the robot") {
   open();
   session.shut_down(now);
   CHECK(refused() == protocol::relay::RefusedReason::unknown_session);

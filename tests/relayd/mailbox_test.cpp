@@ -6,7 +6,7 @@
 
 namespace kenaf::relayd {
 
-TEST_CASE("a mailbox hands over what was put, oldest first, and refuses what does not fit") {
+TEST_CASE("A mailbox hands over what was put, oldest first, and refuses what does not fit") {
   Waker taker;
   Mailbox<int, 2> mailbox(taker);
   CHECK(mailbox.put(1));
@@ -18,7 +18,7 @@ TEST_CASE("a mailbox hands over what was put, oldest first, and refuses what doe
   CHECK(taken == std::vector<int>{1, 2});
 }
 
-TEST_CASE("a mailbox lets go of what it holds, taken or not: a connection in it is closed") {
+TEST_CASE("A mailbox lets go of what it holds, taken or not: a connection in it is closed") {
   Waker taker;
   const auto taken = std::make_shared<int>(1);
   const auto left = std::make_shared<int>(2);

@@ -17,7 +17,7 @@ std::optional<Options> read(std::vector<const char*> arguments, int& status) {
 
 }  // namespace
 
-TEST_CASE("without options: loopback only, the world server's usual port") {
+TEST_CASE("Without options: loopback only, the world server's usual port") {
   int status = -1;
   const auto options = read({}, status);
   REQUIRE(options);
@@ -30,7 +30,7 @@ TEST_CASE("without options: loopback only, the world server's usual port") {
   CHECK_FALSE(options->embedded);
 }
 
-TEST_CASE("all options") {
+TEST_CASE("All options are read") {
   int status = -1;
   auto options = read({"--world-server", "[::1]:4000", "--listen", "0.0.0.0:0", "--class", "USARBot.P2AT", "--name",
                        "R", "--pose", "1,2,3,-0.1,0.2,0.3", "--log-level", "warn"},
@@ -54,7 +54,7 @@ TEST_CASE("all options") {
   CHECK(options->relay.placement.start == "start_1");
 }
 
-TEST_CASE("cameras are chosen on the command line of --embedded") {
+TEST_CASE("Cameras are chosen on the command line of --embedded") {
   int status = 0;
   const auto with_cameras =
       read({"--embedded", "--cameras", "off", "--camera-port", "0", "--camera-image", "raw"}, status);
@@ -64,7 +64,7 @@ TEST_CASE("cameras are chosen on the command line of --embedded") {
   CHECK(with_cameras->embedded->cameras.image_type == kenaf::image_server::ImageType::raw);
 }
 
-TEST_CASE("wrong options end with status 2, help with 0") {
+TEST_CASE("Wrong options end with status 2, help with 0") {
   int status = -1;
   for (const std::vector<const char*>& wrong :
        std::vector<std::vector<const char*>>{{"--listen", "nowhere"},
@@ -94,7 +94,7 @@ TEST_CASE("wrong options end with status 2, help with 0") {
   CHECK(status == 0);
 }
 
-TEST_CASE("an address in use is named") {
+TEST_CASE("An address in use is named") {
   Address bound, second;
   const Descriptor first = open_udp({0x7f000001, 0}, bound);
   CHECK(bound.port != 0);

@@ -35,7 +35,7 @@ std::vector<std::string> commands_only(const FakeWorld& world) {
 
 }  // namespace
 
-TEST_CASE("the relay places a robot, opens a session in lock step and carries commands and States") {
+TEST_CASE("The relay places a robot, opens a session in lock step and carries commands and States") {
   FakeWorld world;
   RunningRelay relay(world.port());
   FakeCommander commander(relay.port(), 7);
@@ -61,7 +61,7 @@ TEST_CASE("the relay places a robot, opens a session in lock step and carries co
   CHECK(states[49].robot.posture_rad[1] == Approx(-0.2));
 }
 
-TEST_CASE("loss, reordering and duplicates change nothing but latency") {
+TEST_CASE("Loss, reordering and duplicates change nothing but latency") {
   std::vector<std::string> clean;
   std::vector<protocol::relay::State> clean_states;
   {
@@ -90,7 +90,7 @@ TEST_CASE("loss, reordering and duplicates change nothing but latency") {
   }
 }
 
-TEST_CASE("one commander at a time, the next one is served after Bye or silence") {
+TEST_CASE("One commander at a time, the next one is served after Bye or silence") {
   FakeWorld world;
   RunningRelay relay(world.port());
   FakeCommander first(relay.port(), 1), second(relay.port(), 2);
@@ -111,7 +111,7 @@ TEST_CASE("one commander at a time, the next one is served after Bye or silence"
   CHECK(relay.log().count("fell silent") == 1);
 }
 
-TEST_CASE("a silent commander's robot is stopped by robot time, and the commander may go on") {
+TEST_CASE("A silent commander's robot is stopped by robot time, and the commander may go on") {
   FakeWorld world;
   RunningRelay relay(world.port());
   FakeCommander commander(relay.port(), 9);
@@ -132,7 +132,7 @@ TEST_CASE("a silent commander's robot is stopped by robot time, and the commande
   CHECK(eventually([&] { return world.speed_mps() > 0.09; }));
 }
 
-TEST_CASE("the world server is lost and comes back") {
+TEST_CASE("The world server is lost and comes back") {
   auto world = std::make_unique<FakeWorld>();
   const std::uint16_t port = world->port();
   RunningRelay relay(port);
@@ -160,7 +160,7 @@ TEST_CASE("the world server is lost and comes back") {
   CHECK(after.drive(5, approach).size() == 5);
 }
 
-TEST_CASE("a world server that hangs is left") {
+TEST_CASE("A world server that hangs is left") {
   FakeWorld world;
   RunningRelay relay(world.port());
   FakeCommander commander(relay.port(), 5);
@@ -200,7 +200,7 @@ TEST_CASE("reset_robot enters the world anew, in lock step from the first frame"
   CHECK(states[0].robot.track_m[robot::kLeft] == 0);
 }
 
-TEST_CASE("without a commander there is no lock step and the robot stands") {
+TEST_CASE("Without a commander there is no lock step and the robot stands") {
   FakeWorld world;
   RunningRelay relay(world.port());
   FakeCommander commander(relay.port(), 1);
@@ -213,7 +213,7 @@ TEST_CASE("without a commander there is no lock step and the robot stands") {
   CHECK(world.last("DRIVE") == "DRIVE {Left 0.000000000000} {Right 0.000000000000}");
 }
 
-TEST_CASE("a ping goes to the world server and back") {
+TEST_CASE("A ping goes to the world server and back") {
   FakeWorld world;
   RunningRelay relay(world.port());
   FakeCommander commander(relay.port(), 4);
@@ -229,7 +229,7 @@ TEST_CASE("a ping goes to the world server and back") {
   CHECK(world.count("PING {Id 4000000000}") >= 1);
 }
 
-TEST_CASE("a plain USARSim server works without the extensions") {
+TEST_CASE("A plain USARSim server works without the extensions") {
   FakeWorldOptions plain;
   plain.extended = false;
   FakeWorld world(plain);
@@ -262,7 +262,7 @@ TEST_CASE("a plain USARSim server works without the extensions") {
   }));
 }
 
-TEST_CASE("a world server that accepts no robot is named with a reason") {
+TEST_CASE("A world server that accepts no robot is named with a reason") {
   FakeWorldOptions options;
   options.accepts_robot = false;
   FakeWorld world(options);
@@ -273,7 +273,7 @@ TEST_CASE("a world server that accepts no robot is named with a reason") {
   CHECK(text_of(refused).find("USARBot.Kenaf") != std::string::npos);
 }
 
-TEST_CASE("hostile datagrams: a log line, nothing dead, nothing lost") {
+TEST_CASE("Hostile datagrams: a log line, nothing dead, nothing lost") {
   FakeWorld world;
   RunningRelay relay(world.port());
   FakeCommander commander(relay.port(), 4), attacker(relay.port(), 666);
@@ -314,7 +314,7 @@ TEST_CASE("hostile datagrams: a log line, nothing dead, nothing lost") {
   CHECK(eventually(refused));
 }
 
-TEST_CASE("hostile lines from the world server: a log line, nothing dead, nothing lost") {
+TEST_CASE("Hostile lines from the world server: a log line, nothing dead, nothing lost") {
   FakeWorldOptions options;
   options.garbage = "}{ \x01\x02\r\nSEN {Type GroundTruth} {Location nan,inf,1e999} {Orientation a,b}\r\n" +
                     std::string(200, '{') +
@@ -332,7 +332,7 @@ TEST_CASE("hostile lines from the world server: a log line, nothing dead, nothin
   CHECK(relay.log().count("the world server sent") >= 1);
 }
 
-TEST_CASE("lines that arrive in pieces are put together") {
+TEST_CASE("Lines that arrive in pieces are put together") {
   FakeWorldOptions options;
   options.piece = 7;
   FakeWorld world(options);
@@ -343,7 +343,7 @@ TEST_CASE("lines that arrive in pieces are put together") {
   CHECK(states[9].robot.frame == 10);
 }
 
-TEST_CASE("the relay ends cleanly: the commander is told and the robot stands") {
+TEST_CASE("The relay ends cleanly: the commander is told and the robot stands") {
   FakeWorld world;
   RunningRelay relay(world.port());
   FakeCommander commander(relay.port(), 4);
@@ -358,7 +358,7 @@ TEST_CASE("the relay ends cleanly: the commander is told and the robot stands") 
   CHECK(told);
 }
 
-TEST_CASE("the relay ends cleanly before it ever found a world server") {
+TEST_CASE("The relay ends cleanly before it ever found a world server") {
   std::uint16_t nobody = 0;
   {
     FakeWorld gone;
@@ -372,7 +372,7 @@ TEST_CASE("the relay ends cleanly before it ever found a world server") {
   CHECK(relay.log().count("no world server at") == 1);  // once a change of state
 }
 
-TEST_CASE("the steady path allocates nothing") {
+TEST_CASE("The steady path allocates nothing") {
   leave_this_thread_out();
   FakeWorld world;
   RunningRelay relay(world.port());

@@ -27,7 +27,7 @@ robot::State after(std::initializer_list<std::string_view> lines) {
 
 }  // namespace
 
-TEST_CASE("ground truth: a robot 0.1 m above the ground, 2 m to the left, turned left, nose down, right side down") {
+TEST_CASE("Ground truth: a robot 0.1 m above the ground, 2 m to the left, turned left, nose down, right side down") {
   const auto state =
       after({"SEN {Time 1} {Type GroundTruth} {Name G} {Location 1,-2,-0.1} {Orientation 0.1,-0.2,-0.3}"});
   CHECK(state.fields == robot::kHasGroundTruth);
@@ -46,7 +46,7 @@ TEST_CASE("UT2004 angles from 0 to 2 pi come out from -pi to pi") {
   CHECK(state.posture_rad[2] == Approx(0.1));
 }
 
-TEST_CASE("the posture is the INS's where there is one, else the IMU's") {
+TEST_CASE("The posture is the INS's where there is one, else the IMU's") {
   const std::string_view imu =
       "SEN {Time 1} {Type IMU} {Name I} {XYZAcceleration 0.5,-1,-9.8} {AngularVel 0.1,0.2,-0.3} {AngularAccel 0,0,0} "
       "{Rotation 0.01,0.02,0.03}";
@@ -61,7 +61,7 @@ TEST_CASE("the posture is the INS's where there is one, else the IMU's") {
   CHECK(both.gyro_radps[2] == 0.3);
 }
 
-TEST_CASE("encoders: ticks x resolution x wheel radius, in both dialects") {
+TEST_CASE("Encoders: ticks x resolution x wheel radius, in both dialects") {
   // 1000 ticks x 0.002 rad x 0.05 m = 0.1 m.
   const auto ut2004 = after({"GEO {Type GroundVehicle} {Name Kenaf} {WheelRadius 0.05}",
                              "CONF {Type Encoder} {Name ECLeft} {Resolution 0.002} {Name ECRight} {Resolution 0.002}",
@@ -75,11 +75,11 @@ TEST_CASE("encoders: ticks x resolution x wheel radius, in both dialects") {
   CHECK(udk.track_m == ut2004.track_m);
 }
 
-TEST_CASE("one side's encoder is not both") {
+TEST_CASE("One side's encoder is not both") {
   CHECK(after({"SEN {Type Encoder} {Name ECLeft Tick 1000}"}).fields == 0);
 }
 
-TEST_CASE("track speed: the tachometer's, else the change of travel by robot time") {
+TEST_CASE("Track speed: the tachometer's, else the change of travel by robot time") {
   SensorTransform transform;
   take(transform, "GEO {WheelRadius 0.05}");
   take(transform, "CONF {Type Encoder} {Resolution 0.001}");
@@ -98,7 +98,7 @@ TEST_CASE("track speed: the tachometer's, else the change of travel by robot tim
   CHECK(transform.frame().state.track_mps[1] == Approx(-0.4));
 }
 
-TEST_CASE("flippers: as STA reports them, tip up positive for all four") {
+TEST_CASE("Flippers: as STA reports them, tip up positive for all four") {
   SensorTransform transform;
   take(transform, "STA {Time 1} {FRFlipper -0.2} {FLFlipper -0.1} {RRFlipper 0.4} {RLFlipper 0.3}");
   CHECK(transform.frame().state.fields == robot::kHasFlippers);
@@ -108,7 +108,7 @@ TEST_CASE("flippers: as STA reports them, tip up positive for all four") {
   CHECK(three.frame().state.fields == 0);
 }
 
-TEST_CASE("currents and battery") {
+TEST_CASE("Currents and battery are those that the drives report") {
   const auto state = after(
       {"SEN {Time 1} {Type Drives} {Name Drives} {TrackCurrent 1,2} {FlipperCurrent 3,4,5,6} {BatteryVoltage 24.5}"});
   CHECK(state.fields == (robot::kHasCurrents | robot::kHasBattery));
@@ -132,7 +132,7 @@ TEST_CASE("STA counts frames, without a number the relay counts") {
   CHECK_FALSE(transform.frame().paused);
 }
 
-TEST_CASE("what was not measured since the STA before holds, and is marked as held") {
+TEST_CASE("What was not measured since the STA before holds, and is marked as held") {
   SensorTransform transform;
   const auto fields_after = [&](std::initializer_list<std::string_view> lines) {
     for (const std::string_view line : lines) take(transform, line);
@@ -152,7 +152,7 @@ TEST_CASE("what was not measured since the STA before holds, and is marked as he
   CHECK(fields_after({ins, drives, "STA {Time 1.03} {Frame 4}"}) == (robot::kHasPosture | robot::kHasBattery));
 }
 
-TEST_CASE("encoders slower than STA: the speed is the change of travel by the time between two of their words") {
+TEST_CASE("Encoders slower than STA: the speed is the change of travel by the time between two of their words") {
   SensorTransform transform;
   take(transform, "GEO {WheelRadius 0.05}");
   take(transform, "CONF {Type Encoder} {Resolution 0.001}");
@@ -170,7 +170,7 @@ TEST_CASE("encoders slower than STA: the speed is the change of travel by the ti
   CHECK(transform.frame().state.track_mps[0] == Approx(0.1));
 }
 
-TEST_CASE("values that are no values change nothing") {
+TEST_CASE("Values that are no values change nothing") {
   const auto state =
       after({"SEN {Type GroundTruth} {Location nan,0,0} {Orientation 0,0,0}",
              "SEN {Type GroundTruth} {Location 1e300,0,0} {Orientation 0,0,0}", "SEN {Type INS} {Orientation 1,2}",

@@ -37,7 +37,7 @@ constexpr const char* kAccepted =
 
 }  // namespace
 
-TEST_CASE("a server with the extensions: one piece after its greeting, done with its first frame") {
+TEST_CASE("A server with the extensions: one piece after its greeting, done with its first frame") {
   Conversation talk;
   CHECK(talk.hears("NFO {Gametype BotDeathMatch} {Level flat}") ==
         "CONTROL {Type Session} {Period 0.010000000000} {Lockstep True} {CommandTimeout 0.500000000000} "
@@ -55,7 +55,7 @@ TEST_CASE("a server with the extensions: one piece after its greeting, done with
   CHECK(talk.handshake.ready().lockstep);
 }
 
-TEST_CASE("a plain server: a robot, but no answer to CONTROL") {
+TEST_CASE("A plain server: a robot, but no answer to CONTROL") {
   Conversation talk;
   talk.hears("NFO {Gametype BotDeathMatch}");
   talk.hears("STA {Time 1}");
@@ -66,13 +66,13 @@ TEST_CASE("a plain server: a robot, but no answer to CONTROL") {
   CHECK(talk.handshake.result() == Result::plain);
 }
 
-TEST_CASE("a server that does not greet is asked all the same") {
+TEST_CASE("A server that does not greet is asked all the same") {
   Conversation talk;
   CHECK(talk.waits(999ms).empty());
   CHECK(talk.waits(1ms).starts_with("CONTROL"));
 }
 
-TEST_CASE("no robot: with the extensions it is known at once, without them it takes patience") {
+TEST_CASE("No robot: with the extensions it is known at once, without them it takes patience") {
   Conversation extended;
   extended.hears("NFO");
   extended.hears(kAccepted);
@@ -88,7 +88,7 @@ TEST_CASE("no robot: with the extensions it is known at once, without them it ta
   CHECK(plain.handshake.result() == Result::failed);
 }
 
-TEST_CASE("a refused session says why") {
+TEST_CASE("A refused session says why") {
   Conversation talk;
   talk.hears("NFO");
   talk.hears("RES {Time 3} {Type Control} {Name Session} {Status Failed} {Reason Period too short}");
@@ -96,7 +96,7 @@ TEST_CASE("a refused session says why") {
   CHECK(talk.handshake.failure().find("Period too short") != std::string::npos);
 }
 
-TEST_CASE("a place by name, or by pose: z up becomes z down, left becomes negative y and yaw") {
+TEST_CASE("A place by name, or by pose: z up becomes z down, left becomes negative y and yaw") {
   RobotPlacement by_name;
   by_name.start = "start_2";
   Conversation name(by_name);

@@ -41,7 +41,7 @@ bool connect_is_pending(std::uint16_t port) {
 
 }  // namespace
 
-TEST_CASE("a Hello while the relay is still connecting is answered by what comes of a try, not of its interruption") {
+TEST_CASE("A Hello while the relay is still connecting is answered by what comes of a try, not of its interruption") {
   FakeWorld world;
   // The world serves one client at a time; more wait until the system takes no further ones, and a connect() waits too.
   std::vector<relayd::Descriptor> waiting;
@@ -64,7 +64,7 @@ TEST_CASE("a Hello while the relay is still connecting is answered by what comes
   CHECK(commander.drive(3, [](const protocol::relay::State&, protocol::relay::Command&) {}).size() == 3);
 }
 
-TEST_CASE("what a lost world server did not answer any more is not waited for on the next connection") {
+TEST_CASE("What a lost world server did not answer any more is not waited for on the next connection") {
   FakeWorld world;
   RunningRelay relay(world.port());
   FakeCommander first(relay.port(), 1), second(relay.port(), 2);

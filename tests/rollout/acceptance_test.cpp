@@ -24,7 +24,7 @@ RollOut drive(const std::string& manoeuvre) {
 
 }  // namespace
 
-TEST_CASE("1 m straight ahead, then it stands") {
+TEST_CASE("Kenaf drives 1 m straight ahead, then it stands") {
   // 0.2 m/s for 5 s; what the speed loop's lag costs at the start it gives back at the end
   const RollOut out = drive("straight");
   CHECK(out.end.X_WB.p.x() == Approx(1).margin(0.001));
@@ -33,7 +33,7 @@ TEST_CASE("1 m straight ahead, then it stands") {
   CHECK(out.end.v_WB_mps.norm() < 1e-3);
 }
 
-TEST_CASE("A turn of 0.25 rad on the spot, to either side") {
+TEST_CASE("Kenaf turns by 0.25 rad on the spot, to either side") {
   for (const double side : {1.0, -1.0}) {
     Manoeuvre turn = rollout::load_manoeuvre("turn-in-place");
     REQUIRE(turn.phases.size() == 3);  // stand, turn, rest
@@ -48,7 +48,7 @@ TEST_CASE("A turn of 0.25 rad on the spot, to either side") {
   }
 }
 
-TEST_CASE("Up 12 stairs of 75 mm by 175 mm") {
+TEST_CASE("Kenaf climbs 12 stairs of 75 mm by 175 mm") {
   const RollOut out = drive("stairs");
   CHECK(out.succeeded);
   CHECK(out.end.X_WB.p.z() == Approx(12 * 0.075 + 0.09).margin(0.005));
@@ -66,7 +66,7 @@ TEST_CASE("Up 12 stairs of 75 mm by 175 mm") {
   CHECK(sum / rows == Approx(-std::atan(75.0 / 175)).margin(0.05));
 }
 
-TEST_CASE("Over a half cylinder of 150 mm") {
+TEST_CASE("Kenaf drives over a half cylinder of 150 mm") {
   Manoeuvre over;
   over.world = "half-cylinder";
   over.phases = {

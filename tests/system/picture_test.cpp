@@ -57,7 +57,7 @@ hrt_state drive() {
 
 }  // namespace
 
-TEST_CASE("a program sees through both of Kenaf's cameras, and what it sees turns with the robot") {
+TEST_CASE("A program sees through both of Kenaf's cameras, and what it sees turns with the robot") {
   const Chain chain("1", "step-200", true);
   const OpenChain open(chain);
   hrt_picture front = hrt_picture_init(), above = hrt_picture_init();
@@ -106,7 +106,7 @@ TEST_CASE("a program sees through both of Kenaf's cameras, and what it sees turn
   CHECK_THAT(hrt_last_error(), Catch::Contains("Periscope") && Catch::Contains("BirdsEye"));
 }
 
-TEST_CASE("a program that takes pictures all the while drives the same path, to the last bit") {
+TEST_CASE("A program that takes pictures all the while drives the same path, to the last bit") {
   const Chain chain("0", "flat", true);
   hrt_state without = hrt_state_init();
   {

@@ -125,7 +125,7 @@ TEST_CASE("A gamepad's sticks go before keys, and never beyond the speed") {
   CHECK(desk.wish(10.7).track_mmps == std::array{0.0, 0.0});
 }
 
-TEST_CASE("The emergency stop and its release") {
+TEST_CASE("The emergency stop stays pressed until it is released") {
   Desk desk;
   desk.act(Action::forward, 10, nullptr);
   desk.act(Action::emergency_stop, 10.1, nullptr);
@@ -144,7 +144,7 @@ TEST_CASE("The emergency stop and its release") {
   CHECK_FALSE(desk.wish(103).release_emergency);
 }
 
-TEST_CASE("Postures and nudges") {
+TEST_CASE("Postures are ordered as they are, and nudges start from known angles") {
   Desk desk;
   Status status = status_in(Mode::ready);
   status.fields = kHasFlippers;
@@ -189,7 +189,7 @@ TEST_CASE("A nudge does nothing while the angle of one flipper is not known") {
   CHECK(desk.wish(10).flipper_order == 2);
 }
 
-TEST_CASE("A gamepad by the kernel's events") {
+TEST_CASE("A gamepad is read by the kernel's events") {
   GamepadState pad;
   CHECK_FALSE(pad.take(event(kButton | kInitial, 4, 1)));
   CHECK_FALSE(pad.sticks().deadman);  // held since before it was plugged in
@@ -283,7 +283,7 @@ TEST_CASE("A device that is none, or goes, leaves the dead-man let go") {
   CHECK_FALSE(empty.sticks().deadman);
 }
 
-TEST_CASE("Round trip without the time that the control process kept the wish") {
+TEST_CASE("The round trip leaves out the time that the control process kept the wish") {
   LinkHealth health;
   Status status = status_in(Mode::ready);
   CHECK_FALSE(health.silence_s(10));
@@ -330,7 +330,7 @@ TEST_CASE("Statuses of a control process that was started again count, late ones
   CHECK(health.heard(status, 20.2));
 }
 
-TEST_CASE("Losses over the last seconds") {
+TEST_CASE("Losses are counted over the last seconds") {
   LinkHealth health;
   Status status = status_in(Mode::ready);
   for (std::uint32_t i = 1; i <= 101; ++i) {

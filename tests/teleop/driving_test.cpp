@@ -110,7 +110,7 @@ TEST_CASE("A console that begins with the dead-man held does not drive") {
   CHECK(loop.driving.mode == Mode::driving);
 }
 
-TEST_CASE("Silence stops the robot after 0.5 s, not before, D1 it goes on after the dead-man was let go") {
+TEST_CASE("Silence stops the robot after 0.5 s, not before, and it goes on after the dead-man was let go") {
   Loop loop;
   loop.make_ready();
   loop.reach(200);

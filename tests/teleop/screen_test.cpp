@@ -56,7 +56,7 @@ TEST_CASE("Text is cut at the edge and cannot steer the terminal") {
   CHECK(canvas.line(23).empty());
 }
 
-TEST_CASE("What stands on the screen") {
+TEST_CASE("The screen says in words what a person must see") {
   Scene scene;
   scene.health.sent(1, 9.7);
   scene.status.newest_wish = 1;

@@ -181,7 +181,7 @@ TEST_CASE("The link cut in mid-climb: the robot holds its place until the operat
   check_on_top(run);
 }
 
-TEST_CASE("Garbage, a second console, a killed one and its successor") {
+TEST_CASE("The control process survives garbage, a second console, and a killed one with its successor") {
   Desk desk;
   Process first = desk.console(desk.control_port(), desk.script("wait until mode is ready within 20\n"
                                                                 "say has the robot\nhold w for 60\n"));

@@ -139,7 +139,7 @@ TEST_CASE("Wrong input: exit status 2, what is wrong and where, and no picture")
   }
 }
 
-TEST_CASE("the option --help ends with 0") {
+TEST_CASE("The option --help ends with 0") {
   const TemporaryFolder folder;
   CHECK(kenaf_draw(folder, "--help").status == 0);
 }

@@ -45,7 +45,7 @@ std::string at_line(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("the shipped robot's bus") {
+TEST_CASE("The shipped robot's bus is read as its description says") {
   const RobotBus bus = load_robot_bus("kenaf");
   CHECK(bus.interface == "can0");
   CHECK(bus.bit_rate == 500'000);
@@ -62,7 +62,7 @@ TEST_CASE("the shipped robot's bus") {
   CHECK(longest_stop_s(bus) == Approx(0.14));
 }
 
-TEST_CASE("a track's metre in counts, and its speed") {
+TEST_CASE("A track's way and speed are converted to its motor's counts") {
   const RobotBus bus = load_robot_bus("kenaf");
   // one turn of a sprocket of 65 mm moves the belt by 0.4084 m and the motor by 36 turns of 4096 counts
   const double counts_per_m = 36 * 4096 / (2 * std::numbers::pi * 0.065);
@@ -76,7 +76,7 @@ TEST_CASE("a track's metre in counts, and its speed") {
   CHECK(acceleration_to_drive(bus.drives[1].units, 5.0) == static_cast<std::uint32_t>(std::lround(5 * counts_per_m)));
 }
 
-TEST_CASE("a flipper's angle in counts, from where its zero is") {
+TEST_CASE("A flipper's angle is converted to counts from where its zero is") {
   const RobotBus bus = parse_robot_bus(
       with("node = 4, direction = -1, zero_counts = 0", "node = 4, direction = -1, zero_counts = 1000"), "k.toml");
   // a right angle is a quarter turn of the arm: 75 turns of the motor, 307200 counts
@@ -85,7 +85,7 @@ TEST_CASE("a flipper's angle in counts, from where its zero is") {
   CHECK(position_from_drive(bus.drives[3].units, 1000) == 0);
 }
 
-TEST_CASE("one wrong value of the bus is named with its line") {
+TEST_CASE("One wrong value of the bus is named with its line") {
   struct Case {
     std::string from, to, says;
     std::string line_of{};  // what stands in the line at fault, where it is not what was changed
@@ -115,13 +115,13 @@ TEST_CASE("one wrong value of the bus is named with its line") {
   }
 }
 
-TEST_CASE("a node that is there twice is named with both its places") {
+TEST_CASE("A node that is there twice is named with both its places") {
   CHECK_THAT(error_of(with("node = 8", "node = 3")), Catch::Contains("has node 3 twice: flipper front left and gyro"));
   CHECK_THAT(error_of(with("node = 6", "node = 127")),
              Catch::Contains("has node 127 twice: the master and flipper rear right"));
 }
 
-TEST_CASE("what the drive's 32 bits cannot hold is refused") {
+TEST_CASE("What the drive's 32 bits cannot hold is refused") {
   // 3.14 rad of flipper at 2e7 counts a turn and a gear of 300: 3e9 counts, more than 2^31
   CHECK_THAT(
       error_of(with("counts_per_turn = 4096\ngear_ratio = 300.0", "counts_per_turn = 20000000\ngear_ratio = 300.0")),
@@ -132,7 +132,7 @@ TEST_CASE("what the drive's 32 bits cannot hold is refused") {
              Catch::Contains("less than one"));
 }
 
-TEST_CASE("a description without a bus, or without flippers, says so") {
+TEST_CASE("A description without a bus, or without flippers, says so") {
   const std::string text = kenaf_toml();
   CHECK_THAT(error_of(text.substr(0, text.find("[can]"))), Catch::Contains("has no table [can]"));
   CHECK_THROWS_WITH(load_robot_bus("marmotte"), Catch::Contains("has no table [can]"));

@@ -7,13 +7,13 @@
 
 using namespace kenaf::canbus;
 
-TEST_CASE("a bus that cannot be had says what to do") {
+TEST_CASE("A bus that cannot be had says what to do") {
   // Which of them depends on the kernel that this runs on.
   CHECK_THROWS_WITH(SocketBus("nocan7"),
                     Catch::Contains("modprobe can") || Catch::Contains("there is no network interface 'nocan7'"));
 }
 
-TEST_CASE("every error frame has words, the worst first") {
+TEST_CASE("Every error frame has words, the worst first") {
   CHECK(describe_error_frame(CAN_ERR_FLAG | CAN_ERR_BUSOFF | CAN_ERR_ACK) ==
         "bus off: too many errors; is the bit rate right?");
   CHECK(describe_error_frame(CAN_ERR_FLAG | CAN_ERR_ACK) == "no acknowledgement: is anybody else on the bus?");

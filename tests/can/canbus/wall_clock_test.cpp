@@ -7,20 +7,20 @@ using namespace kenaf::canbus;
 using namespace std::chrono_literals;
 using Time = kenaf::canopen::Time;
 
-TEST_CASE("a frame was received as long ago as its stamp is old") {
+TEST_CASE("A frame was received as long ago as its stamp is old") {
   WallClock clock;
   CHECK(received_at(clock, 1000s + 40ms, 1000s + 50ms, 50ms) == Time(40ms));
   // a clock that runs faster, by 0.5 ms in a second, was not set
   CHECK(received_at(clock, 1001s + 40ms, 1001s + 50ms + 500us, 1050ms) == Time(1039ms + 500us));
 }
 
-TEST_CASE("a stamp that cannot be is as good as none") {
+TEST_CASE("A stamp that cannot be is as good as none") {
   WallClock clock;
   CHECK(received_at(clock, 1000s + 60ms, 1000s + 50ms, 50ms) == Time(50ms));
   CHECK(received_at(clock, 998s, 1000s + 60ms, 60ms) == Time(60ms));
 }
 
-TEST_CASE("frames from before the clock was set have no age, those after it have theirs again") {
+TEST_CASE("Frames from before the clock was set have no age, those after it have theirs again") {
   for (const auto step : {Time(200ms), Time(-200ms), Time(20ms)}) {
     WallClock clock;
     CHECK(received_at(clock, 1000s + 9ms, 1000s + 10ms, 10ms) == Time(9ms));

@@ -21,7 +21,7 @@ void drive_off(EasyRobot& robot) {
 
 }  // namespace
 
-TEST_CASE("quick stop: 5000 counts/s at 50000 counts/s^2 are 100 ms and 250 counts", "[drive]") {
+TEST_CASE("Quick stop: 5000 counts/s at 50000 counts/s^2 are 100 ms and 250 counts", "[drive]") {
   EasyRobot robot;
   drive_off(robot);
   const auto before = robot.value(1, 0x6064);
@@ -61,7 +61,7 @@ TEST_CASE("quick stop: 5000 counts/s at 50000 counts/s^2 are 100 ms and 250 coun
   }
 }
 
-TEST_CASE("a lost master stops the drive within its silence and the quick stop, with 6007 = 3", "[drive]") {
+TEST_CASE("A lost master stops the drive within its silence and the quick stop, with 6007 = 3", "[drive]") {
   EasyRobot robot;
   robot.write(1, 0x6007, 0, 2, 3);
   robot.write(1, 0x605a, 0, 2, 6);
@@ -106,7 +106,7 @@ TEST_CASE("a lost master stops the drive within its silence and the quick stop, 
   }
 }
 
-TEST_CASE("a fault: emergency message, ramp, fault, gone with the reset", "[drive]") {
+TEST_CASE("A fault: emergency message, ramp, fault, gone with the reset", "[drive]") {
   EasyRobot robot;
   drive_off(robot);
   // 0x2310 continuous over current; register: generic and current
@@ -125,7 +125,7 @@ TEST_CASE("a fault: emergency message, ramp, fault, gone with the reset", "[driv
   CHECK(robot.value(1, 0x603f) == 0);
 }
 
-TEST_CASE("fault reaction 0 takes the power away at once", "[drive]") {
+TEST_CASE("Fault reaction 0 takes the power away at once", "[drive]") {
   EasyRobot robot;
   robot.write(1, 0x605e, 0, 2, 0);
   drive_off(robot);
@@ -135,7 +135,7 @@ TEST_CASE("fault reaction 0 takes the power away at once", "[drive]") {
   CHECK(robot.plant.state().track_mps[0] == 0);
 }
 
-TEST_CASE("a motor that does not follow is an error after the time of 6066", "[drive]") {
+TEST_CASE("A motor that does not follow is an error after the time of 6066", "[drive]") {
   // A plant whose flippers are stuck.
   class Stuck final : public Plant {
    public:
@@ -169,7 +169,7 @@ TEST_CASE("a motor that does not follow is an error after the time of 6066", "[d
   CHECK(texts(out) == Lines{"583#4B41600018220000"});  // fault, voltage, remote, bit 13
 }
 
-TEST_CASE("a drive without power holds its motor, enabled, it begins where it is", "[drive]") {
+TEST_CASE("A drive without power holds its motor, enabled, it begins where it is", "[drive]") {
   EasyRobot robot{IdealPlant({1.0, 1.0, 1.0, 1.0})};
   robot.wait(1000);
   CHECK(robot.plant.state().flipper_rad[0] == 1.0);
@@ -180,7 +180,7 @@ TEST_CASE("a drive without power holds its motor, enabled, it begins where it is
   CHECK(robot.plant.state().flipper_rad[0] == 1.0);
 }
 
-TEST_CASE("currents are in thousandths of the rated current, voltages in mV", "[drive]") {
+TEST_CASE("Currents are in thousandths of the rated current, voltages in mV", "[drive]") {
   class Loaded final : public Plant {
    public:
     Loaded() {

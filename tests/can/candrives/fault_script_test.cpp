@@ -18,7 +18,7 @@ PlannedFault read(const char* words) {
 
 }  // namespace
 
-TEST_CASE("faults in words", "[fault script]") {
+TEST_CASE("Faults are read from words", "[fault script]") {
   PlannedFault fault = read("node 3 silent at 5");
   CHECK(fault.fault.kind == FaultKind::silent);
   CHECK(fault.fault.node == 3);
@@ -49,7 +49,7 @@ TEST_CASE("faults in words", "[fault script]") {
   CHECK(read("all healed\r").fault.kind == FaultKind::healed);
 }
 
-TEST_CASE("words that are no fault are refused with what would be one", "[fault script]") {
+TEST_CASE("Words that are no fault are refused with what would be one", "[fault script]") {
   CHECK_THROWS_WITH(read("wheel silent"), Contains("'wheel silent'") && Contains("track left"));
   CHECK_THROWS_WITH(read("node 9 silent"), Contains("1, 2, 3, 4, 5, 6, 7, 8, not 9"));
   CHECK_THROWS_WITH(read("node 3"), Contains("it names none of silent"));
@@ -60,7 +60,7 @@ TEST_CASE("words that are no fault are refused with what would be one", "[fault 
   CHECK_THROWS_WITH(read("node 3 silently"), Contains("it names none of"));
 }
 
-TEST_CASE("faults come at their time, after motion once it has begun, and go", "[fault script]") {
+TEST_CASE("Faults come at their time, after motion once it has begun, and go", "[fault script]") {
   FaultScript script(10s);  // the program began at 10 s
   script.add(read("node 3 silent at 5"), 10s);
   script.add(read("node 1 deaf 0.5 after motion for 2"), 10s);

@@ -7,7 +7,7 @@ using namespace kenaf;
 using namespace kenaf::candrives;
 using canopen::PowerState;
 
-TEST_CASE("a silent node neither sends nor hears, and stops by itself", "[fault]") {
+TEST_CASE("A silent node neither sends nor hears, and stops by itself", "[fault]") {
   EasyRobot robot;
   robot.write(1, 0x1017, 0, 2, 100);
   robot.write(1, 0x6007, 0, 2, 3);
@@ -27,7 +27,7 @@ TEST_CASE("a silent node neither sends nor hears, and stops by itself", "[fault]
   CHECK(robot.send("601#4000100000000000").size() == 1);
 }
 
-TEST_CASE("a node that loses its power brakes, and boots anew with its first values", "[fault]") {
+TEST_CASE("A node that loses its power brakes, and boots anew with its first values", "[fault]") {
   EasyRobot robot;
   robot.write(1, 0x1017, 0, 2, 100);
   robot.enable(1, 9);
@@ -44,7 +44,7 @@ TEST_CASE("a node that loses its power brakes, and boots anew with its first val
   CHECK(robot.value(1, 0x6064) == 0);
 }
 
-TEST_CASE("a deaf drive stays in its state whatever the controlword", "[fault]") {
+TEST_CASE("A deaf drive stays in its state whatever the controlword", "[fault]") {
   EasyRobot robot;
   robot.inject({FaultKind::deaf, 1});
   robot.enable(1, 3);
@@ -81,7 +81,7 @@ TEST_CASE("PDOs can lack a byte", "[fault]") {
         Lines{"181#50", "182#5002", "183#5002", "184#5002", "185#5002", "186#5002", "187#C3FD0000"});
 }
 
-TEST_CASE("garbage is one frame each millisecond, the same in every run, until it is healed", "[fault]") {
+TEST_CASE("Garbage is one frame each millisecond, the same in every run, until it is healed", "[fault]") {
   EasyRobot robot, twin;
   robot.inject({FaultKind::garbage, 0});
   twin.inject({FaultKind::garbage, 0});

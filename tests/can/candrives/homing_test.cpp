@@ -30,7 +30,7 @@ void begin_homing(EasyRobot& robot, canopen::NodeId node, int method, std::int64
 
 }  // namespace
 
-TEST_CASE("homing method 37: here is home, and nothing moves", "[homing]") {
+TEST_CASE("Homing method 37: here is home, and nothing moves", "[homing]") {
   EasyRobot robot(IdealPlant({1.0, 1.0, 1.0, 1.0}), with_homing());
   CHECK(robot.value(3, 0x6064) == 0);  // not known before
   begin_homing(robot, 3, 37, 12'345);
@@ -48,7 +48,7 @@ TEST_CASE("homing method 37: here is home, and nothing moves", "[homing]") {
   CHECK(robot.plant.state().flipper_rad[0] == Approx(1.1));
 }
 
-TEST_CASE("homing methods 17 and 18: onto the switch, slowly back, home where it lets go", "[homing]") {
+TEST_CASE("Homing methods 17 and 18: onto the switch, slowly back, home where it lets go", "[homing]") {
   // 17: the negative end of node 3 is -3 rad, of node 4, which turns the other way, +3 rad. 18: the other ends.
   const auto [node, method, end_rad] =
       GENERATE(table<int, int, double>({{3, 17, -3.0}, {4, 17, 3.0}, {3, 18, 3.0}, {4, 18, -3.0}}));
@@ -73,7 +73,7 @@ TEST_CASE("homing methods 17 and 18: onto the switch, slowly back, home where it
   CHECK(std::abs(from_home) < 4);
 }
 
-TEST_CASE("homing ends with an error where the motor is held up, and stops where it is told to", "[homing]") {
+TEST_CASE("Homing ends with an error where the motor is held up, and stops where it is told to", "[homing]") {
   SECTION("told to: bit 4 goes") {
     EasyRobot robot(IdealPlant(), with_homing());
     begin_homing(robot, 3, 17, 0);

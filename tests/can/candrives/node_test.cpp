@@ -8,7 +8,7 @@ using namespace kenaf;
 using namespace kenaf::candrives;
 using namespace std::chrono_literals;
 
-TEST_CASE("at power on every node sends its boot-up message, and nothing more", "[node]") {
+TEST_CASE("At power on every node sends its boot-up message, and nothing more", "[node]") {
   IdealPlant plant;
   RobotSlaves slaves(easy_robot(), plant, 0ms);
   Frames out;
@@ -44,7 +44,7 @@ TEST_CASE("NMT orders change a node's state, which its heartbeat tells", "[node]
   }
 }
 
-TEST_CASE("a reset of the communication resets its objects alone, a reset of the node all", "[node]") {
+TEST_CASE("A reset of the communication resets its objects alone, a reset of the node all", "[node]") {
   EasyRobot robot;
   robot.write(1, 0x1017, 0, 2, 50);
   robot.write(1, 0x6083, 0, 4, 77);
@@ -76,7 +76,7 @@ TEST_CASE("SDO reads, and says why it cannot", "[node]") {
   CHECK(answer("601#40001000000000").empty());                      // seven bytes are no SDO
 }
 
-TEST_CASE("the master's heartbeat is watched from the first that was heard", "[node]") {
+TEST_CASE("The master's heartbeat is watched from the first that was heard", "[node]") {
   EasyRobot robot;
   // 0x1016:1 = node 127, 100 ms
   CHECK(robot.send("601#2316100164007F00") == Lines{"581#6016100100000000"});

@@ -39,7 +39,7 @@ void map_velocity(EasyRobot& robot) {
 
 }  // namespace
 
-TEST_CASE("a mapping is changed only while its PDO is invalid and its count is 0", "[pdo]") {
+TEST_CASE("A mapping is changed only while its PDO is invalid and its count is 0", "[pdo]") {
   EasyRobot robot;
   constexpr std::uint32_t kUnsupportedAccess = 0x06010000;
   CHECK(robot.write(1, kRpdo1Mapping, 0, 1, 0) == refused(kRpdo1Mapping, 0, kUnsupportedAccess));
@@ -49,7 +49,7 @@ TEST_CASE("a mapping is changed only while its PDO is invalid and its count is 0
   map_velocity(robot);
 }
 
-TEST_CASE("what is mapped must exist, be mappable in that direction, have that size, and fit into eight bytes",
+TEST_CASE("What is mapped must exist, be mappable in that direction, have that size, and fit into eight bytes",
           "[pdo]") {
   EasyRobot robot;
   constexpr std::uint32_t kNoObject = 0x06020000, kCannotBeMapped = 0x06040041, kTooLong = 0x06040042;
@@ -65,7 +65,7 @@ TEST_CASE("what is mapped must exist, be mappable in that direction, have that s
   CHECK(robot.write(1, kRpdo1Mapping, 0, 1, 2) == done(kRpdo1Mapping, 0));
 }
 
-TEST_CASE("identifiers and transmission types are held against CiA 301", "[pdo]") {
+TEST_CASE("Identifiers and transmission types are held against CiA 301", "[pdo]") {
   EasyRobot robot;
   constexpr std::uint32_t kInvalidValue = 0x06090030;
   CHECK(robot.write(1, kRpdo1, 1, 4, 0x301) == refused(kRpdo1, 1, kInvalidValue));  // while it is valid
@@ -77,7 +77,7 @@ TEST_CASE("identifiers and transmission types are held against CiA 301", "[pdo]"
   for (const int type : {0, 1, 240, 254, 255}) CHECK(robot.write(1, kRpdo1, 2, 1, type) == done(kRpdo1, 2));
 }
 
-TEST_CASE("an event-driven PDO acts at once, and what follows from it is sent at once", "[pdo]") {
+TEST_CASE("An event-driven PDO acts at once, and what follows from it is sent at once", "[pdo]") {
   EasyRobot robot;
   CHECK(robot.send("201#0600").empty());  // pre-operational: no PDO
   CHECK(robot.send("000#0101") == Lines{"181#5002"});
@@ -86,7 +86,7 @@ TEST_CASE("an event-driven PDO acts at once, and what follows from it is sent at
   CHECK(robot.send("202#0600").empty());  // another node's
 }
 
-TEST_CASE("a synchronous PDO is taken at the next SYNC, and the answer of that SYNC tells of it", "[pdo]") {
+TEST_CASE("A synchronous PDO is taken at the next SYNC, and the answer of that SYNC tells of it", "[pdo]") {
   EasyRobot robot;
   map_velocity(robot);
   robot.write(1, kTpdo1, 2, 1, 1);  // the statusword at each SYNC
@@ -107,7 +107,7 @@ TEST_CASE("a synchronous PDO is taken at the next SYNC, and the answer of that S
   CHECK(robot.value(1, 0x60ff) == 123);
 }
 
-TEST_CASE("a PDO of transmission type 3 is sent at each third SYNC", "[pdo]") {
+TEST_CASE("A PDO of transmission type 3 is sent at each third SYNC", "[pdo]") {
   EasyRobot robot;
   robot.write(1, kTpdo1, 2, 1, 3);
   robot.send("000#0101");
@@ -118,7 +118,7 @@ TEST_CASE("a PDO of transmission type 3 is sent at each third SYNC", "[pdo]") {
   CHECK(robot.send("080#01").size() == 1);
 }
 
-TEST_CASE("a PDO that is too short is an error, one that is too long is taken with its first bytes", "[pdo]") {
+TEST_CASE("A PDO that is too short is an error, one that is too long is taken with its first bytes", "[pdo]") {
   EasyRobot robot;
   robot.send("000#0101");
   CHECK(robot.send("201#06") == Lines{"081#1082110000000000"});  // 0x8210, generic and communication
@@ -128,7 +128,7 @@ TEST_CASE("a PDO that is too short is an error, one that is too long is taken wi
   CHECK(robot.drive(0).power_state() == PowerState::ready_to_switch_on);
 }
 
-TEST_CASE("the event timer and the inhibit time bound when a PDO is sent", "[pdo]") {
+TEST_CASE("The event timer and the inhibit time bound when a PDO is sent", "[pdo]") {
   EasyRobot robot;
   SECTION("event timer of 20 ms: without a change too") {
     robot.write(1, kTpdo1, 5, 2, 20);
@@ -149,7 +149,7 @@ TEST_CASE("the event timer and the inhibit time bound when a PDO is sent", "[pdo
   }
 }
 
-TEST_CASE("a PDO's values are in place before its controlword acts", "[pdo]") {
+TEST_CASE("A PDO's values are in place before its controlword acts", "[pdo]") {
   EasyRobot robot;
   robot.enable(3, 1);
   robot.write(3, 0x6081, 0, 4, 5000);

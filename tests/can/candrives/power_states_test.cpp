@@ -54,7 +54,7 @@ struct Case {
 
 }  // namespace
 
-TEST_CASE("every state can be had, and its statusword is read as that state", "[power]") {
+TEST_CASE("Every state can be had, and its statusword is read as that state", "[power]") {
   for (int i = 0; i <= static_cast<int>(PowerState::fault); ++i) {
     const auto state = static_cast<PowerState>(i);
     CAPTURE(describe(state));
@@ -63,7 +63,7 @@ TEST_CASE("every state can be had, and its statusword is read as that state", "[
   }
 }
 
-TEST_CASE("controlwords lead from state to state", "[power]") {
+TEST_CASE("Controlwords lead from state to state", "[power]") {
   using enum PowerState;
   const std::vector<Case> cases = {
       {switch_on_disabled, 0x06, ready_to_switch_on},  // 2
@@ -100,7 +100,7 @@ TEST_CASE("controlwords lead from state to state", "[power]") {
   }
 }
 
-TEST_CASE("a fault is reset by the rising edge of bit 7 alone", "[power]") {
+TEST_CASE("A fault is reset by the rising edge of bit 7 alone", "[power]") {
   PowerStates machine = in(PowerState::operation_enabled);
   machine.on_controlword(0x8f);  // bit 7 rises before the fault
   machine.fault();
@@ -112,7 +112,7 @@ TEST_CASE("a fault is reset by the rising edge of bit 7 alone", "[power]") {
   CHECK(machine.state() == PowerState::switch_on_disabled);
 }
 
-TEST_CASE("who repeats enable does not start a drive again that stopped by itself", "[power]") {
+TEST_CASE("Who repeats enable does not start a drive again that stopped by itself", "[power]") {
   PowerStates machine = in(PowerState::operation_enabled);
   machine.quick_stop();
   for (int i = 0; i < 3; ++i) machine.on_controlword(0x0f);

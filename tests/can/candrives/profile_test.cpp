@@ -41,7 +41,7 @@ struct Axis {
 
 }  // namespace
 
-TEST_CASE("a trapezoid takes the time of its three parts, and ends exactly at its target", "[profile]") {
+TEST_CASE("A trapezoid takes the time of its three parts, and ends exactly at its target", "[profile]") {
   // D / v + v / 2 (1/a + 1/d): 10000/5000 + 2500 (1/10000 + 1/5000) = 2.75 s; a step or two more where parts do not end
   // with a step
   const Ramps ramps{10'000, 5'000};
@@ -58,7 +58,7 @@ TEST_CASE("a trapezoid takes the time of its three parts, and ends exactly at it
   CHECK(demand.velocity == 0);
 }
 
-TEST_CASE("a short way is a triangle", "[profile]") {
+TEST_CASE("A short way is a triangle", "[profile]") {
   // the top speed v has v^2/2 (1/a + 1/d) = D: sqrt(2 * 300 / 0.0003) = 1414 counts/s, in 1414 * 0.0003 = 0.424 s
   const Ramps ramps{10'000, 5'000};
   Demand demand;
@@ -72,7 +72,7 @@ TEST_CASE("a short way is a triangle", "[profile]") {
   CHECK(demand.position == -300);
 }
 
-TEST_CASE("a target that is too near is passed, by the braking distance, and come back to", "[profile]") {
+TEST_CASE("A target that is too near is passed, by the braking distance, and come back to", "[profile]") {
   Demand demand{0, 1000};
   const Ramps ramps{10'000, 5'000};
   double furthest = 0;
@@ -84,7 +84,7 @@ TEST_CASE("a target that is too near is passed, by the braking distance, and com
   CHECK(demand.position == 50);
 }
 
-TEST_CASE("profile velocity: a ramp up takes v/a and v^2/2a, and the target is reached at its end", "[profile]") {
+TEST_CASE("Profile velocity: a ramp up takes v/a and v^2/2a, and the target is reached at its end", "[profile]") {
   Axis track(1, kProfileVelocity);
   track.speed(5000);
   track.robot.wait(499);
@@ -122,7 +122,7 @@ TEST_CASE("profile velocity: a ramp up takes v/a and v^2/2a, and the target is r
   }
 }
 
-TEST_CASE("directions and counts of a drive are its own", "[profile]") {
+TEST_CASE("Directions and counts of a drive are its own", "[profile]") {
   Axis right(2, kProfileVelocity);  // direction -1
   right.speed(5000);
   right.robot.wait(600);
@@ -131,7 +131,7 @@ TEST_CASE("directions and counts of a drive are its own", "[profile]") {
   CHECK(right.position() == Approx(1250 + 2.5 + 500).margin(1));
 }
 
-TEST_CASE("profile position: the set-point handshake", "[profile]") {
+TEST_CASE("Profile position: the set-point handshake hands a target over", "[profile]") {
   Axis flipper(3, kProfilePosition);
   flipper.target(2500);
   flipper.robot.wait(100);
@@ -181,7 +181,7 @@ TEST_CASE("profile position: the set-point handshake", "[profile]") {
   }
 }
 
-TEST_CASE("software limits, 607d, hold a target back, and the statusword says so", "[profile]") {
+TEST_CASE("Software limits, 607d, hold a target back, and the statusword says so", "[profile]") {
   SECTION("profile position") {
     Axis flipper(3, kProfilePosition);
     flipper.robot.write(3, 0x607d, 1, 4, -1000);
@@ -206,7 +206,7 @@ TEST_CASE("software limits, 607d, hold a target back, and the statusword says so
   }
 }
 
-TEST_CASE("cyclic velocity follows at once", "[profile]") {
+TEST_CASE("Cyclic velocity follows at once", "[profile]") {
   Axis track(1, kCyclicVelocity);
   track.speed(4000);
   track.robot.wait(1);
@@ -218,7 +218,7 @@ TEST_CASE("cyclic velocity follows at once", "[profile]") {
   CHECK(track.position() == 4);
 }
 
-TEST_CASE("cyclic position goes evenly to each target within the interpolation period", "[profile]") {
+TEST_CASE("Cyclic position goes evenly to each target within the interpolation period", "[profile]") {
   Axis flipper(3, kCyclicPosition);
   flipper.robot.write(3, 0x60c2, 1, 1, 10);  // 10 * 10^-3 s
   flipper.robot.write(3, 0x60c2, 2, 1, -3);
@@ -239,7 +239,7 @@ TEST_CASE("cyclic position goes evenly to each target within the interpolation p
   CHECK(flipper.position() == 1100);
 }
 
-TEST_CASE("another mode takes over from the speed there is", "[profile]") {
+TEST_CASE("Another mode takes over from the speed there is", "[profile]") {
   Axis track(1, kProfileVelocity);
   track.speed(5000);
   track.robot.wait(600);

@@ -21,7 +21,7 @@ PlantCommand at_rest(const RobotPlant& plant) {
 
 }  // namespace
 
-TEST_CASE("tracks, flippers, currents and yaw rate have the robot's signs", "[robot plant]") {
+TEST_CASE("Tracks, flippers, currents and yaw rate have the robot's signs", "[robot plant]") {
   RobotPlant plant("kenaf", "flat", 0.05);
   CHECK(plant.state().battery_v == Approx(25.9).margin(1));
   CHECK(plant.state().flipper_rad[0] == Approx(1.0));
@@ -53,7 +53,7 @@ TEST_CASE("tracks, flippers, currents and yaw rate have the robot's signs", "[ro
   }
 }
 
-TEST_CASE("a flipper that is sent beyond its stop stands at it, within the reach of its limit switch",
+TEST_CASE("A flipper that is sent beyond its stop stands at it, within the reach of its limit switch",
           "[robot plant]") {
   constexpr double kEnd_rad = 3.14159265;  // up and over; the other way the ground is in between
   RobotPlant plant("kenaf", "flat", 0.05);
@@ -63,7 +63,7 @@ TEST_CASE("a flipper that is sent beyond its stop stands at it, within the reach
   CHECK(std::abs(plant.state().flipper_rad[0] - kEnd_rad) < 0.001);
 }
 
-TEST_CASE("steps that are no multiple of the physics' steps are not lost", "[robot plant]") {
+TEST_CASE("Steps that are no multiple of the physics' steps are not lost", "[robot plant]") {
   RobotPlant plant("kenaf", "flat", 0.05);
   const PlantCommand command = at_rest(plant);
   for (int i = 0; i < 10; ++i) plant.advance(350us, command);  // 3.5 ms

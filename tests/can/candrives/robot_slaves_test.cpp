@@ -68,7 +68,7 @@ Result drive(int every_ms) {
 
 }  // namespace
 
-TEST_CASE("what happens does not depend on when the nodes are called", "[time]") {
+TEST_CASE("What happens does not depend on when the nodes are called", "[time]") {
   const Result each_step = drive(1), seldom = drive(37), asked = drive(0);
   CHECK(each_step.frames.size() == 10);  // nine SDO answers, and the emergency message of the lost master
   CHECK(each_step.track_m > 0.05);

@@ -38,7 +38,7 @@ struct TiltedRobot {
 
 }  // namespace
 
-TEST_CASE("slopes in hundredths of a degree, with 16 and 32 bits", "[sensor]") {
+TEST_CASE("Slopes are told in hundredths of a degree, with 16 and 32 bits", "[sensor]") {
   TiltedRobot robot;
   robot.tilt(0.2, -0.3, 0);
   // longitudinal = -(pitch + 0.1) = 0.2 rad = 11.459 deg = 1146 = 0x047a; lateral = roll = 0.2 rad
@@ -58,7 +58,7 @@ TEST_CASE("slopes in hundredths of a degree, with 16 and 32 bits", "[sensor]") {
   }
 }
 
-TEST_CASE("the gyro's PDO holds the yaw rate at its bits, at each SYNC", "[sensor]") {
+TEST_CASE("The gyro's PDO holds the yaw rate at its bits, at each SYNC", "[sensor]") {
   TiltedRobot robot;
   robot.send("000#0108");
   robot.tilt(0, 0, 1.5);  // to the left: 1500 = 0x05dc
@@ -69,7 +69,7 @@ TEST_CASE("the gyro's PDO holds the yaw rate at its bits, at each SYNC", "[senso
   CHECK(robot.send("080#") == Lines{"188#0000FF7F"});
 }
 
-TEST_CASE("bits of a gyro need not begin or end with a byte", "[sensor]") {
+TEST_CASE("Bits of a gyro need not begin or end with a byte", "[sensor]") {
   canbus::RobotBus bus = easy_robot();
   bus.gyro = canbus::GyroOnBus{8, 2, 4, 12, -1000.0};
   Tilted plant;

@@ -18,7 +18,7 @@ Lines receive_all(SimulatedBus& bus, canopen::Time until) {
 
 }  // namespace
 
-TEST_CASE("frames take their time, one after another, the lowest identifier first", "[bus]") {
+TEST_CASE("Frames take their time, one after another, the lowest identifier first", "[bus]") {
   IdealPlant plant;
   SimulatedBus bus(easy_robot(), plant);
   // A frame of one byte has at most 47 + 8 + floor(41 / 4) = 65 bits: 130 us. Eight boot-up messages wait at time 0.
@@ -54,7 +54,7 @@ TEST_CASE("SYNC comes at once and then each period, to the master too", "[bus]")
   CHECK(receive_all(bus, 200ms).empty());
 }
 
-TEST_CASE("a bus that is down throws, a dead master is not heard, frames can be altered and dropped", "[bus]") {
+TEST_CASE("A bus that is down throws, a dead master is not heard, frames can be altered and dropped", "[bus]") {
   IdealPlant plant;
   SimulatedBus bus(easy_robot(), plant);
   receive_all(bus, 100ms);

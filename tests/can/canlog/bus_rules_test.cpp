@@ -6,7 +6,7 @@
 using namespace kenaf;
 using namespace kenaf::canlog;
 
-TEST_CASE("identifiers: those of the predefined connection set, of nodes and PDOs that there are") {
+TEST_CASE("Identifiers: those of the predefined connection set, of nodes and PDOs that there are") {
   CHECK(broken({{0, "000#0101"},
                 {1, "080#"},
                 {2, "081#0000000000000000"},
@@ -23,7 +23,7 @@ TEST_CASE("identifiers: those of the predefined connection set, of nodes and PDO
   CHECK(broken({{0, "20000004#000C000000000000"}}).empty());  // of the driver, not of the bus
 }
 
-TEST_CASE("lengths: each service has its own") {
+TEST_CASE("Lengths: each service has its own") {
   CHECK(broken({{0, "080#"}, {1, "080#01"}, {2, "181#370200000000"}, {3, "283#0000"}, {4, "187#00000000"}}).empty());
   CHECK(broken({{0, "000#01"},
                 {1, "080#0102"},
@@ -39,12 +39,12 @@ TEST_CASE("lengths: each service has its own") {
   CHECK(broken({{0, "188#000000"}}) == Broken{"1: length"});
 }
 
-TEST_CASE("content: orders and states that NMT has") {
+TEST_CASE("Content: orders and states that NMT has") {
   CHECK(broken({{0, "000#8001"}, {1, "701#7F"}}).empty());
   CHECK(broken({{0, "000#0301"}, {1, "701#06"}}) == Broken{"1: content", "2: content"});
 }
 
-TEST_CASE("after a reset a node says boot-up first") {
+TEST_CASE("After a reset a node says boot-up first") {
   CHECK(broken({{0, "000#8201"}, {20, "701#00"}, {30, "701#7F"}}).empty());
   CHECK(broken({{0, "000#8100"}, {20, "081#0000000000000000"}}) == Broken{"2: boot-up"});
   // it was on its way when the order came
@@ -68,7 +68,7 @@ TEST_CASE("PDOs come from and go to operational nodes alone") {
   CHECK(broken({{20, "181#370200000000"}}).empty());
 }
 
-TEST_CASE("a stopped node has heartbeats and NMT, and nothing else") {
+TEST_CASE("A stopped node has heartbeats and NMT, and nothing else") {
   const Lines stop{{0, "701#05"}, {10, "000#0201"}};
   CHECK(broken(stop + Lines{{20, "701#04"}, {30, "000#8001"}, {40, "081#0000000000000000"}}).empty());
   CHECK(broken(stop + Lines{{20, "081#0000000000000000"}}) == Broken{"3: nmt-state"});
@@ -82,7 +82,7 @@ const Lines kWatch{{0, "601#2316100164007F00"}, {1, "581#6016100100000000"}};
 
 }  // namespace
 
-TEST_CASE("the master's heartbeat comes as often as its consumers ask for") {
+TEST_CASE("The master's heartbeat comes as often as its consumers ask for") {
   CHECK(broken(kWatch + Lines{{300, "77F#05"}, {400, "77F#05"}, {500, "77F#05"}}).empty());
   // before the watch the time between two does not count; the line of the last before the gap is named
   CHECK(broken({{0, "77F#05"}, {300, "77F#05"}}).empty());

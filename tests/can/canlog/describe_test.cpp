@@ -16,7 +16,7 @@ std::string words(std::string_view frame) {
 
 }  // namespace
 
-TEST_CASE("NMT, SYNC, heartbeats and emergencies in words") {
+TEST_CASE("NMT, SYNC, heartbeats and emergencies are put in words") {
   CHECK(words("000#0103") == "NMT start: flipper front left");
   CHECK(words("000#8200") == "NMT reset communication: all nodes");
   CHECK(words("000#0109") == "NMT start: node 9");
@@ -30,7 +30,7 @@ TEST_CASE("NMT, SYNC, heartbeats and emergencies in words") {
         "00 00 00)");
 }
 
-TEST_CASE("SDO frames in words") {
+TEST_CASE("SDO frames are put in words") {
   CHECK(words("601#4041600000000000") == "SDO read 0x6041:00 (statusword) from track left");
   // command specifier 2 (upload answer), expedited, two of four bytes without data: 010 0 10 1 1
   CHECK(words("581#4B41600037060000") == "SDO answer of track left: 0x6041:00 (statusword) = 0x0637");
@@ -48,7 +48,7 @@ TEST_CASE("SDO frames in words") {
   CHECK(words("601#23001A0110004160") == "SDO write 0x1a00:01 (TPDO1 mapping, entry 1) of track left = 0x60410010");
 }
 
-TEST_CASE("process data in words, in the robot's units") {
+TEST_CASE("Process data are put in words, in the robot's units") {
   // statusword 0x0637: operation enabled, bit 10 target reached; position 1234: 0.1234 m
   CHECK(words("181#3706D2040000") == "track left: operation enabled, target reached, position 1234 counts (0.1234 m)");
   // the right track's direction is -1
@@ -64,7 +64,7 @@ TEST_CASE("process data in words, in the robot's units") {
   CHECK(words("188#0000F401") == "gyro: yaw rate 500 units (0.5000 rad/s)");
 }
 
-TEST_CASE("what is not what it should be is said to be so") {
+TEST_CASE("What is not what it should be is said to be so") {
   CHECK(words("181#370600") == "track left, malformed: 3 bytes 37 06 00");
   CHECK(words("401#0102") == "command track left: RPDO3, not one of this robot's: 01 02");
   CHECK(words("780#00") == "identifier 0x780, which CANopen gives to nobody: 00");

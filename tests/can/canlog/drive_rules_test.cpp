@@ -11,7 +11,7 @@ using namespace kenaf;
 using namespace kenaf::canlog;
 using canopen::PowerState;
 
-TEST_CASE("a synchronous PDO comes once at each SYNC that is its own") {
+TEST_CASE("A synchronous PDO comes once at each SYNC that is its own") {
   // the inclinometer's at each SYNC
   const Lines start{{0, "707#00"}, {1, "000#0107"}};
   const auto cycle = [](double ms) { return Lines{{ms, "080#"}, {ms + 1, "187#00000000"}}; };
@@ -24,7 +24,7 @@ TEST_CASE("a synchronous PDO comes once at each SYNC that is its own") {
   CHECK(broken(start + cycle(10) + cycle(500)).empty());
 }
 
-TEST_CASE("a PDO at each fifth SYNC") {
+TEST_CASE("A PDO comes at each fifth SYNC, whichever of five that is") {
   // TPDO2 of a flipper. Its TPDO1 comes at each.
   Lines lines{{0, "703#00"}, {1, "000#0103"}};
   const auto run = [&lines](int cycles, const std::set<int>& with) {
@@ -43,7 +43,7 @@ TEST_CASE("a PDO at each fifth SYNC") {
   CHECK(run(12, {6, 11}).size() == 1);  // not later than the fifth
 }
 
-TEST_CASE("the window after SYNC") {
+TEST_CASE("A synchronous PDO comes within the window after SYNC") {
   const Lines cycle{{0, "707#05"}, {10, "080#"}, {13, "187#00000000"}, {20, "080#"}, {26, "187#00000000"}};
   CHECK(broken(cycle).empty());
   CheckOptions narrow;
@@ -60,7 +60,7 @@ TEST_CASE("the window after SYNC") {
   CHECK(broken(ended).empty());
 }
 
-TEST_CASE("a drive is led to operation one transition at a time") {
+TEST_CASE("A drive is led to operation one transition at a time") {
   CHECK(broken({{0, "181#400000000000"},
                 {5, "201#060000000000"},
                 {10, "181#210000000000"},
@@ -86,7 +86,7 @@ TEST_CASE("a drive is led to operation one transition at a time") {
         Broken{"3: controlword"});
 }
 
-TEST_CASE("the table of orders is CiA 402's") {
+TEST_CASE("The table of orders is CiA 402's") {
   // every state in which an order means something, by its transitions: 2, 3, 4, 16, 5, 6, 8
   const auto states_of = [](DriveOrder order) {
     std::set<PowerState> states;
@@ -103,7 +103,7 @@ TEST_CASE("the table of orders is CiA 402's") {
   CHECK(states_of(DriveOrder::quick_stop).size() == 8);
 }
 
-TEST_CASE("a fault is reset by the edge of bit 7") {
+TEST_CASE("A fault is reset by the edge of bit 7") {
   CHECK(broken({{0, "181#080000000000"}, {5, "201#800000000000"}, {10, "181#400000000000"}, {15, "201#060000000000"}})
             .empty());
   CHECK(broken({{0, "181#080000000000"},
@@ -117,7 +117,7 @@ TEST_CASE("a fault is reset by the edge of bit 7") {
   CHECK(broken({{0, "181#270000000000"}, {5, "201#800000000000"}}) == Broken{"2: fault-reset"});
 }
 
-TEST_CASE("a drive goes from state to state by the transitions there are") {
+TEST_CASE("A drive goes from state to state by the transitions there are") {
   const auto goes = [](std::string_view from, std::string_view order, std::string_view to) {
     const auto status = [](std::string_view word) { return fmt::format("181#{}0000000000", word); };
     const std::string texts[] = {status(from), fmt::format("201#{}0000000000", order), status(to)};
@@ -154,7 +154,7 @@ TEST_CASE("a drive goes from state to state by the transitions there are") {
   CHECK(broken({{0, "181#400000000000"}, {10, "080#"}, {20, "080#"}, {30, "080#"}, {31, "181#270000000000"}}).empty());
 }
 
-TEST_CASE("a set-point is handed over by bits 4 and 12") {
+TEST_CASE("A set-point is handed over by bits 4 and 12") {
   const Lines enabled{{0, "183#270000000000"}, {5, "203#0F0000000000"}};
   const Lines raised{{15, "203#3F00D0070000"}}, taken{{20, "183#271000000000"}}, lowered{{25, "203#2F00D0070000"}};
   const Lines released{{30, "183#270000000000"}}, next{{35, "203#3F00A00F0000"}};
@@ -168,7 +168,7 @@ TEST_CASE("a set-point is handed over by bits 4 and 12") {
   CHECK(broken(Lines{{0, "183#270000000000"}} + homing + Lines{{5, "203#0F0000000000"}} + raised + lowered).empty());
 }
 
-TEST_CASE("before operation enabled a target is to stay") {
+TEST_CASE("Before operation enabled a target is to stay") {
   CHECK(broken({{0, "181#400000000000"}, {5, "201#060000000000"}}).empty());
   CHECK(broken({{0, "181#400000000000"}, {5, "201#060001000000"}}) == Broken{"2: target"});
   CHECK(broken({{0, "181#270000000000"}, {5, "201#0F0001000000"}}).empty());
@@ -186,7 +186,7 @@ TEST_CASE("before operation enabled a target is to stay") {
   CHECK(broken(fault + Lines{{12, "201#0F00D0070000"}, {12.1, "203#0F00D0070000"}}).size() == 4);
 }
 
-TEST_CASE("after a quick stop a track has no speed until it is enabled anew") {
+TEST_CASE("After a quick stop a track has no speed until it is enabled anew") {
   const Lines driven{{0, "181#270000000000"}, {5, "201#0F00D0070000"}, {15, "201#020000000000"}};
   CHECK(broken(driven + Lines{{25, "201#020000000000"}}).empty());
   CHECK(broken(driven + Lines{{16, "201#0F00D0070000"}}) == Broken{"4: target"});

@@ -16,7 +16,7 @@ using candrives::frame;
 //   x^16 0x4eab  x^17 0x58cf  x^18 0x7407  x^19 0x2d97  x^20 0x5b2e  x^21 0x73c5  x^22 0x2213  x^23 0x4426
 //   x^24 0x4dd5  x^25 0x5e33  x^26 0x79ff  x^27 0x3667  x^28 0x6cce  x^29 0x1c05
 
-TEST_CASE("the CRC and the stuff bits of a SYNC") {
+TEST_CASE("A SYNC has the CRC and the stuff bits that were worked out by hand") {
   // 0 00010000000 000 0000: 19 bits, the fifth is 1: x^14. CRC = x^29.
   CHECK(crc_of(frame("080#")) == 0x1c05);
   // 0000 1 00000000000000 | 00 111 0000000 101: of the 16 zeros after the first 1 the 5th, 10th and 15th are followed
@@ -25,7 +25,7 @@ TEST_CASE("the CRC and the stuff bits of a SYNC") {
   CHECK(wire_bits(frame("080#")) == 47 + 4);
 }
 
-TEST_CASE("a stuff bit is the first of the next five") {
+TEST_CASE("A stuff bit is the first of the next five") {
   // All 34 bits are 0, the CRC of nothing but zeros too: a stuff bit after each five, 6 in all.
   CHECK(crc_of(frame("000#")) == 0);
   CHECK(stuff_bits(frame("000#")) == 6);
@@ -35,7 +35,7 @@ TEST_CASE("a stuff bit is the first of the next five") {
   CHECK(stuff_bits(frame("000#01")) == 6);
 }
 
-TEST_CASE("no frame has more stuff bits than the worst case has") {
+TEST_CASE("No frame has more stuff bits than the worst case has") {
   unsigned random = 1;
   const auto next = [&random] { return random = 1664525u * random + 1013904223u; };
   for (int i = 0; i < 20'000; ++i) {
@@ -49,7 +49,7 @@ TEST_CASE("no frame has more stuff bits than the worst case has") {
   }
 }
 
-TEST_CASE("the spread of some times") {
+TEST_CASE("The spread of some times is their median, 99th percentile and maximum") {
   CHECK_FALSE(spread_of({}));
   CHECK(spread_of({3})->max_s == 3);
   std::vector<double> values;
@@ -83,7 +83,7 @@ TEST_CASE("SYNC's period and jitter, answers and commands after it") {
   CHECK(figures.driven_cycles == 0);
 }
 
-TEST_CASE("the load is that of the bits there are") {
+TEST_CASE("The load is that of the bits there are") {
   // Ten SYNCs of 51 bits in 10 ms, the last one beyond: 500 kbit/s carry 5000 bits in that time.
   Lines lines;
   for (int i = 0; i <= 10; ++i) lines.push_back({1.0 * i, "080#"});

@@ -52,7 +52,7 @@ void drive(real::RobotOnBus& robot) {
 
 }  // namespace
 
-TEST_CASE("the real library and the simulated drives break no rule, from boot to stop, twice") {
+TEST_CASE("The real library and the simulated drives break no rule, from boot to stop, twice") {
   const real::ChangedRobot cyclic({{"profile velocity", "cyclic velocity"}, {"profile position", "cyclic position"}});
   for (const std::string& description : {std::string("kenaf"), cyclic.path()}) {
     INFO(description);
@@ -64,7 +64,7 @@ TEST_CASE("the real library and the simulated drives break no rule, from boot to
   }
 }
 
-TEST_CASE("homing: the bit that starts it is down before the mode changes") {
+TEST_CASE("Homing: the bit that starts it is down before the mode changes") {
   // bit 4 of the controlword starts the homing, and is a new set-point in profile position mode
   const real::ChangedRobot homed({{"\n[can.inclinometer]", real::kHomeHere + "\n[can.inclinometer]"}});
   real::RobotOnBus robot(homed.path());
@@ -72,7 +72,7 @@ TEST_CASE("homing: the bit that starts it is down before the mode changes") {
   CHECK(broken_rules(robot) == std::set<std::string>{});
 }
 
-TEST_CASE("a robot that loses a node: what the loss itself breaks is found, and nothing else") {
+TEST_CASE("A robot that loses a node: what the loss itself breaks is found, and nothing else") {
   // The heartbeat of a lost robot ends on purpose, so that its drives stop by themselves. The robot goes on without its
   // inclinometer.
   struct {
@@ -103,7 +103,7 @@ TEST_CASE("a robot that loses a node: what the loss itself breaks is found, and 
   }
 }
 
-TEST_CASE("the figures of a driven robot: less than half of the bus, no command late") {
+TEST_CASE("The figures of a driven robot: less than half of the bus, no command late") {
   real::RobotOnBus robot;
   drive(robot);
   const Figures figures = figures_of(log_of(robot.wire), Network(robot.description));

@@ -108,7 +108,7 @@ constexpr Write kOff{0x1800, 1, 0xc0000181}, kEmpty{0x1a00, 0, 0}, kStatus{0x1a0
 
 }  // namespace
 
-TEST_CASE("a PDO is mapped in the order of CiA 301, 7.5.2.38") {
+TEST_CASE("A PDO is mapped in the order of CiA 301, 7.5.2.38") {
   CHECK(broken_writes({kOff, {0x1800, 2, 1}, kEmpty, kStatus, kPosition, kCount, kOn}).empty());
   CHECK(broken_writes({kOff}).empty());  // switched off, and that is all
   CHECK(broken_writes({kEmpty, kStatus, kPosition, kCount}) ==
@@ -128,7 +128,7 @@ TEST_CASE("a PDO is mapped in the order of CiA 301, 7.5.2.38") {
                        kOn}) == Broken{"write 6: pdo-setup"});
 }
 
-TEST_CASE("a PDO has the length that it was mapped with, whatever the description says") {
+TEST_CASE("A PDO has the length that it was mapped with, whatever the description says") {
   std::vector<std::string> texts = sdo_lines({kOff, kEmpty, kStatus, {0x1a00, 0, 1}, kOn});
   Lines lines;
   for (const std::string& text : texts) lines.push_back({static_cast<double>(lines.size()), text});
@@ -136,7 +136,7 @@ TEST_CASE("a PDO has the length that it was mapped with, whatever the descriptio
   CHECK(broken(lines + Lines{{100, "181#370200000000"}}) == Broken{"11: length"});
 }
 
-TEST_CASE("no SDO from the first motion to the last") {
+TEST_CASE("No SDO is sent from the first motion to the last") {
   const Lines enabled{{0, "181#270000000000"}, {1, "201#0F0000000000"}};
   const Lines ask{{20, "602#4000100000000000"}, {21, "582#4300100092010200"}};
   const Lines go{{10, "201#0F00D0070000"}}, go_on{{30, "201#0F00D0070000"}}, stop{{40, "201#0F0000000000"}};

@@ -199,7 +199,7 @@ TEST_CASE("Modes of operation and the bits that say which a drive has") {
   CHECK_FALSE(is_position(DriveMode::homing));
 }
 
-TEST_CASE("States and modes in words") {
+TEST_CASE("States and modes are put in words") {
   CHECK(describe(PowerState::switch_on_disabled) == "switch on disabled");
   CHECK(describe(PowerState::operation_enabled) == "operation enabled");
   CHECK(describe(PowerState::fault_reaction_active) == "fault reaction active");

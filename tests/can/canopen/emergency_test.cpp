@@ -25,7 +25,7 @@ TEST_CASE("What is no emergency message is none") {
   CHECK_FALSE(emergency_from(frame_of(0x083, {0, 0, 0, 0, 0, 0, 0})));
 }
 
-TEST_CASE("An emergency message in words") {
+TEST_CASE("An emergency message is put in words") {
   CHECK(describe(Emergency{3, 0x2310, 0x03, {1, 0, 0, 0, 0xfe}}) ==
         "0x2310 continuous over current (error register 0x03: generic, current; manufacturer 01 00 00 00 fe)");
   CHECK(describe(Emergency{3, 0x0000, 0x00, {}}) ==

@@ -79,7 +79,7 @@ TEST_CASE("Identifiers of the predefined connection set") {
   CHECK(kHeartbeatId == 14 << 7);
 }
 
-TEST_CASE("NMT states in words") {
+TEST_CASE("NMT states are put in words") {
   CHECK(describe(NmtState::boot_up) == "boot-up");
   CHECK(describe(NmtState::stopped) == "stopped");
   CHECK(describe(NmtState::operational) == "operational");

@@ -12,7 +12,7 @@ TEST_CASE("An object's address is written as index and sub-index") {
   CHECK(to_string(ObjectAddress{0x0005, 0xfe}) == "0x0005:fe");
 }
 
-TEST_CASE("Numbers as their type's bytes, lowest first") {
+TEST_CASE("Numbers become their type's bytes, lowest first") {
   CHECK(encode_number(ObjectType::unsigned8, 255) == ObjectBytes{0xff});
   CHECK(encode_number(ObjectType::unsigned16, 0x1234) == ObjectBytes{0x34, 0x12});
   CHECK(encode_number(ObjectType::unsigned32, 0xdeadbeef) == ObjectBytes{0xef, 0xbe, 0xad, 0xde});
@@ -22,7 +22,7 @@ TEST_CASE("Numbers as their type's bytes, lowest first") {
         ObjectBytes{0x18, 0xfc, 0xff, 0xff});  // 2^32 - 1000 = 0xfffffc18
 }
 
-TEST_CASE("Bytes as their type's number") {
+TEST_CASE("Bytes become their type's number") {
   CHECK(decode_number(ObjectType::unsigned8, ObjectBytes{0xff}) == 255);
   CHECK(decode_number(ObjectType::integer8, ObjectBytes{0xff}) == -1);
   CHECK(decode_number(ObjectType::unsigned16, ObjectBytes{0x00, 0x80}) == 32768);

@@ -360,7 +360,7 @@ TEST_CASE("A new transfer over an old one forgets it") {
   check_done(client, kName, {'x', 'y'});
 }
 
-TEST_CASE("Abort codes in the words of CiA 301") {
+TEST_CASE("Abort codes have the words of CiA 301") {
   CHECK(describe(SdoAbort::toggle_bit) == "toggle bit not alternated");
   CHECK(describe(SdoAbort::timed_out) == "SDO protocol timed out");
   CHECK(describe(SdoAbort::no_object) == "object does not exist in the object dictionary");

@@ -30,7 +30,7 @@ std::string comment(std::string_view text) {
 
 }  // namespace
 
-TEST_CASE("an answer comes whole from any pieces, and several from one") {
+TEST_CASE("An answer comes whole from any pieces, and several from one") {
   const Octets stream =
       octets(std::string("\x03\x00\x00\x00\x02"
                          "ab\xff\x00\x00\x00\x00\x00\x00\x00\x00\x01x",
@@ -54,7 +54,7 @@ TEST_CASE("an answer comes whole from any pieces, and several from one") {
   }
 }
 
-TEST_CASE("what cannot be a picture's header is refused by its number") {
+TEST_CASE("What cannot be a picture's header is refused by its number") {
   const auto error = [](std::uint8_t type, std::uint32_t size) {
     const auto header = answer_header(type, size);
     std::span<const std::uint8_t> bytes(header);
@@ -72,14 +72,14 @@ TEST_CASE("what cannot be a picture's header is refused by its number") {
   CHECK(error(3, 64u << 20).empty());
 }
 
-TEST_CASE("headers are big-endian, names have their length before them") {
+TEST_CASE("Headers are big-endian, names have their length before them") {
   CHECK(answer_header(2, 0x01020304) == std::array<std::uint8_t, 5>{2, 1, 2, 3, 4});
   CHECK(select_request("") == std::string("V\0", 2));
   CHECK(select_request("a/b") == "V\3a/b");
   CHECK_THROWS(select_request(std::string(256, 'x')));
 }
 
-TEST_CASE("a frame note is read as it is written") {
+TEST_CASE("A frame note is read as it is written") {
   const FrameNote note{
       .number = 18446744073709551615u, .robot_time_s = 3.25, .age_ms = 0.125, .robot = "my robot", .camera = "Front"};
   const std::string segment = frame_note_segment(note);
@@ -98,7 +98,7 @@ TEST_CASE("a frame note is read as it is written") {
   CHECK(read_frame_note(jpeg_with(std::string("\xff\xe0\0\4ab", 6) + comment("by hand") + segment)));
 }
 
-TEST_CASE("what is no frame note is none") {
+TEST_CASE("What is no frame note is none") {
   for (const std::string text :
        {"kenaf-frame/2 number=1 robot_time_s=0 age_ms=0 robot=a camera=b",
         "kenaf-frame/1 number=-1 robot_time_s=0 age_ms=0 robot=a camera=b",
@@ -120,7 +120,7 @@ TEST_CASE("what is no frame note is none") {
   CHECK_FALSE(read_frame_note({}));
 }
 
-TEST_CASE("a whole JPEG begins with SOI and ends with EOI, but for zeros") {
+TEST_CASE("A whole JPEG begins with SOI and ends with EOI, but for zeros") {
   Octets jpeg = jpeg_with("");
   CHECK(is_whole_jpeg(jpeg));
   jpeg.insert(jpeg.end(), 7, 0);
@@ -131,7 +131,7 @@ TEST_CASE("a whole JPEG begins with SOI and ends with EOI, but for zeros") {
   CHECK_FALSE(is_whole_jpeg(Octets{0xff, 0xd8, 0xd9}));
 }
 
-TEST_CASE("raw pictures: blue, green, red, rows padded to 4 bytes") {
+TEST_CASE("Raw pictures: blue, green, red, rows padded to 4 bytes") {
   // 3 x 1: 9 bytes and 3 of padding
   const auto picture = read_raw_picture(Octets{0, 3, 0, 1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 0, 0, 0});
   REQUIRE(picture);

@@ -67,7 +67,7 @@ bool is_a_way(const std::vector<FramePair>& pairs, std::size_t real_count, std::
 
 }  // namespace
 
-TEST_CASE("Of all ways the cheapest, on random runs of 1 to 6 frames") {
+TEST_CASE("The matching is the cheapest of all ways, on random runs of 1 to 6 frames") {
   std::mt19937 random(1);
   for (std::size_t n = 1; n <= 6; ++n) {
     for (std::size_t m = 1; m <= 6; ++m) {
@@ -129,7 +129,7 @@ TEST_CASE("A run 30 mm above the other has a mean error of 30 mm") {
   CHECK(matching.pairs.size() == 40);
 }
 
-TEST_CASE("Within a band, a wide one changes nothing, one too narrow is widened") {
+TEST_CASE("A wide band changes nothing, and one too narrow is widened") {
   std::mt19937 random(3);
   const Path a = random_path(random, 60), b = random_path(random, 45);
   const Matching all = match_paths(a, b);

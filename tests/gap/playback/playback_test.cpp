@@ -89,7 +89,7 @@ std::string body_of_answer(const std::string& answer) {
 
 }  // namespace
 
-TEST_CASE("A column at other times") {
+TEST_CASE("A column at other times lies between its cells, and has nothing in a hole") {
   runs::Run run{{"t_s", "x_m", "yaw_rad"}, {{5, 5.1, 5.2, 6.5}, {1, kNotMeasured, 3, 4}, {3.1, -3.1, -3.1, -3.1}}};
   const PlayedTimes times{0, 0.1, 0.15, 0.2, 0.5, 1.5, 1.6};
   // the cells are 0.2 s and 1.3 s apart: the median is 1.3 s of two, so no hole is longer than 3 times that
@@ -119,7 +119,7 @@ TEST_CASE("A long run is thinned") {
   CHECK(shown_times(PlayedTimes{7}, 4) == PlayedTimes{0});
 }
 
-TEST_CASE("Dead reckoning where no pose was measured") {
+TEST_CASE("Dead reckoning gives the path where no pose was measured") {
   const physics::RobotDescription kenaf = physics::load_robot("kenaf");
   const auto metre = [](double t_s) { return t_s; };
   const auto ahead = reckon(test::made_run(1.001, 0.01, {{"track_left_m", metre}, {"track_right_m", metre}}), kenaf);
@@ -179,7 +179,7 @@ TEST_CASE("Dead reckoning where tracks and angles have holes, or the angles are 
   CHECK(slow->yaw_rad.back() == Approx(1.75).margin(0.03));
 }
 
-TEST_CASE("A report's phases and whose they are") {
+TEST_CASE("A report's phases belong to their run, or to its one repeat that the report has") {
   const ReportedPlaces places = parse_reported_places(kReport);
   CHECK(places.verdict == "named");
   CHECK(places.named == std::vector<std::string>{"drive_lag"});
@@ -201,7 +201,7 @@ TEST_CASE("A report's phases and whose they are") {
   CHECK_THROWS_WITH(parse_reported_places(backwards), Catch::Contains("from 0.8 s to 0 s"));
 }
 
-TEST_CASE("What a page is told of a run") {
+TEST_CASE("A page is told a run's poses, times and marks as they were recorded") {
   const Recorded recorded;
   const Playback playback = recorded.load();
   const json list = json::parse(playback_json(playback));
@@ -314,7 +314,7 @@ TEST_CASE("What is made is made once and kept, and what fails is told and tried 
   CHECK(made == 4);
 }
 
-TEST_CASE("What a page may ask for") {
+TEST_CASE("A page may ask for the list, a run and its scene, and nothing else") {
   const auto path = [](std::string_view text) {
     const auto found = parse_playback_path(text);
     if (!found) return std::string("none");
@@ -367,7 +367,7 @@ TEST_CASE("A page asks for the list, a run and its world, by the rules of the li
   CHECK(gone_file.find("c.csv") != std::string::npos);
 }
 
-TEST_CASE("Kenaf-gap play says what is wrong, and ends when it is told to") {
+TEST_CASE("kenaf-gap play says what is wrong, and ends when it is told to") {
   const Recorded recorded;
   std::ofstream(recorded.folder / "bad.csv") << "t_s,x_m\n0,1\n0,2\n";
   std::filesystem::create_directory(recorded.folder / "other");

@@ -5,7 +5,7 @@
 
 namespace kenaf::image_server {
 
-TEST_CASE("a tick is exposed at the first step at or after it") {
+TEST_CASE("A tick is exposed at the first step at or after it") {
   for (const auto& [tick, step] : {std::pair<Tick, std::uint64_t>{0, 0}, {1, 34}, {2, 67}, {3, 100}, {4, 134}}) {
     CHECK(step_of(tick, 0.001, 30) == step);
     CHECK(tick_at(step, 0.001, 30) == tick);
@@ -18,7 +18,7 @@ TEST_CASE("a tick is exposed at the first step at or after it") {
   for (std::uint64_t step = 0; step < 100; ++step) CHECK(step_of(tick_at(step, 0.02, 120), 0.02, 120) == step);
 }
 
-TEST_CASE("the next exposure is the next tick of any camera, at once for one that has none yet") {
+TEST_CASE("The next exposure is the next tick of any camera, at once for one that has none yet") {
   CHECK(next_exposure({{30, 0}}, 0, 0.001) == 34);
   CHECK(next_exposure({{30, 0}}, 33, 0.001) == 34);
   CHECK(next_exposure({{30, 0}}, 34, 0.001) == 34);

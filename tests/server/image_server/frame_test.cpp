@@ -7,7 +7,7 @@
 
 namespace kenaf::image_server {
 
-TEST_CASE("a JPEG says which frame it is and how old, and is the same picture") {
+TEST_CASE("A JPEG says which frame it is and how old, and is the same picture") {
   Frame frame;
   frame.robot = "Robot 7";
   frame.camera = "Camera";

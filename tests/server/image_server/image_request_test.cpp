@@ -30,7 +30,7 @@ std::vector<std::string> requests(std::string_view bytes, std::size_t piece) {
 
 }  // namespace
 
-TEST_CASE("requests are found however they are split, and what is none is skipped") {
+TEST_CASE("Requests are found however they are split, and what is none is skipped") {
   const std::string part = part_request(1, 2, 3, 4);
   const std::string bytes =
       "OK"
@@ -43,7 +43,7 @@ TEST_CASE("requests are found however they are split, and what is none is skippe
   }
 }
 
-TEST_CASE("a part's numbers are big-endian, whatever they are") {
+TEST_CASE("A part's numbers are big-endian, whatever they are") {
   ImageRequestParser parser;
   const std::string text = part_request(0x01020304, 0xffffffff, 0, 0x80000000);
   std::string_view bytes = text;

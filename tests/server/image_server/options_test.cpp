@@ -5,7 +5,7 @@
 
 namespace kenaf::image_server {
 
-TEST_CASE("camera options are read from words, and wrong ones refused in words") {
+TEST_CASE("Camera options are read from words, and wrong ones refused in words") {
   CameraOptions options;
   set_cameras(options, "off");
   CHECK_FALSE(options.on);
@@ -29,7 +29,7 @@ TEST_CASE("camera options are read from words, and wrong ones refused in words")
   CHECK_THROWS_AS(set_camera_image(options, "best"), std::runtime_error);
 }
 
-TEST_CASE("better types have higher quality, and good is the camera's own") {
+TEST_CASE("Better types have higher quality, and good is the camera's own") {
   CHECK(jpeg_quality(ImageType::good, 63) == 63);
   CHECK(jpeg_quality(ImageType::superb, 63) > 80);
   CHECK(jpeg_quality(ImageType::normal, 63) > jpeg_quality(ImageType::fair, 63));

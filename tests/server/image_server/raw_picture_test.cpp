@@ -19,7 +19,7 @@ camera::Picture counted(int width, int height) {
 
 }  // namespace
 
-TEST_CASE("a raw picture is its size, then rows of blue, green, red, filled up to four bytes") {
+TEST_CASE("A raw picture is its size, then rows of blue, green, red, filled up to four bytes") {
   CHECK(raw_picture(counted(3, 2), 0, 0, 3, 2) ==
         Bytes8{0,  3,  0,  2,                                // u16 width, u16 height
                2,  1,  0,  12, 11, 10, 22, 21, 20, 0, 0, 0,  // 9 bytes and 3 to fill up
@@ -27,7 +27,7 @@ TEST_CASE("a raw picture is its size, then rows of blue, green, red, filled up t
   CHECK(raw_picture(counted(4, 1), 0, 0, 4, 1).size() == 4 + 12);
 }
 
-TEST_CASE("a part of it is what lies within the picture") {
+TEST_CASE("A part of it is what lies within the picture") {
   const camera::Picture picture = counted(3, 2);
   CHECK(raw_picture(picture, 1, 1, 1, 1) == Bytes8{0, 1, 0, 1, 42, 41, 40, 0});
   CHECK(raw_picture(picture, 2, 0, 0xffffffff, 0xffffffff) == Bytes8{0, 1, 0, 2, 22, 21, 20, 0, 52, 51, 50, 0});

@@ -18,7 +18,7 @@ camera::RobotSnapshot robot(std::uint32_t id, const std::string& name, const std
 
 }  // namespace
 
-TEST_CASE("a view is a camera of a robot, of the one placed last that has it where none is named") {
+TEST_CASE("A view is a camera of a robot, of the one placed last that has it where none is named") {
   const std::vector<camera::RobotSnapshot> robots{robot(1, "R1", "kenaf"), robot(4, "a/b", "kenaf"),
                                                   robot(9, "Bus", "p2at")};
   using physics::RobotId;
@@ -32,7 +32,7 @@ TEST_CASE("a view is a camera of a robot, of the one placed last that has it whe
   }
 }
 
-TEST_CASE("a robot is meant by its id where others have its name") {
+TEST_CASE("A robot is meant by its id where others have its name") {
   const std::vector<camera::RobotSnapshot> robots{robot(1, "Kenaf", "kenaf"), robot(12, "Kenaf", "kenaf"),
                                                   robot(13, "#1", "kenaf")};
   using physics::RobotId;
@@ -46,7 +46,7 @@ TEST_CASE("a robot is meant by its id where others have its name") {
   }
 }
 
-TEST_CASE("where there is none, words say what there is instead") {
+TEST_CASE("Where there is none, words say what there is instead") {
   const std::vector<camera::RobotSnapshot> kenaf{robot(1, "R1", "kenaf")}, bus{robot(1, "Bus", "p2at")};
   CHECK(no_such_view(kenaf, "x\n\"") == "there is no camera \"x?\"\"; there is R1/Camera, R1/BirdsEye");
   CHECK(no_such_view(bus, "") == "no robot in the world has a camera");

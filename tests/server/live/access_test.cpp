@@ -8,7 +8,7 @@
 
 namespace kenaf::live {
 
-TEST_CASE("a host that names an address or this machine is served, one that a name server may point here is not") {
+TEST_CASE("A host that names an address or this machine is served, one that a name server may point here is not") {
   for (const char* host : {"127.0.0.1", "127.0.0.1:8080", "localhost", "LocalHost:1", "[::1]", "[::1]:8080",
                            "192.168.1.5:80", "workbench", "workbench.local:8080", "WORKBENCH"}) {
     INFO(host);
@@ -25,7 +25,7 @@ TEST_CASE("a host that names an address or this machine is served, one that a na
   CHECK_FALSE(host_allowed(".local", ""));
 }
 
-TEST_CASE("a page's origin is this server, or nobody's") {
+TEST_CASE("A page's origin is this server, or nobody's") {
   CHECK(origin_allowed("", "127.0.0.1:8080"));
   CHECK(origin_allowed("http://127.0.0.1:8080", "127.0.0.1:8080"));
   CHECK(origin_allowed("https://robot.local", "robot.local"));  // behind a proxy that encrypts
@@ -36,7 +36,7 @@ TEST_CASE("a page's origin is this server, or nobody's") {
   }
 }
 
-TEST_CASE("a token is found in a query, compared whole, and made of 128 bits that differ") {
+TEST_CASE("A token is found in a query, compared whole, and made of 128 bits that differ") {
   CHECK(query_value("token=abc", "token") == "abc");
   CHECK(query_value("a=1&token=abc&b=2", "token") == "abc");
   CHECK(query_value("xtoken=abc", "token").empty());
@@ -52,7 +52,7 @@ TEST_CASE("a token is found in a query, compared whole, and made of 128 bits tha
   CHECK(one != other);
 }
 
-TEST_CASE("the option --view is an address with a port, or off") {
+TEST_CASE("The option --view is an address with a port, or off") {
   CHECK_FALSE(parse_view_options("off").on);
   CHECK(parse_view_options("127.0.0.1:8080") == ViewOptions{});
   CHECK(parse_view_options("localhost:0").address == "127.0.0.1");
@@ -65,7 +65,7 @@ TEST_CASE("the option --view is an address with a port, or off") {
   }
 }
 
-TEST_CASE("a token that stands in an address as it is is taken, another is not") {
+TEST_CASE("A token that stands in an address as it is is taken, another is not") {
   for (const char* token : {"", "chosen", "0123456789abcdef", "A-b.C_d~9"}) CHECK(parse_view_token(token) == token);
   for (const char* token : {"a b", "a=b", "a+b", "a/b", "a&b", "a%20b", "a#b", "a?b", "\xc3\xa4"}) {
     INFO(token);
@@ -73,7 +73,7 @@ TEST_CASE("a token that stands in an address as it is is taken, another is not")
   }
 }
 
-TEST_CASE("the speed is that of the last second") {
+TEST_CASE("The speed is that of the last second") {
   SpeedMeter meter;
   CHECK(meter.read(100, 7) == 0);
   CHECK(meter.read(100.5, 7.25) == Approx(0.5));

@@ -14,7 +14,7 @@ namespace kenaf::live {
 
 using nlohmann::json;
 
-TEST_CASE("in a browser: keys held drive the robot, letting go of them stops it, and so does looking away") {
+TEST_CASE("In a browser: keys held drive the robot, letting go of them stops it, and so does looking away") {
   Desk desk;
   desk.browser.evaluate("document.getElementById('place').click()");
   desk.state_is("held");
@@ -59,7 +59,7 @@ TEST_CASE("in a browser: keys held drive the robot, letting go of them stops it,
   for (const std::string& complaint : desk.browser.complaints()) UNSCOPED_INFO(complaint);
 }
 
-TEST_CASE("in a browser: a page that was open shows the world of the server that is started next") {
+TEST_CASE("In a browser: a page that was open shows the world of the server that is started next") {
   support::TemporaryFolder profile;
   Browser browser(profile.path());  // before the world: what it is started from is what it keeps open
   auto world = std::make_unique<ServedWorld>("", ViewLimits{}, "step-200");
@@ -73,7 +73,7 @@ TEST_CASE("in a browser: a page that was open shows the world of the server that
   browser.wait_for(shows + "document.getElementById('world').textContent === 'flat' && !window.was_open");
 }
 
-TEST_CASE("in a browser: both cameras' pictures are shown, turned by keys, and not fetched by a hidden page") {
+TEST_CASE("In a browser: both cameras' pictures are shown, turned by keys, and not fetched by a hidden page") {
   Desk desk;
   desk.browser.evaluate("document.getElementById('place').click()");
   desk.state_is("held");
@@ -126,7 +126,7 @@ TEST_CASE("in a browser: both cameras' pictures are shown, turned by keys, and n
   for (const std::string& complaint : desk.browser.complaints()) UNSCOPED_INFO(complaint);
 }
 
-TEST_CASE("in a browser: of two robots of one name each shows its own pictures") {
+TEST_CASE("In a browser: of two robots of one name each shows its own pictures") {
   Desk desk;
   support::UsarsimClient one(desk.world.usarsim_port()), two(desk.world.usarsim_port());
   one.send("INIT {ClassName USARBot.Kenaf} {Name Kenaf} {Location 0,0,0}\r\n");
@@ -148,7 +148,7 @@ TEST_CASE("in a browser: of two robots of one name each shows its own pictures")
 }
 
 TEST_CASE(
-    "in a browser, with the keyboard alone: a robot is taken over from its program by the buttons in their order") {
+    "In a browser, with the keyboard alone: a robot is taken over from its program by the buttons in their order") {
   Desk desk;
   support::UsarsimClient program(desk.world.usarsim_port());
   program.send("INIT {ClassName USARBot.Kenaf} {Name <b>R1</b>} {Location 0,0,0}\r\nDRIVE {Left 1} {Right 1}\r\n");

@@ -24,7 +24,7 @@ void wait_300_ms(Browser& browser) {
 }  // namespace
 
 TEST_CASE(
-    "in a browser: a menu, a list and a question let go of the keys, as they keep a key's release to themselves") {
+    "In a browser: a menu, a list and a question let go of the keys, as they keep a key's release to themselves") {
   Desk desk;
   desk.place();
   const auto drive = [&] {
@@ -54,7 +54,7 @@ TEST_CASE(
   CHECK(desk.browser.complaints().empty());
 }
 
-TEST_CASE("in a browser: a list gives the keyboard back after a choice by mouse, and Escape is never its own") {
+TEST_CASE("In a browser: a list gives the keyboard back after a choice by mouse, and Escape is never its own") {
   Desk desk;
   desk.place();
   const auto keeps_focus_after = [&](const std::string& event) {
@@ -74,7 +74,7 @@ TEST_CASE("in a browser: a list gives the keyboard back after a choice by mouse,
 }
 
 TEST_CASE(
-    "in a browser: stick and sliders say their begin, their end and their newest place, however often they move") {
+    "In a browser: stick and sliders say their begin, their end and their newest place, however often they move") {
   Desk desk;
   desk.place();
   watch_words(desk.browser);
@@ -129,7 +129,7 @@ TEST_CASE(
   CHECK(desk.browser.complaints().empty());
 }
 
-TEST_CASE("in a browser: a server that is not heard is told nothing but to stand, until it is heard again") {
+TEST_CASE("In a browser: a server that is not heard is told nothing but to stand, until it is heard again") {
   Desk desk;
   desk.place();
   watch_words(desk.browser);
@@ -149,7 +149,7 @@ TEST_CASE("in a browser: a server that is not heard is told nothing but to stand
   CHECK(desk.browser.complaints().empty());
 }
 
-TEST_CASE("in a browser: a robot that was let go of is told nothing more, though states still show it held") {
+TEST_CASE("In a browser: a robot that was let go of is told nothing more, though states still show it held") {
   Desk desk;
   desk.place();
   watch_words(desk.browser);

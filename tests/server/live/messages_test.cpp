@@ -34,7 +34,7 @@ Kind request(std::string_view text) {
 
 }  // namespace
 
-TEST_CASE("a drive is complete: what it does not name stands") {
+TEST_CASE("A drive is complete: what it does not name stands") {
   auto drive = request<DriveRequest>(R"({"type":"drive","robot":3,"left":0.2,"right":-0.1})");
   CHECK(drive.robot == 3);
   CHECK(drive.command.track_speed_mps == std::array{0.2, -0.1});
@@ -49,7 +49,7 @@ TEST_CASE("a drive is complete: what it does not name stands") {
   CHECK(drive.command.flipper[3].value == -1);
 }
 
-TEST_CASE("the other requests") {
+TEST_CASE("The other requests are read") {
   CHECK(request<PauseRequest>(R"({"type":"pause","on":true})").on);
   CHECK(request<StepRequest>(R"({"type":"step","time":0.1})").time_s == 0.1);
   CHECK(request<SpeedRequest>(R"({"type":"speed","value":0})").value == 0);
@@ -67,7 +67,7 @@ TEST_CASE("the other requests") {
   CHECK(request<PingRequest>(R"({"type":"ping","t":12.5})").t == 12.5);
 }
 
-TEST_CASE("what is no request is refused in words") {
+TEST_CASE("What is no request is refused in words") {
   for (const char* wrong : {"",
                             "x",
                             "[]",
@@ -103,7 +103,7 @@ TEST_CASE("what is no request is refused in words") {
   CHECK(std::holds_alternative<std::string>(parse_request(std::string(4000, '['))));
 }
 
-TEST_CASE("a state says how everything is, in numbers that JSON knows") {
+TEST_CASE("A state says how everything is, in numbers that JSON knows") {
   world_server::Simulation simulation = make_simulation("boxes");
   std::uint32_t id = 0;
   REQUIRE(world_server::place_robot_by_hand(simulation, world_server::OperatorId{7}, id).empty());
@@ -132,7 +132,7 @@ TEST_CASE("a state says how everything is, in numbers that JSON knows") {
   CHECK(json::parse(inventory_message(state))["robots"][0]["name"] == "</script>\"");
 }
 
-TEST_CASE("an inventory says what everything is, and is new when somebody comes or leaves") {
+TEST_CASE("An inventory says what everything is, and is new when somebody comes or leaves") {
   world_server::Simulation simulation = make_simulation();
   std::uint32_t id = 0;
   REQUIRE(world_server::place_robot_by_hand(simulation, world_server::OperatorId{7}, id).empty());
@@ -154,7 +154,7 @@ TEST_CASE("an inventory says what everything is, and is new when somebody comes 
   CHECK_FALSE(same_inventory(one, two));
 }
 
-TEST_CASE("a state that is filled again allocates nothing") {
+TEST_CASE("A state that is filled again allocates nothing") {
   world_server::Simulation simulation = make_simulation("boxes");
   std::uint32_t id = 0;
   for (int i = 0; i < 3; ++i)
@@ -166,7 +166,7 @@ TEST_CASE("a state that is filled again allocates nothing") {
   CHECK(test::allocations() == before);
 }
 
-TEST_CASE("the scene's bytes: a plane, then the box of step-200, numbers of 4 bytes") {
+TEST_CASE("The scene's bytes: a plane, then the box of step-200, numbers of 4 bytes") {
   const std::string bytes = scene_bytes(make_simulation("step-200").world.description());
   std::uint32_t header[4];
   REQUIRE(bytes.size() == sizeof header + 4 * (7 + 10));
@@ -182,7 +182,7 @@ TEST_CASE("the scene's bytes: a plane, then the box of step-200, numbers of 4 by
   CHECK(box[6] == 1);            // not turned
 }
 
-TEST_CASE("a mesh in the scene's bytes has as many triangles as its file") {
+TEST_CASE("A mesh in the scene's bytes has as many triangles as its file") {
   const physics::WorldDescription world = make_simulation("rubble-mesh").world.description();
   REQUIRE(world.meshes.size() == 1);
   const auto& mesh = world.meshes.front();

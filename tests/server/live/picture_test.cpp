@@ -67,7 +67,7 @@ camera::Picture picture_in(const std::string& jpeg) {
 
 }  // namespace
 
-TEST_CASE("a picture's path names a camera, alone or of a robot") {
+TEST_CASE("A picture's path names a camera, alone or of a robot") {
   const auto path = [](std::string_view text) {
     const auto found = parse_picture_path(text);
     return found ? found->view + (found->stream ? " stream" : " picture") : std::string("none");
@@ -81,7 +81,7 @@ TEST_CASE("a picture's path names a camera, alone or of a robot") {
   for (const char* none : {"", "/", "/.jpg", "Camera.jpg", "/Camera", "/Camera.jpg/"}) CHECK(path(none) == "none");
 }
 
-TEST_CASE("one picture: a JPEG, its number, its robot time and its age") {
+TEST_CASE("One picture: a JPEG, its number, its robot time and its age") {
   ServedWorld world;
   CHECK(whole_answer(world, "/camera/Camera.jpg").starts_with("HTTP/1.1 404"));
   support::UsarsimClient program(world.usarsim_port());
@@ -103,7 +103,7 @@ TEST_CASE("one picture: a JPEG, its number, its robot time and its age") {
   CHECK(none.find("My Robot/BirdsEye") != std::string::npos);
 }
 
-TEST_CASE("a stream: each part a newer picture, until the robot leaves") {
+TEST_CASE("A stream: each part a newer picture, until the robot leaves") {
   ServedWorld world;
   support::UsarsimClient witness(world.usarsim_port());
   witness.send(placed_robot("R1"));
@@ -137,7 +137,7 @@ TEST_CASE("a stream: each part a newer picture, until the robot leaves") {
       Catch::Contains("closed"));
 }
 
-TEST_CASE("pictures need the token, and are not for other servers' pages") {
+TEST_CASE("Pictures need the token, and are not for other servers' pages") {
   ServedWorld world("0123456789abcdef");
   support::UsarsimClient program(world.usarsim_port());
   program.send(placed_robot("R1"));
@@ -152,7 +152,7 @@ TEST_CASE("pictures need the token, and are not for other servers' pages") {
   CHECK(other.answer().starts_with("HTTP/1.1 403"));
 }
 
-TEST_CASE("a browser that does not read misses pictures, and one that goes has none drawn") {
+TEST_CASE("A browser that does not read misses pictures, and one that goes has none drawn") {
   ViewLimits limits;
   limits.pictures = 2;
   ServedWorld world("", limits);
@@ -177,7 +177,7 @@ TEST_CASE("a browser that does not read misses pictures, and one that goes has n
 }
 
 TEST_CASE(
-    "who holds a robot turns and zooms its camera, and the state says where it looks and how old its picture is") {
+    "Who holds a robot turns and zooms its camera, and the state says where it looks and how old its picture is") {
   ServedWorld world;
   WebClient page(world.port());
   REQUIRE(page.open_websocket());
@@ -210,7 +210,7 @@ TEST_CASE(
   CHECK(page.message_of("refused")["request"] == "look");
 }
 
-TEST_CASE("without cameras the page says so, and there are no pictures") {
+TEST_CASE("Without cameras the page says so, and there are no pictures") {
   world_server::ServerOptions options;
   options.port = 0;
   world_server::WorldServer server(options);

@@ -67,7 +67,7 @@ struct PlaybackDesk {
 
 }  // namespace
 
-TEST_CASE("in a browser: a recorded run plays beside its simulations, and the time line leads through it") {
+TEST_CASE("In a browser: a recorded run plays beside its simulations, and the time line leads through it") {
   PlaybackDesk desk;
   Browser& browser = desk.browser;
   CHECK(browser.evaluate("document.querySelectorAll('.mark').length") == 2);  // of the report, for this run

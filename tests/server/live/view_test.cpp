@@ -83,7 +83,7 @@ std::uint64_t resident_bytes() {
 
 }  // namespace
 
-TEST_CASE("the page, its parts and three.js are served, with a policy that loads nothing from elsewhere") {
+TEST_CASE("The page, its parts and three.js are served, with a policy that loads nothing from elsewhere") {
   ServedWorld world;
   WebClient client(world.port());
   for (const auto& [path, type] : std::vector<std::pair<std::string, std::string>>{
@@ -105,7 +105,7 @@ TEST_CASE("the page, its parts and three.js are served, with a policy that loads
   }
 }
 
-TEST_CASE("neither another name for this machine nor another server's page is answered") {
+TEST_CASE("Neither another name for this machine nor another server's page is answered") {
   ServedWorld world;
   CHECK(status_of(answer_to(world, "GET / HTTP/1.1\r\nHost: evil.example\r\n\r\n")) == "403");
   CHECK(status_of(answer_to(world, "GET / HTTP/1.1\r\n\r\n")) == "403");
@@ -116,7 +116,7 @@ TEST_CASE("neither another name for this machine nor another server's page is an
   CHECK(WebClient(world.port()).open_websocket("/ws", "Origin: http://127.0.0.1\r\n"));
 }
 
-TEST_CASE("where a token is needed, nobody looks or drives without it") {
+TEST_CASE("Where a token is needed, nobody looks or drives without it") {
   ServedWorld world("0123456789abcdef");
   CHECK(world.url().ends_with("/#token=0123456789abcdef"));
   CHECK(status_of(answer_to(world, get("/"))) == "200");  // the page itself is no secret
@@ -128,7 +128,7 @@ TEST_CASE("where a token is needed, nobody looks or drives without it") {
   CHECK(WebClient(world.port()).open_websocket("/ws?token=0123456789abcdef"));
 }
 
-TEST_CASE("another address than loopback makes itself a token") {
+TEST_CASE("Another address than loopback makes itself a token") {
   world_server::ServerOptions options;
   options.port = 0;
   world_server::WorldServer server(options);
@@ -138,7 +138,7 @@ TEST_CASE("another address than loopback makes itself a token") {
   CHECK(View(server, anywhere).url().ends_with("#token=chosen"));
 }
 
-TEST_CASE("a token that was made is told, however little is logged") {
+TEST_CASE("A token that was made is told, however little is logged") {
   world_server::ServerOptions options;
   options.port = 0;
   world_server::WorldServer server(options);
@@ -165,7 +165,7 @@ TEST_CASE("a token that was made is told, however little is logged") {
   CHECK_FALSE(said_with({true, "127.0.0.1", 0, ""}));
 }
 
-TEST_CASE("a view with a page that waits for an answer ends before its world, which never ran") {
+TEST_CASE("A view with a page that waits for an answer ends before its world, which never ran") {
   world_server::ServerOptions options;
   options.port = 0;
   world_server::WorldServer server(options);
@@ -183,7 +183,7 @@ TEST_CASE("a view with a page that waits for an answer ends before its world, wh
   view.reset();
 }
 
-TEST_CASE("a port that is taken is named, and a program goes on without the view") {
+TEST_CASE("A port that is taken is named, and a program goes on without the view") {
   ServedWorld world;
   world_server::ServerOptions options;
   options.port = 0;
@@ -194,7 +194,7 @@ TEST_CASE("a port that is taken is named, and a program goes on without the view
   CHECK(open_view(server, ViewOptions{false, "127.0.0.1", 0, ""}, nullptr) == nullptr);
 }
 
-TEST_CASE("a page places a robot in an empty world, drives it, and it stops when the page goes silent") {
+TEST_CASE("A page places a robot in an empty world, drives it, and it stops when the page goes silent") {
   ServedWorld world;
   Page page(world);
   const int robot = page.place();
@@ -209,7 +209,7 @@ TEST_CASE("a page places a robot in an empty world, drives it, and it stops when
   page.state_with([](const json& state) { return state["robots"].empty(); });
 }
 
-TEST_CASE("of two pages one drives, and when its connection ends the other can") {
+TEST_CASE("Of two pages one drives, and when its connection ends the other can") {
   ServedWorld world;
   auto first = std::make_unique<Page>(world);
   Page second(world);
@@ -228,7 +228,7 @@ TEST_CASE("of two pages one drives, and when its connection ends the other can")
   CHECK(taken["holder"] == second.you);
 }
 
-TEST_CASE("a page takes a robot over from its program, and the program has it back") {
+TEST_CASE("A page takes a robot over from its program, and the program has it back") {
   ServedWorld world;
   support::UsarsimClient program(world.usarsim_port());
   program.send("INIT {ClassName USARBot.Kenaf} {Name R1} {Location 0,0,0}\r\nDRIVE {Left 3} {Right 3}\r\n");
@@ -246,7 +246,7 @@ TEST_CASE("a page takes a robot over from its program, and the program has it ba
   page.robot_with([](const json& state) { return state["track_mps"][0] > 0.1; });
 }
 
-TEST_CASE("pause, step, speed and reset") {
+TEST_CASE("A page pauses, steps, speeds up and resets the world") {
   ServedWorld world;
   Page page(world);
   page.send_text(R"({"type":"step","time":1})");
@@ -268,7 +268,7 @@ TEST_CASE("pause, step, speed and reset") {
   CHECK(page.message_of("pong")["t"] == 4711);
 }
 
-TEST_CASE("what is no request is refused, and the page is served on") {
+TEST_CASE("What is no request is refused, and the page is served on") {
   ServedWorld world;
   Page page(world);
   for (const char* wrong : {"", "{", "[[[[", R"({"type":"drive","robot":1,"left":"fast"})", "\xff\xfe"}) {
@@ -280,7 +280,7 @@ TEST_CASE("what is no request is refused, and the page is served on") {
   page.message_of("pong");
 }
 
-TEST_CASE("hostile bytes end their own connection and nothing else") {
+TEST_CASE("Hostile bytes end their own connection and nothing else") {
   ViewLimits limits;
   limits.quiet_s = 1;  // some of them look like a beginning
   ServedWorld world("", limits);
@@ -313,7 +313,7 @@ TEST_CASE("hostile bytes end their own connection and nothing else") {
   CHECK(status_of(answer_to(world, get("/"))) == "200");
 }
 
-TEST_CASE("a browser that says nothing is let go of, as one that opens too many connections is") {
+TEST_CASE("A browser that says nothing is let go of, as one that opens too many connections is") {
   ViewLimits limits;
   limits.quiet_s = 1;
   limits.connections = 4;
@@ -324,7 +324,7 @@ TEST_CASE("a browser that says nothing is let go of, as one that opens too many 
   CHECK(status_of(answer_to(world, get("/"))) == "200");
 }
 
-TEST_CASE("no more than the allowed number of pages looks on") {
+TEST_CASE("No more than the allowed number of pages looks on") {
   ViewLimits limits;
   limits.viewers = 2;
   ServedWorld world("", limits);
@@ -336,7 +336,7 @@ TEST_CASE("no more than the allowed number of pages looks on") {
   CHECK_FALSE(third.open_websocket());
 }
 
-TEST_CASE("fifty pages that read nothing cost bounded memory, and others see every state") {
+TEST_CASE("Fifty pages that read nothing cost bounded memory, and others see every state") {
   ViewLimits limits;
   limits.period_s = 0.001;
   ServedWorld world("", limits);
@@ -361,7 +361,7 @@ TEST_CASE("fifty pages that read nothing cost bounded memory, and others see eve
   page.message_of("pong");
 }
 
-TEST_CASE("a page that asks without end and reads no answer is let go of") {
+TEST_CASE("A page that asks without end and reads no answer is let go of") {
   ViewLimits limits;
   limits.requests_per_s = 1000000;
   ServedWorld world("", limits);

@@ -20,7 +20,7 @@ int steps_in(Clock& clock, double& now_s, double wall_s) {
 
 }  // namespace
 
-TEST_CASE("robot time passes as many times as fast as it is asked to") {
+TEST_CASE("Robot time passes as many times as fast as it is asked to") {
   double now_s = 1000;
   Clock clock(0.001, 1);
   clock.pass(now_s);
@@ -31,13 +31,13 @@ TEST_CASE("robot time passes as many times as fast as it is asked to") {
   CHECK(steps_in(clock, now_s, 2) == Approx(8000).margin(1));
 }
 
-TEST_CASE("the first call of the clock owes no time, however late it comes") {
+TEST_CASE("The first call of the clock owes no time, however late it comes") {
   Clock clock(0.001, 1);
   CHECK(clock.pass(123456) == 0);
   CHECK_FALSE(clock.step_due());
 }
 
-TEST_CASE("a clock without limit is always due") {
+TEST_CASE("A clock without limit is always due") {
   Clock clock(0.001, 0);
   clock.pass(5);
   for (int i = 0; i < 1000; ++i) {
@@ -46,7 +46,7 @@ TEST_CASE("a clock without limit is always due") {
   }
 }
 
-TEST_CASE("at most a tenth of a second is caught up, the rest is dropped and said") {
+TEST_CASE("At most a tenth of a second is caught up, the rest is dropped and said") {
   Clock clock(0.001, 2);
   clock.pass(0);
   // 1 s of wall-clock time is 2 s of robot time; 0.1 s x 2 may be caught up.
@@ -56,7 +56,7 @@ TEST_CASE("at most a tenth of a second is caught up, the rest is dropped and sai
   CHECK(steps == Approx(200).margin(1));
 }
 
-TEST_CASE("a paused clock is never due and owes nothing afterwards") {
+TEST_CASE("A paused clock is never due and owes nothing afterwards") {
   Clock clock(0.001, 1);
   clock.pass(0);
   clock.set_paused(true);
@@ -69,7 +69,7 @@ TEST_CASE("a paused clock is never due and owes nothing afterwards") {
   CHECK(clock.step_due());
 }
 
-TEST_CASE("the clock says when the next step falls due") {
+TEST_CASE("The clock says when the next step falls due") {
   Clock clock(0.002, 0.5);
   clock.pass(7);
   // 2 ms of robot time take 4 ms at half speed; 1 ms of them has passed.
@@ -77,7 +77,7 @@ TEST_CASE("the clock says when the next step falls due") {
   CHECK(clock.next_step_wall_s() == Approx(7.004));
 }
 
-TEST_CASE("a very slow clock still gets to its next step") {
+TEST_CASE("A very slow clock still gets to its next step") {
   Clock clock(0.001, 0.001);
   clock.pass(0);
   clock.pass(0.5);

@@ -31,7 +31,7 @@ void wake_in_a_pause(Conversation& talk, int times) {
 
 }  // namespace
 
-TEST_CASE("a client's silence on a lossy link: being woken in a pause changes no bit of the run") {
+TEST_CASE("A client's silence on a lossy link: being woken in a pause changes no bit of the run") {
   const LossyLink link;
   const auto path = [&](int times) {
     Conversation talk(link.options);
@@ -50,7 +50,7 @@ TEST_CASE("a client's silence on a lossy link: being woken in a pause changes no
   CHECK(once.X_WB.p.head<2>().norm() > 0.05);  // not all were lost
 }
 
-TEST_CASE("an operator's silence on a lossy link: being woken in a pause changes no bit of the run") {
+TEST_CASE("An operator's silence on a lossy link: being woken in a pause changes no bit of the run") {
   const LossyLink link;
   const auto path = [&](int times) {
     Conversation talk(link.options);
@@ -76,7 +76,7 @@ TEST_CASE("an operator's silence on a lossy link: being woken in a pause changes
   CHECK(once.X_WB.p.head<2>().norm() > 0.05);
 }
 
-TEST_CASE("a client's silence is told to a lossy link until it arrives") {
+TEST_CASE("A client's silence is told to a lossy link until it arrives") {
   const LossyLink link;
   for (int i = 0; i < 5; ++i) {
     ServerOptions options = link.options;

@@ -17,7 +17,7 @@ constexpr const char* kOk = "RES {Time 0.0000} {Type Control} {Name ";
 
 }  // namespace
 
-TEST_CASE("a paused world stands still until it is resumed") {
+TEST_CASE("A paused world stands still until it is resumed") {
   Conversation talk = with_robot();
   CHECK(talk.answer_to("CONTROL {Type Pause}\r\n") == std::string(kOk) + "Pause} {Status OK}");
   CHECK_FALSE(talk.run(1));
@@ -26,7 +26,7 @@ TEST_CASE("a paused world stands still until it is resumed") {
   CHECK(talk.run(1));
 }
 
-TEST_CASE("clients with a Session are told of a pause by an STA that repeats their newest frame") {
+TEST_CASE("Clients with a Session are told of a pause by an STA that repeats their newest frame") {
   Conversation talk = with_robot();
   talk.send("CONTROL {Type Session} {Period 0.01}\r\n");
   REQUIRE(talk.run(0.025));
@@ -39,7 +39,7 @@ TEST_CASE("clients with a Session are told of a pause by an STA that repeats the
   CHECK(talk.last("STA").find("{Paused False}") != std::string::npos);
 }
 
-TEST_CASE("a reset forgets what earlier commands a later one would build on") {
+TEST_CASE("A reset forgets what earlier commands a later one would build on") {
   Conversation talk = with_robot();
   talk.send("DRIVE {Speed 50} {FrontSteer 0} {Normalized True}\r\n");
   talk.send("DRIVE {LinearVelocity 0.4} {RotationalVelocity 0}\r\nCONTROL {Type Reset}\r\n");
@@ -52,7 +52,7 @@ TEST_CASE("a reset forgets what earlier commands a later one would build on") {
         Approx(2 * talk.session->robot->description->drive.sprocket_radius_m));
 }
 
-TEST_CASE("a step runs exactly as long as it is asked to, pauses, and is answered when it is done") {
+TEST_CASE("A step runs exactly as long as it is asked to, pauses, and is answered when it is done") {
   Conversation talk = with_robot();
   CHECK(talk.answer_to("CONTROL {Type Step} {Time 0.5}\r\n").empty());
   CHECK_FALSE(talk.run(10));
@@ -64,7 +64,7 @@ TEST_CASE("a step runs exactly as long as it is asked to, pauses, and is answere
   CHECK(talk.lines("RES").size() == 2);
 }
 
-TEST_CASE("a step that makes no sense is refused") {
+TEST_CASE("A step that makes no sense is refused") {
   Conversation talk = with_robot();
   for (const char* step :
        {"", "{Time 0}", "{Time -1}", "{Time 1e9}", "{Steps 0}", "{Steps 0.5}", "{Steps 1e18}", "{Time x}"}) {
@@ -75,7 +75,7 @@ TEST_CASE("a step that makes no sense is refused") {
   CHECK_FALSE(talk.simulation.clock.paused());
 }
 
-TEST_CASE("of steps that wait for each other no more are taken than 1000") {
+TEST_CASE("Of steps that wait for each other no more are taken than 1000") {
   Conversation talk = with_robot();
   for (int i = 0; i < 1000; ++i) CHECK(talk.answer_to("CONTROL {Type Step} {Steps 1}\r\n").empty());
   CHECK(talk.answer_to("CONTROL {Type Step} {Steps 1}\r\n").starts_with(std::string(kOk) + "Step} {Status Failed}"));
@@ -84,7 +84,7 @@ TEST_CASE("of steps that wait for each other no more are taken than 1000") {
   CHECK(talk.answer_to("CONTROL {Type Step} {Steps 1}\r\n").empty());
 }
 
-TEST_CASE("the speed is a factor of wall-clock time") {
+TEST_CASE("The speed is a factor of wall-clock time") {
   Conversation talk = with_robot(1);
   const auto steps_in_a_second = [&] {
     const std::uint64_t before = talk.simulation.world.step_count();
@@ -105,7 +105,7 @@ TEST_CASE("the speed is a factor of wall-clock time") {
   CHECK(talk.answer_to("CONTROL {Type Speed}\r\n").find("{Status Failed}") != std::string::npos);
 }
 
-TEST_CASE("no time passes, and nothing is owed, while no robot is there") {
+TEST_CASE("No time passes, and nothing is owed, while no robot is there") {
   ServerOptions options = fast();
   options.speed = 1;
   Conversation talk(options);
@@ -117,7 +117,7 @@ TEST_CASE("no time passes, and nothing is owed, while no robot is there") {
   CHECK(talk.simulation.advance(talk.wall_s).wake_s == Approx(talk.wall_s + 0.001));
 }
 
-TEST_CASE("a reset puts the robot back to its start, at rest, at time 0, and the frames go on") {
+TEST_CASE("A reset puts the robot back to its start, at rest, at time 0, and the frames go on") {
   Conversation talk = with_robot();
   talk.send("CONTROL {Type Session} {Period 0.01}\r\n");
   const Eigen::Vector3d start = talk.truth().X_WB.p;
@@ -136,7 +136,7 @@ TEST_CASE("a reset puts the robot back to its start, at rest, at time 0, and the
   CHECK(std::abs(talk.truth().X_WB.p.x() - start.x()) < 0.005);  // it was told to stand
 }
 
-TEST_CASE("after a reset the same commands give the same path, to the bit") {
+TEST_CASE("After a reset the same commands give the same path, to the bit") {
   Conversation talk = with_robot();
   const auto drive = [&] {
     talk.lines();
@@ -149,7 +149,7 @@ TEST_CASE("after a reset the same commands give the same path, to the bit") {
   CHECK(drive() == first);
 }
 
-TEST_CASE("a ping is answered at once, paused or not, and before INIT") {
+TEST_CASE("A ping is answered at once, paused or not, and before INIT") {
   Conversation talk;
   CHECK(talk.answer_to("PING {Id 7}\r\n") == "PONG {Id 7} {Time 0.0000}");
   talk.send("CONTROL {Type Pause}\r\n");
@@ -161,7 +161,7 @@ TEST_CASE("UDK's dialect answers extensions all the same") {
   CHECK(talk.answer_to("CONTROL {Type Pause}\r\n") == "RES {Time 0.0000} {Type Control} {Name Pause} {Status OK}");
 }
 
-TEST_CASE("a CONTROL that nobody knows is refused in words") {
+TEST_CASE("A CONTROL that nobody knows is refused in words") {
   Conversation talk = with_robot();
   CHECK(talk.answer_to("CONTROL {Type Explode}\r\n") ==
         "RES {Time 0.0000} {Type Control} {Name Explode} {Status Failed} {Reason this server has no such CONTROL}");

@@ -27,14 +27,14 @@ TEST_CASE("DRIVE gives the spin of each side's wheel in rad/s") {
   CHECK(kenaf.right_mps() == Approx(-1 * kenaf.radius_m()));
 }
 
-TEST_CASE("a side that DRIVE does not name keeps its speed") {
+TEST_CASE("A side that DRIVE does not name keeps its speed") {
   Kenaf kenaf;  // RCRP; THAF sends only Left
   kenaf.send("DRIVE {Left 2} {Right 3}\r\nDrive {RIGHT 1}\r\n");
   CHECK(kenaf.left_mps() == Approx(2 * kenaf.radius_m()));
   CHECK(kenaf.right_mps() == Approx(1 * kenaf.radius_m()));
 }
 
-TEST_CASE("normalized speeds are per cent of the fastest, for this and the following commands") {
+TEST_CASE("Normalized speeds are per cent of the fastest, for this and the following commands") {
   Kenaf kenaf;
   // .NET clients write True, which the UDK server took for false.
   kenaf.send("DRIVE {Left 50} {Right -100} {Normalized True}\r\n");
@@ -46,7 +46,7 @@ TEST_CASE("normalized speeds are per cent of the fastest, for this and the follo
   CHECK(kenaf.left_mps() == Approx(kenaf.radius_m()));
 }
 
-TEST_CASE("speeds are clamped to what the drives can do, and a number that is none changes nothing") {
+TEST_CASE("Speeds are clamped to what the drives can do, and a number that is none changes nothing") {
   Kenaf kenaf;
   kenaf.send("DRIVE {Left 1e300} {Right -1e300}\r\n");
   CHECK(kenaf.left_mps() == kenaf.fastest_mps());
@@ -55,14 +55,14 @@ TEST_CASE("speeds are clamped to what the drives can do, and a number that is no
   CHECK(kenaf.left_mps() == kenaf.fastest_mps());
 }
 
-TEST_CASE("a decimal comma is understood") {
+TEST_CASE("A decimal comma is understood") {
   Kenaf kenaf;  // .NET and Portuguese clients
   kenaf.send("DRIVE {Left 1,5} {Right 0,0000}\r\n");
   CHECK(kenaf.left_mps() == Approx(1.5 * kenaf.radius_m()));
   CHECK(kenaf.right_mps() == 0);
 }
 
-TEST_CASE("a turn to the left lowers USARSim's yaw") {
+TEST_CASE("A turn to the left lowers USARSim's yaw") {
   Kenaf kenaf;
   kenaf.send("DRIVE {Left -2} {Right 2}\r\n");
   REQUIRE(kenaf.run(2));
@@ -72,7 +72,7 @@ TEST_CASE("a turn to the left lowers USARSim's yaw") {
   CHECK(number_in(truth, "Location", 2) < 0);  // it stands on the ground, so its centre is above it
 }
 
-TEST_CASE("forward is x for a robot that was not turned") {
+TEST_CASE("Forward is x for a robot that was not turned") {
   Kenaf kenaf("USARBot.P2AT");
   kenaf.send("DRIVE {Left 2} {Right 2}\r\n");
   REQUIRE(kenaf.run(2));
@@ -80,7 +80,7 @@ TEST_CASE("forward is x for a robot that was not turned") {
   CHECK(std::abs(kenaf.truth().X_WB.p.y()) < 0.02);
 }
 
-TEST_CASE("an Ackermann command drives the curve of its steering angle") {
+TEST_CASE("An Ackermann command drives the curve of its steering angle") {
   Kenaf kenaf("USARBot.P2DX");
   const auto& track = kenaf.description().track;
   const double wheel_base_m = track.length_m - 2 * track.end_radius_m;
@@ -94,7 +94,7 @@ TEST_CASE("an Ackermann command drives the curve of its steering angle") {
   CHECK(kenaf.right_mps() == Approx(kenaf.radius_m()));
 }
 
-TEST_CASE("a curve at full speed is driven slower, not wider") {
+TEST_CASE("A curve at full speed is driven slower, not wider") {
   Kenaf kenaf("USARBot.P2DX");
   const auto& track = kenaf.description().track;
   const double wheel_base_m = track.length_m - 2 * track.end_radius_m;
@@ -116,7 +116,7 @@ TEST_CASE("a curve at full speed is driven slower, not wider") {
   CHECK(std::abs(kenaf.right_mps()) <= kenaf.fastest_mps());
 }
 
-TEST_CASE("a body velocity is given to both tracks") {
+TEST_CASE("A body velocity is given to both tracks") {
   Kenaf kenaf;
   // 0.1 m/s ahead and 0.2 rad/s clockwise: left 0.1 + 0.2 gauge / 2.
   kenaf.send("DRIVE {AltitudeVelocity 0} {LinearVelocity 0.1} {LateralVelocity 0} {RotationalVelocity 0.2}\r\n");
@@ -149,7 +149,7 @@ TEST_CASE("MULTIDRIVE of one flipper leaves the others, and STA tells angles wit
   CHECK(kenaf.truth().flipper_rad[robot::kFrontLeft] == Approx(0.4).margin(0.05));
 }
 
-TEST_CASE("a flipper angle beyond its range is the end of the range") {
+TEST_CASE("A flipper angle beyond its range is the end of the range") {
   Kenaf kenaf;
   kenaf.send("MULTIDRIVE {RRFlipper 99}\r\n");
   CHECK(kenaf.command().flipper[robot::kRearRight].value == kenaf.description().flipper.front().max_angle_rad);
@@ -173,7 +173,7 @@ TEST_CASE("DRIVE orders joints by number, several in one line") {
   CHECK(kenaf.command().flipper[robot::kRearRight].value == most_radps);
 }
 
-TEST_CASE("relative orders start from what the joint does now, what is missing is 0") {
+TEST_CASE("Relative orders start from what the joint does now, what is missing is 0") {
   Kenaf kenaf;
   const double start_rad = kenaf.truth().flipper_rad[robot::kRearLeft];
   kenaf.send("DRIVE {Name RLFlipper} {Order 10} {Value 0.25}\r\n");
@@ -189,7 +189,7 @@ TEST_CASE("relative orders start from what the joint does now, what is missing i
   CHECK(kenaf.command().flipper[robot::kRearLeft].value == 0);
 }
 
-TEST_CASE("joints and orders that do not exist change nothing") {
+TEST_CASE("Joints and orders that do not exist change nothing") {
   Kenaf kenaf;
   kenaf.send("DRIVE {Name Tail} {Order 0} {Value 1}\r\nDRIVE {Name FLFlipper} {Order 77} {Value 1}\r\n");
   for (const auto& joint : kenaf.command().flipper)
@@ -199,7 +199,7 @@ TEST_CASE("joints and orders that do not exist change nothing") {
   REQUIRE(wheels.run(0.1));
 }
 
-TEST_CASE("the light is switched and told") {
+TEST_CASE("The light is switched and told") {
   Kenaf kenaf;
   kenaf.send("DRIVE {Light true}\r\n");
   REQUIRE(kenaf.run(0.001));
@@ -221,7 +221,7 @@ TEST_CASE("Flip puts a fallen robot back upright, looking where it looked, and l
   CHECK(kenaf.truth().X_WB.p == standing.p);
 }
 
-TEST_CASE("commands without a robot are ignored") {
+TEST_CASE("Commands without a robot are ignored") {
   Conversation talk;
   CHECK(talk.answer_to("DRIVE {Left 1} {Right 1}\r\nMULTIDRIVE {FRFlipper 1}\r\nMISPKG {Name C} {Link 1}\r\n").empty());
 }

@@ -57,7 +57,7 @@ std::vector<std::string> starting(std::vector<std::string> lines, std::string_vi
 
 }  // namespace
 
-TEST_CASE("a robot that leaves the world: one line in the log, one RES, and outputs that go on in numbers") {
+TEST_CASE("A robot that leaves the world: one line in the log, one RES, and outputs that go on in numbers") {
   const bool udk = GENERATE(false, true);
   const Island island;
   Conversation client(island.options(udk));
@@ -81,7 +81,7 @@ TEST_CASE("a robot that leaves the world: one line in the log, one RES, and outp
   for (const std::string& line : after) CHECK(line.find("nan") == std::string::npos);
 }
 
-TEST_CASE("a client with a Session reads the fault in every STA, until the robot is moved back and begins anew") {
+TEST_CASE("A client with a Session reads the fault in every STA, until the robot is moved back and begins anew") {
   const Island island;
   Conversation client(island.options());
   client.send("CONTROL {Type Session} {Period 0.1}\r\n" + kInitBeside);
@@ -105,7 +105,7 @@ TEST_CASE("a client with a Session reads the fault in every STA, until the robot
   CHECK(island.errors_logged() == 2);
 }
 
-TEST_CASE("a robot whose simulation went wrong keeps no other from driving") {
+TEST_CASE("A robot whose simulation went wrong keeps no other from driving") {
   const Island island;
   Conversation client(island.options());
   client.send(kInitBeside);

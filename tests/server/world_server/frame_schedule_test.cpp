@@ -6,7 +6,7 @@ namespace kenaf::world_server {
 
 using Answer = FrameSchedule::Answer;
 
-TEST_CASE("frames are numbered from 1 and one period apart") {
+TEST_CASE("Frames are numbered from 1 and one period apart") {
   FrameSchedule schedule;
   schedule.start(100, 10, true);
   CHECK(schedule.due(100));
@@ -18,7 +18,7 @@ TEST_CASE("frames are numbered from 1 and one period apart") {
   CHECK(schedule.frame() == 2);
 }
 
-TEST_CASE("an answer to the newest frame is in time, one to an older frame late, one to a coming frame is none") {
+TEST_CASE("An answer to the newest frame is in time, one to an older frame late, one to a coming frame is none") {
   FrameSchedule schedule;
   schedule.start(0, 10, true);
   schedule.begin_frame(0);
@@ -32,7 +32,7 @@ TEST_CASE("an answer to the newest frame is in time, one to an older frame late,
   CHECK(schedule.late() == 2);
 }
 
-TEST_CASE("an answer is counted as late once, by the DRIVE that ends it") {
+TEST_CASE("An answer is counted as late once, by the DRIVE that ends it") {
   FrameSchedule schedule;
   schedule.start(0, 10, true);
   schedule.begin_frame(0);
@@ -42,7 +42,7 @@ TEST_CASE("an answer is counted as late once, by the DRIVE that ends it") {
   CHECK(schedule.late() == 1);
 }
 
-TEST_CASE("lock step holds the beginning of the next frame until a DRIVE ends the answer") {
+TEST_CASE("Lock step holds the beginning of the next frame until a DRIVE ends the answer") {
   FrameSchedule schedule;
   schedule.set_lockstep(true);
   schedule.start(0, 10, true);
@@ -58,7 +58,7 @@ TEST_CASE("lock step holds the beginning of the next frame until a DRIVE ends th
   CHECK(schedule.due(10));
 }
 
-TEST_CASE("lock step lets go after a time, until the newest frame is answered") {
+TEST_CASE("Lock step lets go after a time, until the newest frame is answered") {
   FrameSchedule schedule;
   schedule.set_lockstep(true);
   schedule.start(0, 10, true);
@@ -77,7 +77,7 @@ TEST_CASE("lock step lets go after a time, until the newest frame is answered") 
   CHECK(schedule.holds(40));
 }
 
-TEST_CASE("plain outputs never hold the world") {
+TEST_CASE("Plain outputs never hold the world") {
   FrameSchedule schedule;
   schedule.set_lockstep(true);
   schedule.start(0, 200, false);
@@ -85,7 +85,7 @@ TEST_CASE("plain outputs never hold the world") {
   CHECK_FALSE(schedule.holds(200));
 }
 
-TEST_CASE("after the world was put back the numbers go on and the next frame comes at once") {
+TEST_CASE("After the world was put back the numbers go on and the next frame comes at once") {
   FrameSchedule schedule;
   schedule.set_lockstep(true);
   schedule.start(500, 10, true);

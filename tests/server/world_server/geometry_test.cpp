@@ -12,7 +12,7 @@ Conversation with_robot(const std::string& class_name, bool udk_dialect = false)
 
 }  // namespace
 
-TEST_CASE("a P2AT is told as the UT2004 server told it") {
+TEST_CASE("A P2AT is told as the UT2004 server told it") {
   Conversation talk = with_robot("USARBot.P2AT");
   const std::string geometry = talk.answer_to("GETGEO {Type Robot}\r\n");
   CHECK(geometry.starts_with("GEO {Type GroundVehicle} {Name P2AT} {Dimensions "));
@@ -34,7 +34,7 @@ TEST_CASE("UDK names the robot first in CONF, and cuts digits") {
                          "{MaxSpeed 5.3846} "));
 }
 
-TEST_CASE("sensors are told by type, all or one by name, in each dialect's grouping") {
+TEST_CASE("Sensors are told by type, all or one by name, in each dialect's grouping") {
   Conversation talk = with_robot("USARBot.Kenaf");
   CHECK(talk.answer_to("GETGEO {Type Sonar} {Name F1}\r\n") ==
         "GEO {Type Sonar} {Name F1 Location 0.2200,0.0000,-0.0500 Orientation 0.0000,0.0000,0.0000 Mount HARD}");
@@ -45,7 +45,7 @@ TEST_CASE("sensors are told by type, all or one by name, in each dialect's group
         "GEO {Type Sonar} {Name F1} {Location 0.2200,0.0000,-0.0500} {Orientation 0.0000,0.0000,0.0000} {Mount Kenaf}");
 }
 
-TEST_CASE("the encoder's resolution is the angle of one tick") {
+TEST_CASE("The encoder's resolution is the angle of one tick") {
   Conversation talk = with_robot("USARBot.P2AT");
   talk.send("CONTROL {Type Session} {Precision 12}\r\n");
   const std::string configuration = talk.answer_to("GETCONF {Type Encoder}\r\n");
@@ -53,14 +53,14 @@ TEST_CASE("the encoder's resolution is the angle of one tick") {
   CHECK(number_in(configuration, "Resolution") == Approx(1 / 57.2957795).epsilon(1e-10));
 }
 
-TEST_CASE("a mission package tells its links") {
+TEST_CASE("A mission package tells its links") {
   Conversation talk = with_robot("USARBot.Kenaf");
   CHECK(talk.answer_to("GETCONF {Type MisPkg} {Name CameraPanTilt}\r\n")
             .starts_with("CONF {Type MisPkg} {Name CameraPanTilt} {Link 1} {JointType Revolute} {MaxSpeed "));
   CHECK(talk.answer_to("GETGEO {Type MisPkg}\r\n").ends_with("{Link 1} {ParentLink -1} {Link 2} {ParentLink 1}"));
 }
 
-TEST_CASE("a camera's mount is told, and what turns it") {
+TEST_CASE("A camera's mount is told, and what turns it") {
   Conversation talk = with_robot("USARBot.Kenaf");
   CHECK(talk.answer_to("GETGEO {Type Camera}\r\n") ==
         "GEO {Type Camera} {Name Camera Location 0.2000,0.0000,-0.0900 Orientation 0.0000,0.0000,0.0000 Mount "
@@ -71,7 +71,7 @@ TEST_CASE("a camera's mount is told, and what turns it") {
         "CameraPanTilt}");
 }
 
-TEST_CASE("a flipper's pivot is told with y to the right") {
+TEST_CASE("A flipper's pivot is told with y to the right") {
   Conversation talk = with_robot("USARBot.Kenaf");
   const auto p = talk.session->robot->description->flipper.front().p_BPivot_m;
   const std::string right = talk.answer_to("GETGEO {Type Joint} {Name RRFlipper}\r\n");
@@ -80,7 +80,7 @@ TEST_CASE("a flipper's pivot is told with y to the right") {
   CHECK(number_in(right, "Location", 2) == Approx(-p.z()));
 }
 
-TEST_CASE("what the robot does not have is echoed, so that nobody waits for ever") {
+TEST_CASE("What the robot does not have is echoed, so that nobody waits for ever") {
   for (const bool udk : {false, true}) {
     Conversation talk = with_robot("USARBot.P2DX", udk);
     CHECK(talk.answer_to("GETGEO {Type Wings}\r\n") == "GEO {Type Wings}");

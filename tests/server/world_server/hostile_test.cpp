@@ -30,7 +30,7 @@ struct WholeLog {
 
 }  // namespace
 
-TEST_CASE("lines that are no messages are survived, and a client of nothing but them is let go") {
+TEST_CASE("Lines that are no messages are survived, and a client of nothing but them is let go") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.P2DX}\r\n");
   for (const char* line : {"{", "}", "{}{}{}", "DRIVE {Left 1", "DRIVE }Left 1{", "GET / HTTP/1.1", "\x01\xff\xfe",
@@ -45,7 +45,7 @@ TEST_CASE("lines that are no messages are survived, and a client of nothing but 
   CHECK(talk.session->close);
 }
 
-TEST_CASE("a thousand commands before INIT are one line in the log") {
+TEST_CASE("A thousand commands before INIT are one line in the log") {
   const auto lines_logged = [](bool udk, std::string_view line) {
     Conversation talk(fast(udk));
     const WholeLog log;
@@ -62,7 +62,7 @@ TEST_CASE("a thousand commands before INIT are one line in the log") {
   CHECK(lines_logged(false, set) == 0);  // answered, each
 }
 
-TEST_CASE("a line without end is dropped, bounded in memory, and what follows it is understood") {
+TEST_CASE("A line without end is dropped, bounded in memory, and what follows it is understood") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.P2DX}\r\n");
   const std::string much(100000, 'x');
@@ -72,7 +72,7 @@ TEST_CASE("a line without end is dropped, bounded in memory, and what follows it
   CHECK(talk.session->bad_lines == 1);
 }
 
-TEST_CASE("commands for one frame are bounded") {
+TEST_CASE("Commands for one frame are bounded") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.P2DX}\r\nCONTROL {Type Session} {Period 1}\r\n");
   REQUIRE(talk.run(0.001));
@@ -80,7 +80,7 @@ TEST_CASE("commands for one frame are bounded") {
   CHECK(talk.session->deferred.size() <= 65536);
 }
 
-TEST_CASE("one packet of many requests is answered until too much waits, then its client is let go") {
+TEST_CASE("One packet of many requests is answered until too much waits, then its client is let go") {
   Conversation talk;
   for (int i = 0; i < 1000; ++i) {
     talk.send("CONTROL {Type Create} {ClassName Box} {Name Box" + std::to_string(i) + "} {Location 0,0,0}\r\n");
@@ -99,14 +99,14 @@ TEST_CASE("one packet of many requests is answered until too much waits, then it
   CHECK(talk.session->out.size() < 9 << 20);
 }
 
-TEST_CASE("a name from outside cannot break an answer's grammar, nor fill it") {
+TEST_CASE("A name from outside cannot break an answer's grammar, nor fill it") {
   Conversation talk;
   const std::string answer = talk.answer_to("SET {Type \x01\x02} {Name " + std::string(5000, 'n') + "}\r\n");
   CHECK(answer.size() < 300);
   CHECK(answer.find('\x01') == std::string::npos);
 }
 
-TEST_CASE("random verbs with random values neither stop the world nor make it anything but finite") {
+TEST_CASE("Random verbs with random values neither stop the world nor make it anything but finite") {
   std::mt19937 random(5);
   const auto pick = [&](std::initializer_list<const char*> words) { return words.begin()[random() % words.size()]; };
   Conversation talk;

@@ -16,12 +16,12 @@ Eigen::Vector3d placed_at(const std::string& init) {
 
 }  // namespace
 
-TEST_CASE("a client is greeted with the game and the level") {
+TEST_CASE("A client is greeted with the game and the level") {
   Conversation talk;
   CHECK(talk.lines() == std::vector<std::string>{"NFO {Gametype BotDeathMatch} {Level flat} {TimeLimit 20}"});
 }
 
-TEST_CASE("x stays, y changes its sign, and a height above the ground is kept") {
+TEST_CASE("The x coordinate stays, y changes its sign, and a height above the ground is kept") {
   // USARSim: y right, z down. 2 m to the left and 3 m up are y = -2, z = -3.
   const Eigen::Vector3d p = placed_at("INIT {ClassName USARBot.Kenaf} {Name R1} {Location 1,-2,-3}\r\n");
   CHECK(p.x() == 1);
@@ -29,7 +29,7 @@ TEST_CASE("x stays, y changes its sign, and a height above the ground is kept") 
   CHECK(p.z() == 3);
 }
 
-TEST_CASE("a place below the ground is lifted onto it") {
+TEST_CASE("A place below the ground is lifted onto it") {
   // Old clients send the z of their own levels, such as 1.8, which is below flat ground.
   const Eigen::Vector3d p = placed_at("INIT {ClassName USARBot.Kenaf} {Location 4.5,1.9,1.8}\r\n");
   CHECK(p.x() == 4.5);
@@ -38,7 +38,7 @@ TEST_CASE("a place below the ground is lifted onto it") {
   CHECK(p.z() < 0.2);
 }
 
-TEST_CASE("vectors are read as clients write them") {
+TEST_CASE("Vectors are read as clients write them") {
   for (const char* location : {"1.0 2.0 3.0", "1.0, 2.0, 3.0", "1,2,3", " 1.0  2.0  3.0 ", "1.,2.,3.", "1,0 2,0 3,0"}) {
     INFO(location);
     const auto p = placed_at("INIT {ClassName USARBot.Kenaf} {Location " + std::string(location) + "}\r\n");
@@ -50,7 +50,7 @@ TEST_CASE("vectors are read as clients write them") {
   CHECK(p.y() == -0.4);
 }
 
-TEST_CASE("class names are read without case, and keys too") {
+TEST_CASE("Class names are read without case, and keys too") {
   for (const char* init : {"INIT {ClassName USARBot.kenaf}\r\n", "init {Classname usarbot.KENAF} {name x}\r\n",
                            "Init{ClassName   USARBot.Kenaf}{  Name   R }   \n", "INIT {ClassName Kenaf}\n\r"}) {
     INFO(init);
@@ -61,7 +61,7 @@ TEST_CASE("class names are read without case, and keys too") {
   }
 }
 
-TEST_CASE("the order of INIT's groups does not matter, and unknown ones are skipped") {
+TEST_CASE("The order of INIT's groups does not matter, and unknown ones are skipped") {
   Conversation talk;  // AP2DX's order, RCRP's battery
   talk.send("INIT {ClassName USARBot.P2DX} {Location 1,0,0} {Rotation 0,0,1} {Name R1} {Battery 3600}\r\n");
   REQUIRE(talk.session->robot);
@@ -69,7 +69,7 @@ TEST_CASE("the order of INIT's groups does not matter, and unknown ones are skip
   CHECK(physics::roll_pitch_yaw(talk.truth().X_WB.q).z() == Approx(-1));  // clockwise is negative in z-up
 }
 
-TEST_CASE("nose up is a positive pitch of USARSim's") {
+TEST_CASE("Nose up is a positive pitch of USARSim's") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.Kenaf} {Location 0,0,-2} {Rotation 0,0.3,0}\r\n");
   const Eigen::Vector3d ahead = talk.truth().X_WB.q * Eigen::Vector3d::UnitX();
@@ -87,7 +87,7 @@ TEST_CASE("Start names a start pose without case, and wins over Location") {
   CHECK(talk.truth().X_WB.p.y() == -2);  // share/worlds/flat.sdf
 }
 
-TEST_CASE("without a place the robot gets the first start pose that is free") {
+TEST_CASE("Without a place the robot gets the first start pose that is free") {
   Conversation talk;
   Session& other = talk.simulation.connect("other");
   talk.send("INIT {ClassName USARBot.Kenaf}\r\n");
@@ -98,7 +98,7 @@ TEST_CASE("without a place the robot gets the first start pose that is free") {
   CHECK(other.robot->name != talk.session->robot->name);
 }
 
-TEST_CASE("a class that nobody described, or a start pose that is not there, gets no robot and no answer") {
+TEST_CASE("A class that nobody described, or a start pose that is not there, gets no robot and no answer") {
   for (const char* init :
        {"INIT {ClassName USARBot.Hercules} {Name R1}\r\n", "INIT {Name R1}\r\n", "INIT\r\n",
         "INIT {ClassName ../../etc/passwd}\r\n", "INIT {ClassName USARBot.Kenaf} {Start Moon}\r\n"}) {
@@ -110,14 +110,14 @@ TEST_CASE("a class that nobody described, or a start pose that is not there, get
   }
 }
 
-TEST_CASE("a second INIT on one connection is ignored") {
+TEST_CASE("A second INIT on one connection is ignored") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.Kenaf} {Name A}\r\nINIT {ClassName USARBot.P2DX} {Name B}\r\n");
   CHECK(talk.session->robot->name == "A");
   CHECK(talk.simulation.robot_count() == 1);
 }
 
-TEST_CASE("commands back to back, without waiting for the robot, are obeyed in their order") {
+TEST_CASE("Commands back to back, without waiting for the robot, are obeyed in their order") {
   Conversation talk;  // THAF, ROSU
   talk.send("GETSTARTPOSES\r\nINIT {ClassName USARBot.P2DX} {Name R} {Location 0,0,0}\r\nDRIVE {Left 1.0}\r\n");
   REQUIRE(talk.session->robot);
@@ -126,14 +126,14 @@ TEST_CASE("commands back to back, without waiting for the robot, are obeyed in t
   CHECK(talk.command().track_speed_mps[robot::kLeft] == Approx(radius_m));
 }
 
-TEST_CASE("a line that comes in pieces is one line") {
+TEST_CASE("A line that comes in pieces is one line") {
   Conversation talk;
   for (const char c : std::string_view("INIT {ClassName USARBot.Kenaf} {Name R1}\r\n\r\n\n")) talk.send({&c, 1});
   REQUIRE(talk.session->robot);
   CHECK(talk.session->bad_lines == 0);
 }
 
-TEST_CASE("the first output follows INIT at once, further ones every 0.2 s of robot time") {
+TEST_CASE("The first output follows INIT at once, further ones every 0.2 s of robot time") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.P2DX}\r\n");
   REQUIRE(talk.run(1));
@@ -150,7 +150,7 @@ TEST_CASE("UDK's outputs come every 0.1 s") {
   CHECK(talk.lines("STA").size() == 11);
 }
 
-TEST_CASE("start poses are told before INIT, in each dialect's form") {
+TEST_CASE("Start poses are told before INIT, in each dialect's form") {
   Conversation ut2004;
   const std::string groups = ut2004.answer_to("GETSTARTPOSES\r\n");
   CHECK(
@@ -164,7 +164,7 @@ TEST_CASE("start poses are told before INIT, in each dialect's form") {
   CHECK(triplets.ends_with("0.0000,0.0000,0.0000}"));
 }
 
-TEST_CASE("the robot leaves with its connection") {
+TEST_CASE("The robot leaves with its connection") {
   Conversation talk;
   Session& other = talk.simulation.connect("other");
   talk.send(other, "INIT {ClassName USARBot.Kenaf}\r\n");
@@ -173,7 +173,7 @@ TEST_CASE("the robot leaves with its connection") {
   CHECK(talk.simulation.world.robots().empty());
 }
 
-TEST_CASE("the option --robot replaces what USARBot.Kenaf is, and nothing else") {
+TEST_CASE("The option --robot replaces what USARBot.Kenaf is, and nothing else") {
   ServerOptions options = fast();
   options.robot = "p2at";
   Conversation talk(options);
@@ -184,7 +184,7 @@ TEST_CASE("the option --robot replaces what USARBot.Kenaf is, and nothing else")
   CHECK(other.robot->description->name == "p2dx");
 }
 
-TEST_CASE("there is room for 64 robots, and the next one is refused") {
+TEST_CASE("There is room for 64 robots, and the next one is refused") {
   Conversation talk;
   for (int i = 0; i < 65; ++i) {
     Session& other = talk.simulation.connect("other");

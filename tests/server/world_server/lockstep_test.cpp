@@ -18,7 +18,7 @@ struct Framed : Conversation {
 
 }  // namespace
 
-TEST_CASE("a Session is answered with what is in force: whole time steps") {
+TEST_CASE("A Session is answered with what is in force: whole time steps") {
   Conversation talk;
   talk.send(kPlace);
   CHECK(talk.answer_to("CONTROL {Type Session} {Period 0.0104} {Lockstep True} {CommandTimeout 0.5}\r\n") ==
@@ -27,7 +27,7 @@ TEST_CASE("a Session is answered with what is in force: whole time steps") {
         "RES {Time 0.000000000000} {Type Control} {Name Session} {Status OK} {Period 0.010000000000} {Lockstep True}");
 }
 
-TEST_CASE("lock step is not in force before there are frames to answer") {
+TEST_CASE("Lock step is not in force before there are frames to answer") {
   Conversation talk;
   talk.send(kPlace);
   CHECK(talk.answer_to("CONTROL {Type Session} {Lockstep True}\r\n").ends_with("{Lockstep False}"));
@@ -36,7 +36,7 @@ TEST_CASE("lock step is not in force before there are frames to answer") {
   CHECK_FALSE(talk.run(1));
 }
 
-TEST_CASE("a Session that makes no sense changes nothing") {
+TEST_CASE("A Session that makes no sense changes nothing") {
   Conversation talk;
   talk.send(kPlace);
   for (const char* settings : {"{Period 0}", "{Period -1}", "{Period 11}", "{Period x}", "{Lockstep maybe}",
@@ -49,7 +49,7 @@ TEST_CASE("a Session that makes no sense changes nothing") {
   }
 }
 
-TEST_CASE("frames are numbered from 1, the first at once, one period of robot time apart") {
+TEST_CASE("Frames are numbered from 1, the first at once, one period of robot time apart") {
   Framed talk("{Period 0.01}");
   REQUIRE(talk.run(0.05));
   const auto status = talk.lines("STA");
@@ -60,7 +60,7 @@ TEST_CASE("frames are numbered from 1, the first at once, one period of robot ti
   }
 }
 
-TEST_CASE("a Session that comes before INIT holds for the robot that follows") {
+TEST_CASE("A Session that comes before INIT holds for the robot that follows") {
   Conversation talk;
   talk.send("CONTROL {Type Session} {Period 0.02}\r\n" + std::string(kPlace));
   REQUIRE(talk.run(0.1));
@@ -69,7 +69,7 @@ TEST_CASE("a Session that comes before INIT holds for the robot that follows") {
   CHECK(number_in(status.front(), "Frame") == 1);
 }
 
-TEST_CASE("a command with a frame takes effect exactly when the next frame begins") {
+TEST_CASE("A command with a frame takes effect exactly when the next frame begins") {
   Framed talk("{Period 0.01}");
   REQUIRE(talk.run(0.003));
   talk.send("DRIVE {Left 1} {Right 1} {Frame 1}\r\n");
@@ -80,7 +80,7 @@ TEST_CASE("a command with a frame takes effect exactly when the next frame begin
   CHECK(number_in(talk.last("STA"), "Late") == 0);
 }
 
-TEST_CASE("flippers and SET keep to their frame too, and are answered when they take effect") {
+TEST_CASE("Flippers and SET keep to their frame too, and are answered when they take effect") {
   Framed talk("{Period 0.01}");
   REQUIRE(talk.run(0.001));
   talk.lines();
@@ -95,7 +95,7 @@ TEST_CASE("flippers and SET keep to their frame too, and are answered when they 
   CHECK(talk.last("RES") == "RES {Time 0.0100} {Type Joint} {Name RLFlipper} {Status OK}");
 }
 
-TEST_CASE("a command that comes late takes effect at once and is counted, one of a coming frame is ignored") {
+TEST_CASE("A command that comes late takes effect at once and is counted, one of a coming frame is ignored") {
   Framed talk("{Period 0.01}");
   REQUIRE(talk.run(0.025));  // frame 3 is the newest
   talk.send("MULTIDRIVE {RRFlipper 0.5} {Frame 2}\r\nDRIVE {Left 1} {Right 1} {Frame 2}\r\n");
@@ -108,7 +108,7 @@ TEST_CASE("a command that comes late takes effect at once and is counted, one of
   CHECK(number_in(talk.last("STA"), "Late") == 1);
 }
 
-TEST_CASE("of two answers to one frame the newest wins") {
+TEST_CASE("Of two answers to one frame the newest wins") {
   Framed talk("{Period 0.01}");
   REQUIRE(talk.run(0.001));
   talk.send("DRIVE {Left 1} {Right 1} {Frame 1}\r\nDRIVE {Left 2} {Right 2} {Frame 1}\r\n");
@@ -116,7 +116,7 @@ TEST_CASE("of two answers to one frame the newest wins") {
   CHECK(talk.left_mps() == Approx(2 * talk.radius_m()));
 }
 
-TEST_CASE("lock step: robot time waits for the answer, then goes on at once") {
+TEST_CASE("Lock step: robot time waits for the answer, then goes on at once") {
   Framed talk("{Period 0.01} {Lockstep True}");
   CHECK_FALSE(talk.run(1));
   CHECK(talk.simulation.world.step_count() == 10);
@@ -129,7 +129,7 @@ TEST_CASE("lock step: robot time waits for the answer, then goes on at once") {
   }
 }
 
-TEST_CASE("lock step waits two seconds of wall-clock time, then runs until the client is back") {
+TEST_CASE("Lock step waits two seconds of wall-clock time, then runs until the client is back") {
   Framed talk("{Period 0.01} {Lockstep True}");
   CHECK_FALSE(talk.run(1));
   CHECK(talk.simulation.advance(talk.wall_s).wake_s == Approx(talk.wall_s + 2));
@@ -144,7 +144,7 @@ TEST_CASE("lock step waits two seconds of wall-clock time, then runs until the c
   CHECK(number_in(talk.last("STA"), "Frame") == newest + 1);
 }
 
-TEST_CASE("time that is paused is not time that lock step waited") {
+TEST_CASE("Time that is paused is not time that lock step waited") {
   Framed talk("{Period 0.01} {Lockstep True}");
   talk.send("CONTROL {Type Pause}\r\n");
   talk.wall_s += 10;
@@ -154,7 +154,7 @@ TEST_CASE("time that is paused is not time that lock step waited") {
   CHECK(talk.simulation.world.step_count() == 10);
 }
 
-TEST_CASE("two clients in lock step wait for each other, and a plain one does not hold them") {
+TEST_CASE("Two clients in lock step wait for each other, and a plain one does not hold them") {
   Framed talk("{Period 0.01} {Lockstep True}");
   Session& other = talk.simulation.connect("other");
   Session& plain = talk.simulation.connect("plain");
@@ -177,7 +177,7 @@ TEST_CASE("two clients in lock step wait for each other, and a plain one does no
   CHECK(talk.simulation.world.step_count() == 40);
 }
 
-TEST_CASE("when an answer comes within its frame does not change the path by a bit") {
+TEST_CASE("When an answer comes within its frame does not change the path by a bit") {
   const auto drive = [](double answer_after_s) {
     Framed talk("{Period 0.01} {Precision 15}");
     for (int frame = 1; frame <= 100; ++frame) {
@@ -192,7 +192,7 @@ TEST_CASE("when an answer comes within its frame does not change the path by a b
   CHECK(drive(0.001) == drive(0.009));
 }
 
-TEST_CASE("a silent commander's robot stops, flippers hold their angle, and STA says so until the next command") {
+TEST_CASE("A silent commander's robot stops, flippers hold their angle, and STA says so until the next command") {
   Framed talk("{Period 0.01} {CommandTimeout 0.3}");
   talk.send("DRIVE {Left 3} {Right 3}\r\nMULTIDRIVE {RRFlipper 0.5}\r\n");
   talk.send("SET {Type Joint} {Name RLFlipper} {Opcode Velocity} {Params 0.5}\r\n");
@@ -213,7 +213,7 @@ TEST_CASE("a silent commander's robot stops, flippers hold their angle, and STA 
   CHECK(talk.command().track_speed_mps[robot::kRight] == 0);
 }
 
-TEST_CASE("a part of a curve does not bring back the speed that silence took") {
+TEST_CASE("A part of a curve does not bring back the speed that silence took") {
   Framed talk("{Period 0.01} {CommandTimeout 0.3}");
   talk.send("DRIVE {Speed 3} {FrontSteer 0}\r\n");
   REQUIRE(talk.run(0.5));
@@ -222,7 +222,7 @@ TEST_CASE("a part of a curve does not bring back the speed that silence took") {
   CHECK(talk.left_mps() == 0);
 }
 
-TEST_CASE("whoever keeps commanding is not stopped, and a plain client never is") {
+TEST_CASE("Whoever keeps commanding is not stopped, and a plain client never is") {
   Framed talk("{Period 0.01} {CommandTimeout 0.1}");
   for (int i = 0; i < 20; ++i) {
     talk.send("DRIVE {Left 3} {Right 3}\r\n");
@@ -235,7 +235,7 @@ TEST_CASE("whoever keeps commanding is not stopped, and a plain client never is"
   CHECK(plain.command().track_speed_mps[robot::kLeft] > 0);
 }
 
-TEST_CASE("a frame without a Session's period is no frame") {
+TEST_CASE("A frame without a Session's period is no frame") {
   Conversation talk;
   talk.send(std::string(kPlace) + "DRIVE {Left 1} {Right 1} {Frame 5}\r\n");
   CHECK(talk.command().track_speed_mps[robot::kLeft] > 0);

@@ -45,7 +45,7 @@ struct Desk : Conversation {
 
 }  // namespace
 
-TEST_CASE("rule 1: while an operator holds a robot, his commands count and its client's do not") {
+TEST_CASE("Rule 1: while an operator holds a robot, his commands count and its client's do not") {
   Desk desk;
   REQUIRE(desk.take(kAnna).empty());
   desk.send("DRIVE {Left -5} {Right -5}\r\n");
@@ -65,7 +65,7 @@ TEST_CASE("rule 1: while an operator holds a robot, his commands count and its c
   CHECK(desk.truth().flipper_rad[robot::kFrontRight] == Approx(flipper).margin(0.01));
 }
 
-TEST_CASE("rule 1: who drives too fast in the moment of taking over stands, and drives by his own word alone") {
+TEST_CASE("Rule 1: who drives too fast in the moment of taking over stands, and drives by his own word alone") {
   Desk desk;
   desk.send("DRIVE {Left 5} {Right 5}\r\n");
   REQUIRE(desk.run(1));
@@ -75,7 +75,7 @@ TEST_CASE("rule 1: who drives too fast in the moment of taking over stands, and 
   CHECK(desk.fastest_mps() < 0.01);
 }
 
-TEST_CASE("rule 1: a robot has one holder, and the second is told so, and his commands are refused") {
+TEST_CASE("Rule 1: a robot has one holder, and the second is told so, and his commands are refused") {
   Desk desk;
   REQUIRE(desk.take(kAnna).empty());
   CHECK(desk.take(kAnna).empty());
@@ -86,7 +86,7 @@ TEST_CASE("rule 1: a robot has one holder, and the second is told so, and his co
   CHECK(desk.take(kBen).empty());
 }
 
-TEST_CASE("rule 1: the client is answered and sent its sensors while another drives") {
+TEST_CASE("Rule 1: the client is answered and sent its sensors while another drives") {
   Desk desk;
   desk.send("CONTROL {Type Session} {Period 0.01}\r\n");
   REQUIRE(desk.take(kAnna).empty());
@@ -96,7 +96,7 @@ TEST_CASE("rule 1: the client is answered and sent its sensors while another dri
   CHECK(desk.answer_to("PING {Id 7}\r\n").starts_with("PONG {Id 7}"));
 }
 
-TEST_CASE("rule 1: the same holds of its cameras, which turn no further than they can") {
+TEST_CASE("Rule 1: the same holds of its cameras, which turn no further than they can") {
   Desk desk;
   const auto look = [&](OperatorId who, const CameraOrder& order, std::string_view camera = "Camera") {
     return look_by_hand(desk.simulation, desk.robot, who, camera, order);
@@ -119,7 +119,7 @@ TEST_CASE("rule 1: the same holds of its cameras, which turn no further than the
   CHECK_FALSE(look(kAnna, {.pan_rad = 1, .tilt_rad = {}, .field_of_view_rad = {}}, "BirdsEye").empty());  // is fixed
 }
 
-TEST_CASE("rule 2: an operator who says nothing for half a second of wall-clock time stands, until he speaks again") {
+TEST_CASE("Rule 2: an operator who says nothing for half a second of wall-clock time stands, until he speaks again") {
   Desk desk;
   REQUIRE(desk.take(kAnna).empty());
   desk.drive(kAnna, tracks(0.3, 0.3), 0.5);
@@ -134,7 +134,7 @@ TEST_CASE("rule 2: an operator who says nothing for half a second of wall-clock 
   CHECK(desk.fastest_mps() > 0.25);
 }
 
-TEST_CASE("rule 2: a flipper that was turning stays where it is when its operator falls silent") {
+TEST_CASE("Rule 2: a flipper that was turning stays where it is when its operator falls silent") {
   Desk desk;
   REQUIRE(desk.take(kAnna).empty());
   robot::Command turn = standing_command();
@@ -148,7 +148,7 @@ TEST_CASE("rule 2: a flipper that was turning stays where it is when its operato
   CHECK(desk.truth().flipper_rad[robot::kFrontLeft] == Approx(before).margin(0.02));
 }
 
-TEST_CASE("rule 3: let go of, the robot stands until its client says something new") {
+TEST_CASE("Rule 3: let go of, the robot stands until its client says something new") {
   Desk desk;
   desk.send("DRIVE {Left 5} {Right 5}\r\n");
   REQUIRE(desk.take(kAnna).empty());
@@ -167,7 +167,7 @@ TEST_CASE("rule 3: let go of, the robot stands until its client says something n
   CHECK(desk.x() > before);
 }
 
-TEST_CASE("rule 3: a curve's parts from before are not completed by a part after it") {
+TEST_CASE("Rule 3: a curve's parts from before are not completed by a part after it") {
   Desk desk;
   desk.send("DRIVE {Speed 5} {FrontSteer 0}\r\nDRIVE {LinearVelocity 0.4} {RotationalVelocity 0}\r\n");
   REQUIRE(desk.take(kAnna).empty());
@@ -180,7 +180,7 @@ TEST_CASE("rule 3: a curve's parts from before are not completed by a part after
   CHECK(desk.command().track_speed_mps[robot::kLeft] == -desk.command().track_speed_mps[robot::kRight]);
 }
 
-TEST_CASE("rule 3: an operator whose connection ends lets go of all that he held") {
+TEST_CASE("Rule 3: an operator whose connection ends lets go of all that he held") {
   Desk desk;
   std::uint32_t own = 0;
   REQUIRE(place_robot_by_hand(desk.simulation, kAnna, own).empty());
@@ -190,7 +190,7 @@ TEST_CASE("rule 3: an operator whose connection ends lets go of all that he held
   CHECK(take_robot(desk.simulation, own, kBen).empty());
 }
 
-TEST_CASE("rule 4: in an empty world an operator places a robot and drives it, and it stays when he goes") {
+TEST_CASE("Rule 4: in an empty world an operator places a robot and drives it, and it stays when he goes") {
   Conversation talk;
   CHECK_FALSE(talk.run(0.1));  // nobody is there, time stands still
   talk.simulation.wall_s = talk.wall_s;
@@ -213,7 +213,7 @@ TEST_CASE("rule 4: in an empty world an operator places a robot and drives it, a
   CHECK(talk.simulation.robot_count() == 0);
 }
 
-TEST_CASE("a client's robot cannot be removed, and one that left cannot be driven") {
+TEST_CASE("A client's robot cannot be removed, and one that left cannot be driven") {
   Desk desk;
   CHECK_FALSE(remove_placed_robot(desk.simulation, desk.robot, kAnna).empty());
   REQUIRE(desk.take(kAnna).empty());
@@ -223,7 +223,7 @@ TEST_CASE("a client's robot cannot be removed, and one that left cannot be drive
   let_go_of_all(desk.simulation, kAnna);
 }
 
-TEST_CASE("commands are limited to what the robot can do") {
+TEST_CASE("Commands are limited to what the robot can do") {
   Desk desk;
   REQUIRE(desk.take(kAnna).empty());
   robot::Command wild = tracks(1e9, -1e9);
@@ -237,14 +237,14 @@ TEST_CASE("commands are limited to what the robot can do") {
   CHECK(held.flipper[robot::kRearRight].value == -1.5);
 }
 
-TEST_CASE("eight robots can be placed by hand, not more") {
+TEST_CASE("Eight robots can be placed by hand, not more") {
   Conversation talk;
   std::uint32_t robot = 0;
   for (int i = 0; i < 8; ++i) CHECK(place_robot_by_hand(talk.simulation, kAnna, robot).empty());
   CHECK_FALSE(place_robot_by_hand(talk.simulation, kAnna, robot).empty());
 }
 
-TEST_CASE("after a reset a held robot stands at its start, and its holder drives on") {
+TEST_CASE("After a reset a held robot stands at its start, and its holder drives on") {
   Desk desk;
   REQUIRE(desk.take(kAnna).empty());
   desk.drive(kAnna, tracks(0.3, 0.3), 0.5);

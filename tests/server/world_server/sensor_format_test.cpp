@@ -48,13 +48,13 @@ TEST_CASE("INS has no time, as recorded") {
         "SEN {Type INS} {Name INS} {Location 4.50,1.90,1.80} {Orientation 0.00,0.00,0.00}");
 }
 
-TEST_CASE("odometry turns to the right where theta grows") {
+TEST_CASE("Odometry turns to the right where theta grows") {
   const physics::OdometryReading reading{1.25, 0.5, 0.25};  // ahead, to the left, turned left
   CHECK(told(Dialect::ut2004, sensor(SensorType::odometry, "Odometry"), reading) ==
         "SEN {Type Odometry} {Name Odometry} {Pose 1.2500,-0.5000,-0.2500}");
 }
 
-TEST_CASE("encoders: one message of UT2004, as recorded, a message for each of UDK") {
+TEST_CASE("Encoders: one message of UT2004, as recorded, a message for each of UDK") {
   const physics::EncoderReading reading{{0, -7}};
   CHECK(told(Dialect::ut2004, sensor(SensorType::encoder, "Encoder"), reading) ==
         "SEN {Type Encoder} {Name ECLeft Tick 0} {Name ECRight Tick -7}");
@@ -63,7 +63,7 @@ TEST_CASE("encoders: one message of UT2004, as recorded, a message for each of U
         "SEN {Time 3104.5749} {Type Encoder} {Name ECRight} {Tick -7}");
 }
 
-TEST_CASE("sonars: all in one message of UT2004, a message for each of UDK") {
+TEST_CASE("Sonars: all in one message of UT2004, a message for each of UDK") {
   std::vector<physics::SensorSample> samples{{0, 3104.5749, physics::SonarReading{4.5523}},
                                              {1, 3104.5749, physics::SonarReading{2.5}}};
   const std::vector<SensorDescription> sensors{sensor(SensorType::sonar, "F1"), sensor(SensorType::sonar, "F2")};
@@ -77,7 +77,7 @@ TEST_CASE("sonars: all in one message of UT2004, a message for each of UDK") {
         "SEN {Time 3104.5749} {Type Sonar} {Name F2} {Range 2.5000}\r\n");
 }
 
-TEST_CASE("a range scan goes from the right end to the left one") {
+TEST_CASE("A range scan goes from the right end to the left one") {
   const physics::RangeScanReading from_the_left{{1.11111, 2.22222, 3.33339}};
   CHECK(told(Dialect::ut2004, sensor(SensorType::range_scanner, "Scanner1"), from_the_left) ==
         "SEN {Time 3104.57} {Type RangeScanner} {Name Scanner1} {Resolution 0.0175} {FOV 3.1416} "
@@ -87,14 +87,14 @@ TEST_CASE("a range scan goes from the right end to the left one") {
         "{Range 3.33,2.22,1.11}");
 }
 
-TEST_CASE("the inertial sensor's y and z change their signs") {
+TEST_CASE("The inertial sensor's y and z change their signs") {
   const physics::ImuReading reading{{1, 2, 9.80665}, {0.1, 0.2, 0.3}, {4, 5, 6}, {0.01, 0.02, 0.03}};
   CHECK(told(Dialect::ut2004, sensor(SensorType::imu, "IMU"), reading, 1) ==
         "SEN {Time 1.0000} {Type IMU} {Name IMU} {XYZAcceleration 1.0000,-2.0000,-9.8066} "
         "{AngularVel 0.1000,-0.2000,-0.3000} {AngularAccel 4.0000,-5.0000,-6.0000} {Rotation 0.0100,-0.0200,-0.0300}");
 }
 
-TEST_CASE("tachometer, touch and drives") {
+TEST_CASE("Tachometer, touch and drives are told in the form of their dialect") {
   CHECK(told(Dialect::ut2004, sensor(SensorType::tachometer, "Tachometer"),
              physics::TachometerReading{{1, -2}, {3, -4}},
              1) == "SEN {Time 1.0000} {Type Tachometer} {Name Tachometer} {Vel 1.0000,-2.0000} {Pos 3.0000,-4.0000}");
@@ -118,7 +118,7 @@ TEST_CASE("GPS tells degrees and minutes, or that it has no fix") {
         "SEN {Time 1.0000} {Type GPS} {Name GPS} {Fix 0} {Satellites 0}");
 }
 
-TEST_CASE("a client that asked for more digits gets them everywhere, rounded") {
+TEST_CASE("A client that asked for more digits gets them everywhere, rounded") {
   std::vector<physics::SensorSample> samples{{0, 1, physics::GroundTruthReading{{0.123456789, 0, 0}, {0, 0, 0}}}};
   std::string out;
   write_samples(samples, {sensor(SensorType::ground_truth, "GT")}, Dialect::udk, formats_with(8), true, out);
@@ -159,7 +159,7 @@ TEST_CASE("STA of a robot with flippers lists them as the UT2004 server did, and
   CHECK(number_in(status, "Battery") == Approx(3596).margin(1));
 }
 
-TEST_CASE("a plain client hears nothing of what USARSim did not have") {
+TEST_CASE("A plain client hears nothing of what USARSim did not have") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.Kenaf}\r\n");
   REQUIRE(talk.run(1));
@@ -170,7 +170,7 @@ TEST_CASE("a plain client hears nothing of what USARSim did not have") {
   }
 }
 
-TEST_CASE("every sensor of the Kenaf reports, in the UT2004 server's order, and STA ends the output") {
+TEST_CASE("Every sensor of the Kenaf reports, in the UT2004 server's order, and STA ends the output") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.Kenaf}\r\nCONTROL {Type Session} {Period 0.01}\r\n");
   REQUIRE(talk.run(3));

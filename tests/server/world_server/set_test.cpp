@@ -38,7 +38,7 @@ TEST_CASE("SET of all joints takes one angle for all, or one for each in the ord
   CHECK(talk.command().flipper[robot::kRearLeft].value == 0.4);
 }
 
-TEST_CASE("what cannot be set fails with a reason") {
+TEST_CASE("What cannot be set fails with a reason") {
   Conversation talk = with_robot();
   for (const char* line :
        {"SET {Type Joint} {Name Tail} {Opcode Angle} {Params 1}\r\n",
@@ -60,7 +60,7 @@ TEST_CASE("UDK answers no SET") {
   CHECK(talk.answer_to("SET {Type Nothing}\r\n").empty());
 }
 
-TEST_CASE("encoders and odometry start anew, with or without their name") {
+TEST_CASE("Encoders and odometry start anew, with or without their name") {
   for (const char* reset :
        {"SET {Type Encoder} {Opcode RESET}\r\n", "SET {Type Encoder} {Name ECLeft} {Opcode reset}\r\n"}) {
     INFO(reset);
@@ -87,7 +87,7 @@ TEST_CASE("INS takes a pose, scanners scan by themselves") {
   CHECK(talk.answer_to("SET {Type RangeScanner} {Name Scanner1} {Opcode SCAN}\r\n").ends_with("{Status OK}"));
 }
 
-TEST_CASE("cameras keep their zoom, within what they can, until a reset") {
+TEST_CASE("Cameras keep their zoom, within what they can, until a reset") {
   Conversation talk = with_robot();
   const auto angle_of = [&](const char* camera) {
     return number_in(talk.answer_to("GETCONF {Type Camera} {Name " + std::string(camera) + "}\r\n"), "CameraFov");
@@ -109,7 +109,7 @@ TEST_CASE("cameras keep their zoom, within what they can, until a reset") {
 
 // In a frame of x forward, y right, z down a turn about z leads from x to y, and one about y from z to x: a pan is
 // positive to the right, a tilt positive up. Inside (REP 103) left and down are positive.
-TEST_CASE("a camera mount turns by MISPKG and by ACT, and MISSTA tells how far") {
+TEST_CASE("A camera mount turns by MISPKG and by ACT, and MISSTA tells how far") {
   Conversation talk = with_robot();
   const auto inside = [&](std::size_t link) {
     return talk.simulation.world.mission_link_rad(talk.session->robot->id, 0, link);
@@ -131,7 +131,7 @@ TEST_CASE("a camera mount turns by MISPKG and by ACT, and MISSTA tells how far")
   CHECK(talk.last("MISSTA").find("{Link 1} {Value 0.2500}") != std::string::npos);
 }
 
-TEST_CASE("a camera mount that is told a speed goes to that end of its range") {
+TEST_CASE("A camera mount that is told a speed goes to that end of its range") {
   Conversation talk = with_robot();
   // up to 45 degrees, down to 90: the same limits that GETCONF tells
   const std::string tilt = talk.answer_to("GETCONF {Type MisPkg} {Name CameraPanTilt}\r\n");

@@ -16,13 +16,13 @@ struct Controller : Conversation {
 
 }  // namespace
 
-TEST_CASE("a world controller is no robot: it gets no outputs and lets no time pass") {
+TEST_CASE("A world controller is no robot: it gets no outputs and lets no time pass") {
   Controller controller;
   CHECK_FALSE(controller.run(1));
   CHECK(controller.lines().empty());
 }
 
-TEST_CASE("boxes are created, moved, told and removed, in USARSim's frame") {
+TEST_CASE("Boxes are created, moved, told and removed, in USARSim's frame") {
   Controller controller;
   CHECK(
       controller.ok("{Type Create} {ClassName USARPhysObj.SmallBox} {Name B1} {Location 1,2,-3} {Rotation 0,0,0.5} "
@@ -45,7 +45,7 @@ TEST_CASE("boxes are created, moved, told and removed, in USARSim's frame") {
   CHECK_FALSE(controller.ok("{Type Kill} {Name B1}"));
 }
 
-TEST_CASE("moves that add up end at 100 km, and the server goes on") {
+TEST_CASE("Moves that add up end at 100 km, and the server goes on") {
   Controller controller;
   CHECK(controller.ok("{Type Create} {ClassName Box} {Name A} {Location 90000,90000,-90000}"));
   CHECK_FALSE(controller.ok("{Type RelMove} {Name A} {Location 90000,90000,-90000}"));
@@ -77,7 +77,7 @@ TEST_CASE("KillAll takes what is inside its corners, or everything, a permanent 
   CHECK(controller.simulation.objects[0].name == "C");
 }
 
-TEST_CASE("a robot is moved by its name") {
+TEST_CASE("A robot is moved by its name") {
   Controller controller;
   Session& robot = controller.simulation.connect("robot");
   controller.send(robot, "INIT {ClassName USARBot.Kenaf} {Name R1} {Location 0,0,0}\r\n");
@@ -87,7 +87,7 @@ TEST_CASE("a robot is moved by its name") {
   CHECK(physics::roll_pitch_yaw(X_WB.q).z() == Approx(-1));
 }
 
-TEST_CASE("a box with RigidBody falls, one without stays where it is") {
+TEST_CASE("A box with RigidBody falls, one without stays where it is") {
   Controller controller;
   Session& robot = controller.simulation.connect("robot");
   controller.send(robot, "INIT {ClassName USARBot.P2DX} {Location 0,0,0}\r\n");
@@ -100,7 +100,7 @@ TEST_CASE("a box with RigidBody falls, one without stays where it is") {
   CHECK(controller.simulation.world.box_pose(controller.simulation.objects[1].box).p.z() == 5);
 }
 
-TEST_CASE("what cannot be done is refused with a reason") {
+TEST_CASE("What cannot be done is refused with a reason") {
   Controller controller;
   CHECK(controller.ok("{Type Create} {ClassName Box} {Name A} {Location 0,0,-1}"));
   for (const char* groups :

@@ -64,7 +64,7 @@ std::vector<std::string> drive_by_frames(std::uint16_t port, int frames) {
 
 }  // namespace
 
-TEST_CASE("half, double and full speed give the same path, bit for bit") {
+TEST_CASE("Half, double and full speed give the same path, bit for bit") {
   constexpr int kFrames = 60;
   const auto at = [](double speed) {
     Running server(speed);
@@ -76,7 +76,7 @@ TEST_CASE("half, double and full speed give the same path, bit for bit") {
   CHECK(at(2) == full);
 }
 
-TEST_CASE("a plain client of the UT2004 server drives a P2DX") {
+TEST_CASE("A plain client of the UT2004 server drives a P2DX") {
   Running server(0);
   UsarsimClient client(server.port());
   CHECK(client.line() == "NFO {Gametype BotDeathMatch} {Level flat} {TimeLimit 20}");
@@ -90,7 +90,7 @@ TEST_CASE("a plain client of the UT2004 server drives a P2DX") {
   CHECK(client.line_that_begins("RES").ends_with("{Status OK}"));
 }
 
-TEST_CASE("sixteen robots share a world, each with a connection of its own") {
+TEST_CASE("Sixteen robots share a world, each with a connection of its own") {
   Running server(0);
   std::vector<std::unique_ptr<UsarsimClient>> clients;
   for (int i = 0; i < 16; ++i) {
@@ -113,7 +113,7 @@ TEST_CASE("sixteen robots share a world, each with a connection of its own") {
   }
 }
 
-TEST_CASE("closing the connection removes the robot, and its place is free again") {
+TEST_CASE("Closing the connection removes the robot, and its place is free again") {
   Running server(1);
   for (int i = 0; i < 3; ++i) {
     UsarsimClient client(server.port());
@@ -125,7 +125,7 @@ TEST_CASE("closing the connection removes the robot, and its place is free again
   }
 }
 
-TEST_CASE("one client's flood and garbage do not keep the others from their frames") {
+TEST_CASE("One client's flood and garbage do not keep the others from their frames") {
   Running server(0);
   UsarsimClient hostile(server.port());
   std::string garbage;
@@ -146,7 +146,7 @@ TEST_CASE("one client's flood and garbage do not keep the others from their fram
   flood.join();
 }
 
-TEST_CASE("a client that does not read is let go, and the others go on") {
+TEST_CASE("A client that does not read is let go, and the others go on") {
   Running server(0);
   UsarsimClient deaf(server.port());
   deaf.send("INIT {ClassName USARBot.Kenaf} {Location 0,5,0}\r\nCONTROL {Type Session} {Period 0.001}\r\n");
@@ -161,7 +161,7 @@ TEST_CASE("a client that does not read is let go, and the others go on") {
   CHECK_THROWS(read_to_the_end());
 }
 
-TEST_CASE("a server that is stopped closes its connections, and its port is free for the next") {
+TEST_CASE("A server that is stopped closes its connections, and its port is free for the next") {
   auto server = std::make_unique<Running>(1);
   const std::uint16_t port = server->port();
   UsarsimClient client(port);
@@ -174,7 +174,7 @@ TEST_CASE("a server that is stopped closes its connections, and its port is free
   CHECK(next.port() == port);
 }
 
-TEST_CASE("what cannot be served is said in words") {
+TEST_CASE("What cannot be served is said in words") {
   Running server(1);
   ServerOptions options;
   options.port = server.port();
@@ -198,7 +198,7 @@ TEST_CASE("what cannot be served is said in words") {
   CHECK_THROWS_WITH(WorldServer(options), Catch::Contains("time step"));
 }
 
-TEST_CASE("a server that was told to stop before it ran does not run") {
+TEST_CASE("A server that was told to stop before it ran does not run") {
   ServerOptions options;
   options.port = 0;
   WorldServer server(options);

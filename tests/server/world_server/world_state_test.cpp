@@ -12,7 +12,7 @@
 
 namespace kenaf::world_server {
 
-TEST_CASE("a state holds the clock, and each robot with its posture, its command and who gives it") {
+TEST_CASE("A state holds the clock, and each robot with its posture, its command and who gives it") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.Kenaf} {Name R1} {Location 1,-2,0}\r\nDRIVE {Left 3} {Right 3}\r\n");
   REQUIRE(talk.run(1));
@@ -47,7 +47,7 @@ TEST_CASE("a state holds the clock, and each robot with its posture, its command
   CHECK(state.robots.front().command.track_speed_mps[robot::kLeft] == 0);
 }
 
-TEST_CASE("a state shows the boxes that may move: loose ones of the world, and those that clients made") {
+TEST_CASE("A state shows the boxes that may move: loose ones of the world, and those that clients made") {
   ServerOptions options = fast();
   options.world = "boxes";
   Conversation talk(options);
@@ -64,7 +64,7 @@ TEST_CASE("a state shows the boxes that may move: loose ones of the world, and t
   CHECK(state.boxes.size() == loose);
 }
 
-TEST_CASE("another thread is answered by the world's thread, also while time stands still") {
+TEST_CASE("Another thread is answered by the world's thread, also while time stands still") {
   ServerOptions options = fast();
   options.port = 0;
   WorldServer server(options);
