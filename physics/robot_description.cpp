@@ -49,7 +49,7 @@ BodyDescription read_body(TomlReader table) {
 }
 
 TrackDescription read_track(TomlReader table) {
-  const TrackDescription track{
+  TrackDescription track{
       .length_m = table.number("length_m", kPositive),
       .end_radius_m = table.number("end_radius_m", kPositive),
       .width_m = table.number("width_m", kPositive),
@@ -81,7 +81,7 @@ TrackDriveDescription read_drive(TomlReader table) {
 }
 
 FlipperDescription read_flipper(TomlReader table) {
-  const FlipperDescription flipper{
+  FlipperDescription flipper{
       .mass_kg = table.number("mass_kg", kPositive),
       .length_m = table.number("length_m", kPositive),
       .pivot_radius_m = table.number("pivot_radius_m", kPositive),

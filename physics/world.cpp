@@ -296,7 +296,7 @@ void World::prescribe(RobotId id, const PrescribedMotion& motion) {
   impl_->robot(id).model->prescribe(motion);
 }
 
-void World::reset_sensor(RobotId id, std::size_t sensor, std::optional<GroundTruthReading> pose) {
+void World::reset_sensor(RobotId id, std::size_t sensor, const std::optional<GroundTruthReading>& pose) {
   impl_->robot(id).sensors->reset(sensor, pose);
 }
 

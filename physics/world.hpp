@@ -62,7 +62,7 @@ class World {
   // reset() end it. Throws std::invalid_argument if a value is not finite.
   void prescribe(RobotId id, const PrescribedMotion& motion);
   // Restarts a sensor's integration: encoder counts, odometry and tachometer angle at 0, INS at `pose`.
-  void reset_sensor(RobotId id, std::size_t sensor, std::optional<GroundTruthReading> pose = std::nullopt);
+  void reset_sensor(RobotId id, std::size_t sensor, const std::optional<GroundTruthReading>& pose = {});
 
   // Advances everything by one time step.
   void step();

@@ -184,7 +184,7 @@ void WorldLink::finish_handshake(Connection& connection) {
 }
 
 // If the sender is held up, this holds up the world through TCP rather than losing its messages.
-void WorldLink::put(WorldEvent event) {
+void WorldLink::put(const WorldEvent& event) {
   while (!events_.put(event) && !*stopping_) std::this_thread::sleep_for(100us);
 }
 

@@ -58,7 +58,7 @@ class WorldLink {
   std::string serve(const std::atomic<bool>& stopping);
   void read_line(std::string_view line, Connection& connection);
   void finish_handshake(Connection& connection);
-  void put(WorldEvent event);
+  void put(const WorldEvent& event);
   bool take_requests();
   void note_malformed(std::string_view what, std::size_t bytes);
 

@@ -100,8 +100,8 @@ std::optional<SdoAbort> ProcessData::check_mapping(const State& state, std::uint
   }
   if (value > kMaxMapped) return SdoAbort::value_too_high;
   std::int64_t bits = 0;
-  for (std::uint8_t i = 1; i <= value; ++i) {
-    const std::int64_t entry = objects_->value({state.mapping, i});
+  for (std::int64_t i = 1; i <= value; ++i) {
+    const std::int64_t entry = objects_->value({state.mapping, static_cast<std::uint8_t>(i)});
     if (entry == 0) return SdoAbort::no_object;
     bits += entry & 0xff;
   }

@@ -100,7 +100,7 @@ bool is_fd(std::string_view data) {
 // Bytes of a classic frame, without the raw length code that may follow eight bytes.
 std::optional<std::vector<std::uint8_t>> parse_classic(std::string_view data) {
   const std::size_t mark = data.find('_');
-  const auto bytes = parse_bytes(data.substr(0, mark), kMaxFrameBytes);
+  auto bytes = parse_bytes(data.substr(0, mark), kMaxFrameBytes);
   if (mark == std::string_view::npos) return bytes;
   const bool raw_length =
       bytes && bytes->size() == kMaxFrameBytes && mark + 2 == data.size() && digit(data[mark + 1]) > 8;

@@ -100,7 +100,7 @@ std::optional<FrameNote> read_frame_note(std::span<const std::uint8_t> jpeg) {
     if (length < 2 || length + 2 > jpeg.size()) return std::nullopt;
     if (jpeg[1] == kCom) {
       const std::span<const std::uint8_t> text = jpeg.subspan(4, length - 2);
-      const std::optional<FrameNote> note = parse_note({reinterpret_cast<const char*>(text.data()), text.size()});
+      std::optional<FrameNote> note = parse_note({reinterpret_cast<const char*>(text.data()), text.size()});
       if (note) return note;
     }
     jpeg = jpeg.subspan(length + 2);

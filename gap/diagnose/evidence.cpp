@@ -25,7 +25,7 @@ using Places = std::vector<std::size_t>;
 
 double quantile(std::vector<double>& values, double share) {
   std::ranges::sort(values);
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
 }
 
 // Expected reduction of these data's deviance by each effect, with the others refitted, if the model is right.

@@ -49,7 +49,7 @@ class MotionHistory {
   Eigen::Vector3d rate_back(double steps) const {
     const auto whole = static_cast<std::size_t>(steps);
     const double rest = steps - static_cast<double>(whole);
-    const Eigen::Vector3d newer = rate_in_body(back(whole));
+    Eigen::Vector3d newer = rate_in_body(back(whole));
     if (rest == 0) return newer;
     return newer + rest * (rate_in_body(back(whole + 1)) - newer);
   }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "physics/readings.hpp"
@@ -31,7 +32,7 @@ class SensorSet {
  private:
   struct Entry {
     Entry(SensorState initial, std::size_t period, std::size_t delay)
-        : state(initial), period_steps(period), delay_steps(delay) {}
+        : state(std::move(initial)), period_steps(period), delay_steps(delay) {}
     SensorState state;
     std::size_t period_steps, delay_steps;
     std::optional<std::uint64_t> reported_step;

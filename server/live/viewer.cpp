@@ -36,7 +36,7 @@ class OpenViewer final : public Viewer, public std::enable_shared_from_this<Open
   OpenViewer(const OpenViewer&) = delete;
   OpenViewer& operator=(const OpenViewer&) = delete;
 
-  void start(PageRequest upgrade);
+  void start(const PageRequest& upgrade);
   void show(const Message& state) override {
     state_ = state;
     write();
@@ -64,7 +64,7 @@ class OpenViewer final : public Viewer, public std::enable_shared_from_this<Open
   int requests_ = 0;  // in this second
 };
 
-void OpenViewer::start(PageRequest upgrade) {
+void OpenViewer::start(const PageRequest& upgrade) {
   error_code ignored;
   auto& tcp = beast::get_lowest_layer(socket_);
   tcp.socket().set_option(boost::asio::socket_base::send_buffer_size(kSendBuffer_bytes), ignored);

@@ -15,8 +15,6 @@
 #include <system_error>
 #include <thread>
 
-extern char** environ;
-
 namespace kenaf::support {
 namespace {
 
@@ -33,7 +31,7 @@ std::vector<std::string> merged_environment(const std::map<std::string, std::str
     const std::string text = *entry;
     if (!over.contains(text.substr(0, text.find('=')))) merged.push_back(text);
   }
-  for (const auto& [key, value] : over) merged.push_back(key + "=" + value);
+  for (const auto& [key, value] : over) merged.emplace_back(key).append("=").append(value);
   return merged;
 }
 
