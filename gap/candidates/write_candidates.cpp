@@ -116,7 +116,7 @@ bool reads_as_table(const std::string& text, const toml::table& root) try {
 std::string with_number(const std::string& text, const std::string& written_as, double value) {
   const TomlPlace place = place_of(written_as);
   toml::table root = toml::parse(text);
-  const std::string result = edited(text, root, place, value);
+  std::string result = edited(text, root, place, value);
   set_number(root, place, value);
   if (reads_as_table(result, root)) return result;
   std::ostringstream out;  // an inline table, which cannot be extended, or dotted keys

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "gap/candidates/candidate.hpp"
 #include "gap/candidates/robot_numbers.hpp"
@@ -65,7 +66,7 @@ class Turns {
             left_.push_back({std::string(effect.name), std::string(parameter.name)});
       shuffle(left_, random_);
     }
-    const Named named = left_.back();
+    Named named = std::move(left_.back());
     left_.pop_back();
     return named;
   }

@@ -132,7 +132,8 @@ challenge::ChallengeKey make_cases(const Options& options, std::uint64_t seed, c
     challenge::SealedCase& sealed = key.cases[i];
     std::optional<challenge::SealedCase> made =
         challenge::made_case(folder, sealed.plan.name, seed, options.cases, key.kind);
-    if (made) {
+    const bool was_made = made.has_value();
+    if (was_made) {
       sealed = *std::move(made);
     } else {
       const fs::path data = folder / sealed.plan.name;
@@ -141,7 +142,7 @@ challenge::ChallengeKey make_cases(const Options& options, std::uint64_t seed, c
       sealed.data_sha256 = challenge::sha256_of_dataset(data);
       challenge::keep_made_case(folder, sealed, seed, options.cases, key.kind);
     }
-    teller.made(made.has_value());
+    teller.made(was_made);
   });
   return key;
 }

@@ -89,7 +89,7 @@ QuantitySeries velocity(const LeftOverRun& run, bool sideways) {
   for (Index i = 0; i < together.size(); ++i) {
     const auto ends = ends_of_rate(together, i, span_s);
     if (!ends) continue;
-    const auto [a, b] = *ends;
+    const Index a = ends->first, b = ends->second;
     const double duration_s = static_cast<double>(b - a) * span_s;
 
     // displacement rotated by the mean heading, over the duration
@@ -121,7 +121,7 @@ QuantitySeries yaw_rate(const LeftOverRun& run) {
   for (Index i = 0; i < yaw->measured.size(); ++i) {
     const auto ends = ends_of_rate(yaw->measured, i, span_s);
     if (!ends) continue;
-    const auto [a, b] = *ends;
+    const Index a = ends->first, b = ends->second;
     const double duration_s = static_cast<double>(b - a) * span_s;
     series.measured[i] = (yaw->measured[b] - yaw->measured[a]) / duration_s;
     series.simulated[i] = (yaw->simulated[b] - yaw->simulated[a]) / duration_s;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <numbers>
@@ -188,7 +189,7 @@ class Proposer {
     const rollout::RollOut out =
         rollout::roll_out(*robot, trial.candidate.world, trial.replay, is_coarse ? coarse() : without_noise());
     trial.features[model] = trial.map.of(out.run);
-    trial.fault[model] = !out.fault.empty();
+    trial.fault[model] = out.fault.empty() ? 0 : 1;
   }
 
   void drive_rival(Trial& trial, std::size_t rival) const {
@@ -293,9 +294,9 @@ std::vector<ProposedManoeuvre> propose_manoeuvres(const physics::RobotDescriptio
   if (!(options.span_s > 0)) throw std::invalid_argument(fmt::format("span_s = {} must be above 0", options.span_s));
   if (rivals.size() < 2) return {};
   std::vector<ManoeuvreToTry> flat = candidates_for(nominal), others;
-  const auto rough = std::ranges::stable_partition(flat, &ManoeuvreToTry::is_flat);
-  std::ranges::move(rough, std::back_inserter(others));
-  flat.erase(rough.begin(), rough.end());
+  const auto rough = std::stable_partition(flat.begin(), flat.end(), std::mem_fn(&ManoeuvreToTry::is_flat));
+  std::move(rough, flat.end(), std::back_inserter(others));
+  flat.erase(rough, flat.end());
   Proposer proposer(nominal, rivals, options);
   if (!proposer.try_up_to(Gentleness::flat_flippers, flat)) {
     std::ranges::move(flat, std::back_inserter(others));  // in which this robot falls or tilts on level ground

@@ -50,6 +50,8 @@ void drive(real::RobotOnBus& robot) {
   robot.transport.close();
 }
 
+const std::set<std::string> kNone;
+
 }  // namespace
 
 TEST_CASE("The real library and the simulated drives break no rule, from boot to stop, twice") {
@@ -60,7 +62,7 @@ TEST_CASE("The real library and the simulated drives break no rule, from boot to
     drive(robot);
     robot.wire.run_until(robot.wire.now() + std::chrono::seconds(1));
     drive(robot);
-    CHECK(broken_rules(robot) == std::set<std::string>{});
+    CHECK(broken_rules(robot) == kNone);
   }
 }
 
@@ -69,7 +71,7 @@ TEST_CASE("Homing: the bit that starts it is down before the mode changes") {
   const real::ChangedRobot homed({{"\n[can.inclinometer]", real::kHomeHere + "\n[can.inclinometer]"}});
   real::RobotOnBus robot(homed.path());
   drive(robot);
-  CHECK(broken_rules(robot) == std::set<std::string>{});
+  CHECK(broken_rules(robot) == kNone);
 }
 
 TEST_CASE("A robot that loses a node: what the loss itself breaks is found, and nothing else") {
