@@ -90,7 +90,7 @@ Baseline observe_baseline(const std::filesystem::path& folder, Observations& now
   std::vector<Observation> runs;
   for (std::size_t r = 0; r < count; ++r) {
     if (of_run[r].empty()) {
-      now.warnings.push_back(fmt::format("{}: no run of {} repeats it; left out", now.runs[r].file, folder.string()));
+      now.warnings.push_back(fmt::format("{}: left out: no run of {} repeats it", now.runs[r].file, folder.string()));
       continue;
     }
     for (std::size_t& other : of_run[r]) {
@@ -104,8 +104,8 @@ Baseline observe_baseline(const std::filesystem::path& folder, Observations& now
   now.runs = std::move(runs);
   if (now.runs.empty())
     throw runs::RunFileError(
-        fmt::format("{}: none of its runs repeats a run that is to be diagnosed: drive the same programs in the same "
-                    "world, from rest or at the same speed, before and after",
+        fmt::format("{}: none of its runs repeats a run of the diagnosis; record the same manoeuvres in the same "
+                    "world, from the same initial speed, before and after",
                     folder.string()));
   baseline.observations.robot_name = now.robot_name;
   baseline.observations.robot = now.robot;

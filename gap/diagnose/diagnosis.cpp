@@ -47,7 +47,7 @@ std::vector<candidates::Candidate> candidates_for(const Observations& observatio
       if (c.effect == name && !c.same_as.empty()) left_out.push_back(c.same_as);
   }
   std::vector<candidates::Candidate> result = candidates::leave_out(std::move(all), left_out);
-  if (result.empty()) throw std::invalid_argument("--without leaves no effect to look for");
+  if (result.empty()) throw std::invalid_argument("--without leaves no effect to search for");
   return result;
 }
 
@@ -147,7 +147,7 @@ void propose_next(Diagnosis& d) {
             stage.nominal_floor.sigma[c], stage.decision.best.model.likelihood.discrepancies.of_kind[kind_of(c)].sigma);
   options.threads = d.options.jobs;
   d.next = propose_manoeuvres(d.observations.robot, rivals, options);
-  d.told_apart = std::move(candidates);
+  d.to_separate = std::move(candidates);
 }
 
 // Simulates the baseline's runs and subtracts their residuals.
@@ -208,7 +208,7 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
   d.features = compared_features(d.observations, options.span_s);
   if (std::ranges::all_of(d.features.maps, [](const FeatureMap& map) { return map.bins().empty(); }))
     throw runs::RunFileError(
-        fmt::format("{}: nothing that was measured can be compared: the described robot has no sensor for any of it",
+        fmt::format("{}: no measured column can be compared, because the described robot has no sensor for any of them",
                     folder.string()));
   d.repeats = repeats_of(d.observations);
   d.same_orders = same_orders_of(d.observations);

@@ -73,7 +73,7 @@ Discrepancy most_likely_discrepancy(std::span<const SeriesOfKind> series) {
   const double from = std::log(0.03 * std::sqrt(noise)), to = std::log(10 * std::sqrt(squares / bins));
   if (!(from < to)) return best;
 
-  // for each memory the best sigma; sigma 0 stays if nothing is likelier
+  // for each memory the best sigma; sigma 0 stays if no other is more likely
   for (const double memory_s : kMemories_s) {
     const auto at = [&](double log_sigma) { return minus_two_log_likelihood(series, {std::exp(log_sigma), memory_s}); };
     const auto [log_sigma, value] = golden_section(from, to, kSections, at);

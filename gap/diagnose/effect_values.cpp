@@ -98,7 +98,7 @@ RandomEffect random_effect(const std::vector<OwnValue>& own) {
   double q = 0;
   for (const auto& [offset, information] : own) q += information * (offset - mean) * (offset - mean);
   // the effective number of manoeuvres, as those with little information are no degrees of freedom; at least two, or
-  // tiny misfits beside one dominant manoeuvre would count as spread
+  // tiny misfits compared with one dominant manoeuvre would count as spread
   const double manoeuvres = std::max(2.0, weights * weights / squares);
   const double freedom = manoeuvres - 1;
   result.p_agree = p_of_squares(q, freedom);

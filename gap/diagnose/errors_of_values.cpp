@@ -62,7 +62,7 @@ std::vector<MatrixXd> differences_of_robots(const StageData& data, const Standin
 }
 
 // Concatenates the columns of each group.
-std::vector<MatrixXd> beside(std::vector<MatrixXd> left, const std::vector<MatrixXd>& right) {
+std::vector<MatrixXd> concatenated(std::vector<MatrixXd> left, const std::vector<MatrixXd>& right) {
   for (std::size_t g = 0; g < left.size(); ++g) {
     const Index count = left[g].cols();
     left[g].conservativeResize(Eigen::NoChange, count + right[g].cols());
@@ -84,7 +84,7 @@ VectorXd errors_of_values(const StageData& data, const StandingModel& standing, 
   const Index values = slope.front().cols(), shapes = number_shapes.front().cols();
   const MatrixXd products = inner_products(
       whiteners_of(data, discrepancies),
-      beside(beside(slope, number_shapes), differences_of_robots(data, standing, numbers, simulate, seed)));
+      concatenated(concatenated(slope, number_shapes), differences_of_robots(data, standing, numbers, simulate, seed)));
   const MatrixXd covariance = products.topLeftCorner(values, values).completeOrthogonalDecomposition().pseudoInverse();
   const MatrixXd of_shapes = covariance * products.block(0, values, values, shapes);
   const MatrixXd of_robots = covariance * products.topRightCorner(values, kRobots);

@@ -12,7 +12,7 @@ namespace kenaf::gap::diagnose {
 
 // Effects whose shifts are at a smaller angle cannot be distinguished. For a cause outside the catalogue, the angles of
 // its look-alike count.
-inline constexpr double kToldApart_deg = 10;
+inline constexpr double kDistinguishable_deg = 10;
 
 struct Isolability {
   std::vector<std::size_t> candidates;  // those that these runs show at all

@@ -14,7 +14,7 @@ constexpr HeldOutShares::OfEffect kNotHeldOut{
     GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, GapMeasure::kNotMeasured, 0, GapMeasure::kNotMeasured, 0, 0};
 
 bool is_lack_of_share(Doubt doubt) {
-  return doubt == Doubt::not_held_out || doubt == Doubt::trifle;
+  return doubt == Doubt::not_held_out || doubt == Doubt::negligible;
 }
 
 // Shares of the stage's whole gap, and of what errors of the description's numbers leave of it.
@@ -112,7 +112,7 @@ void judge(StageDecision& d, std::span<const candidates::Candidate> candidates, 
       effect.doubts.push_back(Doubt::not_held_out);
     else if (!(least(&Share::of_stage) >= settings.stage_share) ||
              !(least(&Share::beyond_numbers) >= settings.stage_share))
-      effect.doubts.push_back(Doubt::trifle);
+      effect.doubts.push_back(Doubt::negligible);
     if (!(least(&Share::model_of_kind) >= settings.model_share)) effect.doubts.push_back(Doubt::little_explained);
   }
 

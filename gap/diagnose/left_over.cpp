@@ -154,14 +154,14 @@ std::vector<Dependence> describe_left_over(std::span<const LeftOverRun> runs, bo
     if (rows.run.empty()) continue;
     const LeftOverFit fit = fit_left_over(rows, held_out_together(rows, groups));
     for (const LeftOverTerm& term : fit.terms)
-      if (term.share >= kLeastTold)
+      if (term.share >= kLeastReported)
         all.push_back({dependence_of(rows, fit, term), quantity.quantity, rows.candidates[term.candidate], false});
     if (fit.by_run) all.push_back({dependence_of(rows, fit, *fit.by_run), quantity.quantity, {}, true});
   }
-  std::vector<Dependence> told;
-  for (Said& said : without_doubles(all)) told.push_back(std::move(said.dependence));
-  std::ranges::stable_sort(told, std::ranges::greater{}, &Dependence::share);
-  return told;
+  std::vector<Dependence> result;
+  for (Said& said : without_doubles(all)) result.push_back(std::move(said.dependence));
+  std::ranges::stable_sort(result, std::ranges::greater{}, &Dependence::share);
+  return result;
 }
 
 }  // namespace kenaf::gap::diagnose

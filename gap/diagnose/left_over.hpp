@@ -42,7 +42,7 @@ struct Dependence {
 };
 
 // Minimum share of a reported term in the squared residual beyond noise on held-out runs (chosen).
-inline constexpr double kLeastTold = 0.1;
+inline constexpr double kLeastReported = 0.1;
 
 // Returns the terms of all channels, largest share of the channel first: at most three per channel, and one more for
 // differences between runs. Empty if the residual is within noise or depends on nothing that was measured. `of_drives`:

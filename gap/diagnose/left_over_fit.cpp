@@ -63,7 +63,7 @@ class LeftOverSelection {
     if (sum <= 1) return;
     for (LeftOverTerm& term : fit.terms) term.share /= sum;
     if (fit.by_run) fit.by_run->share /= sum;
-    if (fit.by_run && fit.by_run->share < kLeastTold) fit.by_run.reset();
+    if (fit.by_run && fit.by_run->share < kLeastReported) fit.by_run.reset();
   }
 
   std::vector<LeftOverTerm> terms() {
@@ -79,7 +79,7 @@ class LeftOverSelection {
       const VectorXd left = held_out_losses(with);
       const double share = (losses - left).sum() / beyond_;
       barred[*best] = true;
-      if (share < kLeastTold) break;
+      if (share < kLeastReported) break;
 
       // a chance gain or an unstable sign: neither this one nor its look-alikes
       if (!is_no_chance(losses - left) || !has_one_sign(with)) {

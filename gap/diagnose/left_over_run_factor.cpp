@@ -92,7 +92,7 @@ std::optional<RunFactor> run_factor(const LeftOverRows& rows, const LeftOverFit&
 
     // needs enough runs, a reportable share beyond chance, and a clear advantage over the other kind
     const double share = gains.sum() / beyond;
-    if (of_runs.size() < kLeastRunsApart || share < kLeastTold || !is_above_chance(of_runs)) continue;
+    if (of_runs.size() < kLeastRunsApart || share < kLeastReported || !is_above_chance(of_runs)) continue;
     if (best && share < best->share + kClearlyMore) continue;
 
     // each run's own value, including what all runs share by the terms, and its quantiles

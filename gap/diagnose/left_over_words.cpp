@@ -91,8 +91,8 @@ std::string in_runs(const TermRows& term) {
                         : fmt::format(", in {:.0f} % of the {}s", 100 * share, what);
 }
 
-bool told_alike(double a, double b, double told) {
-  return std::abs(a - b) <= std::max(kSameRatio, kSameShare * std::abs(told));
+bool nearly_equal(double a, double b, double slope) {
+  return std::abs(a - b) <= std::max(kSameRatio, kSameShare * std::abs(slope));
 }
 
 // Compares both directions of motion.
@@ -101,7 +101,7 @@ std::string by_side(const TermRows& term) {
   const auto right = [&](Index i) { return term.x[i] < 0; };
   if (std::min(term.part_where(left), term.part_where(right)) < 0.05) return "";  // chosen: hardly any to one side
   const double of_left = term.slope_where(left), of_right = term.slope_where(right);
-  if (told_alike(of_left, of_right, term.slope)) return "";
+  if (nearly_equal(of_left, of_right, term.slope)) return "";
   return turns(term.rows.quantity.quantity)
              ? fmt::format(", {:.2f} to the left and {:.2f} to the right", 1 + of_left, 1 + of_right)
              : fmt::format(", {:.2f} forward and {:.2f} backward", 1 + of_left, 1 + of_right);
@@ -118,7 +118,7 @@ std::string at_speeds(const TermRows& term) {
   const double middle = quantile_of(speeds, 0.5);
   const double slow = term.slope_where([&](Index i) { return matters(i) && term.rows.speed_mps[i] <= middle; });
   const double fast = term.slope_where([&](Index i) { return matters(i) && term.rows.speed_mps[i] > middle; });
-  if (told_alike(slow, fast, term.slope)) return ", at all speeds";
+  if (nearly_equal(slow, fast, term.slope)) return ", at all speeds";
   return fmt::format(", {:.2f} where the tracks run slower than {:.2g} m/s and {:.2f} where faster", 1 + slow, middle,
                      1 + fast);
 }

@@ -47,7 +47,7 @@ using EffectSet = std::vector<std::size_t>;  // numbers of candidates
 EffectSet effects_of(const Model& model);
 
 // Fits on the curves. `beyond`: joint shift of the effects minus the sum of their curves, for each group; empty: none.
-// Estimates discrepancies starting from `start` and from none, and returns the likelier fit.
+// Estimates discrepancies starting from `start` and from none, and returns the more likely fit.
 Model fit_model(const StageData& data, const EffectCurves& curves, std::span<const std::size_t> effects,
                 const GroupVectors& beyond, const Discrepancies& start);
 // The same with fixed discrepancies.

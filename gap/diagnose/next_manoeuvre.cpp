@@ -275,7 +275,7 @@ class Proposer {
 };
 
 std::string risk_in_words(const Risk& risk) {
-  if (risk.fails) return "the robot may turn over: not to be driven";
+  if (risk.fails) return "the robot may turn over: do not drive it";
   std::string words = fmt::format("tilts by {:.0f} degrees", risk.largest_tilt_rad * 180 / std::numbers::pi);
   words += risk.fall_m < 0.005 ? ", no fall" : fmt::format(", falls by {:.0f} mm", risk.fall_m * 1000);
   if (risk.impact_mps2 > kImpact_mps2) words += fmt::format(", lands with {:.0f} m/s^2", risk.impact_mps2);
@@ -315,13 +315,13 @@ std::string in_words(const ProposedManoeuvre& proposed) {
 }
 
 std::string advice_in_words(std::span<const ProposedManoeuvre> proposed) {
-  if (proposed.empty()) return "there is nothing to tell apart, or no manoeuvre that this robot can drive";
+  if (proposed.empty()) return "there are no effects to distinguish, or no manoeuvre that this robot can drive";
   const ProposedManoeuvre& first = proposed.front();
   if (first.suffices) return "drive next: " + in_words(first);
   const std::string none =
       fmt::format("none of the {} shipped manoeuvres that this robot can drive suffices", proposed.size());
-  if (first.expected_score < kNothing) return none + ": they tell nothing of these apart";
-  return none + "; nearest comes " + in_words(first);
+  if (first.expected_score < kNothing) return none + ": none of them distinguishes these effects";
+  return none + "; the best of them: " + in_words(first);
 }
 
 }  // namespace kenaf::gap::diagnose

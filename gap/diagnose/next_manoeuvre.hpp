@@ -44,8 +44,8 @@ struct ProposedManoeuvre {
   Risk risk;
 };
 
-// Chosen: for two models d standard deviations apart, the likelier one is wrong with probability Phi(-d / 2): 0.13 % at
-// 6, and 7 % if the true standard deviations are twice as large.
+// Chosen: for two models d standard deviations apart, the more likely one is wrong with probability Phi(-d / 2): 0.13 %
+// at 6, and 7 % if the true standard deviations are twice as large.
 inline constexpr double kSuffices = 6;
 // Chosen: 20 degrees, more than a changed value changes the same posture.
 inline constexpr double kAnotherOutcome_rad = 0.35;

@@ -169,7 +169,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
   result.robot = physics::load_robot(result.robot_name);
   const std::vector<runs::DatasetRun> entries = drawn_evenly(result.dataset.runs, most_runs);
   if (entries.size() < result.dataset.runs.size())
-    result.warnings.push_back(fmt::format("{} of {} runs are used, drawn evenly from all manoeuvres", entries.size(),
+    result.warnings.push_back(fmt::format("{} of {} runs are used, sampled evenly from all manoeuvres", entries.size(),
                                           result.dataset.runs.size()));
 
   // each usable run with its replays; faulty, copied and too short ones are left out, worlds are loaded once
@@ -181,7 +181,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
   for (const runs::DatasetRun& entry : entries) {
     // unusable: failed simulations and copies
     if (!entry.fault.empty()) {
-      result.warnings.push_back(fmt::format("{}: its simulation went wrong; left out", entry.file));
+      result.warnings.push_back(fmt::format("{}: left out, because its simulation failed", entry.file));
       continue;
     }
     Observation observation{entry.file, entry.manoeuvre, 0, {}, {}, {}, 0};
@@ -197,7 +197,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     const std::string path = (folder / entry.file).string();
     observation.replay = rollout::replay_of(observation.run, path);
     if (observation.replay.at_most_s() < kShortest_s) {
-      result.warnings.push_back(fmt::format("{}: lasts less than {} s; left out", entry.file, kShortest_s));
+      result.warnings.push_back(fmt::format("{}: left out, because it is shorter than {} s", entry.file, kShortest_s));
       continue;
     }
 
@@ -243,7 +243,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
   result.not_simulated = channels_not_simulated(result);
   for (const std::string& column : result.not_simulated)
     result.warnings.push_back(
-        fmt::format("{}: measured, but the described robot has no sensor for it: not compared", column));
+        fmt::format("{}: not compared, because the described robot has no sensor for it", column));
   return result;
 }
 

@@ -34,7 +34,8 @@ bool same(const fs::path& a, const fs::path& b) {
 
 void check_is_other_folder(const fs::path& out, const fs::path& dataset) {
   if (same(out, dataset))
-    throw std::runtime_error(fmt::format("{}: is the dataset; give another folder for the reports", out.string()));
+    throw std::runtime_error(
+        fmt::format("{}: is the folder of the dataset; give another folder for the reports", out.string()));
 }
 
 void check_keeps_inputs(const fs::path& out, const fs::path& dataset, const std::string& robot) {
@@ -46,14 +47,13 @@ void check_keeps_inputs(const fs::path& out, const fs::path& dataset, const std:
     const std::string name =
         robot.empty() ? runs::resolve_beside(dataset, runs::read_dataset(dataset).robot, ".toml") : robot;
     if (same(replaced, description::find_data_file("robots", name, ".toml")))
-      throw std::runtime_error(
-          fmt::format("{}: is the description that is to be diagnosed, and the report would replace it; give another "
-                      "folder for the reports",
-                      replaced.string()));
+      throw std::runtime_error(fmt::format(
+          "{}: is the description to diagnose, which the report would replace; give another folder for the reports",
+          replaced.string()));
     if (!has_report)
       throw std::runtime_error(
-          fmt::format("{}: is of no diagnosis, as no report is beside it, and would be replaced; give another folder "
-                      "for the reports",
+          fmt::format("{}: does not come from a diagnosis (there is no report in its folder) and would be replaced; "
+                      "give another folder for the reports",
                       replaced.string()));
   }
 }
@@ -61,7 +61,7 @@ void check_keeps_inputs(const fs::path& out, const fs::path& dataset, const std:
 fs::path write_diagnosis(const Diagnosis& d, const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw std::runtime_error(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+  if (error) throw std::runtime_error(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
   if (!d.interrupted.empty() && has_complete_report(folder)) {
     runs::write_whole_file(folder / kPartialPage, diagnosis_html(d));
     runs::write_whole_file(folder / kPartialReport, diagnosis_json(d));

@@ -228,7 +228,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   for (const ProposedManoeuvre& next : d.next)
     json["next_manoeuvres"].push_back({{"manoeuvre", next.manoeuvre},
                                        {"world", next.world},
-                                       {"separates", candidate_names(d, d.told_apart)},
+                                       {"separates", candidate_names(d, d.to_separate)},
                                        {"expected_score", number(next.expected_score)},
                                        {"suffices", next.suffices},
                                        {"duration_s", number(next.duration_s)},

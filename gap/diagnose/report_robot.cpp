@@ -41,31 +41,32 @@ std::string contained(const Diagnosis& d, const Setting& setting) {
 
 std::string top_of_file(const Diagnosis& d, const Settings& corrections, bool is_named) {
   // what the file contains
-  std::string text = as_comment(
-      is_named ? "This description has the effects that a diagnosis of runs named:"
-               : "A CANDIDATE: a diagnosis of runs named no effect. This description has what explains most of "
-                 "the gap, which may be something else:");
+  std::string text =
+      as_comment(is_named ? "This description contains the effects that a diagnosis of runs named:"
+                          : "A CANDIDATE: a diagnosis of runs named no effect. This description contains the model "
+                            "that explains most of the gap, which may have another cause:");
   for (const Setting& setting : corrections) text += as_comment(contained(d, setting));
 
   // what it does not contain: choices left open, the difference of a baseline
   std::vector<std::string> lacks;
   for (const AmbiguousSet& set : names_found(d).ambiguous_sets)
-    lacks.push_back(
-        fmt::format("- which of {} it is: these runs cannot tell, the best fit is in it", set_in_words(d, set)));
+    lacks.push_back(fmt::format("- the choice between {}: these runs cannot distinguish them; the best fit is included",
+                                set_in_words(d, set)));
   if (!d.options.against.empty())
-    lacks.push_back(fmt::format("- what {} differs from the simulation by: only the change since then was looked for",
-                                d.options.against.string()));
+    lacks.push_back(
+        fmt::format("- the gap between {} and the simulation: the diagnosis covered only the change since then",
+                    d.options.against.string()));
 
   // by stage: a gap without a name, effects without a name, and what the model leaves
   for (const std::size_t s : stages_with_gap(d)) {
     const StageDiagnosis& stage = d.stages[s];
     if (is_named && names_found(stage).empty())
-      lacks.push_back(fmt::format("- what causes the gap {}: no effect is named for it", from_to(stage.passage)));
+      lacks.push_back(fmt::format("- the cause of the gap {}: no effect is named", from_to(stage.passage)));
     if (is_named)
       for (const NamedEffect& effect : stage.decision.effects)
         if (!effect.doubts.empty() &&
             std::ranges::none_of(corrections, [&](const Setting& c) { return c.candidate == effect.candidate; }))
-          lacks.push_back(fmt::format("- {}, which got no name: {}", d.candidates[effect.candidate].name,
+          lacks.push_back(fmt::format("- {}, which is not named: {}", d.candidates[effect.candidate].name,
                                       fmt::join(doubts_in_words(d, effect), "; ")));
     if (stage.decision.complete) continue;
     std::string left = fmt::format("- {}: {}", from_to(stage.passage), left_in_words(stage));
@@ -74,7 +75,7 @@ std::string top_of_file(const Diagnosis& d, const Settings& corrections, bool is
   }
 
   // as one block of comments
-  if (lacks.empty()) return text + as_comment("What these runs show beside that is within noise and spread.") + "\n";
+  if (lacks.empty()) return text + as_comment("Everything else in these runs is within noise and spread.") + "\n";
   text += as_comment("It does not contain:");
   for (const std::string& line : lacks) text += as_comment(line);
   return text + "\n";

@@ -35,7 +35,7 @@ class Screen {
 
 std::string first_line(const Diagnosis& d) {
   if (!d.interrupted.empty())
-    return fmt::format("UNFINISHED: interrupted while {}; what is known until then follows", d.interrupted);
+    return fmt::format("UNFINISHED: interrupted while {}; the results up to then follow", d.interrupted);
   std::string word(verdict_name(d.verdict));
   for (char& c : word) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   return fmt::format("{}: {}", word, headline(d));
@@ -52,19 +52,20 @@ void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
   }
   screen.add(fmt::format("{}: {} of the whole gap; {}", name, percent(share_of_gap(d, s)), gap_in_words(d, stage)));
 
-  // one line per effect: value, what it takes off or why it has no name, partners, rivals
+  // one line per effect: value, what it explains or why it has no name, partners, rivals
   for (const NamedEffect& effect : stage.decision.effects) {
     const candidates::Candidate& candidate = d.candidates[effect.candidate];
     std::string line = "  " + value_in_words(candidate, effect.value);
     if (!effect.doubts.empty())
       line += fmt::format("; no name: {}", fmt::join(doubts_in_words(d, effect), "; "));
     else
-      line += fmt::format("; takes off {}", percent(explained_by(stage, effect)));
+      line += fmt::format("; explains {}", percent(explained_by(stage, effect)));
     if (!effect.partners.empty())
       line += fmt::format("; with {} {}", enumeration(partner_names(d, stage, effect)),
                           percent(explained_by_set(stage, effect)));
     if (effect.doubts.empty() && effect.rivals.size() > 1)
-      line += fmt::format("; as good: {}", enumeration(candidate_names(d, std::span(effect.rivals).subspan(1)), "or"));
+      line +=
+          fmt::format("; equally good: {}", enumeration(candidate_names(d, std::span(effect.rivals).subspan(1)), "or"));
     screen.add(line, "    ");
   }
 
@@ -80,7 +81,7 @@ void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
   // without a model, the candidates that explain most alone
   if (stage.decision.effects.empty())
     if (const std::vector<std::string> alone = best_alone(d, stage); !alone.empty())
-      screen.add(fmt::format("  alone, of the gap: {}", fmt::join(alone, ", ")));
+      screen.add(fmt::format("  share of the gap explained alone: {}", fmt::join(alone, ", ")));
 }
 
 void add_where(Screen& screen, const Diagnosis& d, const StageDiagnosis& stage) {
@@ -123,10 +124,10 @@ std::string diagnosis_text(const Diagnosis& d) {
   if (!d.next.empty()) {
     screen.add("");
     screen.add(
-        fmt::format("To tell {} apart: {}", enumeration(candidate_names(d, d.told_apart)), advice_in_words(d.next)));
+        fmt::format("To distinguish {}: {}", enumeration(candidate_names(d, d.to_separate)), advice_in_words(d.next)));
   }
   if (const RobotFile robot = robot_file(d); !robot.fault.empty())
-    screen.add(fmt::format("No robot with what was found: {}", robot.fault));
+    screen.add(fmt::format("No corrected robot: {}", robot.fault));
   return screen.take();
 }
 

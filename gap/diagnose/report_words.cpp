@@ -46,7 +46,7 @@ std::string stage_in_words(const Diagnosis& d, const StageDiagnosis& stage) {
                                   percent(explained_by_names(stage)), from_to(stage.passage));
   const std::string together = percent(explained(stage));
   if (!all_are_named(stage) && together != percent(explained_by_names(stage)))
-    words += fmt::format(" ({} together with effects that get no name)", together);
+    words += fmt::format(" ({} together with unnamed effects)", together);
   return words + (names.ambiguous_sets.empty() ? "" : ", but these runs cannot tell which");
 }
 
@@ -203,24 +203,24 @@ std::string from_to(Passage passage) {
 }
 
 std::string_view measured_on(const Diagnosis& d) {
-  return d.observations.runs.size() > 1 ? "runs held out" : "the run fitted to, as there is no other";
+  return d.observations.runs.size() > 1 ? "runs held out" : "the fitted run, the only one";
 }
 
 std::string_view noise_source(const Diagnosis& d) {
   if (d.stages.empty()) return "not measured yet";
-  if (d.stages.front().nominal_floor.from_repeats) return "from how repeats differ";
+  if (d.stages.front().nominal_floor.from_repeats) return "from the spread of repeated runs";
   return d.observations.dataset.noise.empty()
-             ? "from the runs themselves, as none repeats another (less sure: a gap makes it larger)"
-             : "as the dataset states it, else from the runs themselves, as none repeats another (less sure: a gap "
-               "makes "
-               "it larger)";
+             ? "from the runs themselves, because none repeats another (less certain: a gap increases it)"
+             : "as the dataset states it, else from the runs themselves, because none repeats another (less certain: a "
+               "gap increases it)";
 }
 
 std::string headline(const Diagnosis& d) {
   if (!d.interrupted.empty()) return fmt::format("Unfinished: interrupted while {}", d.interrupted);
-  if (d.verdict == Verdict::none) return "No gap: robot and simulation differ no more than noise and repeats do";
+  if (d.verdict == Verdict::none)
+    return "No gap: robot and simulation differ by no more than noise and repeated runs do";
   const std::vector<std::size_t> stages = stages_with_gap(d);
-  if (stages.empty()) return "Nothing could be compared";
+  if (stages.empty()) return "No stage could be compared";
   std::vector<std::string> named, unnamed;
   for (const std::size_t s : stages) {
     if (names_found(d.stages[s]).empty())
@@ -228,7 +228,7 @@ std::string headline(const Diagnosis& d) {
     else
       named.push_back(stage_in_words(d, d.stages[s]));
   }
-  if (named.empty()) return fmt::format("There is a gap {}, and no effect is named for it", enumeration(unnamed));
+  if (named.empty()) return fmt::format("There is a gap {}, and no effect is named", enumeration(unnamed));
   if (!unnamed.empty()) named.push_back(fmt::format("no effect is named for the gap {}", enumeration(unnamed, "or")));
   std::string words = fmt::format("{}", fmt::join(named, "; "));
   if (words.starts_with("one of ")) words.front() = 'O';  // names keep their case
@@ -238,8 +238,8 @@ std::string headline(const Diagnosis& d) {
 std::string against_in_words(const Diagnosis& d) {
   if (d.options.against.empty()) return {};
   return fmt::format(
-      "The gap is what changed since {}, of which {} runs repeat these; what both differ from the simulation by is no "
-      "part of it",
+      "The gap is the change since {}, of which {} runs repeat these; a difference from the simulation that both share "
+      "is not part of it",
       d.options.against.string(), d.baseline_runs);
 }
 
@@ -269,7 +269,7 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& 
                                     figure(candidate.max), unit_suffix(candidate.unit)));
         break;
       case Doubt::ordinary:
-        words.push_back(fmt::format("numbers of the description are off by as much (1 sigma: {}{})",
+        words.push_back(fmt::format("a typical error of this number is as large (1 sigma: {}{})",
                                     figure(effect.ordinarily_off), unit_suffix(candidate.unit)));
         break;
       case Doubt::disagreement: {
@@ -279,38 +279,37 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& 
             candidate.present == 0
                 ? "it"
                 : fmt::format("its change from {}{}", figure(candidate.present), unit_suffix(candidate.unit));
-        words.push_back(fmt::format("manoeuvres want values that differ by more than {}{}", part, of_it));
+        words.push_back(fmt::format("the values fitted to single manoeuvres differ by more than {}{}", part, of_it));
         break;
       }
       case Doubt::trend:
-        words.push_back(fmt::format("earlier and later parts of manoeuvres want values that differ by {}{}",
+        words.push_back(fmt::format("the values fitted to earlier and later parts of manoeuvres differ by {}{}",
                                     figure(effect.value.trend), unit_suffix(candidate.unit)));
         break;
       case Doubt::refuted:
-        words.push_back(fmt::format("with it, more would be left from {}", passage_name(*effect.refuted_by)));
+        words.push_back(fmt::format("it would increase the residual from {}", passage_name(*effect.refuted_by)));
         break;
       case Doubt::not_held_out: {
         const bool by_manoeuvre = effect.share_by_manoeuvre.of_kind < effect.share.of_kind;
         const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;
-        words.push_back(fmt::format("it takes off {} of the gap in {} on {}", only(least.of_kind),
-                                    kind_name(least.kind), by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
+        words.push_back(fmt::format("it explains {} of the gap in {} on {}", only(least.of_kind), kind_name(least.kind),
+                                    by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
         break;
       }
-      case Doubt::trifle: {
+      case Doubt::negligible: {
         const auto least = [&](auto member) {
           return std::fmin(effect.share.*member, effect.share_by_manoeuvre.*member);
         };
         using Share = HeldOutShares::OfEffect;
-        words.push_back(fmt::format("it takes off {} of the stage's gap",
+        words.push_back(fmt::format("it explains {} of the stage's gap",
                                     only(std::min(least(&Share::of_stage), least(&Share::beyond_numbers)))));
         break;
       }
       case Doubt::little_explained: {
         const bool by_manoeuvre = effect.share_by_manoeuvre.model_of_kind < effect.share.model_of_kind;
         const HeldOutShares::OfEffect& least = by_manoeuvre ? effect.share_by_manoeuvre : effect.share;
-        words.push_back(fmt::format("all effects together take off {} of the gap in {} on {}",
-                                    only(least.model_of_kind), kind_name(least.kind),
-                                    by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
+        words.push_back(fmt::format("all effects together explain {} of the gap in {} on {}", only(least.model_of_kind),
+                                    kind_name(least.kind), by_manoeuvre ? "manoeuvres held out" : measured_on(d)));
         break;
       }
     }
@@ -338,12 +337,12 @@ std::string gap_in_words(const Diagnosis& d, const StageDiagnosis& stage) {
 
 std::string left_in_words(const StageDiagnosis& stage) {
   if (stage.decision.verdict == Verdict::none) return {};
-  if (stage.decision.complete) return "what is left is within noise and spread";
+  if (stage.decision.complete) return "the residual is within noise and spread";
   const double share = explained(stage);
-  if (share == 0) return "all of the gap is left";
+  if (share == 0) return "all of the gap remains";
   const bool some_lack_a_name = !names_found(stage).empty() && !all_are_named(stage);
-  return fmt::format("{} of the gap is left{}", percent(1 - share),
-                     some_lack_a_name ? ", even with the effects that get no name" : "");
+  return fmt::format("{} of the gap remains{}", percent(1 - share),
+                     some_lack_a_name ? ", even with the unnamed effects" : "");
 }
 
 std::vector<SingleEvidence> ranked_by_share(const StageDiagnosis& stage) {

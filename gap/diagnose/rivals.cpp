@@ -12,7 +12,7 @@ namespace {
 
 // At the angle below which two effects cannot be distinguished, the wrong one leaves this share of the squares that the
 // right one explains: sin^2 of the angle.
-const double kAlike = std::pow(std::sin(kToldApart_deg / 180 * std::numbers::pi), 2);
+const double kAlike = std::pow(std::sin(kDistinguishable_deg / 180 * std::numbers::pi), 2);
 // Vuong's test: standard errors by which the best model must beat a rival over manoeuvres (one-sided 95 %), and the
 // minimum number of manoeuvres.
 constexpr double kBetter_sigma = 1.64;

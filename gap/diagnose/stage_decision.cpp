@@ -166,7 +166,7 @@ void describe(StageDecision& d, const EffectCurves& curves, const Simulate& simu
     d.effects[i].refuted_by = elsewhere.refutes(d.effects[i].candidate);
   }
   d.p_left = cell_energy(d.data, rest_of(d.data, d.best.model), test.stretch_s).p_of_noise(test.inflation);
-  d.complete = d.p_left > settings.surprise;
+  d.complete = d.p_left > settings.false_incomplete;
 }
 
 void take(StageDecision& d, StageAround there) {

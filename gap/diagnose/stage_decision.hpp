@@ -24,13 +24,13 @@ std::string_view verdict_name(Verdict verdict);
 
 // Reasons why an effect of the best model gets no name.
 enum class Doubt {
-  end_of_range,      // the value is at the end of its range: it stands for something that the effect cannot do
+  end_of_range,      // the value is at the end of its range: it absorbs something that the effect cannot model
   ordinary,          // the error of a number of the description is no larger than that of the others
   disagreement,      // values of manoeuvres differ by more than a share of the effect
   trend,             // so do values of earlier and later parts of runs
   refuted,           // it would increase the residual of another stage
   not_held_out,      // it explains too little on held-out runs or manoeuvres
-  trifle,            // it explains hardly anything of the stage's whole gap
+  negligible,        // it explains hardly anything of the stage's whole gap
   little_explained,  // in the channels where it acts, the whole model explains too little on held-out runs
 };
 

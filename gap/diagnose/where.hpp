@@ -30,10 +30,10 @@ struct PhaseGap {
 struct GapPlaces {
   std::vector<ChannelGap> channels;  // measured ones, largest share first
   std::vector<PhaseGap> phases;      // of one run of each group of repeats, largest share first
-  double beyond_chance = 0;          // total of the shares: sum over cells, in squared floors
+  double beyond_chance = 0;          // total of the shares: sum over cells, in units of the squared noise floor
 };
 
-// The energy of a cell beyond chance, in squared floors.
+// The energy of a cell beyond chance, in units of the squared noise floor.
 double beyond_chance(const Cell& cell);
 // Subtracting an open shape, such as an offset of one count, leaves its negative elsewhere. So a cell has the smaller
 // energy of those with and without shapes subtracted.

@@ -22,11 +22,11 @@ constexpr double kWorthSaying = 0.02;     // of the whole gap: the table suffice
 std::string_view stage_meaning(Passage passage) {
   switch (passage) {
     case Passage::command_to_drive:
-      return "tracks and flippers turn otherwise than the same commands make them turn in the simulation";
+      return "the tracks and flippers respond to the commands differently than in the simulation";
     case Passage::drive_to_body:
-      return "the body moves otherwise than the same turns of its tracks move it in the simulation";
+      return "the body moves differently than in the simulation, with the same track motion";
     case Passage::body_to_sensor:
-      return "a sensor reports another motion than the body makes";
+      return "a sensor reports a motion that differs from the motion of the body";
   }
   return {};
 }
@@ -63,13 +63,12 @@ std::string stages_at_a_glance(const Diagnosis& d) {
 
   // a key to the two colours
   return html +
-         "</table>\n<p class=\"soft key\"><span class=\"gone\"></span> the best model takes it off, on runs that it "
-         "was "
-         "not fitted to <span class=\"left\"></span> is left</p>\n";
+         "</table>\n<p class=\"soft key\"><span class=\"gone\"></span> explained by the best model, on held-out runs "
+         "<span class=\"left\"></span> left unexplained</p>\n";
 }
 
 // The stages described in words.
-std::vector<std::size_t> stages_told(const Diagnosis& d) {
+std::vector<std::size_t> stages_described(const Diagnosis& d) {
   std::vector<std::size_t> stages = stages_with_gap(d);
   std::erase_if(stages, [&](std::size_t s) {
     return s != stages_with_gap(d).front() && share_of_gap(d, s) < kWorthSaying && names_found(d.stages[s]).empty();
@@ -79,7 +78,7 @@ std::vector<std::size_t> stages_told(const Diagnosis& d) {
 
 std::string where_is_it(const Diagnosis& d) {
   std::vector<std::string> items;
-  for (const std::size_t s : stages_told(d)) {
+  for (const std::size_t s : stages_described(d)) {
     const StageDiagnosis& stage = d.stages[s];
     std::string item = fmt::format("{} of it is <b>{}</b>: {}", percent(share_of_gap(d, s)), from_to(stage.passage),
                                    stage_meaning(stage.passage));
@@ -95,10 +94,9 @@ std::string effect_item(const Diagnosis& d, const StageDiagnosis& stage, const N
   const std::string words = value_in_words(candidate, effect.value);  // begins with the name
   std::string item = fmt::format("{}: <b>{}</b>{}", with_capital(from_to(stage.passage)), escaped(candidate.name),
                                  escaped(words.substr(candidate.name.size())));
-  item +=
-      fmt::format("; it takes off {} of the gap in {}", percent(effect.share.of_kind), kind_name(effect.share.kind));
+  item += fmt::format("; it explains {} of the gap in {}", percent(effect.share.of_kind), kind_name(effect.share.kind));
   if (!effect.partners.empty())
-    item += fmt::format("; with {} {}, and how much of it is whose these runs do not tell",
+    item += fmt::format("; together with {} {}, which these runs cannot attribute to the single effects",
                         escaped(enumeration(partner_names(d, stage, effect))), percent(effect.share_of_set.of_kind));
   if (effect.rivals.size() > 1)
     item += fmt::format("; {} would explain it as well",
@@ -117,25 +115,25 @@ std::string without_name(const Diagnosis& d, const StageDiagnosis& stage) {
   if (!doubted.empty()) item += fmt::format("{}o name for {}. ", item.empty() ? 'n' : 'N', enumeration(doubted));
   if (names_found(stage).empty())
     if (const std::vector<std::string> alone = best_alone(d, stage); !alone.empty())
-      item += fmt::format("What takes off most of the gap by itself: {}.", enumeration(alone));
+      item += fmt::format("Explain most of the gap alone: {}.", enumeration(alone));
   if (item.empty()) return {};
   return escaped(fmt::format("{}: {}", with_capital(from_to(stage.passage)), item));
 }
 
 std::string which_effects(const Diagnosis& d) {
   std::vector<std::string> items;
-  for (const std::size_t s : stages_told(d)) {
+  for (const std::size_t s : stages_described(d)) {
     const StageDiagnosis& stage = d.stages[s];
     for (const NamedEffect& effect : stage.decision.effects)
       if (effect.doubts.empty()) items.push_back(effect_item(d, stage, effect));
     if (std::string others = without_name(d, stage); !others.empty()) items.push_back(std::move(others));
   }
-  return items.empty() ? "<p>None has to.</p>" : bullets(items);
+  return items.empty() ? "<p>No effect is needed to explain the runs.</p>" : bullets(items);
 }
 
 std::string how_much(const Diagnosis& d) {
   std::vector<std::string> items;
-  for (const std::size_t s : stages_told(d)) {
+  for (const std::size_t s : stages_described(d)) {
     const StageDiagnosis& stage = d.stages[s];
     const bool has_model = !stage.decision.best.model.places.empty();
     std::string item = fmt::format("{}: {}", with_capital(from_to(stage.passage)), gap_in_words(d, stage));
@@ -156,10 +154,10 @@ std::string how_much(const Diagnosis& d) {
 
 std::string what_is_left(const Diagnosis& d) {
   std::vector<std::string> items;
-  for (const std::size_t s : stages_told(d)) {
+  for (const std::size_t s : stages_described(d)) {
     const StageDiagnosis& stage = d.stages[s];
     std::string item = fmt::format("{}: {}", with_capital(from_to(stage.passage)), left_in_words(stage));
-    if (!stage.decision.complete && stage.left_over.empty()) item += "; it goes with nothing that was measured";
+    if (!stage.decision.complete && stage.left_over.empty()) item += "; it correlates with no measured quantity";
     for (std::size_t i = 0; !stage.decision.complete && i < std::min(kMostLeftSaid, stage.left_over.size()); ++i) {
       const Dependence& dependence = stage.left_over[i];
       item += fmt::format(". {}", escaped(with_capital(dependence.words)));
@@ -168,7 +166,7 @@ std::string what_is_left(const Diagnosis& d) {
     }
     items.push_back(item + ".");
   }
-  return items.empty() ? "<p>Nothing beyond noise and what repeats differ by.</p>" : bullets(items);
+  return items.empty() ? "<p>Nothing beyond noise and the spread of repeated runs.</p>" : bullets(items);
 }
 
 std::string what_next(const Diagnosis& d) {
@@ -177,44 +175,45 @@ std::string what_next(const Diagnosis& d) {
   // one item for each verdict: which file to use, and how far to trust it
   switch (d.verdict) {
     case Verdict::none:
-      return "<p>Use the simulator as it is for motions like these. What these manoeuvres do not show can still be "
-             "there: to "
-             "look for it, drive others, or the same ones more often.</p>";
+      return "<p>Use the simulator as it is for motions like these. Other motions may still show a gap: to look for "
+             "it, drive other manoeuvres, or repeat these more often.</p>";
     case Verdict::named:
       items.emplace_back(
-          d.complete ? "Use <b>robot.toml</b>, beside this page, in place of the description: it has the named "
-                       "effects switched on. Then drive something new and diagnose that with robot.toml: there "
-                       "should be no gap."
-                     : "Use <b>robot.toml</b>, beside this page, in place of the description: it has the named "
-                       "effects switched on, and says at its top what it does not contain. Diagnose new runs with "
-                       "it to look for what is left.");
+          d.complete
+              ? "Use <b>robot.toml</b>, in the folder of this page, in place of the description: the named effects are "
+                "switched on in it. Then drive a new manoeuvre and diagnose it with robot.toml: no gap should remain."
+              : "Use <b>robot.toml</b>, in the folder of this page, in place of the description: the named effects are "
+                "switched on in it, and a comment at its top lists what it does not contain. Diagnose new runs with it "
+                "to find the causes of the remaining gap.");
       break;
     case Verdict::ambiguous:
       items.emplace_back(
-          "<b>robot.toml</b>, beside this page, reproduces these runs better than the description. As these "
-          "runs cannot tell which effect it is, it may be wrong in other motions.");
+          "<b>robot.toml</b>, in the folder of this page, reproduces these runs better than the description. These "
+          "runs cannot identify the effect, so the file may be wrong for other motions.");
       break;
     case Verdict::unknown:
       if (!robot.name.empty())
         items.emplace_back(
-            "<b>robot.candidate.toml</b>, beside this page, has the best model: it comes nearer to these runs, "
-            "but it need not be the cause. There is no robot.toml.");
+            "<b>robot.candidate.toml</b>, in the folder of this page, contains the best model: it reproduces these "
+            "runs better than the description, but may not be the cause. No robot.toml was written.");
       items.emplace_back(
-          "Check, on the way from command to sensor, where the gap first is: the robot's description, the "
-          "world's dimensions, the units of the log and its time stamps.");
+          "Follow the signals from command to sensor and find where the gap first appears. Check the robot's "
+          "description, the dimensions of the world, and the units and time stamps of the log.");
       break;
   }
 
   // without a valid robot there is no file, so that says all of it
   if (!robot.fault.empty())
-    items = {fmt::format("No robot.toml was written, as the values together make no robot: {}.", escaped(robot.fault))};
+    items = {fmt::format("No robot.toml was written, because the fitted values together make an invalid robot: {}.",
+                         escaped(robot.fault))};
 
   // the proposed manoeuvre, or the request for one where a choice is open
   if (!d.next.empty())
-    items.push_back(fmt::format("To tell {} apart: {}.", escaped(enumeration(candidate_names(d, d.told_apart))),
+    items.push_back(fmt::format("To distinguish {}: {}.", escaped(enumeration(candidate_names(d, d.to_separate))),
                                 escaped(advice_in_words(d.next))));
   else if (d.verdict == Verdict::ambiguous)
-    items.emplace_back("Drive a manoeuvre in which they would differ, add its runs to the dataset and diagnose again.");
+    items.emplace_back(
+        "Drive a manoeuvre in which these effects differ, add its runs to the dataset and diagnose again.");
   return bullets(items);
 }
 
@@ -231,8 +230,8 @@ std::string answer_section(const Diagnosis& d) {
   if (!d.options.against.empty()) html += paragraph(plot::escaped(against_in_words(d)) + ".", "soft");
   if (!finished)
     html += paragraph(
-        "The diagnosis was stopped before its end. What follows is what was known by then; there is no verdict, "
-        "and nothing that is missing counts as not found. Run it again and let it end.");
+        "The diagnosis was interrupted. This page shows the results up to then; there is no verdict, and a missing "
+        "result does not mean that nothing was found. Run the diagnosis again to its end.");
   if (!d.stages.empty()) html += stages_at_a_glance(d);
   if (finished && !d.stages.empty())
     html += "<dl>\n" + answer("Where is the gap?", where_is_it(d)) + answer("Which effects?", which_effects(d)) +

@@ -58,9 +58,9 @@ std::vector<std::size_t> shown_rows(const StageDiagnosis& stage) {
 
 std::string matrix(const std::vector<std::string>& names, const MatrixXd& angle_deg) {
   plot::HeatMap map;
-  map.title = "How alike the effects look in these runs: angle between what they do, in degrees";
+  map.title = "Similarity of the effects in these runs: angle between their shifts, in degrees";
   map.legend =
-      fmt::format("0: the same (dark); 90: nothing in common; below {:.0f} they cannot be told apart", kToldApart_deg);
+      fmt::format("0: identical (dark); 90: orthogonal; below {:.0f}: indistinguishable", kDistinguishable_deg);
   map.width_px = kWide_px;
   map.rows = map.columns = names;
   for (std::size_t r = 0; r < names.size(); ++r) {
@@ -81,11 +81,11 @@ std::string pairs_in_words(const std::vector<std::string>& names, const MatrixXd
   std::vector<std::string> pairs;
   for (std::size_t a = 0; a < names.size(); ++a)
     for (std::size_t b = a + 1; b < names.size(); ++b)
-      if (const double angle = angle_deg(static_cast<Index>(a), static_cast<Index>(b)); angle < kToldApart_deg)
+      if (const double angle = angle_deg(static_cast<Index>(a), static_cast<Index>(b)); angle < kDistinguishable_deg)
         pairs.push_back(fmt::format("<li>{} and {} ({:.1f} degrees)</li>\n", plot::escaped(names[a]),
                                     plot::escaped(names[b]), angle));
-  if (pairs.empty()) return paragraph(fmt::format("No two of these are within {:.0f} degrees.", kToldApart_deg));
-  std::string html = paragraph("These runs cannot tell apart:") + "<ul>\n";
+  if (pairs.empty()) return paragraph(fmt::format("No two of these are within {:.0f} degrees.", kDistinguishable_deg));
+  std::string html = paragraph("These runs cannot distinguish:") + "<ul>\n";
   for (std::size_t i = 0; i < std::min(kMostPairs, pairs.size()); ++i) html += pairs[i];
   if (pairs.size() > kMostPairs) html += fmt::format("<li>and {} more pairs</li>\n", pairs.size() - kMostPairs);
   return html + "</ul>\n";
@@ -113,8 +113,8 @@ std::string confusability_part(const Diagnosis& d, const StageDiagnosis& stage) 
   const Isolability& isolability = stage.isolability;
   // no candidate moves these runs at all
   if (isolability.candidates.empty())
-    return "<h3>What these runs can tell apart</h3>\n" +
-           paragraph("These runs show no effect in this stage at any size.");
+    return "<h3>Which effects these runs can distinguish</h3>\n" +
+           paragraph("No effect in this stage shows in these runs, whatever its size.");
 
   // the angles of the shown candidates, sorted so that look-alikes are neighbours
   const std::vector<std::size_t> rows = shown_rows(stage);
@@ -133,18 +133,16 @@ std::string confusability_part(const Diagnosis& d, const StageDiagnosis& stage) 
   for (const std::size_t i : order) names.push_back(d.candidates[isolability.candidates[rows[i]]].name);
 
   // how to read it, what is not shown, then matrix and pairs
-  std::string html = "<details><summary>What these runs can tell apart</summary>\n";
+  std::string html = "<details><summary>Which effects these runs can distinguish</summary>\n";
   html += paragraph(
-      "A small amount of an effect moves all channels of all runs in some direction. The angle between the directions "
-      "of two "
-      "effects is a matter of the manoeuvres and the sensors alone, not of the gap.",
+      "A small change of an effect shifts all channels of all runs in some direction. The angle between the directions "
+      "of two effects depends on the manoeuvres and the sensors alone, not on the gap.",
       "soft");
   if (rows.size() < isolability.candidates.size())
-    html += paragraph(
-        fmt::format("{} of {} candidates that these runs show: those of the best model, and those that alone take "
-                    "off most. report.json has all.",
-                    rows.size(), isolability.candidates.size()),
-        "soft");
+    html += paragraph(fmt::format("{} of {} candidates that show in these runs: those of the best model, and those "
+                                  "that explain most alone. report.json lists all.",
+                                  rows.size(), isolability.candidates.size()),
+                      "soft");
   return html + matrix(names, angle_deg) + pairs_in_words(names, angle_deg) + "</details>\n";
 }
 

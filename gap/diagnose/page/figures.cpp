@@ -28,7 +28,7 @@ constexpr double kChannelHeight_px = 240;
 constexpr double kTitle_px = 360;    // of a chart of half width, in letters of normal size: titles are larger
 constexpr double kClimbs_m = 0.05;   // change of height from which it is seen from the side
 constexpr double kAround_m = 0.2;    // around the body's centre: the robot is about 0.5 m long
-constexpr double kBeside_m = 0.1;    // likewise, of a path seen from above
+constexpr double kSideways_m = 0.1;    // likewise, of a path seen from above
 constexpr double kWholeGap_px = 50;  // radius of a disc for the whole gap
 constexpr double kLabelled = 0.01;   // minimum share of the gap for a label of a phase or chart
 constexpr double kApart = 0.2;       // minimum distance of labels, as a share of the path's extent
@@ -83,7 +83,7 @@ Chart place_chart(const Diagnosis& d, const Overlay& overlay, std::vector<Line> 
       if (p.allFinite()) low = low.cwiseMin(p), high = high.cwiseMax(p);
   chart.lines = std::move(lines);
   if (low.x() > high.x()) return chart;
-  const Point around_m(kAround_m, from_side ? kAround_m : kBeside_m);
+  const Point around_m(kAround_m, from_side ? kAround_m : kSideways_m);
   chart.include = {low - around_m, high + around_m};
   if (!from_side) return chart;
   const double beyond_m = 10 * (1 + (high - low).maxCoeff());

@@ -50,12 +50,10 @@ std::string left_over_plot(const Dependence& d) {
 std::string left_over_section(std::span<const Dependence> left_over, std::string_view how_much) {
   std::string html = "<h3>What is left</h3>\n";
   if (!how_much.empty()) html += paragraph(with_capital(std::string(how_much)) + ".");
-  if (left_over.empty())
-    return html + paragraph("What is left beyond noise, if anything, goes with nothing that was measured.");
+  if (left_over.empty()) return html + paragraph("The rest correlates with no measured quantity.");
   html += paragraph(
-      "What the best model leaves, over what was measured: only what holds on runs that were held out of the fit. "
-      "Shares "
-      "are of what is left in that channel beyond noise.",
+      "Residuals of the best model against measured quantities: only dependences that hold on held-out runs. Shares "
+      "are of the squared residual in that channel beyond noise.",
       "soft");
   html += "<ul>\n";
   for (const Dependence& d : left_over)

@@ -10,24 +10,22 @@ namespace kenaf::gap::diagnose {
 
 std::string overlay_section(const Diagnosis& d, std::span<const Overlay> overlays) {
   std::string html = section_head("overlay", "Real, nominal and corrected runs");
-  if (overlays.empty()) return html + paragraph("No run was simulated before the diagnosis ended.");
+  if (overlays.empty()) return html + paragraph("The diagnosis ended before any run was simulated.");
 
   // what the three lines of each figure are, and how many manoeuvres are shown
   const RobotFile robot = robot_file(d);
   const bool has_corrected = overlays.front().corrected.has_value();
-  html += paragraph(
-      fmt::format(
-          "Of each manoeuvre one run, and the channels that show most of its gap. Real is what was measured; nominal "
-          "is the simulated robot as it is described, given the same commands from the same place; {}. Differences are "
-          "averaged over {} s each.",
-          !has_corrected       ? "there is no corrected one, as no effect was fitted"
-          : robot.name.empty() ? "corrected is that robot with the best models of all stages"
-                               : fmt::format("corrected is the robot of {}", robot.name),
-          d.options.span_s),
-      "soft");
+  html += paragraph(fmt::format("One run of each manoeuvre, with the channels that hold most of its gap. Real: "
+                                "measured; nominal: the robot simulated as described, with the same commands and the "
+                                "same initial state; {}. Differences are averaged over {} s.",
+                                !has_corrected       ? "there is no corrected robot, because no effect was fitted"
+                                : robot.name.empty() ? "corrected is that robot with the best models of all stages"
+                                                     : fmt::format("corrected is the robot of {}", robot.name),
+                                d.options.span_s),
+                    "soft");
   if (overlays.size() < d.repeats.size())
     html += paragraph(
-        fmt::format("Shown are the {} of {} manoeuvres with most of the gap.", overlays.size(), d.repeats.size()),
+        fmt::format("The page shows the {} of {} manoeuvres with the largest gap.", overlays.size(), d.repeats.size()),
         "soft");
 
   // per manoeuvre the path and the total residual, then each channel with its residual

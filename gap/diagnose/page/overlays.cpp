@@ -22,7 +22,7 @@ namespace {
 constexpr std::size_t kMostGroups = 8, kLeastChannels = 2, kMostChannels = 4;
 constexpr double kWorthShowing = 0.03;  // minimum share of a manoeuvre's gap for a third and a fourth channel
 constexpr double kLongGap_s = 0.5;
-// The channels shown if none stands out.
+// The channels shown if none has a larger gap than the others.
 constexpr std::string_view kTelling[] = {"pitch_rad", "yaw_rad", "x_m", "track_left_mps", "track_right_mps"};
 
 // "track_mps" of track_left_mps, "flipper_rad" of flipper_fl_rad.

@@ -15,7 +15,7 @@ constexpr std::size_t kMostRows = 12, kMostTableRows = 100;
 
 std::string ranking_figure(const Diagnosis& d, const StageDiagnosis& stage) {
   plot::RowChart chart;
-  chart.title = "What each candidate takes off alone, largest share first";
+  chart.title = "Share of the gap that each candidate explains alone";
   chart.x_label = "share of the squared gap, on the runs it was fitted to (%)";
   const std::vector<SingleEvidence> ranking = ranked_by_share(stage);
   for (std::size_t i = 0; i < std::min(kMostRows, ranking.size()); ++i) {
@@ -38,7 +38,7 @@ std::string ranking_figure(const Diagnosis& d, const StageDiagnosis& stage) {
 }
 
 std::string ranking_table(const Diagnosis& d, const StageDiagnosis& stage) {
-  Table table{{"candidate", "value", "nominal", "takes off", "evidence", "what it is"}, {}, {0, 5}};
+  Table table{{"candidate", "value", "nominal", "explains", "evidence", "what it is"}, {}, {0, 5}};
   for (std::size_t i = 0; i < std::min(kMostTableRows, stage.ranking.size()); ++i) {
     const SingleEvidence& single = stage.ranking[i];
     const candidates::Candidate& candidate = d.candidates[single.candidate];
@@ -55,9 +55,9 @@ std::string ranking_part(const Diagnosis& d, const StageDiagnosis& stage) {
   if (stage.ranking.empty()) return {};
   std::string html = "<h3>Each candidate alone</h3>\n";
   html += paragraph(
-      "Each is fitted by itself. Where several candidates are the cause together, one alone takes off less, or takes "
-      "some of the others' part. Evidence, by which the table is sorted, counts each channel by its noise and by "
-      "what no candidate explains in it.",
+      "Each candidate is fitted alone. Where several act together, one alone explains less than its part, or part of "
+      "what the others cause. The table is sorted by evidence, which weights each channel by its noise and by the part "
+      "that no candidate explains.",
       "soft");
   html += ranking_figure(d, stage);
   return html +

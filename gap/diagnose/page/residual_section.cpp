@@ -82,14 +82,13 @@ std::string residual_part(const Diagnosis& d, const StageDiagnosis& stage) {
   if (residuals.empty()) return {};
   std::string html = "<h3>Residuals of each channel</h3>\n";
   html += paragraph(
-      fmt::format(
-          "Measured minus simulated, averaged over {} s each. Noise: what repeats and sensors leave open, and what the "
-          "simulation does. Before: nominal. After: with the best model fitted to other runs than the one it is "
-          "compared with.{}",
-          d.options.span_s,
-          stage.passage == Passage::body_to_sensor
-              ? " Of this stage, a gyro's residual is how much faster it turns than the angles do."
-              : ""),
+      fmt::format("Measured minus simulated, averaged over {} s. Noise: spread of repeated runs, sensor noise and the "
+                  "uncertainty of the simulation. Before: nominal. After: with the best model, fitted to other runs "
+                  "than the one shown.{}",
+                  d.options.span_s,
+                  stage.passage == Passage::body_to_sensor
+                      ? " In this stage, the residual of a gyro is its rate minus the rate of the measured angles."
+                      : ""),
       "soft");
   return html + channel_figure(d, residuals) + table_of(residuals);
 }

@@ -29,17 +29,18 @@ std::string verdict_words(const Diagnosis& d, const StageDiagnosis& stage) {
     return text.starts_with('<') ? "p " + text : "p = " + text;
   };
   if (decision.verdict == Verdict::none)
-    return fmt::format("No gap: a difference this large comes by chance with {}, or is smaller than anybody would see.",
+    return fmt::format("No gap: a difference this large occurs by chance with {}, or is negligible.",
                        chance(decision.p_gap));
   const NamesFound names = names_found(stage);
-  std::string words = names.empty() ? "A gap for which no effect is named." : names_in_words(d, names) + ".";
-  if (!names.ambiguous_sets.empty()) words += " These runs cannot tell the members of a set apart.";
-  words += fmt::format(" A difference this large comes by chance with {}.", chance(decision.p_gap));
+  std::string words = names.empty() ? "There is a gap, and no effect is named." : names_in_words(d, names) + ".";
+  if (!names.ambiguous_sets.empty()) words += " These runs cannot distinguish the members of a set.";
+  words += fmt::format(" A difference this large occurs by chance with {}.", chance(decision.p_gap));
   if (!has_model(stage)) return words + " No candidate alone gains enough evidence to be fitted.";
-  words += decision.complete
-               ? fmt::format(" What the best model leaves could be chance ({}).", chance(decision.p_left))
-               : fmt::format(" The best model leaves more than chance does ({}); intervals and evidence allow for it.",
-                             chance(decision.p_left));
+  words +=
+      decision.complete
+          ? fmt::format(" The residual of the best model is within chance ({}).", chance(decision.p_left))
+          : fmt::format(" The residual of the best model is beyond chance ({}); intervals and evidence allow for it.",
+                        chance(decision.p_left));
   return words;
 }
 
@@ -100,11 +101,10 @@ std::string value_figure(const Diagnosis& d, const NamedEffect& effect) {
 }
 
 std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
-  Table table{
-      {"effect", "name", "value (95 % interval)", "nominal", "differs by (sd)", "takes off", "most, of", "evidence"},
-      {},
-      {0, 1}};
-  // one row per effect: whether it has a name, its value, and what it takes off
+  Table table{{"effect", "name", "value (95 % interval)", "nominal", "spread (sd)", "explains", "most in", "evidence"},
+              {},
+              {0, 1}};
+  // one row per effect: whether it has a name, its value, and its share of the gap
   for (const NamedEffect& effect : stage.decision.effects) {
     const candidates::Candidate& candidate = d.candidates[effect.candidate];
     std::string name = "yes";
@@ -123,10 +123,10 @@ std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
   // a key to the columns
   return to_html(table) +
          paragraph(
-             "Differs by: the standard deviation between manoeuvres of the value that each wants. Takes off: the share "
-             "of the squared gap on runs held out, and on manoeuvres held out, that the model with the effect takes "
-             "off more than the model without it; most, of: the same in the kind of channels where it takes off most. "
-             "Evidence: by how much the deviance (-2 log likelihood) falls with the effect.",
+             "Spread: standard deviation of the fitted value between manoeuvres. Explains: share of the squared gap "
+             "that the model with the effect explains beyond the model without it, on held-out runs and, in brackets, "
+             "on held-out manoeuvres. Most in: the same for the kind of channels in which the effect explains most. "
+             "Evidence: decrease of the deviance (-2 log likelihood) by the effect.",
              "soft");
 }
 

@@ -55,7 +55,7 @@ std::string warnings_list(const Diagnosis& d) {
 
 // Noise of each channel in the first stage that compares it.
 std::string noise_table(const Diagnosis& d) {
-  Table table{{"channel", "unit", "noise", "stated by the dataset, of a sample"}, {}, {0, 1}};
+  Table table{{"channel", "unit", "noise", "of a single sample, as the dataset states it"}, {}, {0, 1}};
   for (std::size_t c = 0; c < diagnosis_channels().size(); ++c) {
     const auto stage = std::ranges::find_if(d.stages, [&](const StageDiagnosis& s) {
       return c < s.nominal_floor.sigma.size() && s.nominal_floor.sigma[c] > 0;
@@ -68,8 +68,7 @@ std::string noise_table(const Diagnosis& d) {
   }
   if (table.rows.empty()) return {};
   return paragraph(fmt::format(
-             "Noise of a mean over {} s, standard deviation, {}; never less than a resolution chosen for each "
-             "channel:",
+             "Noise of a mean over {} s, standard deviation, {}; never below a resolution chosen for each channel:",
              d.options.span_s, noise_source(d))) +
          to_html(table);
 }
@@ -91,28 +90,24 @@ std::string options_text(const Diagnosis& d) {
 std::string next_section(const Diagnosis& d) {
   std::string html = section_head("next", "What to drive next");
   // no proposal: say why
-  if (!d.options.propose_next) return html + paragraph("It was not asked for.");
+  if (!d.options.propose_next) return html + paragraph("No proposal was requested.");
   if (d.next.empty())
-    return html +
-           paragraph(
-               !d.interrupted.empty()
-                   ? "It was not worked out before the diagnosis ended."
-                   : "These runs leave no choice between effects that a manoeuvre could decide. Any manoeuvre that "
-                     "is not in this dataset is a test of the verdict.");
+    return html + paragraph(!d.interrupted.empty() ? "The diagnosis ended before a manoeuvre could be proposed."
+                                                   : "These runs leave no effects to distinguish. Any manoeuvre that "
+                                                     "is not in this dataset tests the verdict.");
 
   // the advice in one sentence, and how to read the figures
-  html += paragraph(fmt::format("It is to tell {} apart. {}.", enumeration(candidate_names(d, d.told_apart)),
-                                with_capital(advice_in_words(d.next))));
+  html += paragraph(fmt::format("The manoeuvre is to distinguish {}. {}.",
+                                enumeration(candidate_names(d, d.to_separate)), with_capital(advice_in_words(d.next))));
   html += paragraph(
-      "Score: by how many standard deviations the two that are hardest to tell apart would differ in one run. Risks "
-      "are "
-      "as simulated, the worst of the robots that are still possible: they put manoeuvres in order and are no "
-      "guarantee.",
+      "Score: expected difference in one run, in standard deviations, between the two candidates that are hardest to "
+      "distinguish. Risks are simulated, for the worst of the robots that are still possible: they rank the manoeuvres "
+      "and guarantee nothing.",
       "soft");
 
   // one bar and one row per manoeuvre, best first
   plot::RowChart chart;
-  chart.title = "How well one run of a manoeuvre would tell the candidates apart";
+  chart.title = "How well one run of a manoeuvre would distinguish the candidates";
   chart.x_label = "expected difference (standard deviations)";
   Table table{{"manoeuvre", "world", "lasts (s)", "score", "tilt (degrees)", "fall (mm)", "impact (m/s^2)",
                "of the stall current", "suffices"},
@@ -142,8 +137,8 @@ std::string next_section(const Diagnosis& d) {
 
 std::string used_section(const Diagnosis& d, std::span<const Overlay> overlays) {
   std::string html = section_head("used", "What was used");
-  html += paragraph(fmt::format("{} runs of {} manoeuvres, {} of them drawn on this page.", d.observations.runs.size(),
-                                d.repeats.size(), overlays.size()));
+  html += paragraph(fmt::format("{} runs of {} manoeuvres; {} of them are plotted on this page.",
+                                d.observations.runs.size(), d.repeats.size(), overlays.size()));
   if (!d.options.against.empty())
     html += paragraph(plot::escaped(against_in_words(d)) +
                       ". Overlays and residuals over time show all that differs, as measured.");
@@ -153,33 +148,27 @@ std::string used_section(const Diagnosis& d, std::span<const Overlay> overlays) 
 
 std::string method_section(const Diagnosis& d) {
   // fixed text, but for the bin width and the largest number of effects
-  return section_head("method", "How it was found, and what it cannot say") +
-         paragraph(
-             fmt::format("The commands of each run are given to the simulated robot from the place where the "
-                         "real one stood, and the means "
-                         "of each channel over {} s are compared at the same times. Differences are counted in "
-                         "units of noise, which "
-                         "comes from repeats, and of what the simulation itself leaves open: the exact start, "
-                         "the contact's stiffness "
-                         "and damping, the time step, the solver's iterations. Each effect of the catalogue and each "
-                         "number of the description is simulated "
-                         "along its range and "
-                         "fitted, alone and together with others, in each stage by itself: the body is compared in a "
-                         "simulation whose tracks turn as they were measured. What the simulation cannot do "
-                         "makes evidence weaker and intervals wider. How much a fit is worth is measured on runs "
-                         "that it has not seen.",
-                         d.options.span_s)) +
-         "<ul>\n<li>A cause that is no candidate can look like one that is, if it does the same to these "
+  return section_head("method", "Method and limits") +
+         paragraph(fmt::format(
+             "The simulated robot receives the commands of each run from the measured initial state, and the means of "
+             "each channel over {} s are compared at the same times. Differences are scaled by the noise, which is "
+             "estimated from repeated runs, and by the uncertainty of the simulation itself: the exact start, the "
+             "contact stiffness and damping, the time step, the solver iterations. Each effect of the catalogue and "
+             "each number of the description is simulated over its range and fitted, alone and together with others, "
+             "in each stage separately: for the body, the simulated tracks move as measured. Model discrepancy weakens "
+             "evidence and widens intervals. Each fit is validated on held-out runs.",
+             d.options.span_s)) +
+         "<ul>\n<li>A cause that is not a candidate can be mistaken for a candidate with the same influence on these "
          "runs.</li>\n" +
-         fmt::format("<li>No more than {} effects are fitted together in a stage; what others do is left.</li>\n",
-                     d.options.decision.most_effects) +
-         "<li>An interval covers noise, differences between manoeuvres and what the model leaves; not that the cause "
-         "is "
-         "another one.</li>\n"
-         "<li>Where no run repeats another, the noise is taken from the runs themselves, and small gaps pass as "
+         fmt::format(
+             "<li>At most {} effects are fitted together in a stage; further effects remain unexplained.</li>\n",
+             d.options.decision.most_effects) +
+         "<li>An interval covers noise, differences between manoeuvres and the residual of the model, but not the "
+         "possibility of another cause.</li>\n"
+         "<li>Where no run repeats another, the noise is estimated from the runs themselves, and small gaps count as "
          "noise.</li>\n"
-         "<li>Accelerations are not compared, as their spikes at contacts depend on what nobody knows of the "
-         "contact.</li>\n"
+         "<li>Accelerations are not compared, because their spikes at contacts depend on unknown contact "
+         "parameters.</li>\n"
          "</ul>\n";
 }
 

@@ -84,15 +84,14 @@ std::string maps(const Diagnosis& d, std::span<const Overlay> overlays, const St
   }
   std::string html;
   if (!figures.empty())
-    html +=
-        paragraph(fmt::format("In the world: a circle's area is the share of the gap in a phase, at the place in its "
-                              "middle. Rings: before{}.",
-                              shows_after(stage) ? "; discs: after, of the same scale" : ""),
-                  "soft") +
-        "<div class=\"figures\">\n" + figures + "</div>\n";
+    html += paragraph(fmt::format("In the world: the area of a circle is the share of the gap in a phase, drawn at the "
+                                  "position in the middle of the phase. Rings: before{}.",
+                                  shows_after(stage) ? "; discs: after, to the same scale" : ""),
+                      "soft") +
+            "<div class=\"figures\">\n" + figures + "</div>\n";
   if (!staying.empty())
-    html += paragraph(fmt::format("Not mapped, as the robot stays within {} m: {}.", kStays_m, enumeration(staying)),
-                      "soft");
+    html += paragraph(
+        fmt::format("Not mapped, because the robot stays within {} m: {}.", kStays_m, enumeration(staying)), "soft");
   return html;
 }
 
@@ -102,23 +101,22 @@ std::string where_section(const Diagnosis& d, std::span<const Overlay> overlays)
   // nothing was located, or there is nothing to locate
   std::string html = section_head("where", "Where the gap is, in time and place");
   const std::optional<std::size_t> main = main_stage(d);
-  if (!main || overlays.empty()) return html + paragraph("Nothing was located before the diagnosis ended.");
+  if (!main || overlays.empty()) return html + paragraph("The diagnosis ended before the gap was located.");
   const std::vector<std::size_t> stages = stages_with_gap(d);
   if (stages.empty()) return html + paragraph("Nowhere: no stage has a gap.");
 
   // phases and how the gap is counted in them
-  html += paragraph(
-      fmt::format("Phases are found from the data. The gap is counted in stretches of {} s of each channel, so "
-                  "a shorter phase takes part of its neighbours' gap.",
-                  d.options.stretch_s),
-      "soft");
+  html += paragraph(fmt::format("Phases are detected in the data. The gap is measured in intervals of {} s of each "
+                                "channel, so a shorter phase includes part of its neighbours' gap.",
+                                d.options.stretch_s),
+                    "soft");
 
   // per stage: time before and after, the table of phases, and maps for the stage with most of the gap
   for (const std::size_t s : stages) {
     const StageDiagnosis& stage = d.stages[s];
     html += fmt::format("<h3>{}</h3>\n", with_capital(from_to(stage.passage)));
     if (stage.where.beyond_chance <= 0) {
-      html += paragraph("No stretch of any channel by itself is beyond chance.");
+      html += paragraph("No interval of any channel is beyond chance by itself.");
       continue;
     }
     html +=

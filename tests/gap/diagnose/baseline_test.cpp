@@ -111,7 +111,7 @@ TEST_CASE("Of a robot that no model fits, what changed is named with its value, 
         kenaf_gap(folder, fmt::format("diagnose {} --out out-{}{}", dataset, dataset, options));
     INFO(outcome.error);
     REQUIRE(outcome.status == 0);
-    CHECK_THAT(outcome.out, Catch::Contains("The gap is what changed since before, of which 4 runs repeat these"));
+    CHECK_THAT(outcome.out, Catch::Contains("The gap is the change since before, of which 4 runs repeat these"));
     return nlohmann::json::parse(test::read_file(folder / ("out-" + dataset + "/report.json")));
   };
   CHECK(report("same")["verdict"] == "none");
@@ -120,7 +120,7 @@ TEST_CASE("Of a robot that no model fits, what changed is named with its value, 
   CHECK(loaded["effects"][0]["parameters"]["scale"]["value"].get<double>() == Approx(1.2).margin(0.03));
   CHECK(loaded["against"]["runs"] == 4);
   CHECK_THAT(test::read_file(folder / "out-loaded/robot.toml"),
-             Catch::Contains("only the change since then was looked for"));
+             Catch::Contains("the diagnosis covered only the change since then"));
 }
 
 TEST_CASE("A baseline of other manoeuvres is refused, runs that it does not repeat are left out") {
@@ -129,7 +129,7 @@ TEST_CASE("A baseline of other manoeuvres is refused, runs that it does not repe
   REQUIRE(kenaf_gap(folder, "simulate --manoeuvre drop --out other").status == 0);
   const test::Outcome outcome = kenaf_gap(folder, "diagnose now --against other --out out");
   CHECK(outcome.status == 2);
-  CHECK_THAT(outcome.error, Catch::Contains("other: none of its runs repeats a run that is to be diagnosed"));
+  CHECK_THAT(outcome.error, Catch::Contains("other: none of its runs repeats a run of the diagnosis"));
   CHECK_FALSE(std::filesystem::exists(folder / "out"));
   CHECK(kenaf_gap(folder, "diagnose now --against other --out other").status == 2);
   CHECK(kenaf_gap(folder, "diagnose now --against nowhere --out out").status == 2);

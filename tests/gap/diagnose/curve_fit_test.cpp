@@ -106,7 +106,7 @@ TEST_CASE("A bent curve: the nearest place on it") {
   CHECK((shift_at(at.curves.shifts[0], {&place, 1}) - Eigen::Vector2d(2, 1)).norm() < 1e-12);
 }
 
-TEST_CASE("A curve that jumps is fitted at an end of the jump, by itself or beside another one") {
+TEST_CASE("A curve that jumps is fitted at an end of the jump, alone or together with another one") {
   // nothing up to 1, all of it from 1.1 on, and a little more at 2
   const std::vector<std::pair<double, Eigen::Vector2d>> points{{0, {0, 0}}, {1, {0, 0}}, {1.1, {10, 0}}, {2, {10, 1}}};
   const auto fitted = [&](const Eigen::Vector2d& gap) {
@@ -138,7 +138,7 @@ TEST_CASE("A curve that jumps is fitted at an end of the jump, by itself or besi
   CHECK(fit.left == Approx(2 * 2 + 0.5 * 0.5));
 }
 
-TEST_CASE("Two effects at 60 degrees are told apart by both inner products") {
+TEST_CASE("Two effects at 60 degrees are distinguished by both inner products") {
   const Whole a = world().direction(0), b = world().direction(0) / 2 + std::sqrt(0.75) * world().direction(1);
   const Fitting at({20 * a, 20 * b}, 6 * a - 8 * b + 2 * world().direction(2));
   const CurveFit fit = fit_two(at.products, at.curves.curves, 0, 1);
@@ -167,7 +167,7 @@ TEST_CASE("Two effects that do the same share one explanation") {
   CHECK(fit.places[0].value + fit.places[1].value == Approx(0.8));
 }
 
-TEST_CASE("Four effects, each at 60 degrees to the others, are told apart") {
+TEST_CASE("Four effects, each at 60 degrees to the others, are distinguished") {
   // edges of a simplex: inner products of 1/2
   std::vector<Whole> effects;
   for (std::size_t i = 0; i < 4; ++i)

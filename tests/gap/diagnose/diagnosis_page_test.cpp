@@ -55,14 +55,16 @@ TEST_CASE("The first screen says where, which, how much, what is left and what n
   CHECK_THAT(answers,
              Contains("73 % of it is <b>from command to drive</b>") && Contains("Most of that is in track_left_mps."));
   CHECK_THAT(answers, Contains("<b>drive_lag</b> lag_s = 0.0513 s (95 % interval 0.0498 to 0.0528), nominal 0"));
-  CHECK_THAT(answers, Contains("No name for com_forward (manoeuvres want values that differ by more than it)."));
+  CHECK_THAT(answers,
+             Contains("No name for com_forward (the values fitted to single manoeuvres differ by more than it)."));
   CHECK_THAT(answers, Contains("8.25 noise units before, 1.50 after on runs held out; noise alone: 1.25") &&
                           Contains("<b>85 % (81 to 88 %)</b> of the squared gap is explained") &&
                           Contains("track_left_mps: 0.05 m/s rms before, 0.0123 after"));
   CHECK_THAT(answers,
-             Contains("15 % of the gap is left. Yaw rate: measured 0.80 of the simulated, in every run: look at "
+             Contains("15 % of the gap remains. Yaw rate: measured 0.80 of the simulated, in every run: look at "
                       "track.separation_m or friction_across"));
-  CHECK_THAT(answers, Contains("Use <b>robot.toml</b>") && Contains("says at its top what it does not contain"));
+  CHECK_THAT(answers,
+             Contains("Use <b>robot.toml</b>") && Contains("a comment at its top lists what it does not contain"));
 }
 
 TEST_CASE("A page has every number of every stage") {
@@ -71,7 +73,7 @@ TEST_CASE("A page has every number of every stage") {
   CHECK_THAT(page, Contains(">8.25<") && Contains(">1.5<") && Contains("noise 1.25") && Contains(">96 %<") &&
                        Contains(">87 %<"));
   CHECK_THAT(page, Contains("<td>0.0513 s (0.0498 to 0.0528)</td><td>0</td><td>0</td><td>85 % (83 %)</td>"));
-  CHECK_THAT(page, Contains("no: manoeuvres want values that differ by more than it"));
+  CHECK_THAT(page, Contains("no: the values fitted to single manoeuvres differ by more than it"));
   // ranking, residuals in units and in noise: 0.05 m/s is 5 times the noise of 0.01 m/s
   CHECK_THAT(page, Contains("com_forward") && Contains("ground_slope") && Contains("track.separation_m"));
   CHECK_THAT(page, Contains("<td>0.05</td><td>0.0123</td><td>0.01</td><td>5</td><td>1.23</td><td>90 %</td>"));
@@ -122,36 +124,37 @@ TEST_CASE("Each verdict says what it means and what to do next") {
       Contains("<h1>One of com_forward or ground_slope explains 85 % of the gap from command to drive, but these runs "
                "cannot tell which</h1>") &&
           Contains("ground_slope would explain it as well") &&
-          Contains("To tell com_forward and ground_slope apart: drive next: turn-in-place (11 s, flat ground)"));
+          Contains("To distinguish com_forward and ground_slope: drive next: turn-in-place (11 s, flat ground)"));
   CHECK_THAT(page_of(made_ambiguous()), Contains(">7.4<") && Contains(">straight<"));
 
-  CHECK_THAT(
-      answers_of(made_unknown()),
-      Contains("<h1>There is a gap from drive to body, and no effect is named for it</h1>") &&
-          Contains("What takes off most of the gap by itself: com_forward (50 %) and track.separation_m (30 %)") &&
-          Contains("<b>robot.candidate.toml</b>") && Contains("There is no robot.toml"));
-  CHECK_THAT(page_of(made_unknown_without_model()), Contains("all of the gap is left") &&
+  CHECK_THAT(answers_of(made_unknown()),
+             Contains("<h1>There is a gap from drive to body, and no effect is named</h1>") &&
+                 Contains("Explain most of the gap alone: com_forward (50 %) and track.separation_m (30 %)") &&
+                 Contains("<b>robot.candidate.toml</b>") && Contains("No robot.toml was written"));
+  CHECK_THAT(page_of(made_unknown_without_model()), Contains("all of the gap remains") &&
                                                         Contains("No candidate alone gains enough evidence") &&
-                                                        !Contains("robot.candidate.toml, beside"));
+                                                        !Contains("<b>robot.candidate.toml</b>"));
   CHECK_THAT(page_of(made_without_gap()), Contains("<h1>No gap: ") && Contains("Use the simulator as it is") &&
                                               Contains("Nowhere: no stage has a gap."));
 
   Diagnosis complete = made_diagnosis_of_one_stage();
   complete.complete = complete.stages[0].decision.complete = true;
-  CHECK_THAT(answers_of(complete), Contains("what is left is within noise and spread") &&
-                                       Contains("should be no gap") && !Contains("Yaw rate"));
+  CHECK_THAT(answers_of(complete), Contains("the residual is within noise and spread") &&
+                                       Contains("no gap should remain") && !Contains("Yaw rate"));
 }
 
-TEST_CASE("Two effects of one stage are both named, with what each takes off") {
+TEST_CASE("Two effects of one stage are both named, with the share that each explains") {
   Diagnosis d = made_diagnosis_of_one_stage();
   d.stages[0].decision.effects.push_back(made_effect(com_forward, {-0.02, -0.03, -0.01}, 0.12));
   CHECK_THAT(page_of(d), Contains("<h1>drive_lag and com_forward explain 85 % of the gap from command to drive</h1>") &&
                              Contains("<td>12 % (11 %)</td>"));
-  // one of them without a name: of the other what it takes off itself
+  // one of them without a name: of the other its own share
   d.stages[0].decision.effects.back().doubts = {Doubt::not_held_out};
-  CHECK_THAT(page_of(d), Contains("<h1>drive_lag explains 84 % of the gap from command to drive (85 % together with "
-                                  "effects that get no name)</h1>") &&
-                             Contains("it takes off only 11 % of the gap in track speed on manoeuvres held out"));
+  CHECK_THAT(
+      page_of(d),
+      Contains(
+          "<h1>drive_lag explains 84 % of the gap from command to drive (85 % together with unnamed effects)</h1>") &&
+          Contains("it explains only 11 % of the gap in track speed on manoeuvres held out"));
 }
 
 TEST_CASE("What is not known is a dash, never a number") {
@@ -194,13 +197,13 @@ TEST_CASE("Runs without repeats and without any visible effect have a page") {
     stage.ranking.clear();
     stage.isolability = {};
   }
-  CHECK_THAT(page_of(d), Contains("none repeats another") && Contains("show no effect in this stage"));
+  CHECK_THAT(page_of(d), Contains("none repeats another") && Contains("No effect in this stage shows in these runs"));
 }
 
 TEST_CASE("Where no next manoeuvre was asked for, the page says that, not that none is needed") {
   Diagnosis d = made_diagnosis();
   d.options.propose_next = false;
-  CHECK_THAT(page_of(d), Contains("It was not asked for.") && !Contains("leave no choice"));
+  CHECK_THAT(page_of(d), Contains("No proposal was requested.") && !Contains("leave no effects to distinguish"));
 }
 
 TEST_CASE("Doubts are in words, with the numbers they go by") {
@@ -215,15 +218,15 @@ TEST_CASE("Doubts are in words, with the numbers they go by") {
   CHECK_THAT(doubt(Doubt::end_of_range),
              Contains("its value is at the end of its range (" + figure(com.min) + " to " + figure(com.max) + " m)"));
   effect.ordinarily_off = 0.004;
-  CHECK_THAT(doubt(Doubt::ordinary), Contains("numbers of the description are off by as much (1 sigma: 0.004 m)"));
+  CHECK_THAT(doubt(Doubt::ordinary), Contains("a typical error of this number is as large (1 sigma: 0.004 m)"));
   effect.share.of_kind = 0.2;
   effect.share_by_manoeuvre.of_kind = 0.03;
   CHECK_THAT(doubt(Doubt::not_held_out),
-             Contains("it takes off only 3 % of the gap in track speed on manoeuvres held out"));
+             Contains("it explains only 3 % of the gap in track speed on manoeuvres held out"));
   effect.share.model_of_kind = 0.31;
   effect.share_by_manoeuvre.model_of_kind = 0.4;
   CHECK_THAT(doubt(Doubt::little_explained),
-             Contains("all effects together take off only 31 % of the gap in track speed on runs held out"));
+             Contains("all effects together explain only 31 % of the gap in track speed on runs held out"));
   effect.candidate = track_separation;  // of a number of the description, from where it is described
   CHECK_THAT(doubt(Doubt::disagreement), Contains("differ by more than its change from "));
 }
@@ -290,7 +293,7 @@ TEST_CASE("A heading that passes half a turn is one line, and a long pause break
   CHECK(points[4].y() == Approx(pi + 0.3));
 }
 
-TEST_CASE("Manoeuvres of one name are told apart by their files") {
+TEST_CASE("Manoeuvres of one name are distinguished by their files") {
   Diagnosis d = made_diagnosis();
   CHECK(group_title(d, 0) == "drive");
   d.observations.runs[2].manoeuvre = "drive";

@@ -83,12 +83,12 @@ TEST_CASE("A report has every stage with its verdict, values, gap and what is le
   CHECK(body["named"].empty());
   CHECK(body["effects"][0]["is_named"] == false);
   CHECK(body["effects"][0]["parameters"].begin()->at("spread") == 0.02);
-  CHECK(body["effects"][0]["doubts"] == json{"manoeuvres want values that differ by more than it"});
-  CHECK(report["doubts"] == json{"no name for com_forward (drive to body): manoeuvres want values that differ by more "
-                                 "than it"});
+  CHECK(body["effects"][0]["doubts"] == json{"the values fitted to single manoeuvres differ by more than it"});
+  CHECK(report["doubts"] ==
+        json{"no name for com_forward (drive to body): the values fitted to single manoeuvres differ by more than it"});
 }
 
-TEST_CASE("What version 1 had stands at the top of a report: of the stage with most of the gap, effects of all") {
+TEST_CASE("The keys of version 1 are at the top of a report: of the stage with most of the gap, effects of all") {
   const json report = json_of(made_diagnosis());
   CHECK(report["where"]["stage"] == "command to drive");
   CHECK(report["where"]["channels"][0]["channel"] == "track_left_mps");
@@ -107,7 +107,7 @@ TEST_CASE("What version 1 had stands at the top of a report: of the stage with m
   CHECK(places.phases.size() == 2);
 }
 
-TEST_CASE("Effects that take off enough only together are a set of which several may act") {
+TEST_CASE("Effects that explain enough only together are a set of which several may act") {
   Diagnosis d = made_ambiguous();
   StageDecision& decision = d.stages[0].decision;
   decision.effects = {made_effect(com_forward, {-0.02, -0.03, -0.01}, 0.1),
@@ -131,7 +131,7 @@ TEST_CASE("Every verdict has its report and its first line") {
     return report;
   };
   const json none = verdict_of(made_without_gap(), "none",
-                               "NONE: No gap: robot and simulation differ no more than noise and repeats do");
+                               "NONE: No gap: robot and simulation differ by no more than noise and repeated runs do");
   CHECK(none["complete"] == true);
   CHECK(none["where"]["stage"].is_null());
   CHECK(none["robot_file"].is_null());
@@ -148,12 +148,12 @@ TEST_CASE("Every verdict has its report and its first line") {
   CHECK(ambiguous["next_manoeuvres"][0]["separates"] == json{"com_forward", "ground_slope"});
   CHECK(ambiguous["next_manoeuvres"][0]["expected_score"] == 7.4);
 
-  const json unknown = verdict_of(made_unknown(), "unknown",
-                                  "UNKNOWN: There is a gap from drive to body, and no effect is named for it");
+  const json unknown =
+      verdict_of(made_unknown(), "unknown", "UNKNOWN: There is a gap from drive to body, and no effect is named");
   CHECK(unknown["robot_file"] == "robot.candidate.toml");
   CHECK(unknown["effects"].size() == 1);
   const json empty = verdict_of(made_unknown_without_model(), "unknown",
-                                "UNKNOWN: There is a gap from drive to body, and no effect is named for it");
+                                "UNKNOWN: There is a gap from drive to body, and no effect is named");
   CHECK(empty["robot_file"].is_null());
   CHECK(empty["stages"][0]["explains"] == 0);
   CHECK(empty["stages"][0]["left"]["share"] == 1);
@@ -203,14 +203,14 @@ TEST_CASE("A robot.toml reads as the robot with what was named, and says what it
   }());
   CHECK_THAT(file.text, Contains("drive_lag lag_s = 0.0513 s (95 % interval 0.0498 to 0.0528)") &&
                             Contains("It does not contain:") &&
-                            Contains("what causes the gap from drive to body: no effect is named for it") &&
-                            Contains("from command to drive: 15 % of the gap is left; yaw rate: measured 0.80"));
+                            Contains("the cause of the gap from drive to body: no effect is named") &&
+                            Contains("from command to drive: 15 % of the gap remains; yaw rate: measured 0.80"));
   // the description's own text is still there
   const std::string kenaf = test::read_file(description::find_data_file("robots", "kenaf", ".toml"));
   CHECK_THAT(file.text, Contains(kenaf.substr(0, 200)));
 }
 
-TEST_CASE("A number of the description is written where it stands") {
+TEST_CASE("A number of the description is written in its place") {
   Diagnosis d = made_diagnosis_of_one_stage();
   d.stages[0].decision.effects = {made_effect(track_separation, {0.5, 0.49, 0.51}, 0.8)};
   const physics::RobotDescription robot = robot_in(robot_file(d).text);
@@ -252,7 +252,7 @@ TEST_CASE("Values that together make no robot leave the reports without one, whi
   const RobotFile file = robot_file(d);
   CHECK(file.name == "");
   CHECK_FALSE(file.fault.empty());
-  CHECK_THAT(diagnosis_text(d), Contains("No robot with what was found: "));
+  CHECK_THAT(diagnosis_text(d), Contains("No corrected robot: "));
   const TemporaryFolder folder;
   write_diagnosis(undrawn(d), folder.path());
   CHECK(std::filesystem::exists(folder / "report.json"));
@@ -332,7 +332,7 @@ TEST_CASE("Of one run nothing is held out, and the report says so") {
   for (StageDiagnosis& stage : d.stages) stage.where.phases.clear();
   const json gap = json_of(d)["gap"];
   CHECK(gap["heldout_runs"].empty());
-  CHECK(gap["measured_on"] == "the run fitted to, as there is no other");
+  CHECK(gap["measured_on"] == "the fitted run, the only one");
 }
 
 TEST_CASE("The text has every value and doubt in words, on one screen") {
@@ -349,12 +349,12 @@ TEST_CASE("The text has every value and doubt in words, on one screen") {
   CHECK_THAT(text,
              Catch::StartsWith("NAMED: drive_lag explains 85 % of the gap from command to drive; no effect is named "
                                "for the gap from drive to body "));
-  CHECK_THAT(text, Contains("drive_lag lag_s = 0.0513 s (95 % interval 0.0498 to 0.0528), nominal 0; takes off 85 %"));
+  CHECK_THAT(text, Contains("drive_lag lag_s = 0.0513 s (95 % interval 0.0498 to 0.0528), nominal 0; explains 85 %"));
   CHECK_THAT(text, Contains("8.25 noise units before, 1.50 after on runs held out; noise alone: 1.25"));
-  CHECK_THAT(text, Contains("15 % of the gap is left; yaw rate: measured 0.80 of the simulated, in every run; look at "
+  CHECK_THAT(text, Contains("15 % of the gap remains; yaw rate: measured 0.80 of the simulated, in every run; look at "
                             "track.separation_m or friction_across"));
   CHECK_THAT(text, Contains("no name: its value is at the end of its range (") &&
-                       Contains("manoeuvres want values that differ by more than it") &&
-                       Contains("it takes off only 3 % of the gap in track speed on runs held out") &&
-                       Contains("all effects together take off only 31 % of the gap in track speed on runs held out"));
+                       Contains("the values fitted to single manoeuvres differ by more than it") &&
+                       Contains("it explains only 3 % of the gap in track speed on runs held out") &&
+                       Contains("all effects together explain only 31 % of the gap in track speed on runs held out"));
 }

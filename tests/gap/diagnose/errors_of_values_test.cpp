@@ -45,7 +45,7 @@ TEST_CASE("A number that makes an effect larger by as much leaves its value as m
   };
   CHECK(error_of_value(larger) == Approx(0.05 * 2.306 / 1.96).epsilon(0.5));
   CHECK(error_of_value(larger, false, 0) == Approx(1 / kPerValue));
-  // twice as far off, twice as wrong, noise aside
+  // twice as far off, twice as wrong, apart from noise
   CHECK(error_of_value(larger, false, 2 * kOff) == Approx(2 * error_of_value(larger)).epsilon(0.05));
 }
 

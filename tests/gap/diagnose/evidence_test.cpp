@@ -164,7 +164,7 @@ TEST_CASE("Each of two effects has the share that the model without it leaves, i
   CHECK(shares.model == 1);
   REQUIRE(shares.sets.size() == 1);
   CHECK(shares.sets[0].places == std::vector<std::size_t>{0, 1});
-  CHECK(shares.sets[0].share.of_stage == 1);  // without both nothing is taken off
+  CHECK(shares.sets[0].share.of_stage == 1);  // without both nothing is explained
 
   // half of what x lacks is explained, and all of the voltage: each in its own channels, whatever the other one's size
   const HeldOutShares two = shares_of(0.5 * effects[0] + 0.4 * effects[1] + 0.9 * effects[2], {0, 2});
@@ -199,7 +199,7 @@ TEST_CASE("What numbers that are a little off explain as well is no share of an 
   CHECK(shares.effects[1].of_kind > 0.2);
 }
 
-TEST_CASE("What is open in each run by itself is no gap that an effect has to take off") {
+TEST_CASE("What is open in each run by itself is not a gap for an effect to explain") {
   // 30 in x, all of it the effect's; each run's yaw begins 5 sigma off, where it is open by 10
   const std::vector<Whole> effects{60 * world().in_channel(test::WorldChannel::x, 1)};
   const Whole yaw = world().in_channel(test::WorldChannel::yaw, 1);
@@ -217,7 +217,7 @@ TEST_CASE("What is open in each run by itself is no gap that an effect has to ta
 }
 
 TEST_CASE("An effect acts most where there is a gap, not where chance makes the noise smaller") {
-  // of 900 + 1024 in x it takes off 900; of 50 in the 48 bins of the voltage all: two more than noise has
+  // of 900 + 1024 in x it explains 900; of 50 in the 48 bins of the voltage all: two more than noise has
   const Whole plain = world().in_channel(test::WorldChannel::x, 1);
   Whole turned = plain;
   turned.tail(world().bins_of_manoeuvre()) *= -1;
@@ -231,7 +231,7 @@ TEST_CASE("An effect acts most where there is a gap, not where chance makes the 
   CHECK(shares.effects[0].of_kind == Approx(900.0 / (1924 - 48)).epsilon(0.01));
 }
 
-TEST_CASE("Beside an effect that explains nothing the whole model keeps its share") {
+TEST_CASE("With an additional effect that explains nothing the whole model keeps its share") {
   const std::vector<Whole> effects{60 * world().in_channel(test::WorldChannel::x, 1),
                                    100 * world().in_channel(test::WorldChannel::battery, 1)};
   const Whole gap = 0.5 * effects[0];
@@ -243,7 +243,7 @@ TEST_CASE("Beside an effect that explains nothing the whole model keeps its shar
   CHECK(shares.effects[1].model_of_kind == 1);
 }
 
-TEST_CASE("An effect takes off no more than the whole model does, however much the others leave without it") {
+TEST_CASE("An effect explains no more than the whole model does, however much the others leave without it") {
   // a moves x by 60; b moves x back by 60, and the voltage by 100; what is there is 10 in x, 50 in the voltage, and 40
   // in x that neither explains. Both explain the voltage, and of 1700 in x 100. Without a, b explains the voltage and
   // moves x by 30 from 10 to 40: 3200 are left of 1700
@@ -264,7 +264,7 @@ TEST_CASE("An effect takes off no more than the whole model does, however much t
 }
 
 // a moves x of the first manoeuvre by 600; b the voltage by 100, and that x by 30. Half of both is there. Without a, b
-// at its value takes off all of the voltage and 1 - (300 / 315)^2 of x. Fitted again it goes to the end of its range: 1
+// at its value explains all of the voltage and 1 - (300 / 315)^2 of x. Fitted again it goes to the end of its range: 1
 // - (285 / 315)^2 of x, and nothing of the voltage, of which it makes as much too much.
 TEST_CASE("What others lose where they are fitted to what they cannot do is no share of an effect's") {
   const Whole battery = world().in_channel(test::WorldChannel::battery, 1);
@@ -355,12 +355,12 @@ TEST_CASE("Of a run that alone shows an effect each half is held out in turn") {
   };
   for (const double t_s : {0.1, 2.0, 2.5}) CHECK((is_held_out(0, t_s) && !is_held_out(1, t_s)));
   for (const double t_s : {3.4, 5.9}) CHECK((is_held_out(1, t_s) && !is_held_out(0, t_s)));
-  // by whole runs nothing can foretell it; by halves each one does the other
-  const auto taken_off = [&](const Folds& of) {
+  // by whole runs nothing can predict it; by halves each one predicts the other
+  const auto explained_share = [&](const Folds& of) {
     return shares_held_out(measured.view, Passage::drive_to_body, alone, {}, of, 1).effects[0].of_kind;
   };
-  CHECK(taken_off(folds_by_repeat(world.repeats)) < 0.05);
-  CHECK(taken_off(folds) > 0.9);
+  CHECK(explained_share(folds_by_repeat(world.repeats)) < 0.05);
+  CHECK(explained_share(folds) > 0.9);
   const auto places = places_held_out(measured.view, Passage::drive_to_body, alone, folds, 1);
   REQUIRE(places[0].size() == 2);
   for (const PlacesOfPart& part : places[0]) CHECK(part.places[0].value == Approx(0.4).margin(0.02));

@@ -13,7 +13,8 @@ using namespace kenaf;
 using namespace kenaf::gap;
 using namespace kenaf::gap::diagnose;
 
-TEST_CASE("Progress moves within a stage and never falls, what is known when it is stopped is told, the rest is not") {
+TEST_CASE(
+    "Progress moves within a stage and never falls, results up to an interruption are reported, the rest is not") {
   const test::TemporaryFolder folder;
   REQUIRE(test::kenaf_gap(folder, "simulate --manoeuvre straight-fast --repeats 2 --out real").status == 0);
   std::vector<double> done;
@@ -37,6 +38,6 @@ TEST_CASE("Progress moves within a stage and never falls, what is known when it 
   CHECK(d.stages[0].nominal_floor.from_repeats);
   CHECK_FALSE(d.largest_stage.has_value());
   CHECK_THAT(diagnosis_text(d), Catch::StartsWith("UNFINISHED: interrupted while drive to body") &&
-                                    Catch::Contains("2 runs of 1 manoeuvres; noise from how repeats differ") &&
+                                    Catch::Contains("2 runs of 1 manoeuvres; noise from the spread of repeated runs") &&
                                     Catch::Contains("From command to drive"));
 }

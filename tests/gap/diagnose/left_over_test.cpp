@@ -99,11 +99,11 @@ double turn_of(std::size_t, const Driven& drive, double t_s) {
   return drive.turn(t_s);
 }
 
-std::vector<Dependence> told_of(const RunsLeft& made, const std::string& channel, bool of_drives = false) {
+std::vector<Dependence> terms_of(const RunsLeft& made, const std::string& channel, bool of_drives = false) {
   std::vector<Dependence> found;
   for (const Dependence& d : describe_left_over(made.runs, of_drives)) {
     INFO(d.words);
-    CHECK(d.share >= kLeastTold);
+    CHECK(d.share >= kLeastReported);
     CHECK(d.share <= 1);
     CHECK(d.points.size() <= 400);
     CHECK_FALSE(d.points.empty());
@@ -117,24 +117,24 @@ std::vector<Dependence> told_of(const RunsLeft& made, const std::string& channel
 TEST_CASE("A yaw rate of about half of the simulated is said with its share and where it holds") {
   const RunsLeft runs = runs_left(8, "yaw_rad", true, turn_of,
                                   [](std::size_t, const Driven& drive, double t_s) { return 0.52 * drive.turn(t_s); });
-  const std::vector<Dependence> told = describe_left_over(runs.runs, false);
-  REQUIRE(told.size() == 1);
-  CHECK(told[0].channel == "yaw rate");
-  CHECK(told[0].on == "simulated yaw rate");
-  CHECK(told[0].words ==
+  const std::vector<Dependence> terms = describe_left_over(runs.runs, false);
+  REQUIRE(terms.size() == 1);
+  CHECK(terms[0].channel == "yaw rate");
+  CHECK(terms[0].on == "simulated yaw rate");
+  CHECK(terms[0].words ==
         "yaw rate: measured 0.52 of the simulated, in every turn, at all speeds (100 % of what is left)");
-  CHECK(told[0].share > 0.97);
-  CHECK(told[0].slope == Approx(-0.48).margin(0.01));
-  CHECK(told[0].intercept == 0);
-  CHECK(told[0].look_at.front() == "track.separation_m");
-  // it is nothing that drives do, nor are drives told of between their belts and the body
+  CHECK(terms[0].share > 0.97);
+  CHECK(terms[0].slope == Approx(-0.48).margin(0.01));
+  CHECK(terms[0].intercept == 0);
+  CHECK(terms[0].look_at.front() == "track.separation_m");
+  // it is nothing that drives do, nor do drives act between their belts and the body
   CHECK(describe_left_over(runs.runs, true).empty());
   const auto left = [](std::size_t, const Driven& drive, double t_s) { return drive.turn(t_s); };
   const auto slower = [](std::size_t, const Driven& drive, double t_s) { return 0.5 * drive.turn(t_s); };
   CHECK(describe_left_over(runs_left(8, "track_left_mps", false, left, slower).runs, false).empty());
 }
 
-TEST_CASE("Noise goes with nothing") {
+TEST_CASE("Noise correlates with nothing") {
   for (const char* column : {"yaw_rad", "gyro_z_radps", "track_left_a", "battery_v", "pitch_rad"}) {
     INFO(column);
     for (const bool of_drives : {false, true})
@@ -143,7 +143,7 @@ TEST_CASE("Noise goes with nothing") {
   CHECK(describe_left_over({}, false).empty());
 }
 
-TEST_CASE("Noise that is stated too small goes with nothing either") {
+TEST_CASE("Noise that is stated too small correlates with nothing either") {
   RunsLeft runs = runs_left(8, "gyro_z_radps", false, turn_of, turn_of);
   for (LeftOverRun& run : runs.runs) run.sigma /= 3;
   CHECK(describe_left_over(runs.runs, false).empty());
@@ -153,13 +153,13 @@ TEST_CASE("A delay is said in seconds") {
   const auto late = [](std::size_t, const Driven& drive, double t_s) { return drive.turn(std::max(0.0, t_s - 0.2)); };
   // two runs are too few to hold runs out: stretches of time are
   for (const std::size_t count : {std::size_t{8}, std::size_t{2}}) {
-    const std::vector<Dependence> told =
-        told_of(runs_left(count, "gyro_z_radps", false, turn_of, late), "yaw rate by gyro");
-    REQUIRE_FALSE(told.empty());
-    CHECK(told[0].on == "change of the simulated yaw rate by gyro");
-    CHECK_THAT(told[0].words, Contains("measured 0.2 s late behind the simulated, whenever it changes"));
-    CHECK(told[0].share > 0.9);
-    CHECK(told[0].slope == Approx(-0.2).margin(0.02));
+    const std::vector<Dependence> terms =
+        terms_of(runs_left(count, "gyro_z_radps", false, turn_of, late), "yaw rate by gyro");
+    REQUIRE_FALSE(terms.empty());
+    CHECK(terms[0].on == "change of the simulated yaw rate by gyro");
+    CHECK_THAT(terms[0].words, Contains("measured 0.2 s late behind the simulated, whenever it changes"));
+    CHECK(terms[0].share > 0.9);
+    CHECK(terms[0].slope == Approx(-0.2).margin(0.02));
   }
 }
 
@@ -177,62 +177,63 @@ TEST_CASE("A lag of both tracks is said once") {
       run.measured[i] = lagged;
     }
   }
-  const std::vector<Dependence> told = describe_left_over(runs.runs, true);
-  REQUIRE(told.size() == 1);
-  CHECK(told[0].channel == "speed of each track");
-  CHECK_THAT(told[0].words, Contains("s late behind the simulated, as by a lag, whenever it changes"));
-  CHECK(told[0].slope == Approx(-1.1).margin(0.15));
-  CHECK(std::ranges::count(told[0].look_at, "drive_lag") == 1);
+  const std::vector<Dependence> terms = describe_left_over(runs.runs, true);
+  REQUIRE(terms.size() == 1);
+  CHECK(terms[0].channel == "speed of each track");
+  CHECK_THAT(terms[0].words, Contains("s late behind the simulated, as by a lag, whenever it changes"));
+  CHECK(terms[0].slope == Approx(-1.1).margin(0.15));
+  CHECK(std::ranges::count(terms[0].look_at, "drive_lag") == 1);
 }
 
 TEST_CASE("A factor that differs from run to run is said so, with its middle") {
   const auto differs = [](std::size_t run, const Driven& drive, double t_s) {
     return (1 + 0.3 * (run % 2 == 0 ? 1 : -1) * (0.5 + 0.05 * static_cast<double>(run))) * drive.turn(t_s);
   };
-  const std::vector<Dependence> told =
-      told_of(runs_left(10, "gyro_z_radps", false, turn_of, differs), "yaw rate by gyro");
-  REQUIRE_FALSE(told.empty());
-  CHECK(told[0].on == "run");
-  CHECK_THAT(told[0].words, Contains("most of it differs from run to run: 0.") && Contains("in the middle 80 %"));
-  CHECK(told[0].share > 0.8);
-  CHECK(told[0].points.size() == 10);
+  const std::vector<Dependence> terms =
+      terms_of(runs_left(10, "gyro_z_radps", false, turn_of, differs), "yaw rate by gyro");
+  REQUIRE_FALSE(terms.empty());
+  CHECK(terms[0].on == "run");
+  CHECK_THAT(terms[0].words, Contains("most of it differs from run to run: 0.") && Contains("in the middle 80 %"));
+  CHECK(terms[0].share > 0.8);
+  CHECK(terms[0].points.size() == 10);
 }
 
-TEST_CASE("A common factor about which runs differ is told beside it") {
+TEST_CASE("A common factor is reported in addition to the differences between runs") {
   const auto differs = [](std::size_t run, const Driven& drive, double t_s) {
     return (0.7 + 0.1 * (run % 2 == 0 ? 1 : -1)) * drive.turn(t_s);
   };
-  const std::vector<Dependence> told =
-      told_of(runs_left(10, "gyro_z_radps", false, turn_of, differs), "yaw rate by gyro");
-  REQUIRE(told.size() == 2);
-  CHECK(told[0].on == "simulated yaw rate by gyro");
-  CHECK_THAT(told[1].words, Contains("differs from run to run: 0.60 to 0.80 of the simulated was measured"));
-  CHECK(told[0].share + told[1].share == Approx(1).margin(0.05));
+  const std::vector<Dependence> terms =
+      terms_of(runs_left(10, "gyro_z_radps", false, turn_of, differs), "yaw rate by gyro");
+  REQUIRE(terms.size() == 2);
+  CHECK(terms[0].on == "simulated yaw rate by gyro");
+  CHECK_THAT(terms[1].words, Contains("differs from run to run: 0.60 to 0.80 of the simulated was measured"));
+  CHECK(terms[0].share + terms[1].share == Approx(1).margin(0.05));
 }
 
 TEST_CASE("One run with other trouble makes no dependence") {
   const auto with_outlier = [](std::size_t run, const Driven& drive, double t_s) {
     return (run == 3 ? -2 : 1) * drive.turn(t_s);
   };
-  CHECK(told_of(runs_left(10, "gyro_z_radps", false, turn_of, with_outlier), "yaw rate by gyro").empty());
+  CHECK(terms_of(runs_left(10, "gyro_z_radps", false, turn_of, with_outlier), "yaw rate by gyro").empty());
   // nor does it spoil what the others have
   const auto also = [](std::size_t run, const Driven& drive, double t_s) {
     return (run == 3 ? -2 : 0.8) * drive.turn(t_s);
   };
-  const std::vector<Dependence> told = told_of(runs_left(10, "gyro_z_radps", false, turn_of, also), "yaw rate by gyro");
-  REQUIRE_FALSE(told.empty());
-  CHECK(told[0].slope == Approx(-0.2).margin(0.06));
+  const std::vector<Dependence> terms =
+      terms_of(runs_left(10, "gyro_z_radps", false, turn_of, also), "yaw rate by gyro");
+  REQUIRE_FALSE(terms.empty());
+  CHECK(terms[0].slope == Approx(-0.2).margin(0.06));
 }
 
 TEST_CASE("Offsets are said with their unit") {
   const auto amperes = [](std::size_t, const Driven& drive, double t_s) { return 3 + std::abs(drive.left(t_s)); };
   const auto more = [&](std::size_t run, const Driven& drive, double t_s) { return amperes(run, drive, t_s) + 1.25; };
-  const std::vector<Dependence> told = told_of(runs_left(6, "battery_v", false, amperes, more), "voltage", true);
-  REQUIRE(told.size() == 1);
-  CHECK(told[0].words == "voltage: measured 1.2 V more than the simulated, in every run (100 % of what is left)");
-  CHECK(told[0].look_at == std::vector<std::string>{"battery.open_circuit_v"});
-  CHECK(told[0].slope == 0);
-  CHECK(told[0].intercept == Approx(1.25).margin(0.01));
+  const std::vector<Dependence> terms = terms_of(runs_left(6, "battery_v", false, amperes, more), "voltage", true);
+  REQUIRE(terms.size() == 1);
+  CHECK(terms[0].words == "voltage: measured 1.2 V more than the simulated, in every run (100 % of what is left)");
+  CHECK(terms[0].look_at == std::vector<std::string>{"battery.open_circuit_v"});
+  CHECK(terms[0].slope == 0);
+  CHECK(terms[0].intercept == Approx(1.25).margin(0.01));
 }
 
 TEST_CASE("What holds only while it speeds up, or to one side, is said so") {
@@ -240,26 +241,26 @@ TEST_CASE("What holds only while it speeds up, or to one side, is said so") {
     const double now = drive.turn(t_s), before = drive.turn(t_s - 0.2);
     return std::abs(now) > std::abs(before) ? before : now;
   };
-  const auto delayed = told_of(runs_left(8, "gyro_z_radps", false, turn_of, slow_to_start), "yaw rate by gyro");
+  const auto delayed = terms_of(runs_left(8, "gyro_z_radps", false, turn_of, slow_to_start), "yaw rate by gyro");
   REQUIRE_FALSE(delayed.empty());
   CHECK_THAT(delayed[0].words, Contains("only while it grows"));
 
   const auto to_the_left = [](std::size_t, const Driven& drive, double t_s) {
     return (drive.turn(t_s) > 0 ? 0.5 : 0.8) * drive.turn(t_s);
   };
-  const auto sided = told_of(runs_left(8, "gyro_z_radps", false, turn_of, to_the_left), "yaw rate by gyro");
+  const auto sided = terms_of(runs_left(8, "gyro_z_radps", false, turn_of, to_the_left), "yaw rate by gyro");
   REQUIRE_FALSE(sided.empty());
   CHECK_THAT(sided[0].words, Contains("0.50 to the left and 0.80 to the right"));
 }
 
-TEST_CASE("One track that is slower is told as that track's") {
+TEST_CASE("One track that is slower is reported as that track's") {
   const auto left = [](std::size_t, const Driven& drive, double t_s) { return drive.left(t_s); };
   const auto slower = [](std::size_t, const Driven& drive, double t_s) { return 0.8 * drive.left(t_s); };
-  const std::vector<Dependence> told =
+  const std::vector<Dependence> terms =
       describe_left_over(runs_left(8, "track_left_mps", false, left, slower).runs, true);
-  REQUIRE_FALSE(told.empty());
-  CHECK_THAT(told[0].words, Contains("left track speed: measured 0.80 of the simulated, in every run"));
-  for (const Dependence& d : told) CHECK(d.channel != "right track speed");
+  REQUIRE_FALSE(terms.empty());
+  CHECK_THAT(terms[0].words, Contains("left track speed: measured 0.80 of the simulated, in every run"));
+  for (const Dependence& d : terms) CHECK(d.channel != "right track speed");
 }
 
 TEST_CASE(
@@ -274,13 +275,13 @@ TEST_CASE(
   REQUIRE(find_robot_number(test::robot_of("kenaf"), "drive.sprocket_radius_m").has_value());
   keys.insert("drive.sprocket_radius_m");
 
-  std::size_t told = 0;
+  std::size_t terms = 0;
   const auto check = [&](const std::vector<std::string>& names) {
     CHECK(std::set(names.begin(), names.end()).size() == names.size());
     for (const std::string& name : names) {
       INFO(name);
       CHECK((effects.contains(name) || keys.contains(name)));
-      ++told;
+      ++terms;
     }
   };
   for (const QuantityInfo& quantity : left_over_quantities()) {
@@ -289,7 +290,7 @@ TEST_CASE(
       check(look_at(quantity.quantity, static_cast<Regressor>(on)));
     check(look_at_for_runs(quantity.quantity));
   }
-  CHECK(told > 100);
+  CHECK(terms > 100);
 }
 
 TEST_CASE("The same runs are described the same twice, and sizes are checked") {
@@ -308,11 +309,11 @@ TEST_CASE("The same runs are described the same twice, and sizes are checked") {
 TEST_CASE("The page's section has every sentence and a well-formed plot") {
   const RunsLeft runs = runs_left(8, "yaw_rad", true, turn_of,
                                   [](std::size_t, const Driven& drive, double t_s) { return 0.52 * drive.turn(t_s); });
-  const std::vector<Dependence> told = describe_left_over(runs.runs, false);
-  REQUIRE(told.size() == 1);
-  CHECK(test::fault_of_xml(left_over_plot(told[0])) == "");
-  const std::string html = left_over_section(told);
+  const std::vector<Dependence> terms = describe_left_over(runs.runs, false);
+  REQUIRE(terms.size() == 1);
+  CHECK(test::fault_of_xml(left_over_plot(terms[0])) == "");
+  const std::string html = left_over_section(terms);
   CHECK(test::fault_of_xml("<div>" + html + "</div>") == "");
-  CHECK_THAT(html, Contains(told[0].words + ".") && Contains("track.separation_m, track.contact_length_m"));
-  CHECK_THAT(left_over_section({}), Contains("goes with nothing that was measured"));
+  CHECK_THAT(html, Contains(terms[0].words + ".") && Contains("track.separation_m, track.contact_length_m"));
+  CHECK_THAT(left_over_section({}), Contains("correlates with no measured quantity"));
 }

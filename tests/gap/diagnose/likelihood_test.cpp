@@ -175,7 +175,7 @@ TEST_CASE("Nothing need be left open by the simulation") {
   CHECK(likelihood_with(data, residuals_in(data), no_discrepancy()).deviance == Approx(squares + deviance));
 }
 
-TEST_CASE("Of what wanders the discrepancy is found, in the channels where it wanders, and makes it likelier") {
+TEST_CASE("The discrepancy of a drift is found in the channels that drift, and makes the data more likely") {
   const LinearWorld world({4, 2, 20});
   Whole gap = world.noise(1);
   const Whole wander = world.wander(2, 2, 2);

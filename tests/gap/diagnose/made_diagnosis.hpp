@@ -35,7 +35,7 @@ inline runs::Run run_ahead_by(double ahead_m, double faster_mps = 0) {
   return run;
 }
 
-inline constexpr double kMadeModel = 0.85;  // what the model of drives takes off their stage
+inline constexpr double kMadeModel = 0.85;  // share of its stage that the model of drives explains
 
 inline gap::diagnose::NamedEffect made_effect(std::size_t candidate, gap::diagnose::Interval value, double share) {
   return {candidate,
@@ -191,7 +191,7 @@ inline gap::diagnose::Diagnosis made_ambiguous() {
   gap::diagnose::ProposedManoeuvre straight{
       "straight", "flat", 6, 0.3, false, true, gap::diagnose::Gentleness::flat_driving, {}};
   d.next = {turn, straight};
-  d.told_apart = {com_forward, ground_slope};
+  d.to_separate = {com_forward, ground_slope};
   return d;
 }
 

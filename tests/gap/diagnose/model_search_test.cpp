@@ -144,7 +144,7 @@ TEST_CASE("Effects that change what the other one does are found together") {
   CHECK(value_of(found[0], 4) == Approx(0.5).margin(0.1));
 }
 
-TEST_CASE("An effect is found beside others that act on each other, though their curves do not add up to them") {
+TEST_CASE("An effect is found together with others that act on each other, though their curves do not add up to them") {
   // beside a half of effect 4, effect 1 moves what no curve does, and hides effect 2
   const std::vector<Whole> effects = six_effects();
   const auto moved = [&](const Settings& settings) {
@@ -165,7 +165,7 @@ TEST_CASE("An effect is found beside others that act on each other, though their
   CHECK(value_of(found[0], 2) == Approx(0.3).margin(0.1));
 }
 
-TEST_CASE("An effect of which no more than a first look is known is found beyond that, beside another one") {
+TEST_CASE("An effect of which no more than a first look is known is found beyond that, together with another one") {
   const std::vector<Whole> effects = six_effects();
   const StageData data = world().data(0.9 * effects[1] + 0.8 * effects[4] + world().noise(2));
   const Simulate simulate = world().simulate(LinearWorld::linear(effects));

@@ -122,7 +122,7 @@ TEST_CASE("Risk: how gentle a manoeuvre is goes by ground, flippers and what may
   CHECK_FALSE(is_level(physics::load_world("step-50", ignored)));
 }
 
-TEST_CASE("Two frictions are told apart on flat ground, the shortest first, the same on any number of threads") {
+TEST_CASE("Two frictions are distinguished on flat ground, the shortest first, the same on any number of threads") {
   const std::vector<RivalModel> rivals{rival("friction_along:scale=0.8", "friction_along:scale=0.84"),
                                        rival("friction_across:scale=0.8", "friction_across:scale=0.84")};
   // Straight ahead neither friction is used up, so the shortest two manoeuvres that ship say nothing.
@@ -169,7 +169,8 @@ TEST_CASE("Rivals that are the same: no manoeuvre suffices, and it says so") {
     // On the steps of 200 to 300 mm, on belts alone, the nominal robot falls on its back.
     CHECK(one.manoeuvre != "step-250");
   }
-  CHECK_THAT(advice_in_words(proposed), Catch::StartsWith("none of the ") && Contains("tell nothing of these apart"));
+  CHECK_THAT(advice_in_words(proposed),
+             Catch::StartsWith("none of the ") && Contains("none of them distinguishes these effects"));
   CHECK(propose_manoeuvres(physics::load_robot("kenaf"), std::span(rivals).first(1), options()).empty());
 }
 
@@ -216,7 +217,7 @@ TEST_CASE("What a rival falls over at is not sufficient, and what is gentler goe
   CHECK(step->expected_score > kSuffices);
   CHECK_FALSE(step->suffices);
   CHECK(step->gentleness == Gentleness::fails);
-  CHECK_THAT(in_words(*step), Contains("may turn over: not to be driven"));
+  CHECK_THAT(in_words(*step), Contains("may turn over: do not drive it"));
   CHECK(std::all_of(step, proposed.end(), [](const ProposedManoeuvre& one) { return !one.suffices; }));
 }
 
@@ -241,8 +242,8 @@ TEST_CASE("A proposal in words, and what it refuses") {
         "step-150 (20 s, world step-150): separates them by 3.1 standard deviations, too little; tilts by 62 degrees, "
         "falls by 123 mm, lands with 69 m/s^2");
   CHECK(advice_in_words(std::span(&step, 1)) ==
-        "none of the 1 shipped manoeuvres that this robot can drive suffices; nearest comes " + in_words(step));
-  CHECK_THAT(advice_in_words({}), Contains("nothing to tell apart"));
+        "none of the 1 shipped manoeuvres that this robot can drive suffices; the best of them: " + in_words(step));
+  CHECK_THAT(advice_in_words({}), Contains("no effects to distinguish"));
 
   const std::vector<RivalModel> rivals{{kenaf_with("mass:scale=1.1")}, {kenaf_with("mass:scale=1")}};
   ProposalOptions wrong = options();

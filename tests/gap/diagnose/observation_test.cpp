@@ -16,8 +16,8 @@ using namespace kenaf::gap::diagnose;
 
 namespace {
 
-// Told to stand until `go_s`, then to drive.
-runs::Run told_to_go(double go_s, std::vector<test::ColumnOfTime> others) {
+// Commanded to stand until `go_s`, then to drive.
+runs::Run commanded_to_go(double go_s, std::vector<test::ColumnOfTime> others) {
   const auto command = [go_s](double t_s) { return t_s < go_s ? 0 : 0.2; };
   others.push_back({"cmd_track_left_mps", command});
   others.push_back({"cmd_track_right_mps", command});
@@ -37,37 +37,38 @@ TEST_CASE("A robot that looks backwards starts so: the mean of headings on eithe
     const double rest[] = {3.140, -3.141, 3.139, -3.140};
     return t_s < 1 ? rest[static_cast<int>(t_s / 0.25 + 0.5)] : 3.0;
   };
-  const Observation seen = observation_of({}, told_to_go(1, {{"x_m", zero}, {"y_m", zero}, {"yaw_rad", yaw}}), "a.csv");
+  const Observation seen =
+      observation_of({}, commanded_to_go(1, {{"x_m", zero}, {"y_m", zero}, {"yaw_rad", yaw}}), "a.csv");
   REQUIRE(seen.resting_rows == 4);
   CHECK(seen.replay.start->yaw_rad == Approx(3.140 + (0.002185 - 0.001 + 0.003185) / 4).margin(1e-5));
 }
 
-TEST_CASE("Where the robot stands is the mean of its first rows, unless it rolls although it was told to stand") {
+TEST_CASE("Where the robot stands is the mean of its first rows, unless it rolls although it was commanded to stand") {
   const auto x = [](double t_s) { return t_s < 0.1 ? 0.0 : 0.004; };
   const auto rolls = [](double t_s) { return 0.3 * std::exp(-4 * t_s); };
   std::vector<test::ColumnOfTime> stands{{"x_m", x}, {"y_m", zero}, {"yaw_rad", zero}};
-  CHECK(observation_of({}, told_to_go(1, stands), "a.csv").replay.start->x_m == Approx(0.003));
+  CHECK(observation_of({}, commanded_to_go(1, stands), "a.csv").replay.start->x_m == Approx(0.003));
   stands.push_back({"track_left_mps", rolls});
   stands.push_back({"track_right_mps", rolls});
-  const Observation rolling = observation_of({}, told_to_go(1, stands), "a.csv");
+  const Observation rolling = observation_of({}, commanded_to_go(1, stands), "a.csv");
   REQUIRE(rolling.replay.start->motion);
   CHECK(rolling.replay.start->x_m == 0);
 }
 
 TEST_CASE("A log whose clock does not begin at 0 is looked at from its own beginning") {
-  runs::Run run = told_to_go(1, {{"x_m", zero}, {"y_m", zero}, {"yaw_rad", zero}});
+  runs::Run run = commanded_to_go(1, {{"x_m", zero}, {"y_m", zero}, {"yaw_rad", zero}});
   for (double& t_s : run.values[0]) t_s += 100;
   const Observation seen = observation_of({}, run, "a.csv");
   CHECK(seen.run.column("t_s").front() == 0);
   CHECK(seen.run.column("t_s").back() == Approx(2.75));
 }
 
-TEST_CASE("What the described robot has no sensor for is told, and not compared with nothing") {
+TEST_CASE("A quantity without a sensor in the description is reported, and not compared") {
   const test::TemporaryFolder folder;
   const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
   const auto turn_rate = [](double t_s) { return t_s < 1 ? 0 : 0.2; };
   runs::write_run(folder / "a.csv",
-                  told_to_go(1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", x}, {"gyro_z_radps", turn_rate}}));
+                  commanded_to_go(1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", x}, {"gyro_z_radps", turn_rate}}));
   for (const auto& [robot, has_gyro] : {std::pair{"kenaf", true}, {"p2dx", false}}) {
     test::write_file(folder / "dataset.toml", "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"" +
                                                   std::string(robot) +
@@ -79,12 +80,12 @@ TEST_CASE("What the described robot has no sensor for is told, and not compared 
                                  [&](const std::string& w) { return w.find(words) != std::string::npos; });
     };
     CHECK(seen.not_simulated == (has_gyro ? std::vector<std::string>{} : std::vector<std::string>{"gyro_z_radps"}));
-    CHECK(says("gyro_z_radps: measured, but the described robot has no sensor for it") == !has_gyro);
+    CHECK(says("gyro_z_radps: not compared, because the described robot has no sensor for it") == !has_gyro);
     CHECK(says("gyro_y_radps: has a [noise], but no run has such a column"));
   }
 }
 
-TEST_CASE("A sensor that is dead in a run is taken for one that was not measured in it, and told") {
+TEST_CASE("A sensor that is dead in a run counts as not measured in it, and is reported") {
   const test::TemporaryFolder folder;
   const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
   const auto dead = [](double) { return 0.5; };
@@ -92,8 +93,8 @@ TEST_CASE("A sensor that is dead in a run is taken for one that was not measured
   const auto write = [&](const char* name, double (*gyro)(double), double (*current)(double)) {
     runs::write_run(
         folder / name,
-        told_to_go(1,
-                   {{"x_m", x}, {"y_m", zero}, {"yaw_rad", rate}, {"gyro_z_radps", gyro}, {"track_left_a", current}}));
+        commanded_to_go(
+            1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", rate}, {"gyro_z_radps", gyro}, {"track_left_a", current}}));
   };
   write("dead.csv", dead, dead);
   write("right.csv", rate, x);
@@ -114,7 +115,7 @@ TEST_CASE("A sensor that is dead in a run is taken for one that was not measured
              Catch::StartsWith("dead.csv: gyro_z_radps: never changes") && Catch::EndsWith("(left out)"));
 }
 
-TEST_CASE("Of a robot that is lifted off the ground the drives alone are compared, and that is told") {
+TEST_CASE("For a robot that is lifted off the ground only the drives are compared, with a warning") {
   const test::TemporaryFolder folder;
   const auto sways = [](double t_s) { return 0.03 * std::sin(5 * t_s); };
   const auto goes = [](double t_s) { return t_s < 1 ? 0 : 0.3 * (t_s - 1); };
@@ -140,17 +141,17 @@ TEST_CASE("Of a robot that is lifted off the ground the drives alone are compare
     }
     test::write_file(folder / "dataset.toml", dataset);
     const Observations seen = observe(folder.path(), "", "", 10);
-    const bool told = std::ranges::any_of(seen.warnings, [](const std::string& warning) {
+    const bool is_reported = std::ranges::any_of(seen.warnings, [](const std::string& warning) {
       return warning.starts_with("dataset.toml: x_m: the body moves less than 0.065 m in all 3 runs") &&
              warning.ends_with("(the drives alone are compared)");
     });
     for (const Observation& run : seen.runs) {
-      CHECK(runs::any_measured(run.run.column("x_m")) != told);
-      CHECK(runs::any_measured(run.run.column("yaw_rad")) != told);
+      CHECK(runs::any_measured(run.run.column("x_m")) != is_reported);
+      CHECK(runs::any_measured(run.run.column("yaw_rad")) != is_reported);
       CHECK(runs::any_measured(run.run.column("track_left_mps")));
     }
 
-    return told;
+    return is_reported;
   };
   const std::array<Column, 4> in_the_air{forward, forward, sways, zero},
       back_in_the_air{backward, backward, sways, zero}, on_the_spot_in_the_air{backward, forward, sways, sways},
@@ -163,7 +164,7 @@ TEST_CASE("Of a robot that is lifted off the ground the drives alone are compare
   CHECK_FALSE(is_lifted({in_the_air, back_in_the_air}));  // one that is stuck does that, too
 }
 
-TEST_CASE("Cells that only repeat a value are taken for not measured, and told") {
+TEST_CASE("Cells that only repeat a value count as not measured, and are reported") {
   const test::TemporaryFolder folder;
   const auto command = [](double t_s) { return t_s < 1 ? 0 : 0.2; };
   const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
@@ -194,16 +195,16 @@ TEST_CASE("Cells that only repeat a value are taken for not measured, and told")
                                    Catch::EndsWith("(repeats left out)"));
 }
 
-TEST_CASE("A run that was copied is no repeat: it is left out, and told once") {
+TEST_CASE("A run that was copied is no repeat: it is left out, and reported once") {
   const test::TemporaryFolder folder;
   const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
   const auto other = [](double t_s) { return t_s < 1 ? 0.001 : 0.2 * (t_s - 1); };
-  const runs::Run run = told_to_go(1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", x}});
+  const runs::Run run = commanded_to_go(1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", x}});
   std::string dataset = "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n";
   for (const std::string name : {"a", "b", "c", "d"}) {
     // one value of c is another one, in its first row
     runs::write_run(folder / (name + ".csv"),
-                    name == "c" ? told_to_go(1, {{"x_m", other}, {"y_m", zero}, {"yaw_rad", x}}) : run);
+                    name == "c" ? commanded_to_go(1, {{"x_m", other}, {"y_m", zero}, {"yaw_rad", x}}) : run);
     dataset += "[[run]]\nfile = \"" + name + ".csv\"\nmanoeuvre = \"straight\"\n";
   }
   test::write_file(folder / "dataset.toml", dataset);
@@ -212,14 +213,14 @@ TEST_CASE("A run that was copied is no repeat: it is left out, and told once") {
   CHECK(seen.runs[0].file == "a.csv");
   CHECK(seen.runs[1].file == "c.csv");
   REQUIRE(seen.warnings.size() == 1);
-  CHECK(seen.warnings[0] == "b.csv: holds the same numbers as a.csv; a copy is no repeat (left out, as 1 more)");
+  CHECK(seen.warnings[0] == "b.csv: contains the same numbers as a.csv; a copy is not a repeat (left out, as 1 more)");
 }
 
 TEST_CASE("Of more manoeuvres than places, runs are taken from some of all, not from the last ones") {
   const test::TemporaryFolder folder;
   std::string dataset = "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n";
   const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
-  runs::Run run = told_to_go(1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", x}});
+  runs::Run run = commanded_to_go(1, {{"x_m", x}, {"y_m", zero}, {"yaw_rad", x}});
   for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
     for (double& x_m : run.values[1]) x_m += 0.001;  // copies of one run would be left out
     runs::write_run(folder / (std::string(name) + ".csv"), run);

@@ -14,7 +14,7 @@ using namespace kenaf::gap::diagnose;
 
 namespace {
 
-// A robot that is told to turn on the spot, whose tracks, heading and turn rate are measured.
+// A robot that is commanded to turn on the spot, whose tracks, heading and turn rate are measured.
 class TurningRobot {
  public:
   TurningRobot() {
@@ -78,12 +78,12 @@ TEST_CASE("What differs in anything is simulated anew, and what is asked for twi
   const TurningRobot robot;
   Predictor predictor = robot.predictor();
   const Variation nominal = predictor.unvaried();
-  Variation aside = nominal, late = nominal, stiff = nominal, biased = nominal;
-  aside.start_y_m = 0.001;
+  Variation sideways = nominal, late = nominal, stiff = nominal, biased = nominal;
+  sideways.start_y_m = 0.001;
   late.samples_late = 1;
   stiff.physics.contact_stiffness_npm *= 2;
   biased.robot.sensors.front().bias_radps += 0.01;
-  const std::vector<Variation> all{nominal, aside, late, stiff, biased, aside};
+  const std::vector<Variation> all{nominal, sideways, late, stiff, biased, sideways};
   const std::vector<Shift> shifts = predictor.shifts(all, Passage::drive_to_body, Fidelity::fine);
   CHECK(predictor.roll_outs() == 2 + 4);
   CHECK(shifts[0][0].isZero(0));

@@ -14,8 +14,8 @@ namespace {
 
 using Groups = std::vector<std::vector<std::size_t>>;
 
-// Told to go at `speed_mps` from `from_s` on, for 4 s in all.
-Observation told(const std::string& manoeuvre, double speed_mps, double from_s = 0, double duration_s = 4) {
+// Commanded to go at `speed_mps` from `from_s` on, for 4 s in all.
+Observation commanded(const std::string& manoeuvre, double speed_mps, double from_s = 0, double duration_s = 4) {
   Observation observation{};
   observation.manoeuvre = manoeuvre;
   for (int i = 0; i <= static_cast<int>(duration_s / 0.1 + 0.5); ++i) {
@@ -60,38 +60,38 @@ std::vector<StageFeatures> lasting(std::initializer_list<double> durations_s) {
 
 }  // namespace
 
-TEST_CASE("Runs that begin in another motion do not repeat each other, whatever they are told") {
+TEST_CASE("Runs that begin in another motion do not repeat each other, whatever is commanded") {
   const auto begun = [](double left_mps, double right_mps) {
-    Observation run = told("a", 0.8);
+    Observation run = commanded("a", 0.8);
     run.replay.start.emplace();
     run.replay.start->motion.emplace().track_mps = {left_mps, right_mps};
     return run;
   };
-  // as recorded: told the same, one comes out of driving backward, the other out of a turn
+  // as recorded: with the same commands, one comes out of driving backward, the other out of a turn
   CHECK(groups_of({begun(-0.59, -0.21), begun(0.58, -0.03)}) == Groups{{0}, {1}});
   CHECK(same_orders({begun(-0.59, -0.21), begun(0.58, -0.03)}) == Groups{{0}, {1}});
   // 30 mm/s of noise in speeds at rest; and one that stands, to which nothing was added
-  CHECK(groups_of({begun(0.03, -0.03), begun(-0.03, 0.03), told("a", 0.8)}) == Groups{{0, 1, 2}});
-  CHECK(groups_of({begun(0.5, 0.5), told("a", 0.8)}) == Groups{{0}, {1}});
+  CHECK(groups_of({begun(0.03, -0.03), begun(-0.03, 0.03), commanded("a", 0.8)}) == Groups{{0, 1, 2}});
+  CHECK(groups_of({begun(0.5, 0.5), commanded("a", 0.8)}) == Groups{{0}, {1}});
 }
 
 TEST_CASE("Runs of one name with the same commands repeat each other") {
-  CHECK(groups_of({told("a", 0.3), told("b", 0.3), told("a", 0.3)}) == Groups{{0, 2}, {1}});
+  CHECK(groups_of({commanded("a", 0.3), commanded("b", 0.3), commanded("a", 0.3)}) == Groups{{0, 2}, {1}});
 }
 
 TEST_CASE("Runs of one name with other commands do not") {
-  CHECK(groups_of({told("log", 0.3), told("log", -0.3), told("log", 0.1), told("log", 0.3)}) ==
+  CHECK(groups_of({commanded("log", 0.3), commanded("log", -0.3), commanded("log", 0.1), commanded("log", 0.3)}) ==
         Groups{{0, 3}, {1}, {2}});
 }
 
 TEST_CASE("An order that comes a little later is the same order") {
   // 0.2 s of 4 s are 5 % of the commands; 2 s are half of them
-  CHECK(groups_of({told("a", 0.3), told("a", 0.3, 0.2)}) == Groups{{0, 1}});
-  CHECK(groups_of({told("a", 0.3), told("a", 0.3, 2)}) == Groups{{0}, {1}});
+  CHECK(groups_of({commanded("a", 0.3), commanded("a", 0.3, 0.2)}) == Groups{{0, 1}});
+  CHECK(groups_of({commanded("a", 0.3), commanded("a", 0.3, 2)}) == Groups{{0}, {1}});
 }
 
 TEST_CASE("The same orders at other times, or one of them left out, are another outcome of the same manoeuvre") {
-  CHECK(same_orders({told("a", 0.3), told("a", 0.3, 2)}) == Groups{{0, 1}});
+  CHECK(same_orders({commanded("a", 0.3), commanded("a", 0.3, 2)}) == Groups{{0, 1}});
   CHECK(same_orders({ordered({0, 0.2, 0.5, 0.1}), ordered({0, 0.5, 0.1}), ordered({0, 0, 0, 0.2, 0.5, 0.1})}) ==
         Groups{{0, 1, 2}});
   // in another order, or with an order that the other one never gave
@@ -102,20 +102,20 @@ TEST_CASE("The same orders at other times, or one of them left out, are another 
 }
 
 TEST_CASE("The same commands on another world are another group") {
-  Observation elsewhere = told("a", 0.3);
+  Observation elsewhere = commanded("a", 0.3);
   elsewhere.world = 1;
-  CHECK(groups_of({told("a", 0.3), elsewhere}) == Groups{{0}, {1}});
+  CHECK(groups_of({commanded("a", 0.3), elsewhere}) == Groups{{0}, {1}});
 }
 
-TEST_CASE("Flippers that are told otherwise make another group") {
-  Observation folded = told("a", 0.3), flat = told("a", 0.3);
+TEST_CASE("Other flipper commands make another group") {
+  Observation folded = commanded("a", 0.3), flat = commanded("a", 0.3);
   for (auto& timed : folded.replay.timed)
     for (auto& flipper : timed.command.flipper) flipper.value = 1;
   CHECK(groups_of({folded, flat, folded}) == Groups{{0, 2}, {1}});
 }
 
 TEST_CASE("A run that was cut short repeats as far as it goes") {
-  CHECK(groups_of({told("a", 0.3, 0, 4), told("a", 0.3, 0, 2)}) == Groups{{0, 1}});
+  CHECK(groups_of({commanded("a", 0.3, 0, 4), commanded("a", 0.3, 0, 2)}) == Groups{{0, 1}});
 }
 
 TEST_CASE("Deviations are from the mean of the repeats, with the variance of one run") {
@@ -162,7 +162,7 @@ TEST_CASE("Where one repeat alone goes on there is no deviation") {
 
 TEST_CASE("A group is represented by the run of middle duration") {
   Observations observations;
-  observations.runs = {told("a", 0.3, 0, 1), told("a", 0.3, 0, 9), told("a", 0.3, 0, 4)};
+  observations.runs = {commanded("a", 0.3, 0, 1), commanded("a", 0.3, 0, 9), commanded("a", 0.3, 0, 4)};
   CHECK(representative(observations, {0, 1, 2}) == 2);
 }
 

@@ -68,7 +68,7 @@ TEST_CASE("Beside one another effects are fitted by what they do there, not by w
   CHECK(length_between(standing.curves, 1, 0.46, 0.5) == Approx(0.04 * std::hypot(40, 15)).margin(0.02));
 }
 
-TEST_CASE("A fit that stands where it should stays") {
+TEST_CASE("A fit that is where it should be stays") {
   const StandingModel standing = stood(moved, {{0, -0.6}, {1, 0.3}}, {{0, -0.6}, {1, 0.3}});
   CHECK(standing.model.places[0].value == Approx(-0.6));
   CHECK(standing.model.places[1].value == Approx(0.3));

@@ -87,7 +87,7 @@ TEST_CASE("Two effects are both named, at their values") {
   }
 }
 
-TEST_CASE("Two effects that do the same cannot be told apart") {
+TEST_CASE("Two effects with the same shift are indistinguishable") {
   for (const double degrees : {0.0, 1.0})
     for (const std::size_t truth : {2u, 5u}) {
       const std::vector<Whole> effects = with_look_alike(degrees);
@@ -101,7 +101,7 @@ TEST_CASE("Two effects that do the same cannot be told apart") {
     }
 }
 
-TEST_CASE("Of two that cannot be told apart the one counts that another stage names at the same value") {
+TEST_CASE("Of two indistinguishable effects the one counts that another stage names at the same value") {
   const std::vector<Whole> effects = with_look_alike(0);
   const Whole gap = 0.5 * effects[2] + world().noise(1);
   const auto decided = [&](std::vector<NamedElsewhere> elsewhere) {
@@ -145,7 +145,7 @@ TEST_CASE("What another stage refutes is no rival, and gives way to a rival that
   CHECK(both.effects[0].doubts == std::vector<Doubt>{Doubt::refuted});
 }
 
-TEST_CASE("At 45 degrees they are told apart") {
+TEST_CASE("At 45 degrees they are distinguishable") {
   for (const std::size_t truth : {2u, 5u}) {
     const std::vector<Whole> effects = with_look_alike(45);
     const StageDecision decision = world().decide(effects, 0.5 * effects[truth] + world().noise(1));
@@ -176,7 +176,7 @@ TEST_CASE("A gap that is like no effect of the catalogue is unknown") {
   }
 }
 
-TEST_CASE("Beside a coherent discrepancy of a third of its size an effect is named, less surely, and not as complete") {
+TEST_CASE("With a coherent discrepancy of a third of its size an effect is named, less surely, and not as complete") {
   const LinearWorld& world = six_manoeuvres();
   const std::vector<Whole> effects = orthogonal_effects(world);
   for (std::uint64_t seed = 0; seed < 3; ++seed) {
@@ -379,7 +379,9 @@ StageDecision judged(double first, double second, double both, double shown_by_o
 
 }  // namespace
 
-TEST_CASE("Two effects that take up what the other leaves are named as a set, a trifle beside another one is not") {
+TEST_CASE(
+    "Two effects that each absorb what the other leaves are named as a set, a negligible addition to another one is "
+    "not") {
   const StageDecision set = judged(0.05, 0.13, 0.8);
   CHECK(set.verdict == Verdict::ambiguous);
   CHECK(set.effects[0].rivals == std::vector<std::size_t>{0, 1});
@@ -393,7 +395,7 @@ TEST_CASE("Two effects that take up what the other leaves are named as a set, a 
   CHECK(one.effects[1].doubts == std::vector<Doubt>{Doubt::not_held_out});
   CHECK(judged(0.05, 0.04, 0.1).verdict == Verdict::unknown);
 
-  // one of them may have enough alone: together they take off 94 %, without one or the other 25 and 12 % are lost
+  // one of them may have enough alone: together they explain 94 %, without one or the other 25 and 12 % are lost
   const StageDecision stand_in = judged(0.25, 0.12, 0.94);
   CHECK(stand_in.verdict == Verdict::ambiguous);
   CHECK(stand_in.effects[0].rivals == std::vector<std::size_t>{0, 1});
@@ -414,7 +416,7 @@ TEST_CASE("Of a lag and a ramp, which together are one step's course, neither is
   CHECK(decision.effects[0].partners == std::vector<std::size_t>{1});
 }
 
-TEST_CASE("What explains half of what ordinary numbers leave is a trifle where they leave next to nothing") {
+TEST_CASE("Half of what ordinary numbers leave is negligible where they leave next to nothing") {
   const auto verdict = [](double of_stage, double beyond_numbers) {
     StageDecision decision;
     decision.effects.push_back({0, {{1, 0.9, 1.1}, 0, 1}, 100, {}, {}, false, {}, {0}, {}, {}});
@@ -440,7 +442,7 @@ TEST_CASE("An effect that grows from nothing in the course of a run is not the o
   CHECK(verdict(0.02) == Verdict::named);
 }
 
-TEST_CASE("What one manoeuvre alone shows is judged by its repeats, as no other one foretells it") {
+TEST_CASE("An effect that only one manoeuvre shows is judged by its repeats, as no other one predicts it") {
   const HeldOutShares by_repeat{{{0.9, 0.9, 0.9, 0, 0.9, 500}}, {}, 0.9};
   const auto verdict = [&](double shown_by_others) {
     StageDecision decision;
@@ -449,5 +451,5 @@ TEST_CASE("What one manoeuvre alone shows is judged by its repeats, as no other 
     return decision.verdict;
   };
   CHECK(verdict(1) == Verdict::named);      // the others hardly show it: nothing can be held out
-  CHECK(verdict(400) == Verdict::unknown);  // they should, and foretell nothing of it
+  CHECK(verdict(400) == Verdict::unknown);  // they should, and predict nothing of it
 }

@@ -103,7 +103,7 @@ TEST_CASE("Where the robot is not level its angles do not tell the gyro's rates"
   CHECK(Seen(Passage::body_to_sensor, weaving({.pitch_rad = 0.3})).stage.bins.empty());
 }
 
-TEST_CASE("A rate is told by the angle before and after it: not at the ends, nor beside a gap") {
+TEST_CASE("A rate follows from the angles before and after it: not at the ends, nor next to a gap") {
   // 40 bins of 0.25 s; yaw is missing in the one from 5 s on
   runs::Run run = weaving({});
   for (std::size_t c = 0; c < run.columns.size(); ++c)
