@@ -24,7 +24,7 @@ bool is_derived(const candidates::Candidate& number) {
 physics::RobotDescription moved(physics::RobotDescription robot, const Background& background) {
   for (const BackgroundNumber& number : background.numbers) {
     const std::optional<candidates::RobotNumber> found = candidates::find_robot_number(robot, number.key);
-    if (!found) throw std::runtime_error(fmt::format("the robot has no {}", number.key));
+    if (!found) throw std::runtime_error(fmt::format("the robot's description has no {}", number.key));
     found->set(robot, number.value);
   }
   return robot;
@@ -48,13 +48,13 @@ Background draw_background(const physics::RobotDescription& robot, std::uint64_t
     }
     if (candidates::why_impossible(moved(robot, background)).empty()) return background;
   }
-  throw std::logic_error("no background of this robot is one that its description allows");
+  throw std::logic_error("no background was found within the limits of this robot's description");
 }
 
 physics::RobotDescription with_background(physics::RobotDescription robot, const Background& background) {
   robot = moved(std::move(robot), background);
   if (const std::string why = candidates::why_impossible(robot); !why.empty())
-    throw std::runtime_error(fmt::format("the background makes no robot: {}", why));
+    throw std::runtime_error(fmt::format("the background makes an invalid robot: {}", why));
   return robot;
 }
 

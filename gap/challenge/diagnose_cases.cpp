@@ -81,7 +81,7 @@ pid_t start(const CaseToDiagnose& one, int program) {
   if (can_confine() && !confinement.confines()) throw failed("the diagnosis cannot be confined to its case");
 
   const pid_t process = ::fork();
-  if (process < 0) throw failed("no process can be started");
+  if (process < 0) throw failed("cannot start a process");
   if (process > 0) return process;
   ::setpgid(0, 0);  // a terminal's interrupt reaches only this program, which ends the others
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -89,7 +89,7 @@ pid_t start(const CaseToDiagnose& one, int program) {
   ::dup2(out.value, STDOUT_FILENO);
   ::dup2(out.value, STDERR_FILENO);
   if (!confinement.confines() || confinement.enter()) ::fexecve(program, argv.data(), envp.data());
-  ::dprintf(STDERR_FILENO, "the diagnosis cannot be started: %s\n", std::strerror(errno));
+  ::dprintf(STDERR_FILENO, "cannot start the diagnosis: %s\n", std::strerror(errno));
   ::_exit(kCannotStart);
 }
 

@@ -81,7 +81,7 @@ bool stands_apart(const ReadTable& table, const std::string& name) {
   const auto row = static_cast<std::size_t>(std::ranges::find(table.effects, name) - table.effects.begin());
   if (row == table.effects.size()) return false;
   for (std::size_t other = 0; other < table.effects.size(); ++other)
-    if (other != row && !(table.angle_deg[row][other] >= diagnose::kToldApart_deg)) return false;
+    if (other != row && !(table.angle_deg[row][other] >= diagnose::kDistinguishable_deg)) return false;
   return true;
 }
 
@@ -100,7 +100,7 @@ Judgement judge(const CasePlan& plan, const std::optional<ReadReport>& report) {
   for (const HiddenEffect& hidden : plan.effects)
     if (in_catalogue) result.hidden.push_back(reported_name(hidden.effect, hidden.parameter));
   result.found.assign(result.hidden.size(), Found::missed);
-  result.can_be_told_apart = is_outside(plan.stratum) && plan.look_alike.angle_deg >= diagnose::kToldApart_deg;
+  result.distinguishable = is_outside(plan.stratum) && plan.look_alike.angle_deg >= diagnose::kDistinguishable_deg;
   if (!report) return result;
 
   // How each hidden effect was found.
@@ -128,7 +128,7 @@ Judgement judge(const CasePlan& plan, const std::optional<ReadReport>& report) {
 
   if (result.hidden.size() == 1) {
     result.named_alone = result.right && result.found.front() == Found::named && report->ambiguous_sets.empty();
-    result.can_be_told_apart = stands_apart(table_for(*report, plan.effects.front()), result.hidden.front());
+    result.distinguishable = stands_apart(table_for(*report, plan.effects.front()), result.hidden.front());
   }
   return result;
 }

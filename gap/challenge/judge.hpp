@@ -42,7 +42,7 @@ struct Judgement {
   bool all_found = false;          // each hidden effect has a name or set of its own, whatever else is claimed
   bool named_alone = false;        // the only effect hidden, and the only one claimed, by its name
   bool names_wrong = false;        // a name in `named` that is not hidden
-  bool can_be_told_apart = false;  // the only effect hidden, and the report's own table says so; or outside the
+  bool distinguishable = false;  // the only effect hidden, and the report's own table says so; or outside the
                                    // catalogue, and no effect in it looks alike
 };
 

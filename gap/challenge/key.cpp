@@ -81,12 +81,12 @@ void check(const CasePlan& plan) {
   const bool has_effects = stratum == Stratum::baseline ? plan.effects.size() <= 1 : plan.effects.size() == effects;
   if (!has_effects || plan.foreign.empty() == (stratum == Stratum::foreign) ||
       plan.number.key.empty() == (stratum == Stratum::withheld_number))
-    throw std::runtime_error(fmt::format("{} does not hide what its stratum says", plan.name));
+    throw std::runtime_error(fmt::format("{} does not hide the effects of its stratum", plan.name));
   for (const HiddenEffect& hidden : plan.effects) {
     const auto* effect = physics::find_effect(hidden.effect);
     const auto* parameter = effect == nullptr ? nullptr : physics::find_parameter(*effect, hidden.parameter);
     if (parameter == nullptr)
-      throw std::runtime_error(fmt::format("{} hides {}:{}, which this program's catalogue does not have", plan.name,
+      throw std::runtime_error(fmt::format("{} hides {}:{}, which is not in the catalogue of this program", plan.name,
                                            hidden.effect, hidden.parameter));
     if (!(hidden.value >= parameter->min && hidden.value <= parameter->max))
       throw std::runtime_error(fmt::format("{} hides {}:{} = {}, which is out of its range", plan.name, hidden.effect,
@@ -95,12 +95,13 @@ void check(const CasePlan& plan) {
   // Throws if background, number and effects do not make a valid robot.
   hidden_robot(plan);
   if (!plan.longest_s.empty() && plan.longest_s.size() != plan.manoeuvres.size())
-    throw std::runtime_error(fmt::format("{} does not say of each manoeuvre when it is cut off", plan.name));
+    throw std::runtime_error(fmt::format("{} does not give the end time of each manoeuvre", plan.name));
   const physics::PhysicsSettings& physics = plan.physics;
   if (plan.repeats < 1 || plan.repeats > kMostRepeats || !(physics.time_step_s >= kShortestStep_s) ||
       !(physics.time_step_s <= kLongestStep_s) || physics.solver_iterations < 1 ||
       physics.solver_iterations > kMostIterations)
-    throw std::runtime_error(fmt::format("{} has repeats, a time step or iterations that no challenge has", plan.name));
+    throw std::runtime_error(fmt::format(
+        "{} has a number of repeats, a time step or a number of iterations that is out of range", plan.name));
 }
 
 SealedCase case_of(const Json& json) {
@@ -155,7 +156,7 @@ SealedCase case_of(const Json& json) {
 unsigned char byte_of(std::string_view two_digits) {
   unsigned char byte = 0;
   if (std::from_chars(two_digits.begin(), two_digits.end(), byte, 16).ptr != two_digits.end())
-    throw std::runtime_error(fmt::format("\"{}\" is not two hexadecimal digits", two_digits));
+    throw std::runtime_error(fmt::format("\"{}\" is not a pair of hexadecimal digits", two_digits));
   return byte;
 }
 
@@ -217,7 +218,7 @@ ChallengeKey read_key(const std::string& text) try {
   for (const Json& sealed : json.at("cases")) key.cases.push_back(case_of(sealed));
   return key;
 } catch (const std::exception& error) {
-  throw std::runtime_error(fmt::format("key.json is no key of a challenge: {}", error.what()));
+  throw std::runtime_error(fmt::format("key.json is not the key of a challenge: {}", error.what()));
 }
 
 std::string commitment_text(const std::string& key_text) {
@@ -274,19 +275,20 @@ bool is_sealed_by_another(const fs::path& folder, std::uint64_t seed) try {
 
 ChallengeKey open_key(const fs::path& folder) {
   if (!fs::exists(folder / "commitment.txt"))
-    throw std::runtime_error(fmt::format("{}: is no challenge, there is no commitment.txt", folder.string()));
+    throw std::runtime_error(
+        fmt::format("{}: is not the folder of a challenge, because it has no commitment.txt", folder.string()));
   if (!fs::exists(folder / "key.json"))
     throw std::runtime_error(
-        fmt::format("{}: not all of its cases are diagnosed; the key comes only then", folder.string()));
+        fmt::format("{}: is not finished: key.json is written once all cases are diagnosed", folder.string()));
   const std::string text = runs::read_whole_file(folder / "key.json");
   if (runs::read_whole_file(folder / "commitment.txt") != commitment_text(text))
-    throw std::runtime_error(fmt::format(
-        "{}: key.json is not the key that commitment.txt was made from; one of them was changed", folder.string()));
+    throw std::runtime_error(
+        fmt::format("{}: key.json does not match commitment.txt; one of them was changed", folder.string()));
   ChallengeKey key = read_key(text);
   for (const SealedCase& sealed : key.cases)
     if (const fs::path data = case_folder(folder, sealed.plan.name);
         fs::exists(data) && !is_sealed_dataset(data, sealed))
-      throw std::runtime_error(fmt::format("{}: is not the data that was sealed; it was changed", data.string()));
+      throw std::runtime_error(fmt::format("{}: the data does not match its seal, so it was changed", data.string()));
   return key;
 }
 

@@ -162,7 +162,8 @@ std::string_view kind_name(ChallengeKind kind) {
 
 ChallengeKind challenge_kind_of(std::string_view name) {
   const auto* found = std::ranges::find(kKindNames, name);
-  if (found == std::end(kKindNames)) throw std::invalid_argument(fmt::format("\"{}\" is no challenge", name));
+  if (found == std::end(kKindNames))
+    throw std::invalid_argument(fmt::format("\"{}\" is not a kind of challenge", name));
   return static_cast<ChallengeKind>(found - kKindNames);
 }
 
@@ -184,7 +185,7 @@ bool is_outside(Stratum stratum) {
 
 Stratum stratum_of(std::string_view name) {
   const auto* found = std::ranges::find(kStratumNames, name);
-  if (found == std::end(kStratumNames)) throw std::invalid_argument(fmt::format("\"{}\" is no stratum", name));
+  if (found == std::end(kStratumNames)) throw std::invalid_argument(fmt::format("\"{}\" is not a stratum", name));
   return static_cast<Stratum>(found - kStratumNames);
 }
 
@@ -237,13 +238,13 @@ std::vector<CaseRuns> runs_to_choose_from(const CasePlan& plan) {
 }
 
 std::vector<ForeignEffect> foreign_effects() {
-  return {{"right_drive_cuts_out", "a loose contact stops one track's drive now and then"},
+  return {{"right_drive_cuts_out", "a loose contact stops the drive of one track intermittently"},
           {"right_flipper_lag", "one of the front flippers follows later than the other"},
           {"left_drive_lag", "one track's drive follows later than the other's"},
-          {"command_shortfall", "track commands are short by a constant speed, slow ones not obeyed"},
-          {"speed_hunts", "the drives' speed swings about what is asked for"},
+          {"command_shortfall", "track commands lose a constant speed; slow commands have no effect"},
+          {"speed_hunts", "the drives' speed oscillates about the command"},
           {"drives_fade", "the drives turn slower the longer they have run"},
-          {"gyro_saturates", "the gyro tells less and less of a rate the faster it is"}};
+          {"gyro_saturates", "the gyro reports an increasingly smaller part of faster rates"}};
 }
 
 std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, ChallengeKind kind) {
@@ -299,7 +300,7 @@ std::vector<CasePlan> plan_challenge(std::size_t cases, std::uint64_t seed, Chal
     }
     if (stratum == Stratum::baseline && uniform(random, 0, 1) >= kNothingChanged) hide(changes, 0, 0);
 
-    // Differences from the model besides: runs, physics settings, noise, resolution.
+    // Further differences from the model: runs, physics settings, noise, resolution.
     choose_runs(plan, kind, random);
     plan.physics.time_step_s *= 0.5;
     plan.physics.solver_iterations *= 2;

@@ -1,5 +1,5 @@
 // Plans the cases of a challenge: which effects are hidden in them, how large, in which manoeuvres, and how the "real"
-// side differs from the model besides, so that a fit is no tautology.
+// side differs from the model in other ways, so that a fit is not a tautology.
 //
 // There are two challenges. In the exact one the model with the hidden effects is right except for contacts and noise.
 // In the imperfect one it never is, as with a real robot: every number of the description is a little off, as a

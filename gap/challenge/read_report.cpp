@@ -24,9 +24,9 @@ ReadTable table_of(const Json& json) {
     table.angle_deg.emplace_back();
     for (const Json& angle : row) table.angle_deg.back().push_back(number(angle));
     if (table.angle_deg.back().size() != table.effects.size())
-      throw std::runtime_error("its angles are no square table");
+      throw std::runtime_error("its angles are not a square table");
   }
-  if (table.angle_deg.size() != table.effects.size()) throw std::runtime_error("its angles are no square table");
+  if (table.angle_deg.size() != table.effects.size()) throw std::runtime_error("its angles are not a square table");
   return table;
 }
 
@@ -70,7 +70,7 @@ ReadReport report_of(const std::string& report_json) try {
   if (json.contains("isolability")) report.table = table_of(json["isolability"]);
   return report;
 } catch (const std::exception& error) {
-  throw std::runtime_error(fmt::format("no report of a diagnosis: {}", error.what()));
+  throw std::runtime_error(fmt::format("is not the report of a diagnosis: {}", error.what()));
 }
 
 std::optional<ReadReport> read_report(const std::filesystem::path& report_json) {

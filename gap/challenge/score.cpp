@@ -53,7 +53,7 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
     const Judgement judgement = judge(scored.sealed.plan, scored.report);
     const Stratum stratum = scored.sealed.plan.stratum;
     wrong.add(judgement.names_wrong);
-    if (!is_outside(stratum) || judgement.can_be_told_apart) wrong_apart.add(judgement.names_wrong);
+    if (!is_outside(stratum) || judgement.distinguishable) wrong_apart.add(judgement.names_wrong);
     if (stratum == Stratum::none) none.add(judgement.right);
     for (const ScoredInterval& interval : scored_intervals(scored)) {
       covered.add(interval.holds());
@@ -61,10 +61,10 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
     }
     if (judgement.is_small) continue;
     if (stratum == Stratum::single) singles.add(judgement.right);
-    if (stratum == Stratum::single && judgement.can_be_told_apart) alone.add(judgement.named_alone);
+    if (stratum == Stratum::single && judgement.distinguishable) alone.add(judgement.named_alone);
     if (stratum == Stratum::pair) pairs.add(judgement.right);
     if (is_outside(stratum)) outside.add(judgement.right);
-    if (is_outside(stratum) && judgement.can_be_told_apart) outside_apart.add(judgement.right);
+    if (is_outside(stratum) && judgement.distinguishable) outside_apart.add(judgement.right);
 
     // Shrinks are compared where there is a gap to shrink.
     for (const Shrinks& s : scored.shrinks.heldout) {
@@ -80,25 +80,28 @@ std::vector<Figure> figures(const std::vector<ScoredCase>& cases) {
 
   // The figures with targets, then those without.
   return {
-      share_figure("single_found", "singles named alone, or in the one ambiguity set", ">= 95 %", singles, 0.95, 1),
-      share_figure("single_named", "singles that can be told apart, named alone", ">= 90 %", alone, 0.90, 1),
-      share_figure("pair_found", "pairs, both named or each in a set", ">= 80 %", pairs, 0.80, 1),
-      share_figure("outside_unknown", "withheld and foreign called unknown", ">= 90 %", outside, 0.90, 1),
+      share_figure("single_found", "singles named alone or in the only ambiguity set", ">= 95 %", singles, 0.95, 1),
+      share_figure("single_named", "distinguishable singles, named alone", ">= 90 %", alone, 0.90, 1),
+      share_figure("pair_found", "pairs, both effects named or each in a set", ">= 80 %", pairs, 0.80, 1),
+      share_figure("outside_unknown", "withheld and foreign effects, called unknown", ">= 90 %", outside, 0.90, 1),
       share_figure("none_none", "nothing hidden, called none", ">= 99 %", none, 0.99, 1),
-      share_figure("wrong_name", "reports that name what is not hidden", "<= 2 %", wrong, 0, 0.02),
-      share_figure("interval_covers", "95 % intervals of named effects that hold the value", "90 to 98 %", covered,
-                   0.90, 0.98),
-      difference_figure("shrink_heldout", "held-out shrink beside the true effect's, mean difference", "<= 0.05",
-                        heldout, kShrinkWithin),
-      difference_figure("shrink_unseen", "the same on a manoeuvre that was not seen", "<= 0.05", unseen, kShrinkWithin),
-      share_figure("outside_apart_unknown", "withheld and foreign that can be told apart, called unknown", "",
+      share_figure("wrong_name", "reports that name an effect that is not hidden", "<= 2 %", wrong, 0, 0.02),
+      share_figure("interval_covers", "95 % intervals of named effects that contain the hidden value", "90 to 98 %",
+                   covered, 0.90, 0.98),
+      difference_figure("shrink_heldout", "held-out shrink minus the true effect's, mean absolute difference",
+                        "<= 0.05", heldout, kShrinkWithin),
+      difference_figure("shrink_unseen", "the same on a manoeuvre that the diagnosis did not use", "<= 0.05", unseen,
+                        kShrinkWithin),
+      share_figure("outside_apart_unknown", "distinguishable withheld and foreign effects, called unknown", "",
                    outside_apart, 0, 1),
-      share_figure("wrong_name_apart", "reports that name what is not hidden, without those that cannot be told apart",
-                   "", wrong_apart, 0, 1),
-      median_figure("interval_off", "the middle one of the named values, in half intervals beside the hidden one", "",
-                    off, 0, 0),
-      share_figure("shrink_heldout_close", "held-out shrinks within 0.05 of it", "", close, 0, 1),
-      share_figure("shrink_unseen_close", "the same on a manoeuvre that was not seen", "", close_unseen, 0, 1),
+      share_figure(
+          "wrong_name_apart",
+          "reports that name an effect that is not hidden, without indistinguishable cases outside the catalogue", "",
+          wrong_apart, 0, 1),
+      median_figure("interval_off", "median error of the named values, in half intervals", "", off, 0, 0),
+      share_figure("shrink_heldout_close", "held-out shrinks within 0.05 of the true effect's", "", close, 0, 1),
+      share_figure("shrink_unseen_close", "the same on a manoeuvre that the diagnosis did not use", "", close_unseen, 0,
+                   1),
   };
 }
 

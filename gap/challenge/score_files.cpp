@@ -121,7 +121,7 @@ Json case_json(const ScoredCase& scored) {
           {"small", judgement.is_small},
           {"right", judgement.right},
           {"named_alone", judgement.named_alone},
-          {"can_be_told_apart", judgement.can_be_told_apart},
+          {"can_be_told_apart", judgement.distinguishable},
           {"names_wrong", judgement.names_wrong},
           {"intervals", intervals_json(scored)},
           {"shares", shares_json(scored)},
@@ -173,7 +173,7 @@ std::string score_markdown(const std::vector<ScoredCase>& cases) {
 
   // Single cases: wrong reports, missed intervals, and small effects that need not be found.
   text += "\n### Reports that are not right\n\n" + case_rows(cases, false);
-  text += "\n### Intervals that do not hold what is hidden\n\n" + interval_rows(cases);
+  text += "\n### Intervals that do not contain the hidden value\n\n" + interval_rows(cases);
   text += imperfect ? "\n### Smaller than 3 times the background and called none: no error\n\n"
                     : "\n### Smaller than 2 floors and called none: no error\n\n";
   text += case_rows(cases, true);

@@ -49,7 +49,7 @@ std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
       no_set.add(judgement.right && scored.report->ambiguous_sets.empty());
     }
     if (is_outside(stratum)) outside.add(judgement.right);
-    if (is_outside(stratum) && judgement.can_be_told_apart) outside_apart.add(judgement.right);
+    if (is_outside(stratum) && judgement.distinguishable) outside_apart.add(judgement.right);
     for (const ScoredShare& stated : scored_shares(scored))
       share.add(std::abs(stated.stated - stated.truth) <= kShareWithin);
     for (const ScoredInterval& interval : scored_intervals(scored)) {
@@ -62,13 +62,13 @@ std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
     if (stratum == Stratum::baseline) {
       since.add(judgement.right);
       if (judgement.hidden.empty()) since_none.add(judgement.right);
-      if (judgement.can_be_told_apart) since_named.add(judgement.named_alone);
+      if (judgement.distinguishable) since_named.add(judgement.named_alone);
     }
     if (stratum == Stratum::single) {
       const bool is_named = judgement.found.front() == Found::named;
       found.add(judgement.all_found);
       alone.add(judgement.named_alone);
-      if (judgement.can_be_told_apart) named_apart.add(is_named);
+      if (judgement.distinguishable) named_apart.add(is_named);
     }
     if (stratum == Stratum::pair) pairs.add(judgement.all_found);
   }
@@ -76,25 +76,24 @@ std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
   // The figures with targets, then those without.
   return {
       share_figure("dominating_found", "dominating effects named, alone or in a set", ">= 90 %", found, 0.90, 1),
-      share_figure("dominating_named", "dominating effects that can be told apart, named alone", ">= 80 %", named_apart,
-                   0.80, 1),
+      share_figure("dominating_named", "distinguishable dominating effects, named alone", ">= 80 %", named_apart, 0.80,
+                   1),
       share_figure("pair_found", "dominating pairs, both named or each in a set", ">= 75 %", pairs, 0.75, 1),
-      share_figure("wrong_name", "reports that name what is not hidden", "<= 2 %", wrong, 0, 0.02),
+      share_figure("wrong_name", "reports that name an effect that is not hidden", "<= 2 %", wrong, 0, 0.02),
       share_figure("background_unnamed", "background alone, no name", ">= 97 %", quiet, 0.97, 1),
-      share_figure("outside_unnamed", "withheld and foreign, no wrong name", ">= 95 %", outside, 0.95, 1),
-      share_figure("baseline_right", "what changed since a baseline, named or in the only set; none where nothing did",
+      share_figure("outside_unnamed", "withheld and foreign effects, no wrong name", ">= 95 %", outside, 0.95, 1),
+      share_figure("baseline_right", "changes since a baseline, named or in the only set; none where nothing changed",
                    ">= 90 %", since, 0.90, 1),
       share_figure("share_close", "stated shares of the gap within 0.10 of the true ones", ">= 90 %", share, 0.90, 1),
-      share_figure("interval_covers", "95 % intervals of named effects that hold the value", "90 to 98 %", covered,
-                   0.90, 0.98),
-      median_figure("interval_off", "the middle one of the named values, in half intervals beside the hidden one",
-                    "0.25 to 0.45", off, 0.25, 0.45),
+      share_figure("interval_covers", "95 % intervals of named effects that contain the hidden value", "90 to 98 %",
+                   covered, 0.90, 0.98),
+      median_figure("interval_off", "median error of the named values, in half intervals", "0.25 to 0.45", off, 0.25,
+                    0.45),
       share_figure("dominating_only", "dominating effects named, and nothing else claimed", "", alone, 0, 1),
       share_figure("background_unclaimed", "background alone, neither name nor set", "", no_set, 0, 1),
-      share_figure("baseline_named", "what changed since a baseline and can be told apart, named alone", "",
-                   since_named, 0, 1),
-      share_figure("baseline_none", "nothing changed since a baseline, called none", "", since_none, 0, 1),
-      share_figure("outside_apart_unnamed", "withheld and foreign that can be told apart, no wrong name", "",
+      share_figure("baseline_named", "distinguishable changes since a baseline, named alone", "", since_named, 0, 1),
+      share_figure("baseline_none", "no change since a baseline, called none", "", since_none, 0, 1),
+      share_figure("outside_apart_unnamed", "distinguishable withheld and foreign effects, no wrong name", "",
                    outside_apart, 0, 1),
   };
 }

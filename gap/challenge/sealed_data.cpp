@@ -23,7 +23,7 @@ void make_missing_data(const fs::path& folder, const ChallengeKey& key, unsigned
     if (!is_sealed_dataset(case_folder(folder, sealed.plan.name), sealed)) missing.push_back(&sealed);
   std::mutex mutex;
   std::size_t made = 0;
-  // Each is made beside its place, and gets there only if it is what was sealed.
+  // Each is made in a temporary folder, and moved to its place only if it matches its seal.
   for_each_job(missing.size(), jobs, [&](std::size_t i) {
     diagnose::check_goes_on(stop);
     const fs::path data = case_folder(folder, missing[i]->plan.name), part = data.string() + ".part";
@@ -33,8 +33,8 @@ void make_missing_data(const fs::path& folder, const ChallengeKey& key, unsigned
     fs::remove_all(same ? data : part);
     if (!same)
       throw std::runtime_error(
-          fmt::format("{}: what this program makes from the key is not what was sealed; the same version of it on the "
-                      "same kind of machine would",
+          fmt::format("{}: the data that this program makes from the key does not match the sealed data; use the same "
+                      "version of the program on the same kind of machine",
                       data.string()));
     fs::rename(part, data);
     const std::lock_guard lock(mutex);

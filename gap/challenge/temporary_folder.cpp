@@ -12,7 +12,8 @@ namespace fs = std::filesystem;
 
 TemporaryFolder::TemporaryFolder() {
   std::string name = (fs::temp_directory_path() / "kenaf-gap-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": no folder for temporary files can be made");
+  if (::mkdtemp(name.data()) == nullptr)
+    throw std::runtime_error(name + ": cannot create a folder for temporary files");
   path = name;
 }
 

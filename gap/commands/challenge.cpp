@@ -66,7 +66,7 @@ struct Options {
 std::uint64_t seed_from_system() {
   std::uint64_t seed = 0;
   if (::getrandom(&seed, sizeof seed, 0) != sizeof seed)
-    throw std::runtime_error("the operating system gives no random seed; give one with --seed");
+    throw std::runtime_error("the operating system provides no random seed; give one with --seed");
   return seed;
 }
 
@@ -77,12 +77,11 @@ bool is_challenge(const fs::path& folder) {
 
 void check_folder(const fs::path& folder, bool seed_given) {
   if (fs::exists(folder / "key.json"))
-    throw std::runtime_error(
-        fmt::format("{}: this challenge is finished, its key is there; `kenaf-gap score` scores it", folder.string()));
+    throw std::runtime_error(fmt::format(
+        "{}: this challenge is finished; `kenaf-gap score` compares its reports with its key", folder.string()));
   if (fs::exists(folder) && !fs::is_empty(folder) && !(seed_given && is_challenge(folder)))
-    throw std::runtime_error(
-        fmt::format("{}: is not empty; give another folder, or the --seed of the challenge that is to go on there",
-                    folder.string()));
+    throw std::runtime_error(fmt::format(
+        "{}: is not empty; give another folder, or the --seed of the challenge to continue there", folder.string()));
 }
 
 class Teller {
@@ -166,7 +165,7 @@ void check_same_cases(const fs::path& folder, const Options& options, std::uint6
   }
   if (any)
     throw std::runtime_error(fmt::format(
-        "{}: holds cases of another --seed, --cases, --imperfect or --engine; give those, or another folder",
+        "{}: contains cases of another --seed, --cases, --imperfect or --engine; give those, or another folder",
         folder.string()));
 }
 
@@ -178,7 +177,7 @@ challenge::ChallengeKey seal_cases(const Options& options, std::uint64_t seed, c
       throw std::runtime_error(
           fmt::format("{0}: is a challenge of {1} cases; give --cases {1}", folder.string(), key->cases.size()));
     if (key->kind != options.kind())
-      throw std::runtime_error(fmt::format("{}: is the {} challenge; it goes on with `kenaf-gap challenge{}`",
+      throw std::runtime_error(fmt::format("{}: is the {} challenge; continue it with `kenaf-gap challenge{}`",
                                            folder.string(), challenge::kind_name(key->kind),
                                            Options::option_of(key->kind)));
     challenge::make_missing_data(folder, *key, options.jobs, &stop,
@@ -189,7 +188,7 @@ challenge::ChallengeKey seal_cases(const Options& options, std::uint64_t seed, c
 
   if (challenge::is_sealed_by_another(folder, seed))
     throw std::runtime_error(
-        fmt::format("{}: is sealed with another --seed; give that one, or another folder", folder.string()));
+        fmt::format("{}: was sealed with another --seed; give that one, or another folder", folder.string()));
 
   // Makes the cases in a folder that gets its final name only when they are sealed.
   const fs::path part = folder / "cases.part";
@@ -203,8 +202,8 @@ challenge::ChallengeKey seal_cases(const Options& options, std::uint64_t seed, c
   if (fs::exists(folder / "commitment.txt") && runs::read_whole_file(folder / "commitment.txt") != commitment) {
     fs::remove_all(part);
     throw std::runtime_error(
-        fmt::format("{}: what --cases {} --seed {} makes is not what was sealed there; the same program with the same "
-                    "numbers would",
+        fmt::format("{}: the cases of --cases {} --seed {} do not match those sealed there; use the same version of "
+                    "the program and the same numbers",
                     folder.string(), options.cases, seed));
   }
   // Written before "cases.part" goes, which marks the folder as a challenge until then.
@@ -228,7 +227,7 @@ std::size_t run(const Options& options, std::uint64_t seed) {
   Teller teller(options.cases);
   const challenge::ChallengeKey key = seal_cases(options, seed, folder, teller, stop);
 
-  // Cases without a valid report are left to diagnose; each is told only what it may know.
+  // Cases without a valid report are left to diagnose; each receives only what it may know.
   std::vector<challenge::CaseToDiagnose> left;
   std::vector<std::string> names;
   for (const challenge::SealedCase& sealed : key.cases) {
@@ -250,7 +249,9 @@ std::size_t run(const Options& options, std::uint64_t seed) {
 
   // Diagnoses them; a process that succeeds must also have left a valid report.
   if (!challenge::can_confine())
-    std::fputs("this kernel has no Landlock: the diagnosis has no key, but could read files beside its case\n", stderr);
+    std::fputs(
+        "this kernel has no Landlock: the diagnosis does not get the key, but could read files outside its case\n",
+        stderr);
   std::size_t diagnosed = key.cases.size() - left.size();
   diagnose_cases(left, options.jobs, stop, [&](std::size_t i, bool could) {
     could = could && is_diagnosed(left[i]);
@@ -262,7 +263,7 @@ std::size_t run(const Options& options, std::uint64_t seed) {
   if (stop) throw diagnose::Stopped();
   if (diagnosed == 0)
     throw std::runtime_error(
-        fmt::format("no case could be diagnosed; why is in {}", (left[0].report / "diagnose.log").string()));
+        fmt::format("no case could be diagnosed; the reason is in {}", (left[0].report / "diagnose.log").string()));
   runs::write_whole_file(folder / "key.json", challenge::key_text(key));
   fs::remove(folder / "key.enciphered");
   return diagnosed;
@@ -273,14 +274,14 @@ std::size_t run(const Options& options, std::uint64_t seed) {
 void add_challenge_command(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
-      "challenge", "diagnoses cases with hidden effects, of which the key is sealed until all are diagnosed");
+      "challenge", "diagnoses cases with hidden effects, whose key stays sealed until all are diagnosed");
   command->add_option("--out", options->out, "folder for the cases, their reports and the key; required")
       ->type_name("DIR");
   command->add_option("--cases", options->cases, "how many")->check(whole_number(kMostCases))->capture_default_str();
-  command->add_option("--seed", options->seed, "of everything, to repeat a challenge or to go on with one [chance]")
+  command->add_option("--seed", options->seed, "seed of all random numbers, to repeat or continue a challenge [random]")
       ->check(whole_number(std::numeric_limits<std::uint64_t>::max()));
   command->add_flag("--imperfect", options->imperfect,
-                    "cases like reality: every number of the robot is a little off, runs are short and few");
+                    "realistic cases: every number of the robot has a small error, runs are short and few");
   const std::vector<std::string> engines = engines::engine_names();
   const std::string built_with =
       engines.empty() ? "none: built without MuJoCo and ODE" : fmt::format("{}", fmt::join(engines, " or "));
@@ -292,13 +293,13 @@ void add_challenge_command(CLI::App& program) {
         return std::ranges::count(engines, name) > 0 ? std::string()
                                                      : fmt::format("no engine \"{}\" ({})", name, built_with);
       });
-  command->add_option("--jobs", options->jobs, "cases at once; 0: one a core")
+  command->add_option("--jobs", options->jobs, "parallel cases; 0: one per core")
       ->check(whole_number(kMostJobs))
       ->capture_default_str();
 
   command->callback([options] {
     if (options->out.empty()) throw CLI::RequiredError("--out");
-    if (options->cases == 0) throw CLI::ValidationError("--cases", "0 cases are no challenge");
+    if (options->cases == 0) throw CLI::ValidationError("--cases", "--cases must be at least 1");
 
     check_folder(options->out, options->seed.has_value());
     ::prctl(PR_SET_DUMPABLE, 0);  // no other process of this user may read the key out of this one's memory
@@ -306,7 +307,7 @@ void add_challenge_command(CLI::App& program) {
     const std::uint64_t seed = options->seed ? *options->seed : seed_from_system();
     // The seed is revealed only if the program ends early: without it nobody could resume the challenge.
     const auto goes_on = [&](const std::string& why) {
-      return std::runtime_error(fmt::format("{}; `kenaf-gap challenge --out {} --cases {} --seed {}{}` goes on with it",
+      return std::runtime_error(fmt::format("{}; `kenaf-gap challenge --out {} --cases {} --seed {}{}` continues it",
                                             why, options->out, options->cases, seed, options->kind_option()));
     };
     std::size_t diagnosed = 0;
@@ -319,11 +320,11 @@ void add_challenge_command(CLI::App& program) {
       throw goes_on(error.what());
     }
     fmt::print(
-        "{} of {} cases are diagnosed, and {}/key.json says what was hidden in them\n`kenaf-gap score {}` compares\n",
+        "{} of {} cases are diagnosed; {}/key.json lists the effects hidden in them\n`kenaf-gap score {}` compares\n",
         diagnosed, options->cases, options->out, options->out);
     if (diagnosed < options->cases)
       throw RunsWentWrong(
-          "not all cases could be diagnosed; why is in the diagnose.log of those without a report.json");
+          "not all cases could be diagnosed; the diagnose.log of each case without a report.json gives the reason");
   });
 }
 

@@ -80,7 +80,7 @@ TEST_CASE("Data of a sealed challenge that are gone or changed are made again, t
   CHECK(is_sealed_dataset(case_folder(folder.path(), sealed.plan.name), sealed));
 
   sealed.data_sha256 = "of another program";
-  CHECK_THROWS_WITH(make_missing(), Catch::Contains("not what was sealed"));
+  CHECK_THROWS_WITH(make_missing(), Catch::Contains("does not match the sealed data"));
   CHECK(test::read_file(data / "run-001.csv") == run);  // nothing is replaced by what is not right
   CHECK_FALSE(std::filesystem::exists(data.string() + ".part"));
 }

@@ -67,14 +67,14 @@ TEST_CASE("A report of version 2 has names, values and shares of each stage") {
 }
 
 TEST_CASE("What is no report is refused") {
-  CHECK_THROWS_WITH(report_of("{}"), Catch::Contains("no report of a diagnosis"));
+  CHECK_THROWS_WITH(report_of("{}"), Catch::Contains("not the report of a diagnosis"));
   CHECK_THROWS_WITH(report_of("{\"format\": \"kenaf-gap-report/3\"}"), Catch::Contains("kenaf-gap-report/2"));
   CHECK_THROWS_WITH(
       report_of(R"({"format": "kenaf-gap-report/2", "verdict": "none", "named": [], "ambiguous_sets": []})"),
       Catch::Contains("stages"));
   CHECK_THROWS_WITH(report_of(R"({"format": "kenaf-gap-report/2", "verdict": "none", "named": [], "ambiguous_sets": [],
     "stages": [], "isolability": {"effects": ["mass"], "angle_deg": []}})"),
-                    Catch::Contains("no square table"));
+                    Catch::Contains("not a square table"));
 }
 
 TEST_CASE("What an interrupted diagnosis left is no report: unknown would be right for what is outside") {
