@@ -31,14 +31,14 @@ bool is_plain_name(std::string_view name) {
 
 std::string read_name(description::TomlReader& table, std::string_view key) {
   std::string name = table.text(key);
-  if (!is_plain_name(name)) table.fail(key, "must be of the letters a to z, digits and _, at most 64");
+  if (!is_plain_name(name)) table.fail(key, "must consist of the letters a to z, digits and _, at most 64 in all");
   return name;
 }
 
 std::string read_line(description::TomlReader& table, std::string_view key) {
   std::string text = table.text(key);
   const bool one_line = std::ranges::none_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-  if (text.empty() || text.size() > 200 || !one_line) table.fail(key, "must be one line of text, of at most 200 bytes");
+  if (text.empty() || text.size() > 200 || !one_line) table.fail(key, "must be one line of text of at most 200 bytes");
   return text;
 }
 
@@ -61,7 +61,7 @@ std::string keys_like(std::string_view key, const RobotDescription& robot) {
     tables.insert(number.key.substr(0, number.key.find_first_of(".[")));
     if (number.key.starts_with(table) && number.key.find_first_of(".[") == table.size()) keys.push_back(number.key);
   }
-  return keys.empty() ? fmt::format("it has numbers in {}", fmt::join(tables, ", "))
+  return keys.empty() ? fmt::format("its tables with numbers are {}", fmt::join(tables, ", "))
                       : fmt::format("it has {}", fmt::join(keys, ", "));
 }
 
@@ -69,13 +69,13 @@ OwnMove read_move(description::TomlReader& table, const RobotDescription& robot)
   const std::string key = table.text("key");
   std::optional<RobotNumber> number = find_robot_number(robot, key);
   if (!number)
-    table.fail("key", fmt::format("is \"{}\", which is no number of this robot: {}", key, keys_like(key, robot)));
+    table.fail("key", fmt::format("is \"{}\", which is not a number of this robot: {}", key, keys_like(key, robot)));
   OwnMove move{std::move(*number)};
   const bool adds = table.has("add");
-  if (adds == table.has("scale")) table.fail("key", "must have with it either add or scale");
+  if (adds == table.has("scale")) table.fail("key", "needs either add or scale in the same table");
   const std::string_view how = adds ? "add" : "scale";
   (adds ? move.add : move.scale) = table.number(how);
-  if (table.number(how) == 0) table.fail(how, "is 0, which moves nothing");
+  if (table.number(how) == 0) table.fail(how, "is 0, which has no effect");
   table.finish();
   return move;
 }
@@ -85,9 +85,9 @@ std::vector<OwnMove> read_moves(description::TomlReader& table, const RobotDescr
   std::set<std::string> keys;  // as in the file: a number moved twice would not move linearly
   for (description::TomlReader& move : table.tables("moves")) {
     moves.push_back(read_move(move, robot));
-    if (!keys.insert(moves.back().number.written_as).second) move.fail("key", "is moved by this effect already");
+    if (!keys.insert(moves.back().number.written_as).second) move.fail("key", "is already changed by this effect");
     if (moves.size() > kMaxMoves)
-      move.fail("key", fmt::format("is one too many: an effect moves at most {}", kMaxMoves));
+      move.fail("key", fmt::format("is one too many: an effect changes at most {} numbers", kMaxMoves));
   }
   if (moves.empty()) table.fail("moves", "is missing: an effect has at least one [[effect.moves]]");
   return moves;
@@ -98,14 +98,14 @@ void check_end(const description::TomlReader& table, std::string_view end, doubl
                RobotDescription robot) {
   candidate.set(robot, value);
   const std::string why = why_impossible(robot);
-  if (!why.empty()) table.fail(end, fmt::format("is {}, and with that there is no such robot: {}", value, why));
+  if (!why.empty()) table.fail(end, fmt::format("is {}, which makes an invalid robot: {}", value, why));
 }
 
 Candidate read_effect(description::TomlReader& table, const RobotDescription& robot) {
   Candidate candidate;
   // its description, range and moves
   candidate.name = candidate.effect = read_name(table, "name");
-  if (physics::find_effect(candidate.name)) table.fail("name", "is the name of an effect of the catalogue");
+  if (physics::find_effect(candidate.name)) table.fail("name", "is already the name of an effect in the catalogue");
   candidate.summary = read_line(table, "summary");
   candidate.stage = read_stage(table);
   candidate.parameter = read_name(table, "parameter");
@@ -151,7 +151,7 @@ std::vector<Candidate> parse_own_effects(std::string_view toml, const std::strin
   std::set<std::string> names;
   for (description::TomlReader& table : file.tables("effect")) {
     candidates.push_back(read_effect(table, robot));
-    if (!names.insert(candidates.back().name).second) table.fail("name", "is the name of another effect too");
+    if (!names.insert(candidates.back().name).second) table.fail("name", "is also the name of another effect");
     if (candidates.size() > kMaxEffects)
       table.fail("name", fmt::format("is one effect too many: at most {}", kMaxEffects));
   }

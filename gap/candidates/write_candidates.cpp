@@ -143,7 +143,8 @@ std::string robot_toml_with(const std::string& toml_text, std::span<const std::p
   for (const std::string& key : keys) {
     const std::optional<RobotNumber> number = find_robot_number(before, key);
     if (!number)
-      throw description::DescriptionError(fmt::format("the robot has no {}: the candidates are of another one", key));
+      throw description::DescriptionError(
+          fmt::format("the robot has no {}: the candidates belong to another robot", key));
     if (!same_bits(number->get(before), number->get(after))) text = with_number(text, key, number->get(after));
   }
   physics::parse_robot(text, "robot.toml");

@@ -67,7 +67,7 @@ void check(const std::filesystem::path& folder) {
 void add_check_command(CLI::App& program) {
   const auto folder = std::make_shared<std::string>();
   CLI::App* command =
-      program.add_subcommand("check", "looks for wrong units, signs, clocks and dead sensors in a dataset");
+      program.add_subcommand("check", "checks a dataset for wrong units, signs, clocks and dead sensors");
   command->add_option("DATASET", *folder, "the dataset, a folder; required")->type_name("");
   command->callback([folder] {
     if (folder->empty()) throw CLI::RequiredError("DATASET");

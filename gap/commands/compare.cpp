@@ -20,20 +20,19 @@ void add_compare_command(CLI::App& program) {
   const auto options = std::make_shared<Options>();
   CLI::App* command =
       program.add_subcommand("compare", "aligns two datasets run by run and reports the errors per frame");
-  command->add_option("REAL", options->real, "the dataset that is compared with, a folder; required")->type_name("");
-  command->add_option("SIM", options->sim, "the dataset that is compared, a folder; required")->type_name("");
+  command->add_option("REAL", options->real, "the reference dataset, a folder; required")->type_name("");
+  command->add_option("SIM", options->sim, "the dataset to compare with it, a folder; required")->type_name("");
   command->add_option("--out", options->out, "folder for compare.html, compare.json and matched-NNN.csv; required")
       ->type_name("DIR");
   command->add_flag_callback(
       "--no-align-start", [options] { options->compare.align_start = false; },
-      "compare runs where they were recorded; else each simulated one is moved to its real one's start, in x, y, yaw");
-  command
-      ->add_option("--start", options->compare.start_s, "the start is the mean over this time; 0: the first frame [0]")
+      "keep the recorded starts; otherwise each simulated run is moved to the start of its real run, in x, y and yaw");
+  command->add_option("--start", options->compare.start_s, "average the start over this time; 0: the first frame [0]")
       ->check(number_in(0, 1e6))
       ->type_name("SECONDS");
   command
       ->add_option("--band", options->compare.band_s,
-                   "match no frames that are farther than this from an even course of time")
+                   "largest deviation of matched frames from uniform time, in seconds")
       ->check(number_in(1e-3, 1e9))
       ->type_name("SECONDS");
 

@@ -16,10 +16,11 @@ datasets::RecordedRun run_from(const std::string& text, const std::string& manoe
   const std::size_t equals = text.find('=');
   if (equals == text.npos || std::filesystem::exists(text)) {
     if (manoeuvre.empty())
-      throw std::invalid_argument(fmt::format("{}: which manoeuvre is it? Give --manoeuvre, or NAME={}", text, text));
+      throw std::invalid_argument(
+          fmt::format("{}: its manoeuvre is unknown; give --manoeuvre, or NAME={}", text, text));
     return {text, manoeuvre};
   }
-  if (equals == 0) throw std::invalid_argument(fmt::format("{}: no manoeuvre is named before the '='", text));
+  if (equals == 0) throw std::invalid_argument(fmt::format("{}: the manoeuvre before the '=' has no name", text));
   return {text.substr(equals + 1), text.substr(0, equals)};
 }
 
@@ -34,11 +35,13 @@ void add_dataset_command(CLI::App& program) {
   // Shared with the callback, which runs after this function has returned.
   const auto options = std::make_shared<Options>();
   datasets::CollectRequest& request = options->request;
-  CLI::App* command = program.add_subcommand("dataset", "makes a dataset of recorded runs, or adds them to one");
-  command->add_option("RUN", options->runs, "the runs, CSV files; MANOEUVRE=FILE where one is of another; required")
+  CLI::App* command = program.add_subcommand("dataset", "makes a dataset from recorded runs, or adds runs to one");
+  command
+      ->add_option("RUN", options->runs, "the runs, CSV files; MANOEUVRE=FILE for a run of another manoeuvre; required")
       ->type_name("...");
-  command->add_option("--manoeuvre", options->manoeuvre, "of the runs that do not name their own")->type_name("NAME");
-  command->add_option("--out", request.out, "folder of the dataset; is made or extended; required")->type_name("DIR");
+  command->add_option("--manoeuvre", options->manoeuvre, "manoeuvre of the runs that are given without one")
+      ->type_name("NAME");
+  command->add_option("--out", request.out, "folder of the dataset, to create or extend; required")->type_name("DIR");
   command->add_option("--robot", request.robot, "a shipped name or a TOML file [kenaf, or the dataset's]");
   command->add_option("--world", request.world, "a shipped name or an SDF file [each shipped manoeuvre's own]");
   command->add_option("--source", request.source, "real or sim")
@@ -46,7 +49,7 @@ void add_dataset_command(CLI::App& program) {
       ->type_name("SOURCE")
       ->capture_default_str();
   command->add_option("--description", request.description, "free text, for a new dataset");
-  command->add_flag("--unchecked", request.unchecked, "take runs too that the checks refuse");
+  command->add_flag("--unchecked", request.unchecked, "also accept runs that the checks refuse");
 
   command->callback([options] {
     datasets::CollectRequest& asked = options->request;
@@ -61,7 +64,7 @@ void add_dataset_command(CLI::App& program) {
       std::fprintf(stderr, "kenaf-gap: %s%s\n", finding.severity != logs::Finding::Severity::refuse ? "warning: " : "",
                    logs::in_words(finding).c_str());
     if (result.refused)
-      throw std::runtime_error("nothing was written; where a run is right all the same, give --unchecked");
+      throw std::runtime_error("nothing was written; if a run is right nevertheless, give --unchecked");
 
     for (std::size_t i = 0; i < result.runs.size(); ++i)
       std::printf("%s: %s, from %s\n", result.runs[i].file.c_str(), result.runs[i].manoeuvre.c_str(),

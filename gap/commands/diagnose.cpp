@@ -23,28 +23,27 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
   const auto options = std::make_shared<Options>();
   diagnose::DiagnosisOptions& diagnosis = options->diagnosis;
   diagnosis.ranks = ranks;
-  CLI::App* command = program.add_subcommand("diagnose", "names the effects by which simulation and runs part, if any");
+  CLI::App* command =
+      program.add_subcommand("diagnose", "names the effects that cause the gap between simulation and runs");
   command->add_option("DATASET", options->dataset, "the runs, a folder; required")->type_name("");
-  command
-      ->add_option("--out", options->out,
-                   "folder for report.json, report.html and the robot with what was found; required")
+  command->add_option("--out", options->out, "folder for report.json, report.html and the corrected robot; required")
       ->type_name("DIR");
   command
       ->add_option("--against", diagnosis.against,
-                   "a dataset of the same manoeuvres from before: names what changed since then")
+                   "an earlier dataset of the same manoeuvres: names the changes since then")
       ->type_name("BASELINE");
   command->add_option("--robot", diagnosis.robot, "a shipped name or a TOML file [the dataset's]");
   command->add_option("--world", diagnosis.world, "a shipped name or an SDF file, for all runs [each run's own]");
-  command
-      ->add_option("--effects", diagnosis.effects, "a TOML file with effects of your own, looked for beside all others")
+  command->add_option("--effects", diagnosis.effects, "a TOML file with effects of your own, to search for in addition")
       ->type_name("FILE");
-  command->add_option("--without", diagnosis.without, "leaves effects out of the search, by name, parted by commas")
+  command
+      ->add_option("--without", diagnosis.without, "effects to leave out of the search, by name, separated by commas")
       ->delimiter(',')
       ->type_name("EFFECT");
   command->add_flag_callback(
       "--no-next", [&diagnosis] { diagnosis.propose_next = false; },
-      "leaves out which manoeuvre to drive next, which takes simulations of its own");
-  command->add_option("--jobs", diagnosis.jobs, "threads; 0: one a core")
+      "do not propose the next manoeuvre, which needs further simulations");
+  command->add_option("--jobs", diagnosis.jobs, "threads; 0: one per core")
       ->check(whole_number(kMostJobs))
       ->capture_default_str();
   command->add_option("--seed", diagnosis.seed, "of resampling")
@@ -73,7 +72,7 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
     if (!reports) return;
     if (!result.interrupted.empty()) clear_progress_line();
     std::fputs(diagnose::diagnosis_text(result).c_str(), stdout);
-    std::printf("\n%s has the figures\n", diagnose::write_diagnosis(result, options->out).c_str());
+    std::printf("\nThe report is in %s\n", diagnose::write_diagnosis(result, options->out).c_str());
   });
 }
 

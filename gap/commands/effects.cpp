@@ -34,7 +34,7 @@ std::string as_json() {
 }
 
 std::string as_text() {
-  std::string text = "An effect is switched on with --effect NAME:PARAMETER=VALUE, or in a robot description.\n";
+  std::string text = "Switch an effect on with --effect NAME:PARAMETER=VALUE, or in a robot description.\n";
   std::string_view stage;
   for (const EffectInfo& effect : physics::effect_catalogue()) {
     if (stage != stage_name(effect.stage)) {
@@ -65,8 +65,8 @@ std::string as_json(const std::vector<candidates::Candidate>& candidates) {
 
 std::string as_text(const std::vector<candidates::Candidate>& candidates, const std::string& robot) {
   std::string text = fmt::format(
-      "What a diagnosis of {} looks for: effects of the catalogue, and numbers of the description.\n"
-      "--without leaves any of them out, by name.\n\n"
+      "Candidates of a diagnosis of {}: effects of the catalogue and numbers of the description.\n"
+      "--without NAME leaves a candidate out.\n\n"
       "{:<34} {:<8} {:>10} {:>10} {:>10}  unit\n",
       robot, "name", "stage", "described", "from", "to");
   for (const candidates::Candidate& c : candidates)
@@ -85,7 +85,7 @@ void add_effects_command(CLI::App& program) {
   };
   const auto options = std::make_shared<Options>();
   command->add_option("--robot", options->robot,
-                      "what a diagnosis of this robot looks for, with its ranges: a shipped name or a TOML file");
+                      "the candidates of a diagnosis of this robot, with their ranges: a shipped name or a TOML file");
   command->add_flag("--json", options->json, "as JSON");
   command->callback([options] {
     const auto& [json, robot] = *options;

@@ -33,7 +33,7 @@ std::string as_text(const std::vector<rollout::Manoeuvre>& manoeuvres) {
 }  // namespace
 
 void add_manoeuvres_command(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("manoeuvres", "lists the manoeuvres that ship");
+  CLI::App* command = program.add_subcommand("manoeuvres", "lists the shipped manoeuvres");
   const auto json = std::make_shared<bool>(false);
   command->add_flag("--json", *json, "as JSON");
   command->callback([json] {

@@ -25,16 +25,17 @@ void print(const logs::MergedRun& merged) {
     for (const logs::QuantityOffset& quantity : offset.quantities)
       std::printf("  from %s: %.4f s, standard error %.4f s, gain %.3g, correlation %.3f%s\n", quantity.name.c_str(),
                   quantity.offset_s, quantity.standard_error_s, quantity.gain, quantity.correlation,
-                  quantity.used ? "" : "; not used, as tracks slip");
+                  quantity.used ? "" : "; not used, because tracks slip");
     if (offset.from_tracks)
-      std::printf("  from the tracks alone: where the body follows its belts late, the offset is off by that\n");
-    std::printf("  both saw %.1f s\n", offset.overlap_s);
+      std::printf(
+          "  from the tracks alone: if the body follows its belts with a delay, the offset is wrong by that delay\n");
+    std::printf("  both logs cover %.1f s\n", offset.overlap_s);
   }
   const std::size_t rows = merged.run.row_count();
   std::printf("%zu of %zu rows have a pose, between captured ones at most %.3g s apart\n", merged.rows_with_pose, rows,
               merged.max_gap_s);
   for (const auto& [name, kept] : merged.renamed)
-    std::printf("%s was in the run: kept as %s\n", name.c_str(), kept.c_str());
+    std::printf("the column %s of the run is kept as %s\n", name.c_str(), kept.c_str());
 }
 
 }  // namespace
@@ -48,31 +49,30 @@ void add_merge_command(CLI::App& program) {
   // Shared with the callback, which runs after this function has returned.
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand(
-      "merge", "puts motion capture's pose into a recorded run and says how far the clocks are apart");
+      "merge", "adds the pose from motion capture to a recorded run and reports the offset of the clocks");
   command->add_option("RUN", options->run, "the run, a CSV file; required")->type_name("");
   command->add_option("MOCAP", options->capture, "the motion capture, a CSV file; required")->type_name("");
   command->add_option("--out", options->out, "the CSV file to write; required")->type_name("FILE");
-  command->add_option("--mocap-units", options->units, "of x_m, y_m and z_m in MOCAP: m or mm")
+  command->add_option("--mocap-units", options->units, "unit of x_m, y_m and z_m in MOCAP: m or mm")
       ->check(CLI::IsMember({"m", "mm"}))
       ->type_name("UNIT")
       ->capture_default_str();
   command->add_flag("--keep-frame", options->merge.keep_frame,
-                    "keep the motion capture's frame; else the first pose is the origin, x forward");
-  command
-      ->add_option("--start", options->merge.start_s, "the first pose is the mean over this time; 0: the first row [0]")
+                    "keep the frame of the motion capture; otherwise the first pose is the origin, x forward");
+  command->add_option("--start", options->merge.start_s, "average the first pose over this time; 0: the first row [0]")
       ->check(number_in(0, 1e6))
       ->type_name("SECONDS");
   command
       ->add_option("--max-gap", options->merge.max_gap_s,
-                   "no pose is put between captured ones that are farther apart [2.5 times their median step]")
+                   "longest gap between captured poses to interpolate over [2.5 times their median step]")
       ->check(number_in(1e-6, 1e6))
       ->type_name("SECONDS");
   command
       ->add_option("--offset", options->merge.offset_s,
-                   "run time less motion capture time, where it is known; else it is estimated")
+                   "run time minus motion capture time, if known; otherwise it is estimated")
       ->check(number_in(-1e12, 1e12))
       ->type_name("SECONDS");
-  command->add_flag("--force", options->force, "replace the file to write where it is there");
+  command->add_flag("--force", options->force, "replace the output file if it exists");
 
   command->callback([options] {
     // Required options, and an output file that must not exist.
@@ -81,7 +81,7 @@ void add_merge_command(CLI::App& program) {
       if (text->empty()) throw CLI::RequiredError(name);
     if (!options->force && std::filesystem::exists(options->out))
       throw std::runtime_error(
-          fmt::format("{}: is there already; give another file, or --force to replace it", options->out));
+          fmt::format("{}: exists already; give another file, or --force to replace it", options->out));
 
     // Merges; errors get the names of the files, which the merge does not know.
     const runs::Run run = runs::read_run(options->run);
@@ -93,8 +93,8 @@ void add_merge_command(CLI::App& program) {
         return logs::merge_pose(run, capture, options->merge);
       } catch (const logs::NoOffset& error) {
         throw std::runtime_error(
-            fmt::format("{}, {}: no time offset can be estimated: {}. Nothing was written. "
-                        "Where the offset is known, give it with --offset",
+            fmt::format("{}, {}: the time offset cannot be estimated: {}. Nothing was written. If the offset is known, "
+                        "give it with --offset",
                         options->run, options->capture, error.what()));
       } catch (const runs::RunFileError& error) {
         throw std::runtime_error(fmt::format("{}: {}", options->run, error.what()));

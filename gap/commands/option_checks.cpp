@@ -19,7 +19,7 @@ OptionCheck whole_number(std::uint64_t max) {
   return [max](const std::string& text) {
     std::uint64_t value = 0;
     const bool good = reads_as(text, value) && value <= max && text == fmt::to_string(value);
-    return good ? std::string() : fmt::format("\"{}\" is no whole number from 0 to {}", text, max);
+    return good ? std::string() : fmt::format("\"{}\" is not a whole number from 0 to {}", text, max);
   };
 }
 
@@ -27,7 +27,7 @@ OptionCheck number_in(double min, double max) {
   return [min, max](const std::string& text) {
     double value = 0;
     const bool good = reads_as(text, value) && value >= min && value <= max;
-    return good ? std::string() : fmt::format("\"{}\" is no number from {} to {}", text, min, max);
+    return good ? std::string() : fmt::format("\"{}\" is not a number from {} to {}", text, min, max);
   };
 }
 

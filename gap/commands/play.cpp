@@ -41,25 +41,26 @@ void add_play_command(CLI::App& program) {
   // Shared with the callback, which runs after this function has returned.
   const auto options = std::make_shared<Options>();
   playback::PlaybackRequest& request = options->request;
-  CLI::App* command = program.add_subcommand("play", "plays recorded runs in a browser, beside their simulations");
+  CLI::App* command = program.add_subcommand("play", "plays recorded runs in a browser, next to their simulations");
   command->add_option("RUNS", request.runs, "a dataset's folder, or the CSV file of one run; required")->type_name("");
   command->add_option("--report", request.report, "folder that a diagnosis of these runs wrote: marks where the gap is")
       ->type_name("DIR");
-  command->add_option("--run", request.run, "file or manoeuvre to begin with [the first]");
+  command->add_option("--run", request.run, "file or manoeuvre to show first [the first]");
   command->add_option("--robot", request.robot, "a shipped name or a TOML file [the dataset's, or kenaf]");
   command->add_option("--world", request.world, "a shipped name or an SDF file [each run's own, or flat]");
-  command->add_option("--view", options->view, "where a browser finds the page, ADDRESS:PORT; port 0: any free one")
+  command->add_option("--view", options->view, "address of the page, ADDRESS:PORT; port 0: any free one")
       ->type_name("ADDRESS:PORT")
       ->capture_default_str();
   command
-      ->add_option("--view-token", options->token, "what a browser must know; where it is not on loopback one is made")
+      ->add_option("--view-token", options->token,
+                   "token that a browser must give; off loopback the default is a random one")
       ->type_name("TOKEN");
 
   command->callback([options] {
     if (options->request.runs.empty()) throw CLI::RequiredError("RUNS");
 
     live::ViewOptions view = live::parse_view_options(options->view);
-    if (!view.on) throw std::invalid_argument("--view off: there is nothing to do; give ADDRESS:PORT");
+    if (!view.on) throw std::invalid_argument("--view off leaves nothing to do; give ADDRESS:PORT");
     view.token = live::parse_view_token(options->token);
     playback::Playback playback = playback::load_playback(options->request);
     for (const std::string& note : playback.notes) std::fprintf(stderr, "kenaf-gap: %s\n", note.c_str());

@@ -66,9 +66,9 @@ void add_score_command(CLI::App& program) {
   // Shared with the callback, which runs after this function has returned.
   const auto options = std::make_shared<Options>();
   CLI::App* command = program.add_subcommand("score", "compares the reports of a challenge with its key");
-  command->add_option("DIR", options->folder, "the folder of a challenge that is finished; required")->type_name("");
-  command->add_flag("!--no-shrinks", options->shrinks, "leave out the figures that take simulations");
-  command->add_option("--jobs", options->jobs, "threads; 0: one a core")
+  command->add_option("DIR", options->folder, "the folder of a finished challenge; required")->type_name("");
+  command->add_flag("!--no-shrinks", options->shrinks, "leave out the figures that need simulations");
+  command->add_option("--jobs", options->jobs, "threads; 0: one per core")
       ->check(whole_number(kMostJobs))
       ->capture_default_str();
 
@@ -101,7 +101,7 @@ void add_score_command(CLI::App& program) {
       for_each_job(cases.size(), options->jobs, [&](std::size_t i) {
         cases[i].shrinks = measure_shrinks(folder, cases[i]);
         const std::lock_guard lock(mutex);
-        line.show("simulating what was named, and what was hidden",
+        line.show("simulating the named and the hidden effects",
                   kDataShare + (1 - kDataShare) * ++done / static_cast<double>(cases.size()));
       });
 

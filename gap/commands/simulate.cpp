@@ -23,20 +23,20 @@ void print(const datasets::SimulatedDataset& dataset) {
   for (const std::string& warning : dataset.warnings)
     std::fprintf(stderr, "kenaf-gap: warning: not simulated: %s\n", warning.c_str());
   for (const datasets::SimulatedRun& run : dataset.runs) {
-    const char* outcome = !run.fault.empty() ? ", went wrong"
+    const char* outcome = !run.fault.empty() ? ", failed"
                           : !run.succeeded   ? ""
                           : *run.succeeded   ? ", done"
                                              : ", not done";
     std::printf("%s: %s, %.2f s%s%s\n", run.file.c_str(), run.manoeuvre.c_str(), run.duration_s, outcome,
-                run.gave_up ? ", given up" : "");
+                run.gave_up ? ", abandoned" : "");
     if (run.fault.empty()) continue;
     ++faults;
-    std::fprintf(stderr, "kenaf-gap: %s: the simulation went wrong: %s\n", run.file.c_str(), run.fault.c_str());
+    std::fprintf(stderr, "kenaf-gap: %s: the simulation failed: %s\n", run.file.c_str(), run.fault.c_str());
   }
   if (faults > 0)
     throw RunsWentWrong(
-        fmt::format("{} of {} runs ended early; the dataset is written, with a fault at each of them. "
-                    "Are robot, effects and physics settings meant so?",
+        fmt::format("{} of {} runs ended early; the dataset is written and marks each of them with its fault. Check "
+                    "the robot, the effects and the physics settings",
                     faults, dataset.runs.size()));
 }
 
@@ -68,24 +68,24 @@ void add_simulate_command(CLI::App& program) {
   one_word_each(command->add_option("--physics", options->physics,
                                     "time_step_s, solver_iterations, contact_stiffness_npm or contact_damping_nspm"),
                 "KEY=VALUE");
-  command->add_option("--repeats", request.repeats, "of each manoeuvre")
+  command->add_option("--repeats", request.repeats, "runs of each manoeuvre")
       ->check(whole_number(kMostRepeats))
       ->capture_default_str();
-  command->add_option("--noise", request.noise_scale, "scales the noise of all sensors; 0: exact")
+  command->add_option("--noise", request.noise_scale, "factor of the noise of all sensors; 0: none")
       ->check(number_in(0, datasets::kLargestScale))
       ->capture_default_str();
   command
       ->add_option("--scatter", request.scatter_scale,
-                   "scales how start poses differ; 1: 5 mm in x and y, 0.01 rad in yaw; 0: all alike")
+                   "factor of the scatter of start poses; 1: 5 mm in x and y, 0.01 rad in yaw; 0: none")
       ->check(number_in(0, datasets::kLargestScale))
       ->capture_default_str();
-  command->add_option("--seed", request.seed, "of noise and scatter")
+  command->add_option("--seed", request.seed, "seed of noise and scatter")
       ->check(whole_number(std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str();
-  command->add_option("--jobs", request.jobs, "threads; 0: one a core")
+  command->add_option("--jobs", request.jobs, "threads; 0: one per core")
       ->check(whole_number(kMostJobs))
       ->capture_default_str();
-  command->add_option("--out", request.out, "folder of the dataset; must be empty or not there; required")
+  command->add_option("--out", request.out, "folder of the dataset, which must be empty or absent; required")
       ->type_name("DIR");
   command->add_flag("--force", request.force, "write into a folder that is not empty; replaces files of the same name");
 

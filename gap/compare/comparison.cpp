@@ -31,7 +31,7 @@ void match(ComparedRun& run, const CompareOptions& options) {
   if (weighed_pairs(run.real.size(), run.sim.size(), band) > kMostWeighedPairs) {
     const double frames = static_cast<double>(kMostWeighedPairs) / static_cast<double>(run.real.size()) / 2 - 1;
     throw std::runtime_error(fmt::format(
-        "{} against {}: {} x {} frames are too many to match all with all; give --band SECONDS, at most {:.3g}",
+        "{} against {}: {} x {} frames are too many for unlimited matching; give --band SECONDS of at most {:.3g}",
         run.real_file, run.sim_file, run.real.size(), run.sim.size(), frames * sim_period_s(run)));
   }
   run.matching = match_paths(vertical_path(run.real), vertical_path(run.sim), band);
@@ -46,7 +46,7 @@ PoseFrames frames_of(const runs::DatasetRun& run, const fs::path& folder) {
   for (const logs::Finding& finding : logs::check_units(columns, run.file))
     if (finding.severity == logs::Finding::Severity::refuse && std::ranges::count(kOfPose, finding.column) > 0)
       frames.unusable = finding.column + " " + finding.text;
-  if (!run.fault.empty()) frames.unusable = "its simulation went wrong: " + run.fault;
+  if (!run.fault.empty()) frames.unusable = "its simulation failed: " + run.fault;
   return frames;
 }
 
@@ -55,7 +55,7 @@ std::string world_of(const runs::DatasetRun& run, const runs::Dataset& dataset, 
 }
 
 std::string nothing_left(const Comparison& comparison) {
-  std::string text = "nothing is left to compare:";
+  std::string text = "no pair of runs can be compared:";
   for (const LeftOut& run : comparison.left_out) {
     text += fmt::format("\n  {} {}{}: {}", run.dataset, run.file,
                         run.manoeuvre.empty() ? "" : " (" + run.manoeuvre + ")", run.why);

@@ -135,7 +135,7 @@ void write_report(const Comparison& comparison, const std::filesystem::path& fol
   const std::string html = comparison_html(comparison);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw runs::RunFileError(folder.string() + ": cannot be made: " + error.message());
+  if (error) throw runs::RunFileError(folder.string() + ": cannot be created: " + error.message());
   for (std::size_t i = 0; i < comparison.runs.size(); ++i) {
     runs::write_whole_file(folder / matched_file_name(i), matched_csv(comparison.runs[i]));
   }

@@ -124,11 +124,10 @@ std::string quantities_table(const RunErrors& errors) {
 }
 
 std::string start_sentence(const ComparedRun& run, const CompareOptions& options) {
-  if (!options.align_start) return "The runs are compared where they were recorded; their starts were not aligned.";
+  if (!options.align_start) return "The runs keep their recorded starts; they were not aligned.";
   const StartOffset& offset = run.start_offset;
-  std::string text =
-      fmt::format("To start where the real run does, the simulated one was moved by {:.1f} mm in x, {:.1f} mm in y",
-                  kMillimetres * offset.x_m, kMillimetres * offset.y_m);
+  std::string text = fmt::format("To align the starts, the simulated run was moved by {:.1f} mm in x, {:.1f} mm in y",
+                                 kMillimetres * offset.x_m, kMillimetres * offset.y_m);
   return text + (offset.turned ? fmt::format(" and {:.2f} degrees in yaw.", kDegrees * offset.yaw_rad)
                                : "; it was not turned, because y or yaw of a start was not measured.");
 }
@@ -171,8 +170,8 @@ std::string comparison_html(const Comparison& comparison) {
   std::string sections;
   const std::vector<std::size_t> drawn = drawn_runs(comparison);
   if (drawn.size() < comparison.runs.size())
-    sections += fmt::format("<p>Of {} runs the {} with the largest errors are drawn.</p>\n", comparison.runs.size(),
-                            drawn.size());
+    sections += fmt::format("<p>The page plots the {1} of {0} runs with the largest errors.</p>\n",
+                            comparison.runs.size(), drawn.size());
   for (const std::size_t run : drawn) sections += run_section(comparison, run, worlds);
 
   // Head, datasets, explanation and notes, then the tables and sections.
@@ -185,12 +184,10 @@ std::string comparison_html(const Comparison& comparison) {
   html += dataset_line("Real", comparison.real, comparison.real_folder);
   html += dataset_line("Simulated", comparison.sim, comparison.sim_folder);
   html +=
-      "<p class=\"soft\">DP matching pairs the frames of both runs in order, so that their places (x, z) are as near "
-      "each other as can be. It compares paths and hides delays: two runs along one path match without error, however "
-      "late one of them is. What it hid stands under time difference (how much later, or earlier, the matched "
-      "simulated "
-      "frame is; it means little while the robot stands) and under same time (errors without matching). All are sizes, "
-      "without sign.</p>\n";
+      "<p class=\"soft\">DP matching pairs the frames of both runs in order, so that the distances of their positions "
+      "(x, z) are smallest. It compares paths and hides delays: two runs along one path match without error, whatever "
+      "their delay. Two columns show the delay: time difference (of the matched simulated frame; it means little while "
+      "the robot is at rest) and same time (errors without matching). All values are absolute.</p>\n";
   for (const std::string& note : worlds.notes) html += fmt::format("<p>{}</p>\n", escaped(note));
   return html + summary_table(comparison, drawn) + sections + left_out_list(comparison) + "</body>\n</html>\n";
 }

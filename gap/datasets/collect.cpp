@@ -36,7 +36,7 @@ std::string world_of(const CollectRequest& request, const RecordedRun& run,
   if (found != shipped.end()) return found->world;
   if (there) return there->world;
   throw std::invalid_argument(
-      fmt::format("{}: no manoeuvre that ships is called '{}', so its world is not known; give --world",
+      fmt::format("{}: its world is unknown, because there is no shipped manoeuvre '{}'; give --world",
                   run.file.string(), run.manoeuvre));
 }
 

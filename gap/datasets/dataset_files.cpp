@@ -35,7 +35,7 @@ bool holds_nothing(const fs::path& folder) {
 void check_can_write(const fs::path& folder) {
   fs::path there = fs::absolute(folder).lexically_normal();
   while (!fs::exists(there) && there.has_relative_path()) there = there.parent_path();
-  if (!fs::is_directory(there)) throw std::runtime_error(fmt::format("{}: is no folder", there.string()));
+  if (!fs::is_directory(there)) throw std::runtime_error(fmt::format("{}: is not a folder", there.string()));
   if (::access(there.c_str(), W_OK | X_OK) != 0) fail(there, "cannot be written into", errno);
 }
 
@@ -44,7 +44,7 @@ PartFolder::PartFolder(const fs::path& out, bool force, std::string_view otherwi
   std::error_code error;
   const fs::file_status status = fs::status(out, error);
   if (fs::exists(status) && !fs::is_directory(status))
-    throw std::runtime_error(fmt::format("{}: is no folder", out.string()));
+    throw std::runtime_error(fmt::format("{}: is not a folder", out.string()));
   if (!fs::status_known(status)) fail(out, "cannot be reached", error.value());
   const bool is_there = fs::exists(status);
   if (is_there && !force && !holds_nothing(out))
@@ -54,10 +54,10 @@ PartFolder::PartFolder(const fs::path& out, bool force, std::string_view otherwi
   if (!whole.has_filename()) whole = whole.parent_path();  // "runs/" is "runs"
   out_ = whole;
   if (!is_there) fs::create_directories(out_.parent_path(), error);
-  if (error) fail(out, "cannot be made", error.value());
+  if (error) fail(out, "cannot be created", error.value());
   // An existing folder gets the new one inside: it may be a link, a mount point or a working directory.
   std::string name = fmt::format("{}{}XXXXXX", is_there ? (out_ / "").string() : out_.string(), kPartFolder);
-  if (::mkdtemp(name.data()) == nullptr) fail(out, "cannot be made", errno);
+  if (::mkdtemp(name.data()) == nullptr) fail(out, "cannot be created", errno);
   part_ = name;
   fs::permissions(part_,
                   fs::perms::group_read | fs::perms::group_exec | fs::perms::others_read | fs::perms::others_exec,

@@ -22,7 +22,7 @@ void set_physics(physics::PhysicsSettings& settings, std::string_view assignment
     double value = 0;
     const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
     if (error != std::errc{} || end != number.data() + number.size())
-      throw std::invalid_argument(fmt::format("physics {}: \"{}\" is no number; write {}=VALUE", key, number, key));
+      throw std::invalid_argument(fmt::format("physics {}: \"{}\" is not a number; write {}=VALUE", key, number, key));
     if (!(value >= min && value <= max))
       throw std::invalid_argument(
           fmt::format("physics {}: {} is out of range; it goes from {} to {}", key, value, min, max));
@@ -33,7 +33,7 @@ void set_physics(physics::PhysicsSettings& settings, std::string_view assignment
   } else if (key == "solver_iterations") {
     const double count = value_in(1, 1000);
     if (count != std::floor(count))
-      throw std::invalid_argument(fmt::format("physics {}: {} is no whole number", key, count));
+      throw std::invalid_argument(fmt::format("physics {}: {} is not a whole number", key, count));
     settings.solver_iterations = static_cast<int>(count);
   } else if (key == "contact_stiffness_npm") {
     settings.contact_stiffness_npm = value_in(1e3, 1e8);

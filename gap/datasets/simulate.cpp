@@ -44,7 +44,7 @@ struct Asked {
 
 SimulatedDataset simulate_dataset(const SimulationRequest& request) {
   // Checks the request.
-  if (request.manoeuvres.empty()) throw std::invalid_argument("no manoeuvre; kenaf-gap manoeuvres lists them");
+  if (request.manoeuvres.empty()) throw std::invalid_argument("no manoeuvre is given; kenaf-gap manoeuvres lists them");
   if (request.repeats < 1 || std::ssize(request.manoeuvres) > kMostRuns / request.repeats)
     throw std::invalid_argument(fmt::format("repeats must be at least 1, and all runs together at most {}", kMostRuns));
   for (const double scale : {request.noise_scale, request.scatter_scale})
@@ -70,7 +70,7 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
     rollout::Manoeuvre manoeuvre = rollout::load_manoeuvre(name);
     if (!request.world.empty()) manoeuvre.world = request.world;
     if (manoeuvre.world.empty())
-      throw std::invalid_argument(fmt::format("{}: does not say in which world it is; give --world", name));
+      throw std::invalid_argument(fmt::format("{}: does not name its world; give --world", name));
     const auto [world, is_new] = worlds.try_emplace(manoeuvre.world);
     if (is_new) world->second = physics::load_world(manoeuvre.world, result.warnings);
     asked.push_back({name, std::move(manoeuvre), &world->second});

@@ -53,12 +53,12 @@ void RunChecks::check_clock() {
       if (relation && relation->correlation >= kTogether &&
           std::abs(std::log(relation->ratio * per_second)) < std::log(3))
         return add(Severity::refuse, "t_s",
-                   fmt::format("looks like {}: it steps by {:.3g}, and what is travelled by that time is {:.3g} times "
-                               "what the speeds say; divide it by {:.0f}",
+                   fmt::format("looks like {}: it steps by {:.3g}, and the travel over that time is {:.3g} times that "
+                               "of the speeds; divide it by {:.0f}",
                                name, median_s, relation->ratio, per_second));
   if (median_s >= kCoarse_s)
     add(Severity::warn, "t_s",
-        fmt::format("steps by {:.3g} s: too coarse to tell anything, if it is in seconds", median_s));
+        fmt::format("steps by {:.3g} s: too coarse for a diagnosis, if it is in seconds", median_s));
 
   if (std::abs(t_s.front()) > kEpoch_s)
     add(Severity::warn, "t_s", fmt::format("begins at {:.0f} s; it counts from the start of the run", t_s.front()),
@@ -77,17 +77,15 @@ void RunChecks::check_clock() {
 
   if (gaps > 0)
     add(Severity::warn, "t_s",
-        fmt::format(
-            "has {} gaps of up to {:.3g} s, where rows come each {:.3g} s: rows were lost, or several runs stand "
-            "in one file",
-            gaps, longest_s, median_s),
+        fmt::format("has {} gaps of up to {:.3g} s between rows that are {:.3g} s apart: rows were lost, or the file "
+                    "contains several runs",
+                    gaps, longest_s, median_s),
         line(first_gap));
   if (static_cast<double>(odd) > kOddShare * static_cast<double>(t_s.size()))
     add(Severity::warn, "t_s",
-        fmt::format(
-            "{} of {} steps are less than half or more than twice the median of {:.3g} s: are these the times of "
-            "measuring, or of writing?",
-            odd, t_s.size() - 1, median_s));
+        fmt::format("{} of {} steps are less than half or more than twice the median of {:.3g} s: use the times of "
+                    "measurement, not of writing",
+                    odd, t_s.size() - 1, median_s));
 }
 
 void RunChecks::check_same_length(const std::string& name, const std::string& other,
@@ -119,7 +117,7 @@ void RunChecks::check_turned_sign(const std::string& name, const std::string& ot
   if (!relation || relation->correlation > -kTogether || found(name) || found(other)) return;
   if (relation->first < enough_first || relation->second < enough_second) return;
   add(Severity::refuse, name,
-      fmt::format("has the sign turned against {} (correlation {:.2f}): {}", other, relation->correlation, what_to_do));
+      fmt::format("has the opposite sign of {} (correlation {:.2f}): {}", other, relation->correlation, what_to_do));
 }
 
 void RunChecks::check_against_tracks(const std::string& name, const std::optional<Relation>& relation,
@@ -131,12 +129,12 @@ void RunChecks::check_against_tracks(const std::string& name, const std::optiona
   };
   if (!against(relation) || found(name)) return;
   if (against(on_level) && on_level->ratio >= least_ratio && on_level->ratio <= most_ratio)
-    return add(Severity::refuse, name,
-               fmt::format("has the sign turned against the tracks (correlation {:.2f}): {}", on_level->correlation,
-                           what_to_do));
+    return add(
+        Severity::refuse, name,
+        fmt::format("has the opposite sign of the tracks (correlation {:.2f}): {}", on_level->correlation, what_to_do));
   add(Severity::warn, name,
-      fmt::format("goes against the tracks (correlation {:.2f}), as a robot does that slides down a slope; on level "
-                  "ground the sign would be turned: {}",
+      fmt::format("is opposite to the tracks (correlation {:.2f}), as for a robot that slides down a slope; on level "
+                  "ground the sign is wrong: {}",
                   relation->correlation, what_to_do));
 }
 
@@ -163,7 +161,7 @@ void RunChecks::check_pose_against_tracks() {
     if (turned > kAngleFactor && turning->first > kLeastTurn_rad * kDegreesInARadian / 4)
       add(Severity::refuse, "yaw_rad",
           fmt::format(
-              "looks like degrees: the robot turns {:.3g} times what its tracks make it; columns are in radians",
+              "looks like degrees: the robot turns {:.3g} times as far as its tracks turn it; columns are in radians",
               turned));
   }
   const double by_gauge = robot_ != nullptr ? 1 / robot_->track_gauge_m() : 0;
@@ -256,15 +254,15 @@ void RunChecks::check_ranges() {
   for (const std::string name : {"cmd_track_left_mps", "cmd_track_right_mps", "track_left_mps", "track_right_mps"})
     refuse_above(
         name, kLengthFactor * most_mps,
-        fmt::format("where {:.3g} m/s is the fastest there is: it looks like millimetres or centimetres a second",
+        fmt::format("although the highest speed is {:.3g} m/s: it looks like millimetres or centimetres per second",
                     most_mps));
   // z-y-x angles lie in these ranges by their definition.
   constexpr double kRounding = 0.01;
   refuse_above("pitch_rad", 0.5 * std::numbers::pi + kRounding,
-               "at most, beyond pi/2, where no pitch is: it looks like degrees");
+               "at most, beyond pi/2, the limit of pitch: it looks like degrees");
   refuse_above("roll_rad", 2 * std::numbers::pi + kRounding, "at most, beyond a whole turn: it looks like degrees");
   for (const std::string name : {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps"})
-    refuse_above(name, 60, "rad/s at most, ten turns a second: it looks like degrees a second");
+    refuse_above(name, 60, "rad/s at most, ten turns per second: it looks like degrees per second");
   refuse_above("battery_v", 1000, "V: it looks like millivolts");
   for (const std::string side : kSides) refuse_above("track_" + side + "_a", 1000, "A: it looks like milliamperes");
   for (const std::string_view flipper : robot::kFlipperNames)
@@ -277,7 +275,7 @@ void RunChecks::check_ranges() {
     for (const std::string_view flipper : robot::kFlipperNames)
       for (const std::string& name :
            {fmt::format("cmd_flipper_{}_rad", flipper), fmt::format("flipper_{}_rad", flipper)}) {
-        refuse_above(name, 3 * limit, fmt::format("where {:.3g} rad is its limit: it looks like degrees", limit));
+        refuse_above(name, 3 * limit, fmt::format("although its limit is {:.3g} rad: it looks like degrees", limit));
         constexpr double kLoose_rad = 0.5;  // of an encoder with an offset, a stop that gives way
         if (const double most = largest(name); most > limit + kLoose_rad && !found(name))
           add(Severity::warn, name, fmt::format("goes to {:.3g} rad, beyond its limit of {:.3g} rad", most, limit),
@@ -304,7 +302,7 @@ void RunChecks::check_ranges() {
                     *middle));
   else if (*middle < 5 || *middle > 20)
     add(Severity::warn, "acc_x_mps2",
-        fmt::format("its norm with acc_y and acc_z is {:.3g} mostly; at rest it is 9.81 m/s2, gravity included",
+        fmt::format("its norm with acc_y and acc_z is usually {:.3g}; at rest it is 9.81 m/s2, gravity included",
                     *middle));
 }
 

@@ -40,7 +40,7 @@ void RunChecks::check_commands() {
   const bool tracks = has("cmd_track_left_mps") && has("cmd_track_right_mps");
   if (!tracks) {
     add(Severity::refuse, has("cmd_track_left_mps") ? "cmd_track_right_mps" : "cmd_track_left_mps",
-        "is missing or empty: without what was commanded no run can be repeated in simulation");
+        "is missing or empty: a run without commands cannot be simulated");
     return;
   }
 
@@ -63,7 +63,8 @@ void RunChecks::check_commands() {
   else if (!flippers_commanded && range(column("x_m")) < 0.01 && range(column("y_m")) < 0.01 &&
            range(column("z_m")) < 0.01)
     add(Severity::warn, "cmd_track_left_mps",
-        "is zero all the time, nothing else is commanded, and the robot stands: this run tells nothing");
+        "is zero all the time, nothing else is commanded, and the robot does not move: this run contains no "
+        "information");
 }
 
 bool RunChecks::turns() const {
@@ -93,7 +94,7 @@ void RunChecks::check_constants() {
       const bool other = has("track_" + side + (name.ends_with("_mps") ? "_m" : "_mps"));
       add(pose_moves ? Severity::refuse : Severity::warn, name,
           fmt::format(
-              "never changes, while {:.3g} m are commanded{}: the encoder is dead or its column is not filled{}",
+              "never changes, although {:.3g} m are commanded{}: the encoder is dead or its column was not recorded{}",
               commanded_m, pose_moves ? " and the robot moves" : "",
               other || pose_moves ? "; leave the cells empty" : ", or the track is blocked"));
     }
@@ -108,7 +109,7 @@ void RunChecks::check_constants() {
     const std::string angle = fmt::format("flipper_{}_rad", flipper);
     if (const double commanded = range(column("cmd_" + angle)); commanded > kTurns_rad && constant(column(angle)))
       add(Severity::warn, angle,
-          fmt::format("never changes, while {:.3g} rad are commanded: its encoder is dead, or the flipper is stuck",
+          fmt::format("never changes, although {:.3g} rad are commanded: its encoder is dead, or the flipper is stuck",
                       commanded));
   }
 
@@ -117,17 +118,16 @@ void RunChecks::check_constants() {
   if (way_m < kCarries_m) return;
   if (has("x_m") && constant(column("x_m")) && constant(column("y_m")))
     add(Severity::refuse, "x_m",
-        fmt::format(
-            "never changes, nor does y_m, while the tracks go {:.3g} m: the pose is frozen; leave the cells empty "
-            "where nothing was measured",
-            way_m));
+        fmt::format("never changes, nor does y_m, although the tracks travel {:.3g} m: the pose is frozen; leave the "
+                    "cells empty where nothing was measured",
+                    way_m));
   else if (constant(column("yaw_rad")) && turns())
     add(Severity::refuse, "yaw_rad",
         "never changes while the robot turns: the heading is not measured; leave the column out");
   else if (constant(column("yaw_rad")))
     add(Severity::warn, "yaw_rad",
-        "never changes while the robot drives: either the heading is not measured, and the column is to be left out, "
-        "or it is written in steps larger than it changed");
+        "never changes while the robot drives: the heading is not measured, and the column should be left out, or it "
+        "is written in steps larger than its change");
 
   for (const std::string name :
        {"gyro_x_radps", "gyro_y_radps", "gyro_z_radps", "acc_x_mps2", "acc_y_mps2", "acc_z_mps2"})
@@ -155,8 +155,8 @@ void RunChecks::check_pose() {
   if (!has("x_m") || !has("y_m")) {
     add(tracks_measured ? Severity::warn : Severity::refuse, has("x_m") ? "y_m" : "x_m",
         tracks_measured
-            ? "is missing or empty: where the robot went is not known; kenaf-gap merge puts motion capture's "
-              "pose into a run"
+            ? "is missing or empty: the path of the robot is unknown; kenaf-gap merge adds the pose from motion "
+              "capture to a run"
             : "is missing or empty, and the tracks were not measured either: there is nothing to compare with");
     return;
   }
@@ -167,14 +167,14 @@ void RunChecks::check_pose() {
   constexpr double kJump_m = 0.1, kFall_mps = 5, kJump_rad = 0.5, kTumble_radps = 15, kSpeeds = 5;
   const double most_mps = robot_ != nullptr ? robot_->drive.max_speed_mps : 1;
   const Course left = belts(1, 0), right = belts(0, 1);
-  const std::vector<bool> stands = upright();
+  const std::vector<bool> is_upright = upright();
   std::size_t jumps = 0, first_jump = 0, turns = 0, first_turn = 0, frozen = 0;
   double farthest_m = 0, longest_frozen_s = 0;
   std::optional<std::size_t> start, last, last_yaw, same_since;
   for (std::size_t i = 0; i < t_s.size(); ++i) {
     // Heading, while the robot is upright: faster than any robot turns or tumbles.
-    if (!stands[i]) last_yaw.reset();
-    if (i < yaw.size() && !std::isnan(yaw[i]) && stands[i]) {
+    if (!is_upright[i]) last_yaw.reset();
+    if (i < yaw.size() && !std::isnan(yaw[i]) && is_upright[i]) {
       const double dt_s = last_yaw ? t_s[i] - t_s[*last_yaw] : 0;
       const double turn = last_yaw ? std::abs(std::remainder(yaw[i] - yaw[*last_yaw], 2 * std::numbers::pi)) : 0;
       if (turn > kJump_rad + kTumble_radps * dt_s && turns++ == 0) first_turn = i;
@@ -210,35 +210,32 @@ void RunChecks::check_pose() {
 
   if (longest_frozen_s > 0)
     add(Severity::warn, "x_m",
-        fmt::format(
-            "stands still to the last digit for {:.3g} s with y_m, while the tracks run: the last pose was repeated "
-            "where nothing was measured; empty the cells there",
-            longest_frozen_s),
+        fmt::format("is constant to the last digit for {:.3g} s with y_m, although the tracks run: the last pose was "
+                    "repeated where nothing was measured; empty the cells there",
+                    longest_frozen_s),
         line(frozen));
   if (jumps > 0)
     add(Severity::warn, "x_m",
         fmt::format("jumps {} times with y_m and z_m, by up to {:.3g} m between two rows that have a pose: markers "
-                    "were taken for "
-                    "others; empty the cells there",
+                    "were confused; empty the cells there",
                     jumps, farthest_m),
         line(first_jump));
   if (turns > 0)
     add(Severity::warn, "yaw_rad",
-        fmt::format("jumps {} times by more than a robot turns between two rows: markers were taken for others; empty "
-                    "the cells there",
+        fmt::format("jumps {} times by more than a robot can turn between two rows: markers were confused; empty the "
+                    "cells there",
                     turns),
         line(first_turn));
 
   // The run needs a first pose, near its first row, from which a simulation starts.
   if (!start)
     return add(tracks_measured ? Severity::warn : Severity::refuse, "x_m",
-               "has a value in no row in which y_m has one: where the robot went is not known");
+               "has no value in any row in which y_m has one: the path of the robot is unknown");
   if (t_s[*start] - t_s.front() > kLate_s)
     add(Severity::warn, "x_m",
-        fmt::format(
-            "has no value before {:.3g} s: the run's first pose is where a simulation of it starts; cut the rows "
-            "before it",
-            t_s[*start]),
+        fmt::format("has no value before {:.3g} s: a simulation starts from the first pose of the run; remove the rows "
+                    "before it",
+                    t_s[*start]),
         line(*start));
 
   // Without track speeds the run must start at rest, as its initial speed is unknown.
@@ -247,7 +244,8 @@ void RunChecks::check_pose() {
       if (t_s[i] - t_s[*start] > 0.5 * kStart_s &&
           std::hypot(x[i] - x[*start], y[i] - y[*start]) > kStill_mps * (t_s[i] - t_s[*start]) + 0.02) {
         add(Severity::warn, "x_m",
-            "moves from the first row on, and no track speed is measured there: how fast the run starts is not known");
+            "moves from the first row on, and no track speed is measured there: the initial speed of the run is "
+            "unknown");
         break;
       }
   }

@@ -163,9 +163,9 @@ bool moves_in_overlap(const Quantity& quantity, Index k) {
 std::string what_a_gain_means(const CourseSeenTwice& seen, double gain) {
   const auto near = [&](double value) { return std::abs(std::log(std::abs(gain) / value)) < 0.4; };
   std::string words =
-      fmt::format("{} would agree if the robot's were {:.3g} times the motion capture's", seen.name, gain);
+      fmt::format("{} would agree if that of the robot were {:.3g} times that of the motion capture", seen.name, gain);
   if (gain < 0)
-    words += ": one of the two has the sign turned; x forward, y left, z up, so that a left turn is positive";
+    words += ": one of the two has the wrong sign; x forward, y left, z up, so that a left turn is positive";
   else if (near(1e-3))
     words += ": the motion capture looks like millimetres; give --mocap-units mm";
   else if (near(1e-2))
@@ -190,7 +190,8 @@ std::string what_a_gain_means(const CourseSeenTwice& seen, double gain) {
     const bool odd = fit.gain < quantity.seen->least_gain || fit.gain > quantity.seen->most_gain;
     if (odd && fit.r_squared() >= kFollows) throw NoOffset(words + ". " + what_a_gain_means(*quantity.seen, fit.gain));
   }
-  throw NoOffset(fmt::format("{} (correlation at most {:.2f}): are they of the same drive?", words, std::sqrt(best)));
+  throw NoOffset(
+      fmt::format("{} (correlation at most {:.2f}): do both record the same drive?", words, std::sqrt(best)));
 }
 
 // Throws if the two rates of a quantity agree but for a sign, or a factor that only a wrong unit explains.
@@ -239,8 +240,8 @@ void check_unique(const std::vector<Quantity>& quantities, const Grid& grid, Ind
       rival = k;
   if (rival >= 0)
     throw NoOffset(
-        fmt::format("offsets of {:.2f} s and of {:.2f} s fit about as well: the drive repeats itself; let both "
-                    "logs begin before the robot moves and end after it, or cut off what only one of them saw",
+        fmt::format("offsets of {:.2f} s and of {:.2f} s fit about as well: the drive repeats itself; begin both logs "
+                    "before the robot moves and end them after it, or remove the part that only one of them covers",
                     grid.offset_s(grid.first_lag() + best), grid.offset_s(grid.first_lag() + rival)));
 }
 
@@ -348,7 +349,7 @@ ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses) {
     capture_moves = capture_moves || moves(course.capture, course.enough);
   }
   if (usable.empty())
-    throw NoOffset("the run measured nothing that motion capture sees too: no tracks, turn rate or posture");
+    throw NoOffset("the run measured no quantity that motion capture also measures: tracks, turn rate or posture");
   if (!robot_moves) throw NoOffset("the robot does not move in the run");
   if (!capture_moves) throw NoOffset("the robot does not move in the motion capture");
 
@@ -412,7 +413,7 @@ ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses) {
   result.standard_error_s = birge / std::sqrt(weights);
   if (!(result.standard_error_s <= kLargestError_s))
     throw NoOffset(
-        fmt::format("the offset is only known to {:.2f} s: the robot changes its speed or direction too little "
+        fmt::format("the offset has a standard error of {:.2f} s: the robot changes its speed or direction too little "
                     "where both logs overlap",
                     result.standard_error_s));
   return result;

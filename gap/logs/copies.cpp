@@ -13,7 +13,7 @@ std::optional<Finding> KnownRuns::copy(const runs::Run& run, const std::string& 
   const auto [known, is_new] = file_of_.try_emplace(hash, file);
   if (is_new) return std::nullopt;
   return Finding{Finding::Severity::warn, file, 0, "",
-                 fmt::format("holds the same numbers as {}; a copy is no repeat", known->second)};
+                 fmt::format("contains the same numbers as {}; a copy is not a repeat", known->second)};
 }
 
 }  // namespace kenaf::gap::logs

@@ -64,10 +64,10 @@ std::optional<Finding> LiftedRobot::finding() const {
   if (goes_ || runs_ < kFewestRuns || body_m_ >= kStays * belts_m_) return std::nullopt;
   return Finding{
       Finding::Severity::dead, "dataset.toml", 0, "x_m",
-      fmt::format("the body moves less than {:.2g} m in all {} runs in which the tracks go {:.2g} m and more, up "
-                  "to {:.2g} m: it is taken for lifted off the ground, and what pose and gyro say for no "
-                  "measurement; leave them out",
-                  most_body_m_ + 0.005, runs_, kFar_m, most_belts_m_)};
+      fmt::format(
+          "the body moves less than {:.2g} m in all {} runs in which the tracks travel {:.2g} m and more, up to {:.2g} "
+          "m: the robot is assumed to be lifted off the ground, and pose and gyro are ignored; leave them out",
+          most_body_m_ + 0.005, runs_, kFar_m, most_belts_m_)};
 }
 
 void forget_body(runs::Run& run) {

@@ -71,7 +71,7 @@ MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const M
   const auto t_s = run.column("t_s");
   if (!t_s.empty() && !(std::abs(t_s.front()) <= kLatest_s && std::abs(t_s.back()) <= kLatest_s))
     throw runs::RunFileError(
-        fmt::format("the run goes from {:.3g} to {:.3g} s, times that no robot has", t_s.front(), t_s.back()));
+        fmt::format("the run goes from {:.3g} to {:.3g} s, which is implausible", t_s.front(), t_s.back()));
 
   // The offset is given or estimated: capture time = run time - offset.
   MergedRun merged{run, {}, 0, 0, {}};
@@ -102,10 +102,9 @@ MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const M
     if (found != out.columns.end() && runs::any_measured(out.column(name))) {
       const std::string kept = "recorded_" + name;
       if (!out.column(kept).empty() || std::ranges::find(out.columns, kept) != out.columns.end())
-        throw runs::RunFileError(
-            fmt::format("{} holds values and {} is there too: motion capture was merged before; "
-                        "merge into the run as it was recorded",
-                        name, kept));
+        throw runs::RunFileError(fmt::format(
+            "{} has values and {} exists too: motion capture was merged before; merge into the run as it was recorded",
+            name, kept));
       *found = kept;
       merged.renamed.emplace_back(name, kept);
       found = out.columns.end();

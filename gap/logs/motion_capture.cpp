@@ -33,7 +33,7 @@ class Table {
   };
   std::optional<Column> either(const std::string& si, double si_factor, const std::string& other,
                                double other_factor) const {
-    if (has(si) && has(other)) fail(fmt::format("both {} and {} are there; leave one of them out", si, other));
+    if (has(si) && has(other)) fail(fmt::format("contains both {} and {}; leave one of them out", si, other));
     if (has(si)) return Column{run_.column(si), si_factor};
     if (has(other)) return Column{run_.column(other), other_factor};
     return std::nullopt;
@@ -68,10 +68,10 @@ MotionCapture motion_capture_of(const runs::Run& table, std::string_view name_fo
   const Column x = in.needed(length("x"), "x_m"), y = in.needed(length("y"), "y_m");
   const std::optional<Column> z = length("z"), roll = angle("roll"), pitch = angle("pitch"), yaw = angle("yaw");
   const bool quaternion = in.has("qx") && in.has("qy") && in.has("qz") && in.has("qw");
-  if (quaternion && (roll || pitch || yaw)) in.fail("both a quaternion and angles are there; leave one of them out");
+  if (quaternion && (roll || pitch || yaw)) in.fail("contains both a quaternion and angles; leave one of them out");
   if (!quaternion && !yaw)
-    in.fail("neither yaw_rad nor qx, qy, qz, qw are there: without a heading the pose cannot be put into a run");
-  if (roll.has_value() != pitch.has_value()) in.fail("of roll and pitch only one is there");
+    in.fail("contains neither yaw_rad nor qx, qy, qz, qw: a pose without a heading cannot be merged");
+  if (roll.has_value() != pitch.has_value()) in.fail("contains only one of roll and pitch");
 
   // The columns of a pose, in order; the rotation's come last.
   std::vector<Column> columns{x, y};
@@ -102,19 +102,19 @@ MotionCapture motion_capture_of(const runs::Run& table, std::string_view name_fo
     // Refuses values that no robot has, and a quaternion that is no rotation.
     CapturedPose pose{t_s[row], {cell[0], cell[1], z ? cell[2] : 0}, Eigen::Quaterniond::Identity()};
     if (std::abs(pose.t_s) > kLatest_s || pose.p_m.cwiseAbs().maxCoeff() > kFarthest_m)
-      refuse("a time or place that no robot has");
+      refuse("an implausible time or position");
     const double* const q = cell.data() + rotation;
     if (quaternion) {
       pose.q = Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
       if (!(std::abs(pose.q.norm() - 1) <= kNormTolerance))
         refuse(
-            fmt::format("qx, qy, qz, qw are no rotation: their norm is {:.3g}, not 1; leave the cells empty where "
+            fmt::format("qx, qy, qz, qw are not a rotation: their norm is {:.3g}, not 1; leave the cells empty where "
                         "nothing was measured",
                         pose.q.norm()));
       pose.q.normalize();
     } else {
       const Eigen::Vector3d rpy(roll ? q[1] : 0, roll ? q[2] : 0, q[0]);
-      if (rpy.cwiseAbs().maxCoeff() > kLargest_rad) refuse("an angle that no robot has");
+      if (rpy.cwiseAbs().maxCoeff() > kLargest_rad) refuse("an implausible angle");
       pose.q = physics::rotation_from(rpy);
     }
     capture.poses.push_back(pose);

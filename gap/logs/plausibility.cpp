@@ -46,7 +46,7 @@ std::vector<Finding> check_run(const runs::Run& run, const std::string& file, co
   constexpr std::size_t kFewestRows = 10;
   if (run.row_count() < kFewestRows)
     return {{Finding::Severity::refuse, file, 0, "",
-             fmt::format("has {} rows; a run of fewer than {} tells nothing", run.row_count(), kFewestRows)}};
+             fmt::format("has {} rows; a run needs at least {}", run.row_count(), kFewestRows)}};
   RunChecks checks(run, file, robot);
   checks.check_clock();
   std::vector<Finding> findings = checks.take();

@@ -44,10 +44,10 @@ std::vector<bool> RunChecks::upright(double most_tilt_rad) const {
 
 Course RunChecks::upright_angle(const std::string& name, double most_tilt_rad) const {
   const auto t_s = column("t_s"), values = column(name);
-  const std::vector<bool> stands = upright(most_tilt_rad);
+  const std::vector<bool> is_upright = upright(most_tilt_rad);
   std::vector<double> kept(values.begin(), values.end());
   for (std::size_t i = 0; i < kept.size(); ++i)
-    if (!stands[i]) kept[i] = std::numeric_limits<double>::quiet_NaN();
+    if (!is_upright[i]) kept[i] = std::numeric_limits<double>::quiet_NaN();
   Course course = course_of(t_s, kept, longest_gap_s(median_step(t_s, values)));
 
   // Unwraps by the shorter way between samples.
@@ -69,10 +69,10 @@ Course RunChecks::forward(double most_tilt_rad) const {
   const auto t_s = column("t_s"), x = column("x_m"), y = column("y_m"), yaw = column("yaw_rad");
   Course course;
   if (x.empty() || y.empty() || yaw.empty()) return course;
-  const std::vector<bool> stands = upright(most_tilt_rad);
+  const std::vector<bool> is_upright = upright(most_tilt_rad);
   std::size_t last = 0;
   for (std::size_t i = 0; i < t_s.size(); ++i) {
-    if (std::isnan(x[i] + y[i] + yaw[i]) || !stands[i]) continue;
+    if (std::isnan(x[i] + y[i] + yaw[i]) || !is_upright[i]) continue;
     double sum = 0;
     if (!course.t_s.empty()) {
       // The displacement along the heading half way between both rows.

@@ -20,8 +20,7 @@ runs::Dataset dataset_of_file(const fs::path& file, std::vector<std::string>& no
     std::erase_if(dataset.runs, [&](const runs::DatasetRun& run) { return run.file != name; });
     if (!dataset.runs.empty()) return dataset;
   }
-  notes.push_back(
-      "A run without a dataset: its robot is taken to be kenaf and its world flat, where nothing else is said.");
+  notes.push_back("This run has no dataset: its robot is assumed to be kenaf and its world flat, unless given.");
   runs::Dataset dataset;
   dataset.source = "real";
   dataset.robot = "kenaf";
@@ -46,12 +45,12 @@ void read_report(const fs::path& folder, Playback& playback) {
   }
 
   // A report of none of the manoeuvres is that of other runs.
-  const auto told = [&](const ListedRun& run) {
+  const auto is_reported = [&](const ListedRun& run) {
     return std::ranges::any_of(playback.report->phases,
                                [&](const ReportedPhase& phase) { return phase.manoeuvre == run.entry.manoeuvre; });
   };
-  if (!playback.report->phases.empty() && std::ranges::none_of(playback.runs, told))
-    throw std::runtime_error(fmt::format("{}: tells of other manoeuvres than {} has; is it the report of these runs?",
+  if (!playback.report->phases.empty() && std::ranges::none_of(playback.runs, is_reported))
+    throw std::runtime_error(fmt::format("{}: covers none of the manoeuvres in {}; is it the report of these runs?",
                                          file.string(), playback.name));
   if (fs::exists(folder / "robot.toml"))
     playback.robots.corrected = physics::load_robot((folder / "robot.toml").string());
@@ -62,7 +61,7 @@ std::size_t find_run(const Playback& playback, const std::string& name) {
   const auto found = std::ranges::find_if(playback.runs, is);
   if (found != playback.runs.end()) return static_cast<std::size_t>(found - playback.runs.begin());
   throw std::runtime_error(
-      fmt::format("--run {}: {} has neither such a file nor such a manoeuvre", name, playback.name));
+      fmt::format("--run {}: {} contains neither a file nor a manoeuvre of that name", name, playback.name));
 }
 
 }  // namespace
@@ -109,7 +108,7 @@ PlayedRun prepare_run(const Playback& playback, std::size_t index) {
     std::map<std::string, std::string> world_of;
     for (const ListedRun& other : playback.runs) world_of[other.entry.file] = std::to_string(other.world);
     played.marks = phases_of_run(*playback.report, listed.entry.file, listed.entry.manoeuvre, world_of);
-    if (played.marks.empty()) played.notes.push_back("The report has no phases of this run's manoeuvre.");
+    if (played.marks.empty()) played.notes.push_back("The report contains no phases of this run's manoeuvre.");
   }
   return played;
 }

@@ -49,7 +49,7 @@ struct PlaybackServer::Implementation {
     const Shelf::Look look = shelf.look(run);
     if (!look.failure.empty()) return live::reply_in_words(http::status::internal_server_error, look.failure + "\n");
     // The page asks again.
-    if (!look.text) return live::reply_in_words(http::status::accepted, "It is being simulated.\n");
+    if (!look.text) return live::reply_in_words(http::status::accepted, "The simulation is still running.\n");
     return {http::status::ok, kJson, look.text};
   }
 

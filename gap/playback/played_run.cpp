@@ -93,15 +93,13 @@ runs::Run with_pose(const runs::Run& run, const physics::RobotDescription& robot
     add_column(result, "y_m", path->y_m);
     add_column(result, "yaw_rad", path->yaw_rad);
     notes.push_back(
-        "This run has no measured pose (x_m, y_m, yaw_rad): the recorded robot is drawn where dead reckoning by its "
-        "own "
-        "tracks and posture has it.");
+        "This run has no measured pose (x_m, y_m, yaw_rad): the recorded robot is drawn at its position by dead "
+        "reckoning from tracks and posture.");
   } else {
     from = PoseFrom::nothing;
     notes.push_back(
-        "This run has neither a measured pose (x_m, y_m, yaw_rad) nor both tracks' travel or speed: the recorded robot "
-        "is "
-        "not drawn.");
+        "This run has neither a measured pose (x_m, y_m, yaw_rad) nor the travel or speed of both tracks: the recorded "
+        "robot is not drawn.");
   }
   return result;
 }
@@ -112,8 +110,9 @@ void complete_pose(PlayedBody& body, const PlayedBody* nominal, double standing_
   if (body.p_WB_m[2].empty()) {
     body.p_WB_m[2] = held(nominal ? nominal->p_WB_m[2] : std::vector<double>(), count, standing_m);
     if (body.kind == "recorded")
-      notes.push_back(nominal ? "Its height (z_m) was not measured: it is drawn at the nominal simulation's."
-                              : "Its height (z_m) was not measured: it is drawn as on level ground.");
+      notes.push_back(nominal
+                          ? "Its height (z_m) was not measured: it is drawn at the height of the nominal simulation."
+                          : "Its height (z_m) was not measured: it is drawn as on level ground.");
   }
   for (std::size_t i = 0; i < 2; ++i) {
     if (!body.angles_rad[i].empty()) continue;
@@ -157,7 +156,7 @@ PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const st
   played.bodies.front().pose_from = from;
   // Reckoned columns are no measurements, and may have replaced some.
   if (from == PoseFrom::dead_reckoning) played.bodies.front().channels = channels_of(run, played.times_s);
-  if (!entry.fault.empty()) played.notes.push_back("This run's own simulation went wrong: " + entry.fault);
+  if (!entry.fault.empty()) played.notes.push_back("This simulated run failed: " + entry.fault);
 
   // Phases by the recorded run, and its simulations.
   diagnose::Observation observation{entry.file, entry.manoeuvre, 0, posed, {}, {}, 0};
@@ -180,10 +179,10 @@ PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const st
 
   if (std::ranges::any_of(world.boxes, [](const physics::Box& box) { return box.mass_kg > 0; }))
     played.notes.push_back(
-        "The world has boxes that can be pushed; no run records where they are, and they are not drawn.");
+        "The world has movable boxes, which are not drawn, because runs do not record their positions.");
   if (played.times_s.size() < run.row_count())
     played.notes.push_back(
-        fmt::format("{} of its {} rows are shown, thinned evenly.", played.times_s.size(), run.row_count()));
+        fmt::format("{} of its {} rows are shown, evenly spaced.", played.times_s.size(), run.row_count()));
   return played;
 }
 

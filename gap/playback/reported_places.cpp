@@ -23,7 +23,7 @@ ReportedPhase phase_in(const PlacesJson& json) {
                       json.at("from_s"),    json.at("to_s"),  share_in(json.at("share"))};
   if (!(phase.from_s >= 0) || !(phase.to_s >= phase.from_s) || !std::isfinite(phase.to_s))
     throw std::runtime_error(
-        fmt::format("phase '{}' is from {} s to {} s; is the file damaged?", phase.phase, phase.from_s, phase.to_s));
+        fmt::format("phase '{}' goes from {} s to {} s; is the file damaged?", phase.phase, phase.from_s, phase.to_s));
   return phase;
 }
 
@@ -43,7 +43,7 @@ ReportedPlaces parse_reported_places(std::string_view report_json) try {
     places.channel_share[channel.at("channel")] = share_in(channel.at("share"));
   return places;
 } catch (const std::exception& error) {
-  throw std::runtime_error(fmt::format("no report of a diagnosis: {}", error.what()));
+  throw std::runtime_error(fmt::format("is not the report of a diagnosis: {}", error.what()));
 }
 
 std::vector<ReportedPhase> phases_of_run(const ReportedPlaces& places, const std::string& file,
@@ -53,11 +53,12 @@ std::vector<ReportedPhase> phases_of_run(const ReportedPlaces& places, const std
     const auto found = world_of.find(name);
     return found == world_of.end() ? std::string() : found->second;
   };
-  std::set<std::string> told;  // runs whose phases could be this run's
+  std::set<std::string> candidates;  // runs whose phases could be this run's
   for (const ReportedPhase& phase : places.phases)
-    if (phase.manoeuvre == manoeuvre && (phase.run.empty() || world(phase.run) == world(file))) told.insert(phase.run);
-  if (told.empty() || (told.size() > 1 && !told.contains(file))) return {};
-  const std::string of = told.contains(file) ? file : *told.begin();
+    if (phase.manoeuvre == manoeuvre && (phase.run.empty() || world(phase.run) == world(file)))
+      candidates.insert(phase.run);
+  if (candidates.empty() || (candidates.size() > 1 && !candidates.contains(file))) return {};
+  const std::string of = candidates.contains(file) ? file : *candidates.begin();
   std::vector<ReportedPhase> result;
   for (const ReportedPhase& phase : places.phases)
     if (phase.manoeuvre == manoeuvre && phase.run == of) result.push_back(phase);

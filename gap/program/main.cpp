@@ -38,7 +38,7 @@ constexpr void (*kCommands[])(CLI::App&) = {
 std::string in_words(const CLI::App* program, const CLI::Error& error) {
   std::string command = program->get_name();
   for (const CLI::App* sub : program->get_subcommands()) command += " " + sub->get_name();
-  return fmt::format("kenaf-gap: {}\n{} --help says what there is\n", error.what(), command);
+  return fmt::format("kenaf-gap: {}\n{} --help lists the commands and options\n", error.what(), command);
 }
 
 // Throws if the output could not be written, as on a full disk.
@@ -50,7 +50,7 @@ void finish_output() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program{"How far are simulation and reality apart, and why?", "kenaf-gap"};
+  CLI::App program{"Measures the gap between simulation and reality, and names its causes.", "kenaf-gap"};
   program.set_version_flag("--version", KENAF_VERSION);
   program.failure_message(in_words);
   program.require_subcommand(0, 1);  // checked below, since CLI11 would not name an unknown word

@@ -61,7 +61,7 @@ bool any(bool mine) {
 }
 
 int run(int argc, char** argv, const Ranks& ranks) {
-  CLI::App program{"A diagnosis by several processes, started with mpirun", "kenaf-gap-mpi"};
+  CLI::App program{"Diagnoses with several processes, started with mpirun", "kenaf-gap-mpi"};
   program.set_version_flag("--version", KENAF_VERSION);
   program.require_subcommand(1);
   kenaf::gap::commands::add_diagnose_command(program, ranks);

@@ -127,20 +127,20 @@ TEST_CASE("What is wrong in a file of own effects is said with file, line and co
   CHECK_THAT(error_with("max = 2.0", "max = nan"), StartsWith("own.toml:9:7: effect[0].max is nan"));
   CHECK_THAT(
       error_with("body.mass_kg", "body.weight_kg"),
-      StartsWith("own.toml:12:7: effect[0].moves[0].key is \"body.weight_kg\", which is no number of this robot: "
+      StartsWith("own.toml:12:7: effect[0].moves[0].key is \"body.weight_kg\", which is not a number of this robot: "
                  "it has body.mass_kg, body.size_m[0]"));
-  CHECK_THAT(error_with("body.mass_kg", "boby.mass_kg"), Catch::Contains("it has numbers in battery, body, drive"));
-  CHECK_THAT(error_with("add = 1.0", "by = 1.0"),
-             StartsWith("own.toml:12:7: effect[0].moves[0].key must have with it"));
+  CHECK_THAT(error_with("body.mass_kg", "boby.mass_kg"),
+             Catch::Contains("its tables with numbers are battery, body, drive"));
+  CHECK_THAT(error_with("add = 1.0", "by = 1.0"), StartsWith("own.toml:12:7: effect[0].moves[0].key needs"));
   CHECK_THAT(error_with("add = 1.0", "add = 1.0\nscale = 1.0"),
-             StartsWith("own.toml:12:7: effect[0].moves[0].key must have with it either add or scale"));
+             StartsWith("own.toml:12:7: effect[0].moves[0].key needs either add or scale in the same table"));
   CHECK_THAT(error_with("add = 1.0", "add = 0"), StartsWith("own.toml:13:7: effect[0].moves[0].add is 0"));
   CHECK_THAT(error_with("inertia_kgm2[2]", "inertia_kgm2[1]"),
-             StartsWith("own.toml:24:7: effect[0].moves[3].key is moved by this effect already"));
+             StartsWith("own.toml:24:7: effect[0].moves[3].key is already changed by this effect"));
   // one number by two of its names
   CHECK_THAT(error_with("body.mass_kg\"\nadd = 1.0\n\n[[effect.moves]]\nkey = \"body.center_of_mass_m[0]\"",
                         "track.separation_m\"\nadd = 1.0\n\n[[effect.moves]]\nkey = \"track.left_center_m[1]\""),
-             StartsWith("own.toml:16:7: effect[0].moves[1].key is moved by this effect already"));
+             StartsWith("own.toml:16:7: effect[0].moves[1].key is already changed by this effect"));
   CHECK_THAT(error_with("[[effect]]", "[[effects]]"), Catch::Contains("own.toml"));
   CHECK_THAT(error_with("max = 2.0", "max = "), StartsWith("own.toml:9:"));
 }
@@ -148,7 +148,7 @@ TEST_CASE("What is wrong in a file of own effects is said with file, line and co
 TEST_CASE("A range at an end of which there is no such robot is refused") {
   // 15 kg less 15 kg
   CHECK(error_with("min = 0.0", "min = -15.0")
-            .starts_with("own.toml:8:7: effect[0].min is -15, and with that there is no such robot: body.mass_kg is 0, "
+            .starts_with("own.toml:8:7: effect[0].min is -15, which makes an invalid robot: body.mass_kg is 0, "
                          "but must be more than 0"));
   // about y 0.44 + 4 * 0.04 and about z 0.52 + 4 * 0.04 stay together; alone, 0.52 + 0.16 is more than 0.13 + 0.44
   CHECK(error_with("max = 2.0", "max = 4.0").empty());
@@ -158,7 +158,7 @@ TEST_CASE("A range at an end of which there is no such robot is refused") {
 
 TEST_CASE("Own effects have names of their own, and a file has one at least") {
   const std::string of_second = "own.toml:" + std::to_string(1 + std::ranges::count(kLoad, '\n') + 1) + ":8: ";
-  CHECK_THROWS_WITH(parsed(kLoad + kLoad), of_second + "effect[1].name is the name of another effect too");
+  CHECK_THROWS_WITH(parsed(kLoad + kLoad), of_second + "effect[1].name is also the name of another effect");
   CHECK_THROWS_WITH(parsed(""), Catch::Contains("own.toml:") && Catch::Contains("effect is missing"));
   CHECK_THROWS_WITH(parsed("[[effect]]\nname = \"a\"\n"), Catch::StartsWith("own.toml:1:1: "));
 }
@@ -168,7 +168,7 @@ TEST_CASE("A robot without flippers has no numbers of theirs") {
   text.replace(text.find("body.mass_kg"), 12, "flipper.mass_kg");
   CHECK_NOTHROW(parse_own_effects(text, "own.toml", test::robot_of("kenaf")));
   CHECK_THROWS_WITH(parse_own_effects(text, "own.toml", test::robot_of("marmotte")),
-                    Catch::Contains("flipper.mass_kg\", which is no number of this robot"));
+                    Catch::Contains("flipper.mass_kg\", which is not a number of this robot"));
 }
 
 TEST_CASE("A file of own effects is read by its path") {

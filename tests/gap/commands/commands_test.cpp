@@ -56,7 +56,7 @@ TEST_CASE("Without a command, or with one that is not there, it says so and ends
   CHECK_THAT(kenaf_gap(folder, "--version").out, Catch::StartsWith("0."));
 }
 
-TEST_CASE("Whoever mistypes is told by the program, which word, and where to look") {
+TEST_CASE("A mistyped word is named by the program, with where to look") {
   const TemporaryFolder folder;
   for (const auto& [arguments, words] : {std::pair{"effects more", "not expected: more\nkenaf-gap effects --help"},
                                          {"simulate --manoeuver drop --out o", "--manoeuver"},
@@ -79,10 +79,10 @@ TEST_CASE("A diagnosis replaces neither its dataset, nor the description it is a
     CHECK(outcome.status == 2);
     return outcome.error;
   };
-  CHECK_THAT(refused("real --out real"), Catch::Contains("real: is the dataset"));
+  CHECK_THAT(refused("real --out real"), Catch::Contains("real: is the folder of the dataset"));
   CHECK_THAT(refused("real --robot mine/robot.toml --out mine"),
-             Catch::Contains("mine/robot.toml: is the description that is to be diagnosed"));
-  CHECK_THAT(refused("real --out mine"), Catch::Contains("mine/robot.toml: is of no diagnosis"));
+             Catch::Contains("mine/robot.toml: is the description to diagnose"));
+  CHECK_THAT(refused("real --out mine"), Catch::Contains("mine/robot.toml: does not come from a diagnosis"));
   CHECK(test::read_file(folder / "mine/robot.toml") == test::read_file(KENAF_SOURCE_DIR "/share/robots/kenaf.toml"));
   // of one that a diagnosis wrote: the next step of whoever confirms it
   test::write_file(folder / "mine/report.json", "{}");

@@ -25,7 +25,7 @@ struct TestRun {
   std::string manoeuvre;
   double delay_s = 0, lift_m = 0, ahead_m = 0;
   std::string columns = "t_s,x_m,y_m,z_m,roll_rad,pitch_rad,yaw_rad";
-  double aside = 0;  // of the way ahead
+  double sideways = 0;  // of the way ahead
 };
 
 // 4 s at 20 Hz; after 1 s and the delay it drives 0.4 m at 0.2 m/s, its pitch a tenth of its place.
@@ -33,7 +33,7 @@ std::string csv(const TestRun& run) {
   std::string text = run.columns + "\n";
   for (int i = 0; i <= 80; ++i) {
     const double t = 0.05 * i, s = std::min(0.4, std::max(0.0, 0.2 * (t - 1 - run.delay_s)));
-    text += std::to_string(t) + "," + std::to_string(run.ahead_m + s) + "," + std::to_string(run.aside * s) + "," +
+    text += std::to_string(t) + "," + std::to_string(run.ahead_m + s) + "," + std::to_string(run.sideways * s) + "," +
             std::to_string(0.1 + run.lift_m) + ",0," + std::to_string(0.1 * s) + ",0\n";
   }
   return text;
@@ -119,7 +119,7 @@ TEST_CASE("Paths that leave the vertical plane are shown from above too, less th
   CHECK(count(page, "<svg class=\"chart\"") == 9);
 }
 
-TEST_CASE("The start is aligned unless told otherwise, and the offset is reported") {
+TEST_CASE("The start is aligned by default, and the offset is reported") {
   const TemporaryFolder folder;
   make_dataset(folder / "real", {{"drive"}});
   make_dataset(folder / "sim", {{"drive", 0, 0, 0.5}});
@@ -159,7 +159,7 @@ TEST_CASE("A run without a place is left out in words, with its counterpart, whe
   make_dataset(folder / "other", {blind});
   const Outcome nothing = kenaf_gap(folder, "compare other sim --out none");
   CHECK(nothing.status == 2);
-  CHECK_THAT(nothing.error, Catch::Contains("nothing is left to compare") &&
+  CHECK_THAT(nothing.error, Catch::Contains("no pair of runs can be compared") &&
                                 Catch::Contains("real run-0.csv (blind): x_m and z_m were not measured"));
   CHECK_FALSE(fs::exists(folder / "none"));
 }
@@ -203,7 +203,7 @@ TEST_CASE("Bad input: status 2, the place in words, and nothing written") {
   CHECK_THAT(refused("real sim"), Catch::Contains("--out"));
   CHECK_THAT(refused("real --out out"), Catch::Contains("SIM is required"));
   CHECK_THAT(refused("real sim --out out --band -1"), Catch::Contains("--band"));
-  CHECK_THAT(refused("real sim --out out --start nan"), Catch::Contains("--start: \"nan\" is no number from 0"));
+  CHECK_THAT(refused("real sim --out out --start nan"), Catch::Contains("--start: \"nan\" is not a number from 0"));
   write_file(folder / "sim/run-0.csv", "t_s,x_m,z_m\n0,0,0\n1,oops,0\n");
   CHECK_THAT(refused("real sim --out out"), Catch::Contains("sim/run-0.csv:3:3: 'oops'"));
   write_file(folder / "sim/run-0.csv", "");
@@ -220,11 +220,11 @@ TEST_CASE("A folder that cannot be made or written is named") {
   write_file(folder / "file", "");
   const Outcome outcome = kenaf_gap(folder, "compare real real --out file/out");
   CHECK(outcome.status == 2);
-  CHECK_THAT(outcome.error, Catch::Contains("file/out: cannot be made"));
+  CHECK_THAT(outcome.error, Catch::Contains("file/out: cannot be created"));
   CHECK(kenaf_gap(folder, "compare real real --out file").status == 2);
 }
 
-TEST_CASE("Runs too long to match need a band, and are told which") {
+TEST_CASE("Runs too long to match need a band, and the error names it") {
   const TemporaryFolder folder;
   make_dataset(folder / "long", {{"drive"}});
   std::string text = "t_s,x_m,z_m\n";
@@ -233,6 +233,6 @@ TEST_CASE("Runs too long to match need a band, and are told which") {
   const Outcome outcome = kenaf_gap(folder, "compare long long --out out");
   CHECK(outcome.status == 2);
   // 2^28 pairs over 17000 frames and both sides: 7894 frames of 10 ms
-  CHECK_THAT(outcome.error, Catch::Contains("17000 x 17000") && Catch::Contains("--band SECONDS, at most 78.9"));
+  CHECK_THAT(outcome.error, Catch::Contains("17000 x 17000") && Catch::Contains("--band SECONDS of at most 78.9"));
   CHECK(kenaf_gap(folder, "compare long long --out out --band 2").status == 0);
 }

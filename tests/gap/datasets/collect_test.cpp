@@ -150,11 +150,11 @@ TEST_CASE("What is no run, or not plausible, writes nothing, and says why") {
   std::filesystem::create_directory(folder / "taken");
   write_file(folder / "taken/file.txt", "mine");
   for (const auto& [arguments, words] :
-       {std::pair{"dataset a.csv bad.csv --manoeuvre straight --out data", "bad.csv:3:1: t_s does not grow"},
+       {std::pair{"dataset a.csv bad.csv --manoeuvre straight --out data", "bad.csv:3:1: t_s does not increase"},
         {"dataset a.csv mm.csv --manoeuvre straight --out data", "mm.csv: x_m: looks like millimetres"},
         {"dataset a.csv none.csv --manoeuvre straight --out data", "none.csv: cannot be opened"},
-        {"dataset a.csv --out data", "a.csv: which manoeuvre is it?"},
-        {"dataset a.csv --manoeuvre of-my-own --out data", "no manoeuvre that ships is called 'of-my-own'"},
+        {"dataset a.csv --out data", "a.csv: its manoeuvre is unknown"},
+        {"dataset a.csv --manoeuvre of-my-own --out data", "there is no shipped manoeuvre 'of-my-own'"},
         {"dataset a.csv --manoeuvre straight --robot nobody --out data", "nobody"},
         {"dataset a.csv --manoeuvre straight --out taken", "taken: is not empty"},
         {"dataset a.csv --manoeuvre straight", "--out is required"},

@@ -76,7 +76,7 @@ TEST_CASE("A dataset: runs in the order asked for, repeats side by side, effects
   for (const runs::DatasetRun& run : dataset.runs)
     CHECK(runs::read_run(folder / ("data/" + run.file)).row_count() > 20);
   CHECK(read_file(folder / "data/run-000.csv") != read_file(folder / "data/run-001.csv"));
-  // nothing of what was aside is left
+  // no temporary file is left
   for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
     CHECK_THAT(entry.path().filename().string(), !Catch::Contains(".part"));
 }
@@ -182,8 +182,8 @@ TEST_CASE("A run whose robot leaves the world: status 1, named, marked in the da
              "success = { z_below_m = 1.0 }\nphase = [{ track_mps = [0.2, 0.2], at_most_s = 20.0 }]\n");
   const Outcome outcome = simulate(folder, "--manoeuvre ./short.toml --manoeuvre ./off.toml --out data");
   CHECK(outcome.status == 1);
-  CHECK_THAT(outcome.out, Catch::Contains("run-001.csv: off, ") && Catch::Contains(" s, went wrong\n"));
-  CHECK_THAT(outcome.error, Catch::Contains("run-001.csv: the simulation went wrong: it left the world: x ") &&
+  CHECK_THAT(outcome.out, Catch::Contains("run-001.csv: off, ") && Catch::Contains(" s, failed\n"));
+  CHECK_THAT(outcome.error, Catch::Contains("run-001.csv: the simulation failed: it left the world: x ") &&
                                 Catch::Contains("1 of 2 runs"));
   const runs::Dataset dataset = runs::read_dataset(folder / "data");
   CHECK(dataset.runs.at(0).fault.empty());
@@ -195,7 +195,7 @@ TEST_CASE("A run whose robot leaves the world: status 1, named, marked in the da
   const auto report = nlohmann::json::parse(read_file(folder / "out/compare.json"));
   CHECK(report["runs"].size() == 1);
   REQUIRE(report["left_out"].size() == 2);
-  CHECK_THAT(report["left_out"][0]["why"].get<std::string>(), Catch::StartsWith("its simulation went wrong: it left"));
+  CHECK_THAT(report["left_out"][0]["why"].get<std::string>(), Catch::StartsWith("its simulation failed: it left"));
 }
 
 TEST_CASE("Bad input: exit status 2, what is wrong in words, and no folder") {
@@ -205,39 +205,40 @@ TEST_CASE("Bad input: exit status 2, what is wrong in words, and no folder") {
   struct Case {
     std::string arguments, words;
   };
-  for (const Case& c : {Case{"--out data", "--manoeuvre"},
-                        {"--manoeuvre drop", "--out"},
-                        {"--manoeuvre dorp --out data", "manoeuvre \"dorp\": no such manoeuvre"},
-                        {"--manoeuvre ./bad.toml --out data", "./bad.toml:8:1: manoeuvre[0].speed is not a known key"},
-                        {"--manoeuvre empty.toml --out data", "empty.toml:1:1: manoeuvre is missing"},
-                        {"--manoeuvre drop --robot kenoff --out data",
-                         "no such robot; give the path of a file that ends "
-                         "in .toml, or one of kenaf,"},
-                        {"--manoeuvre drop --robot none.toml --out data", "none.toml: cannot be read: No such file"},
-                        {"--manoeuvre drop --robot ./ --out data", "./: cannot be read: Is a directory"},
-                        {"--manoeuvre drop --robot empty.toml --out data", "empty.toml:1:1: usarsim_class is missing"},
-                        {"--manoeuvre drop --world nowhere --out data", "world \"nowhere\": no such world"},
-                        {"--manoeuvre drop --effect mass:scale=9 --out data",
-                         "scale = 9 is out of range; it goes from "
-                         "0.5 to 2\n"},
-                        {"--manoeuvre drop --effect mass:scale=nan --out data", "out of range"},
-                        {"--manoeuvre drop --effect mass:scale=1,5 --out data", "scale = \"1,5\" is no number"},
-                        {"--manoeuvre drop --effect gravity --out data", "NAME:PARAMETER=VALUE"},
-                        {"--manoeuvre drop --physics time_step_s=0.003 --out data", "time_step_s = 0.003"},
-                        {"--manoeuvre drop --physics time_step_s=1 --out data", "out of range"},
-                        {"--manoeuvre drop --physics time_step_s --out data", "is no number"},
-                        {"--manoeuvre drop --physics solver_iterations=2.5 --out data", "no whole number"},
-                        {"--manoeuvre drop --physics gravity=1 --out data", "contact_stiffness_npm"},
-                        {"--manoeuvre drop --repeats 0 --out data", "repeats"},
-                        {"--manoeuvre drop --noise -1 --out data", "--noise: \"-1\" is no number from 0 to 1000"},
-                        {"--manoeuvre drop --scatter nan --out data", "--scatter: \"nan\""},
-                        {"--manoeuvre drop --seed -1 --out data", "--seed: \"-1\" is no whole number"},
-                        {"--manoeuvre drop --seed 99999999999999999999 --out data", "is no whole number"},
-                        {"--manoeuvre drop --jobs 1.5 --out data", "--jobs: \"1.5\" is no whole number"},
-                        {"--manoeuvre replay:none.csv --out data", "none.csv: cannot be opened"},
-                        {"--manoeuvre replay:empty.toml --out data", "empty.toml:1:1: the file is empty"},
-                        {"--manoeuvre drop --out short.toml/data", "short.toml/data: cannot be made: Not a directory"},
-                        {"--manoeuvre drop --out short.toml", "short.toml: is no folder"}}) {
+  for (const Case& c :
+       {Case{"--out data", "--manoeuvre"},
+        {"--manoeuvre drop", "--out"},
+        {"--manoeuvre dorp --out data", "manoeuvre \"dorp\": no such manoeuvre"},
+        {"--manoeuvre ./bad.toml --out data", "./bad.toml:8:1: manoeuvre[0].speed is not a known key"},
+        {"--manoeuvre empty.toml --out data", "empty.toml:1:1: manoeuvre is missing"},
+        {"--manoeuvre drop --robot kenoff --out data",
+         "no such robot; give the path of a file that ends "
+         "in .toml, or one of kenaf,"},
+        {"--manoeuvre drop --robot none.toml --out data", "none.toml: cannot be read: No such file"},
+        {"--manoeuvre drop --robot ./ --out data", "./: cannot be read: Is a directory"},
+        {"--manoeuvre drop --robot empty.toml --out data", "empty.toml:1:1: usarsim_class is missing"},
+        {"--manoeuvre drop --world nowhere --out data", "world \"nowhere\": no such world"},
+        {"--manoeuvre drop --effect mass:scale=9 --out data",
+         "scale = 9 is out of range; it goes from "
+         "0.5 to 2\n"},
+        {"--manoeuvre drop --effect mass:scale=nan --out data", "out of range"},
+        {"--manoeuvre drop --effect mass:scale=1,5 --out data", "scale = \"1,5\" is not a number"},
+        {"--manoeuvre drop --effect gravity --out data", "NAME:PARAMETER=VALUE"},
+        {"--manoeuvre drop --physics time_step_s=0.003 --out data", "time_step_s = 0.003"},
+        {"--manoeuvre drop --physics time_step_s=1 --out data", "out of range"},
+        {"--manoeuvre drop --physics time_step_s --out data", "is not a number"},
+        {"--manoeuvre drop --physics solver_iterations=2.5 --out data", "not a whole number"},
+        {"--manoeuvre drop --physics gravity=1 --out data", "contact_stiffness_npm"},
+        {"--manoeuvre drop --repeats 0 --out data", "repeats"},
+        {"--manoeuvre drop --noise -1 --out data", "--noise: \"-1\" is not a number from 0 to 1000"},
+        {"--manoeuvre drop --scatter nan --out data", "--scatter: \"nan\""},
+        {"--manoeuvre drop --seed -1 --out data", "--seed: \"-1\" is not a whole number"},
+        {"--manoeuvre drop --seed 99999999999999999999 --out data", "is not a whole number"},
+        {"--manoeuvre drop --jobs 1.5 --out data", "--jobs: \"1.5\" is not a whole number"},
+        {"--manoeuvre replay:none.csv --out data", "none.csv: cannot be opened"},
+        {"--manoeuvre replay:empty.toml --out data", "empty.toml:1:1: the file is empty"},
+        {"--manoeuvre drop --out short.toml/data", "short.toml/data: cannot be created: Not a directory"},
+        {"--manoeuvre drop --out short.toml", "short.toml: is not a folder"}}) {
     INFO(c.arguments);
     const Outcome outcome = simulate(folder, c.arguments);
     CHECK(outcome.status == 2);

@@ -106,7 +106,7 @@ TEST_CASE("A course that both logs have to the last digit has an offset and an e
   }
   const auto offset = gap::logs::estimate_clock_offset({{"turn", turned, turned, 0.5, 2, 0.1, false}});
   CHECK(std::abs(offset.offset_s) < 1e-6);
-  CHECK(offset.standard_error_s < 1e-6);  // nothing is left of which it could be told
+  CHECK(offset.standard_error_s < 1e-6);  // no residual is left to estimate it from
 }
 
 TEST_CASE("A run whose times are beyond those of robots is refused") {
@@ -115,7 +115,7 @@ TEST_CASE("A run whose times are beyond those of robots is refused") {
   REQUIRE(run.columns.front() == "t_s");
   run.values.front().front() = -1.7e308;
   run.values.front().back() = 1.7e308;
-  CHECK_THROWS_WITH(gap::logs::merge_pose(run, captured(drive, 1, {}), {}), Catch::Contains("times that no robot has"));
+  CHECK_THROWS_WITH(gap::logs::merge_pose(run, captured(drive, 1, {}), {}), Catch::Contains("which is implausible"));
 }
 
 TEST_CASE("No offset is made up: standstill, other drives, drives that repeat themselves") {
@@ -162,7 +162,7 @@ TEST_CASE("Units and signs that are wrong are named, not fitted") {
   CHECK_THAT(why_no_offset(with_scaled_column(run, "gyro_z_radps", 180 / std::numbers::pi), captured(drive, 1, {})),
              Catch::Contains("the run looks like degrees"));
   CHECK_THAT(why_no_offset(with_scaled_column(run, "gyro_z_radps", -1), captured(drive, 1, {})),
-             Catch::Contains("sign turned"));
+             Catch::Contains("wrong sign"));
   CHECK_THAT(why_no_offset(run, millimetres), Catch::Contains("millimetres"));
 }
 
@@ -268,7 +268,7 @@ TEST_CASE("A motion capture's columns: angles, quaternions in any order, millime
   CHECK_THROWS_WITH(read("t_s,x_m,yaw_rad\n0,0,0\n1,1,1\n"), Catch::Contains("no column y_m"));
   CHECK_THROWS_WITH(read("t_s,x_m,x_mm,y_m,yaw_rad\n0,0,0,0,0\n"), Catch::Contains("both x_m and x_mm"));
   CHECK_THROWS_WITH(read("t_s,x_m,y_m,qx,qy,qz,qw\n0,0,0,0,0,0,1\n1,0,0,0,0,0,0\n"),
-                    Catch::Contains("m.csv:3:1: qx, qy, qz, qw are no rotation"));
+                    Catch::Contains("m.csv:3:1: qx, qy, qz, qw are not a rotation"));
   CHECK_THROWS_WITH(read("t_s,x_m,y_m,yaw_rad\n0,0,0,0\n"), Catch::Contains("fewer than two rows"));
 }
 
@@ -313,7 +313,7 @@ TEST_CASE("The command merge writes a whole run, says the offset and its error, 
   const std::string before = test::read_file(folder / "merged.csv");
   outcome = test::kenaf_gap(folder, "merge run.csv mocap.csv --offset 0 --mocap-units mm --out merged.csv");
   CHECK(outcome.status == 2);
-  CHECK_THAT(outcome.error, Catch::Contains("merged.csv: is there already"));
+  CHECK_THAT(outcome.error, Catch::Contains("merged.csv: exists already"));
   CHECK(test::read_file(folder / "merged.csv") == before);
   CHECK(
       test::kenaf_gap(folder, "merge run.csv mocap.csv --offset 0 --mocap-units mm --out merged.csv --force").status ==

@@ -194,21 +194,21 @@ TEST_CASE("Yaw in degrees is seen by the tracks where there is no gyro") {
 
 TEST_CASE("Signs that are turned are refused, and sides that are exchanged") {
   CHECK_THAT(found(scaled(arc(), {"gyro_z_radps"}, -1)),
-             Catch::Contains("yaw_rad: has the sign turned against gyro_z_radps"));
+             Catch::Contains("yaw_rad: has the opposite sign of gyro_z_radps"));
   CHECK_THAT(found(scaled(step(), {"pitch_rad"}, -1)),
-             Catch::Contains("pitch_rad: has the sign turned against gyro_y_radps"));
-  CHECK_THAT(found(scaled(arc(), {"track_left_mps"}, -1)), Catch::Contains("track_left_mps: has the sign turned"));
+             Catch::Contains("pitch_rad: has the opposite sign of gyro_y_radps"));
+  CHECK_THAT(found(scaled(arc(), {"track_left_mps"}, -1)), Catch::Contains("track_left_mps: has the opposite sign"));
   CHECK_THAT(found(scaled(arc(), {"yaw_rad", "gyro_z_radps"}, -1)),
-             Catch::Contains("yaw_rad: has the sign turned against the tracks"));
-  CHECK_THAT(found(scaled(arc(), {"x_m", "y_m"}, -1)), Catch::Contains("x_m: has the sign turned against the tracks"));
-  CHECK_THAT(found(scaled(step(), {"flipper_fl_rad"}, -1)), Catch::Contains("flipper_fl_rad: has the sign turned"));
+             Catch::Contains("yaw_rad: has the opposite sign of the tracks"));
+  CHECK_THAT(found(scaled(arc(), {"x_m", "y_m"}, -1)), Catch::Contains("x_m: has the opposite sign of the tracks"));
+  CHECK_THAT(found(scaled(step(), {"flipper_fl_rad"}, -1)), Catch::Contains("flipper_fl_rad: has the opposite sign"));
   runs::Run exchanged = driven("random-speeds");
   std::swap(column(exchanged, "track_left_mps"), column(exchanged, "track_right_mps"));
   CHECK_THAT(found(exchanged), Catch::Contains("left and right are exchanged"));
 }
 
 TEST_CASE("A track that is asked for less than a fifth of the other is no turned sign where that one drags it back") {
-  // 3.5 s of each: the left track does as it is told, the right one goes back at 0.1 m/s whatever it is told
+  // 3.5 s of each: the left track follows its commands, the right one goes back at 0.1 m/s whatever its command
   const auto dragged = [](double left_mps, double right_mps) {
     const auto steady = [](double speed_mps) { return [=](double t_s) { return t_s < 0.5 ? 0 : speed_mps; }; };
     return found(test::made_run(4, 0.01,
@@ -217,7 +217,7 @@ TEST_CASE("A track that is asked for less than a fifth of the other is no turned
                                  {"track_left_mps", steady(left_mps)},
                                  {"track_right_mps", steady(-0.1)}}));
   };
-  const auto is_refused = Catch::Contains("track_right_mps: has the sign turned against cmd_track_right_mps");
+  const auto is_refused = Catch::Contains("track_right_mps: has the opposite sign of cmd_track_right_mps");
   CHECK_THAT(dragged(0.5, 0.05), !is_refused);
   CHECK_THAT(dragged(0.5, 0.09), !is_refused);
   CHECK_THAT(dragged(-0.5, 0.09), !is_refused);
@@ -228,8 +228,8 @@ TEST_CASE("A track that is asked for less than a fifth of the other is no turned
 }
 
 TEST_CASE("A track that is asked for next to nothing and dragged along is not in centimetres, both tracks may be") {
-  // as a skid-steered robot that is told to turn about its right track, and began in motion
-  const auto told = [](double left_mps, double right_mps, double measured_right_mps) {
+  // as a skid-steered robot that is commanded to turn about its right track, and began in motion
+  const auto findings = [](double left_mps, double right_mps, double measured_right_mps) {
     const auto steady = [](double speed_mps) { return [=](double t_s) { return t_s < 0.5 ? 0 : speed_mps; }; };
     return found(test::made_run(4, 0.01,
                                 {{"cmd_track_left_mps", steady(left_mps)},
@@ -237,9 +237,9 @@ TEST_CASE("A track that is asked for next to nothing and dragged along is not in
                                  {"track_left_mps", steady(0.4)},
                                  {"track_right_mps", steady(measured_right_mps)}}));
   };
-  CHECK_THAT(told(0.4, 0.002, 0.2), !Catch::Contains("refused") && !Catch::Contains("looks like"));
-  CHECK_THAT(told(0.4, 0.004, 0.4), !Catch::Contains("looks like"));
-  CHECK_THAT(told(0.004, 0.004, 0.4), Catch::Contains("track_left_mps: looks like centimetres"));
+  CHECK_THAT(findings(0.4, 0.002, 0.2), !Catch::Contains("refused") && !Catch::Contains("looks like"));
+  CHECK_THAT(findings(0.4, 0.004, 0.4), !Catch::Contains("looks like"));
+  CHECK_THAT(findings(0.004, 0.004, 0.4), Catch::Contains("track_left_mps: looks like centimetres"));
 }
 
 TEST_CASE("A robot that slides down a ramp against its tracks is warned of, whatever its speed") {
@@ -247,11 +247,11 @@ TEST_CASE("A robot that slides down a ramp against its tracks is warned of, what
     const auto findings = gap::logs::check_run(carried(speed_mps, -0.5), "run.csv", &nominal());
     INFO(words(findings));
     CHECK_FALSE(gap::logs::any_refused(findings));
-    CHECK_THAT(words(findings), Catch::StartsWith("warning: run.csv: x_m: goes against the tracks"));
+    CHECK_THAT(words(findings), Catch::StartsWith("warning: run.csv: x_m: is opposite to the tracks"));
   }
   // on level ground nothing but a turned sign does that, where it goes as far as the tracks
-  CHECK_THAT(found(carried(-0.2, 0)), Catch::StartsWith("run.csv: x_m: has the sign turned against the tracks"));
-  CHECK_THAT(found(carried(-0.5, 0)), Catch::StartsWith("warning: run.csv: x_m: goes against the tracks"));
+  CHECK_THAT(found(carried(-0.2, 0)), Catch::StartsWith("run.csv: x_m: has the opposite sign of the tracks"));
+  CHECK_THAT(found(carried(-0.5, 0)), Catch::StartsWith("warning: run.csv: x_m: is opposite to the tracks"));
   CHECK(found(carried(0.2, -0.5)) == "");
 }
 
@@ -276,7 +276,8 @@ TEST_CASE("A heading that never changes is refused where something else saw a tu
   CHECK_THAT(with("track_left_mps", 0.1), Catch::Contains("run.csv: yaw_rad: never changes while the robot turns"));
 }
 
-TEST_CASE("Time in milliseconds is told by what adds up, gaps, odd steps and other clocks are warned of") {
+TEST_CASE(
+    "Time in milliseconds is detected by the travel that adds up, gaps, odd steps and other clocks are warned of") {
   CHECK_THAT(found(scaled(arc(), {"t_s"}, 1000)),
              Catch::Contains("run.csv: t_s: looks like milliseconds: it steps by 10"));
   CHECK_THAT(found(scaled(arc(), {"t_s"}, 1e6)), Catch::Contains("t_s: looks like microseconds"));
@@ -291,7 +292,7 @@ TEST_CASE("Time in milliseconds is told by what adds up, gaps, odd steps and oth
   runs::Run bursts = arc();
   for (std::size_t i = 0; i < bursts.row_count(); ++i)
     column(bursts, "t_s")[i] = 0.04 * static_cast<double>(i / 4) + 0.001 * static_cast<double>(i % 4);
-  CHECK_THAT(found(bursts), Catch::Contains("are these the times of measuring, or of writing?"));
+  CHECK_THAT(found(bursts), Catch::Contains("use the times of measurement, not of writing"));
 }
 
 TEST_CASE("Dead encoders, frozen poses and commands that were not recorded") {
@@ -312,12 +313,12 @@ TEST_CASE("Dead encoders, frozen poses and commands that were not recorded") {
   runs::Run repeated = arc();
   for (const std::string& name : kPlace)
     for (std::size_t i = 401; i < 600; ++i) column(repeated, name)[i] = column(repeated, name)[400];
-  CHECK_THAT(found(repeated),
-             Catch::StartsWith("warning: run.csv:402: x_m: stands still to the last digit for 1.99 s"));
+  CHECK_THAT(found(repeated), Catch::StartsWith("warning: run.csv:402: x_m: is constant to the last digit for 1.99 s"));
 }
 
 TEST_CASE(
-    "A column that repeats each value until the next one came is told with how long, and not whole counts of a live "
+    "A column that repeats each value until the next one came is reported with the duration, and not whole counts of a "
+    "live "
     "sensor") {
   const auto held = [](runs::Run run, const std::string& name, std::size_t rows) {
     std::vector<double>& values = column(run, name);
@@ -342,10 +343,11 @@ TEST_CASE(
   runs::Dataset dataset;
   dataset.runs = {{"a.csv", "arc", ""}, {"b.csv", "arc", ""}, {"c.csv", "arc", ""}};
   const runs::Run slow = held(arc(), "gyro_z_radps", 10);
-  const std::string told = words(gap::logs::check_plausibility(dataset, std::vector{slow, arc(), slow}, &nominal()));
-  CHECK_THAT(told, Catch::StartsWith("warning: a.csv: gyro_z_radps: repeats each value for 0.1 s") &&
-                       Catch::EndsWith("(as in 1 more)\n"));
-  CHECK(std::ranges::count(told, '\n') == 1);
+  const std::string findings =
+      words(gap::logs::check_plausibility(dataset, std::vector{slow, arc(), slow}, &nominal()));
+  CHECK_THAT(findings, Catch::StartsWith("warning: a.csv: gyro_z_radps: repeats each value for 0.1 s") &&
+                           Catch::EndsWith("(as in 1 more)\n"));
+  CHECK(std::ranges::count(findings, '\n') == 1);
 }
 
 TEST_CASE("A pose that jumps is warned of with its line, one that begins late too") {
@@ -363,7 +365,7 @@ TEST_CASE("A pose that jumps is warned of with its line, one that begins late to
   runs::Run never_both = arc();
   for (std::size_t i = 0; i < never_both.row_count(); ++i)
     column(never_both, i % 2 == 0 ? "x_m" : "y_m")[i] = std::nan("");
-  CHECK_THAT(found(never_both), Catch::Contains("x_m: has a value in no row in which y_m has one"));
+  CHECK_THAT(found(never_both), Catch::Contains("x_m: has no value in any row in which y_m has one"));
 }
 
 TEST_CASE("A run of a few rows tells nothing, a noise that no column has is warned of") {

@@ -44,7 +44,7 @@ double gone(double t_s) {
   return t_s < 0.5 ? 0 : 0.1 * (t_s - 0.5);
 }
 
-// 2 s at 100 Hz: told to go at 0.2 m/s from 0.5 s on, it goes at half of that.
+// 2 s at 100 Hz: commanded to go at 0.2 m/s from 0.5 s on, it goes at half of that.
 runs::Run half_speed(bool with_pose) {
   std::vector<ColumnOfTime> columns{
       {"cmd_track_left_mps", go}, {"cmd_track_right_mps", go}, {"track_left_m", gone}, {"track_right_m", gone}};
@@ -195,7 +195,7 @@ TEST_CASE("A report's phases belong to their run, or to its one repeat that the 
   CHECK(phases_of_run(two, "b.csv", "go", {{"a.csv", "flat"}, {"b.csv", "flat"}, {"d.csv", "flat"}}).empty());
   for (const char* wrong : {"", "[]", "{\"format\": \"kenaf-gap-report/2\"}", "{\"format\": \"kenaf-gap-report/3\"}",
                             R"({"format": "kenaf-gap-report/1", "verdict": "none", "named": [], "where": {}})"})
-    CHECK_THROWS_WITH(parse_reported_places(wrong), Catch::Contains("no report of a diagnosis"));
+    CHECK_THROWS_WITH(parse_reported_places(wrong), Catch::Contains("not the report of a diagnosis"));
   std::string backwards = kReport;
   backwards.replace(backwards.find("\"to_s\": 2"), 9, "\"to_s\": 0");
   CHECK_THROWS_WITH(parse_reported_places(backwards), Catch::Contains("from 0.8 s to 0 s"));
@@ -239,7 +239,7 @@ TEST_CASE("A page is told a run's poses, times and marks as they were recorded")
   CHECK(run["notes"].empty());
 }
 
-TEST_CASE("Without a pose the page is told so, and where dead reckoning has the robot") {
+TEST_CASE("Without a pose the page receives a note, and the position by dead reckoning") {
   const Recorded recorded;
   const Playback playback = recorded.load();
   const json run = json::parse(played_run_json(playback, 2, prepare_run(playback, 2)));
@@ -289,7 +289,7 @@ TEST_CASE("A corrected robot beside the nominal one, and a file that its dataset
   CHECK(behind == Approx(0.06).margin(0.005));
 }
 
-TEST_CASE("What is made is made once and kept, and what fails is told and tried again") {
+TEST_CASE("What is made is made once and kept, and a failure is reported and tried again") {
   std::atomic<int> made = 0;
   Shelf shelf(10, [&](std::size_t n) {
     if (++made == 2) throw std::runtime_error("out of order");
@@ -379,8 +379,8 @@ TEST_CASE("kenaf-gap play says what is wrong, and ends when it is told to") {
       {"play nowhere", "nowhere"},
       {"play bad.csv", "bad.csv:3:"},
       {"play . --report .", "there is no report.json"},
-      {"play . --report other", "other manoeuvres"},
-      {"play . --run d.csv", "neither such a file nor such a manoeuvre"},
+      {"play . --report other", "covers none of the manoeuvres"},
+      {"play . --run d.csv", "contains neither a file nor a manoeuvre of that name"},
       {"play . --robot nobody", "nobody"},
       {"play . --view here", "ADDRESS:PORT"},
       {"play . --view off", "nothing to do"},
@@ -394,10 +394,10 @@ TEST_CASE("kenaf-gap play says what is wrong, and ends when it is told to") {
   }
   const std::string script = "cd '" + recorded.folder.path().string() +
                              "' && { '" KENAF_GAP
-                             "' play . --view 127.0.0.1:0 >told.txt 2>&1 & p=$!; for i in $(seq 400); do "
-                             "grep -q http told.txt && break; sleep 0.05; done; kill -TERM $p; wait $p; }";
+                             "' play . --view 127.0.0.1:0 >printed.txt 2>&1 & p=$!; for i in $(seq 400); do "
+                             "grep -q http printed.txt && break; sleep 0.05; done; kill -TERM $p; wait $p; }";
   CHECK(WEXITSTATUS(std::system(script.c_str())) == 0);
-  CHECK(test::read_file(recorded.folder / "told.txt").starts_with("http://127.0.0.1:"));
+  CHECK(test::read_file(recorded.folder / "printed.txt").starts_with("http://127.0.0.1:"));
 }
 
 }  // namespace kenaf::gap::playback
