@@ -81,7 +81,7 @@ bool TomlReader::boolean(std::string_view key) {
 
 std::string TomlReader::text(std::string_view key) {
   const toml::node& found = node(key);
-  if (!found.is_string()) fail(key, "must be a text in quotes");
+  if (!found.is_string()) fail(key, "must be a string in quotes");
   return *found.value<std::string>();
 }
 

@@ -77,9 +77,10 @@ bool AnswerReader::take(std::span<const std::uint8_t>& bytes) {
     size_ =
         std::size_t{big_endian_16(std::span(header_).subspan(1))} << 16 | big_endian_16(std::span(header_).subspan(3));
     if (answer.type > kMaxJpegType && answer.type != kRefused)
-      throw std::runtime_error("an answer of type " + std::to_string(answer.type) + ", which is no picture's");
+      throw std::runtime_error("an answer of type " + std::to_string(answer.type) + ", which is not a picture");
     if (size_ > kMaxAnswerBytes)
-      throw std::runtime_error("an answer of " + std::to_string(size_) + " bytes, which is more than a picture has");
+      throw std::runtime_error("an answer of " + std::to_string(size_) +
+                               " bytes, which is more than a picture can have");
   }
 
   // The data.

@@ -40,7 +40,7 @@ class TableReader {
   std::optional<std::string> optional_text(std::string_view key) const {
     const toml::node* node = table_.get(key);
     if (node == nullptr) return std::nullopt;
-    if (!node->is_string()) fail(*node, "'" + std::string(key) + "' is no text in quotes");
+    if (!node->is_string()) fail(*node, "'" + std::string(key) + "' is not a string in quotes");
     return node->as_string()->get();
   }
 
@@ -55,11 +55,11 @@ std::map<std::string, double> read_noise(const TableReader& reader) {
   std::map<std::string, double> noise;
   const toml::node* node = reader.find("noise");
   if (node == nullptr) return noise;
-  if (!node->is_table()) reader.fail(*node, "'noise' is no table; write [noise] and below it x_m = 0.002");
+  if (!node->is_table()) reader.fail(*node, "'noise' is not a table; write [noise] and below it x_m = 0.002");
   for (const auto& [column, value] : *node->as_table()) {
     const std::optional<double> sigma = value.is_number() ? value.value<double>() : std::nullopt;
     if (!sigma || !std::isfinite(*sigma) || *sigma <= 0) {
-      reader.fail(value, "the noise of '" + std::string(column.str()) + "' is no positive number");
+      reader.fail(value, "the noise of '" + std::string(column.str()) + "' is not a positive number");
     }
     noise.emplace(column.str(), *sigma);
   }
@@ -84,14 +84,14 @@ std::vector<DatasetRun> read_runs(const TableReader& reader, const toml::table& 
   if (node == nullptr) reader.fail(root, "the dataset has no [[run]]");
   const toml::array* entries = node->as_array();
   if (entries == nullptr || entries->empty())
-    reader.fail(*node, "'run' is no list of tables; write [[run]] for each run");
+    reader.fail(*node, "'run' is not a list of tables; write [[run]] for each run");
   std::vector<DatasetRun> runs;
   std::set<std::string> files;
   for (const toml::node& entry : *entries) {
-    if (!entry.is_table()) reader.fail(entry, "'run' is no list of tables; write [[run]] for each run");
+    if (!entry.is_table()) reader.fail(entry, "'run' is not a list of tables; write [[run]] for each run");
     runs.push_back(read_run_entry(*entry.as_table(), file));
     if (!files.insert(fs::path(runs.back().file).lexically_normal().string()).second)
-      reader.fail(entry, "'" + runs.back().file + "' is a run already");
+      reader.fail(entry, "'" + runs.back().file + "' is already a run");
   }
   return runs;
 }
@@ -189,7 +189,7 @@ void write_dataset(const fs::path& folder, const Dataset& dataset) {
 
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw RunFileError(folder.string() + ": cannot be made: " + error.message());
+  if (error) throw RunFileError(folder.string() + ": cannot be created: " + error.message());
   write_whole_file(file, text);
 }
 
@@ -200,7 +200,8 @@ void append_runs(const fs::path& folder, std::span<const DatasetRun> runs) {
   if (!text.ends_with('\n')) text += '\n';
   for (const DatasetRun& run : runs) text += run_entry(run);
   if (parse_dataset(text, file.string()).runs.size() != before + runs.size())
-    throw RunFileError(file.string() + ": its runs do not stand as [[run]] at its end; none can be added");
+    throw RunFileError(file.string() +
+                       ": its runs are not [[run]] tables at the end of the file, so none can be added");
   write_whole_file(file, text);
 }
 

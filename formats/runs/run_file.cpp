@@ -78,7 +78,7 @@ std::size_t check_columns(const std::vector<Cell>& cells, const Place& place) {
   std::set<std::string_view> names;
   for (const Cell& cell : cells) {
     if (cell.text.empty()) fail(place, cell.column, "a column without a name");
-    if (cell.text.find('\r') != cell.text.npos) fail(place, cell.column, "a column's name has a line end in it");
+    if (cell.text.find('\r') != cell.text.npos) fail(place, cell.column, "a column name contains a line end");
     if (!names.insert(cell.text).second)
       fail(place, cell.column, "the column " + in_quotes(cell.text) + " is named twice");
   }
@@ -93,14 +93,14 @@ double read_cell(const Cell& cell, const std::string& column_name, const Place& 
   if (!value) {
     fail(place, cell.column,
          in_quotes(cell.text) + " in column " + in_quotes(column_name) +
-             " is no finite number; leave the cell empty where nothing was measured");
+             " is not a finite number; leave the cell empty where nothing was measured");
   }
   return *value;
 }
 
 void check_time(double time_s, double last_time_s, std::size_t column, const Place& place) {
   if (std::isnan(time_s)) fail(place, column, "the row has no time; every row needs its t_s");
-  if (time_s <= last_time_s) fail(place, column, "t_s does not grow from the row before");
+  if (time_s <= last_time_s) fail(place, column, "t_s does not increase from the row before");
 }
 
 // Reads a run from its text piece by piece, so that of a long file only the values are held in memory.
@@ -223,7 +223,7 @@ RunWriter::RunWriter(std::filesystem::path file, std::vector<std::string> column
   std::vector<Cell> cells;
   split(line_, cells);
   if (!std::ranges::equal(cells, columns, {}, &Cell::text) || line_.find('\n') != std::string::npos) {
-    fail(place, 1, "a column's name has a comma, a line end or a blank beside it in it");
+    fail(place, 1, "a column name contains a comma or a line end, or begins or ends with a blank");
   }
   time_column_ = check_columns(cells, place);
   line_ += '\n';
@@ -243,11 +243,11 @@ RunWriter::~RunWriter() {
 void RunWriter::add_row(std::span<const double> row) {
   const auto refuse = [this](const std::string& what) { throw RunFileError(file_.string() + ": " + what); };
   if (descriptor_ < 0) refuse("is closed, no row can follow");
-  if (broken_) refuse("a row before could not be written");
+  if (broken_) refuse("an earlier row could not be written");
   if (row.size() != column_count_) {
     refuse("a row of " + std::to_string(row.size()) + " values for " + std::to_string(column_count_) + " columns");
   }
-  if (!(row[time_column_] > last_time_s_)) refuse("t_s does not grow from the row before");
+  if (!(row[time_column_] > last_time_s_)) refuse("t_s does not increase from the row before");
   line_.clear();
   for (std::size_t i = 0; i < row.size(); ++i) {
     if (i > 0) line_ += ',';
@@ -263,7 +263,7 @@ void RunWriter::add_row(std::span<const double> row) {
 
 void RunWriter::finish() {
   if (descriptor_ < 0) return;
-  if (broken_) throw RunFileError(file_.string() + ": stays a part file, a row could not be written");
+  if (broken_) throw RunFileError(file_.string() + ": remains a part file, because a row could not be written");
   finish_part_file(std::exchange(descriptor_, -1), file_);
 }
 

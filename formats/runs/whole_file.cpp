@@ -27,7 +27,7 @@ fs::path part_of(const fs::path& file) {
 
 int open_part_file(const fs::path& file) {
   const int descriptor = ::open(part_of(file).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor < 0) fail(part_of(file), "cannot be made", errno);
+  if (descriptor < 0) fail(part_of(file), "cannot be created", errno);
   return descriptor;
 }
 

@@ -69,18 +69,18 @@ TEST_CASE("What is refused of dataset.toml, with its line and column") {
              Catch::StartsWith("dataset.toml:1:10: format is 'kenaf-runs/9'"));
   CHECK_THAT(refusal_of(changed("\"real\"", "\"guess\"")), Catch::StartsWith("dataset.toml:2:10: source is neither"));
   CHECK_THAT(refusal_of(changed("robot  =", "robots =")), Catch::Contains("the key 'robot' is missing"));
-  CHECK_THAT(refusal_of(changed("\"flat\"", "7")), Catch::StartsWith("dataset.toml:4:10: 'world' is no text"));
+  CHECK_THAT(refusal_of(changed("\"flat\"", "7")), Catch::StartsWith("dataset.toml:4:10: 'world' is not a string"));
   CHECK_THAT(refusal_of(changed("\"flat\"", "\"\"")), Catch::StartsWith("dataset.toml:4:10: 'world' is empty"));
   CHECK_THAT(refusal_of(changed("0.002", "-0.002")), Catch::StartsWith("dataset.toml:9:7: the noise of 'x_m'"));
   CHECK_THAT(refusal_of(changed("0.002", "nan")), Catch::StartsWith("dataset.toml:9:7: the noise of 'x_m'"));
   CHECK_THAT(refusal_of(changed("0.002", "\"little\"")), Catch::StartsWith("dataset.toml:9:7: the noise of 'x_m'"));
-  CHECK_THAT(refusal_of(changed("more/run-001.csv", "run-000.csv")), Catch::Contains("is a run already"));
-  CHECK_THAT(refusal_of(changed("more/run-001.csv", "./run-000.csv")), Catch::Contains("is a run already"));
+  CHECK_THAT(refusal_of(changed("more/run-001.csv", "run-000.csv")), Catch::Contains("is already a run"));
+  CHECK_THAT(refusal_of(changed("more/run-001.csv", "./run-000.csv")), Catch::Contains("is already a run"));
   CHECK_THAT(refusal_of(changed("more/run-001.csv", "../run.csv")),
              Catch::StartsWith("dataset.toml:18:8: '../run.csv' is outside"));
   CHECK_THAT(refusal_of(changed("more/run-001.csv", "/run.csv")), Catch::Contains("is outside"));
   CHECK_THAT(refusal_of(kExample.substr(0, kExample.find("[[run]]"))), Catch::Contains("no [[run]]"));
-  CHECK_THAT(refusal_of(changed("[noise]", "[[noise]]")), Catch::Contains("'noise' is no table"));
+  CHECK_THAT(refusal_of(changed("[noise]", "[[noise]]")), Catch::Contains("'noise' is not a table"));
   CHECK_THAT(refusal_of("run = 3\n" + kExample.substr(0, kExample.find("[[run]]"))),
              Catch::StartsWith("dataset.toml:1:7: 'run'"));
   CHECK_THROWS_WITH(read_dataset("/no/such/folder"), Catch::Contains("/no/such/folder/dataset.toml: cannot be opened"));

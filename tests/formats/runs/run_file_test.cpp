@@ -65,9 +65,9 @@ TEST_CASE("What is refused of a run, with its line and column") {
   CHECK_THAT(refusal_of_run("t_s,x_m\n0\n"), Catch::StartsWith("run.csv:2:2: the row has 1 cells"));
   CHECK_THAT(refusal_of_run("t_s,x_m\n0,1\n\n1,2\n"), Catch::StartsWith("run.csv:3:1: the row has 1 cells"));
   CHECK_THAT(refusal_of_run("x_m,t_s\n1,\n"), Catch::StartsWith("run.csv:2:3: the row has no time"));
-  CHECK_THAT(refusal_of_run("x_m,t_s\n1,0.5\n1,0.5\n"), Catch::StartsWith("run.csv:3:3: t_s does not grow"));
-  CHECK_THAT(refusal_of_run("t_s\n2\n1\n"), Catch::StartsWith("run.csv:3:1: t_s does not grow"));
-  CHECK_THAT(refusal_of_run("t_s,a\rb\n"), Catch::StartsWith("run.csv:1:5: a column's name has a line end in it"));
+  CHECK_THAT(refusal_of_run("x_m,t_s\n1,0.5\n1,0.5\n"), Catch::StartsWith("run.csv:3:3: t_s does not increase"));
+  CHECK_THAT(refusal_of_run("t_s\n2\n1\n"), Catch::StartsWith("run.csv:3:1: t_s does not increase"));
+  CHECK_THAT(refusal_of_run("t_s,a\rb\n"), Catch::StartsWith("run.csv:1:5: a column name contains a line end"));
   // A decimal comma makes one cell too many, and that is what is said.
   CHECK_THAT(refusal_of_run("t_s,x_m\n0,0,5\n"), Catch::Contains("3 cells"));
 }
