@@ -81,7 +81,7 @@ void check_numbers(TomlReader& table, const DriveOnBus& drive) {
         "the quick stop's deceleration");
   for (const double position : {drive.min_position, drive.max_position}) {
     if (std::abs(drive.units.zero_counts + position * drive.units.counts_per_unit) > most)
-      table.fail("counts_per_turn", "puts the flipper's limits beyond the 32 bits of the drive's position");
+      table.fail("counts_per_turn", "makes the flipper's limits exceed the 32 bits of the drive's position");
   }
 }
 
@@ -190,7 +190,7 @@ RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for
   TomlReader file(root, "", name_for_errors);
   if (!file.has("can")) {
     throw description::DescriptionError(
-        fmt::format("{}: has no table [can], which says what is on the robot's CAN bus", name_for_errors));
+        fmt::format("{}: has no table [can], which lists the devices on the robot's CAN bus", name_for_errors));
   }
   TomlReader table = file.table("can");
 

@@ -184,7 +184,7 @@ void SocketBus::lost(int error) const {
       throw BusError(fmt::format("CAN interface '{0}' went down: `ip link set {0} up`", interface_));
     case ENODEV:
     case ENXIO:
-      throw BusError(fmt::format("CAN interface '{}' is gone: is its adapter still plugged in?", interface_));
+      throw BusError(fmt::format("CAN interface '{}' no longer exists: is its adapter still plugged in?", interface_));
     default:
       throw BusError(fmt::format("CAN interface '{}': {}", interface_, std::strerror(error)));
   }
@@ -203,7 +203,7 @@ void SocketBus::send(const Frame& frame) {
     if (errno != ENOBUFS && errno != EAGAIN) lost(errno);
     if (now() > latest) {
       throw canopen::BusFull(
-          fmt::format("CAN interface '{}' takes no more frames: nobody acknowledges them, or the bus is off{}{}",
+          fmt::format("CAN interface '{}' accepts no more frames: no node acknowledges them, or the bus is off{}{}",
                       interface_, last_warning_.empty() ? "" : "; it reports: ", last_warning_));
     }
     const timespec pause = to_timespec(std::chrono::microseconds(100));
@@ -289,8 +289,8 @@ void SocketBus::interrupt() {
 
 std::string describe_error_frame(std::uint32_t can_id) {
   if ((can_id & CAN_ERR_BUSOFF) != 0) return "bus off: too many errors; is the bit rate right?";
-  if ((can_id & CAN_ERR_ACK) != 0) return "no acknowledgement: is anybody else on the bus?";
-  if ((can_id & CAN_ERR_TRX) != 0) return "transceiver error: is the cable whole?";
+  if ((can_id & CAN_ERR_ACK) != 0) return "no acknowledgement: is any other node on the bus?";
+  if ((can_id & CAN_ERR_TRX) != 0) return "transceiver error: is the cable intact?";
   if ((can_id & CAN_ERR_CRTL) != 0) return "controller error: errors on the bus or too many frames";
   if ((can_id & CAN_ERR_TX_TIMEOUT) != 0) return "sending timed out";
   if ((can_id & CAN_ERR_BUSERROR) != 0) return "bus error: is the bus terminated, and the bit rate right?";

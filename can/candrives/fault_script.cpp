@@ -104,7 +104,7 @@ NodeId take_node(Line& line, const canbus::RobotBus& bus) {
     if (line.take(canbus::kDriveNames[i])) return bus.drives[i].node;
   }
   if (!line.take("node"))
-    line.fail(fmt::format("it begins with none of node NUMBER, {}, inclinometer, gyro, all, bus",
+    line.fail(fmt::format("it must begin with node NUMBER, {}, inclinometer, gyro, all or bus",
                           fmt::join(canbus::kDriveNames, ", ")));
   const std::vector<NodeId> nodes = nodes_of(bus);
   const auto node = static_cast<NodeId>(take_number(line, "a node", canopen::kMaxNode));
@@ -119,7 +119,7 @@ FaultKind take_kind(Line& line) {
   }
   std::vector<std::string_view> words;
   for (const Named& named : kKinds) words.push_back(named.words);
-  line.fail(fmt::format("it names none of {}", fmt::join(words, ", ")));
+  line.fail(fmt::format("it must name one of {}", fmt::join(words, ", ")));
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ std::optional<Options> read_options(int argc, char** argv, int& exit_status) {
   Options options;
   CLI::App app(
       "The drives, inclinometer and gyro of a robot as CANopen slaves (CiA 402, CiA 410) on a CAN interface.\n"
-      "Their motors turn the tracks and flippers of a simulated robot. docs/can-tools.md tells more.",
+      "Their motors turn the tracks and flippers of a simulated robot. See docs/can-tools.md.",
       "kenaf-candrives");
   app.set_version_flag("--version", KENAF_VERSION);
   app.add_option("--interface", options.interface, "CAN interface (default: the one in the robot's description)");
@@ -62,11 +62,11 @@ std::optional<Options> read_options(int argc, char** argv, int& exit_status) {
                              "No physics: motors that follow exactly, tracks that never slip, level ground")
                     ->excludes(world);
   app.add_option("--time-step", options.time_step_s,
-                 "Physics time step in seconds; larger ones need less of a processor")
+                 "Physics time step in seconds; larger ones need less processor time")
       ->capture_default_str()
       ->check(CLI::Range(0.0001, 0.01))
       ->excludes(ideal);
-  app.add_option("--log", options.log, "Write where the robot really was into this CSV file, a line each 10 ms")
+  app.add_option("--log", options.log, "Write the true position of the robot to this CSV file, a line every 10 ms")
       ->excludes(ideal);
   app.add_option("--fault", options.faults, kFaultHelp)->take_all();
   try {

@@ -28,9 +28,9 @@ void PathLog::write(double t_s, const std::function<physics::RobotTruth()>& trut
 }
 
 void PathLog::flush() {
-  if (file_.flush() || failure_told_) return;
-  failure_told_ = true;
-  fmt::print(stderr, "kenaf-candrives: cannot write the path to '{}' any more\n", name_);
+  if (file_.flush() || failure_reported_) return;
+  failure_reported_ = true;
+  fmt::print(stderr, "kenaf-candrives: can no longer write the path to '{}'\n", name_);
 }
 
 }  // namespace kenaf::candrives

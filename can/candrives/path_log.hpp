@@ -29,7 +29,7 @@ class PathLog {
   std::ofstream file_;
   double next_s_ = 0;
   int lines_ = 0;
-  bool failure_told_ = false;
+  bool failure_reported_ = false;
 };
 
 }  // namespace kenaf::candrives

@@ -72,7 +72,7 @@ void Service::run(const OpenBus& open, const std::atomic<bool>& stop) {
       if (!std::exchange(first, false)) warn("the bus is up again");
       serve(*bus, stop);
     } catch (const BusError& error) {
-      if (bus) warn("{}; the nodes live on and wait for it", error.what());
+      if (bus) warn("{}; the nodes keep running and wait for the bus", error.what());
       bus.reset();
       live_without_bus();
     }
@@ -143,7 +143,7 @@ void Service::read_input() {
       if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
       try {
         plan(parse_fault(line, bus_));
-        say("{:.3f} s: told: {}", std::chrono::duration<double>(clock_now() - start_).count(), line);
+        say("{:.3f} s: received: {}", std::chrono::duration<double>(clock_now() - start_).count(), line);
       } catch (const std::invalid_argument& error) {
         warn("{}", error.what());
       }
@@ -170,7 +170,7 @@ void Service::watch_speed(Time before, Time began) {
   if (said_slow_ || ended - now_ < kMuchTooLate || simulated_ == Time::zero()) return;
   said_slow_ = true;
   const double ratio = static_cast<double>(spent_.count()) / static_cast<double>(simulated_.count());
-  warn("this machine is late by {} ms: simulating 1 s has taken {:.2f} s so far{}",
+  warn("the simulation is {} ms behind real time: 1 s has taken {:.2f} s so far{}",
        std::chrono::duration_cast<std::chrono::milliseconds>(ended - now_).count(), ratio,
        ratio > 0.7 ? "; --time-step 0.004, or --ideal, needs less" : "");
 }

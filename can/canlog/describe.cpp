@@ -180,7 +180,7 @@ std::string describe(const Frame& frame, const Network& network) {
     case Service::none:
       break;
   }
-  return fmt::format("identifier {:#05x}, which CANopen gives to nobody: {}", frame.id, bytes_of(frame));
+  return fmt::format("identifier {:#05x}, which CANopen does not assign: {}", frame.id, bytes_of(frame));
 }
 
 std::string describe(const LogFrame& logged, const Network& network) {

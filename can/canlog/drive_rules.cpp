@@ -57,7 +57,7 @@ void DriveRules::on_command(const LogFrame& logged, const DriveCommand& command)
 void DriveRules::check_order(const LogFrame& logged, const DriveCommand& command, const Drive& drive) {
   const DriveOrder order = order_of(command.controlword);
   if (could_be(logged, drive, [&](const Shown& shown) { return has_transition(shown.state(), order); })) return;
-  findings_.add(logged, rule::controlword, "{} is told \"{}\" in the state \"{}\", where that leads nowhere",
+  findings_.add(logged, rule::controlword, "{} is commanded \"{}\" in the state \"{}\", which has no such transition",
                 canbus::kDriveNames[command.drive], describe(order), describe(drive.shown->state()));
 }
 
@@ -76,12 +76,12 @@ void DriveRules::check_target(const LogFrame& logged, const DriveCommand& comman
   const std::string_view name = canbus::kDriveNames[command.drive];
   const bool enabled =
       could_be(logged, drive, [](const Shown& shown) { return shown.state() == PowerState::operation_enabled; });
-  const bool told = order_of(command.controlword) == DriveOrder::enable;
+  const bool enables = order_of(command.controlword) == DriveOrder::enable;
   if (canbus::is_track(command.drive)) {
-    if (command.target == 0 || (enabled && told && !drive.ended)) return;
+    if (command.target == 0 || (enabled && enables && !drive.ended)) return;
     findings_.add(logged, rule::target, "{} gets a speed {}", name,
                   drive.ended ? "after its quick stop"
-                  : !told     ? fmt::format("with \"{}\"", describe(order_of(command.controlword)))
+                  : !enables  ? fmt::format("with \"{}\"", describe(order_of(command.controlword)))
                               : fmt::format("in the state \"{}\"", describe(drive.shown->state())));
     return;
   }
@@ -135,7 +135,8 @@ void DriveRules::check_transition(const LogFrame& logged, const DriveStatus& sta
   const PowerState to = canopen::power_state_of(status.statusword);
   const std::string_view name = canbus::kDriveNames[status.drive];
   if (to == PowerState::undefined) {
-    findings_.add(logged, rule::statusword, "{} shows statusword {:#06x}, which is no state", name, status.statusword);
+    findings_.add(logged, rule::statusword, "{} shows statusword {:#06x}, which is not a state", name,
+                  status.statusword);
     return;
   }
   // if statuswords are missing, intermediate states may be too

@@ -32,7 +32,7 @@ class DriveRules {
     std::optional<DriveCommand> command{};   // the newest
     std::set<DriveOrder> orders{};           // given since it showed its present state, plus the one in force then
     bool followed = false;                   // every order since its start, or since the first one in the log
-    bool ended = false;                      // told to stop; until it is enabled again
+    bool ended = false;                      // commanded to stop; until it is enabled again
   };
   void on_command(const LogFrame& logged, const DriveCommand& command);
   void on_status(const LogFrame& logged, const DriveStatus& status);

@@ -48,11 +48,11 @@ bool FrameRules::check_identifier(const LogFrame& logged, const Address& address
   std::string words;
   const bool is_pdo = address.service == Service::transmit_pdo || address.service == Service::receive_pdo;
   if (address.service == Service::none) {
-    words = "which CANopen gives to nobody";
+    words = "which CANopen does not assign";
   } else if (address.node != 0 && !network_.is_known(address.node)) {
     words = fmt::format("of node {}, which the robot's description does not have", address.node);
   } else if (is_pdo && network_.pdo(id) == nullptr && !setup_.mapped_bytes(id)) {
-    words = fmt::format("{}PDO{} of {}, which nobody has set up", address.service == Service::receive_pdo ? 'R' : 'T',
+    words = fmt::format("{}PDO{} of {}, which was not configured", address.service == Service::receive_pdo ? 'R' : 'T',
                         address.pdo, network_.name(address.node));
   }
   if (words.empty()) return true;

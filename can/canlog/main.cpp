@@ -84,10 +84,10 @@ int run(const Options& options) {
   const canlog::Log log = load_log(options);
   for (const canlog::BadLine& bad : log.bad_lines) fmt::print(stderr, "{}:{}: {}\n", options.log, bad.line, bad.words);
   if (log.other_interfaces > 0) {
-    fmt::print(stderr, "{}: {} lines are not of {} and were left out (--interface chooses another)\n", options.log,
+    fmt::print(stderr, "{}: {} lines are not from {} and were left out (--interface chooses another)\n", options.log,
                log.other_interfaces, log.interface);
   }
-  if (log.frames.empty()) throw std::runtime_error(options.log + ": no frame in it; is it of `candump -L`?");
+  if (log.frames.empty()) throw std::runtime_error(options.log + ": contains no frame; is it a log of `candump -L`?");
   if (!options.check && !options.figures) print_words(log, network);
   if (options.figures) fmt::print("{}", to_text(figures_of(log, network), options.bit_rate));
   const bool broken = options.check && !print_violations(options, log, network);
@@ -99,14 +99,15 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Reads a recorded CAN bus (candump -L): in words, held against CANopen's rules, in figures.",
+  CLI::App app("Decodes a CAN bus log (candump -L), checks it against the rules of CANopen and reports statistics.",
                "kenaf-canlog");
   app.set_version_flag("--version", KENAF_VERSION);
   app.add_option("LOG", options.log, "a log of `candump -L`; - is standard input")->capture_default_str();
-  app.add_option("--robot", options.robot, "the description that says what is on the bus, a name or a TOML file")
+  app.add_option("--robot", options.robot, "the robot description with the devices on the bus, a name or a TOML file")
       ->capture_default_str();
-  app.add_option("--interface", options.interface, "this one's lines alone (default: that of the first line)");
-  app.add_flag("--check", options.check, "names every broken rule; exit status 1 where there is one");
+  app.add_option("--interface", options.interface,
+                 "read only the lines of this interface (default: that of the first line)");
+  app.add_flag("--check", options.check, "lists every violation; exit status 1 if there is one");
   app.add_option("--sync-window", options.sync_window_ms,
                  "--check: ms after SYNC in which nodes must answer (default: object 0x1007 as it was written)")
       ->check(CLI::PositiveNumber);

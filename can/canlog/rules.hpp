@@ -70,7 +70,7 @@ struct CheckOptions {
   // A heartbeat has the lowest priority and may have waited: one that contradicts an order counts only once the order
   // is this old.
   canopen::Time heartbeat_wait = std::chrono::milliseconds(50);
-  double hold_tolerance_rad = 0.01;  // for a flipper told to stay where it is
+  double hold_tolerance_rad = 0.01;  // for a flipper commanded to hold its position
 };
 
 // In the order of the log.

@@ -120,7 +120,7 @@ std::optional<WrittenObject> SdoDialogue::on_answer(const LogFrame& logged, Node
   if (!transfer.request) {
     // a server may abort at any time
     if (specifier != sdo::kAbort && !begins_here)
-      findings_.add(logged, rule::sdo_dialogue, "{} answers what nobody asked", network_.name(node));
+      findings_.add(logged, rule::sdo_dialogue, "{} answers without a request", network_.name(node));
     transfer = {};
     return std::nullopt;
   }

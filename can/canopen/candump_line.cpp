@@ -50,7 +50,9 @@ std::string_view take_word(std::string_view& rest) {
 }
 
 Time parse_time(std::string_view word) {
-  const auto bad = [&] { return BadCandumpLine(fmt::format("\"{}\" is no time such as (1436509052.249713)", word)); };
+  const auto bad = [&] {
+    return BadCandumpLine(fmt::format("\"{}\" is not a time such as (1436509052.249713)", word));
+  };
   if (word.size() < 2 || word.front() != '(' || word.back() != ')') throw bad();
   const std::string_view number = word.substr(1, word.size() - 2);
   const std::size_t point = number.find('.');
@@ -110,11 +112,12 @@ std::optional<std::vector<std::uint8_t>> parse_classic(std::string_view data) {
 void parse_frame(std::string_view word, CandumpLine& line) {
   // IDENTIFIER#DATA; the number of the identifier's digits says whether it has 11 or 29 bits.
   const std::size_t mark = word.find('#');
-  if (mark == std::string_view::npos) throw BadCandumpLine(fmt::format("\"{}\" is no frame such as 1A5#2C01", word));
+  if (mark == std::string_view::npos) throw BadCandumpLine(fmt::format("\"{}\" is not a frame such as 1A5#2C01", word));
   const std::optional<std::uint32_t> id = parse_id(word.substr(0, mark));
   if (!id) {
-    throw BadCandumpLine(fmt::format(
-        "\"{}\" is no identifier: three hexadecimal digits up to 7FF, or eight up to 3FFFFFFF", word.substr(0, mark)));
+    throw BadCandumpLine(
+        fmt::format("\"{}\" is not an identifier: three hexadecimal digits up to 7FF, or eight up to 3FFFFFFF",
+                    word.substr(0, mark)));
   }
 
   // The kind, by data and identifier. Error frames have 29 bits with the error flag, and always bytes.
@@ -128,7 +131,8 @@ void parse_frame(std::string_view word, CandumpLine& line) {
   } else if (!error && is_fd(data)) {
     line.kind = CandumpKind::fd;
   } else if (!bytes) {
-    throw BadCandumpLine(fmt::format("\"{}\" are no data: up to eight bytes of two hexadecimal digits each", data));
+    throw BadCandumpLine(
+        fmt::format("\"{}\" is not frame data: up to eight bytes of two hexadecimal digits each", data));
   } else if (extended) {
     line.kind = CandumpKind::extended;
   } else {
@@ -159,10 +163,9 @@ CandumpLine parse_candump_line(std::string_view text) {
   std::string_view rest = trimmed(text);
   CandumpLine line{.at = parse_time(take_word(rest)), .interface = std::string(take_word(rest)), .kind = {}};
   if (line.interface.empty() || line.interface.size() > kMaxInterface)
-    throw BadCandumpLine(fmt::format("\"{}\" is no name of an interface: 1 to 15 characters", line.interface));
+    throw BadCandumpLine(fmt::format("\"{}\" is not the name of an interface: 1 to 15 characters", line.interface));
   parse_frame(take_word(rest), line);
-  if (!rest.empty() && rest != "T" && rest != "R")
-    throw BadCandumpLine(fmt::format("\"{}\" stands after the frame", rest));
+  if (!rest.empty() && rest != "T" && rest != "R") throw BadCandumpLine(fmt::format("\"{}\" follows the frame", rest));
   return line;
 }
 

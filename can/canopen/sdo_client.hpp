@@ -4,8 +4,8 @@
 // Use: begin_read or begin_write returns the first frame to send; then pass every frame of the bus to on_frame, and the
 // time to on_time, and send what they return, until outcome() has a value. Frames that do not belong to this transfer
 // change nothing: other identifiers and lengths, late answers for another object or to another kind of request, and
-// answers while none is awaited. A late answer for the same object to the same kind of request cannot be told from the
-// new one.
+// answers while none is awaited. A late answer for the same object to the same kind of request cannot be distinguished
+// from the new one.
 #pragma once
 
 #include <optional>

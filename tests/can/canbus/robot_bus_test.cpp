@@ -125,7 +125,7 @@ TEST_CASE("What the drive's 32 bits cannot hold is refused") {
   // 3.14 rad of flipper at 2e7 counts a turn and a gear of 300: 3e9 counts, more than 2^31
   CHECK_THAT(
       error_of(with("counts_per_turn = 4096\ngear_ratio = 300.0", "counts_per_turn = 20000000\ngear_ratio = 300.0")),
-      Catch::Contains("beyond the 32 bits"));
+      Catch::Contains("exceed the 32 bits"));
   CHECK_THAT(error_of(with("velocity_units_per_turn = 4096.0", "velocity_units_per_turn = 1e9")),
              Catch::Contains("do not fit in its 32 bits"));
   CHECK_THAT(error_of(with("velocity_units_per_turn = 4096.0", "velocity_units_per_turn = 1e-9")),

@@ -16,6 +16,6 @@ TEST_CASE("A bus that cannot be had says what to do") {
 TEST_CASE("Every error frame has words, the worst first") {
   CHECK(describe_error_frame(CAN_ERR_FLAG | CAN_ERR_BUSOFF | CAN_ERR_ACK) ==
         "bus off: too many errors; is the bit rate right?");
-  CHECK(describe_error_frame(CAN_ERR_FLAG | CAN_ERR_ACK) == "no acknowledgement: is anybody else on the bus?");
+  CHECK(describe_error_frame(CAN_ERR_FLAG | CAN_ERR_ACK) == "no acknowledgement: is any other node on the bus?");
   CHECK(describe_error_frame(CAN_ERR_FLAG) == "unknown error");
 }

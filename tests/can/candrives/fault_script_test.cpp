@@ -52,12 +52,12 @@ TEST_CASE("Faults are read from words", "[fault script]") {
 TEST_CASE("Words that are no fault are refused with what would be one", "[fault script]") {
   CHECK_THROWS_WITH(read("wheel silent"), Contains("'wheel silent'") && Contains("track left"));
   CHECK_THROWS_WITH(read("node 9 silent"), Contains("1, 2, 3, 4, 5, 6, 7, 8, not 9"));
-  CHECK_THROWS_WITH(read("node 3"), Contains("it names none of silent"));
+  CHECK_THROWS_WITH(read("node 3"), Contains("it must name one of silent"));
   CHECK_THROWS_WITH(read("node 3 fault 70000"), Contains("from 1 to 65535"));
   CHECK_THROWS_WITH(read("node 3 silent at five"), Contains("after 'at' there must be seconds"));
   CHECK_THROWS_WITH(read("node 3 silent 5 after lunch"), Contains("after motion"));
   CHECK_THROWS_WITH(read("node 3 silent at 5 please"), Contains("'please' is not understood"));
-  CHECK_THROWS_WITH(read("node 3 silently"), Contains("it names none of"));
+  CHECK_THROWS_WITH(read("node 3 silently"), Contains("it must name one of"));
 }
 
 TEST_CASE("Faults come at their time, after motion once it has begun, and go", "[fault script]") {

@@ -1,5 +1,5 @@
 // Motion: ramps and profiles on their own, and in the drive's modes. Node 1 is a track, node 3 a flipper; both have
-// 10000 counts for 1 m or 1 rad, and the plant does exactly what it is told, so 0x6064 is what the drive demands.
+// 10000 counts for 1 m or 1 rad, and the plant follows its commands exactly, so 0x6064 is what the drive demands.
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// The simulated robot as the drives' plant: signs and units of what it is told and of what it reports.
+// The simulated robot as the drives' plant: signs and units of its commands and reports.
 #include "can/candrives/robot_plant.hpp"
 
 #include <catch2/catch.hpp>

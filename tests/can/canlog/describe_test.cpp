@@ -67,7 +67,7 @@ TEST_CASE("Process data are put in words, in the robot's units") {
 TEST_CASE("What is not what it should be is said to be so") {
   CHECK(words("181#370600") == "track left, malformed: 3 bytes 37 06 00");
   CHECK(words("401#0102") == "command track left: RPDO3, not one of this robot's: 01 02");
-  CHECK(words("780#00") == "identifier 0x780, which CANopen gives to nobody: 00");
+  CHECK(words("780#00") == "identifier 0x780, which CANopen does not assign: 00");
   CHECK(words("000#01") == "NMT, malformed: 1 bytes 01");
   CHECK(words("12345678#00") == "a frame with an identifier of 29 bits");
   CHECK(words("20000004#000C000000000000") == "an error message of the CAN driver");

@@ -23,7 +23,7 @@ Log log_of(const candrives::SimulatedBus& wire) {
   return log;
 }
 
-// The names of the rules that the robot's log breaks; what broke them is told.
+// The names of the rules that the robot's log breaks; what broke them is reported.
 std::set<std::string> broken_rules(const real::RobotOnBus& robot) {
   // the master waits for answers for 0.6 of its period
   CheckOptions options;

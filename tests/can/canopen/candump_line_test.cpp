@@ -31,7 +31,7 @@ TEST_CASE("A data frame is written as candump writes it") {
   CHECK(candump_line(1500ns, "can0", frame_of(0x80, {})) == "(0000000000.000001) can0 080#");
 }
 
-TEST_CASE("The other kinds of frame are told apart") {
+TEST_CASE("The other kinds of frame are distinguished") {
   CHECK(parse("123#").kind == CandumpKind::data);
   CHECK(parse("12345678#").kind == CandumpKind::extended);
   CHECK(parse("00000123#00").kind == CandumpKind::extended);
@@ -65,13 +65,13 @@ TEST_CASE("What is no line is refused in words that quote it") {
   refuses("(-1.5) vcan0 123#", "no time");
   refuses("(99999999999.5) vcan0 123#", "no time");
   refuses("(9999999999.5) vcan0 123#", "no time");  // 64 bits of nanoseconds end in 2262
-  refuses("(1.5)", "no name of an interface");
+  refuses("(1.5)", "not the name of an interface");
   refuses("(1.5) vcan0", "no frame");
   refuses("(1.5) vcan0 123", "no frame");
-  refuses("(1.5) vcan0 12#00", "\"12\" is no identifier");
-  refuses("(1.5) vcan0 800#00", "\"800\" is no identifier");
-  refuses("(1.5) vcan0 45678901#00", "no identifier");
-  refuses("(1.5) vcan0 123#1", "\"1\" are no data");
+  refuses("(1.5) vcan0 12#00", "\"12\" is not an identifier");
+  refuses("(1.5) vcan0 800#00", "\"800\" is not an identifier");
+  refuses("(1.5) vcan0 45678901#00", "not an identifier");
+  refuses("(1.5) vcan0 123#1", "\"1\" is not frame data");
   refuses("(1.5) vcan0 123#11.", "no data");
   refuses("(1.5) vcan0 123#112233445566778899", "no data");
   refuses("(1.5) vcan0 123#R9", "no data");
@@ -79,5 +79,5 @@ TEST_CASE("What is no line is refused in words that quote it") {
   refuses("(1.5) vcan0 123##1" + std::string(130, '0'), "no data");
   refuses("(1.5) vcan0 123#11_E", "no data");
   refuses("(1.5) vcan0 20000004#R", "no data");
-  refuses("(1.5) vcan0 123#11 X", "stands after the frame");
+  refuses("(1.5) vcan0 123#11 X", "follows the frame");
 }

@@ -66,7 +66,7 @@ expect "a fault: emergency message; without torque there is no reaction to wait 
 said "track left (node 1): fault"
 ask "fault reset" 201#8000 081#0000000000000000 181#5002
 echo "track sideways silent" >&3
-said "fault 'track sideways silent': it begins with none of node NUMBER"
+said "fault 'track sideways silent': it must begin with node NUMBER"
 
 ip link set vcan0 down
 said "went down"

@@ -60,5 +60,5 @@ stop
 
 # The heartbeat of a master, node 127.
 play 77F#05
-expect 7 vcan0 HRT_E_REFUSED "another program has the robot: the heartbeat of node 127"
+expect 7 vcan0 HRT_E_REFUSED "another program controls the robot: the heartbeat of node 127"
 stop

@@ -2,13 +2,13 @@
 # On the bus: how long the robot's tracks still run after each way of losing control, what the program says, and whether it
 # comes back: stop_times_test.sh BIN_DIR
 #
-# kenaf-candrives writes where the robot really was each 10 ms, and at what time it was told of a fault, both by its own clock.
-# In the moment before the event it is told something harmless, so that its clock says when the event was. The drives run on
+# kenaf-candrives writes the true position of the robot each 10 ms, and the time at which it received a fault, both by its own clock.
+# In the moment before the event it receives a harmless line, so that its clock says when the event was. The drives run on
 # from one event to the next: each time another program takes them over.
 #
 # Each event: the tracks stand within 0.2 s; then, by name: 1. the program is killed; 2. stopped (SIGSTOP); 3. its own thread hangs;
 # 4. the interface goes down and up; 5. the bus is off; 6. a drive falls silent; 7. a drive is in fault; 8. a drive restarts.
-# 9. The inclinometer falls silent: the robot drives on, and the program is told. (3 is counted from up to 0.06 s after the last call.)
+# 9. The inclinometer falls silent: the robot drives on, and the program is notified. (3 is counted from up to 0.06 s after the last call.)
 set -uo pipefail
 . "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/waiting.sh"
 bin=$1
@@ -49,7 +49,7 @@ stands() {
   printf '%-46s tracks at rest after %s s\n' "$1" "$time_s"
   awk -v t="$time_s" 'BEGIN { exit !(t <= 0.2) }' || fail "$claim: $time_s s are more than 0.2 s"
 }
-mark='told: all healed'
+mark='received: all healed'
 
 claim="the drives start"
 mkfifo input; touch drives.log program.log
@@ -64,7 +64,7 @@ candump -L vcan0 >resumed & watching=$!
 pause 0.5; kill -CONT "$program"; said program.log "lost: this program was held up for"
 pause 0.5; kill "$watching"; wait "$watching" 2>/dev/null
 grep -E ' 20[1-6]#[0-9A-F]F' resumed && fail "2: it has enabled drives that had stopped by themselves"
-grep -qE ' 20[1-6]#0200' resumed || fail "2: it has not told the drives to stop"
+grep -qE ' 20[1-6]#0200' resumed || fail "2: it has not commanded the drives to stop"
 end 2>/dev/null
 begin 3 120; said program.log hanging; tell all healed; stands "program's own thread hangs" "$mark"; end 2>/dev/null
 
@@ -76,7 +76,7 @@ begin 5; tell all healed; printf '(0.000000) vcan0 20000040#0000000000000000\n' 
 said program.log "bus off"; said program.log recovered; end
 
 drive_fault() {  # CLAIM WORDS FAULT PROGRAM_WORDS
-  begin "$1"; tell "$3"; said program.log "$4"; stands "$2" "told: $3"
+  begin "$1"; tell "$3"; said program.log "$4"; stands "$2" "received: $3"
   tell all healed; said program.log recovered; end
 }
 drive_fault 6 "track right silent" "node 2 silent" "lost: track right (node 2) is silent"
