@@ -26,7 +26,7 @@ std::shared_ptr<const CameraPicture> wait_for_picture(Robot& robot, CameraStream
   if (found || timeout_s == 0) return found;
   const PictureClock::time_point until =
       now + std::chrono::duration_cast<PictureClock::duration>(std::chrono::duration<double>(timeout_s));
-  robot.wait_beside([&] {
+  robot.wait_while_cycling([&] {
     const PictureClock::time_point slice = std::min(until, PictureClock::now() + kWaitSlice);
     found = stream.wait(had, slice);
     return found || slice == until;
@@ -71,10 +71,11 @@ void get_picture(Robot& robot, Cameras& cameras, const std::string& camera, int 
   if (bytes > data.size()) {
     picture.number = had;
     describe();
-    throw Error(HRT_E_ARGUMENT,
-                fmt::format("hrt_get_picture: this picture of {} x {} pixels needs {} bytes, capacity is "
-                            "{}; picture->bytes says so too",
-                            size.width, size.height, bytes, data.size()));
+    throw Error(
+        HRT_E_ARGUMENT,
+        fmt::format(
+            "hrt_get_picture: the picture of {} x {} pixels needs {} bytes (see picture->bytes), but capacity is {}",
+            size.width, size.height, bytes, data.size()));
   }
   if (format == HRT_PICTURE_JPEG) {
     std::ranges::copy(file, data.begin());

@@ -70,7 +70,7 @@ int guarded(Body&& body) noexcept {
   } catch (const std::exception& error) {
     remember(error.what());
   } catch (...) {
-    remember("unknown failure inside of the library");
+    remember("unknown failure inside the library");
   }
   return HRT_E_INTERNAL;
 }
@@ -83,7 +83,7 @@ Opened open_all() {
   Holder& h = holder();
   const std::lock_guard lock(h.mutex);
   if (!h.robot)
-    throw Error(HRT_E_NOT_INITIALISED, "no robot is open: call hrt_kenaf_init() first and look at what it returns");
+    throw Error(HRT_E_NOT_INITIALISED, "no robot is open: call hrt_kenaf_init() first and check its return value");
   return {h.robot, h.cameras};
 }
 std::shared_ptr<Robot> open_robot() {
@@ -132,7 +132,7 @@ void open_with(const hrt_config& config) {
     if (h.under_way != nullptr) {
       throw Error(HRT_E_BUSY, fmt::format("the robot is being {} by another thread", h.under_way));
     }
-    if (h.robot && !h.robot->is_lost()) throw Error(HRT_E_BUSY, "the robot is open already");
+    if (h.robot && !h.robot->is_lost()) throw Error(HRT_E_BUSY, "the robot is already open");
     lost = std::move(h.robot);
     lost_cameras = std::move(h.cameras);
     h.under_way = "opened";
@@ -378,7 +378,7 @@ int hrt_get_picture(const char* camera, int format, void* data, size_t capacity,
             "picture.size is wrong: begin with `hrt_picture picture = hrt_picture_init();`");
     const std::string name(camera == nullptr ? "" : camera);
     require(name.size() <= kMaxCameraName,
-            fmt::format("hrt_get_picture: a camera's name has at most {} bytes", kMaxCameraName));
+            fmt::format("hrt_get_picture: the camera's name is longer than {} bytes", kMaxCameraName));
     require(format == HRT_PICTURE_RGB || format == HRT_PICTURE_JPEG,
             fmt::format("hrt_get_picture: there is no format {}", format));
     require(data != nullptr || capacity == 0, "hrt_get_picture: data is a null pointer");

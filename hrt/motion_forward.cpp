@@ -35,7 +35,7 @@ MotionStep GoForward::step(const Estimate& now) {
   const double error_m = distance_m_ - (now.travel_m - start_travel_m_);
   const double remaining_m = std::abs(error_m);
   if (now.t_s - start_t_s_ > time_limit_s_) {
-    return fail(HRT_E_TIMEOUT, now, fmt::format("the time limit of {:.1f} s is up", time_limit_s_));
+    return fail(HRT_E_TIMEOUT, now, fmt::format("the time limit of {:.1f} s was exceeded", time_limit_s_));
   }
 
   // The tracks stop within half of the tolerance; the other half is for coasting.
@@ -52,7 +52,7 @@ MotionStep GoForward::step(const Estimate& now) {
       return fail(HRT_E_STUCK, now,
                   fmt::format("the track encoders show no progress for {:.1f} s", limits_.stuck_time_s));
     case ProgressWatch::Finding::overcurrent:
-      return fail(HRT_E_STUCK, now, fmt::format("a track takes {:.1f} A, more than stuck_current_a", now.max_track_a));
+      return fail(HRT_E_STUCK, now, fmt::format("a track draws {:.1f} A, more than stuck_current_a", now.max_track_a));
     case ProgressWatch::Finding::fine:
       break;
   }

@@ -32,7 +32,7 @@ MotionStep TurnInPlace::step(const Estimate& now) {
   const double error_rad = goal_rad_ - now.heading_rad;
   const double remaining_rad = std::abs(error_rad);
   if (now.t_s - start_t_s_ > time_limit_s_) {
-    return fail(HRT_E_TIMEOUT, now, fmt::format("the time limit of {:.1f} s is up", time_limit_s_));
+    return fail(HRT_E_TIMEOUT, now, fmt::format("the time limit of {:.1f} s was exceeded", time_limit_s_));
   }
 
   // Within the band the tracks stand: entered at half of the tolerance, left at all of it, so that noise does not
@@ -51,7 +51,7 @@ MotionStep TurnInPlace::step(const Estimate& now) {
     case ProgressWatch::Finding::no_progress:
       return fail(HRT_E_STUCK, now, fmt::format("the heading shows no progress for {:.1f} s", limits_.stuck_time_s));
     case ProgressWatch::Finding::overcurrent:
-      return fail(HRT_E_STUCK, now, fmt::format("a track takes {:.1f} A, more than stuck_current_a", now.max_track_a));
+      return fail(HRT_E_STUCK, now, fmt::format("a track draws {:.1f} A, more than stuck_current_a", now.max_track_a));
     case ProgressWatch::Finding::fine:
       break;
   }

@@ -17,7 +17,7 @@ using Encoding = CameraPicture::Encoding;
 
 Turbo start_turbo(tjhandle (*init)()) {
   Turbo turbo(init(), tjDestroy);
-  if (!turbo) throw Error(HRT_E_INTERNAL, fmt::format("TurboJPEG does not start: {}", tjGetErrorStr2(nullptr)));
+  if (!turbo) throw Error(HRT_E_INTERNAL, fmt::format("TurboJPEG cannot be initialized: {}", tjGetErrorStr2(nullptr)));
   return turbo;
 }
 
@@ -53,8 +53,9 @@ PictureSize picture_size(const CameraPicture& picture) {
       damaged(picture, tjGetErrorStr2(turbo.get()));
   }
   if (size.width < 1 || size.height < 1 || size.width > kMaxSide || size.height > kMaxSide)
-    throw Error(HRT_E_DEVICE, fmt::format("picture {} of the camera claims {} x {} pixels; at most {} x {} are taken",
-                                          picture.number, size.width, size.height, kMaxSide, kMaxSide));
+    throw Error(HRT_E_DEVICE,
+                fmt::format("picture {} of the camera claims {} x {} pixels; at most {} x {} are accepted",
+                            picture.number, size.width, size.height, kMaxSide, kMaxSide));
   return size;
 }
 

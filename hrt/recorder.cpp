@@ -45,7 +45,7 @@ std::unique_ptr<runs::RunWriter> open_writer(const std::string& path) {
   try {
     return std::make_unique<runs::RunWriter>(path, record_columns());
   } catch (const std::exception& error) {
-    throw Error(HRT_E_RECORD, fmt::format("the recording cannot be begun: {}", error.what()));
+    throw Error(HRT_E_RECORD, fmt::format("the recording cannot be started: {}", error.what()));
   }
 }
 
@@ -173,10 +173,11 @@ void Recorder::finish() {
     }
     writer_.reset();
   }
-  if (!failure_.empty()) throw Error(HRT_E_RECORD, fmt::format("the recording is not whole: {}", failure_));
+  if (!failure_.empty()) throw Error(HRT_E_RECORD, fmt::format("the recording is incomplete: {}", failure_));
   if (lost_ > 0) {
-    throw Error(HRT_E_RECORD,
-                fmt::format("{0}: {1} rows are missing: the disk was too slow; {0}.part has the others", path_, lost_));
+    throw Error(
+        HRT_E_RECORD,
+        fmt::format("{0}: {1} rows are missing, because the disk was too slow; {0}.part has the others", path_, lost_));
   }
 }
 

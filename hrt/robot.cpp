@@ -122,9 +122,9 @@ bool Robot::motion_active() const {
   return std::ranges::any_of(calls_, [](const Call* call) { return call->kind == Kind::motion; });
 }
 
-void Robot::wait_beside(const std::function<bool()>& wait_a_little) {
+void Robot::wait_while_cycling(const std::function<bool()>& wait_a_little) {
   // Counts as a call under way, so the command does not time out; only closing or losing the robot gives it a verdict.
-  Call call{.kind = Kind::beside, .step = [] { return std::optional<Verdict>(); }};
+  Call call{.kind = Kind::wait, .step = [] { return std::optional<Verdict>(); }};
   std::unique_lock lock = lock_open();
   // Robot time continues: no answer is held for this thread.
   calls_.push_back(&call);
@@ -155,7 +155,7 @@ void Robot::wait_beside(const std::function<bool()>& wait_a_little) {
 }
 
 void Robot::begin_motion() {
-  if (motion_active()) throw Error(HRT_E_BUSY, "a motion is under way in another thread; hrt_stop() ends it");
+  if (motion_active()) throw Error(HRT_E_BUSY, "a motion is running in another thread; hrt_stop() ends it");
   if (!estimate_.has_encoders) throw Error(HRT_E_DEVICE, "this robot reports no track encoders");
   set_user_tracks({});
   motion_track_mps_ = {};
@@ -290,7 +290,7 @@ void Robot::record_start(const std::string& path) {
   const std::lock_guard one(record_mutex_);
   {
     const std::unique_lock lock = lock_open();
-    if (recorder_) throw Error(HRT_E_BUSY, "a recording is under way; hrt_record_stop() ends it");
+    if (recorder_) throw Error(HRT_E_BUSY, "a recording is running; hrt_record_stop() ends it");
   }
   // the file is created while cycles continue: a disk may take seconds
   auto recorder = std::make_unique<Recorder>(path, connection_.lockstep);
@@ -309,7 +309,7 @@ void Robot::record_stop() {
     last_call_t_s_ = estimate_.t_s;
     note_setting();
   }
-  if (!recorder) throw Error(HRT_E_RECORD, "no recording is under way");
+  if (!recorder) throw Error(HRT_E_RECORD, "no recording is running");
   recorder->finish();
 }
 
@@ -355,7 +355,7 @@ void Robot::run(robot::State state) {
       transport_->send(*command);
     }
     // after close() its failure stands; otherwise threads waiting for a cycle would wait for ever
-    fail(HRT_E_INTERNAL, "the wait for the robot's states was ended by something other than hrt_close()");
+    fail(HRT_E_INTERNAL, "the wait for the robot's state ended without hrt_close()");
   } catch (const Error& error) {
     fail(error.code(), error.what());
   } catch (const std::exception& error) {

@@ -57,7 +57,7 @@ class Robot {
   void wait_cycle();
   // For waits that no cycle ends: calls `wait_a_little`, which takes at most some tens of milliseconds, until it
   // returns true. Robot time continues meanwhile, and the program counts as calling.
-  void wait_beside(const std::function<bool()>& wait_a_little);
+  void wait_while_cycling(const std::function<bool()>& wait_a_little);
 
   void set_tracks(double left_mps, double right_mps);
   void set_flippers(std::uint8_t mask, const std::array<double, robot::kFlipperCount>& angle_rad);
@@ -85,7 +85,7 @@ class Robot {
     int code;
     std::string text;
   };
-  enum class Kind { motion, flippers, time, beside };
+  enum class Kind { motion, flippers, time, wait };
   // A blocking call; it lives on the stack of the waiting thread.
   struct Call {
     Kind kind;

@@ -39,7 +39,7 @@ class CanTransport final : public hrt::Transport {
  private:
   struct Session;                         // an open robot
   std::optional<robot::State> measure();  // as wait_state, with beats and late orders counted since SYNC began
-  void let_go();                          // the robot is lost, and is told to stop
+  void let_go();                          // the robot is lost, and is commanded to stop
 
   OpenBus open_bus_;
   std::unique_ptr<Session> session_;

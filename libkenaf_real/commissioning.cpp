@@ -51,11 +51,9 @@ void refuse_other_master(Master& master, const RobotBus& bus) {
   const Time until = master.now() + to_time(bus.master_silence_s);
   while (const auto received = master.receive(until)) {
     if (!is_sync(received->frame)) continue;
-    throw Error(
-        HRT_E_REFUSED,
-        fmt::format("another program has the robot: a SYNC is on {} already; end that program first, or where it is "
-                    "dead, a child that it forked and left behind",
-                    bus.interface));
+    throw Error(HRT_E_REFUSED, fmt::format("another program controls the robot: there is already a SYNC on {}; end "
+                                           "that program first, or, if it is dead, a child process that it left behind",
+                                           bus.interface));
   }
 }
 

@@ -33,14 +33,14 @@ DriveOrders DriveTargets::step(const hrt::DriveCommand& command, const ProcessIm
   for (std::size_t t = 0; t < robot::kTrackCount; ++t) orders[t] = track(t, command.track_speed_mps[t], period_s);
   for (std::size_t f = 0; f < robot::kFlipperCount; ++f) {
     const std::size_t drive = robot::kTrackCount + f;
-    const bool told = (command.flipper_mask >> f & 1) != 0;
+    const bool commanded = (command.flipper_mask >> f & 1) != 0;
     const DriveOnBus& on_bus = bus_.drives[drive];
     // a drive that was never commanded stays where it is, even outside its limits
-    if (told)
+    if (commanded)
       hold_rad_[f] =
           robot::reachable_angle(command.flipper_rad[f], position_from_drive(on_bus.units, image.drive(drive).position),
                                  on_bus.min_position, on_bus.max_position);
-    orders[drive] = flipper(drive, told, image.drive(drive), period_s);
+    orders[drive] = flipper(drive, commanded, image.drive(drive), period_s);
   }
   return orders;
 }
@@ -56,7 +56,7 @@ DriveOrder DriveTargets::track(std::size_t i, double speed_mps, double period_s)
   return {canopen::kControlEnable, velocity_to_drive(drive.units, track_mps_[i])};
 }
 
-DriveOrder DriveTargets::flipper(std::size_t i, bool told, const DriveInput& input, double period_s) {
+DriveOrder DriveTargets::flipper(std::size_t i, bool commanded, const DriveInput& input, double period_s) {
   const DriveOnBus& drive = bus_.drives[i];
   const std::size_t f = i - robot::kTrackCount;
   if (drive.mode == DriveMode::cyclic_position) {
@@ -65,7 +65,7 @@ DriveOrder DriveTargets::flipper(std::size_t i, bool told, const DriveInput& inp
   }
   const std::int32_t target = position_to_drive(drive.units, hold_rad_[f]);
   // a drive in profile position mode holds the position at which it was enabled
-  if (!told) return {canopen::kControlEnable, target};
+  if (!commanded) return {canopen::kControlEnable, target};
   const std::uint16_t handshake = handshakes_[f].step(target, input.statusword);
   return {static_cast<std::uint16_t>(canopen::kControlEnable | handshake), target};
 }

@@ -29,7 +29,7 @@ class DriveTargets {
 
  private:
   DriveOrder track(std::size_t drive, double speed_mps, double period_s);
-  DriveOrder flipper(std::size_t drive, bool told, const DriveInput& input, double period_s);
+  DriveOrder flipper(std::size_t drive, bool commanded, const DriveInput& input, double period_s);
 
   const canbus::RobotBus& bus_;
   std::array<double, robot::kTrackCount> track_mps_{};

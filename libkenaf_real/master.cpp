@@ -101,7 +101,7 @@ void Master::refuse_own_heartbeat(const ReceivedFrame& received) const {
   if (!heartbeat || heartbeat->node != own_node_) return;
   throw OtherMaster(
       HRT_E_LINK,
-      fmt::format("another program has the robot: the heartbeat of node {} is on the bus, and is not this one's; "
+      fmt::format("another program controls the robot: the heartbeat of node {} is on the bus, and is not this one's; "
                   "end one of the two, or is there a device with this number?",
                   own_node_));
 }

@@ -26,8 +26,8 @@ std::string to_string(const NamedNode& node);
 // Called with every frame that arrives, also during other waits.
 using FrameWatch = std::function<void(const canopen::ReceivedFrame&)>;
 
-// The bus works and the drives obey, but this program is not their only master: they must be told to stop, and nothing
-// else.
+// The bus works and the drives obey, but this program is not their only master: they must be commanded to stop, and
+// nothing else.
 class ControlLost : public hrt::Error {
  public:
   using hrt::Error::Error;

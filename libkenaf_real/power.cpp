@@ -154,9 +154,8 @@ void check_home(const BusCycle& cycle, std::size_t i) {
   if (!stays && std::abs(measured_rad - mirrored_rad) > margin_rad) return;
   throw Error(
       HRT_E_DEVICE,
-      fmt::format("{}: after homing it says that it is at {:.3f} rad, not at {:.3f} rad (home_rad); does its maker "
-                  "take the home offset (object 0x607C) with the other sign? offset_direction = {} in "
-                  "[can.flipper.homing]",
+      fmt::format("{}: reports {:.3f} rad after homing, not {:.3f} rad (home_rad); if its home offset (object 0x607C) "
+                  "has the opposite sign, set offset_direction = {} in [can.flipper.homing]",
                   to_string(drive_node(cycle.bus(), i)), measured_rad, home_rad, -drive.homing->offset_direction));
 }
 
@@ -206,7 +205,7 @@ void home(BusCycle& cycle) {
   }
 }
 
-bool stands(const BusCycle& cycle, std::size_t track) {
+bool is_at_rest(const BusCycle& cycle, std::size_t track) {
   const canbus::DriveOnBus& drive = cycle.bus().drives[track];
   return std::abs(velocity_from_drive(drive.units, cycle.image().drive(track).velocity)) < kStanding * drive.max_speed;
 }
@@ -220,8 +219,8 @@ std::string not_stopped(const BusCycle& cycle, std::size_t i,
   return fmt::format("{} stays in the state \"{}\"", name, describe(state));
 }
 
-// A drive that rejects this stands all the same; its reaction to the end of the heartbeat is then as configured at the
-// start.
+// A drive that rejects this is at rest all the same; its reaction to the end of the heartbeat is then as configured at
+// the start.
 void end_watch(BusCycle& cycle, std::size_t i) try {
   const canopen::MappedObject& watch = object::consumer_heartbeat_1;
   cycle.master().write(drive_node(cycle.bus(), i),
@@ -257,9 +256,10 @@ void lose(BusCycle& cycle, std::size_t drive) {
   Master& master = cycle.master();
   master.wait_until(master.now() + kEmergencyFollows, [&] { return !cycle.emergency_of(drive).empty(); });
   const std::string emergency = cycle.emergency_of(drive);
-  throw Error(HRT_E_DEVICE,
-              fmt::format("{}{}{}; all drives were told to stop; hrt_close() and hrt_kenaf_init() start them again",
-                          loss, emergency.empty() ? "" : ": ", emergency));
+  throw Error(
+      HRT_E_DEVICE,
+      fmt::format("{}{}{}; all drives were commanded to stop; hrt_close() and hrt_kenaf_init() start them again", loss,
+                  emergency.empty() ? "" : ": ", emergency));
 }
 
 std::string power_down(BusCycle& cycle) {
@@ -268,7 +268,7 @@ std::string power_down(BusCycle& cycle) {
   const auto has_stopped = [&](std::size_t i) {
     const DriveInput& drive = cycle.image().drive(i);
     const bool left = is_new(drive.state_at) && state_of(cycle, i) != PowerState::operation_enabled;
-    return left && (!canbus::is_track(i) || (is_new(drive.effort_at) && stands(cycle, i)));
+    return left && (!canbus::is_track(i) || (is_new(drive.effort_at) && is_at_rest(cycle, i)));
   };
   std::string running;
   do {

@@ -12,7 +12,7 @@ namespace kenaf::real {
 
 // Enables all drives, each with the target to stay where it is (tracks: speed 0), and homes flippers that require it,
 // which moves them. Resets earlier faults. Throws hrt::Error(HRT_E_DEVICE) naming drive, state and error; on any
-// exception all drives are told to stop.
+// exception all drives are commanded to stop.
 void power_up(BusCycle& cycle);
 
 // Quick stop of all drives, in one cycle. Does not wait.

@@ -110,7 +110,7 @@ void V4l2Camera::open() {
   device_ = ::open(camera_.device.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (device_ < 0) {
     if (errno == ENOENT) fail("does not exist: is the camera plugged in, and its driver loaded?");
-    if (errno == EACCES) fail("is not for this user: it should be in the group video");
+    if (errno == EACCES) fail("is not accessible: add this user to the group video");
     fail(fmt::format("cannot be opened: {}", std::strerror(errno)));
   }
   check_that_it_is_a_camera();
@@ -124,7 +124,7 @@ void V4l2Camera::check_that_it_is_a_camera() const {
   if (!control(VIDIOC_QUERYCAP, &has, "", ENOTTY)) fail("is no video device");
   const std::uint32_t can = (has.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? has.device_caps : has.capabilities;
   if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0)
-    fail("is a video device, but takes no pictures: a webcam's second device has its metadata");
+    fail("is a video device, but takes no pictures: the second device of a webcam has its metadata");
 }
 
 void V4l2Camera::set_format() {

@@ -105,7 +105,7 @@ void ImageClient::open() {
   }
   throw hrt::Error(
       HRT_E_LINK,
-      fmt::format("nobody serves camera pictures at {}: {}; start kenaf-world or kenaf-relayd --embedded, or set "
+      fmt::format("no server of camera pictures at {}: {}; start kenaf-world or kenaf-relayd --embedded, or set "
                   "camera_server in kenaf.toml or KENAF_CAMERA_SERVER",
                   server_, why));
 }

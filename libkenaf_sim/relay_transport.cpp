@@ -131,7 +131,7 @@ hrt::Connection RelayTransport::greet(const protocol::relay::Hello& hello) {
   if (!refused) {
     throw Error(HRT_E_LINK,
                 fmt::format("no relay at {}{}; start kenaf-relayd, or set relay in kenaf.toml or KENAF_RELAY", relay_,
-                            port_closed_ ? ": nobody listens there" : " answered"));
+                            port_closed_ ? ": nothing listens there" : " answered"));
   }
   const bool no_world = refused->reason == protocol::relay::RefusedReason::no_world_server;
   throw Error(HRT_E_REFUSED, fmt::format("the relay at {} refused: {}{}", relay_, words(*refused),
@@ -191,7 +191,7 @@ std::optional<robot::State> RelayTransport::take(const protocol::relay::Datagram
 
 void RelayTransport::check_life(Clock::time_point now) {
   if (port_closed_) {
-    throw Error(HRT_E_LINK, fmt::format("the relay at {} is gone: nobody listens there any more", relay_));
+    throw Error(HRT_E_LINK, fmt::format("the relay at {} is gone: nothing listens there any more", relay_));
   }
   // Time during which this process slept (busy or suspended machine, debugger) is not silence of the link.
   const Clock::duration slept = std::max<Clock::duration>(now - looked_at_ - kLongestLook, Clock::duration::zero());
@@ -201,10 +201,11 @@ void RelayTransport::check_life(Clock::time_point now) {
   const auto silent_s = [&](Clock::time_point since) { return std::chrono::duration<double>(now - since).count(); };
   if (frame_ == 0) {
     if (silent_s(state_at_) <= connect_timeout_s_) return;
-    throw Error(HRT_E_LINK,
-                fmt::format("the relay at {} gave the robot, but its first state has not come within {:.2f} s; is the "
-                            "world server stopped?",
-                            relay_, silent_s(state_at_)));
+    throw Error(
+        HRT_E_LINK,
+        fmt::format(
+            "the relay at {} accepted the session, but sent no state within {:.2f} s; is the world server stopped?",
+            relay_, silent_s(state_at_)));
   }
   if (silent_s(life_at_) > link_timeout_s_) {
     throw Error(HRT_E_LINK, fmt::format("no state from the relay at {} for {:.2f} s; is the network, the relay or the "
@@ -212,9 +213,10 @@ void RelayTransport::check_life(Clock::time_point now) {
                                         relay_, silent_s(life_at_)));
   }
   if (silent_s(state_at_) > kFrozenLinkTimeouts * link_timeout_s_) {
-    throw Error(HRT_E_LINK, fmt::format("the world server behind the relay at {} answers, but its time has stood still "
-                                        "for {:.1f} s",
-                                        relay_, silent_s(state_at_)));
+    throw Error(
+        HRT_E_LINK,
+        fmt::format("the world server behind the relay at {} answers, but its time has not advanced for {:.1f} s",
+                    relay_, silent_s(state_at_)));
   }
 }
 

@@ -50,8 +50,8 @@ void await_motion() {
   } while ((state.activity & HRT_MOTION_ACTIVE) == 0);
 }
 
-// Waits, without calling the library, until the tracks are told to stand; the last frame whose answer told them
-// otherwise.
+// Waits, without calling the library, until the tracks are commanded to stop; returns the last frame whose answer
+// commanded motion.
 std::size_t last_moving_frame(FakeRobot& robot) {
   std::size_t frame = 0;
   for (bool stopped = false; !stopped; std::this_thread::sleep_for(1ms)) {
@@ -213,7 +213,7 @@ TEST_CASE("A second init is busy, a closed robot can be opened again") {
   {
     const Open open;
     CHECK(hrt_kenaf_init() == HRT_E_BUSY);
-    CHECK_THAT(hrt_last_error(), Catch::Contains("open already"));
+    CHECK_THAT(hrt_last_error(), Catch::Contains("already open"));
   }
   use_fake_robot();
   const Open again;
@@ -292,7 +292,7 @@ TEST_CASE("Another thread stops a motion, and a second motion is busy") {
   driver.join();
   CHECK(result == HRT_E_STOPPED);
   CHECK(words == "hrt_stop() ended this call");
-  CHECK_THAT(hrt_last_error(), Catch::Contains("motion is under way"));  // each thread has its own
+  CHECK_THAT(hrt_last_error(), Catch::Contains("motion is running"));  // each thread has its own
   hrt_state state = hrt_state_init();
   REQUIRE(hrt_wait_cycle(&state) == HRT_OK);
   CHECK(state.commanded_track_mmps[0] == 0);
@@ -471,7 +471,7 @@ TEST_CASE("A program that waits for a processor is waited for") {
   for (int cpu = 0; CPU_COUNT(&one) == 0; ++cpu) {
     if (CPU_ISSET(cpu, &all)) CPU_SET(cpu, &one);
   }
-  for (bool told = false; !told;) {
+  for (bool is_valid = false; !is_valid;) {
     use_fake_robot();
     const Open open;
     std::atomic<bool> is_there = false, begins = false, done = false;
@@ -488,8 +488,8 @@ TEST_CASE("A program that waits for a processor is waited for") {
     double start_s = 0, end_s = 1;
     std::thread program([&] {  // a thread of its own, as it stays as nice as it is
       while (!is_there) std::this_thread::sleep_for(1ms);
-      told = hrt_wait_cycle(nullptr) != HRT_OK;
-      if (told) return;
+      is_valid = hrt_wait_cycle(nullptr) != HRT_OK;
+      if (is_valid) return;
       const auto start = std::chrono::steady_clock::now();
       start_s = hrt_time();
       setpriority(PRIO_PROCESS, 0, 19);
@@ -498,12 +498,12 @@ TEST_CASE("A program that waits for a processor is waited for") {
       while (!done) {
       }
       end_s = hrt_time();
-      told = std::chrono::steady_clock::now() < start + 800ms;
+      is_valid = std::chrono::steady_clock::now() < start + 800ms;
     });
     program.join();
     begins = true;
     neighbour.join();
-    if (told) CHECK(end_s == start_s);
+    if (is_valid) CHECK(end_s == start_s);
   }
 }
 
@@ -563,7 +563,7 @@ TEST_CASE("Tracks that were stopped by silence are said to be, until they are co
 
 TEST_CASE("A sleep of no time counts as a call") {
   // Where this thread was kept from calling for half of the timeout, which is a hundred cycles, it tells nothing.
-  for (bool told = false; !told;) {
+  for (bool is_valid = false; !is_valid;) {
     const auto robot = use_fake_robot();
     robot->lockstep = false;
     hrt_config config = hrt_config_default();
@@ -581,9 +581,9 @@ TEST_CASE("A sleep of no time counts as a call") {
       const std::size_t before = std::exchange(now, cycles());
       longest = std::max(longest, now - before);
     }
-    told = longest < 50;
+    is_valid = longest < 50;
     const std::lock_guard lock(robot->mutex);
-    if (told) CHECK(robot->commands[now - 1].track_speed_mps[0] != 0);
+    if (is_valid) CHECK(robot->commands[now - 1].track_speed_mps[0] != 0);
   }
 }
 

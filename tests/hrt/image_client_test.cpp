@@ -216,8 +216,12 @@ TEST_CASE("Whatever else a server does wrong ends in words") {
     });
     check_failure(server.address(), HRT_E_LINK, words, 0.3);
   };
-  misbehave([](Client& c) { c.send({"\x03\x04\x00\x00\x01", 5}); }, "67108865 bytes, which is more than a picture has");
-  misbehave([](Client& c) { c.send("HTTP/1.1 400 Bad Request\r\n"); }, "type 72, which is no picture's");
+  misbehave(
+      [](Client& c) {
+        c.send({"\x03\x04\x00\x00\x01", 5});
+      },
+      "67108865 bytes, which is more than a picture can have");
+  misbehave([](Client& c) { c.send("HTTP/1.1 400 Bad Request\r\n"); }, "type 72, which is not a picture");
   misbehave([&](Client& c) { c.answer(3, Bytes8(jpeg.begin(), jpeg.end() - 9)); }, "no whole JPEG");
   misbehave([&](Client& c) { c.answer(3, {}); }, "no whole JPEG");
   misbehave([](Client& c) { c.answer(0, {0, 9, 0, 9, 1, 2}); }, "raw picture of 6 bytes");
@@ -255,7 +259,7 @@ TEST_CASE("A server that is not there, and an address that is none, are named") 
     const FakeImageServer server([](Client&) {});
     gone = server.address();
   }
-  check_failure(gone, HRT_E_LINK, "nobody serves camera pictures at " + gone);
+  check_failure(gone, HRT_E_LINK, "no server of camera pictures at " + gone);
   check_failure("localhost", HRT_E_CONFIG, "camera_server must be HOST:PORT");
   check_failure("[]:5003", HRT_E_CONFIG, "camera_server must be HOST:PORT");
 }

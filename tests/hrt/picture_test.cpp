@@ -299,7 +299,7 @@ TEST_CASE("A buffer that is too small is told the size, and the picture is not l
   open.scene->show(four_pixels());
   hrt_picture picture = hrt_picture_init();
   CHECK(hrt_get_picture(nullptr, HRT_PICTURE_RGB, nullptr, 0, 20, &picture) == HRT_E_ARGUMENT);
-  CHECK_THAT(hrt_last_error(), Catch::Contains("needs 12 bytes, capacity is 0"));
+  CHECK_THAT(hrt_last_error(), Catch::Contains("needs 12 bytes (see picture->bytes), but capacity is 0"));
   CHECK(picture.bytes == 12);
   CHECK(picture.width == 2);
   CHECK(picture.number == 0);

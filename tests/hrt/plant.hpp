@@ -45,8 +45,8 @@ class Plant {
     std::array<double, 2> ground_mps{};
     for (std::size_t i = 0; i < 2; ++i) {
       const double command_mps = command.track_speed_mps[i];
-      const bool stands = settings.tracks_blocked || std::abs(command_mps) < settings.dead_band_mps;
-      const double wanted = stands ? 0 : std::clamp(command_mps, -settings.max_track_mps, settings.max_track_mps);
+      const bool is_at_rest = settings.tracks_blocked || std::abs(command_mps) < settings.dead_band_mps;
+      const double wanted = is_at_rest ? 0 : std::clamp(command_mps, -settings.max_track_mps, settings.max_track_mps);
       track_mps[i] += (wanted - track_mps[i]) * -std::expm1(-dt / settings.drive_lag_s);
       track_m[i] += track_mps[i] * dt;
       ground_mps[i] = track_mps[i] * settings.ground_per_belt[i];

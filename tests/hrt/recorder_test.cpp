@@ -31,7 +31,8 @@ using hrt::Recorder;
 
 namespace {
 
-// Where a recording to `file` is written aside: nothing more than a pipe holds, 64 KiB, goes there before resume().
+// Where a recording to `file` is written to its temporary file: nothing more than a pipe holds, 64 KiB, goes there
+// before resume().
 class StalledDisk {
  public:
   // `makes_file`: at once; otherwise who opens it to write waits for resume(), too.
@@ -121,7 +122,7 @@ TEST_CASE("A disk that stalls for longer loses rows, still without a wait, and t
   CHECK(run.row_count() >= Recorder::kQueueRows);
   CHECK(run.row_count() < Recorder::kQueueRows + 2048);
   CHECK_THAT(said, Catch::Contains(std::to_string(kRows - run.row_count()) + " rows are missing"));
-  // one with holes is no recording: it stays aside, and what was recorded before stays too
+  // one with holes is no recording: it stays a temporary file, and what was recorded before stays too
   CHECK(std::filesystem::exists(recording_in(folder) + ".part"));
   std::string text;
   std::getline(std::ifstream(recording_in(folder)), text);

@@ -1,4 +1,4 @@
-// What the drives are told: limits, ramps, the handshake; and that nothing moves that was not told to.
+// The commands of the drives: limits, ramps, the handshake; and that nothing moves without a command.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -76,7 +76,7 @@ TEST_CASE(
   CHECK(orders[0].target == std::lround(0.5 * bus.drives[0].units.velocity_per_unit));
   CHECK(orders[2].target == position_to_drive(bus.drives[2].units, 6 - 2 * std::numbers::pi));
   CHECK((orders[2].controlword & canopen::kControlNewSetPoint) != 0);
-  CHECK((orders[3].controlword & canopen::kControlNewSetPoint) == 0);  // was never told anything: no set-point
+  CHECK((orders[3].controlword & canopen::kControlNewSetPoint) == 0);  // was never commanded: no set-point
 }
 
 TEST_CASE("A flipper that stands outside of its limits stays there until it is told, and then goes as its ramp does") {

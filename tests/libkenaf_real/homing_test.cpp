@@ -50,7 +50,7 @@ TEST_CASE("A drive that fails while flippers are homed stops the others at once,
     CHECK_THAT(error.what(), Catch::Contains("flipper rear left (node 5)") && Catch::Contains("0x2310"));
   }
   REQUIRE(failed);
-  // seen with the next SYNC, told after it, taken at the one after that
+  // seen with the next SYNC, commanded after it, executed at the one after that
   robot.wire.run_until(*failed + milliseconds(30));
   CHECK(robot.wire.now() <= *failed + milliseconds(40));
   for (const std::size_t i : {0u, 1u, 2u, 3u, 5u}) CHECK(robot.power(i) == PowerState::quick_stop_active);
@@ -88,8 +88,9 @@ TEST_CASE("A drive that takes the home offset the other way round is named, and 
       FAIL("it opened");
     } catch (const hrt::Error& error) {
       CHECK(error.code() == HRT_E_DEVICE);
-      CHECK_THAT(error.what(), Catch::Contains("flipper front left (node 3)") && Catch::Contains("at -0.700 rad") &&
-                                   Catch::Contains("not at 0.700 rad") && Catch::Contains("offset_direction"));
+      CHECK_THAT(error.what(), Catch::Contains("flipper front left (node 3)") &&
+                                   Catch::Contains("reports -0.700 rad") && Catch::Contains("not 0.700 rad") &&
+                                   Catch::Contains("offset_direction"));
     }
   }
   RobotOnBus robot(minus.path());

@@ -17,7 +17,7 @@ class DeadBus final : public canopen::Bus {
   void send(const canopen::Frame& frame) override {
     if (now() < dead_until_) {
       wire_.hold_up_until(now() + std::chrono::milliseconds(20));
-      throw canopen::BusFull("CAN interface 'can0' takes no more frames: nobody acknowledges them");
+      throw canopen::BusFull("CAN interface 'can0' accepts no more frames: no node acknowledges them");
     }
     wire_.send(frame);
   }
@@ -54,7 +54,7 @@ TEST_CASE("A robot that is not switched on is named, and what the bus says, afte
   } catch (const hrt::Error& error) {
     CHECK(error.code() == HRT_E_DEVICE);
     CHECK_THAT(error.what(), Catch::Contains("nobody started within 3 s as: track left (node 1)") &&
-                                 Catch::Contains("gyro (node 8)") && Catch::Contains("nobody acknowledges them"));
+                                 Catch::Contains("gyro (node 8)") && Catch::Contains("no node acknowledges them"));
   }
   CHECK(robot.seconds() == Approx(0.1 + 3).margin(0.05));  // after listening for another master
 }

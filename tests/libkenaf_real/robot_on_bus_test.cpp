@@ -145,7 +145,7 @@ TEST_CASE("A bus that has a master already is refused") {
     FAIL("there are two masters");
   } catch (const hrt::Error& error) {
     CHECK(error.code() == HRT_E_REFUSED);
-    CHECK_THAT(error.what(), Catch::Contains("another program has the robot"));
+    CHECK_THAT(error.what(), Catch::Contains("another program controls the robot"));
   }
 }
 
