@@ -64,7 +64,7 @@ std::optional<std::vector<Endpoint>> AddressLookup::find(const HostPort& server,
   ::poll(watched.data(), watched.size(), poll_timeout(deadline));
   if (watched[0].revents != 0) return std::exchange(under_way_, nullptr)->answer.get_future().get();
   if (watched[1].revents != 0) return std::nullopt;
-  throw std::runtime_error("its name is not looked up yet: no name server answers");
+  throw std::runtime_error("its name is not resolved yet: no name server answers");
 }
 
 }  // namespace kenaf::relayd

@@ -142,7 +142,7 @@ void CommanderSession::take(const protocol::relay::Command& command, const Addre
   }
   if (command.frame > state_.robot.frame) {
     if (const auto held_back = log_future_.allow(now)) {
-      spdlog::warn("command {} of {} answers frame {}, which is yet to come: ignored ({} more before)",
+      spdlog::warn("command {} of {} answers frame {}, which was not sent yet: ignored ({} more before)",
                    command.sequence, to_text(from), command.frame, *held_back);
     }
     return;

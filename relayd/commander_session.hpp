@@ -79,7 +79,7 @@ class CommanderSession {
     none,
     opening,  // the world server is being asked
     active,
-    lost,  // the world server is gone; the commander is being told
+    lost,  // the world server is gone; the commander is being notified
   };
 
   bool is_open() const { return phase_ == Phase::opening || phase_ == Phase::active; }

@@ -42,11 +42,11 @@ class StopOnSignals {
 
 // Written to a temporary file and renamed, so that a waiting reader never sees half of it.
 void write_port_file(const std::string& path, std::uint16_t port) {
-  const std::string aside = path + ".new";
-  if (!(std::ofstream(aside) << port << '\n' << std::flush)) {
-    throw std::runtime_error("cannot write the port file " + aside);
+  const std::string temporary = path + ".new";
+  if (!(std::ofstream(temporary) << port << '\n' << std::flush)) {
+    throw std::runtime_error("cannot write the port file " + temporary);
   }
-  std::filesystem::rename(aside, path);
+  std::filesystem::rename(temporary, path);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ std::string words_of(Parse parse, const std::string& text) {
 // A name becomes part of a message whose words are separated by blanks, within braces.
 std::string check_name(const std::string& text) {
   const bool plain = !text.empty() && text.find_first_of("{} \t\r\n") == std::string::npos;
-  return plain ? "" : "'" + text + "' is empty or holds blanks or braces";
+  return plain ? "" : "'" + text + "' is empty or contains blanks or braces";
 }
 
 }  // namespace
@@ -40,10 +40,10 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
   auto* server_option = app.add_option("--world-server", world_server, "the world server, HOST:PORT")
                             ->check([](const std::string& text) { return words_of(parse_host_port, text); })
                             ->capture_default_str();
-  app.add_option("--listen", listen, "where programs find the relay, ADDR:PORT; port 0 takes a free one")
+  app.add_option("--listen", listen, "address to listen on, ADDR:PORT; port 0: any free one")
       ->check([](const std::string& text) { return words_of(parse_address, text); })
       ->capture_default_str();
-  app.add_option("--port-file", options.port_file, "writes the port it listens on into this file");
+  app.add_option("--port-file", options.port_file, "write the port into this file");
   app.add_option("--class", placement.class_name, "the robot's USARSim class")
       ->check(check_name)
       ->capture_default_str();
@@ -51,7 +51,7 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
   auto* start_option =
       app.add_option("--start", placement.start, "the start pose of the world to use (default: the server chooses)");
   start_option->check(check_name);
-  app.add_option("--pose", pose, "where to start instead: x,y,z,roll,pitch,yaw; metres and radians, z up")
+  app.add_option("--pose", pose, "start pose instead: x,y,z,roll,pitch,yaw in metres and radians, z up")
       ->delimiter(',')
       ->expected(6)
       ->excludes(start_option);
@@ -64,17 +64,17 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
       app.add_flag("--embedded", is_embedded, "runs the world server inside this process")->excludes(server_option);
   app.add_option("--world", embedded.world, "world of --embedded")->needs(embedded_flag)->capture_default_str();
   app.add_option("--robot", embedded.robot, "robot of --embedded")->needs(embedded_flag)->capture_default_str();
-  app.add_option("--speed", embedded.speed, "speed of --embedded in times real time, 0 = as fast as it goes")
+  app.add_option("--speed", embedded.speed, "speed of --embedded, in multiples of real time; 0: as fast as possible")
       ->needs(embedded_flag)
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str();
 
   std::string view_token, view = "127.0.0.1:8080";
-  app.add_option("--view", view, "where a browser finds the live view of --embedded, ADDRESS:PORT; off: nowhere")
+  app.add_option("--view", view, "address of the live view of --embedded, ADDRESS:PORT, or off")
       ->needs(embedded_flag)
       ->check([](const std::string& text) { return words_of(live::parse_view_options, text); })
       ->capture_default_str();
-  app.add_option("--view-token", view_token, "what a browser must know; where it is not on loopback one is made")
+  app.add_option("--view-token", view_token, "token that a browser must give; off loopback the default is a random one")
       ->needs(embedded_flag)
       ->check([](const std::string& text) { return words_of(live::parse_view_token, text); });
 
@@ -89,11 +89,11 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
         ->capture_default_str();
   };
   camera_option("--cameras", cameras, image_server::set_cameras,
-                "off: no pictures from the robots' cameras of --embedded, neither by TCP nor in the live view");
+                "off: no camera pictures from --embedded, neither by TCP nor in the live view");
   camera_option("--camera-port", camera_port, image_server::set_camera_port,
                 "TCP port of the image server of --embedded, on loopback; 0: any free one; off: none");
   camera_option("--camera-image", camera_image, image_server::set_camera_image,
-                "what it sends: raw, or a JPEG: superb, good, normal, fair, bad");
+                "format of the pictures: raw, or JPEG of quality superb, good, normal, fair or bad");
 
   try {
     app.parse(argc, argv);

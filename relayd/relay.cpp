@@ -39,7 +39,7 @@ Relay::Relay(const RelayOptions& options)
       link_(options.world_server, options.placement, events_) {
   out_.reserve(4096);
   if (!is_loopback(address_)) {
-    spdlog::warn("listening on {}: whoever reaches this address can drive the robot", to_text(address_));
+    spdlog::warn("listening on {}: any program that reaches this address can drive the robot", to_text(address_));
   }
 }
 
@@ -119,7 +119,7 @@ void Relay::take_datagram(std::size_t bytes, const Address& from) {
   arrival_.from = from;
   if (!arrivals_.put(arrival_)) {
     if (const auto held_back = log_overflow_.allow()) {
-      spdlog::warn("datagrams arrive faster than they can be handled: one dropped ({} more before)", *held_back);
+      spdlog::warn("datagrams arrive faster than the relay can handle them: one dropped ({} more before)", *held_back);
     }
   }
 }
@@ -186,9 +186,9 @@ void Relay::watch_world(TimePoint now) {
   if (!world_) return;
   const auto silence = now - world_heard_;
   if (silence > (world_->extended ? kWorldIsLost : kPlainWorldIsLost)) {
-    leave_world("it gives no answer", now);
+    leave_world("it does not answer", now);
   } else if (out_.size() > kMostPending) {
-    leave_world("it takes no more data", now);
+    leave_world("it accepts no more data", now);
   } else if (world_->extended && silence >= kPingWorldEvery && now - world_pinged_ >= kPingWorldEvery) {
     world_pinged_ = now;
     write_ping(out_, kOwnPing);
@@ -198,7 +198,7 @@ void Relay::watch_world(TimePoint now) {
 void Relay::leave_world(std::string_view why, TimePoint now) {
   const std::string words =
       fmt::format("lost the world server at {}:{}: {}", options_.world_server.host, options_.world_server.port, why);
-  spdlog::warn("{}; connecting anew", words);
+  spdlog::warn("{}; reconnecting", words);
   request_link({});
   session_.on_world_lost(words, now);
 }

@@ -30,7 +30,7 @@ void send_whole(int fd, const std::string& text) {
   if (text.empty()) return;
   const ssize_t sent = ::send(fd, text.data(), text.size(), MSG_NOSIGNAL);
   if (sent != static_cast<ssize_t>(text.size())) {
-    throw std::runtime_error(sent < 0 ? std::strerror(errno) : "it takes no more data");
+    throw std::runtime_error(sent < 0 ? std::strerror(errno) : "it accepts no more data");
   }
 }
 
@@ -168,7 +168,7 @@ void WorldLink::finish_handshake(Connection& connection) {
   connection.handed_over = was_up_ = true;
   const auto radius = connection.transform.wheel_radius_m();
   if (!radius) {
-    spdlog::warn("the world server told no wheel radius (GEO): taking USARSim's own default of {} m",
+    spdlog::warn("the world server reported no wheel radius (GEO): using USARSim's default of {} m",
                  SensorTransform::kDefaultWheelRadius_m);
   }
   const bool extended = result == WorldHandshake::Result::extended;

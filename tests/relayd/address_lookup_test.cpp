@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-// A name server that says nothing before it is told to.
+// A name server that does not answer before it is released.
 struct SilentServer {
   std::promise<std::vector<Endpoint>> says;
   std::shared_future<std::vector<Endpoint>> said = says.get_future().share();

@@ -352,10 +352,10 @@ TEST_CASE("The relay ends cleanly: the commander is told and the robot stands") 
   CHECK(world.speed_mps() > 0);
   relay.stop();
   CHECK(eventually([&] { return world.speed_mps() == 0; }));
-  bool told = false;
+  bool is_refused = false;
   while (const auto datagram = commander.receive(200))
-    told |= std::holds_alternative<protocol::relay::Refused>(*datagram);
-  CHECK(told);
+    is_refused |= std::holds_alternative<protocol::relay::Refused>(*datagram);
+  CHECK(is_refused);
 }
 
 TEST_CASE("The relay ends cleanly before it ever found a world server") {
