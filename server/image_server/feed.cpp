@@ -274,7 +274,7 @@ FramePtr Feed::Implementation::draw_one(const Exposure& exposure, std::size_t ro
 }
 
 void Feed::Implementation::stand_still(CameraId id, const std::string& why) {
-  spdlog::error("camera {} of robot {} stands still: {}", id.camera, static_cast<std::uint32_t>(id.robot), why);
+  spdlog::error("camera {} of robot {} stopped: {}", id.camera, static_cast<std::uint32_t>(id.robot), why);
   drawn.at(id).faulty = true;
   {
     const std::lock_guard lock(mutex);
@@ -315,7 +315,7 @@ void Feed::Implementation::publish_due() {
     }
   }
 
-  // Listeners are told without the mutex: they call look().
+  // Listeners are notified without the mutex: they call look().
   std::erase_if(waiting, [&](const Waiting& entry) { return entry.until <= now; });
   if (published) tell();
   if (waiting.empty()) return;
@@ -337,7 +337,7 @@ void Feed::Implementation::fall_asleep() {
 
 void Feed::Implementation::tell() {
   const std::lock_guard lock(listeners_mutex);
-  for (const auto& [number, told] : listeners) told();
+  for (const auto& [number, notify] : listeners) notify();
 }
 
 // Called with the mutex held: forgets the oldest view that shows no camera. Returns false if all show one.
@@ -387,7 +387,7 @@ Feed::Look Feed::look(std::string_view view) {
     auto found = impl_->views.find(view);
     if (found == impl_->views.end()) {
       if (impl_->views.size() >= kMostViews && !impl_->make_room())
-        return {nullptr, "too many cameras are asked for at the same time"};
+        return {nullptr, "too many cameras are requested at the same time"};
       found = impl_->views.emplace(view, Implementation::View{}).first;
       is_new = true;
     }
@@ -417,10 +417,10 @@ std::vector<std::shared_ptr<const Frame>> Feed::newest() const {
   return out;
 }
 
-std::shared_ptr<void> Feed::listen(std::function<void()> told) {
+std::shared_ptr<void> Feed::listen(std::function<void()> notify) {
   const std::lock_guard lock(impl_->listeners_mutex);
   const std::uint64_t number = ++impl_->last_listener;
-  impl_->listeners.emplace(number, std::move(told));
+  impl_->listeners.emplace(number, std::move(notify));
   return {nullptr, [feed = impl_.get(), number](void*) {
             const std::lock_guard handle_lock(feed->listeners_mutex);
             feed->listeners.erase(number);

@@ -47,9 +47,9 @@ class Feed {
   // Returns the newest frame of each camera being drawn. Does not count as a request.
   std::vector<std::shared_ptr<const Frame>> newest() const;
 
-  // `told` is called on the feed's thread whenever look() may have something new, and never after the returned handle
+  // `notify` is called on the feed's thread whenever look() may have something new, and never after the returned handle
   // is released. It must only hand over: neither wait nor release a handle.
-  std::shared_ptr<void> listen(std::function<void()> told);
+  std::shared_ptr<void> listen(std::function<void()> notify);
 
  private:
   struct Implementation;

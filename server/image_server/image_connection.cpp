@@ -134,7 +134,7 @@ void ImageConnection::answer(const FramePtr& frame) {
   // A part: raw pixels, cut out for this client alone.
   if (request_->kind == ImageRequest::Kind::part) {
     auto part = raw_picture(frame->picture, request_->x, request_->y, request_->width, request_->height);
-    if (part.empty()) return send_words("that part lies outside of the picture");
+    if (part.empty()) return send_words("that part lies outside the picture");
     made_ = std::make_shared<const std::vector<std::uint8_t>>(std::move(part));
     out_ = {asio::const_buffer(), asio::const_buffer(), asio::buffer(*made_)};
     return send(static_cast<std::uint8_t>(ImageType::raw), made_->size());

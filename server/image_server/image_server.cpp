@@ -28,12 +28,12 @@ namespace {
 tcp::acceptor listen_for_readers(asio::io_context& io, const std::string& address, std::uint16_t port) {
   error_code error;
   const auto ip = asio::ip::make_address(address == "localhost" ? "127.0.0.1" : address, error);
-  if (error) throw std::runtime_error(fmt::format("\"{}\" is no address to listen on", address));
+  if (error) throw std::runtime_error(fmt::format("\"{}\" is not an address to listen on", address));
   try {
     return tcp::acceptor(io, tcp::endpoint(ip, port));
   } catch (const boost::system::system_error& failure) {
-    throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; choose another by --camera-port", address, port,
-                                         failure.code().message()));
+    throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; choose another port with --camera-port", address,
+                                         port, failure.code().message()));
   }
 }
 

@@ -48,7 +48,7 @@ std::optional<CameraId> find_view(const std::vector<camera::RobotSnapshot>& robo
 }
 
 std::string no_such_view(const std::vector<camera::RobotSnapshot>& robots, std::string_view view) {
-  if (robots.empty()) return "there is no robot in the world, and so no camera";
+  if (robots.empty()) return "there is no robot in the world, hence no camera";
   std::string instead;
   std::size_t named = 0, cameras = 0;
   for (const camera::RobotSnapshot& robot : robots) {

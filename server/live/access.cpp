@@ -35,7 +35,7 @@ bool is_address(std::string_view text, bool v6) {
 std::string make_token() {
   std::array<unsigned char, 16> bytes;
   if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
-    throw std::runtime_error("the system gives no random numbers for a token; choose one by --view-token");
+    throw std::runtime_error("the system provides no random numbers for a token; give one with --view-token");
   }
   std::string token;
   for (const unsigned char byte : bytes) token += fmt::format("{:02x}", byte);

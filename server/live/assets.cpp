@@ -42,7 +42,7 @@ fs::path three_file(const fs::path& page, const char* installed, const char* bui
 fs::path find_page() {
   for (const fs::path& root : description::data_roots())
     if (fs::is_regular_file(root / "page" / "index.html")) return root / "page";
-  throw std::runtime_error("the page is not installed: no page/index.html below share/kenaf");
+  throw std::runtime_error("the page is not installed: there is no page/index.html below share/kenaf");
 }
 
 }  // namespace

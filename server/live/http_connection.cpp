@@ -75,13 +75,12 @@ void HttpConnection::handle() {
   keep_ = request.keep_alive();
   const std::string_view host(request[http::field::host].data(), request[http::field::host].size());
   if (!host_allowed(host, site_.own_name)) {
-    return refuse(http::status::forbidden,
-                  "This server is asked by its address or its own name, not by another name.\n");
+    return refuse(http::status::forbidden, "This server answers only requests to its address or its own name.\n");
   }
   if (request.method() != http::verb::get) return refuse(http::status::method_not_allowed, "Only GET is served.\n");
   const std::string_view origin(request[http::field::origin].data(), request[http::field::origin].size());
   if (!origin_allowed(origin, host)) {
-    return refuse(http::status::forbidden, "Pages of other servers are not answered.\n");
+    return refuse(http::status::forbidden, "Requests from pages of other servers are refused.\n");
   }
   const std::string_view target(request.target().data(), request.target().size());
   const std::size_t mark = std::min(target.find('?'), target.size());
@@ -93,7 +92,7 @@ void HttpConnection::answer_path(std::string_view path, std::string_view query) 
   const auto route = site_.routes.find(path.substr(0, end));
   if (route != site_.routes.end()) {
     if (!token_fits(query)) {
-      return refuse(http::status::unauthorized, "This needs the token that the server printed when it started.\n");
+      return refuse(http::status::unauthorized, "This request needs the token that the server printed at its start.\n");
     }
     auto answer = route->second({parser_->get(), path.substr(end), query});
     if (const auto* take_over = std::get_if<TakeOver>(&answer)) {

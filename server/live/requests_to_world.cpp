@@ -9,7 +9,7 @@ namespace kenaf::live {
 
 namespace {
 
-std::string told(std::string_view request, std::string_view reason) {
+std::string reply(std::string_view request, std::string_view reason) {
   return reason.empty() ? std::string() : refused_message(request, reason);
 }
 
@@ -22,9 +22,9 @@ struct CarryOut {
     return {};
   }
   std::string operator()(const StepRequest& request) const {
-    if (simulation.robot_count() == 0) return told("step", "there is no robot, so time stands still");
+    if (simulation.robot_count() == 0) return reply("step", "there is no robot, so time does not advance");
     if (!simulation.begin_steps(0, simulation.steps_for(request.time_s)))
-      return told("step", "as many steps as are taken are waiting already");
+      return reply("step", "too many steps are already waiting");
     return {};
   }
   std::string operator()(const SpeedRequest& request) const {
@@ -32,29 +32,29 @@ struct CarryOut {
     return {};
   }
   std::string operator()(const ResetRequest&) const {
-    spdlog::info("the world is put back to its start from the live view");
+    spdlog::info("the live view resets the world");
     simulation.reset();
     return {};
   }
   std::string operator()(const PlaceRequest&) const {
     std::uint32_t robot = 0;
     const std::string_view reason = world_server::place_robot_by_hand(simulation, who, robot);
-    return reason.empty() ? placed_message(robot) : told("place", reason);
+    return reason.empty() ? placed_message(robot) : reply("place", reason);
   }
   std::string operator()(const TakeRequest& request) const {
-    return told("take", world_server::take_robot(simulation, request.robot, who));
+    return reply("take", world_server::take_robot(simulation, request.robot, who));
   }
   std::string operator()(const LetGoRequest& request) const {
-    return told("let-go", world_server::let_go(simulation, request.robot, who));
+    return reply("let-go", world_server::let_go(simulation, request.robot, who));
   }
   std::string operator()(const RemoveRequest& request) const {
-    return told("remove", world_server::remove_placed_robot(simulation, request.robot, who));
+    return reply("remove", world_server::remove_placed_robot(simulation, request.robot, who));
   }
   std::string operator()(const DriveRequest& request) const {
-    return told("drive", world_server::drive_by_hand(simulation, request.robot, who, request.command));
+    return reply("drive", world_server::drive_by_hand(simulation, request.robot, who, request.command));
   }
   std::string operator()(const LookRequest& request) const {
-    return told("look", world_server::look_by_hand(simulation, request.robot, who, request.camera, request.order));
+    return reply("look", world_server::look_by_hand(simulation, request.robot, who, request.camera, request.order));
   }
   std::string operator()(const PingRequest&) const { return {}; }
 };

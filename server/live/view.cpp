@@ -38,10 +38,10 @@ Route viewer_route(Hub& hub) {
   return [&hub](const Visit& visit) -> std::variant<Reply, TakeOver> {
     if (!visit.rest.empty()) return reply_in_words(http::status::not_found, "There is no such file.\n");
     if (!boost::beast::websocket::is_upgrade(visit.request)) {
-      return reply_in_words(http::status::upgrade_required, "This is for WebSockets.\n");
+      return reply_in_words(http::status::upgrade_required, "This address serves WebSockets only.\n");
     }
     if (hub.viewers.size() >= hub.limits.viewers) {
-      return reply_in_words(http::status::service_unavailable, "Too many look on already.\n");
+      return reply_in_words(http::status::service_unavailable, "Too many viewers are already connected.\n");
     }
     return TakeOver([&hub](boost::beast::tcp_stream stream, PageRequest upgrade) {
       start_viewer(hub, std::move(stream), std::move(upgrade));
@@ -55,7 +55,7 @@ Route picture_route(Hub& hub) {
     if (!picture) return reply_in_words(http::status::not_found, "There is no such file.\n");
     if (hub.cameras == nullptr) return reply_in_words(http::status::not_found, "The cameras are off.\n");
     if (hub.picture_readers.size() >= hub.limits.pictures) {
-      return reply_in_words(http::status::service_unavailable, "Too many look through cameras already.\n");
+      return reply_in_words(http::status::service_unavailable, "Too many camera viewers are already connected.\n");
     }
     return TakeOver([&hub, picture = std::move(*picture)](boost::beast::tcp_stream stream, const PageRequest&) {
       start_pictures(hub, std::move(stream), picture);
@@ -82,7 +82,7 @@ struct View::Implementation {
       if (!looking) look();
     };
     if (cameras == nullptr) return;
-    told_of_frames = cameras->listen([this] {
+    frame_listener = cameras->listen([this] {
       asio::post(hub.site.io, [this] {
         for (std::size_t i = hub.picture_readers.size(); i-- > 0;) hub.picture_readers[i]->look();
       });
@@ -97,11 +97,11 @@ struct View::Implementation {
   asio::steady_timer next_look{hub.site.io};
   // Passed to the world's thread and back: owned by one of the two at a time.
   world_server::WorldState state;
-  world_server::WorldState told;  // the state whose inventory the viewers have
-  bool looking = false;           // a request for the state is under way or planned
+  world_server::WorldState shown;  // the state whose inventory the viewers have
+  bool looking = false;            // a request for the state is under way or planned
   std::uint64_t states = 0;
   SpeedMeter speed;
-  std::shared_ptr<void> told_of_frames;
+  std::shared_ptr<void> frame_listener;
   WebServer server;  // last: its thread ends before the members it uses
 };
 
@@ -119,8 +119,8 @@ void View::Implementation::look() {
 }
 
 void View::Implementation::show() {
-  if (!hub.inventory || !same_inventory(state, told)) {
-    told = state;
+  if (!hub.inventory || !same_inventory(state, shown)) {
+    shown = state;
     hub.inventory = std::make_shared<const std::string>(inventory_message(state));
     for (std::size_t i = hub.viewers.size(); i-- > 0;) hub.viewers[i]->tell(hub.inventory);
   }

@@ -35,7 +35,7 @@ ViewOptions parse_view_options(std::string_view text) {
 std::string parse_view_token(std::string_view text) {
   constexpr std::string_view kUnreserved = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~";
   if (text.find_first_not_of(kUnreserved) != std::string_view::npos) {
-    throw std::runtime_error("a token is of letters, digits and - . _ ~ alone, as it stands in an address");
+    throw std::runtime_error("a token consists of letters, digits and - . _ ~ only, because it is part of an address");
   }
   return std::string(text);
 }

@@ -27,7 +27,7 @@ tcp::acceptor listen_for_browsers(asio::io_context& io, const ViewOptions& optio
   try {
     return tcp::acceptor(io, tcp::endpoint(asio::ip::make_address(options.address), options.port));
   } catch (const boost::system::system_error& failure) {
-    throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; choose another by --view ADDRESS:PORT",
+    throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; choose another address with --view ADDRESS:PORT",
                                          options.address, options.port, failure.code().message()));
   }
 }

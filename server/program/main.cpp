@@ -16,13 +16,13 @@ namespace {
 
 // Written to a temporary file and renamed, so that a reader finds the whole number.
 void write_port_file(const std::filesystem::path& path, std::uint16_t port) {
-  std::filesystem::path aside = path;
-  aside += ".new";
-  std::ofstream file(aside);
+  std::filesystem::path temporary = path;
+  temporary += ".new";
+  std::ofstream file(temporary);
   file << port << '\n';
   file.close();
   std::error_code error;
-  if (file) std::filesystem::rename(aside, path, error);
+  if (file) std::filesystem::rename(temporary, path, error);
   if (!file || error) throw std::runtime_error("cannot write the port file " + path.string());
 }
 
@@ -37,30 +37,30 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", KENAF_VERSION);
   app.add_option("--world", options.world, "World: a shipped name or an SDF file")->capture_default_str();
   app.add_option("--robot", options.robot,
-                 "What USARBot.Kenaf is: a shipped name or a TOML file. Other classes, such as USARBot.P2AT, keep "
-                 "their shipped descriptions")
+                 "Robot of the class USARBot.Kenaf: a shipped name or a TOML file. Other classes, such as "
+                 "USARBot.P2AT, keep their shipped descriptions")
       ->capture_default_str();
   app.add_option("--port", options.port, "TCP port; 0: any free one, which is printed")->capture_default_str();
   app.add_option("--listen", options.listen_address, "Address to listen on")->capture_default_str();
-  app.add_option("--speed", options.speed, "Times real time; 0: as fast as it goes")
+  app.add_option("--speed", options.speed, "Speed in multiples of real time; 0: as fast as possible")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--dialect", dialect, "How messages are written; reading understands both")
+  app.add_option("--dialect", dialect, "Dialect of the messages sent; both are understood")
       ->capture_default_str()
       ->check(CLI::IsMember({"ut2004", "udk"}));
   app.add_option("--seed", options.seed, "Seed of the sensors' noise")->capture_default_str();
   app.add_option("--time-step", options.time_step_s, "Physics time step in seconds")->capture_default_str();
   app.add_option("--port-file", port_file, "Write the port into this file once the server listens");
-  app.add_option("--view", view, "Where a browser finds the live view, ADDRESS:PORT; off: nowhere")
-      ->capture_default_str();
-  app.add_option("--view-token", token, "What a browser must know; where it is not on loopback one is made");
-  app.add_option("--cameras", cameras, "off: no pictures from the robots' cameras, neither by TCP nor in the live view")
+  app.add_option("--view", view, "Address of the live view, ADDRESS:PORT, or off")->capture_default_str();
+  app.add_option("--view-token", token, "Token that a browser must give; off loopback the default is a random one");
+  app.add_option("--cameras", cameras, "off: no camera pictures, neither by TCP nor in the live view")
       ->capture_default_str();
   app.add_option("--camera-port", camera_port, "TCP port of USARSim's image server; 0: any free one; off: none")
       ->capture_default_str();
-  app.add_option("--camera-image", camera_image, "What it sends: raw, or a JPEG: superb, good, normal, fair, bad")
+  app.add_option("--camera-image", camera_image,
+                 "Format of the pictures: raw, or JPEG of quality superb, good, normal, fair or bad")
       ->capture_default_str();
-  app.add_option("--log-level", log_level, "What is logged")
+  app.add_option("--log-level", log_level, "Log level")
       ->capture_default_str()
       ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
       ->transform(CLI::Transformer({{"warning", "warn"}}).description(""));  // the word used in the log

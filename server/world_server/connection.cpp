@@ -38,7 +38,7 @@ void Connection::read() {
     try {
       self->simulation_.receive(self->session_, {self->received_.data(), count}, steady_seconds());
     } catch (const std::exception& failure) {  // one client's input must not end the world of the others
-      spdlog::error("{}: closed, what it sent cannot be obeyed: {}", self->session_.peer, failure.what());
+      spdlog::error("{}: closed: it sent data that cannot be handled: {}", self->session_.peer, failure.what());
       return self->close();
     }
     self->flush();
@@ -56,7 +56,7 @@ void Connection::flush() {
     if (error && error != asio::error::would_block) return close();
   }
   if (session_.out.size() > kMostUnread_bytes) {
-    if (!session_.close) spdlog::warn("{}: closed: it does not read what it is sent", session_.peer);
+    if (!session_.close) spdlog::warn("{}: closed: it does not read its messages", session_.peer);
     return close();
   }
   if (!session_.out.empty() && !waiting_) wait_until_writable();

@@ -68,8 +68,8 @@ std::string_view take_robot(Simulation& simulation, std::uint32_t id, OperatorId
 std::string_view place_robot_by_hand(Simulation& simulation, OperatorId who, std::uint32_t& id) {
   const auto placed = std::ranges::count_if(simulation.sessions, [](const auto& s) { return s->placed_by_operator; });
   if (static_cast<std::size_t>(placed) >= kMostPlacedRobots)
-    return "operators placed 8 robots already: remove one first";
-  if (simulation.robot_count() >= kMostRobots) return "64 robots are in the world already";
+    return "operators have already placed 8 robots: remove one first";
+  if (simulation.robot_count() >= kMostRobots) return "there are already 64 robots in the world";
   const physics::RobotDescription* description = simulation.description_for_class("USARBot.Kenaf");
   if (description == nullptr) return "there is no description of USARBot.Kenaf";
   Session& session = simulation.connect("an operator");
@@ -104,7 +104,7 @@ std::string_view look_by_hand(Simulation& simulation, std::uint32_t id, Operator
   if (camera == cameras.end()) return "that robot has no such camera";
   const std::size_t links =
       camera->mission_package ? robot.description->mission_packages[*camera->mission_package].links.size() : 0;
-  if ((order.pan_rad && links < 1) || (order.tilt_rad && links < 2)) return "that camera does not turn so";
+  if ((order.pan_rad && links < 1) || (order.tilt_rad && links < 2)) return "that camera does not turn about this axis";
   if (order.pan_rad) simulation.world.set_mission_link(robot.id, *camera->mission_package, 0, *order.pan_rad);
   if (order.tilt_rad) simulation.world.set_mission_link(robot.id, *camera->mission_package, 1, *order.tilt_rad);
   if (order.field_of_view_rad) {

@@ -24,7 +24,7 @@ struct SessionRobot {
   robot::Command command;   // the client's; in force unless an operator holds the robot
   bool normalized = false;  // the client's speeds are percentages of the maximum; sticky
   bool light = false;
-  bool fault_told = false;  // the failure of its simulation was reported
+  bool fault_reported = false;  // the failure of its simulation was reported
   struct {
     double speed = 0, front_rad = 0, rear_rad = 0;
   } ackermann;  // last received values

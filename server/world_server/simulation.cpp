@@ -58,7 +58,7 @@ Simulation::Simulation(const ServerOptions& server_options)
       clock(server_options.time_step_s, server_options.speed),
       loose_boxes(find_loose_boxes(world)) {
   if (!(options.speed >= 0 && std::isfinite(options.speed))) {
-    throw std::runtime_error("the speed is a factor of real time, 0 or more (0: as fast as it goes)");
+    throw std::runtime_error("the speed is a factor of real time, 0 or more (0: as fast as possible)");
   }
   // Loaded now, so that a wrong file fails at the start and not at a client's INIT.
   descriptions_.emplace(options.robot, physics::load_robot(options.robot));
@@ -104,7 +104,7 @@ void Simulation::receive(Session& session, std::string_view bytes, double now_wa
     // Checked per line: a packet may hold hundreds of requests with long answers, and executing them all would stall
     // the world.
     if (session.out.size() > kMostUnread_bytes) {
-      spdlog::warn("{}: closed: more than {} MiB wait for it", session.peer, kMostUnread_bytes >> 20);
+      spdlog::warn("{}: closed: more than {} MiB of messages to it are waiting", session.peer, kMostUnread_bytes >> 20);
       session.close = true;
       return;
     }
@@ -202,7 +202,7 @@ bool Simulation::held_by_lockstep(std::optional<double>& until_wall_s) {
     if (!session->robot || !session->schedule.holds(world.step_count())) continue;
     if (session->schedule.let_go(wall_s, options.lockstep_wait_s)) {
       if (session->lockstep_log.allow(wall_s)) {
-        spdlog::warn("{}: frame {} is not answered; time runs on without waiting", session->peer,
+        spdlog::warn("{}: frame {} was not answered; time runs on without it", session->peer,
                      session->schedule.frame());
       }
       send_due(*session);
@@ -234,7 +234,7 @@ Simulation::Progress Simulation::advance(double now_wall_s) {
     return {false, until_wall_s};
   }
   if (dropped_s_ > 0.5 * clock.speed() && behind_log_.allow(wall_s)) {
-    spdlog::warn("this machine is too slow for {} times real time: robot time fell behind by {:.2f} s", clock.speed(),
+    spdlog::warn("this machine is too slow for {} times real time: robot time is {:.2f} s behind", clock.speed(),
                  dropped_s_);
     dropped_s_ = 0;
   }
@@ -269,12 +269,13 @@ void Simulation::tell_faults() {
     if (!session->robot) continue;
     SessionRobot& robot = *session->robot;
     const std::string& fault = world.fault(robot.id);
-    const bool is_new = !fault.empty() && !robot.fault_told;
-    robot.fault_told = !fault.empty();
+    const bool is_new = !fault.empty() && !robot.fault_reported;
+    robot.fault_reported = !fault.empty();
     if (!is_new) continue;
     if (fault_log_.allow(wall_s))
       spdlog::error(
-          "{}: the simulation of robot {} went wrong: {}; it stands still until it is moved or the world is reset",
+          "{}: the simulation of robot {} failed: {}; the robot does not move until it is placed anew or the world is "
+          "reset",
           session->peer, robot.name, fault);
     answer(*this, *session, "Robot", robot.name, fault);
   }
@@ -312,7 +313,7 @@ void Simulation::reset() {
   world.reset();
   for (const StepRequest& request : step_requests_) {
     if (Session* session = find_session(request.session)) {
-      answer(*this, *session, "Control", "Step", "the world was put back to its start");
+      answer(*this, *session, "Control", "Step", "the world was reset");
     }
   }
   step_requests_.clear();

@@ -39,10 +39,10 @@ tcp::acceptor listen(asio::io_context& io, const ServerOptions& options) {
       asio::ip::make_address(options.listen_address == "localhost" ? "127.0.0.1" : options.listen_address, error);
   if (error) {
     throw std::runtime_error(
-        fmt::format("\"{}\" is no address to listen on; give one such as 127.0.0.1", options.listen_address));
+        fmt::format("\"{}\" is not an address to listen on; give one such as 127.0.0.1", options.listen_address));
   }
   if (!address.is_loopback()) {
-    spdlog::warn("listening on {}: everybody who reaches it can command the robots; there is no password",
+    spdlog::warn("listening on {}: any program that reaches this address can command the robots; there is no password",
                  options.listen_address);
   }
   try {

@@ -61,9 +61,9 @@ export function createDriving(world, link) {
     let state = "none", text = "Not driving";
     if (!robot) text = world.robots.size ? text : "No robot is in the world: place one, or start a program";
     else if (mine && isMoving(message(mine))) [state, text] = ["driving", `Driving ${mine.about.name}`];
-    else if (mine) [state, text] = ["held", `${mine.about.name} stands: hold a key or the stick to drive`];
+    else if (mine) [state, text] = ["held", `${mine.about.name} is at rest: hold a key or the stick to drive`];
     else if (holder) [state, text] = ["other", `Another operator drives ${robot.about.name}`];
-    else if (robot.now) text = robot.about.placed ? `Not driving: ${robot.about.name} stands` : `Not driving: a program commands ${robot.about.name}`;
+    else if (robot.now) text = robot.about.placed ? `Not driving: ${robot.about.name} is at rest` : `Not driving: a program commands ${robot.about.name}`;
     const line = by("drive-state");
     if (line.textContent !== text) line.textContent = text;
     line.dataset.state = state;

@@ -1,4 +1,4 @@
-// From what is held down to what a robot is told. Pure.
+// From the keys held down to the command of a robot. Pure.
 const POSTURES = {   // degrees; tip up positive; front, rear
   flat: [0, 0],
   raised: [57, 57],

@@ -16,7 +16,7 @@ export function createLinkHealth(world, link) {
     chip.title = "Round trip, states that were dropped because this browser or the link is slow, viewers";
     if (performance.now() > refused_ms + 5000 && !bad) notice.hidden = true;
     if (bad && link.received_ms !== null) {
-      notice.textContent = "What you see is old: the server is not heard";
+      notice.textContent = "This view is out of date: the server does not answer";
       notice.hidden = false;
     }
   }

@@ -33,7 +33,7 @@ export function createPictures(world, chosen) {
       const figure = document.createElement("figure"), caption = document.createElement("figcaption");
       const name = document.createElement("span"), age = document.createElement("output"), picture = document.createElement("img");
       name.textContent = camera.name;
-      age.title = "How old the picture is where the server is, when it says so";
+      age.title = "Age of the picture at the server, if the server reports it";
       caption.append(name, " ", age);
       picture.alt = `Picture of the camera ${camera.name}`;
       picture.onerror = () => setTimeout(() => { if (picture.onerror) fetchPicture(picture, robot, camera); }, AGAIN_MS);

@@ -18,7 +18,7 @@ export function createLanes(clock, drawn) {
 
   const usual = () => {
     if (!run) return "";
-    return run.marks.length ? "Darker: more of the gap between the robot and its nominal simulation is there." : "";
+    return run.marks.length ? "Darker: a larger part of the gap between the robot and its nominal simulation." : "";
   };
   const end = () => run.t_s[run.t_s.length - 1] || 1;
   const xOf = (t) => LEFT_PX + t / end() * Math.max(1, lanes.clientWidth - LEFT_PX - RIGHT_PX);
@@ -78,7 +78,7 @@ export function createLanes(clock, drawn) {
       button.addEventListener("click", (event) => { if (event.detail === 0) clock.set(mark.from_s); });
       return button;
     });
-    const none = hasReport ? "The report says nothing of this run" :
+    const none = hasReport ? "The report does not cover this run" :
       "No marks without a report: kenaf-gap diagnose RUNS --out DIR, then kenaf-gap play RUNS --report DIR";
     lane.replaceChildren(element("span", "name", "gap"), ...(made.length ? made : [element("span", "none", none)]));
     about.textContent = usual();

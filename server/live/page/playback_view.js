@@ -5,7 +5,7 @@ import { makeRobot } from "./robot_model.js";
 import { colour } from "./scene.js";
 import { createStage, dispose } from "./stage.js";
 
-const EYE = [-0.75, -1.5, 0.8];   // from aside: one drives ahead of the other
+const EYE = [-0.75, -1.5, 0.8];   // from the side: one drives ahead of the other
 const SEE_THROUGH = 0.42;
 // The recorded path is the broad one, under the others.
 const BROAD_M = 0.05, NARROW_M = 0.018, RIBBON_STEP_M = 0.02;
@@ -18,7 +18,7 @@ function tint(root, hue) {
     part.material.transparent = true;
     part.material.opacity = SEE_THROUGH;
     part.material.depthWrite = false;
-    // where it stands just where the recorded robot does, that one is seen
+    // where both are at the same place, the recorded robot is seen
     part.material.polygonOffset = true;
     part.material.polygonOffsetFactor = part.material.polygonOffsetUnits = 2;
   });

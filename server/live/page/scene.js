@@ -9,7 +9,7 @@ export function colour(name) {
   return new THREE.Color(getComputedStyle(document.documentElement).getPropertyValue(name).trim());
 }
 
-// Squares of 1 m: lengths can be told.
+// Squares of 1 m, to estimate lengths.
 function groundTexture() {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 256;

@@ -1,5 +1,5 @@
 // A canvas with the world in 3D: ground, light, and a point of view that follows a place, stays behind it, or is free.
-// What stands in the world is put there by others (view_3d.js, playback_view.js).
+// The objects in the world are put there by others (view_3d.js, playback_view.js).
 import * as THREE from "/three/build/three.module.js";
 import { OrbitControls } from "/three/examples/jsm/controls/OrbitControls.js";
 import { colour, fetchScene, makeScene } from "./scene.js";
@@ -19,7 +19,7 @@ export function dispose(object) {
   });
 }
 
-// `dressed()` is called when the colours or the world have changed; `complain` is told what is missing, in words; `eye` is where
+// `dressed()` is called when the colours or the world have changed; `complain` is called with what is missing, in words; `eye` is where
 // one looks from at first, seen from what is followed. `sharpens`: a picture that was made simpler is drawn in full when nothing
 // moves.
 export function createStage({ complain, dressed = () => {}, eye = [-1.6, -1.5, 1.25], sharpens = false }) {
@@ -112,7 +112,7 @@ export function createStage({ complain, dressed = () => {}, eye = [-1.6, -1.5, 1
       bytes = null;
       dress();
       return fetchScene(path).then((answer) => { if (newest()) { bytes = answer; dress(); } })
-        .catch((error) => { if (newest()) complain(`No world to see: ${error.message}`); });
+        .catch((error) => { if (newest()) complain(`The world cannot be shown: ${error.message}`); });
     },
     // Looks at the place p = [x, y, z] by the mode; behind it is where a robot with the rotation q = [w, x, y, z] has come from.
     follow(p, [w, x, y, z]) {

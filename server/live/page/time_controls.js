@@ -11,7 +11,7 @@ export function createTimeControls(world, link, letGoOfKeys) {
   by("speed").addEventListener("change", (event) => link.send({ type: "speed", value: Number(event.target.value) }));
   by("reset").addEventListener("click", () => {
     letGoOfKeys();
-    if (confirm("Put the whole world back to its start? Programs that drive in it go on.")) link.send({ type: "reset" });
+    if (confirm("Reset the whole world? Programs that drive in it continue.")) link.send({ type: "reset" });
   });
   addEventListener("keydown", (event) => {
     if (event.code === "KeyP" && !event.repeat && !keyIsTaken(event)) pause();

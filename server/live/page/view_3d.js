@@ -5,7 +5,7 @@ import { createStage, dispose } from "./stage.js";
 
 const HULL = { fault: 0xb03a2e, mine: 0x1d6fb8, silent: 0x7a7f7b, usual: 0x2f7a60 };
 
-// `complain` is told what is missing, in words. `shown`: a promise, kept when the world is there or its want was complained of.
+// `complain` is called with what is missing, in words. `shown`: a promise, kept when the world is there or its want was complained of.
 export function createView(world, chosen, complain) {
   const robots = new Map();
   let boxes = [];

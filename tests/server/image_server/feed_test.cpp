@@ -89,19 +89,19 @@ TEST_CASE("Nothing is drawn while nobody looks, nor 2 s after the last look") {
   CHECK(again->robot_time_s > frame->robot_time_s + 1);
 }
 
-TEST_CASE("Listeners are told of frames until they let go") {
+TEST_CASE("Listeners are notified of frames until they let go") {
   CameraWorld world;
   Robot robot(world, "R1");
-  std::atomic<int> told = 0;
-  auto handle = world.feed.listen([&] { ++told; });
+  std::atomic<int> notified = 0;
+  auto handle = world.feed.listen([&] { ++notified; });
   CHECK(support::eventually([&] {
     world.feed.look("");
-    return told > 3;
+    return notified > 3;
   }));
   handle.reset();
-  const int then = told;
+  const int then = notified;
   next_frame(world.feed, "", next_frame(world.feed, ""));
-  CHECK(told == then);
+  CHECK(notified == then);
 }
 
 TEST_CASE("Where time stands still the first picture comes, and then stays") {
@@ -135,7 +135,7 @@ TEST_CASE("After a reset time begins anew, and numbers go on") {
 
 TEST_CASE("Robots come and leave while they are watched") {
   CameraWorld world;
-  CHECK(words_for(world.feed, "") == "there is no robot in the world, and so no camera");
+  CHECK(words_for(world.feed, "") == "there is no robot in the world, hence no camera");
   for (int round = 0; round < 3; ++round) {
     Robot first(world, "R1");
     next_frame(world.feed, "");

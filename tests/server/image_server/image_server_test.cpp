@@ -227,7 +227,7 @@ TEST_CASE("V chooses what is shown, also with two robots, and words say what the
   ImageClient client(world.port());
   Image image = client.ask("J");
   CHECK(image.type == 255);
-  CHECK(image.words() == "there is no robot in the world, and so no camera");
+  CHECK(image.words() == "there is no robot in the world, hence no camera");
   Robot first(world, "R1");
   auto second = std::make_unique<Robot>(world, "R2", "0,3,0");
   const auto shown = [&](const std::string& view) {

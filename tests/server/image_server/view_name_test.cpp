@@ -50,7 +50,7 @@ TEST_CASE("Where there is none, words say what there is instead") {
   const std::vector<camera::RobotSnapshot> kenaf{robot(1, "R1", "kenaf")}, bus{robot(1, "Bus", "p2at")};
   CHECK(no_such_view(kenaf, "x\n\"") == "there is no camera \"x?\"\"; there is R1/Camera, R1/BirdsEye");
   CHECK(no_such_view(bus, "") == "no robot in the world has a camera");
-  CHECK(no_such_view({}, "") == "there is no robot in the world, and so no camera");
+  CHECK(no_such_view({}, "") == "there is no robot in the world, hence no camera");
   const std::vector<camera::RobotSnapshot> many(64, kenaf.front());
   CHECK(no_such_view(many, std::string(255, '\x01')).size() < 1000);
   CHECK(no_such_view(many, "x").ends_with(" and 112 more"));

@@ -1,4 +1,4 @@
-// A browser without a window: Chromium, told what to do by its DevTools protocol over two pipes.
+// A browser without a window: Chromium, controlled by its DevTools protocol over two pipes.
 //
 // Waits at most 60 s for each answer, then throws std::runtime_error. Thread safety: one thread.
 #pragma once

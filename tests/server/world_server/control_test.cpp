@@ -133,7 +133,7 @@ TEST_CASE("A reset puts the robot back to its start, at rest, at time 0, and the
   CHECK(number_in(status, "Time") == 0);
   CHECK(number_in(status, "Frame") == 102);
   REQUIRE(talk.run(1));
-  CHECK(std::abs(talk.truth().X_WB.p.x() - start.x()) < 0.005);  // it was told to stand
+  CHECK(std::abs(talk.truth().X_WB.p.x() - start.x()) < 0.005);  // it was commanded to stop
 }
 
 TEST_CASE("After a reset the same commands give the same path, to the bit") {

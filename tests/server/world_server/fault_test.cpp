@@ -1,4 +1,4 @@
-// What a client and the log are told of a robot whose simulation went wrong. World: an island of 4 m by 4 m and nothing
+// What a client and the log receive about a robot whose simulation failed. World: an island of 4 m by 4 m and nothing
 // around it.
 #include <spdlog/sinks/ostream_sink.h>
 #include <spdlog/spdlog.h>
@@ -64,11 +64,11 @@ TEST_CASE("A robot that leaves the world: one line in the log, one RES, and outp
   client.send(kInitBeside);
   REQUIRE(client.run(kFall_s));
   const auto before = client.lines();
-  const auto told = starting(before, "RES");
-  REQUIRE(told.size() == 1);
-  CHECK(told[0].find("{Type Robot} {Name R1} {Status Failed} {Reason it left the world: ") != std::string::npos);
+  const auto reports = starting(before, "RES");
+  REQUIRE(reports.size() == 1);
+  CHECK(reports[0].find("{Type Robot} {Name R1} {Status Failed} {Reason it left the world: ") != std::string::npos);
   CHECK(island.errors_logged() == 1);
-  CHECK(island.log.str().find("robot R1 went wrong: it left the world") != std::string::npos);
+  CHECK(island.log.str().find("robot R1 failed: it left the world") != std::string::npos);
 
   REQUIRE(client.run(1));
   const auto after = client.lines();
@@ -97,7 +97,7 @@ TEST_CASE("A client with a Session reads the fault in every STA, until the robot
   REQUIRE(client.run(1));
   CHECK(client.truth().X_WB.p.x() > 0.1);
 
-  // and each fault is told anew
+  // and each fault is reported anew
   client.send("CONTROL {Type AbsMove} {Name R1} {Location 10,0,0}\r\n");
   client.lines();
   REQUIRE(client.run(kFall_s));

@@ -158,7 +158,7 @@ TEST_CASE("Rule 3: let go of, the robot stands until its client says something n
   REQUIRE(desk.run(0.5));
   CHECK(desk.fastest_mps() < 0.01);
   const double before = desk.x();
-  desk.send("DRIVE {Left 5}\r\n");  // the other side was told to stand
+  desk.send("DRIVE {Left 5}\r\n");  // the other side was commanded to stop
   REQUIRE(desk.run(0.5));
   CHECK(desk.truth().track_mps[robot::kLeft] > 0.3);
   CHECK(std::abs(desk.truth().track_mps[robot::kRight]) < 0.05);
@@ -203,7 +203,7 @@ TEST_CASE("Rule 4: in an empty world an operator places a robot and drives it, a
     talk.wall_s += 0.1;
   }
   CHECK(talk.simulation.world.truth(session.robot->id).X_WB.p.x() > 0.1);
-  CHECK(session.out.empty());  // nobody reads what a client would be told
+  CHECK(session.out.empty());  // nobody reads what a client would receive
   let_go_of_all(talk.simulation, kAnna);
   REQUIRE(talk.run(0.5));
   CHECK(talk.simulation.robot_count() == 1);

@@ -19,7 +19,7 @@ SensorDescription sensor(SensorType type, const char* name) {
 }
 
 // The message of one reading, without its line end.
-std::string told(Dialect dialect, const SensorDescription& description, const physics::Reading& reading,
+std::string message(Dialect dialect, const SensorDescription& description, const physics::Reading& reading,
                  double t_s = 3104.5749) {
   std::vector<physics::SensorSample> samples{{0, t_s, reading}};
   std::string out;
@@ -34,31 +34,31 @@ std::string told(Dialect dialect, const SensorDescription& description, const ph
 TEST_CASE("GroundTruth: UT2004 as recorded, with angles from 0 to 2 pi, UDK with signed angles and three digits") {
   // z up 1.85 below, y to the left -1.9; pitch 0.001 nose down and yaw 0.002 to the left are negative in USARSim.
   const physics::GroundTruthReading reading{{4.5, -1.9, -1.85}, {0, 0.0011, 0.0022}};
-  CHECK(told(Dialect::ut2004, sensor(SensorType::ground_truth, "GroundTruth"), reading) ==
+  CHECK(message(Dialect::ut2004, sensor(SensorType::ground_truth, "GroundTruth"), reading) ==
         "SEN {Time 3104.5749} {Type GroundTruth} {Name GroundTruth} {Location 4.50,1.90,1.85} "
         "{Orientation 0.00,6.28,6.28}");
-  CHECK(told(Dialect::udk, sensor(SensorType::ground_truth, "GroundTruth"), reading) ==
+  CHECK(message(Dialect::udk, sensor(SensorType::ground_truth, "GroundTruth"), reading) ==
         "SEN {Time 3104.5749} {Type GroundTruth} {Name GroundTruth} {Location 4.500,1.900,1.850} "
         "{Orientation 0.000,-0.001,-0.002}");
 }
 
 TEST_CASE("INS has no time, as recorded") {
   const physics::InsReading reading{{4.5, -1.9, -1.8}, {0, 0, 0}};
-  CHECK(told(Dialect::ut2004, sensor(SensorType::ins, "INS"), reading) ==
+  CHECK(message(Dialect::ut2004, sensor(SensorType::ins, "INS"), reading) ==
         "SEN {Type INS} {Name INS} {Location 4.50,1.90,1.80} {Orientation 0.00,0.00,0.00}");
 }
 
 TEST_CASE("Odometry turns to the right where theta grows") {
   const physics::OdometryReading reading{1.25, 0.5, 0.25};  // ahead, to the left, turned left
-  CHECK(told(Dialect::ut2004, sensor(SensorType::odometry, "Odometry"), reading) ==
+  CHECK(message(Dialect::ut2004, sensor(SensorType::odometry, "Odometry"), reading) ==
         "SEN {Type Odometry} {Name Odometry} {Pose 1.2500,-0.5000,-0.2500}");
 }
 
 TEST_CASE("Encoders: one message of UT2004, as recorded, a message for each of UDK") {
   const physics::EncoderReading reading{{0, -7}};
-  CHECK(told(Dialect::ut2004, sensor(SensorType::encoder, "Encoder"), reading) ==
+  CHECK(message(Dialect::ut2004, sensor(SensorType::encoder, "Encoder"), reading) ==
         "SEN {Type Encoder} {Name ECLeft Tick 0} {Name ECRight Tick -7}");
-  CHECK(told(Dialect::udk, sensor(SensorType::encoder, "Encoder"), reading) ==
+  CHECK(message(Dialect::udk, sensor(SensorType::encoder, "Encoder"), reading) ==
         "SEN {Time 3104.5749} {Type Encoder} {Name ECLeft} {Tick 0}\r\n"
         "SEN {Time 3104.5749} {Type Encoder} {Name ECRight} {Tick -7}");
 }
@@ -79,17 +79,17 @@ TEST_CASE("Sonars: all in one message of UT2004, a message for each of UDK") {
 
 TEST_CASE("A range scan goes from the right end to the left one") {
   const physics::RangeScanReading from_the_left{{1.11111, 2.22222, 3.33339}};
-  CHECK(told(Dialect::ut2004, sensor(SensorType::range_scanner, "Scanner1"), from_the_left) ==
+  CHECK(message(Dialect::ut2004, sensor(SensorType::range_scanner, "Scanner1"), from_the_left) ==
         "SEN {Time 3104.57} {Type RangeScanner} {Name Scanner1} {Resolution 0.0175} {FOV 3.1416} "
         "{Range 3.3334,2.2222,1.1111}");
-  CHECK(told(Dialect::udk, sensor(SensorType::range_scanner, "Scanner1"), from_the_left) ==
+  CHECK(message(Dialect::udk, sensor(SensorType::range_scanner, "Scanner1"), from_the_left) ==
         "SEN {Time 3104.5749} {Type RangeScanner} {Name Scanner1} {Resolution 0.0174} {FOV 3.1415} "
         "{Range 3.33,2.22,1.11}");
 }
 
 TEST_CASE("The inertial sensor's y and z change their signs") {
   const physics::ImuReading reading{{1, 2, 9.80665}, {0.1, 0.2, 0.3}, {4, 5, 6}, {0.01, 0.02, 0.03}};
-  CHECK(told(Dialect::ut2004, sensor(SensorType::imu, "IMU"), reading, 1) ==
+  CHECK(message(Dialect::ut2004, sensor(SensorType::imu, "IMU"), reading, 1) ==
         "SEN {Time 1.0000} {Type IMU} {Name IMU} {XYZAcceleration 1.0000,-2.0000,-9.8066} "
         "{AngularVel 0.1000,-0.2000,-0.3000} {AngularAccel 4.0000,-5.0000,-6.0000} {Rotation 0.0100,-0.0200,-0.0300}");
 }
@@ -98,11 +98,11 @@ TEST_CASE("Tachometer, touch and drives are told in the form of their dialect") 
   CHECK(told(Dialect::ut2004, sensor(SensorType::tachometer, "Tachometer"),
              physics::TachometerReading{{1, -2}, {3, -4}},
              1) == "SEN {Time 1.0000} {Type Tachometer} {Name Tachometer} {Vel 1.0000,-2.0000} {Pos 3.0000,-4.0000}");
-  CHECK(told(Dialect::ut2004, sensor(SensorType::touch, "Touch"), physics::TouchReading{false}, 1) ==
+  CHECK(message(Dialect::ut2004, sensor(SensorType::touch, "Touch"), physics::TouchReading{false}, 1) ==
         "SEN {Time 1.0000} {Type Touch} {Name Touch Touch False}");
-  CHECK(told(Dialect::udk, sensor(SensorType::touch, "Touch"), physics::TouchReading{true}, 1) ==
+  CHECK(message(Dialect::udk, sensor(SensorType::touch, "Touch"), physics::TouchReading{true}, 1) ==
         "SEN {Time 1.0000} {Type Touch} {Name Touch} {Touch True}");
-  CHECK(told(Dialect::ut2004, sensor(SensorType::drives, "Drives"), physics::DrivesReading{{1, 2}, {3, 4, 5, 6}, 25.5},
+  CHECK(message(Dialect::ut2004, sensor(SensorType::drives, "Drives"), physics::DrivesReading{{1, 2}, {3, 4, 5, 6}, 25.5},
              1) ==
         "SEN {Time 1.0000} {Type Drives} {Name Drives} {TrackCurrent 1.0000,2.0000} "
         "{FlipperCurrent 3.0000,4.0000,5.0000,6.0000} {BatteryVoltage 25.5000}");
@@ -110,11 +110,11 @@ TEST_CASE("Tachometer, touch and drives are told in the form of their dialect") 
 
 TEST_CASE("GPS tells degrees and minutes, or that it has no fix") {
   // 39 degrees and 8.03 minutes north: 39 + 8.03 / 60 = 39.133833...
-  CHECK(told(Dialect::ut2004, sensor(SensorType::gps, "GPS"),
+  CHECK(message(Dialect::ut2004, sensor(SensorType::gps, "GPS"),
              physics::GpsReading{39 + 8.03 / 60, -(77 + 13.0 / 60), 11, true}, 1) ==
         "SEN {Time 1.0000} {Type GPS} {Name GPS} {Latitude 39,8.0300,N} {Longitude 77,13.0000,W} {Fix 1} "
         "{Satellites 11}");
-  CHECK(told(Dialect::udk, sensor(SensorType::gps, "GPS"), physics::GpsReading{0, 0, 0, false}, 1) ==
+  CHECK(message(Dialect::udk, sensor(SensorType::gps, "GPS"), physics::GpsReading{0, 0, 0, false}, 1) ==
         "SEN {Time 1.0000} {Type GPS} {Name GPS} {Fix 0} {Satellites 0}");
 }
 
