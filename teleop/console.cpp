@@ -201,19 +201,19 @@ class Console {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app("The operator's console: drives the robot through its control process, operator_control.");
-  app.add_option("--control", options.control, "where the control process listens, HOST:PORT")->capture_default_str();
+  app.add_option("--control", options.control, "address of the control process, HOST:PORT")->capture_default_str();
   app.add_option("--gamepad", options.gamepad,
-                 "its device, such as /dev/input/js1, or 'none'; default: the first there is");
+                 "device of the gamepad, such as /dev/input/js1, or 'none'; default: the first one found");
   app.add_option("--camera", options.camera, "address of the camera's picture, shown on the screen");
-  app.add_option("--speed", options.speed_mmps, "to begin with, mm/s")
+  app.add_option("--speed", options.speed_mmps, "initial speed, mm/s")
       ->check(CLI::Range(10.0, kMaxTrack_mmps))
       ->capture_default_str();
   app.add_option("--script", options.script, "plays the operator's input from this file, without a terminal");
-  app.add_flag("--plain", options.plain, "one line a second instead of the screen; the keyboard is not read");
-  app.add_option("--key-first", options.keys.first_s, "seconds that a key drives after it was pressed")
+  app.add_flag("--plain", options.plain, "print one line per second instead of the screen; the keyboard is not read");
+  app.add_option("--key-first", options.keys.first_s, "seconds for which a key drives after it was pressed")
       ->check(CLI::Range(0.1, 2.0))
       ->capture_default_str();
-  app.add_option("--key-repeat", options.keys.repeat_s, "seconds that a key drives after each of its repeats")
+  app.add_option("--key-repeat", options.keys.repeat_s, "seconds for which a key drives after each of its repeats")
       ->check(CLI::Range(0.05, 1.0))
       ->capture_default_str();
   try {
@@ -222,7 +222,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
 
-  // Each of these signals only ends the loop, so that the terminal is restored and the robot told to stop.
+  // Each of these signals only ends the loop, so that the terminal is restored and the robot is commanded to stop.
   struct sigaction action {};
   action.sa_handler = on_signal;
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaction(number, &action, nullptr);

@@ -204,25 +204,25 @@ class Control {
 
 // Written to a temporary file and renamed, so that a waiting reader never sees half of it.
 void write_port_file(const std::string& path, std::uint16_t port) {
-  const std::string aside = path + ".new";
-  if (!(std::ofstream(aside) << port << '\n' << std::flush)) throw std::runtime_error("cannot write " + aside);
-  std::filesystem::rename(aside, path);
+  const std::string temporary = path + ".new";
+  if (!(std::ofstream(temporary) << port << '\n' << std::flush)) throw std::runtime_error("cannot write " + temporary);
+  std::filesystem::rename(temporary, path);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Drives the robot as the operator's console wishes. Which robot, and how: kenaf.toml, KENAF_...");
-  app.add_option("--listen", options.listen, "where the console finds it, ADDR:PORT; port 0 takes a free one")
+  CLI::App app(
+      "Drives the robot by the commands of the operator's console. kenaf.toml and the KENAF_... variables choose the "
+      "robot.");
+  app.add_option("--listen", options.listen, "address to listen on, ADDR:PORT; port 0: any free one")
       ->capture_default_str();
-  app.add_option("--port-file", options.port_file, "writes the port it listens on into this file");
-  app.add_option("--silence", options.limits.silence_s,
-                 "seconds without a word of the console after which the robot halts")
+  app.add_option("--port-file", options.port_file, "write the port into this file");
+  app.add_option("--silence", options.limits.silence_s, "seconds of silence of the console after which the robot halts")
       ->check(CLI::Range(0.1, 10.0))
       ->capture_default_str();
-  app.add_option("--view", options.limits.view_s,
-                 "seconds; a wish that was made on an older view of the robot halts it")
+  app.add_option("--view", options.limits.view_s, "seconds; a command based on an older view of the robot halts it")
       ->check(CLI::Range(0.2, 60.0))
       ->capture_default_str();
   app.add_option("--takeover", options.takeover_s, "seconds of silence after which another console may have the robot")

@@ -108,13 +108,13 @@ void Desk::act(Action action, double now_s, const Status* newest) {
 
 void Desk::nudge(unsigned flippers, double by_deg, const Status& newest) {
   constexpr unsigned kAll = (1u << kFlipperCount) - 1;
-  const bool all_told = (newest.flippers_commanded & kAll) == kAll;
+  const bool all_commanded = (newest.flippers_commanded & kAll) == kAll;
   // the order names all four: a flipper at an unknown angle would be sent to 0
-  if (!ordered_deg_ && !all_told && (newest.fields & kHasFlippers) == 0) return;
+  if (!ordered_deg_ && !all_commanded && (newest.fields & kHasFlippers) == 0) return;
   std::array<double, kFlipperCount> deg{};
   for (std::size_t i = 0; i < kFlipperCount; ++i) {
-    const bool was_told = (newest.flippers_commanded >> i & 1) != 0;
-    deg[i] = ordered_deg_ ? (*ordered_deg_)[i] : was_told ? newest.commanded_flipper_deg[i] : newest.flipper_deg[i];
+    const bool was_commanded = (newest.flippers_commanded >> i & 1) != 0;
+    deg[i] = ordered_deg_ ? (*ordered_deg_)[i] : was_commanded ? newest.commanded_flipper_deg[i] : newest.flipper_deg[i];
     if ((flippers >> i & 1) != 0) deg[i] = std::clamp(deg[i] + by_deg, -kMaxNudged_deg, kMaxNudged_deg);
   }
   order_flippers(deg, "by hand");

@@ -267,7 +267,7 @@ std::string_view describe(DecodeError error) {
     case DecodeError::out_of_range:
       return "operator's datagram with a number out of its range";
     case DecodeError::bad_value:
-      return "operator's datagram with a flag, enumeration or text that is none";
+      return "operator's datagram with an invalid flag, enumeration or text";
   }
   return "unknown error of an operator's datagram";
 }

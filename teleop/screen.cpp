@@ -132,7 +132,7 @@ void draw_link(Canvas& canvas, const View& view) {
   } else if (!silence_s) {
     canvas.put(1, 8, "nothing heard yet", Tone::alarm);
   } else if (*silence_s > kSilent_s) {
-    canvas.put(1, 8, fmt::format("SILENT for {:.1f} s: what stands below is old", *silence_s), Tone::alarm);
+    canvas.put(1, 8, fmt::format("SILENT for {:.1f} s: the values below are old", *silence_s), Tone::alarm);
   } else {
     const double up = view.health.loss_up_percent(), down = view.health.loss_down_percent();
     canvas.put(1, 8, "ok", Tone::good);

@@ -72,7 +72,7 @@ class LineReader {
   double number(std::string_view what) {
     const std::string_view text = word(what);
     const auto value = number_of(text);
-    if (!value) fail(fmt::format("'{}' is no number ({})", text, what));
+    if (!value) fail(fmt::format("'{}' is not a number ({})", text, what));
     return *value;
   }
   double seconds(std::string_view what) {
@@ -82,7 +82,7 @@ class LineReader {
   }
   std::string key() {
     const std::string_view key = word("a key");
-    if (!action_of_key(key)) fail(fmt::format("the key '{}' means nothing", key));
+    if (!action_of_key(key)) fail(fmt::format("the key '{}' has no meaning", key));
     return std::string(key);
   }
   Condition condition() {
@@ -95,7 +95,7 @@ class LineReader {
       }
       fail(fmt::format("there is no mode '{}'", mode));
     }
-    if (std::ranges::find(kNames, name) == kNames.end()) fail(fmt::format("nothing is called '{}'", name));
+    if (std::ranges::find(kNames, name) == kNames.end()) fail(fmt::format("there is no value '{}'", name));
     const std::string_view comparison = word("'<' or '>'");
     if (comparison != "<" && comparison != ">") fail(fmt::format("'{}' is neither '<' nor '>'", comparison));
     return {std::string(name), comparison[0], number("what to compare with"), {}};
@@ -107,7 +107,7 @@ class LineReader {
     step.within_s = seconds("a limit");
   }
   void end() const {
-    if (!at_end()) fail(fmt::format("'{}' is too much", words_[next_]));
+    if (!at_end()) fail(fmt::format("'{}' is unexpected", words_[next_]));
   }
   [[noreturn]] void fail(const std::string& what) const {
     throw std::runtime_error(fmt::format("line {}: {}", line_, what));
@@ -146,7 +146,7 @@ Step read_step(LineReader& reader, int line, std::string_view text) {
     // "hold KEY for SECONDS" or "hold KEY until CONDITION within SECONDS"
     step.kind = Step::Kind::hold;
     step.text = reader.key();
-    if (!drives(*action_of_key(step.text))) reader.fail(fmt::format("the key '{}' is not one to hold", step.text));
+    if (!drives(*action_of_key(step.text))) reader.fail(fmt::format("the key '{}' cannot be held", step.text));
     const std::string_view how = reader.word("'for' or 'until'");
     if (how != "for" && how != "until") reader.fail(fmt::format("'{}' is neither 'for' nor 'until'", how));
     if (how == "for") step.seconds = reader.seconds("a time");
@@ -167,7 +167,7 @@ Step read_step(LineReader& reader, int line, std::string_view text) {
     step.text = text.substr(std::min(text.find_first_not_of(" \t", begin), text.size()));
     while (!reader.at_end()) reader.word("");
   } else {
-    reader.fail(fmt::format("'{}' is none of press, hold, wait, say and no time", command));
+    reader.fail(fmt::format("'{}' is neither press, hold, wait or say nor a time", command));
   }
   return step;
 }
@@ -250,7 +250,7 @@ Player::Turn Player::turn(double now_s, const Status* newest, double silent_s, c
           return turn;
         }
         if ((newest == nullptr ? now_s - step_began_s_ : silent_s) > kPatience_s) {
-          fail(fmt::format("no word from the robot for {} s", kPatience_s));
+          fail(fmt::format("no message from the robot for {} s", kPatience_s));
           return turn;
         }
         if (step.kind == Step::Kind::hold) press_held(*action_of_key(step.text), now_s, newest, turn);

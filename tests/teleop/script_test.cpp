@@ -56,11 +56,11 @@ TEST_CASE("What is none is refused with its line") {
   CHECK(refusal("hold 3 for 1") == "line 1: the key '3' is not one to hold");
   CHECK(refusal("hold w") == "line 1: 'for' or 'until' is missing");
   CHECK(refusal("hold w until z_mm > 1") == "line 1: 'within' is missing");
-  CHECK(refusal("wait until height > 1 within 2") == "line 1: nothing is called 'height'");
+  CHECK(refusal("wait until height > 1 within 2") == "line 1: there is no value 'height'");
   CHECK(refusal("wait until mode is happy within 2") == "line 1: there is no mode 'happy'");
   CHECK(refusal("wait until x_mm >= 1 within 2") == "line 1: '>=' is neither '<' nor '>'");
-  CHECK(refusal("wait nan") == "line 1: 'nan' is no number (a time)");
-  CHECK(refusal("wait 1 2") == "line 1: '2' is too much");
+  CHECK(refusal("wait nan") == "line 1: 'nan' is not a number (a time)");
+  CHECK(refusal("wait 1 2") == "line 1: '2' is unexpected");
   CHECK(refusal("wait -1") == "line 1: a time of -1 s: 0 to 3600");
   CHECK(refusal("press w 0") == "line 1: a key is pressed 1 to 1000 times");
 }
@@ -108,7 +108,7 @@ TEST_CASE("Conditions are asked of the newest status, within counts the robot's 
 
   Player alone(read_script("wait until mode is ready within 2\n"));
   CHECK(alone.turn(0, nullptr, 0, desk).failed.empty());
-  CHECK(alone.turn(15.1, nullptr, 0, desk).failed == "line 1: no word from the robot for 15 s");
+  CHECK(alone.turn(15.1, nullptr, 0, desk).failed == "line 1: no message from the robot for 15 s");
 }
 
 TEST_CASE("Flippers are there only once the control process has heard of them") {
