@@ -56,7 +56,7 @@ void add_box(Surface& surface, const Eigen::Vector3d& size_m, const physics::Pos
 
 // The rigid parts of a robot: B with hull and both main tracks, and an arm, whose frame is at its pivot, x out along
 // the arm. Outlines are the physics' own (physics/robot_shapes.hpp). Belts show a lug every 30 mm, which moves with the
-// track's travel, and wheels stand 2 mm out of the sides so that ends and middle can be told apart: both are
+// track's travel, and wheels protrude 2 mm from the sides so that ends and middle are distinguishable: both are
 // decoration, no description has them.
 Surface body_surface(const physics::RobotDescription& robot);
 Surface flipper_surface(const physics::RobotDescription& robot, robot::Flipper which);

@@ -193,7 +193,7 @@ void set_effect(Effects& effects, std::string_view assignment) {
   const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), value);
   if (error != std::errc{} || end != number.data() + number.size())
     throw std::invalid_argument(
-        fmt::format("effect {}: {} = \"{}\" is no number; write it as 0.05 or 5e-2", name, parameter_name, number));
+        fmt::format("effect {}: {} = \"{}\" is not a number; write it as 0.05 or 5e-2", name, parameter_name, number));
   if (!(value >= parameter->min && value <= parameter->max))
     throw std::invalid_argument(fmt::format("effect {}: {} = {} is out of range; it goes from {} to {}{}", name,
                                             parameter_name, value, parameter->min, parameter->max,

@@ -62,7 +62,7 @@ struct Start {
   double x_m, y_m, yaw_rad;
   std::optional<double> z_m;                                            // empty: on the ground
   std::optional<std::array<double, robot::kFlipperCount>> flipper_rad;  // empty: as the robot's description says
-  std::optional<StartMotion> motion{};                                  // empty: it stands
+  std::optional<StartMotion> motion{};                                  // empty: it is at rest
 };
 
 struct Manoeuvre {

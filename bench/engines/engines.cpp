@@ -108,12 +108,12 @@ std::string csv_of(const Machine& machine, const std::vector<EngineScene>& scene
 }
 
 void write_file(const std::filesystem::path& path, const std::string& text) {
-  const std::filesystem::path aside = path.string() + ".part";
-  std::ofstream file(aside, std::ios::binary);
+  const std::filesystem::path temporary = path.string() + ".part";
+  std::ofstream file(temporary, std::ios::binary);
   file << text;
   file.close();
-  if (!file) throw std::runtime_error(fmt::format("{} cannot be written", aside.string()));
-  std::filesystem::rename(aside, path);
+  if (!file) throw std::runtime_error(fmt::format("{} cannot be written", temporary.string()));
+  std::filesystem::rename(temporary, path);
 }
 
 }  // namespace

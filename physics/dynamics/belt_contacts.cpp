@@ -117,7 +117,7 @@ class BoxTouches {
 
     // How deep the two overlap across the belt, and on which side the box lies.
     overlap_ = std::min(belt_.half_width + c.y() + reach[1], belt_.half_width - c.y() + reach[1]);
-    beside_ = c.y() > 0 ? 1 : -1;
+    side_ = c.y() > 0 ? 1 : -1;
     if (overlap_ <= 0) return;
     for (std::size_t k = 0; k < corner_.size(); ++k) {
       corner_[k] = c;
@@ -297,21 +297,21 @@ class BoxTouches {
     out_.resize(first_);
 
     // The normal: of the box's face that faces the belt's side, within kSideways, else across the belt.
-    btVector3 normal(0, -beside_, 0);
+    btVector3 normal(0, -side_, 0);
     for (int j = 0; j < 3; ++j) {
       const btVector3 axis = box_.axes.getColumn(j);
-      if (btFabs(axis.y()) > 1 - kSideways) normal = axis.y() * beside_ > 0 ? -axis : axis;
+      if (btFabs(axis.y()) > 1 - kSideways) normal = axis.y() * side_ > 0 ? -axis : axis;
     }
 
     // All points lie half way into the overlap and have its depth.
-    const btScalar y = beside_ * belt_.half_width;
+    const btScalar y = side_ * belt_.half_width;
     const auto touch = [&](const btVector3& p, std::uint32_t place) {
       out_.push_back({p, normal, -overlap_, 1, false, feature(20, 0, place)});
     };
 
     // Points of the belt's side face within the box.
     side_points(belt_, [&](std::uint32_t place, btVector3 p) {
-      p.setY(y - beside_ * overlap_ / 2);
+      p.setY(y - side_ * overlap_ / 2);
       if (in_slabs(box_, p - box_.center, -1)) touch(p, place);
     });
 
@@ -321,7 +321,7 @@ class BoxTouches {
       const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
       const btScalar rise = p1.y() - p0.y();
       if (btFabs(rise) < 1e-9) continue;
-      const btScalar t = (y - beside_ * overlap_ / 2 - p0.y()) / rise;
+      const btScalar t = (y - side_ * overlap_ / 2 - p0.y()) / rise;
       if (t < 0 || t > 1) continue;
       const btVector3 p = p0 + (p1 - p0) * t;
       if (distance_to_outline(belt_, p.x(), p.z()).distance <= 0) touch(p, 8 + e);
@@ -339,7 +339,7 @@ class BoxTouches {
   std::vector<BeltTouch>& out_;
   std::size_t first_;
   std::array<btVector3, 8> corner_;
-  btScalar overlap_ = 0, beside_ = 1;
+  btScalar overlap_ = 0, side_ = 1;
 };
 
 }  // namespace

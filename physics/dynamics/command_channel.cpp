@@ -118,12 +118,12 @@ const robot::Command& CommandChannel::step() {
   const auto late = [this](std::size_t steps) -> const robot::Command& {
     return line_[(newest_ + line_.size() - steps) % line_.size()];
   };
-  told_ = delay_rest_ > 0 ? between(late(delay_steps_), late(delay_steps_ + 1), delay_rest_) : late(delay_steps_);
+  output_ = delay_rest_ > 0 ? between(late(delay_steps_), late(delay_steps_ + 1), delay_rest_) : late(delay_steps_);
   if (ramps_) {
-    move_ramp(told_.track_speed_mps);
-    told_.track_speed_mps = ramp_mps_;
+    move_ramp(output_.track_speed_mps);
+    output_.track_speed_mps = ramp_mps_;
   }
-  return told_;
+  return output_;
 }
 
 }  // namespace kenaf::physics

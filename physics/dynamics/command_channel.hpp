@@ -58,7 +58,7 @@ class CommandChannel {
   bool ramps_;
   std::size_t delay_steps_;
   double delay_rest_ = 0;  // of a step, below 1
-  robot::Command sent_, received_, told_;
+  robot::Command sent_, received_, output_;
   std::vector<robot::Command> line_;  // ring of the commands received in the last steps
   std::size_t newest_ = 0;
   std::array<double, robot::kTrackCount> ramp_mps_{};

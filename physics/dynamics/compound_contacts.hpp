@@ -14,7 +14,7 @@ class CompoundContacts {
  public:
   static constexpr std::size_t kMostPieces = 3;  // of one compound
 
-  // Makes `dispatcher` use it for compounds beside planes, boxes, convex hulls, meshes and compounds.
+  // Makes `dispatcher` use it for compounds with planes, boxes, convex hulls, meshes and compounds.
   explicit CompoundContacts(btCollisionDispatcher& dispatcher);
 
  private:

@@ -238,14 +238,14 @@ void RobotModel::set_in_motion(const RobotMotion& motion, const robot::Command& 
   }
 
   // Belts at their speeds, with drives and channel as if they had been commanded so for long.
-  std::array<double, robot::kTrackCount> told_mps{};  // the channel's output for these speeds
+  std::array<double, robot::kTrackCount> output_mps{};  // the channel's output for these speeds
   for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     belts_[side].speed_mps = motion.track_mps[side];
     belts_[side].motor_impulse_ns = 0;
     drives_[side].turn_at(motion.track_mps[side]);
-    told_mps[side] = motion.track_mps[side] / favour(side);
+    output_mps[side] = motion.track_mps[side] / favour(side);
   }
-  channel_.begin(command, told_mps);
+  channel_.begin(command, output_mps);
 }
 
 // A servo's speed and torque scale with the voltage, as a track motor's do.

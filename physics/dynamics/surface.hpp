@@ -6,7 +6,7 @@
 
 namespace kenaf::physics {
 
-// A track's belt: one degree of freedom beside the rigid bodies. Its speed is a state of the simulation, solved
+// A track's belt: one degree of freedom in addition to the rigid bodies. Its speed is a state of the simulation, solved
 // together with the contacts: the motor drives it, the friction on all the surfaces it runs over brakes it.
 struct Belt {
   // set before a step

@@ -58,7 +58,7 @@ RobotDescription with_effects(RobotDescription robot) {
 std::span<const double> measured(const runs::Run& run, std::string_view column) {
   const std::span<const double> values = run.column(column);
   if (!runs::any_measured(values))
-    throw std::invalid_argument(fmt::format("{}: not in the run, so no other engine can move its body", column));
+    throw std::invalid_argument(fmt::format("{}: is missing in the run, so no other engine can move its body", column));
   return values;
 }
 

@@ -165,7 +165,7 @@ TEST_CASE("What is smaller than a cell is not missed, wherever in a cell it is")
   CHECK(differing_share(picture_of(scene, view), picture_of(world, {}, view), 8) > 0);
 }
 
-TEST_CASE("A speck that is hardly ahead of the camera's plane and far aside changes nothing") {
+TEST_CASE("A speck that is hardly ahead of the camera's plane and far to the side changes nothing") {
   const auto world = level_ground();
   const View view = eye(pose(0, 0, 0.3));
   // 549 * 4e6 / 0.02 = 1e11 pixels to the right, 24 pixels wide

@@ -59,7 +59,7 @@ TEST_CASE("In a step field and on hills the rays end where the physics' rays end
   }
 }
 
-TEST_CASE("A ray passes through the robot that it is told to ignore, and meets what is behind") {
+TEST_CASE("A ray passes through the robot that it is to ignore, and meets what is behind") {
   const auto world = world_of("step-200");
   WorldSnapshot snapshot = snapshot_of(world);
   snapshot.robots.push_back(kenaf_at(pose(0, 0, 0.09)));

@@ -49,7 +49,7 @@ TEST_CASE("A camera goes where its robot goes") {
 TEST_CASE("Panned to the left, what was ahead is on the right, tilted down, above, zoomed in, larger") {
   RobotSnapshot robot = kenaf_at(pose(0, 0, 0.09));
   const physics::CameraDescription& camera = *find_camera(*robot.description, "Camera");
-  const Eigen::Vector3d ahead(3, 0, 0.18), aside(3, 0.3, 0.18);
+  const Eigen::Vector3d ahead(3, 0, 0.18), sideways(3, 0.3, 0.18);
   robot.mission_link_rad[0] = {0.2, 0};
   const double f = 320 / std::tan(1.05 / 2);
   CHECK(project(camera_view(robot, camera, 1.05), ahead)->u == Approx(320 + f * std::tan(0.2)));
@@ -59,7 +59,7 @@ TEST_CASE("Panned to the left, what was ahead is on the right, tilted down, abov
   robot.mission_link_rad[0] = {pi / 2, 0.3};
   CHECK(project(camera_view(robot, camera, 1.05), {0.20, 3, 0.18})->u == Approx(320));
   robot.mission_link_rad[0] = {0, 0};
-  const auto off = [&](double angle_rad) { return 320 - project(camera_view(robot, camera, angle_rad), aside)->u; };
+  const auto off = [&](double angle_rad) { return 320 - project(camera_view(robot, camera, angle_rad), sideways)->u; };
   CHECK(off(0.525) > 2 * off(1.05));
   CHECK(off(0.01) == off(camera.min_field_of_view_rad));
   CHECK(off(3) == off(camera.max_field_of_view_rad));

@@ -1,5 +1,5 @@
-// Nodes that send anything at any time: the master ends with an error that has words, or goes on; and no robot that was
-// told nothing moves.
+// Nodes that send anything at any time: the master ends with an error that has words, or goes on; and no robot that is
+// commanded to stand moves.
 //
 // The input's first byte says how many frames come undisturbed; then each byte what happens to the next frame of a
 // node: it passes, is dropped, cut, lengthened, has another identifier or another byte.

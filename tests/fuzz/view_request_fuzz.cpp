@@ -1,5 +1,5 @@
 // What a page sends, what a browser's headers hold, and what a command line says of the view. Invariants: nothing dies,
-// and a request that is taken has numbers that a robot can be told.
+// and a request that is taken has numbers that a robot can be commanded.
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>

@@ -90,7 +90,7 @@ TEST_CASE("Command loss: of a share that is lost the rest arrives, and the comma
   CHECK(arrivals(0.3, 1, "a") != arrivals(0.3, 1, "b"));
 }
 
-TEST_CASE("Command gain: the tracks run by that much faster, the flippers go where they are told") {
+TEST_CASE("Command gain: the tracks run by that much faster, the flippers follow their commands") {
   RobotDescription robot = load_robot("kenaf");
   robot.effects.command_gain = 1.2;
   World world(ground(), {}, 1);
@@ -103,14 +103,14 @@ TEST_CASE("Command gain: the tracks run by that much faster, the flippers go whe
 
 TEST_CASE("Command gain of the turn, and limits: forward speed and turn rate, each by itself") {
   // v = 0.2 m/s and w = (0.5 - -0.1) / 0.4 = 1.5 rad/s
-  const auto told = [](const Effects& effects) {
+  const auto output_of = [](const Effects& effects) {
     CommandChannel channel = channel_with(effects);
     channel.send(drive(-0.1, 0.5));
     const auto [left, right] = channel.step().track_speed_mps;
     return std::array{(left + right) / 2, (right - left) / kGauge_m};
   };
   const auto check = [&](const Effects& effects, double v_mps, double w_radps) {
-    const auto [v, w] = told(effects);
+    const auto [v, w] = output_of(effects);
     CHECK(v == Approx(v_mps));
     CHECK(w == Approx(w_radps));
   };
@@ -195,12 +195,12 @@ TEST_CASE("Command slew of the turn: yaw = rate² slowness / 2 later than withou
   CHECK(at_once - ramped == Approx(rate / w * w * w * slowness / 2).epsilon(0.03));
 }
 
-TEST_CASE("Command dead band: below it nothing, from it on what was told, after the gain") {
-  for (const double told_mps : {0.0, 0.07, -0.07, 0.079, 0.08, -0.08, 0.3}) {
+TEST_CASE("Command dead band: below it nothing, from it on the command, after the gain") {
+  for (const double commanded_mps : {0.0, 0.07, -0.07, 0.079, 0.08, -0.08, 0.3}) {
     CommandChannel channel = channel_with({.command_gain = 1.25, .command_dead_band_mps = 0.1});
-    channel.send(drive(told_mps, 0.4));
+    channel.send(drive(commanded_mps, 0.4));
     const auto [left_mps, right_mps] = channel.step().track_speed_mps;
-    CHECK(left_mps == (std::abs(told_mps) < 0.08 ? 0 : 1.25 * told_mps));
+    CHECK(left_mps == (std::abs(commanded_mps) < 0.08 ? 0 : 1.25 * commanded_mps));
     CHECK(right_mps == 0.5);
   }
 }

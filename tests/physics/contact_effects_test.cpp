@@ -17,7 +17,7 @@ RobotDescription tracks_with(const Effects& effects) {
   return robot;
 }
 
-// Where a robot that is told nothing has got to after `time_s` on ground that gravity is turned against.
+// Where a robot without commands has got to after `time_s` on ground that gravity is turned against.
 Eigen::Vector3d slid_m(const RobotDescription& robot, const WorldDescription& flat, double slope_rad, double bank_rad,
                        double time_s) {
   World world(with_terrain_effects(flat, {.ground_slope_rad = slope_rad, .ground_bank_rad = bank_rad}), {}, 1);

@@ -241,7 +241,8 @@ TEST_CASE("Prescribed flippers follow, under load and beyond what a servo can do
 }
 
 // The encoder sits at the servo: what it measured says nothing of the play and the give behind it, so they stay.
-TEST_CASE("Of prescribed flippers the servo is where it is told, and the arm gives way as under any other torque") {
+TEST_CASE(
+    "The servo of a prescribed flipper is where it is commanded, and the arm gives way as under any other torque") {
   constexpr double kGive_radpnm = 0.02, kPlay_rad = 0.04;
   for (const double play_rad : {0.0, kPlay_rad}) {
     RobotDescription description = load_robot("kenaf");

@@ -30,7 +30,7 @@ std::vector<SensorSample> read(World& world, RobotId id) {
   return samples;
 }
 
-// Roll, pitch, yaw of INS and IMU of a robot that is in the air at that posture, in a world with gravity as told.
+// Roll, pitch, yaw of INS and IMU of a robot that is in the air at that posture, in a world with the given gravity.
 std::array<Eigen::Vector3d, 2> postures(const Eigen::Vector3d& rpy, const Effects& effects) {
   World world(with_terrain_effects({}, effects), {}, 1);
   const RobotId id = world.add_robot(robot_with(effects, {SensorType::ins, SensorType::imu}), "a",
@@ -168,7 +168,7 @@ TEST_CASE("Posture is against gravity: on a world that falls away the robot is n
   CHECK(std::abs(std::get<GroundTruthReading>(samples[2].reading).roll_pitch_yaw_rad.y()) < 2e-3);
 }
 
-TEST_CASE("Posture: an INS that is told a pose on a slope reports what it was told") {
+TEST_CASE("Posture: an INS that is reset to a pose on a slope reports that pose") {
   World world(with_terrain_effects(ground(), {.ground_slope_rad = 0.1}), {}, 1);
   const RobotId id = world.add_robot(robot_with({}, {SensorType::ins}), "a", {});
   world.reset_sensor(id, 0, GroundTruthReading{{1, 2, 3}, {0.05, -0.1, 0.3}});
@@ -213,7 +213,7 @@ TEST_CASE("Drives report the servos' angles, in steps of their encoder") {
     const RobotId id = world.add_robot(robot, "a", {});
     world.set_command(id, drive(0, 0, 0.5, 0.5));
     run(world, 2);
-    // the servo is where it was told to be; the arm hangs in its play. 7 x 0.07 = 0.49
+    // the servo is where it was commanded; the arm hangs in its play. 7 x 0.07 = 0.49
     CHECK(world.truth(id).flipper_rad[robot::kFrontLeft] == Approx(0.4).margin(2e-3));
     CHECK(std::get<DrivesReading>(read(world, id)[0].reading).flipper_rad[robot::kFrontLeft] ==
           Approx(resolution_rad > 0 ? 0.49 : 0.5).margin(1e-3));

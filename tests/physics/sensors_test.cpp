@@ -274,7 +274,7 @@ TEST_CASE("An arm that rests on its mechanical stop carries the robot without cu
   for (const double current : read_one<DrivesReading>(world, id).flipper_a) CHECK(current < 0.01);
 }
 
-TEST_CASE("A reset sensor starts from zero, an INS from the pose it is told") {
+TEST_CASE("A reset sensor starts from zero, an INS from the given pose") {
   RobotDescription robot = load_robot("kenaf");
   robot.sensors = {sensor_of(SensorType::encoder), sensor_of(SensorType::odometry), sensor_of(SensorType::ins)};
   World world(ground(), {}, 1);

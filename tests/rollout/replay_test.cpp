@@ -101,7 +101,7 @@ TEST_CASE("The replay of a climb stands where the run stood, and meets the step 
 
 TEST_CASE("The replay of a drop falls from where the run began") {
   auto robot = physics::load_robot("kenaf");
-  robot.effects.flipper_backlash_rad = 0.05;  // in both the arms hang below what their servos were told
+  robot.effects.flipper_backlash_rad = 0.05;  // in both the arms hang below the commands of their servos
   std::vector<std::string> unsupported;
   const auto world = physics::load_world("flat", unsupported);
   RollOutOptions exact;

@@ -138,7 +138,7 @@ TEST_CASE("A heading that is reported too far left: the same yaw, and a path tha
   CHECK(ahead.yaw_rad == 1.5);
 }
 
-TEST_CASE("Of a tracker that is turned and off the centre the real run is told: one that drove where it headed") {
+TEST_CASE("With a turned tracker off the centre, the real run is recovered: one that drove where it headed") {
   // The body drives along its true heading of 0.3 rad for 2 m while it turns by 1 rad. The tracker, 0.4 m ahead of the
   // centre, says 0.2 rad more, and the simulation starts at what it says.
   const double true_rad = 0.3, turn_rad = 0.2, turned_rad = 1, forward_m = 0.4;

@@ -87,7 +87,7 @@ void make_picture(const Options& options) {
 int main(int argc, char** argv) {
   // Options, then the picture; status 2 if it cannot be made.
   Options options;
-  CLI::App app{"Writes what a robot's camera sees."};
+  CLI::App app{"Writes the picture of a robot's camera."};
   app.add_option("--robot", options.robot, "robot description")->capture_default_str();
   app.add_option("--world", options.world, "world")->capture_default_str();
   app.add_option("--camera", options.camera, "the camera's name")->capture_default_str();
@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
   app.add_option("--field-of-view", options.field_of_view_rad, "rad [the camera's]");
   app.add_option("--flippers", options.flippers_rad, "all four, rad")->capture_default_str();
   app.add_option("--speed", options.track_mps, "of both tracks, m/s");
-  app.add_option("--seconds", options.seconds, "how long the robot stands or drives")->capture_default_str();
+  app.add_option("--seconds", options.seconds, "duration of the drive, or of the rest")->capture_default_str();
   app.add_flag("--every-pixel", options.every_pixel, "a ray through each pixel");
   CLI11_PARSE(app, argc, argv);
   try {

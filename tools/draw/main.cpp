@@ -100,7 +100,7 @@ void draw_to_file(Options options) {
 int main(int argc, char** argv) {
   // Options, then the picture; both kinds of errors end with the same status.
   Options options;
-  CLI::App app{"Draws a run of the robot, from above and, where it climbs, from the side.", "kenaf-draw"};
+  CLI::App app{"Draws a run of the robot from above and, if it climbs, from the side.", "kenaf-draw"};
   app.set_version_flag("--version", KENAF_VERSION);
   app.add_option("run", options.run, "the run, a CSV file in the kenaf-runs/1 format")
       ->required()

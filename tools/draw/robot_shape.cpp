@@ -88,15 +88,15 @@ std::vector<std::vector<Vector3d>> lugs_of(const Belt& belt) {
 }
 
 // The wheels inside of the loop: one in each drum, under a main track also between them.
-std::vector<std::vector<Vector3d>> wheels_of(const Belt& belt, const Vector3d& aside) {
-  std::vector<std::vector<Vector3d>> wheels{circle(belt.first_B + aside, kWheelShare * belt.first_radius_m),
-                                            circle(belt.second_B + aside, kWheelShare * belt.second_radius_m)};
+std::vector<std::vector<Vector3d>> wheels_of(const Belt& belt, const Vector3d& sideways) {
+  std::vector<std::vector<Vector3d>> wheels{circle(belt.first_B + sideways, kWheelShare * belt.first_radius_m),
+                                            circle(belt.second_B + sideways, kWheelShare * belt.second_radius_m)};
   if (belt.kind != PartKind::track) return wheels;
   const double radius_m = 0.4 * belt.first_radius_m;
   for (int i = 1; i <= kRoadWheels; ++i) {
     const double part = static_cast<double>(i) / (kRoadWheels + 1);
     const Vector3d low(0, 0, -(1 - kBeltThickness) * belt.first_radius_m + radius_m);
-    wheels.push_back(circle(belt.first_B + part * (belt.second_B - belt.first_B) + low + aside, radius_m));
+    wheels.push_back(circle(belt.first_B + part * (belt.second_B - belt.first_B) + low + sideways, radius_m));
   }
   return wheels;
 }
@@ -107,20 +107,20 @@ Part belt_part(const Belt& belt, const physics::Pose& X_WB, const Projection& pr
   const double facing = toward_W.dot(X_WB.q * Vector3d::UnitY());
   std::vector<Vector3d> surface_B;
   for (const double side : {0.5, -0.5}) {
-    const Vector3d aside(0, side * belt.width_m, 0);
-    for (const Vector3d& p : circle(belt.first_B + aside, belt.first_radius_m)) surface_B.push_back(p);
-    for (const Vector3d& p : circle(belt.second_B + aside, belt.second_radius_m)) surface_B.push_back(p);
+    const Vector3d sideways(0, side * belt.width_m, 0);
+    for (const Vector3d& p : circle(belt.first_B + sideways, belt.first_radius_m)) surface_B.push_back(p);
+    for (const Vector3d& p : circle(belt.second_B + sideways, belt.second_radius_m)) surface_B.push_back(p);
   }
   Part part{belt.kind, 0, convex_hull(projected(surface_B, X_WB, projection)), std::abs(facing) > 0.3, {}, {}, {}};
   part.nearness = toward_W.dot(X_WB.p + X_WB.q * ((belt.first_B + belt.second_B) / 2));
 
   // The face towards the viewer: the belt's inner outline and the wheels; and the lugs of its upper run.
-  const Vector3d aside(0, (facing > 0 ? 0.5 : -0.5) * belt.width_m, 0);
+  const Vector3d sideways(0, (facing > 0 ? 0.5 : -0.5) * belt.width_m, 0);
   const double thickness_m = kBeltThickness * std::min(belt.first_radius_m, belt.second_radius_m);
-  std::vector<Vector3d> inside_B = circle(belt.first_B + aside, belt.first_radius_m - thickness_m);
-  for (const Vector3d& p : circle(belt.second_B + aside, belt.second_radius_m - thickness_m)) inside_B.push_back(p);
+  std::vector<Vector3d> inside_B = circle(belt.first_B + sideways, belt.first_radius_m - thickness_m);
+  for (const Vector3d& p : circle(belt.second_B + sideways, belt.second_radius_m - thickness_m)) inside_B.push_back(p);
   part.inside = convex_hull(projected(inside_B, X_WB, projection));
-  for (const auto& wheel : wheels_of(belt, aside)) part.wheels.push_back(projected(wheel, X_WB, projection));
+  for (const auto& wheel : wheels_of(belt, sideways)) part.wheels.push_back(projected(wheel, X_WB, projection));
   for (const auto& lug : lugs_of(belt)) part.lugs.push_back(projected(lug, X_WB, projection));
   return part;
 }

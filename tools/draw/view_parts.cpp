@@ -41,9 +41,9 @@ void draw_centre_line(const Canvas& canvas, const Mapping& map, const DrivenPath
 
 void draw_end_mark(const Canvas& canvas, const Point& at, const Point& ahead, PathEnd which, Colour colour,
                    double size) {
-  const Point aside(-ahead.y(), ahead.x());
-  const Point nose[] = {at + 2.6 * size * ahead, at + 1.35 * size * ahead + 0.75 * size * aside,
-                        at + 1.35 * size * ahead - 0.75 * size * aside};
+  const Point sideways(-ahead.y(), ahead.x());
+  const Point nose[] = {at + 2.6 * size * ahead, at + 1.35 * size * ahead + 0.75 * size * sideways,
+                        at + 1.35 * size * ahead - 0.75 * size * sideways};
   canvas.polygon(nose);
   canvas.fill(colour);
   canvas.stroke(palette::kPaper, 1);

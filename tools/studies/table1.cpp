@@ -240,7 +240,7 @@ void write_effects(const std::filesystem::path& file, unsigned jobs) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Critical sizes of the published steps and trenches, and what each effect makes of the table.");
+  CLI::App app("Critical sizes of the published steps and trenches, and the influence of each effect on the table.");
   std::filesystem::path folder = "tools/studies/results";
   unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
   app.add_option("--out", folder, "Folder for table1-critical.csv and table1-effects.csv")->capture_default_str();
