@@ -80,7 +80,7 @@ std::vector<Figure> figures_of_imperfect(const std::vector<ScoredCase>& cases) {
                    1),
       share_figure("pair_found", "dominating pairs, both named or each in a set", ">= 75 %", pairs, 0.75, 1),
       share_figure("wrong_name", "reports that name an effect that is not hidden", "<= 2 %", wrong, 0, 0.02),
-      share_figure("background_unnamed", "background alone, no name", ">= 97 %", quiet, 0.97, 1),
+      share_figure("background_unnamed", "background alone, nothing named", ">= 97 %", quiet, 0.97, 1),
       share_figure("outside_unnamed", "withheld and foreign effects, no wrong name", ">= 95 %", outside, 0.95, 1),
       share_figure("baseline_right", "changes since a baseline, named or in the only set; none where nothing changed",
                    ">= 90 %", since, 0.90, 1),

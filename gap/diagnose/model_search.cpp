@@ -108,7 +108,7 @@ bool ends_early(const EffectCurves& curves, const OnCurve& place) {
 }
 
 // Extends curves over the whole range for effects that fit best at a premature end: one that did not matter beneath the
-// nominal discrepancy may matter beside another effect. Returns whether there were any.
+// nominal discrepancy may matter together with another effect. Returns whether there were any.
 bool follow_early_ends(EffectCurves& curves, const StageData& data, std::span<const Model> fitted,
                        const Simulate& simulate) {
   std::set<std::size_t> early;

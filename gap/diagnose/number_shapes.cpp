@@ -41,7 +41,7 @@ SlightlyOff slightly_off(const candidates::Candidate& candidate, std::size_t num
   return {std::move(settings), fits ? step : -step};
 }
 
-// For each group, the shift of each number beside `settings`, for a relative error of 1.
+// For each group, the shift of each number with `settings` applied, for a relative error of 1.
 std::vector<MatrixXd> shifts_beside(const StageData& data, std::span<const candidates::Candidate> candidates,
                                     std::span<const std::size_t> numbers, const Settings& settings,
                                     const Simulate& simulate) {

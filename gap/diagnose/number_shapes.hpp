@@ -28,8 +28,8 @@ std::vector<std::size_t> numbers_but(std::span<const candidates::Candidate> cand
 std::vector<Eigen::MatrixXd> number_shapes(const StageData& data, const EffectCurves& curves,
                                            std::span<const std::size_t> possible);
 
-// The same around a model: shifts of the numbers beside its `settings`, except `valued`, whose values are estimated. A
-// wider track does not change the track speeds of a robot, unless its turns are limited.
+// The same around a model: shifts of the numbers with its `settings` applied, except `valued`, whose values are
+// estimated. A wider track does not change the track speeds of a robot, unless its turns are limited.
 std::vector<Eigen::MatrixXd> number_shapes_around(const StageData& data,
                                                   std::span<const candidates::Candidate> candidates,
                                                   std::span<const std::size_t> possible, const Settings& settings,

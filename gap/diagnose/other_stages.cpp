@@ -22,7 +22,7 @@ LeftThere left_by(const StageDecision& decision, const GroupVectors& shift) {
           squares_in_noise(decision.data, without_shared_shapes(decision.data, rest, likelihood.discrepancies))};
 }
 
-// Whether the residual of `decision` grows with one effect at each of `values`, beside its best model and alone.
+// Whether the residual of `decision` grows with one effect at each of `values`, together with its best model and alone.
 bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<const Setting> values,
              const DecisionSettings& settings) {
   for (const Settings& beside : {settings_of(decision.best.model.places), Settings{}}) {

@@ -10,7 +10,7 @@
 namespace kenaf::gap::diagnose {
 
 // Decides a stage again if another one names a rival of one of its effects, or refutes the effect or a rival: with it,
-// beside the other's best model and alone, the other's residual grows. `prepared`: one per stage.
+// together with the other's best model and alone, the other's residual grows. `prepared`: one per stage.
 void settle_by_other_stages(std::vector<StageDiagnosis>& stages, const std::vector<PreparedStage>& prepared,
                             Predictor& predictor, const StageOptions& options);
 

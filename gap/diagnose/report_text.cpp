@@ -57,7 +57,7 @@ void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
     const candidates::Candidate& candidate = d.candidates[effect.candidate];
     std::string line = "  " + value_in_words(candidate, effect.value);
     if (!effect.doubts.empty())
-      line += fmt::format("; no name: {}", fmt::join(doubts_in_words(d, effect), "; "));
+      line += fmt::format("; not named: {}", fmt::join(doubts_in_words(d, effect), "; "));
     else
       line += fmt::format("; explains {}", percent(explained_by(stage, effect)));
     if (!effect.partners.empty())

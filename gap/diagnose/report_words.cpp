@@ -321,7 +321,7 @@ std::vector<std::string> all_doubts(const Diagnosis& d) {
   for (const StageDiagnosis& stage : d.stages)
     for (const NamedEffect& effect : stage.decision.effects)
       if (!effect.doubts.empty())
-        words.push_back(fmt::format("no name for {} ({}): {}", d.candidates[effect.candidate].name,
+        words.push_back(fmt::format("not named: {} ({}): {}", d.candidates[effect.candidate].name,
                                     passage_name(stage.passage), fmt::join(doubts_in_words(d, effect), "; ")));
   return words;
 }

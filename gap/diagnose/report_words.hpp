@@ -82,7 +82,7 @@ std::string value_name(const candidates::Candidate& candidate);
 std::string value_in_words(const candidates::Candidate& candidate, const EffectValue& value);
 // Why an effect of the best model gets no name: "its value is at the end of its range (0 to 3 s)".
 std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& effect);
-// "no name for com_forward (drive to body): ...", for all effects of all stages.
+// "not named: com_forward (drive to body): ...", for all effects of all stages.
 std::vector<std::string> all_doubts(const Diagnosis& d);
 // "8.10 noise units before, 1.90 after on runs held out; noise alone: 1.00".
 std::string gap_in_words(const Diagnosis& d, const StageDiagnosis& stage);

@@ -39,7 +39,7 @@ struct Contest {
   const Model& best;
   std::size_t place;    // of the effect
   double accounted;     // squares that it explains
-  EffectCurves curves;  // of the other effects beside one another, of rivals alone
+  EffectCurves curves;  // of the other effects together, of rivals alone
   // The best model's shift minus their sum: the interaction is assumed to be the same with a rival.
   GroupVectors beyond;
   const DecisionSettings& settings;
@@ -92,8 +92,8 @@ std::vector<Model> rivals_on_curves(const Contest& contest) {
   return models;
 }
 
-// Whether a rival substitutes for the effect: the fit is as good without the effect, or the effect gains nothing beside
-// the rival. Otherwise the rival explains something else.
+// Whether a rival substitutes for the effect: the fit is as good without the effect, or the effect gains nothing in
+// addition to the rival. Otherwise the rival explains something else.
 bool takes_its_place(const Contest& contest, const Model& rival) {
   if (rival.deviance() - contest.best.deviance() < contest.settings.rival_evidence) return true;
   EffectSet both = effects_of(rival);

@@ -138,7 +138,7 @@ std::vector<Side> to_either_side(const StageData& data, const EffectCurves& curv
   return sides;
 }
 
-// The additional shift of an effect beside the others: at its value, on either side, and extrapolated from there.
+// The additional shift of an effect with the others present: at its value, on either side, and extrapolated from there.
 std::vector<Known> beside_others(const EffectCurves& curves, const Model& model, std::size_t place,
                                  const std::vector<Side>& sides) {
   const candidates::Candidate& candidate = curves.candidates[model.places[place].curve];
@@ -172,10 +172,11 @@ void mark_jump(EffectCurve& curve, double from, double value) {
   (value > from ? point : point + 1)->jump = true;
 }
 
-// Replaces the points of the effects' own curves on this side of neutral by those beside the model's other effects.
+// Replaces the points of the effects' own curves on this side of neutral by those with the model's other effects
+// present.
 void stand(const StageData& data, EffectCurves& curves, const Simulate& simulate, Model& model) {
   const std::vector<Side> sides = to_either_side(data, curves, simulate, model);
-  // points beside the other effects
+  // points with the other effects present
   std::vector<Setting> points;
   std::vector<GroupVectors> shifts;
   for (std::size_t i = 0; i < model.places.size(); ++i)

@@ -14,13 +14,13 @@ namespace kenaf::gap::diagnose {
 
 struct StandingModel {
   Model model;
-  // All curves; those of its effects are taken beside the others: every run is simulated at the fitted values, and for
-  // each value a tenth to a half of the way from neutral to either side, far enough to exceed roughness (less at a
-  // bend); extrapolated linearly from there to half of the way and to the end of the range.
+  // All curves; those of its effects are taken with the others present: every run is simulated at the fitted values,
+  // and for each value a tenth to a half of the way from neutral to either side, far enough to exceed roughness (less
+  // at a bend); extrapolated linearly from there to half of the way and to the end of the range.
   EffectCurves curves;
 };
 
-// Refits `model` with the curves of its effects beside one another; never worse than before. A model with an effect at
+// Refits `model` with the joint curves of its effects; never worse than before. A model with an effect at
 // its present value is returned unchanged.
 StandingModel fit_side_by_side(const StageData& data, EffectCurves curves, const Simulate& simulate, Model model);
 

@@ -71,7 +71,7 @@ Model take_effects(const StageData& data, EffectCurves& curves, const std::vecto
   return best;
 }
 
-// Removes effects with insufficient evidence beside the others, weakest first.
+// Removes effects with insufficient evidence in addition to the others, weakest first.
 StandingModel without_weak_effects(const StageData& data, const EffectCurves& curves, const Simulate& simulate,
                                    StandingModel best, const DecisionSettings& settings) {
   while (best.model.places.size() > 1) {
@@ -245,7 +245,7 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
     }
   }
 
-  // adds effects while each gains evidence, then refits them beside one another
+  // adds effects while each gains evidence, then refits them together
   Model chosen = take_effects(d.data, curves, d.singles, simulate, test, settings);
   if (chosen.places.size() > 1 && look_around(chosen))
     chosen.likelihood = likelihood_of(d.data, rest_of(d.data, chosen), chosen.likelihood.discrepancies);

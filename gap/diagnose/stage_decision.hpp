@@ -92,7 +92,7 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& curve
 
 // Another best model with which a stage is decided again.
 struct OtherModel {
-  Settings model;   // refitted beside one another
+  Settings model;   // refitted together
   Settings around;  // the simulation's open shapes are taken around this one
 };
 // `decided` with only these of its best model's effects: unnamed effects must not influence the others.

@@ -172,7 +172,7 @@ void RunChecks::check_pose_against_tracks() {
 }
 
 void RunChecks::check_scales() {
-  // A track whose command is small beside the other's may be dragged by it, against its own command.
+  // A track whose command is small compared with the other's may be dragged by it, against its own command.
   double most_asked_m = 0;
   for (const std::string side : kSides) {
     const auto asked = rate("cmd_track_" + side + "_mps");

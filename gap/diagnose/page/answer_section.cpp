@@ -112,7 +112,7 @@ std::string without_name(const Diagnosis& d, const StageDiagnosis& stage) {
       doubted.push_back(
           fmt::format("{} ({})", d.candidates[effect.candidate].name, fmt::join(doubts_in_words(d, effect), "; ")));
   std::string item = names_found(stage).empty() ? "no effect is named. " : "";
-  if (!doubted.empty()) item += fmt::format("{}o name for {}. ", item.empty() ? 'n' : 'N', enumeration(doubted));
+  if (!doubted.empty()) item += fmt::format("{}ot named: {}. ", item.empty() ? 'n' : 'N', enumeration(doubted));
   if (names_found(stage).empty())
     if (const std::vector<std::string> alone = best_alone(d, stage); !alone.empty())
       item += fmt::format("Explain most of the gap alone: {}.", enumeration(alone));

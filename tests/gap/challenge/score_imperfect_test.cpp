@@ -166,8 +166,8 @@ TEST_CASE("Imperfect: shares are reported with their cases, and with Wilson's in
   const ScoredCase quiet = scored(plan_of(Stratum::none), reported("unknown"));
   const ScoredCase named = scored(plan_of(Stratum::none), reported("named", {"mass"}));
   const std::string text = score_markdown(times(33, quiet, 1, named));
-  CHECK_THAT(text,
-             Catch::Contains("| background alone, no name | 33 of 34 | 97.1 % | 85.1 % to 99.5 % | >= 97 % | met |"));
+  CHECK_THAT(text, Catch::Contains(
+                       "| background alone, nothing named | 33 of 34 | 97.1 % | 85.1 % to 99.5 % | >= 97 % | met |"));
   const auto json = nlohmann::json::parse(score_json(times(33, quiet, 1, named)));
   for (const auto& line : json["figures"])
     if (line["id"] == "background_unnamed") CHECK((line["hits"] == 33 && line["cases"] == 34));

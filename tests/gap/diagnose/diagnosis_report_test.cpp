@@ -85,7 +85,7 @@ TEST_CASE("A report has every stage with its verdict, values, gap and what is le
   CHECK(body["effects"][0]["parameters"].begin()->at("spread") == 0.02);
   CHECK(body["effects"][0]["doubts"] == json{"the values fitted to single manoeuvres differ by more than it"});
   CHECK(report["doubts"] ==
-        json{"no name for com_forward (drive to body): the values fitted to single manoeuvres differ by more than it"});
+        json{"not named: com_forward (drive to body): the values fitted to single manoeuvres differ by more than it"});
 }
 
 TEST_CASE("The keys of version 1 are at the top of a report: of the stage with most of the gap, effects of all") {
@@ -353,7 +353,7 @@ TEST_CASE("The text has every value and doubt in words, on one screen") {
   CHECK_THAT(text, Contains("8.25 noise units before, 1.50 after on runs held out; noise alone: 1.25"));
   CHECK_THAT(text, Contains("15 % of the gap remains; yaw rate: measured 0.80 of the simulated, in every run; look at "
                             "track.separation_m or friction_across"));
-  CHECK_THAT(text, Contains("no name: its value is at the end of its range (") &&
+  CHECK_THAT(text, Contains("not named: its value is at the end of its range (") &&
                        Contains("the values fitted to single manoeuvres differ by more than it") &&
                        Contains("it explains only 3 % of the gap in track speed on runs held out") &&
                        Contains("all effects together explain only 31 % of the gap in track speed on runs held out"));

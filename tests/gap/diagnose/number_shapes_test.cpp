@@ -81,7 +81,7 @@ TEST_CASE("Numbers that cannot be seen make no shapes, and two that do the same 
 }
 
 TEST_CASE(
-    "Around a model a number shifts what it does beside the model's values, and the model's own numbers are no "
+    "Around a model a number has its shift with the model's values applied, and the model's own numbers are no "
     "shapes") {
   // tracks that are wider do nothing to track speeds, but for a robot whose turns are limited: 20 a metre and a unit of
   // the limit; without the limit 3 a metre; mass 7 a kilogram, whatever else

@@ -54,7 +54,7 @@ double left(const Settings& truth, const Model& model) {
 
 }  // namespace
 
-TEST_CASE("Beside one another effects are fitted by what they do there, not by what each does alone") {
+TEST_CASE("Joint effects are fitted by their joint shifts, not by those of each alone") {
   const Settings truth{{0, 0.5}, {1, 0.5}};
   const StandingModel standing = stood(moved, truth, {{0, 0.45}, {1, 0.45}});
   const Model& model = standing.model;

@@ -286,7 +286,7 @@ TEST_CASE("Repeats that differ more than the floor says make a gap harder to see
 }
 
 TEST_CASE("No effect is added where what is left is within what repeats differ by, whatever it gains") {
-  // beside one of 30 sigma another one of 6 gains 36 of deviance
+  // in addition to one of 30 sigma another one of 6 gains 36 of deviance
   const std::vector<Whole> effects = orthogonal_effects();
   const Whole gap = effects[2] * 30 / kLength + effects[4] * 6 / kLength;
   const auto found = [&](double inflation) {

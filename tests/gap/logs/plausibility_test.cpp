@@ -223,7 +223,7 @@ TEST_CASE("A track that is asked for less than a fifth of the other is no turned
   CHECK_THAT(dragged(-0.5, 0.09), !is_refused);
   CHECK_THAT(dragged(0.5, 0.12), is_refused);
   CHECK_THAT(dragged(-0.5, 0.12), is_refused);
-  // beside a track that is asked for as little it is
+  // with a track that is commanded as little it is
   CHECK_THAT(dragged(0.09, 0.09), is_refused);
 }
 
