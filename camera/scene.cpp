@@ -335,7 +335,7 @@ struct FloatPlane {
 Scene::Scene(const physics::WorldDescription& world, const Vector3d& toward_sun_W)
     : toward_sun_W_(toward_sun_W.normalized()), impl_(std::make_unique<Implementation>()) {
   if (!toward_sun_W_.allFinite() || !(toward_sun_W_.z() > 0))
-    throw std::invalid_argument("camera: the sun must stand above the ground");
+    throw std::invalid_argument("camera: the sun must be above the ground");
   impl_->world.planes = world.planes;
   impl_->world.meshes = world.meshes;
   impl_->device = make_device();

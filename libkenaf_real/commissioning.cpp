@@ -93,10 +93,9 @@ void reset_communication(Master& master, const RobotBus& bus, double patience_s)
 
     // The bus's own report is part of the message: a missing acknowledgement usually means missing power.
     if (!missing.empty() && master.now() >= until) {
-      throw Error(HRT_E_DEVICE,
-                  fmt::format("on {} nobody started within {} s as: {}{}; are they powered, is the bit rate "
-                              "right, are the nodes in [can] of the robot's description theirs?",
-                              bus.interface, patience_s, names(missing), bus_says));
+      throw Error(HRT_E_DEVICE, fmt::format("on {} these nodes did not start within {} s: {}{}; check their power, the "
+                                            "bit rate and the node numbers in [can] of the robot's description",
+                                            bus.interface, patience_s, names(missing), bus_says));
     }
   }
 }
@@ -105,7 +104,7 @@ void check_profile(Master& master, const NamedNode& node, std::uint16_t profile,
   const std::int64_t type = master.read(node, object::device_type, "device type");
   const std::uint16_t its = canopen::profile_of(static_cast<std::uint32_t>(type));
   if (its != profile)
-    throw Error(HRT_E_DEVICE, fmt::format("{} is no {} (its device type is {:#010x}, of CiA {}, not {})",
+    throw Error(HRT_E_DEVICE, fmt::format("{} is not a {} (its device type is {:#010x}, of CiA {}, not {})",
                                           to_string(node), what, type, its, profile));
 }
 
@@ -211,7 +210,7 @@ double set_up_inclinometer(Master& master, const RobotBus& bus) {
   check_profile(master, node, canopen::kProfileInclinometer, "inclinometer");
   const std::int64_t millidegrees = master.read(node, object::slope_resolution, "resolution of its slopes");
   if (millidegrees != 1 && millidegrees != 10 && millidegrees != 100 && millidegrees != 1000)
-    throw Error(HRT_E_DEVICE, fmt::format("{}: object 0x6000 (resolution) is {}, which CiA 410 does not have",
+    throw Error(HRT_E_DEVICE, fmt::format("{}: object 0x6000 (resolution) is {}, which CiA 410 does not define",
                                           to_string(node), millidegrees));
   write_pdos(master, node, {canbus::inclinometer_pdo()});
   write_heartbeats(master, node, bus, false);

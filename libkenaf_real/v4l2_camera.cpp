@@ -91,7 +91,7 @@ void V4l2Camera::interrupt() {
 
 void V4l2Camera::fail(const std::string& why) const {
   throw hrt::Error(HRT_E_DEVICE,
-                   fmt::format("camera '{}': {} {}; the next call opens it anew", camera_.name, camera_.device, why));
+                   fmt::format("camera '{}': {} {}; the next call reopens it", camera_.name, camera_.device, why));
 }
 
 bool V4l2Camera::control(unsigned long request, void* argument, const char* what, int expected) const {
@@ -121,7 +121,7 @@ void V4l2Camera::open() {
 
 void V4l2Camera::check_that_it_is_a_camera() const {
   v4l2_capability has{};
-  if (!control(VIDIOC_QUERYCAP, &has, "", ENOTTY)) fail("is no video device");
+  if (!control(VIDIOC_QUERYCAP, &has, "", ENOTTY)) fail("is not a video device");
   const std::uint32_t can = (has.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? has.device_caps : has.capabilities;
   if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0)
     fail("is a video device, but takes no pictures: the second device of a webcam has its metadata");

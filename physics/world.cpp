@@ -46,7 +46,7 @@ std::string fault_of(const RobotTruth& truth, double t_s) {
   const double speed = truth.v_WB_mps.norm(), spin = truth.w_WB_radps.norm();
   const Eigen::Vector3d& p = truth.X_WB.p;
   if (!is_number(truth.X_WB) || !std::isfinite(speed) || !std::isfinite(spin))
-    return fmt::format("its pose is no number at {:.3f} s", t_s);
+    return fmt::format("its pose is not a number at {:.3f} s", t_s);
   if (speed > kFastest_mps || spin > kFastest_radps)
     return fmt::format("it exploded: {:.0f} m/s and {:.0f} rad/s at {:.3f} s", speed, spin, t_s);
   if (p.z() < kLowest_m || p.norm() > kFurthest_m)

@@ -29,7 +29,7 @@ constexpr double kInTheAir_m = 0.01;  // a recorded start higher than this above
 std::uint64_t steps_per_sample(const RollOutOptions& options) {
   const double ratio = options.sample_period_s / options.physics.time_step_s;
   if (!(ratio >= 0.5 && ratio < 1e6) || std::abs(ratio - std::round(ratio)) > 1e-6)
-    throw std::invalid_argument(fmt::format("the sample period of {} s is no multiple of time_step_s = {}",
+    throw std::invalid_argument(fmt::format("the sample period of {} s is not a multiple of time_step_s = {}",
                                             options.sample_period_s, options.physics.time_step_s));
   return static_cast<std::uint64_t>(std::llround(ratio));
 }

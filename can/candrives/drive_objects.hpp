@@ -22,9 +22,9 @@ inline constexpr MappedObject shutdown_option{{0x605b, 0}, ObjectType::integer16
     velocity_threshold{{0x606f, 0}, ObjectType::unsigned16}, following_error{{0x60f4, 0}, ObjectType::integer32};
 }  // namespace object
 
-// Quick stop option codes, object 0x605a, supported besides kQuickStopAndStay.
+// Quick stop option codes, object 0x605a, supported in addition to kQuickStopAndStay.
 inline constexpr std::int16_t kDisableDrive = 0, kSlowDownRamp = 1, kQuickStopRamp = 2, kSlowDownAndStay = 5;
-// Abort connection option codes, object 0x6007, besides kAbortByQuickStop.
+// Abort connection option codes, object 0x6007, in addition to kAbortByQuickStop.
 inline constexpr std::int16_t kAbortNoAction = 0, kAbortByFault = 1, kAbortByDisableVoltage = 2;
 
 // Objects that CiA 402 leaves optional: 0x6078 with 0x6075, and 0x6079.

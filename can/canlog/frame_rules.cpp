@@ -101,12 +101,12 @@ bool FrameRules::check_length(const LogFrame& logged, const Address& address) {
 bool FrameRules::check_content(const LogFrame& logged, const Address& address) {
   const canopen::Frame& frame = logged.frame;
   if (address.service == Service::nmt && !canopen::nmt_order_from(frame)) {
-    findings_.add(logged, rule::content, "NMT order {:#04x} for node {}, which CiA 301 does not have", frame.data[0],
+    findings_.add(logged, rule::content, "NMT order {:#04x} for node {}, which CiA 301 does not define", frame.data[0],
                   frame.data[1]);
     return false;
   }
   if (address.service == Service::heartbeat && !canopen::heartbeat_from(frame)) {
-    findings_.add(logged, rule::content, "a heartbeat of {} says state {:#04x}, which CiA 301 does not have",
+    findings_.add(logged, rule::content, "a heartbeat of {} reports state {:#04x}, which CiA 301 does not define",
                   network_.name(address.node), frame.data[0]);
     return false;
   }

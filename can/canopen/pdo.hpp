@@ -32,7 +32,7 @@ struct Pdo {
 // As in the mapping objects, 0x1600 and 0x1A00: index, sub-index and length in bits.
 std::uint32_t mapping_entry(const MappedObject& mapped);
 std::uint16_t cob_id(const Pdo& pdo, NodeId node);
-// Bits of the COB-ID entry, 0x1400 and 0x1800 sub-index 1, beside the identifier.
+// Bits of the COB-ID entry, 0x1400 and 0x1800 sub-index 1, in addition to the identifier.
 constexpr std::uint32_t kPdoInvalid = 1u << 31;          // the PDO does not exist
 constexpr std::uint32_t kPdoNoRemoteRequest = 1u << 30;  // for a transmit PDO; reserved, 0, for a receive PDO
 std::uint8_t byte_count(const Pdo& pdo);

@@ -116,5 +116,5 @@ TEST_CASE("A buffer's picture: rows without their padding, Motion JPEG as it is,
 TEST_CASE("A device that is not there, or is none, is named") {
   CHECK_THAT(device_error("/dev/video-of-nobody"),
              Catch::Contains("camera 'Front': /dev/video-of-nobody does not exist"));
-  CHECK_THAT(device_error("/dev/null"), Catch::Contains("/dev/null is no video device"));
+  CHECK_THAT(device_error("/dev/null"), Catch::Contains("/dev/null is not a video device"));
 }

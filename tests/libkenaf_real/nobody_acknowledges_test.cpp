@@ -53,7 +53,7 @@ TEST_CASE("A robot that is not switched on is named, and what the bus says, afte
     FAIL("it opened");
   } catch (const hrt::Error& error) {
     CHECK(error.code() == HRT_E_DEVICE);
-    CHECK_THAT(error.what(), Catch::Contains("nobody started within 3 s as: track left (node 1)") &&
+    CHECK_THAT(error.what(), Catch::Contains("these nodes did not start within 3 s: track left (node 1)") &&
                                  Catch::Contains("gyro (node 8)") && Catch::Contains("no node acknowledges them"));
   }
   CHECK(robot.seconds() == Approx(0.1 + 3).margin(0.05));  // after listening for another master

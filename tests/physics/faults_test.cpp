@@ -41,7 +41,7 @@ TEST_CASE("A robot whose numbers end is named, and its neighbour drives on to th
   }
   SECTION("is no number: a moment of inertia that has no inverse") {
     wild.body.inertia_kgm2 = {1e-310, 1e-310, 1e-310};
-    expected = "no number";
+    expected = "not a number";
   }
   const auto end_of_neighbour = [&](bool company) {
     World world(ground(), {}, 1);
@@ -69,7 +69,7 @@ TEST_CASE("After a fault sensors report a robot that stands, in numbers, and a t
   const RobotId id = world.add_robot(wild, "a", {});
   world.set_command(id, drive(0.3, 0.3));
   run(world, 1);
-  REQUIRE_THAT(world.fault(id), Contains("no number"));
+  REQUIRE_THAT(world.fault(id), Contains("not a number"));
   const RobotTruth truth = world.truth(id);
   CHECK(truth.X_WB.p.allFinite());
   CHECK(truth.track_mps == std::array<double, 2>{});
@@ -89,7 +89,7 @@ TEST_CASE("After a fault sensors report a robot that stands, in numbers, and a t
   CHECK(world.fault(id).empty());
   CHECK(world.truth(id).X_WB.p.allFinite());
   run(world, 1);
-  CHECK_THAT(world.fault(id), Contains("no number"));
+  CHECK_THAT(world.fault(id), Contains("not a number"));
 }
 
 TEST_CASE("A loose box under a robot that is no number stays a box, and carries the next robot") {
@@ -101,7 +101,7 @@ TEST_CASE("A loose box under a robot that is no number stays a box, and carries 
   const RobotId broken = world.add_robot(wild, "a", {{0, 0, 0.2}, Eigen::Quaterniond::Identity()});
   world.set_command(broken, drive(0.3, 0.3));
   run(world, 1);
-  REQUIRE_THAT(world.fault(broken), Contains("no number"));
+  REQUIRE_THAT(world.fault(broken), Contains("not a number"));
   CHECK((world.box_pose(box).p - X_WBox.p).norm() < 1e-3);
   world.remove_robot(broken);
   // its top is at 0.2 m, the belly 0.09 m below the robot's centre. 30 kg press four points by 0.4 mm into the ground

@@ -40,7 +40,7 @@ expect 3 vcan0 HRT_E_DEVICE "'vcan0' is down" "ip link set vcan0 up"
 ip link set vcan0 up
 
 candump -L vcan0 >sent & watching=$!
-expect 4 vcan0 HRT_E_DEVICE "on vcan0 nobody started" "track left (node 1)" "track right (node 2)" \
+expect 4 vcan0 HRT_E_DEVICE "on vcan0 these nodes did not start" "track left (node 1)" "track right (node 2)" \
   "flipper front left (node 3)" "flipper front right (node 4)" "flipper rear left (node 5)" \
   "flipper rear right (node 6)" "inclinometer (node 7)" "gyro (node 8)"
 kill "$watching"; wait "$watching" 2>/dev/null
