@@ -239,7 +239,7 @@ bool compare(const char* name, Measurement relay, Measurement forwarder, const s
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Round trips through kenaf-relayd beside a bare UDP-to-TCP forwarder"};
+  CLI::App app{"Round trips through kenaf-relayd compared with a bare UDP-to-TCP forwarder"};
   int rounds = 8, count = 2000;
   std::string bin = KENAF_BIN_DIR;
   app.add_option("--rounds", rounds, "Pairs of runs, relay and forwarder in turn");

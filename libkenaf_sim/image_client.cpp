@@ -111,7 +111,7 @@ void ImageClient::open() {
 }
 
 void ImageClient::lose(const std::string& why) const {
-  throw hrt::Error(HRT_E_LINK, fmt::format("the camera server at {} {}; the next call connects anew", server_, why));
+  throw hrt::Error(HRT_E_LINK, fmt::format("the camera server at {} {}; the next call reconnects", server_, why));
 }
 
 void ImageClient::send_all(std::string_view bytes) {
@@ -186,7 +186,7 @@ hrt::CameraPicture ImageClient::picture_of_answer() {
     picture.height = raw->height;
     picture.bytes = std::move(raw->rgb);
   } else {
-    if (!protocol::image::is_whole_jpeg(answer.data)) lose("sent a picture that is no whole JPEG");
+    if (!protocol::image::is_whole_jpeg(answer.data)) lose("sent a picture that is not a complete JPEG");
     picture.bytes = std::move(answer.data);
   }
   std::optional<protocol::image::FrameNote> note;

@@ -99,7 +99,7 @@ std::string words_of(const Status& status) {
     case Halt::silence:
       return "HALTED by silence of this console - let go, then press again";
     case Halt::robot_lost:
-      return "HALTED, the robot's link was opened anew - let go, then press";
+      return "HALTED, the robot's link was reopened - let go, then press";
     case Halt::emergency:
       return "HALTED after the emergency stop - let go of all keys";
     case Halt::late:

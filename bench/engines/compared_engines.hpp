@@ -1,4 +1,4 @@
-// The engines of the comparison: Kenaf's own physics beside those of rollout/engines/.
+// The engines of the comparison: Kenaf's own physics and those of rollout/engines/.
 #pragma once
 
 #include <vector>

@@ -40,7 +40,7 @@ class Feed {
     std::shared_ptr<const Frame> frame;  // the newest of the view; null: none yet
     std::string none;                    // why there is no frame and will be none; empty: it will come
   };
-  // Counts as a request. A camera whose picture could not be drawn stands still: `none` says why, beside its last
+  // Counts as a request. A camera whose picture could not be drawn stops: `none` says why, in addition to its last
   // frame.
   Look look(std::string_view view);
 

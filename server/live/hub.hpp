@@ -1,4 +1,4 @@
-// State shared by all pages of the live view, beside its site. For the view's thread only, except the members of
+// State shared by all pages of the live view, and its site. For the view's thread only, except the members of
 // `world` that are for any thread.
 #pragma once
 

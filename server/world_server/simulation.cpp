@@ -97,7 +97,7 @@ void Simulation::receive(Session& session, std::string_view bytes, double now_wa
   while (const auto line = session.lines.next()) {
     handle_line(session, *line);
     if (session.bad_lines > kMostBadLines) {
-      spdlog::warn("{}: closed after {} lines that are no USARSim messages", session.peer, session.bad_lines);
+      spdlog::warn("{}: closed after {} lines that are not USARSim messages", session.peer, session.bad_lines);
       session.close = true;
       return;
     }
@@ -159,9 +159,9 @@ void Simulation::send_due(Session& session) {
   if (!session.schedule.due(step)) return watch_silence(session);
 
   // Executes the commands for the frame that begins now.
-  due_lines_.clear();
-  std::swap(due_lines_, session.deferred);
-  for (std::string_view rest = due_lines_; !rest.empty();) {
+  deferred_lines_.clear();
+  std::swap(deferred_lines_, session.deferred);
+  for (std::string_view rest = deferred_lines_; !rest.empty();) {
     const std::size_t end = rest.find('\n');
     MessageView message;
     if (protocol::usarsim::parse_message(rest.substr(0, end), message) == protocol::usarsim::ParseError::none) {

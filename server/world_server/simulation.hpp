@@ -115,7 +115,7 @@ struct Simulation {
   std::vector<Call> calls_;
   std::uint64_t next_call_step_ = kNever;
   std::uint32_t last_session_ = 0;
-  std::string due_lines_;  // scratch of send_due()
+  std::string deferred_lines_;  // scratch of send_due()
   LogLimiter behind_log_{1, 10};
   LogLimiter fault_log_{kMostRobots, 5};
   double dropped_s_ = 0;  // robot time by which this machine lags

@@ -17,7 +17,7 @@ Reason set_joint(Simulation& simulation, Session& session, const MessageView& me
   if (!order) return "unknown Opcode";
   std::array<double, robot::kFlipperCount> params{};
   const auto count = protocol::usarsim::parse_number_list(text_of(message, "Params"), params);
-  if (*order != JointOrder::brake && (!count || *count == 0)) return "Params is no number";
+  if (*order != JointOrder::brake && (!count || *count == 0)) return "Params is not a number";
 
   const std::string_view name = text_of(message, "Name");
   const physics::RobotTruth truth = simulation.world.truth(robot.id);

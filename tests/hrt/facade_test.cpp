@@ -287,7 +287,7 @@ TEST_CASE("Another thread stops a motion, and a second motion is busy") {
   await_motion();
   CHECK(hrt_go_forward(1) == HRT_E_BUSY);
   CHECK(hrt_turning(1) == HRT_E_BUSY);
-  CHECK(hrt_sleep(0.05) == HRT_OK);  // sleeping beside a motion is fine
+  CHECK(hrt_sleep(0.05) == HRT_OK);  // sleeping during a motion is allowed
   CHECK(hrt_stop() == HRT_OK);
   driver.join();
   CHECK(result == HRT_E_STOPPED);

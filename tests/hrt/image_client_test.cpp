@@ -222,8 +222,8 @@ TEST_CASE("Whatever else a server does wrong ends in words") {
       },
       "67108865 bytes, which is more than a picture can have");
   misbehave([](Client& c) { c.send("HTTP/1.1 400 Bad Request\r\n"); }, "type 72, which is not a picture");
-  misbehave([&](Client& c) { c.answer(3, Bytes8(jpeg.begin(), jpeg.end() - 9)); }, "no whole JPEG");
-  misbehave([&](Client& c) { c.answer(3, {}); }, "no whole JPEG");
+  misbehave([&](Client& c) { c.answer(3, Bytes8(jpeg.begin(), jpeg.end() - 9)); }, "not a complete JPEG");
+  misbehave([&](Client& c) { c.answer(3, {}); }, "not a complete JPEG");
   misbehave([](Client& c) { c.answer(0, {0, 9, 0, 9, 1, 2}); }, "raw picture of 6 bytes");
   misbehave([](Client&) {}, "says nothing");
   misbehave(
@@ -247,7 +247,7 @@ TEST_CASE("A server that goes away is named, and asked anew by the next call") {
   const OpenAt open(server.address());
   hrt_picture picture = hrt_picture_init();
   CHECK(get(picture) == HRT_E_LINK);
-  CHECK_THAT(hrt_last_error(), Catch::Contains("closed the connection; the next call connects anew"));
+  CHECK_THAT(hrt_last_error(), Catch::Contains("closed the connection; the next call reconnects"));
   serves = true;
   CHECK(get(picture) == HRT_OK);
   CHECK(server.connections() == 2);
