@@ -114,7 +114,9 @@ void Desk::nudge(unsigned flippers, double by_deg, const Status& newest) {
   std::array<double, kFlipperCount> deg{};
   for (std::size_t i = 0; i < kFlipperCount; ++i) {
     const bool was_commanded = (newest.flippers_commanded >> i & 1) != 0;
-    deg[i] = ordered_deg_ ? (*ordered_deg_)[i] : was_commanded ? newest.commanded_flipper_deg[i] : newest.flipper_deg[i];
+    deg[i] = ordered_deg_    ? (*ordered_deg_)[i]
+             : was_commanded ? newest.commanded_flipper_deg[i]
+                             : newest.flipper_deg[i];
     if ((flippers >> i & 1) != 0) deg[i] = std::clamp(deg[i] + by_deg, -kMaxNudged_deg, kMaxNudged_deg);
   }
   order_flippers(deg, "by hand");

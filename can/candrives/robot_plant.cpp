@@ -48,7 +48,8 @@ void RobotPlant::advance(canopen::Time step, const PlantCommand& command) {
   commanded.track_speed_mps = command.track_mps;
   // beyond its stop a joint angle is a direction, which could be reached the other way round
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
-    commanded.flipper[i] = {robot::JointMode::angle, std::clamp(command.flipper_rad[i], min_flipper_rad_, max_flipper_rad_)};
+    commanded.flipper[i] = {robot::JointMode::angle,
+                            std::clamp(command.flipper_rad[i], min_flipper_rad_, max_flipper_rad_)};
   world_.set_command(robot_, commanded);
   for (due_ += step; due_ >= step_; due_ -= step_) {
     world_.step();

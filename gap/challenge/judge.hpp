@@ -39,11 +39,11 @@ struct Judgement {
   std::vector<Found> found;         // for each of `hidden`
   bool is_small = false;            // something is hidden, below kSurelySeen_floors or kDominates
   bool right = false;
-  bool all_found = false;          // each hidden effect has a name or set of its own, whatever else is claimed
-  bool named_alone = false;        // the only effect hidden, and the only one claimed, by its name
-  bool names_wrong = false;        // a name in `named` that is not hidden
+  bool all_found = false;        // each hidden effect has a name or set of its own, whatever else is claimed
+  bool named_alone = false;      // the only effect hidden, and the only one claimed, by its name
+  bool names_wrong = false;      // a name in `named` that is not hidden
   bool distinguishable = false;  // the only effect hidden, and the report's own table says so; or outside the
-                                   // catalogue, and no effect in it looks alike
+                                 // catalogue, and no effect in it looks alike
 };
 
 // Returns the name of an effect in reports: with its parameter only if it has several.

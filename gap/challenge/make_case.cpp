@@ -154,7 +154,8 @@ void make_case(CasePlan& plan, const fs::path& folder, unsigned jobs, const std:
     if (size == best_size && !(candidate.look_alike.angle_deg > best.look_alike.angle_deg)) continue;
     best_size = size;
     best = std::move(candidate);
-    if (size == kCloseToPlanned && (!is_outside(plan.stratum) || best.look_alike.angle_deg >= diagnose::kDistinguishable_deg))
+    if (size == kCloseToPlanned &&
+        (!is_outside(plan.stratum) || best.look_alike.angle_deg >= diagnose::kDistinguishable_deg))
       break;
   }
 

@@ -53,7 +53,7 @@ struct Diagnosis {
   bool complete = false;                     // of all stages
   std::optional<std::size_t> largest_stage;  // index into `stages`: the one with most of the gap, if any
   std::vector<ProposedManoeuvre> next;       // if a stage leaves a choice between models; gentlest that suffices first
-  std::vector<std::size_t> to_separate;       // the candidates that `next` is to distinguish
+  std::vector<std::size_t> to_separate;      // the candidates that `next` is to distinguish
   std::size_t roll_outs = 0;
   std::string interrupted;  // the step that was interrupted; empty: complete
 };

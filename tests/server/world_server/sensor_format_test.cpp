@@ -20,7 +20,7 @@ SensorDescription sensor(SensorType type, const char* name) {
 
 // The message of one reading, without its line end.
 std::string message(Dialect dialect, const SensorDescription& description, const physics::Reading& reading,
-                 double t_s = 3104.5749) {
+                    double t_s = 3104.5749) {
   std::vector<physics::SensorSample> samples{{0, t_s, reading}};
   std::string out;
   write_samples(samples, {description}, dialect, formats_of(dialect), true, out);
@@ -102,8 +102,8 @@ TEST_CASE("Tachometer, touch and drives are told in the form of their dialect") 
         "SEN {Time 1.0000} {Type Touch} {Name Touch Touch False}");
   CHECK(message(Dialect::udk, sensor(SensorType::touch, "Touch"), physics::TouchReading{true}, 1) ==
         "SEN {Time 1.0000} {Type Touch} {Name Touch} {Touch True}");
-  CHECK(message(Dialect::ut2004, sensor(SensorType::drives, "Drives"), physics::DrivesReading{{1, 2}, {3, 4, 5, 6}, 25.5},
-             1) ==
+  CHECK(message(Dialect::ut2004, sensor(SensorType::drives, "Drives"),
+                physics::DrivesReading{{1, 2}, {3, 4, 5, 6}, 25.5}, 1) ==
         "SEN {Time 1.0000} {Type Drives} {Name Drives} {TrackCurrent 1.0000,2.0000} "
         "{FlipperCurrent 3.0000,4.0000,5.0000,6.0000} {BatteryVoltage 25.5000}");
 }
@@ -111,7 +111,7 @@ TEST_CASE("Tachometer, touch and drives are told in the form of their dialect") 
 TEST_CASE("GPS tells degrees and minutes, or that it has no fix") {
   // 39 degrees and 8.03 minutes north: 39 + 8.03 / 60 = 39.133833...
   CHECK(message(Dialect::ut2004, sensor(SensorType::gps, "GPS"),
-             physics::GpsReading{39 + 8.03 / 60, -(77 + 13.0 / 60), 11, true}, 1) ==
+                physics::GpsReading{39 + 8.03 / 60, -(77 + 13.0 / 60), 11, true}, 1) ==
         "SEN {Time 1.0000} {Type GPS} {Name GPS} {Latitude 39,8.0300,N} {Longitude 77,13.0000,W} {Fix 1} "
         "{Satellites 11}");
   CHECK(message(Dialect::udk, sensor(SensorType::gps, "GPS"), physics::GpsReading{0, 0, 0, false}, 1) ==
