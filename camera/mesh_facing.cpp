@@ -4,7 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <tuple>
+
+#include "physics/triangle_surface.hpp"
 
 namespace kenaf::camera {
 
@@ -12,22 +13,12 @@ namespace {
 
 const double kSmooth_cos = std::cos(35 * std::numbers::pi / 180);
 
-// For each vertex, the first one at the same place: files often have vertices of their own for each triangle.
-std::vector<std::uint32_t> merged(const std::vector<Eigen::Vector3d>& vertices) {
-  const auto key = [&](std::uint32_t i) { return std::tuple(vertices[i].x(), vertices[i].y(), vertices[i].z()); };
-  std::vector<std::uint32_t> order(vertices.size()), first(vertices.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return key(a) < key(b); });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
-  return first;
-}
-
 }  // namespace
 
 std::vector<std::array<float, 3>> mesh_facing(const physics::TriangleMesh& mesh, const Eigen::Vector3d& toward_sun_W) {
   const auto& triangles = mesh.triangles;
-  const std::vector<std::uint32_t> vertex = merged(mesh.vertices_W);
+  // Files often have vertices of their own for each triangle.
+  const std::vector<std::uint32_t> vertex = physics::places_of(mesh.vertices_W);
   std::vector<Eigen::Vector3f> area(triangles.size());  // along the normal
   std::vector<std::uint32_t> end(mesh.vertices_W.size() + 1, 0);
   for (std::size_t i = 0; i < triangles.size(); ++i) {

@@ -10,25 +10,16 @@ namespace {
 
 constexpr double kLeastHeight_m = 1e-6;
 
+// Renumbers the vertices in the order of use; those that no triangle uses are dropped.
 void join_vertices(TriangleSurface& surface) {
-  // Sorted by coordinates, vertices at one place are neighbours: each gets the first of them.
   const std::vector<Eigen::Vector3d>& v = surface.vertices;
-  std::vector<std::uint32_t> order(v.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
-    return std::lexicographical_compare(v[a].begin(), v[a].end(), v[b].begin(), v[b].end());
-  });
-  std::vector<std::uint32_t> first_alike(v.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    first_alike[order[i]] = i > 0 && v[order[i]] == v[order[i - 1]] ? first_alike[order[i - 1]] : order[i];
-
-  // Renumber in the order of use; vertices that no triangle uses are dropped.
+  const std::vector<std::uint32_t> place = places_of(v);
   constexpr auto kUnused = static_cast<std::uint32_t>(-1);
   std::vector<std::uint32_t> new_index(v.size(), kUnused);
   std::vector<Eigen::Vector3d> kept;
   for (auto& triangle : surface.triangles) {
     for (std::uint32_t& corner : triangle) {
-      std::uint32_t& index = new_index[first_alike[corner]];
+      std::uint32_t& index = new_index[place[corner]];
       if (index == kUnused) {
         index = static_cast<std::uint32_t>(kept.size());
         kept.push_back(v[corner]);
@@ -70,6 +61,20 @@ bool too_thin(const TriangleSurface& surface, const std::array<std::uint32_t, 3>
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> places_of(std::span<const Eigen::Vector3d> vertices) {
+  // Sorted by coordinates, vertices at one place are neighbours: each gets the first of them.
+  const auto& v = vertices;
+  std::vector<std::uint32_t> order(v.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {
+    return std::lexicographical_compare(v[a].begin(), v[a].end(), v[b].begin(), v[b].end());
+  });
+  std::vector<std::uint32_t> place(v.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    place[order[i]] = i > 0 && v[order[i]] == v[order[i - 1]] ? place[order[i - 1]] : order[i];
+  return place;
+}
 
 double volume_m3(const TriangleSurface& surface) {
   if (surface.vertices.empty()) return 0;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,6 +22,10 @@ struct TidySurface {
   bool closed = false;         // every edge has a triangle on either side
   bool windings_agree = true;  // no two neighbours take the same edge in the same direction
 };
+
+// Returns for each vertex the index of one that stands for all vertices at exactly the same place (-0 is 0): two are at
+// the same place if and only if their numbers are equal. The vertices must be finite.
+std::vector<std::uint32_t> places_of(std::span<const Eigen::Vector3d> vertices);
 
 // Joins vertices at the same place, drops triangles without area (thinner than 1 um), and turns the triangles of a
 // closed surface so that their normals point outward. The vertices must be finite, the indices within range.

@@ -1,5 +1,4 @@
 #include "gap/challenge/make_case.hpp"
-#include "gap/challenge/stand_ins.hpp"
 
 #include <algorithm>
 #include <cmath>

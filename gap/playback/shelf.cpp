@@ -35,14 +35,10 @@ Shelf::Look Shelf::look(std::size_t number) {
 void Shelf::work() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    // The newest request, unless its text exists already.
+    // The newest request. look() queues only what has no text, and a number leaves the queue as it gets one.
     changed_.wait(lock, [this] { return ending_ || !wanted_.empty(); });
     if (ending_) return;
     const std::size_t number = wanted_.front();
-    if (texts_.contains(number)) {
-      wanted_.remove(number);
-      continue;
-    }
 
     // Makes the text without the lock, so that look() never waits.
     lock.unlock();

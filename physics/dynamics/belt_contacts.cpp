@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "physics/dynamics/touching.hpp"
+
 namespace kenaf::physics {
 namespace {
 

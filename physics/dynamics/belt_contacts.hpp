@@ -46,7 +46,4 @@ struct TriangleInT {
 };
 void touch_triangle(const BeltShape& belt, const TriangleInT& triangle, std::vector<BeltTouch>& out);
 
-// The widest gap that counts as contact: a step may close it.
-inline constexpr btScalar kTouching_m = 0.001;
-
 }  // namespace kenaf::physics

@@ -8,6 +8,8 @@
 #include <new>
 #include <utility>
 
+#include "physics/dynamics/touching.hpp"
+
 namespace kenaf::physics {
 namespace {
 

@@ -7,10 +7,10 @@
 #include <array>
 #include <new>
 
+#include "physics/dynamics/touching.hpp"
+
 namespace kenaf::physics {
 namespace {
-
-constexpr btScalar kTouching_m = 0.001;  // widest gap that counts as contact: a step may close it
 
 class HullPlaneAlgorithm : public btCollisionAlgorithm {
  public:

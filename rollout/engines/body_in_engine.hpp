@@ -30,8 +30,9 @@ bool shows_in_engine(const physics::EffectInfo& effect);
 
 // `exact`: a run of roll_out() without noise; `noisy`: the same with noise, from the same start. Returns `noisy` with
 // the engine's position, tilt, yaw and turn rates with the same noise on them, and without accelerations. The robot's
-// effects are applied to robot and world. Throws std::invalid_argument if there is no such engine, or the run lacks
-// belts, pose or tilt.
+// effects are applied to robot and world. Throws std::invalid_argument if there is no such engine, if the run lacks
+// belts, pose or tilt, or if planes and boxes differ in friction and the engine is "mujoco", which has one friction for
+// all ground.
 runs::Run with_body_of(std::string_view engine, const physics::RobotDescription& robot,
                        const physics::WorldDescription& world, const runs::Run& exact, const runs::Run& noisy);
 

@@ -24,7 +24,7 @@ struct DriveSample {
 
 struct EngineScene {
   std::string name;
-  physics::WorldDescription world;                 // planes and fixed boxes; one friction for all of them
+  physics::WorldDescription world;                 // planes and boxes, all of them fixed
   std::optional<physics::RobotDescription> robot;  // else the block
   std::optional<physics::Box> block;
   physics::Pose X_start;  // of the robot's body frame

@@ -2,6 +2,7 @@
 #include <mujoco/mujoco.h>
 
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 
 #include "rollout/engines/runner.hpp"
@@ -34,18 +35,31 @@ std::string inertial(double mass_kg, const Eigen::Vector3d& com, const Eigen::Ve
   return fmt::format("<inertial pos=\"{}\" mass=\"{}\" diaginertia=\"{}\"/>", text(com), mass_kg, text(inertia));
 }
 
+// MuJoCo takes a contact's friction from one of its two geoms and cannot multiply both: all ground must be alike.
+double friction_of_all_ground(const WorldDescription& world) {
+  std::optional<double> friction;
+  const auto add = [&](double other) {
+    if (friction.value_or(other) != other)
+      throw std::invalid_argument(
+          fmt::format("MuJoCo: the ground must have one friction, this world has {} and {}", *friction, other));
+    friction = other;
+  };
+  for (const GroundPlane& plane : world.planes) add(plane.friction);
+  for (const Box& box : world.boxes) add(box.friction);
+  return friction.value_or(1);
+}
+
 // The scene as MJCF. A geom's `user` is 1 + the track whose belt it is, or 0. A contact has the friction of the side
 // with the higher priority: robot and block, whose coefficients are already multiplied by the terrain's.
 class ModelText {
  public:
-  ModelText(const EngineScene& scene, const Options& options) : options_(options) {
+  ModelText(const EngineScene& scene, const Options& options)
+      : options_(options), friction_(friction_of_all_ground(scene.world)) {
     for (const GroundPlane& plane : scene.world.planes) {
-      friction_ = plane.friction;
       terrain_ +=
           fmt::format("<geom type=\"plane\" size=\"0 0 1\" {} contype=\"2\" conaffinity=\"1\"/>", placed(plane.X_WP));
     }
     for (const Box& box : scene.world.boxes) {
-      friction_ = box.friction;
       terrain_ += fmt::format("<geom type=\"box\" size=\"{}\" {} contype=\"2\" conaffinity=\"1\"/>",
                               text(box.size_m / 2), placed(box.X_WBox));
     }
@@ -127,7 +141,7 @@ class ModelText {
 
   Options options_;
   std::string assets_, terrain_, bodies_, actuators_, held_;
-  double friction_ = 1;
+  double friction_;  // of all ground
   int joints_ = 0, meshes_ = 0;
 };
 

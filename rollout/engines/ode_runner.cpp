@@ -69,19 +69,23 @@ class OdeRunner : public Runner {
     soft_erp_ = kStiffness_npm * time_step_s_ / stiffness;
     soft_cfm_ = 1 / stiffness;
 
-    // Ground. Friction is kept with the moving geoms, so all ground has one coefficient: that of the last piece.
+    // Ground: each piece has its own friction, which multiplies that of what touches it.
+    ground_friction_.reserve(scene.world.planes.size() + scene.world.boxes.size());
+    const auto add_ground = [&](dGeomID geom, double friction) {
+      ground_friction_.push_back(friction);
+      dGeomSetData(geom, &ground_friction_.back());
+    };
     for (const GroundPlane& plane : scene.world.planes) {
-      friction_ = plane.friction;
       const Eigen::Vector3d n = plane.X_WP.q * Eigen::Vector3d::UnitZ();
-      dCreatePlane(terrain_, n.x(), n.y(), n.z(), n.dot(plane.X_WP.p));
+      add_ground(dCreatePlane(terrain_, n.x(), n.y(), n.z(), n.dot(plane.X_WP.p)), plane.friction);
     }
     for (const Box& box : scene.world.boxes) {
-      friction_ = box.friction;
       dGeomID geom = dCreateBox(terrain_, box.size_m.x(), box.size_m.y(), box.size_m.z());
       dQuaternion q;
       quaternion(box.X_WBox.q, q);
       dGeomSetPosition(geom, box.X_WBox.p.x(), box.X_WBox.p.y(), box.X_WBox.p.z());
       dGeomSetQuaternion(geom, q);
+      add_ground(geom, box.friction);
     }
     if (scene.robot)
       add_robot(scene);
@@ -131,11 +135,9 @@ class OdeRunner : public Runner {
     return body;
   }
 
-  void add_geom(dGeomID geom, dBodyID body, const Eigen::Vector3d& p_ComGeom, Surface surface) {
+  void add_geom(dGeomID geom, dBodyID body, const Eigen::Vector3d& p_ComGeom, const Surface& surface) {
     dGeomSetBody(geom, body);
     dGeomSetOffsetPosition(geom, p_ComGeom.x(), p_ComGeom.y(), p_ComGeom.z());
-    surface.friction_along *= friction_;
-    surface.friction_across *= friction_;
     surfaces_.push_back(std::make_unique<Surface>(surface));
     dGeomSetData(geom, surfaces_.back().get());
   }
@@ -211,12 +213,13 @@ class OdeRunner : public Runner {
     dContact contact[kMost];
     const int count = dCollide(moving, fixed, kMost, &contact[0].geom, sizeof(dContact));
     const Surface& surface = *static_cast<const Surface*>(dGeomGetData(moving));
+    const double ground = *static_cast<const double*>(dGeomGetData(fixed));
     for (int i = 0; i < count; ++i) {
       dSurfaceParameters& s = contact[i].surface;
       s.mode = dContactApprox1 | dContactSoftERP | dContactSoftCFM;
       s.soft_erp = soft_erp_;
       s.soft_cfm = soft_cfm_;
-      s.mu = surface.friction_along;
+      s.mu = surface.friction_along * ground;
       if (surface.belt) {
         // ODE's normal points into the moving body, so the outward normal is its negative. ODE drives the first body's
         // speed along fdir1, relative to the second, towards motion1.
@@ -224,7 +227,7 @@ class OdeRunner : public Runner {
         const double length = along.norm();
         if (length > 0.1) {  // else a side face
           s.mode |= dContactMu2 | dContactFDir1 | dContactMotion1;
-          s.mu2 = surface.friction_across;
+          s.mu2 = surface.friction_across * ground;
           s.motion1 = drives_.belt_mps(*surface.belt) * length;
           for (int k = 0; k < 3; ++k) contact[i].fdir1[k] = along[k] / length;
         }
@@ -235,7 +238,7 @@ class OdeRunner : public Runner {
   }
 
   Options options_;
-  double time_step_s_, soft_erp_ = 0, soft_cfm_ = 0, friction_ = 1;
+  double time_step_s_, soft_erp_ = 0, soft_cfm_ = 0;
   std::vector<double> start_rad_;  // of each flipper
   Drives drives_;
   dWorldID world_{};
@@ -245,6 +248,7 @@ class OdeRunner : public Runner {
   Eigen::Vector3d p_com_m_{0, 0, 0}, belt_axis_W_{0, 1, 0};
   std::vector<dJointID> hinges_;
   std::vector<std::unique_ptr<Surface>> surfaces_;
+  std::vector<double> ground_friction_;  // of each piece; geoms point to its elements
   std::size_t contact_count_ = 0;
 };
 

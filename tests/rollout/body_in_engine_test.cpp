@@ -143,3 +143,25 @@ TEST_CASE("Flippers are where the run says, whatever they carry") {
     CHECK(std::ranges::any_of(run.exact.column("pitch_rad"), [](double p) { return std::abs(p) > 0.05; }));
   }
 }
+
+TEST_CASE("Ground has the friction of each of its pieces, or is refused where an engine has one for all") {
+  const physics::RobotDescription robot = physics::load_robot("kenaf");
+  const rollout::Manoeuvre manoeuvre = rollout::load_manoeuvre("straight");
+  std::vector<std::string> unsupported;
+  physics::WorldDescription world = physics::load_world(manoeuvre.world, unsupported);
+  const runs::Run run = rollout::roll_out(robot, world, manoeuvre, {}).run;
+  // far from where the robot drives
+  world.boxes.push_back(
+      {"ice", {1, 1, 1}, {{100, 100, 0.5}, Eigen::Quaterniond::Identity()}, world.planes.at(0).friction, 0});
+  physics::WorldDescription mixed = world;
+  mixed.boxes.back().friction = 0.01;
+  for (const std::string& engine : engines::engine_names()) {
+    CAPTURE(engine);
+    const runs::Run alike = engines::with_body_of(engine, robot, world, run, run);
+    if (engine == "mujoco") {
+      CHECK_THROWS_WITH(engines::with_body_of(engine, robot, mixed, run, run), Contains("one friction"));
+    } else {
+      CHECK(engines::with_body_of(engine, robot, mixed, run, run).column("x_m").back() == alike.column("x_m").back());
+    }
+  }
+}
