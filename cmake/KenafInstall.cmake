@@ -11,6 +11,9 @@ install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" COMPONENT pro
 install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_DOCDIR}/include/kenaf" COMPONENT programs)  # pages lead to it
 install(DIRECTORY examples teleop DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs FILES_MATCHING
   PATTERN "*.c" PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.hpp" PATTERN "*.script")
+# What the operator's program includes of formats/, so that it can be built where it is installed.
+install(FILES formats/protocol/host_port.cpp formats/protocol/host_port.hpp
+  DESTINATION "${CMAKE_INSTALL_DOCDIR}/formats/protocol" COMPONENT programs)
 
 set(cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kenaf")
 install(EXPORT kenafTargets NAMESPACE kenaf:: DESTINATION "${cmake_dir}" COMPONENT development)

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "hrt/error.hpp"
-#include "libkenaf_sim/host_port.hpp"
+#include "libkenaf_sim/addresses.hpp"
 
 namespace kenaf::sim {
 namespace {

@@ -12,7 +12,7 @@
 #include <cstring>
 
 #include "hrt/error.hpp"
-#include "libkenaf_sim/host_port.hpp"
+#include "libkenaf_sim/addresses.hpp"
 
 namespace kenaf::sim {
 namespace {

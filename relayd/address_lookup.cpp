@@ -16,7 +16,7 @@ namespace kenaf::relayd {
 namespace {
 
 // Returns 0, or the error code of getaddrinfo().
-int get_endpoints(const HostPort& server, int flags, std::vector<Endpoint>& out) {
+int get_endpoints(const protocol::HostPort& server, int flags, std::vector<Endpoint>& out) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = AI_NUMERICSERV | flags;
@@ -34,7 +34,7 @@ int get_endpoints(const HostPort& server, int flags, std::vector<Endpoint>& out)
 
 }  // namespace
 
-std::vector<Endpoint> look_up(const HostPort& server) {
+std::vector<Endpoint> look_up(const protocol::HostPort& server) {
   std::vector<Endpoint> endpoints;
   if (const int error = get_endpoints(server, 0, endpoints); error != 0) {
     throw std::runtime_error(::gai_strerror(error));
@@ -47,7 +47,8 @@ struct AddressLookup::UnderWay {
   Waker done;
 };
 
-std::optional<std::vector<Endpoint>> AddressLookup::find(const HostPort& server, TimePoint deadline, int cancel_fd) {
+std::optional<std::vector<Endpoint>> AddressLookup::find(const protocol::HostPort& server, TimePoint deadline,
+                                                         int cancel_fd) {
   if (std::vector<Endpoint> in_digits; get_endpoints(server, AI_NUMERICHOST, in_digits) == 0) return in_digits;
   if (!under_way_) {
     under_way_ = std::make_shared<UnderWay>();

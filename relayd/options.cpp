@@ -38,7 +38,7 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
   CLI::App app("Relays between a program on libkenaf_sim (UDP) and a USARSim world server (TCP).", "kenaf-relayd");
   app.set_version_flag("--version", KENAF_VERSION);
   auto* server_option = app.add_option("--world-server", world_server, "the world server, HOST:PORT")
-                            ->check([](const std::string& text) { return words_of(parse_host_port, text); })
+                            ->check([](const std::string& text) { return words_of(parse_server, text); })
                             ->capture_default_str();
   app.add_option("--listen", listen, "address to listen on, ADDR:PORT; port 0: any free one")
       ->check([](const std::string& text) { return words_of(parse_address, text); })
@@ -101,7 +101,7 @@ std::optional<Options> read_options(int argc, const char* const* argv, int& exit
     exit_status = app.exit(error) == 0 ? 0 : 2;
     return std::nullopt;
   }
-  options.relay.world_server = parse_host_port(world_server);
+  options.relay.world_server = parse_server(world_server);
   options.relay.listen = parse_address(listen);
   if (!pose.empty()) {
     placement.pose.emplace();

@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <stdexcept>
 
@@ -59,21 +58,14 @@ bool is_loopback(const Address& address) {
   return (address.ipv4 >> 24) == 127;
 }
 
-HostPort parse_host_port(std::string_view text) {
-  const std::size_t colon = text.rfind(':');
-  std::string_view host = text.substr(0, colon);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
-  const std::string_view digits = colon == std::string_view::npos ? "" : text.substr(colon + 1);
-  std::uint16_t port = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
-  if (host.empty() || error != std::errc{} || end != digits.data() + digits.size()) {
-    throw std::runtime_error(fmt::format("'{}' is not HOST:PORT with a port from 0 to 65535", text));
-  }
-  return {std::string(host), port};
+protocol::HostPort parse_server(std::string_view text) {
+  std::optional<protocol::HostPort> parsed = protocol::parse_host_port(text);
+  if (!parsed) throw std::runtime_error(fmt::format("'{}' is not HOST:PORT with a port from 0 to 65535", text));
+  return *std::move(parsed);
 }
 
 Address parse_address(std::string_view text) {
-  const HostPort parsed = parse_host_port(text);
+  const protocol::HostPort parsed = parse_server(text);
   in_addr ipv4{};
   if (::inet_pton(AF_INET, parsed.host == "localhost" ? "127.0.0.1" : parsed.host.c_str(), &ipv4) != 1) {
     throw std::runtime_error(fmt::format("'{}' is not an IPv4 address such as 127.0.0.1", parsed.host));

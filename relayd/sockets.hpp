@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include "formats/protocol/host_port.hpp"
+
 namespace kenaf::relayd {
 
 // Owns a file descriptor.
@@ -40,12 +42,8 @@ struct Address {
 std::string to_text(const Address& address);  // "127.0.0.1:45454"
 bool is_loopback(const Address& address);
 
-struct HostPort {
-  std::string host;
-  std::uint16_t port = 0;
-};
-// "HOST:PORT", also "[v6]:PORT".
-HostPort parse_host_port(std::string_view text);
+// HOST:PORT, also "[v6]:PORT", as formats/protocol/host_port.hpp; port 0 is accepted.
+protocol::HostPort parse_server(std::string_view text);
 // The same, restricted to a dotted IPv4 address or "localhost".
 Address parse_address(std::string_view text);
 

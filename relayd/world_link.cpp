@@ -56,7 +56,7 @@ struct WorldLink::Connection {
   std::string out{};
 };
 
-WorldLink::WorldLink(const HostPort& server, const RobotPlacement& placement, WorldEvents& events)
+WorldLink::WorldLink(const protocol::HostPort& server, const RobotPlacement& placement, WorldEvents& events)
     : server_(server), placement_(placement), events_(events) {}
 
 void WorldLink::run(const std::atomic<bool>& stopping) {

@@ -44,7 +44,7 @@ using LinkRequests = Mailbox<LinkRequest, 16>;
 
 class WorldLink {
  public:
-  WorldLink(const HostPort& server, const RobotPlacement& placement, WorldEvents& events);
+  WorldLink(const protocol::HostPort& server, const RobotPlacement& placement, WorldEvents& events);
 
   // Connects, retrying as needed, until `stopping` is set and waker() woken.
   void run(const std::atomic<bool>& stopping);
@@ -62,7 +62,7 @@ class WorldLink {
   bool take_requests();
   void note_malformed(std::string_view what, std::size_t bytes);
 
-  const HostPort server_;
+  const protocol::HostPort server_;
   const RobotPlacement placement_;
   WorldEvents& events_;
   Waker waker_;

@@ -12,6 +12,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "formats/protocol/host_port.hpp"
+
 namespace kenaf::teleop {
 
 namespace {
@@ -34,16 +36,13 @@ std::string to_text(const Peer& peer) {
 }
 
 Peer resolve(const std::string& host_port) {
-  const std::size_t colon = host_port.rfind(':');
-  if (colon == std::string::npos || colon == 0 || colon + 1 == host_port.size()) {
-    throw std::runtime_error(fmt::format("'{}' is not HOST:PORT", host_port));
-  }
-  std::string host = host_port.substr(0, colon);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  const auto sides = protocol::split_host_port(host_port);
+  if (!sides) throw std::runtime_error(fmt::format("'{}' is not HOST:PORT", host_port));
+  const std::string host(sides->host), port(sides->port);
   addrinfo hints{};
   hints.ai_socktype = SOCK_DGRAM;
   addrinfo* found = nullptr;
-  const int error = ::getaddrinfo(host.c_str(), host_port.c_str() + colon + 1, &hints, &found);
+  const int error = ::getaddrinfo(host.c_str(), port.c_str(), &hints, &found);
   if (error != 0) throw std::runtime_error(fmt::format("cannot find '{}': {}", host_port, ::gai_strerror(error)));
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owned(found, &::freeaddrinfo);
   Peer peer;

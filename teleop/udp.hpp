@@ -19,7 +19,8 @@ struct Peer {
 };
 std::string to_text(const Peer& peer);  // "10.0.0.5:45460"
 
-// "HOST:PORT", "[V6]:PORT"; names are resolved. Throws std::runtime_error with a text for the user.
+// HOST:PORT (formats/protocol/host_port.hpp); names of hosts and services are resolved. Throws std::runtime_error with
+// a text for the user.
 Peer resolve(const std::string& host_port);
 
 class UdpSocket {

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <boost/asio/ip/address.hpp>
-#include <charconv>
+#include <optional>
 #include <stdexcept>
+
+#include "formats/protocol/host_port.hpp"
 
 namespace kenaf::live {
 
@@ -17,18 +19,13 @@ ViewOptions parse_view_options(std::string_view text) {
   const auto fail = [&] {
     throw std::runtime_error(fmt::format("'{}' is neither ADDRESS:PORT, such as 127.0.0.1:8080, nor off", text));
   };
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string_view::npos) fail();
-  std::string_view address = text.substr(0, colon), port = text.substr(colon + 1);
-  const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), options.port);
-  if (error != std::errc() || end != port.data() + port.size()) fail();
-  if (address == "localhost") address = "127.0.0.1";
-  const bool brackets = address.size() > 2 && address.front() == '[' && address.back() == ']';
-  if (brackets) address = address.substr(1, address.size() - 2);
+  const std::optional<protocol::HostPort> parsed = protocol::parse_host_port(text);
+  if (!parsed) fail();
+  options.address = parsed->host == "localhost" ? "127.0.0.1" : parsed->host;
+  options.port = parsed->port;
   boost::system::error_code no_address;
-  const auto parsed = boost::asio::ip::make_address(std::string(address), no_address);
-  if (no_address || parsed.is_v6() != brackets) fail();
-  options.address = address;
+  const auto address = boost::asio::ip::make_address(options.address, no_address);
+  if (no_address || address.is_v6() != text.starts_with('[')) fail();
   return options;
 }
 

@@ -1,19 +1,45 @@
-// Any text is an address or is refused with a runtime_error; what is accepted is written as it is read again.
+// Any text is HOST:PORT or is refused. What is accepted is read again as it is written, with brackets around any host;
+// an IPv4 address that the relay listens on, as the relay writes it.
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
+#include "formats/protocol/host_port.hpp"
 #include "relayd/sockets.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace kenaf::relayd;
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
+namespace {
+
+using namespace kenaf;
+
+void require(bool fine) {
+  if (!fine) __builtin_trap();
+}
+
+void check_host_port(std::string_view text) {
+  const auto sides = protocol::split_host_port(text);
+  if (sides) require(!sides->host.empty() && !sides->port.empty());
+  const auto parsed = protocol::parse_host_port(text);
+  if (!parsed) return;
+  require(sides && sides->host == parsed->host);
+  require(protocol::parse_host_port("[" + parsed->host + "]:" + std::to_string(parsed->port)) == parsed);
+}
+
+void check_address(std::string_view text) {
   try {
-    if (parse_host_port(text).host.empty()) __builtin_trap();
-    const Address address = parse_address(text);
-    if (parse_address(to_text(address)) != address) __builtin_trap();
+    const relayd::Address address = relayd::parse_address(text);
+    require(protocol::parse_host_port(text).has_value());
+    require(relayd::parse_address(to_text(address)) == address);
   } catch (const std::runtime_error&) {
   }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  check_host_port(text);
+  check_address(text);
   return 0;
 }

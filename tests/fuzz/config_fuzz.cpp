@@ -8,9 +8,9 @@
 #include <string>
 #include <string_view>
 
+#include "formats/protocol/host_port.hpp"
 #include "hrt/config.hpp"
 #include "hrt/error.hpp"
-#include "libkenaf_sim/host_port.hpp"
 
 using namespace kenaf;
 
@@ -64,12 +64,7 @@ void read_as_environment(std::string_view text) {
     return;
   }
   hrt::check_config(config);
-  try {
-    const sim::HostPort relay = sim::parse_host_port("relay", config.relay);
-    check(!relay.host.empty() && std::stoi(relay.port) >= 1 && std::stoi(relay.port) <= 65535);
-  } catch (const hrt::Error& error) {
-    check(error.code() == HRT_E_CONFIG);
-  }
+  if (const auto relay = protocol::parse_host_port(config.relay)) check(!relay->host.empty());
 }
 
 }  // namespace

@@ -1,2 +1,2 @@
-kenaf_fuzzer(config_fuzz SOURCE config_fuzz.cpp LIBRARIES kenaf_hrt_config kenaf_sim_transport)
+kenaf_fuzzer(config_fuzz SOURCE config_fuzz.cpp LIBRARIES kenaf_hrt_config kenaf_protocol)
 kenaf_fuzzer(picture_codec_fuzz SOURCE picture_codec_fuzz.cpp LIBRARIES kenaf_hrt_pictures)

@@ -23,7 +23,7 @@ struct SilentServer {
   std::shared_ptr<std::atomic<int>> asked = std::make_shared<std::atomic<int>>(0);
 
   AddressLookup lookup() const {
-    return AddressLookup([said = said, asked = asked](const HostPort&) {
+    return AddressLookup([said = said, asked = asked](const kenaf::protocol::HostPort&) {
       kenaf::test::leave_this_thread_out();
       ++*asked;
       return said.get();
@@ -40,7 +40,7 @@ auto now() {
 TEST_CASE("A look-up that takes for ever ends when it is cancelled, and at its deadline") {
   SilentServer names;
   AddressLookup lookup = names.lookup();
-  const HostPort server{"world.example", 3000};
+  const kenaf::protocol::HostPort server{"world.example", 3000};
   Waker cancel;
   CHECK_THROWS_WITH(lookup.find(server, now() + 20ms, cancel.fd()), Catch::Contains("name"));
   cancel.wake();
