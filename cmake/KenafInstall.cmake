@@ -12,7 +12,7 @@ install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_DOCDIR}/include/k
 install(DIRECTORY examples teleop DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs FILES_MATCHING
   PATTERN "*.c" PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.hpp" PATTERN "*.script")
 # What the operator's program includes of formats/, so that it can be built where it is installed.
-install(FILES formats/protocol/host_port.cpp formats/protocol/host_port.hpp
+install(FILES formats/protocol/host_port.cpp formats/protocol/host_port.hpp formats/protocol/log_limiter.hpp
   DESTINATION "${CMAKE_INSTALL_DOCDIR}/formats/protocol" COMPONENT programs)
 
 set(cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kenaf")

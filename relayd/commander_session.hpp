@@ -11,9 +11,9 @@
 #include <string>
 #include <string_view>
 
+#include "formats/protocol/log_limiter.hpp"
 #include "formats/protocol/relay_datagram.hpp"
 #include "relayd/answer_limiter.hpp"
-#include "relayd/log_limiter.hpp"
 #include "relayd/sensor_transform.hpp"
 #include "relayd/sockets.hpp"
 
@@ -115,7 +115,7 @@ class CommanderSession {
   };
   std::array<Ended, 8> ended_{};
   std::size_t next_ended_ = 0;
-  LogLimiter log_stranger_, log_range_, log_future_;
+  protocol::LogLimiter log_stranger_, log_range_, log_future_;
   AnswerLimiter answers_to_strangers_;
 };
 

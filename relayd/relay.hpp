@@ -16,6 +16,7 @@
 #include <string>
 #include <string_view>
 
+#include "formats/protocol/log_limiter.hpp"
 #include "formats/protocol/relay_datagram.hpp"
 #include "relayd/commander_session.hpp"
 #include "relayd/mailbox.hpp"
@@ -91,7 +92,7 @@ class Relay : private SessionPort {
   Waker receiver_waker_;
   std::array<std::byte, protocol::relay::kMaxDatagramBytes + 1> received_;  // one more, to detect longer ones
   Arrival arrival_;
-  LogLimiter log_malformed_, log_overflow_;
+  protocol::LogLimiter log_malformed_, log_overflow_;
 
   // The sender's.
   CommanderSession session_{*this};

@@ -8,6 +8,7 @@
 #include <string>
 #include <variant>
 
+#include "formats/protocol/log_limiter.hpp"
 #include "formats/protocol/usarsim_message.hpp"
 #include "relayd/address_lookup.hpp"
 #include "relayd/mailbox.hpp"
@@ -71,7 +72,7 @@ class WorldLink {
   AddressLookup lookup_;
   const std::atomic<bool>* stopping_ = nullptr;
   protocol::usarsim::MessageView message_;
-  LogLimiter log_malformed_;
+  protocol::LogLimiter log_malformed_;
   bool was_up_ = false;
 };
 

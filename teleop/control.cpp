@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "driving.hpp"
+#include "formats/protocol/log_limiter.hpp"
 #include "link.hpp"
 #include "robot.hpp"
 #include "seat.hpp"
@@ -30,7 +31,6 @@ using namespace kenaf::teleop;
 
 constexpr int kTurn_ms = 10;  // loop period: one cycle of the robot
 constexpr double kStatusPeriod_s = 0.05;
-constexpr double kLogPeriod_s = 1;      // between log lines caused by the network, which may bring many
 constexpr int kDatagramsInATurn = 100;  // a flood must not hold up the robot
 
 struct Options {
@@ -185,9 +185,7 @@ class Control {
 
   static void log(const std::string& line) { fmt::print(stderr, "operator_control: {}\n", line); }
   void log_seldom(const std::string& line) {
-    if (now_s() - logged_s_ < kLogPeriod_s) return;
-    logged_s_ = now_s();
-    log(line);
+    if (log_limiter_.allow()) log(line);
   }
 
   const Options options_;
@@ -199,7 +197,8 @@ class Control {
   Peer console_;
   std::uint32_t status_sequence_ = 0;  // shared by all consoles: one that returns drops older ones than it has seen
   std::array<double, 256> status_sent_at_s_{};  // indexed by the sequence's last byte: 12 s of statuses
-  double status_sent_s_ = 0, taken_sent_s_ = 0, logged_s_ = 0;
+  double status_sent_s_ = 0, taken_sent_s_ = 0;
+  kenaf::protocol::LogLimiter log_limiter_;  // of all lines that the network causes
 };
 
 // Written to a temporary file and renamed, so that a waiting reader never sees half of it.

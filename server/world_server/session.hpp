@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "formats/protocol/log_limiter.hpp"
 #include "formats/protocol/usarsim_message.hpp"
 #include "physics/world.hpp"
 #include "server/world_server/dialect.hpp"
 #include "server/world_server/frame_schedule.hpp"
-#include "server/world_server/log_limiter.hpp"
 
 namespace kenaf::world_server {
 
@@ -87,8 +87,8 @@ struct Session {
   SilenceStop stop;
 
   std::uint64_t bad_lines = 0;
-  LogLimiter bad_line_log{1, 5};
-  LogLimiter lockstep_log{1, 5};
+  protocol::LogLimiter bad_line_log{1, 5};
+  protocol::LogLimiter lockstep_log{1, 5};
 };
 
 }  // namespace kenaf::world_server

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/protocol/log_limiter.hpp"
 #include "physics/world.hpp"
 #include "server/world_server/clock.hpp"
 #include "server/world_server/options.hpp"
@@ -86,7 +87,7 @@ struct Simulation {
   const std::vector<physics::BoxId> loose_boxes;  // the movable ones of the world's description
   std::vector<physics::SensorSample> samples;     // reused by every output
   double wall_s = 0;                              // of the present call
-  LogLimiter connection_log{20, 0.5};             // for robots that come and go
+  protocol::LogLimiter connection_log{20, 0.5};   // for robots that come and go
 
  private:
   static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
@@ -115,9 +116,9 @@ struct Simulation {
   std::vector<Call> calls_;
   std::uint64_t next_call_step_ = kNever;
   std::uint32_t last_session_ = 0;
-  std::string deferred_lines_;  // scratch of send_due()
-  LogLimiter behind_log_{1, 10};
-  LogLimiter fault_log_{kMostRobots, 5};
+  std::string due_lines_;  // scratch of send_due()
+  protocol::LogLimiter behind_log_{1, 10};
+  protocol::LogLimiter fault_log_{kMostRobots, 5};
   double dropped_s_ = 0;  // robot time by which this machine lags
   bool idle_ = true;      // time was stopped at the last call
 };

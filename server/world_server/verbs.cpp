@@ -57,9 +57,9 @@ std::string printable(std::string_view text) {
 }
 
 void complain(const Simulation& simulation, Session& session, std::string_view what, std::string_view text) {
-  if (!session.bad_line_log.allow(simulation.wall_s)) return;
-  spdlog::warn("{}: {}: \"{}\" ({} more since the last such line)", session.peer, what, printable(text),
-               session.bad_line_log.suppressed());
+  const auto suppressed = session.bad_line_log.allow(simulation.wall_s);
+  if (!suppressed) return;
+  spdlog::warn("{}: {}: \"{}\" ({} more since the last such line)", session.peer, what, printable(text), *suppressed);
 }
 
 void answer(const Simulation& simulation, Session& session, std::string_view type, std::string_view name,

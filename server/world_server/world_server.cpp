@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "formats/protocol/log_limiter.hpp"
 #include "server/world_server/connection.hpp"
 #include "server/world_server/simulation.hpp"
 
@@ -72,7 +73,7 @@ struct WorldServer::Implementation {
   asio::steady_timer wake_timer{io};
   std::optional<double> armed_s;  // time for which wake_timer is set
   std::vector<std::shared_ptr<Connection>> connections;
-  LogLimiter connection_log{20, 0.5};
+  protocol::LogLimiter connection_log{20, 0.5};
   std::atomic<bool> stopping = false;
 };
 
@@ -97,7 +98,7 @@ void WorldServer::Implementation::welcome(tcp::socket socket) {
   const tcp::endpoint peer = socket.remote_endpoint(error);
   if (error) return;  // gone already
   const std::string name = fmt::format("client {}:{}", peer.address().to_string(), peer.port());
-  const bool log = connection_log.allow(steady_seconds());
+  const bool log = connection_log.allow(steady_seconds()).has_value();
   if (connections.size() >= kMostConnections) {
     if (log) spdlog::warn("{}: refused: {} clients are connected already", name, connections.size());
     return;
