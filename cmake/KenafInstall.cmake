@@ -14,6 +14,9 @@ install(DIRECTORY examples teleop DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONEN
 # What the operator's program includes of formats/, so that it can be built where it is installed.
 install(FILES formats/protocol/host_port.cpp formats/protocol/host_port.hpp formats/protocol/log_limiter.hpp
   DESTINATION "${CMAKE_INSTALL_DOCDIR}/formats/protocol" COMPONENT programs)
+install(FILES formats/runs/port_file.cpp formats/runs/port_file.hpp formats/runs/run_file.hpp
+  formats/runs/whole_file.cpp formats/runs/whole_file.hpp
+  DESTINATION "${CMAKE_INSTALL_DOCDIR}/formats/runs" COMPONENT programs)
 
 set(cmake_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kenaf")
 install(EXPORT kenafTargets NAMESPACE kenaf:: DESTINATION "${cmake_dir}" COMPONENT development)

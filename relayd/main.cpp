@@ -3,11 +3,10 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <stdexcept>
 
+#include "formats/runs/port_file.hpp"
 #include "relayd/embedded_world.hpp"
 #include "relayd/options.hpp"
 #include "relayd/relay.hpp"
@@ -40,15 +39,6 @@ class StopOnSignals {
   }
 };
 
-// Written to a temporary file and renamed, so that a waiting reader never sees half of it.
-void write_port_file(const std::string& path, std::uint16_t port) {
-  const std::string temporary = path + ".new";
-  if (!(std::ofstream(temporary) << port << '\n' << std::flush)) {
-    throw std::runtime_error("cannot write the port file " + temporary);
-  }
-  std::filesystem::rename(temporary, path);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -71,7 +61,7 @@ int main(int argc, char** argv) {
     kenaf::relayd::Relay relay(options->relay);
     const StopOnSignals stop_on_signals(relay);
     spdlog::info("listening on {}", to_text(relay.address()));
-    if (!options->port_file.empty()) write_port_file(options->port_file, relay.address().port);
+    if (!options->port_file.empty()) kenaf::runs::write_port_file(options->port_file, relay.address().port);
     relay.run();
     spdlog::info("ended");
     return 0;

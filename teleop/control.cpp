@@ -11,8 +11,6 @@
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -20,6 +18,7 @@
 
 #include "driving.hpp"
 #include "formats/protocol/log_limiter.hpp"
+#include "formats/runs/port_file.hpp"
 #include "link.hpp"
 #include "robot.hpp"
 #include "seat.hpp"
@@ -201,13 +200,6 @@ class Control {
   kenaf::protocol::LogLimiter log_limiter_;  // of all lines that the network causes
 };
 
-// Written to a temporary file and renamed, so that a waiting reader never sees half of it.
-void write_port_file(const std::string& path, std::uint16_t port) {
-  const std::string temporary = path + ".new";
-  if (!(std::ofstream(temporary) << port << '\n' << std::flush)) throw std::runtime_error("cannot write " + temporary);
-  std::filesystem::rename(temporary, path);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -253,7 +245,7 @@ int main(int argc, char** argv) {
     if (hrt_config_load(&config) != HRT_OK) throw std::runtime_error(hrt_last_error());
     Control control(options, config);
     fmt::print(stderr, "operator_control: {} library, listening on port {}\n", hrt_library(), control.port());
-    if (!options.port_file.empty()) write_port_file(options.port_file, control.port());
+    if (!options.port_file.empty()) kenaf::runs::write_port_file(options.port_file, control.port());
     control.run();
     return 0;
   } catch (const std::exception& error) {

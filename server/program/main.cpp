@@ -4,29 +4,12 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
-#include <fstream>
 #include <thread>
 
+#include "formats/runs/port_file.hpp"
 #include "server/image_server/served_cameras.hpp"
 #include "server/live/view.hpp"
 #include "server/world_server/world_server.hpp"
-
-namespace {
-
-// Written to a temporary file and renamed, so that a reader finds the whole number.
-void write_port_file(const std::filesystem::path& path, std::uint16_t port) {
-  std::filesystem::path temporary = path;
-  temporary += ".new";
-  std::ofstream file(temporary);
-  file << port << '\n';
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(temporary, path, error);
-  if (!file || error) throw std::runtime_error("cannot write the port file " + path.string());
-}
-
-}  // namespace
 
 int main(int argc, char** argv) {
   kenaf::world_server::ServerOptions options;
@@ -94,7 +77,7 @@ int main(int argc, char** argv) {
     int status = 0;
     try {
       spdlog::info("world {} on {}:{}", options.world, options.listen_address, server.port());
-      if (!port_file.empty()) write_port_file(port_file, server.port());
+      if (!port_file.empty()) kenaf::runs::write_port_file(port_file, server.port());
       server.run();
       spdlog::info("stopped");
     } catch (const std::exception& error) {
