@@ -66,7 +66,7 @@ class RelayClient {
       const ssize_t got = ::recv(fd_, bytes_.data(), bytes_.size(), 0);
       if (got <= 0) fail("no answer from the relay");
       const std::span<const std::byte> view(bytes_.data(), static_cast<std::size_t>(got));
-      if (kenaf::protocol::relay::decode(view, datagram) != kenaf::protocol::relay::DecodeError::none) continue;
+      if (kenaf::protocol::relay::decode(view, datagram) != kenaf::protocol::DecodeError::none) continue;
       if (const Kind* kind = std::get_if<Kind>(&datagram); kind != nullptr && accepts(*kind)) return *kind;
     }
   }
@@ -79,7 +79,7 @@ class RelayClient {
       const ssize_t got = ::recv(fd_, bytes_.data(), bytes_.size(), 0);
       if (got <= 0) fail("no answer from the relay");
       const std::span<const std::byte> view(bytes_.data(), static_cast<std::size_t>(got));
-      if (kenaf::protocol::relay::decode(view, datagram) == kenaf::protocol::relay::DecodeError::none &&
+      if (kenaf::protocol::relay::decode(view, datagram) == kenaf::protocol::DecodeError::none &&
           std::holds_alternative<kenaf::protocol::relay::Welcome>(datagram)) {
         return;
       }

@@ -12,7 +12,8 @@ install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_DOCDIR}/include/k
 install(DIRECTORY examples teleop DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs FILES_MATCHING
   PATTERN "*.c" PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.hpp" PATTERN "*.script")
 # What the operator's program includes of formats/, so that it can be built where it is installed.
-install(FILES formats/protocol/host_port.cpp formats/protocol/host_port.hpp formats/protocol/log_limiter.hpp
+install(FILES formats/protocol/datagram_codec.cpp formats/protocol/datagram_codec.hpp
+  formats/protocol/host_port.cpp formats/protocol/host_port.hpp formats/protocol/log_limiter.hpp
   DESTINATION "${CMAKE_INSTALL_DOCDIR}/formats/protocol" COMPONENT programs)
 install(FILES formats/runs/port_file.cpp formats/runs/port_file.hpp formats/runs/run_file.hpp
   formats/runs/whole_file.cpp formats/runs/whole_file.hpp

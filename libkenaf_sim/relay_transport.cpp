@@ -302,7 +302,7 @@ std::optional<protocol::relay::Datagram> RelayTransport::receive() {
     port_closed_ = false;
     protocol::relay::Datagram datagram;
     if (protocol::relay::decode(std::span(buffer_).first(static_cast<std::size_t>(size)), datagram) ==
-        protocol::relay::DecodeError::none) {
+        protocol::DecodeError::none) {
       return datagram;
     }
   }

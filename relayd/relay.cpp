@@ -99,7 +99,7 @@ void Relay::receive_commands() {
 }
 
 void Relay::take_datagram(std::size_t bytes, const Address& from) {
-  const protocol::relay::DecodeError error = protocol::relay::decode({received_.data(), bytes}, arrival_.datagram);
+  const protocol::DecodeError error = protocol::relay::decode({received_.data(), bytes}, arrival_.datagram);
   const bool for_the_relay = std::visit(
       [](const auto& datagram) {
         using Kind = std::decay_t<decltype(datagram)>;
@@ -107,11 +107,10 @@ void Relay::take_datagram(std::size_t bytes, const Address& from) {
                std::is_same_v<Kind, protocol::relay::Ping> || std::is_same_v<Kind, protocol::relay::Bye>;
       },
       arrival_.datagram);
-  if (error != protocol::relay::DecodeError::none || !for_the_relay) {
+  if (error != protocol::DecodeError::none || !for_the_relay) {
     if (const auto held_back = log_malformed_.allow()) {
       spdlog::warn("{} bytes from {} ignored: {} ({} more before)", bytes, to_text(from),
-                   error == protocol::relay::DecodeError::none ? "only a relay sends this kind"
-                                                               : protocol::relay::describe(error),
+                   error == protocol::DecodeError::none ? "only a relay sends this kind" : protocol::describe(error),
                    *held_back);
     }
     return;

@@ -134,7 +134,7 @@ class Console {
       const std::optional<std::size_t> size = socket_.receive(buffer, from);
       if (!size) return;
       Datagram datagram = Bye{};
-      if (decode(std::span(buffer).first(*size), datagram) != DecodeError::none) continue;
+      if (decode(std::span(buffer).first(*size), datagram) != kenaf::protocol::DecodeError::none) continue;
       if (const Status* status = std::get_if<Status>(&datagram); status != nullptr && status->session == session_) {
         taken_.reset();
         if (!health_.heard(*status, now_s())) continue;

@@ -75,8 +75,8 @@ class Control {
       const std::optional<std::size_t> size = socket_.receive(buffer, from);
       if (!size) break;
       Datagram datagram = Bye{};
-      const DecodeError error = decode(std::span(buffer).first(*size), datagram);
-      if (error != DecodeError::none) {
+      const kenaf::protocol::DecodeError error = decode(std::span(buffer).first(*size), datagram);
+      if (error != kenaf::protocol::DecodeError::none) {
         log_seldom(fmt::format("{} from {}: ignored", describe(error), to_text(from)));
       } else if (const Wish* wish = std::get_if<Wish>(&datagram)) {
         emergency_pressed |= take_wish(*wish, from);

@@ -1,5 +1,6 @@
 // The datagrams between the operator's console and the control process on the robot's PC: their contents as plain
-// structs, and two pure functions that encode and decode them. docs/operator.md describes the layout.
+// structs, and two pure functions that encode and decode them (formats/protocol/datagram_codec.hpp). docs/operator.md
+// describes the layout.
 //
 // Loss costs only latency: a Wish is complete and absolute and is sent at a fixed rate, so the next one compensates for
 // a lost one, and an older one that arrives late is dropped. Actions that must happen only once (a new flipper posture)
@@ -19,6 +20,8 @@
 #include <span>
 #include <string_view>
 #include <variant>
+
+#include "formats/protocol/datagram_codec.hpp"
 
 namespace kenaf::teleop {
 
@@ -139,27 +142,11 @@ struct Bye {
 
 using Datagram = std::variant<Wish, Status, Taken, Bye>;
 
-enum class DecodeError : std::uint8_t {
-  none = 0,
-  too_short,  // shorter than the header or than its kind requires
-  too_long,   // bytes after the last field
-  bad_magic,
-  bad_version,
-  bad_kind,
-  bad_session,   // session 0
-  not_finite,    // a number is NaN or infinite
-  out_of_range,  // a number beyond the limits above, or a sequence of 0
-  bad_value,     // an invalid flag, enumeration or text
-};
-
-// One sentence for a log line, such as "not an operator's datagram (bad magic)".
-std::string_view describe(DecodeError error);
-
 // Writes `datagram` into `out` (at least kMaxDatagramBytes) and returns the bytes used. A number beyond its limit is
 // written as the limit, NaN as 0, so that every datagram sent can be decoded.
 std::size_t encode(const Datagram& datagram, std::span<std::byte> out);
 
 // Reads one datagram. On an error `out` is unchanged.
-DecodeError decode(std::span<const std::byte> bytes, Datagram& out);
+protocol::DecodeError decode(std::span<const std::byte> bytes, Datagram& out);
 
 }  // namespace kenaf::teleop

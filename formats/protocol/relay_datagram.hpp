@@ -1,5 +1,5 @@
 // The datagrams between libkenaf_sim and relayd: their contents as plain structs, and the two pure functions that
-// turn them into bytes and back. docs/relay-protocol.md describes the protocol.
+// turn them into bytes and back (datagram_codec.hpp). docs/relay-protocol.md describes the protocol.
 //
 // Frames and units: SI and radians; world W and body B are x forward, y left, z up (REP 103). Angles of a pose are the
 // intrinsic z-y-x angles roll, pitch, yaw; pitch is positive nose down. Flippers: robot/parts.hpp.
@@ -11,9 +11,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <variant>
 
+#include "formats/protocol/datagram_codec.hpp"
 #include "robot/parts.hpp"
 #include "robot/state.hpp"
 
@@ -91,21 +91,6 @@ struct Pong {
 };
 
 using Datagram = std::variant<Hello, Welcome, Refused, Command, State, Bye, Ping, Pong>;
-
-enum class DecodeError : std::uint8_t {
-  none = 0,
-  too_short,  // shorter than the header or its kind
-  too_long,   // bytes left over after the last field
-  bad_magic,
-  bad_version,
-  bad_kind,
-  bad_session,  // session 0
-  not_finite,   // a number is NaN or infinite
-  bad_value,    // a flag or an enumeration out of its range
-};
-
-// One sentence for a log line, such as "not a Kenaf datagram (bad magic)".
-std::string_view describe(DecodeError error);
 
 // Writes `datagram` into `out` and returns the bytes used; `out` holds at least kMaxDatagramBytes.
 std::size_t encode(const Datagram& datagram, std::span<std::byte> out);

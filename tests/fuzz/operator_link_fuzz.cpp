@@ -10,6 +10,7 @@
 
 namespace {
 
+using kenaf::protocol::DecodeError;
 using namespace kenaf::teleop;
 
 void expect(bool condition) {

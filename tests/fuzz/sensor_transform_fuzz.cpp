@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::array<std::byte, protocol::relay::kMaxDatagramBytes> bytes;
     protocol::relay::Datagram again;
     if (protocol::relay::decode({bytes.data(), protocol::relay::encode(state, bytes)}, again) !=
-        protocol::relay::DecodeError::none)
+        protocol::DecodeError::none)
       std::abort();
   }
   return 0;

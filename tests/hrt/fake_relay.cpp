@@ -92,7 +92,7 @@ void FakeRelay::run() {
     sockaddr_in from{};
     while (receive(socket_, bytes, from)) {
       protocol::relay::Datagram datagram;
-      if (protocol::relay::decode(bytes, datagram) != protocol::relay::DecodeError::none) continue;
+      if (protocol::relay::decode(bytes, datagram) != protocol::DecodeError::none) continue;
       const std::lock_guard lock(mutex_);
       for (const protocol::relay::Datagram& answer : answers_to(datagram)) {
         Bytes out(protocol::relay::kMaxDatagramBytes);

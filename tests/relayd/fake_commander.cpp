@@ -42,8 +42,8 @@ std::optional<protocol::relay::Datagram> FakeCommander::receive(int milliseconds
   if (::poll(&reading, 1, milliseconds) <= 0) return std::nullopt;
   const ssize_t got = ::recv(fd_.get(), bytes.data(), bytes.size(), 0);
   protocol::relay::Datagram datagram;
-  if (got < 0 || protocol::relay::decode({bytes.data(), static_cast<std::size_t>(got)}, datagram) !=
-                     protocol::relay::DecodeError::none) {
+  if (got < 0 ||
+      protocol::relay::decode({bytes.data(), static_cast<std::size_t>(got)}, datagram) != protocol::DecodeError::none) {
     return std::nullopt;
   }
   return datagram;

@@ -11,6 +11,7 @@
 
 #include "teleop/link.hpp"
 
+using kenaf::protocol::DecodeError;
 using namespace kenaf::teleop;
 
 namespace {

@@ -136,7 +136,7 @@ TEST_CASE("The link cut in mid-climb: the robot holds its place until the operat
   std::atomic<double> newest_robot_time_s{0};
   const auto watch = [&](bool to_control, std::span<const std::byte> bytes) {
     teleop::Datagram datagram = teleop::Bye{1};
-    if (to_control || teleop::decode(bytes, datagram) != teleop::DecodeError::none) return;
+    if (to_control || teleop::decode(bytes, datagram) != protocol::DecodeError::none) return;
     const auto* status = std::get_if<teleop::Status>(&datagram);
     if (status == nullptr) return;
     newest_robot_time_s = status->robot_time_s;

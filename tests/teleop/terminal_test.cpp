@@ -25,6 +25,7 @@
 #include "teleop/udp.hpp"
 #include "tests/support/process.hpp"
 
+using kenaf::protocol::DecodeError;
 using namespace kenaf::teleop;
 using namespace std::chrono_literals;
 

@@ -1,5 +1,4 @@
 // Every way in which a datagram is refused; `out` is left alone each time.
-#include <algorithm>
 #include <catch2/catch.hpp>
 #include <limits>
 #include <vector>
@@ -7,6 +6,7 @@
 #include "formats/protocol/relay_datagram.hpp"
 #include "tests/formats/protocol/encoded.hpp"
 
+using kenaf::protocol::DecodeError;
 using namespace kenaf::protocol::relay;
 
 namespace {

@@ -8,6 +8,7 @@
 #include "formats/protocol/relay_datagram.hpp"
 #include "tests/formats/protocol/encoded.hpp"
 
+using kenaf::protocol::DecodeError;
 using namespace kenaf::protocol::relay;
 
 namespace {
