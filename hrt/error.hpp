@@ -1,5 +1,5 @@
 // How a failure propagates inside the library: thrown as an Error, turned into a return code at the C interface
-// (hrt.cpp).
+// (hrt.cpp) and nowhere else. A thread of the library keeps the Error that ended it, for the next call to throw.
 //
 // Thread safety: a value.
 #pragma once

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -57,6 +58,7 @@ void remember(const char* text) {
   std::replace(last_error, last_error + length, '\n', ' ');
 }
 
+// Every function of hrt.h runs in this: the one place where exceptions become return codes.
 template <typename Body>
 int guarded(Body&& body) noexcept {
   try {
@@ -73,6 +75,23 @@ int guarded(Body&& body) noexcept {
     remember("unknown failure inside the library");
   }
   return HRT_E_INTERNAL;
+}
+
+// For a call that has something to finish before it fails: what `body` threw, or null.
+template <typename Body>
+std::exception_ptr failure_of(Body&& body) noexcept {
+  try {
+    body();
+    return nullptr;
+  } catch (...) {
+    return std::current_exception();
+  }
+}
+void throw_if(const std::exception_ptr& failure) {
+  if (failure) std::rethrow_exception(failure);
+}
+void throw_if_lost(const Snapshot& snapshot) {
+  if (snapshot.lost) throw *snapshot.lost;
 }
 
 struct Opened {
@@ -226,15 +245,14 @@ int hrt_close(void) {
       h.under_way = "closed";
     }
     // first the robot, so that it stops
-    const int code = guarded([&] { robot->close(); });
-    const std::string words(last_error);
-    const int cameras_code = guarded([&] { cameras->close(); });
+    const std::exception_ptr robot_failure = failure_of([&] { robot->close(); });
+    const std::exception_ptr cameras_failure = failure_of([&] { cameras->close(); });
     {
       const std::lock_guard lock(h.mutex);
       h.under_way = nullptr;
     }
-    if (code != HRT_OK) throw Error(code, words);
-    if (cameras_code != HRT_OK) throw Error(cameras_code, std::string(last_error));
+    throw_if(robot_failure);
+    throw_if(cameras_failure);
   });
 }
 
@@ -309,27 +327,17 @@ int hrt_sleep(double seconds) {
 
 double hrt_time(void) {
   double time_s = -1;
-  (void)guarded([&] {
-    Snapshot snapshot;
-    const std::shared_ptr<Robot> robot = open_robot();
-    try {
-      robot->snapshot(snapshot);
-    } catch (const Error&) {
-      // keep the time of the last state that arrived
-    }
-    time_s = snapshot.measured.robot_time_s;
-  });
+  // of a lost robot the time of the last state that arrived
+  (void)guarded([&] { time_s = open_robot()->snapshot().measured.robot_time_s; });
   return time_s;
 }
 
 int hrt_get_state(hrt_state* state) {
   return guarded([&] {
     require_state(state);
-    const std::shared_ptr<Robot> robot = open_robot();
-    Snapshot snapshot;
-    const int code = guarded([&] { robot->snapshot(snapshot); });
+    const Snapshot snapshot = open_robot()->snapshot();
     copy_state(snapshot, *state);
-    if (code != HRT_OK) throw Error(code, std::string(last_error));
+    throw_if_lost(snapshot);
   });
 }
 
@@ -339,8 +347,8 @@ int hrt_wait_cycle(hrt_state* state) {
     const std::shared_ptr<Robot> robot = open_robot();
     robot->wait_cycle();
     if (state == nullptr) return;
-    Snapshot snapshot;
-    robot->snapshot(snapshot);
+    const Snapshot snapshot = robot->snapshot();
+    throw_if_lost(snapshot);
     copy_state(snapshot, *state);
   });
 }
@@ -349,24 +357,20 @@ int hrt_get_warning(char* text, size_t size) {
   return guarded([&] {
     require(text != nullptr && size > 0, "hrt_get_warning: text is null or size is 0");
     text[0] = '\0';
-    const std::shared_ptr<Robot> robot = open_robot();
-    Snapshot snapshot;
-    const int code = guarded([&] { robot->snapshot(snapshot); });
+    const Snapshot snapshot = open_robot()->snapshot();
     text[snapshot.warning.copy(text, size - 1)] = '\0';
-    if (code != HRT_OK) throw Error(code, std::string(last_error));
+    throw_if_lost(snapshot);
   });
 }
 
 int hrt_show_status(void) {
   return guarded([] {
-    const std::shared_ptr<Robot> robot = open_robot();
-    Snapshot snapshot;
-    const int code = guarded([&] { robot->snapshot(snapshot); });
+    const Snapshot snapshot = open_robot()->snapshot();
     std::string text = kenaf::hrt::status_text(kenaf::hrt::state_from(snapshot), kenaf::hrt::kLibraryName);
     if (!snapshot.warning.empty()) text += "  warning   " + snapshot.warning + "\n";
     std::fputs(text.c_str(), stdout);
     std::fflush(stdout);
-    if (code != HRT_OK) throw Error(code, std::string(last_error));
+    throw_if_lost(snapshot);
   });
 }
 
@@ -387,13 +391,13 @@ int hrt_get_picture(const char* camera, int format, void* data, size_t capacity,
     // a program compiled with an older header has a shorter struct
     hrt_picture full = hrt_picture_init();
     std::memcpy(&full, picture, picture->size);
-    const int code = guarded([&] {
+    const std::exception_ptr failure = failure_of([&] {
       kenaf::hrt::get_picture(*opened.robot, *opened.cameras, name, format,
                               {static_cast<std::uint8_t*>(data), capacity}, timeout_s, full);
     });
     full.size = picture->size;
     std::memcpy(picture, &full, picture->size);
-    if (code != HRT_OK) throw Error(code, std::string(last_error));
+    throw_if(failure);
   });
 }
 

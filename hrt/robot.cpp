@@ -252,8 +252,9 @@ bool Robot::flipper_is_off(std::size_t flipper, double tolerance_rad) const {
   return known && std::abs(measured_.flipper_rad[flipper] - flipper_rad_[flipper]) > tolerance_rad;
 }
 
-void Robot::snapshot(Snapshot& out) {
+Snapshot Robot::snapshot() {
   const std::lock_guard lock(mutex_);
+  Snapshot out;
   out.measured = measured_;
   out.estimate = estimate_;
   out.commanded = command_;
@@ -267,8 +268,9 @@ void Robot::snapshot(Snapshot& out) {
   out.stopped_by_silence = stopped_by_silence_;
   out.recording = recorder_ != nullptr;
   out.lockstep = connection_.lockstep;
-  if (failure_) throw *failure_;
-  last_call_t_s_ = estimate_.t_s;
+  out.lost = failure_;
+  if (!failure_) last_call_t_s_ = estimate_.t_s;
+  return out;
 }
 
 bool Robot::is_lost() const {

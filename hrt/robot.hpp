@@ -29,7 +29,7 @@
 
 namespace kenaf::hrt {
 
-// All quantities as of one cycle.
+// All quantities as of one cycle, the last one if the robot is lost or closed.
 struct Snapshot {
   robot::State measured{};
   Estimate estimate;
@@ -38,9 +38,11 @@ struct Snapshot {
   double round_trip_s = 0;
   std::string warning;
   bool motion_active = false, paused = false, stopped_by_silence = false, recording = false, lockstep = false;
+  std::optional<Error> lost;  // why, if the robot is lost or closed
 };
 
-// Thread safety: every function may be called from any thread. All throw Error with the codes that hrt.h names.
+// Thread safety: every function may be called from any thread. All but snapshot(), is_lost() and robot_time_at() throw
+// Error with the codes that hrt.h names.
 class Robot {
  public:
   // Opens the transport, waits for the first state and, if configured, begins a recording.
@@ -66,8 +68,8 @@ class Robot {
   void record_start(const std::string& path);
   void record_stop();
 
-  // Fills `out` even if the link is lost, and then throws.
-  void snapshot(Snapshot& out);
+  // Does not throw if the robot is lost; otherwise notes that the program has called.
+  Snapshot snapshot();
   bool is_lost() const;
   // Throws if the link is lost or the robot closed; otherwise notes that the program has called.
   void note_call();

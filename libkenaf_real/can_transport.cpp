@@ -7,14 +7,13 @@
 
 #include "can/canbus/bus_layout.hpp"
 #include "can/canbus/robot_bus.hpp"
-#include "can/canbus/socket_bus.hpp"
-#include "formats/description/description_error.hpp"
 #include "hrt/error.hpp"
 #include "libkenaf_real/bus_cycle.hpp"
 #include "libkenaf_real/commissioning.hpp"
 #include "libkenaf_real/drive_targets.hpp"
 #include "libkenaf_real/measured_state.hpp"
 #include "libkenaf_real/power.hpp"
+#include "libkenaf_real/translated_errors.hpp"
 #include "robot/state.hpp"
 
 namespace kenaf::real {
@@ -27,14 +26,10 @@ constexpr double kStand_s = 0.5;
 constexpr double kGaugeTolerance = 0.05;  // spread due to the width of the belts
 
 canbus::RobotBus read_description(const hrt_config& config) {
-  try {
-    canbus::RobotBus bus = canbus::load_robot_bus(config.robot);
-    if (config.can_interface[0] != '\0') bus.interface = config.can_interface;
-    check_period(bus, config.period_s);
-    return bus;
-  } catch (const description::DescriptionError& error) {
-    throw Error(HRT_E_CONFIG, error.what());
-  }
+  canbus::RobotBus bus = canbus::load_robot_bus(config.robot);
+  if (config.can_interface[0] != '\0') bus.interface = config.can_interface;
+  check_period(bus, config.period_s);
+  return bus;
 }
 
 // Turns depend on the gauge and, without posture, the heading too.
@@ -74,7 +69,15 @@ struct CanTransport::Session {
 CanTransport::CanTransport(OpenBus open_bus) : open_bus_(std::move(open_bus)) {}
 CanTransport::~CanTransport() = default;
 
-hrt::Connection CanTransport::open(const hrt_config& config) try {
+hrt::Connection CanTransport::open(const hrt_config& config) {
+  try {
+    return with_translated_errors([&] { return set_up(config); });
+  } catch (const OtherMaster& error) {
+    throw Error(HRT_E_REFUSED, error.what());  // the other one was first
+  }
+}
+
+hrt::Connection CanTransport::set_up(const hrt_config& config) {
   session_ = std::make_unique<Session>(config, open_bus_);
   Session& s = *session_;
   s.gauge_warning = warning_of_gauge(s.robot, config.track_gauge_mm);
@@ -91,12 +94,6 @@ hrt::Connection CanTransport::open(const hrt_config& config) try {
     send({});
   }
   return {.period_s = s.period_s, .lockstep = false};
-} catch (const OtherMaster& error) {
-  throw Error(HRT_E_REFUSED, error.what());
-} catch (const canbus::NoBus& error) {
-  throw Error(HRT_E_DEVICE, error.what());
-} catch (const canopen::BusError& error) {
-  throw Error(HRT_E_LINK, error.what());
 }
 
 std::optional<robot::State> CanTransport::wait_state() {
@@ -112,38 +109,38 @@ std::optional<robot::State> CanTransport::wait_state() {
   return state;
 }
 
-std::optional<robot::State> CanTransport::measure() try {
-  Session& s = *session_;
-  const std::optional<Beat> beat = s.cycle.wait();
-  if (!beat) return std::nullopt;
-  if (const std::optional<std::size_t> drive = s.cycle.lost_drive()) {
-    s.lost = true;
-    lose(s.cycle, *drive);
-  }
-  s.round_trip_s = s.cycle.round_trip_s();
-  return s.measured->update(s.cycle, *beat);
-} catch (const ControlLost&) {
-  let_go();
-  throw;
-} catch (const canopen::BusError& error) {
-  session_->lost = true;
-  throw Error(HRT_E_LINK, error.what());
+// A step of the loop. If control is lost, so is the robot; it is told to stop unless there is no bus to tell it by.
+template <typename Step>
+auto CanTransport::in_the_loop(Step step) {
+  return with_translated_errors([&] {
+    try {
+      return step(*session_);
+    } catch (const ControlLost&) {
+      session_->lost = true;
+      try_quick_stop(session_->cycle);
+      throw;
+    } catch (const canopen::BusError&) {
+      session_->lost = true;
+      throw;
+    }
+  });
 }
 
-void CanTransport::let_go() {
-  session_->lost = true;
-  try_quick_stop(session_->cycle);
+std::optional<robot::State> CanTransport::measure() {
+  return in_the_loop([](Session& s) -> std::optional<robot::State> {
+    const std::optional<Beat> beat = s.cycle.wait();
+    if (!beat) return std::nullopt;
+    if (const std::optional<std::size_t> drive = s.cycle.lost_drive()) {
+      s.lost = true;
+      lose(s.cycle, *drive);
+    }
+    s.round_trip_s = s.cycle.round_trip_s();
+    return s.measured->update(s.cycle, *beat);
+  });
 }
 
-void CanTransport::send(const hrt::DriveCommand& command) try {
-  Session& s = *session_;
-  s.cycle.send(s.targets->step(command, s.cycle.image(), s.period_s));
-} catch (const ControlLost&) {
-  let_go();
-  throw;
-} catch (const canopen::BusError& error) {
-  session_->lost = true;
-  throw Error(HRT_E_LINK, error.what());
+void CanTransport::send(const hrt::DriveCommand& command) {
+  in_the_loop([&](Session& s) { s.cycle.send(s.targets->step(command, s.cycle.image(), s.period_s)); });
 }
 
 void CanTransport::interrupt() {
@@ -160,15 +157,19 @@ void CanTransport::close() {
                                 "stop by themselves after {} s",
                                 what, s->robot.master_silence_s));
   };
-  try {
-    if (!s->lost) {
+  // A bus that is down takes no quick stop.
+  const auto stop = [&] {
+    try {
       if (const std::string running = power_down(s->cycle); !running.empty()) note(HRT_E_DEVICE, running);
+    } catch (const Error&) {
+      try_quick_stop(s->cycle);
+      throw;
     }
+  };
+  try {
+    if (!s->lost) with_translated_errors(stop);
   } catch (const Error& error) {
-    try_quick_stop(s->cycle);
     note(error.code(), error.what());
-  } catch (const canopen::BusError& error) {
-    note(HRT_E_LINK, error.what());
   }
   s->master.stop_heartbeat();
   s->cycle.stop();

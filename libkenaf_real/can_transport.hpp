@@ -37,9 +37,11 @@ class CanTransport final : public hrt::Transport {
   bool is_paused() const override { return false; }
 
  private:
-  struct Session;                         // an open robot
+  struct Session;  // an open robot
+  hrt::Connection set_up(const hrt_config& config);
   std::optional<robot::State> measure();  // as wait_state, with beats and late orders counted since SYNC began
-  void let_go();                          // the robot is lost, and is commanded to stop
+  template <typename Step>
+  auto in_the_loop(Step step);
 
   OpenBus open_bus_;
   std::unique_ptr<Session> session_;

@@ -1,11 +1,10 @@
 // The parts that are specific to libkenaf_real.
 #include "can/canbus/socket_bus.hpp"
-#include "formats/description/description_error.hpp"
 #include "hrt/camera.hpp"
-#include "hrt/error.hpp"
 #include "hrt/transport.hpp"
 #include "libkenaf_real/camera_on_robot.hpp"
 #include "libkenaf_real/can_transport.hpp"
+#include "libkenaf_real/translated_errors.hpp"
 #include "libkenaf_real/v4l2_camera.hpp"
 
 namespace kenaf::hrt {
@@ -18,11 +17,8 @@ std::unique_ptr<Transport> make_transport() {
 namespace {
 
 real::CameraOnRobot described_camera(const hrt_config& config, const std::string& name) {
-  try {
-    return real::choose_camera(real::load_cameras(config.robot), name, config.robot);
-  } catch (const description::DescriptionError& error) {
-    throw Error(HRT_E_CONFIG, error.what());
-  }
+  return real::with_translated_errors(
+      [&] { return real::choose_camera(real::load_cameras(config.robot), name, config.robot); });
 }
 
 }  // namespace

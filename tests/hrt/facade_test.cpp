@@ -328,12 +328,14 @@ TEST_CASE("Closing ends the calls of other threads") {
 TEST_CASE("A robot that is being closed asks its transport nothing more") {
   const auto fake = use_fake_robot();
   kenaf::hrt::Robot robot(kenaf::hrt::make_transport(), hrt_config_default());
-  kenaf::hrt::Snapshot snapshot;
-  robot.snapshot(snapshot);
+  kenaf::hrt::Snapshot snapshot = robot.snapshot();
   CHECK(snapshot.round_trip_s == 0.002);
+  CHECK_FALSE(snapshot.lost);
   robot.close();
-  snapshot = {};
-  CHECK_THROWS_WITH(robot.snapshot(snapshot), "hrt_close() was called");
+  snapshot = robot.snapshot();
+  REQUIRE(snapshot.lost);
+  CHECK(snapshot.lost->code() == HRT_E_CLOSED);
+  CHECK(std::string(snapshot.lost->what()) == "hrt_close() was called");
   CHECK(snapshot.round_trip_s == 0);
   CHECK(snapshot.measured.frame > 0);
 }
