@@ -116,7 +116,7 @@ struct Simulation {
   std::vector<Call> calls_;
   std::uint64_t next_call_step_ = kNever;
   std::uint32_t last_session_ = 0;
-  std::string due_lines_;  // scratch of send_due()
+  std::string deferred_lines_;  // scratch of send_due()
   protocol::LogLimiter behind_log_{1, 10};
   protocol::LogLimiter fault_log_{kMostRobots, 5};
   double dropped_s_ = 0;  // robot time by which this machine lags
