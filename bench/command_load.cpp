@@ -143,7 +143,7 @@ int main(int argc, char** argv) {
       for (int i = 1; i <= sent; ++i) {
         command.sequence = static_cast<std::uint32_t>(i);
         command.frame = frame;
-        command.track_speed_mps = {1e-6 * i, -1e-6 * i};  // up to 60 mm/s, turning in place
+        command.robot.track_speed_mps = {1e-6 * i, -1e-6 * i};  // up to 60 mm/s, turning in place
         client.send(command);
         std::this_thread::sleep_until(start + std::chrono::milliseconds(i));
       }

@@ -37,7 +37,8 @@ hrt_state state_from(const Snapshot& snapshot) {
                    flag(snapshot.stopped_by_silence || measured.stopped_by_silence, HRT_STOPPED_BY_SILENCE) |
                    flag(snapshot.recording, HRT_RECORDING) | flag(snapshot.lockstep, HRT_IN_LOCKSTEP) |
                    flag(!snapshot.warning.empty(), HRT_DEGRADED);
-  state.flippers_commanded = snapshot.commanded.flipper_mask;
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
+    state.flippers_commanded |= flag(snapshot.commanded.flipper[i].mode == robot::JointMode::angle, 1u << i);
   state.cycle = measured.frame;
   state.time_s = measured.robot_time_s;
 
@@ -69,7 +70,8 @@ hrt_state state_from(const Snapshot& snapshot) {
 
   // The command in force and the health of the link.
   scale(snapshot.commanded.track_speed_mps, kMillimetres, state.commanded_track_mmps);
-  scale(snapshot.commanded.flipper_rad, kDegrees, state.commanded_flipper_deg);
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
+    state.commanded_flipper_deg[i] = snapshot.commanded.flipper[i].value * kDegrees;
 
   state.round_trip_ms = snapshot.round_trip_s * 1e3;
   state.late_cycles = measured.late_commands;

@@ -58,7 +58,7 @@ std::vector<std::string> record_columns() {
   return names;
 }
 
-RecordRow record_row(const robot::State& state, const DriveCommand& command, double t_s) {
+RecordRow record_row(const robot::State& state, const robot::Command& command, double t_s) {
   using enum robot::Quantity;
   RecordRow row;
   row.fill(kNotMeasured);
@@ -67,9 +67,9 @@ RecordRow record_row(const robot::State& state, const DriveCommand& command, dou
   // commanded
   put<time>(row, t_s);
   put<track_command>(row, command.track_speed_mps);
-  std::array<double, robot::kFlipperCount> flipper_rad = command.flipper_rad;
+  std::array<double, robot::kFlipperCount> flipper_rad;
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
-    if ((command.flipper_mask >> i & 1) == 0) flipper_rad[i] = kNotMeasured;
+    flipper_rad[i] = command.flipper[i].mode == robot::JointMode::angle ? command.flipper[i].value : kNotMeasured;
   put<flipper_command>(row, flipper_rad);
 
   // measured
@@ -116,7 +116,7 @@ Recorder::~Recorder() {
   }
 }
 
-void Recorder::add(const robot::State& state, const DriveCommand& command, double t_s) {
+void Recorder::add(const robot::State& state, const robot::Command& command, double t_s) {
   std::unique_lock lock(mutex_);
   if (!started_) {
     started_ = true;

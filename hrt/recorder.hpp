@@ -26,7 +26,7 @@ std::vector<std::string> record_columns();
 
 // Returns one row: `state` with the command in force from its time on. NaN if a quantity was not measured since the
 // previous state.
-RecordRow record_row(const robot::State& state, const DriveCommand& command, double t_s);
+RecordRow record_row(const robot::State& state, const robot::Command& command, double t_s);
 
 // Thread safety: add() is for one thread at a time; finish() must follow the last add().
 class Recorder {
@@ -41,7 +41,7 @@ class Recorder {
 
   // `t_s`: from an Estimate, because the clock of `state` may be set back. Time in the file counts from the first state
   // added. A state no later than the previous one is skipped.
-  void add(const robot::State& state, const DriveCommand& command, double t_s);
+  void add(const robot::State& state, const robot::Command& command, double t_s);
 
   // Writes the queued rows and closes the file. Throws Error(HRT_E_RECORD) with the reason if the file is incomplete;
   // the rows written so far stay in the part file.

@@ -229,9 +229,8 @@ void Robot::set_tracks(double left_mps, double right_mps) {
 void Robot::set_flippers(std::uint8_t mask, const std::array<double, robot::kFlipperCount>& angle_rad) {
   const std::unique_lock lock = lock_open();
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
-    if ((mask >> i & 1) != 0) flipper_rad_[i] = angle_rad[i];
+    if ((mask >> i & 1) != 0) user_flipper_[i] = {robot::JointMode::angle, angle_rad[i]};
   }
-  flipper_mask_ |= mask;
   note_setting();
 }
 
@@ -242,14 +241,15 @@ void Robot::stop() {
   goal_heading_rad_.reset();
   set_user_tracks({});
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
-    if (flipper_is_off(i, kFlipperArrived_rad)) flipper_rad_[i] = measured_.flipper_rad[i];
+    if (flipper_is_off(i, kFlipperArrived_rad)) user_flipper_[i].value = measured_.flipper_rad[i];
   }
   note_setting();
 }
 
 bool Robot::flipper_is_off(std::size_t flipper, double tolerance_rad) const {
-  const bool known = (flipper_mask_ >> flipper & 1) != 0 && (measured_.fields & robot::kHasFlippers) != 0;
-  return known && std::abs(measured_.flipper_rad[flipper] - flipper_rad_[flipper]) > tolerance_rad;
+  const robot::JointCommand& command = user_flipper_[flipper];
+  const bool known = command.mode == robot::JointMode::angle && (measured_.fields & robot::kHasFlippers) != 0;
+  return known && std::abs(measured_.flipper_rad[flipper] - command.value) > tolerance_rad;
 }
 
 Snapshot Robot::snapshot() {
@@ -352,7 +352,7 @@ void Robot::close() {
 void Robot::run(robot::State state) {
   try {
     for (std::optional<robot::State> next = state; next; next = transport_->wait_state()) {
-      const std::optional<DriveCommand> command = answer(*next);
+      const std::optional<robot::Command> command = answer(*next);
       if (!command) return;
       transport_->send(*command);
     }
@@ -371,7 +371,7 @@ void Robot::fail(int code, const std::string& text) {
   end_calls([](const Call&) { return true; }, code, text);
 }
 
-std::optional<DriveCommand> Robot::answer(const robot::State& state) {
+std::optional<robot::Command> Robot::answer(const robot::State& state) {
   std::unique_lock lock(mutex_);
   if (closing_) return std::nullopt;     // this state overtook the interrupt
   if (state.frame != estimate_.frame) {  // the constructor has taken the first one
@@ -441,8 +441,7 @@ void Robot::compose_command() {
   }
   command_.track_speed_mps = motion_active() ? motion_track_mps_ : user_track_mps_;
   if (closing_) command_.track_speed_mps = {};
-  command_.flipper_mask = flipper_mask_;
-  command_.flipper_rad = flipper_rad_;
+  command_.flipper = user_flipper_;
 }
 
 }  // namespace kenaf::hrt

@@ -2,23 +2,16 @@
 // libkenaf_real (SocketCAN). SI units and the frames of robot/state.hpp.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "kenaf/hrt.h"
+#include "robot/command.hpp"
 #include "robot/state.hpp"
 
 namespace kenaf::hrt {
-
-// Command to the robot from the next cycle on. Complete and absolute.
-struct DriveCommand {
-  std::array<double, robot::kTrackCount> track_speed_mps{};
-  std::uint8_t flipper_mask = 0;  // bit i: flipper_rad[i] was ever commanded
-  std::array<double, robot::kFlipperCount> flipper_rad{};
-};
 
 struct Connection {
   double period_s;  // in force
@@ -38,8 +31,9 @@ class Transport {
   // Error(HRT_E_LINK) once the link is known to be lost, Error(HRT_E_DEVICE) if a device failed.
   virtual std::optional<robot::State> wait_state() = 0;
 
-  // Answers the state that wait_state returned last. Delivered even if packets get lost.
-  virtual void send(const DriveCommand& command) = 0;
+  // Answers the state that wait_state returned last. Delivered even if packets get lost. Flippers are commanded an
+  // angle, or keep: those that the program has not commanded yet.
+  virtual void send(const robot::Command& command) = 0;
 
   // The answer is delayed on purpose: tells this to a peer that would take the silence for an absent commander. Cheap
   // enough to be called every few milliseconds.

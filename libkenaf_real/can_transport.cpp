@@ -139,7 +139,7 @@ std::optional<robot::State> CanTransport::measure() {
   });
 }
 
-void CanTransport::send(const hrt::DriveCommand& command) {
+void CanTransport::send(const robot::Command& command) {
   in_the_loop([&](Session& s) { s.cycle.send(s.targets->step(command, s.cycle.image(), s.period_s)); });
 }
 

@@ -29,7 +29,7 @@ class CanTransport final : public hrt::Transport {
 
   hrt::Connection open(const hrt_config& config) override;
   std::optional<robot::State> wait_state() override;
-  void send(const hrt::DriveCommand& command) override;
+  void send(const robot::Command& command) override;
   void interrupt() override;
   void close() override;
   std::string warning() const override;

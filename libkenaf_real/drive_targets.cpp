@@ -28,18 +28,18 @@ DriveTargets::DriveTargets(const canbus::RobotBus& bus, const ProcessImage& imag
   }
 }
 
-DriveOrders DriveTargets::step(const hrt::DriveCommand& command, const ProcessImage& image, double period_s) {
+DriveOrders DriveTargets::step(const robot::Command& command, const ProcessImage& image, double period_s) {
   DriveOrders orders;
   for (std::size_t t = 0; t < robot::kTrackCount; ++t) orders[t] = track(t, command.track_speed_mps[t], period_s);
   for (std::size_t f = 0; f < robot::kFlipperCount; ++f) {
     const std::size_t drive = robot::kTrackCount + f;
-    const bool commanded = (command.flipper_mask >> f & 1) != 0;
+    const bool commanded = command.flipper[f].mode == robot::JointMode::angle;
     const DriveOnBus& on_bus = bus_.drives[drive];
     // a drive that was never commanded stays where it is, even outside its limits
     if (commanded)
-      hold_rad_[f] =
-          robot::reachable_angle(command.flipper_rad[f], position_from_drive(on_bus.units, image.drive(drive).position),
-                                 on_bus.min_position, on_bus.max_position);
+      hold_rad_[f] = robot::reachable_angle(command.flipper[f].value,
+                                            position_from_drive(on_bus.units, image.drive(drive).position),
+                                            on_bus.min_position, on_bus.max_position);
     orders[drive] = flipper(drive, commanded, image.drive(drive), period_s);
   }
   return orders;

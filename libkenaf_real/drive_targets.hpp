@@ -6,8 +6,8 @@
 
 #include "can/canbus/robot_bus.hpp"
 #include "can/canopen/drive.hpp"
-#include "hrt/transport.hpp"
 #include "libkenaf_real/bus_cycle.hpp"
+#include "robot/command.hpp"
 
 namespace kenaf::real {
 
@@ -25,7 +25,7 @@ class DriveTargets {
   // A speed out of range is limited to the description's maximum; a flipper angle is taken to the same direction within
   // the limits or, if there is none, to the nearer limit. Ramps advance by one period per call, even if the previous
   // call is longer ago: a drive reaches each target within a period, and catching up would be a jump beyond the limits.
-  DriveOrders step(const hrt::DriveCommand& command, const ProcessImage& image, double period_s);
+  DriveOrders step(const robot::Command& command, const ProcessImage& image, double period_s);
 
  private:
   DriveOrder track(std::size_t drive, double speed_mps, double period_s);

@@ -220,13 +220,8 @@ void RelayTransport::check_life(Clock::time_point now) {
   }
 }
 
-void RelayTransport::send(const hrt::DriveCommand& command) {
-  command_ = {.session = session_,
-              .sequence = command_.sequence + 1,
-              .frame = frame_,
-              .track_speed_mps = command.track_speed_mps,
-              .flipper_mask = command.flipper_mask,
-              .flipper_rad = command.flipper_rad};
+void RelayTransport::send(const robot::Command& command) {
+  command_ = {.session = session_, .sequence = command_.sequence + 1, .frame = frame_, .robot = command};
   const Clock::time_point now = Clock::now();
   // Before the command: if states come so fast that nobody ever waits, this measures the round trip, and the answer is
   // read before the state that ends the wait, not after the program's next computation.

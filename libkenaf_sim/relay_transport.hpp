@@ -25,7 +25,7 @@ class RelayTransport final : public hrt::Transport {
 
   hrt::Connection open(const hrt_config& config) override;
   std::optional<robot::State> wait_state() override;
-  void send(const hrt::DriveCommand& command) override;
+  void send(const robot::Command& command) override;
   void keep_alive() override;
   void interrupt() override;
   void close() override;

@@ -44,6 +44,7 @@ class World {
   const RobotDescription& robot_description(RobotId id) const;
   const std::string& robot_name(RobotId id) const;
 
+  // In force from the next step on. Values that are not finite leave the ones set before.
   void set_command(RobotId id, const robot::Command& command);
   // Turns a link (from 0) of a mission package, within its limits of angle and speed.
   void set_mission_link(RobotId id, std::size_t package, std::size_t link, double angle_rad);

@@ -18,20 +18,21 @@ constexpr double kMaxFlipperAngle_rad = 100;
 void write_command(std::string& out, const protocol::relay::Command& command, double wheel_radius_m,
                    std::optional<std::int64_t> world_frame) {
   protocol::usarsim::MessageWriter writer(out);
-  if (command.flipper_mask != 0) {
+  const auto has_angle = [](const robot::JointCommand& joint) { return joint.mode == robot::JointMode::angle; };
+  if (std::ranges::any_of(command.robot.flipper, has_angle)) {
     writer.begin("MULTIDRIVE");
     for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
-      if ((command.flipper_mask >> i & 1u) == 0) continue;
+      if (!has_angle(command.robot.flipper[i])) continue;
       const auto flipper = static_cast<robot::Flipper>(i);
       writer.number(protocol::frames::usarsim_flipper_name(flipper),
-                    protocol::frames::usarsim_flipper_from_tip_up(flipper, command.flipper_rad[i]),
+                    protocol::frames::usarsim_flipper_from_tip_up(flipper, command.robot.flipper[i].value),
                     protocol::usarsim::kExactNumber);
     }
     if (world_frame) writer.integer("Frame", *world_frame);
     writer.end();
   }
   const auto spin = [&](robot::Track track) {
-    return protocol::frames::spin_from_surface_speed(command.track_speed_mps[track], wheel_radius_m);
+    return protocol::frames::spin_from_surface_speed(command.robot.track_speed_mps[track], wheel_radius_m);
   };
   writer.begin("DRIVE")
       .number("Left", spin(robot::kLeft), protocol::usarsim::kExactNumber)
@@ -65,8 +66,10 @@ void write_ping(std::string& out, std::int64_t id) {
 
 const char* out_of_range(const protocol::relay::Command& command) {
   const auto beyond = [](double limit) { return [limit](double value) { return std::abs(value) > limit; }; };
-  if (std::ranges::any_of(command.track_speed_mps, beyond(kMaxTrackSpeed_mps))) return "a track speed above 10 m/s";
-  if (std::ranges::any_of(command.flipper_rad, beyond(kMaxFlipperAngle_rad))) return "a flipper angle above 100 rad";
+  if (std::ranges::any_of(command.robot.track_speed_mps, beyond(kMaxTrackSpeed_mps)))
+    return "a track speed above 10 m/s";
+  if (std::ranges::any_of(command.robot.flipper, beyond(kMaxFlipperAngle_rad), &robot::JointCommand::value))
+    return "a flipper angle above 100 rad";
   return nullptr;
 }
 

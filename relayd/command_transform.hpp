@@ -18,7 +18,7 @@ struct WorldSession {
   double command_timeout_s = 0.5;
 };
 
-// MULTIDRIVE with the flippers named by the mask, then DRIVE, which ends the answer. Surface speeds become spins of a
+// MULTIDRIVE with the flippers that are commanded, then DRIVE, which ends the answer. Surface speeds become spins of a
 // wheel of `wheel_radius_m`, flipper angles USARSim joint angles. Without `world_frame` it takes effect at once.
 void write_command(std::string& out, const protocol::relay::Command& command, double wheel_radius_m,
                    std::optional<std::int64_t> world_frame);

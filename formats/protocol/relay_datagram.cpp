@@ -34,9 +34,17 @@ void walk(auto& io, Refused& m) {
 void walk(auto& io, Command& m) {
   io.integer(m.sequence);
   io.integer(m.frame);
-  io.numbers(m.track_speed_mps);
-  io.bits(m.flipper_mask, kFlipperMaskBits);
-  io.numbers(m.flipper_rad);
+  io.numbers(m.robot.track_speed_mps);
+
+  // A mask names the flippers with an angle; the others are to be kept.
+  std::uint8_t with_angle = 0;
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
+    with_angle |= static_cast<std::uint8_t>((m.robot.flipper[i].mode == robot::JointMode::angle ? 1u : 0u) << i);
+  io.bits(with_angle, kFlipperMaskBits);
+  for (std::size_t i = 0; i < robot::kFlipperCount; ++i) {
+    m.robot.flipper[i].mode = (with_angle >> i & 1u) != 0 ? robot::JointMode::angle : robot::JointMode::keep;
+    io.number(m.robot.flipper[i].value);
+  }
 }
 
 void walk(auto& io, State& m) {

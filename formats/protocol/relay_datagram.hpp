@@ -14,6 +14,7 @@
 #include <variant>
 
 #include "formats/protocol/datagram_codec.hpp"
+#include "robot/command.hpp"
 #include "robot/parts.hpp"
 #include "robot/state.hpp"
 
@@ -60,9 +61,7 @@ struct Command {
   std::uint64_t session;
   std::uint32_t sequence;  // starts at 1, one more for each new Command; a resent Command keeps its sequence
   std::uint32_t frame;     // the State this answers; 0 before the first
-  std::array<double, robot::kTrackCount> track_speed_mps;
-  std::uint8_t flipper_mask;  // bit i: flipper_rad[i] is commanded; the others keep their last command
-  std::array<double, robot::kFlipperCount> flipper_rad;
+  robot::Command robot = robot::idle_command();  // flippers: an angle, or keep
 };
 
 // Measurements and the state of the session. stopped_by_silence: no Command came within command_timeout_s.

@@ -76,19 +76,24 @@ void CommandChannel::restart(const robot::Command& command) {
 }
 
 void CommandChannel::begin(const robot::Command& command, const std::array<double, robot::kTrackCount>& track_mps) {
-  sent_ = command;
+  take(command);
   receive();
   std::fill(line_.begin(), line_.end(), received_);
   ramp_mps_ = track_mps;
 }
 
 void CommandChannel::send(const robot::Command& command) {
+  take(command);
+  if (loss_ > 0 && noise_.uniform() <= loss_) return;
+  receive();
+}
+
+void CommandChannel::take(const robot::Command& command) {
   for (std::size_t i = 0; i < robot::kTrackCount; ++i)
     if (std::isfinite(command.track_speed_mps[i])) sent_.track_speed_mps[i] = command.track_speed_mps[i];
   for (std::size_t i = 0; i < robot::kFlipperCount; ++i)
-    if (std::isfinite(command.flipper[i].value)) sent_.flipper[i] = command.flipper[i];
-  if (loss_ > 0 && noise_.uniform() <= loss_) return;
-  receive();
+    if (std::isfinite(command.flipper[i].value) && command.flipper[i].mode != robot::JointMode::keep)
+      sent_.flipper[i] = command.flipper[i];
 }
 
 void CommandChannel::receive() {

@@ -39,12 +39,14 @@ class CommandChannel {
   void begin(const robot::Command& command, const std::array<double, robot::kTrackCount>& track_mps);
   // The tracks stand, whatever was commanded: the ramp restarts at 0. Commands under way still arrive.
   void stop_ramp() { ramp_mps_ = {}; }
-  // A command from the commander. Values that are not finite keep the ones sent before.
+  // A command from the commander. Values that are not finite, and JointMode::keep, leave the ones sent before. The
+  // command for the drives has no JointMode::keep.
   void send(const robot::Command& command);
   // Returns the command for the drives; call once before each time step.
   const robot::Command& step();
 
  private:
+  void take(const robot::Command& command);
   void receive();
   void move_ramp(const std::array<double, robot::kTrackCount>& target_mps);
 

@@ -76,6 +76,7 @@ void FlipperJoint::drive(const robot::JointCommand& command, const FlipperDescri
       speed = std::copysign(servo.max_speed_radps, command.value);
       break;
     case robot::JointMode::brake:
+    case robot::JointMode::keep:  // the command channel lets none pass
       break;
   }
   servo_most_nm_ = torque;

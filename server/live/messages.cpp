@@ -55,9 +55,11 @@ std::string_view mode_name(robot::JointMode mode) {
     case robot::JointMode::torque:
       return "torque";
     case robot::JointMode::brake:
+      return "brake";
+    case robot::JointMode::keep:
       break;
   }
-  return "brake";
+  return "keep";
 }
 
 void write_command(Writer& out, const RobotState& robot) {

@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "relayd/commander_session.hpp"
+#include "tests/support/robot_command.hpp"
 
 using namespace kenaf;
 using namespace kenaf::relayd;
@@ -88,8 +89,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             protocol::relay::Hello{id, 0.01 * bytes.next(), 0.1 * bytes.next(), (what & 16) != 0, (what & 32) != 0});
         break;
       case 1:
-        datagram(
-            protocol::relay::Command{id, bytes.next(), bytes.next(), {0.1 * bytes.next(), 0}, 1, {1.0 * bytes.next()}});
+        datagram(protocol::relay::Command{id, bytes.next(), bytes.next(),
+                                          support::command_of({0.1 * bytes.next(), 0}, 1, {1.0 * bytes.next()})});
         break;
       case 2:
         datagram(protocol::relay::Bye{id});

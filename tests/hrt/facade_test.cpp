@@ -24,7 +24,6 @@
 
 using namespace kenaf::hrt::test;
 using namespace std::chrono_literals;
-using kenaf::hrt::DriveCommand;
 
 namespace {
 
@@ -109,10 +108,11 @@ TEST_CASE("Track speeds and flipper angles reach the transport in metres and rad
   REQUIRE(hrt_wait_cycle(nullptr) == HRT_OK);
   {
     const std::lock_guard lock(robot->mutex);
-    const DriveCommand& command = robot->commands.front();  // all of it in the very first cycle
+    const kenaf::robot::Command& command = robot->commands.front();  // all of it in the very first cycle
     CHECK(command.track_speed_mps == std::array<double, 2>{0.1, -0.05});
-    CHECK(command.flipper_mask == 0b0100);
-    CHECK(command.flipper_rad[2] == Approx(30 * kDegree));
+    for (std::size_t i = 0; i < kenaf::robot::kFlipperCount; ++i)
+      CHECK((command.flipper[i].mode == kenaf::robot::JointMode::angle) == (i == kenaf::robot::kRearLeft));
+    CHECK(command.flipper[kenaf::robot::kRearLeft].value == Approx(30 * kDegree));
   }
   REQUIRE(hrt_set_flippers(10, 20, 30, 40) == HRT_OK);
   REQUIRE(hrt_wait_flippers(0.5, 10) == HRT_OK);
@@ -194,7 +194,7 @@ TEST_CASE("Bad arguments are named and change nothing") {
   REQUIRE(hrt_wait_cycle(nullptr) == HRT_OK);
   const std::lock_guard lock(robot->mutex);
   CHECK(robot->commands.front().track_speed_mps == std::array<double, 2>{0, 0});
-  CHECK(robot->commands.front().flipper_mask == 0);
+  CHECK(robot->commands.front().flipper == kenaf::robot::idle_command().flipper);
 }
 
 TEST_CASE("Every error has a name, and only those") {
@@ -405,12 +405,12 @@ TEST_CASE("In lock step the same program gives the same commands however long it
     robot->commands.resize(last_cycle - 1);
     return robot->commands;
   };
-  const std::vector<DriveCommand> quick = drive(0), slow = drive(5000);
+  const std::vector<kenaf::robot::Command> quick = drive(0), slow = drive(5000);
   REQUIRE(quick.size() == slow.size());
   for (std::size_t i = 0; i < quick.size(); ++i) {
     CAPTURE(i);
     REQUIRE(quick[i].track_speed_mps == slow[i].track_speed_mps);  // to the last bit
-    REQUIRE(quick[i].flipper_rad == slow[i].flipper_rad);
+    REQUIRE(quick[i].flipper == slow[i].flipper);
   }
 }
 
@@ -452,7 +452,7 @@ TEST_CASE("Two threads that take turns give the same run as well") {
   for (std::size_t i = 0; i < quick.size(); ++i) {
     CAPTURE(i);
     REQUIRE(quick[i].track_speed_mps == slow[i].track_speed_mps);
-    REQUIRE(quick[i].flipper_rad == slow[i].flipper_rad);
+    REQUIRE(quick[i].flipper == slow[i].flipper);
   }
 }
 

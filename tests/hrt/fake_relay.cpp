@@ -156,7 +156,7 @@ std::vector<protocol::relay::Datagram> FakeRelay::answers_to(const protocol::rel
     return {event};
   }
   commands_.push_back(*command);
-  plant_.advance({command->track_speed_mps, command->flipper_mask, command->flipper_rad});
+  plant_.advance(command->robot);
   acknowledged_ = command->sequence;
   return {state()};
 }

@@ -80,7 +80,7 @@ std::optional<robot::State> FakeTransport::wait_state() {
   return robot_->plant.state;
 }
 
-void FakeTransport::send(const DriveCommand& command) {
+void FakeTransport::send(const robot::Command& command) {
   const std::lock_guard lock(robot_->mutex);
   command_ = command;
   answered_ = true;

@@ -29,8 +29,8 @@ struct FakeRobot {
 
   std::mutex mutex;
   std::condition_variable changed;
-  std::vector<DriveCommand> commands;  // commands[i] answers frame i + 1
-  std::vector<double> travel_m;        // travel_m[i] is the left track's in frame i + 1
+  std::vector<robot::Command> commands;  // commands[i] answers frame i + 1
+  std::vector<double> travel_m;          // travel_m[i] is the left track's in frame i + 1
   bool interrupted = false, closed = false;
   std::string close_error;  // what close says of a robot that did not stop; "": it stopped
 };
@@ -40,7 +40,7 @@ class FakeTransport final : public Transport {
   explicit FakeTransport(std::shared_ptr<FakeRobot> robot) : robot_(std::move(robot)) {}
   Connection open(const hrt_config& config) override;
   std::optional<robot::State> wait_state() override;
-  void send(const DriveCommand& command) override;
+  void send(const robot::Command& command) override;
   void interrupt() override;
   void close() override;
   double round_trip_s() const override { return 0.002; }
@@ -49,7 +49,7 @@ class FakeTransport final : public Transport {
  private:
   std::shared_ptr<FakeRobot> robot_;
   bool first_ = true, answered_ = false;
-  DriveCommand command_;
+  robot::Command command_ = robot::idle_command();
 };
 
 // What make_transport() makes from now on.

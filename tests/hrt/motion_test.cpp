@@ -34,7 +34,7 @@ struct Ride {
         return step;
       }
       top_speed_mps = std::max(top_speed_mps, std::abs(step.track_speed_mps[1]));
-      DriveCommand command;
+      kenaf::robot::Command command = kenaf::robot::idle_command();
       command.track_speed_mps = step.track_speed_mps;
       now = estimator.update(plant.advance(command));
     }
@@ -145,8 +145,7 @@ TEST_CASE("Positive is to the left: the right track drives forward") {
   Ride ride({});
   TurnInPlace turn(ride.limits, 90 * kOneDegree, ride.now);
   (void)turn.step(ride.now);
-  DriveCommand nothing;
-  const MotionStep step = turn.step(ride.estimator.update(ride.plant.advance(nothing)));
+  const MotionStep step = turn.step(ride.estimator.update(ride.plant.advance(kenaf::robot::idle_command())));
   CHECK(step.track_speed_mps[0] < 0);
   CHECK(step.track_speed_mps[1] == -step.track_speed_mps[0]);
 }

@@ -39,8 +39,8 @@ class Plant {
 
   // The state of the first cycle is there at once; each call computes the next one. The answer to a cycle takes effect
   // when the next one begins, as docs/world-server-protocol.md has it.
-  const robot::State& advance(const DriveCommand& answer) {
-    const DriveCommand command = std::exchange(in_force_, answer);
+  const robot::State& advance(const robot::Command& answer) {
+    const robot::Command command = std::exchange(in_force_, answer);
     const double dt = settings.period_s;
     std::array<double, 2> ground_mps{};
     for (std::size_t i = 0; i < 2; ++i) {
@@ -60,9 +60,9 @@ class Plant {
     y_m += (forward_mps * std::sin(mean_rad) + left_mps * std::cos(mean_rad)) * dt;
     yaw_rad += turn_radps * dt;
     for (std::size_t i = 0; i < 4; ++i) {
-      if ((command.flipper_mask >> i & 1) == 0) continue;
+      if (command.flipper[i].mode != robot::JointMode::angle) continue;
       const double step = settings.flipper_radps * dt;
-      flipper_rad[i] += std::clamp(command.flipper_rad[i] - flipper_rad[i], -step, step);
+      flipper_rad[i] += std::clamp(command.flipper[i].value - flipper_rad[i], -step, step);
     }
     ++state.frame;
     t_s = state.frame * dt;
@@ -98,7 +98,7 @@ class Plant {
     pushing = false;
   }
 
-  DriveCommand in_force_;
+  robot::Command in_force_ = robot::idle_command();
   std::mt19937 generator_{1};
   std::normal_distribution<double> noise_{0, 1};
 };

@@ -84,9 +84,8 @@ TEST_CASE("What was missed in a short hold-up is not made up for in one period")
   for (const bool has_state : {false, true}) {
     RobotOnBus robot(cyclic.path());
     robot.open();
-    hrt::DriveCommand command = drive_at(0.05, 0.05);
-    command.flipper_mask = 1;
-    command.flipper_rad[0] = 1;
+    robot::Command command = drive_at(0.05, 0.05);
+    command.flipper[0] = {robot::JointMode::angle, 1};
     const robot::State before = robot.run(30, command);  // full speed after 10: 1.5 rad/s / 15 rad/s^2 = 0.1 s
     command.track_speed_mps = {0.4, 0.4};
     if (has_state) (void)robot.transport.wait_state();

@@ -70,7 +70,8 @@ TEST_CASE("Homing is not taken for done by what a drive says of the one before")
     return true;
   };
   robot.open();
-  for (const double angle_rad : robot.run(1, {}).flipper_rad) CHECK(angle_rad == Approx(-3.14).margin(0.03));
+  for (const double angle_rad : robot.run(1, robot::idle_command()).flipper_rad)
+    CHECK(angle_rad == Approx(-3.14).margin(0.03));
   CHECK(robot.wire.now() > *begun + std::chrono::seconds(6));
 }
 
@@ -95,7 +96,8 @@ TEST_CASE("A drive that takes the home offset the other way round is named, and 
   }
   RobotOnBus robot(minus.path());
   robot.open();
-  for (const double angle_rad : robot.run(2, {}).flipper_rad) CHECK(angle_rad == Approx(0.7).margin(1e-3));
+  for (const double angle_rad : robot.run(2, robot::idle_command()).flipper_rad)
+    CHECK(angle_rad == Approx(0.7).margin(1e-3));
 }
 
 TEST_CASE("Homing that moves is checked for the sign of the home offset") {

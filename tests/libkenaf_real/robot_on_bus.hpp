@@ -67,7 +67,7 @@ struct RobotOnBus {
 
   void open() { transport.open(config); }
   // Cycles with `command` in force; the newest state.
-  robot::State run(int cycles, const hrt::DriveCommand& command) {
+  robot::State run(int cycles, const robot::Command& command) {
     robot::State state{};
     for (int i = 0; i < cycles; ++i) {
       state = transport.wait_state().value();
@@ -95,8 +95,8 @@ struct RobotOnBus {
   double seconds() const { return std::chrono::duration<double>(wire.now()).count(); }
 };
 
-inline hrt::DriveCommand drive_at(double left_mps, double right_mps) {
-  hrt::DriveCommand command;
+inline robot::Command drive_at(double left_mps, double right_mps) {
+  robot::Command command = robot::idle_command();
   command.track_speed_mps = {left_mps, right_mps};
   return command;
 }

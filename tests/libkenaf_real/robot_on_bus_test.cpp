@@ -21,7 +21,7 @@ TEST_CASE("Opening enables all drives and moves nothing") {
   CHECK(robot.all_are(PowerState::operation_enabled));
   CHECK(robot.plant.state().track_m == std::array<double, 2>{});
   CHECK(robot.plant.state().flipper_rad == std::array<double, 4>{});
-  const robot::State state = robot.run(1, {});
+  const robot::State state = robot.run(1, robot::idle_command());
   CHECK(state.frame == 1);  // those of power-up are not the program's
   CHECK((state.fields &
          (robot::kHasPosture | robot::kHasEncoders | robot::kHasFlippers | robot::kHasCurrents | robot::kHasBattery)) ==
@@ -51,9 +51,8 @@ TEST_CASE("Both tracks forward are forward, and as far as their ramp lets them")
 TEST_CASE("A flipper goes to its angle in the time of its trapezoid, the others stay") {
   RobotOnBus robot;
   robot.open();
-  hrt::DriveCommand command;
-  command.flipper_mask = 1u << robot::kRearLeft;
-  command.flipper_rad[robot::kRearLeft] = 1.0;
+  robot::Command command = robot::idle_command();
+  command.flipper[robot::kRearLeft] = {robot::JointMode::angle, 1.0};
   // 1 rad at 1.5 rad/s and 15 rad/s^2: 0.85 / 1.5 + 2 * 0.1 = 0.767 s; the command takes three cycles until the drive
   // has it
   robot::State state = robot.run(60, command);
@@ -64,9 +63,9 @@ TEST_CASE("A flipper goes to its angle in the time of its trapezoid, the others 
   for (const std::size_t f : {robot::kFrontLeft, robot::kFrontRight, robot::kRearRight})
     CHECK(state.flipper_rad[f] == 0);
   // a newer target replaces one under way
-  command.flipper_rad[robot::kRearLeft] = -1.0;
+  command.flipper[robot::kRearLeft].value = -1.0;
   robot.run(20, command);
-  command.flipper_rad[robot::kRearLeft] = 0.5;
+  command.flipper[robot::kRearLeft].value = 0.5;
   state = robot.run(150, command);
   CHECK(state.flipper_rad[robot::kRearLeft] == Approx(0.5).margin(1e-3));
 }
@@ -76,7 +75,7 @@ TEST_CASE("Roll, pitch and yaw have the robot's signs") {
   robot.open();
   robot.plant.roll_rad = 0.1;    // left side up
   robot.plant.pitch_rad = -0.2;  // nose up
-  robot::State state = robot.run(2, {});
+  robot::State state = robot.run(2, robot::idle_command());
   CHECK(state.posture_rad[0] == Approx(0.1).margin(1e-4));  // 0.01 degrees of resolution
   CHECK(state.posture_rad[1] == Approx(-0.2).margin(1e-4));
   robot.plant.roll_rad = robot.plant.pitch_rad = 0;
@@ -90,7 +89,7 @@ TEST_CASE("A turn that is too slow for the encoders to be seen as one is no bias
   RobotOnBus robot;
   robot.open();
   // 1 mm/s at a gauge of 0.2 m: 0.01 rad/s; what was measured in the first two cycles is from before
-  const hrt::DriveCommand slowly = drive_at(-0.001, 0.001);
+  const robot::Command slowly = drive_at(-0.001, 0.001);
   robot.run(2, slowly);
   robot.plant.yaw_rate_radps = 0.01;
   const double before_rad = robot.run(2, slowly).posture_rad[2];
@@ -152,7 +151,7 @@ TEST_CASE("A bus that has a master already is refused") {
 TEST_CASE("An interrupt ends the wait for a state") {
   RobotOnBus robot;
   robot.open();
-  robot.run(3, {});
+  robot.run(3, robot::idle_command());
   robot.transport.interrupt();
   CHECK_FALSE(robot.transport.wait_state());
 }
@@ -161,10 +160,9 @@ TEST_CASE("A robot with cyclic modes drives the same way, on the master's ramps"
   const ChangedRobot cyclic({{"profile velocity", "cyclic velocity"}, {"profile position", "cyclic position"}});
   RobotOnBus robot(cyclic.path());
   robot.open();
-  const robot::State before = robot.run(1, {});
-  hrt::DriveCommand command = drive_at(0.2, 0.2);
-  command.flipper_mask = 1u << robot::kFrontRight;
-  command.flipper_rad[robot::kFrontRight] = -0.8;
+  const robot::State before = robot.run(1, robot::idle_command());
+  robot::Command command = drive_at(0.2, 0.2);
+  command.flipper[robot::kFrontRight] = {robot::JointMode::angle, -0.8};
   const robot::State after = robot.run(101, command);
   // The ramp goes in steps of 0.05 m/s a cycle: 0.05, 0.10, 0.15, 0.2 m/s. In 1.00 s: 0.2 - (0.15 + 0.10 + 0.05) * 0.01
   // = 0.197 m
@@ -179,22 +177,21 @@ TEST_CASE("Flippers without absolute encoders are homed where they stand, or at 
   RobotOnBus robot(here.path());
   robot.open();
   // the arm stood at what the description calls 0.7 rad, wherever the encoder began
-  const robot::State state = robot.run(2, {});
+  const robot::State state = robot.run(2, robot::idle_command());
   for (const double angle_rad : state.flipper_rad) CHECK(angle_rad == Approx(0.7).margin(1e-3));
-  hrt::DriveCommand command;
-  command.flipper_mask = 15;
-  command.flipper_rad.fill(0.2);
+  robot::Command command = robot::idle_command();
+  command.flipper.fill({robot::JointMode::angle, 0.2});
   CHECK(robot.run(150, command).flipper_rad[robot::kFrontLeft] == Approx(0.2).margin(1e-3));
 }
 
 TEST_CASE("A program that answers too late is told so, cycle by cycle") {
   RobotOnBus robot;
   robot.open();
-  robot.run(5, {});
+  robot.run(5, robot::idle_command());
   (void)robot.transport.wait_state();
   robot.wire.run_until(robot.wire.now() + std::chrono::milliseconds(25));  // two SYNCs went by
-  robot.transport.send({});
-  const robot::State state = robot.run(2, {});
+  robot.transport.send(robot::idle_command());
+  const robot::State state = robot.run(2, robot::idle_command());
   CHECK(state.late_commands == 1);
 }
 
@@ -208,16 +205,16 @@ TEST_CASE("What was late while the robot was opened is not counted as the progra
   };
   robot.open();
   CHECK(was_held_up);
-  CHECK(robot.run(2, {}).late_commands == 0);
+  CHECK(robot.run(2, robot::idle_command()).late_commands == 0);
 }
 
 TEST_CASE("A SYNC that stops is a link that is lost") {
   RobotOnBus robot;
   robot.open();
-  robot.run(5, {});
+  robot.run(5, robot::idle_command());
   robot.wire.stop_sync();
   try {
-    robot.run(20, {});
+    robot.run(20, robot::idle_command());
     FAIL("it went on without SYNC");
   } catch (const hrt::Error& error) {
     CHECK(error.code() == HRT_E_LINK);
@@ -231,13 +228,13 @@ TEST_CASE("A track_gauge_mm that is not the described robot's is warned of") {
     RobotOnBus robot;
     robot.config.track_gauge_mm = gauge_mm;
     robot.open();
-    robot.run(2, {});
+    robot.run(2, robot::idle_command());
     CHECK_THAT(robot.transport.warning(), Catch::StartsWith(says));
     CHECK(robot.transport.warning().empty() == (std::string(says) == ""));
     if (robot.transport.warning().empty()) continue;
     CHECK_THAT(robot.transport.warning(), Catch::Contains("200 mm"));
     robot.wire.inject({candrives::FaultKind::silent, 7});
-    robot.run(15, {});
+    robot.run(15, robot::idle_command());
     CHECK_THAT(robot.transport.warning(),
                Catch::StartsWith("inclinometer (node 7) is silent") && Catch::Contains("track_gauge_mm is 250"));
   }
@@ -266,7 +263,7 @@ TEST_CASE("A period that the bus cannot carry, or that is too long to notice a d
     RobotOnBus robot;
     robot.config.period_s = period_s;
     robot.open();
-    CHECK(robot.run(10, {}).late_commands == 0);
+    CHECK(robot.run(10, robot::idle_command()).late_commands == 0);
   }
 }
 

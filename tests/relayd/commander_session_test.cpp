@@ -1,5 +1,6 @@
 // Who commands the robot: rules of docs/relay-protocol.md with a clock of the test's own.
 #include "relayd/commander_session.hpp"
+#include "tests/support/robot_command.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -52,7 +53,7 @@ struct Fixture {
     session.on_frame(world, now);
   }
   void command(std::uint32_t sequence, std::uint32_t answers, std::uint64_t id = 7, const Address& address = kFirst) {
-    from(address, protocol::relay::Command{id, sequence, answers, {0.1, 0.1}, 0, {}});
+    from(address, protocol::relay::Command{id, sequence, answers, support::command_of({0.1, 0.1})});
   }
   void pass(CommanderSession::Duration time, bool world_is_alive = true) {
     now += time;
@@ -116,7 +117,7 @@ TEST_CASE_METHOD(Fixture, "Strangers get a hundred answers a second in all, and 
   CHECK(answers([this](const Address& stranger) { command(1, 0, 99, stranger); }) == 0);
   open();
   const std::size_t with_welcome = port.sent.size();
-  from(kFirst, protocol::relay::Command{7, 1, 0, {99, 0}, 0, {}});  // out of range
+  from(kFirst, protocol::relay::Command{7, 1, 0, support::command_of({99, 0})});  // out of range
   CHECK(port.sent.size() == with_welcome + 1);
   now += 500ms;
   CHECK(answers([this](const Address& stranger) { hello(stranger, 8); }) == 50);  // busy
@@ -202,7 +203,7 @@ TEST_CASE_METHOD(Fixture, "A Command before the first State takes effect at once
 TEST_CASE_METHOD(Fixture, "An absurd Command is refused and does not count as one") {
   open();
   frame(1, 1.0);
-  from(kFirst, protocol::relay::Command{7, 1, 1, {10.5, 0}, 0, {}});
+  from(kFirst, protocol::relay::Command{7, 1, 1, support::command_of({10.5, 0})});
   CHECK(refused() == protocol::relay::RefusedReason::bad_request);
   CHECK(port.driven.empty());
   command(1, 1);

@@ -9,6 +9,7 @@
 #include "tests/relayd/fake_world.hpp"
 #include "tests/relayd/running_relay.hpp"
 #include "tests/support/lossy_proxy.hpp"
+#include "tests/support/robot_command.hpp"
 
 using namespace kenaf;
 using namespace kenaf::test;
@@ -19,9 +20,7 @@ namespace {
 // Drives to x = 0.5 m by what it measures, so that each lost or stale State would show in all later ones.
 void approach(const protocol::relay::State& state, protocol::relay::Command& command) {
   const double speed_mps = 2 * (0.5 - state.robot.track_m[robot::kLeft]) + 0.01 * std::sin(state.robot.frame);
-  command.track_speed_mps = {speed_mps, speed_mps};
-  command.flipper_mask = 0b0101;
-  command.flipper_rad = {0.1 * speed_mps, 0, -0.1 * speed_mps, 0};
+  command.robot = support::command_of({speed_mps, speed_mps}, 0b0101, {0.1 * speed_mps, 0, -0.1 * speed_mps, 0});
 }
 
 std::vector<std::string> commands_only(const FakeWorld& world) {
@@ -47,7 +46,7 @@ TEST_CASE("The relay places a robot, opens a session in lock step and carries co
 
   // 0.2 m/s for 50 periods of 0.01 s: 0.1 m.
   const auto states = commander.drive(50, [](const protocol::relay::State&, protocol::relay::Command& command) {
-    command.track_speed_mps = {0.2, 0.2};
+    command.robot.track_speed_mps = {0.2, 0.2};
   });
   CHECK(world.x_m() == Approx(0.1).margin(1e-9));
   CHECK(world.last("DRIVE") == "DRIVE {Left 4.000000000000} {Right 4.000000000000} {Frame 50}");
@@ -243,14 +242,14 @@ TEST_CASE("A plain USARSim server works without the extensions") {
   const auto first = commander.next_state(0, protocol::relay::Ping{4, 1});
   REQUIRE(first);
   protocol::relay::Command command = commander.command(1, first->robot.frame, 0.1, -0.2);
-  command.flipper_mask = 0b1111;
-  command.flipper_rad = {0.5, 0.5, 0.25, 0.25};
+  const std::array<double, robot::kFlipperCount> flipper_rad{0.5, 0.5, 0.25, 0.25};
+  command.robot = support::command_of(command.robot.track_speed_mps, 0b1111, flipper_rad);
   commander.send(command);
   const auto later =
       commander.wait_for([](const auto& s) { return s.acknowledged == 1 && s.robot.flipper_rad[0] != 0; });
   REQUIRE(later);
   CHECK(later->robot.frame > first->robot.frame);
-  CHECK(later->robot.flipper_rad == command.flipper_rad);
+  CHECK(later->robot.flipper_rad == flipper_rad);
   CHECK(world.last("DRIVE") == "DRIVE {Left 2.000000000000} {Right -4.000000000000}");
   CHECK(world.last("MULTIDRIVE") ==
         "MULTIDRIVE {FLFlipper -0.500000000000} {FRFlipper -0.500000000000} {RLFlipper 0.250000000000} "
@@ -297,7 +296,7 @@ TEST_CASE("Hostile datagrams: a log line, nothing dead, nothing lost") {
   std::uint32_t frames = 0;
   const auto states = commander.drive(40, [&](const protocol::relay::State& state, protocol::relay::Command& command) {
     if (state.robot.frame % 4 == 0) attack();
-    command.track_speed_mps = {0.2, 0.2};
+    command.robot.track_speed_mps = {0.2, 0.2};
     ++frames;
   });
   CHECK(frames == 40);
@@ -325,7 +324,7 @@ TEST_CASE("Hostile lines from the world server: a log line, nothing dead, nothin
   FakeCommander commander(relay.port(), 4);
   REQUIRE(is_welcome(commander.hello(true)));
   const auto states = commander.drive(10, [](const protocol::relay::State&, protocol::relay::Command& command) {
-    command.track_speed_mps = {0.2, 0.2};
+    command.robot.track_speed_mps = {0.2, 0.2};
   });
   CHECK(world.x_m() == Approx(10 * 0.002).margin(1e-9));
   CHECK(states[9].robot.track_m[robot::kLeft] == Approx(9 * 0.002).margin(1e-9));

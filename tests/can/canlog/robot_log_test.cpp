@@ -40,11 +40,10 @@ std::set<std::string> broken_rules(const real::RobotOnBus& robot) {
 void drive(real::RobotOnBus& robot) {
   robot.open();
   robot.run(50, real::drive_at(0.3, 0.3));
-  hrt::DriveCommand command = real::drive_at(-0.2, 0.2);
-  command.flipper_mask = 1u << robot::kFrontLeft;
-  command.flipper_rad[robot::kFrontLeft] = 0.4;
+  robot::Command command = real::drive_at(-0.2, 0.2);
+  command.flipper[robot::kFrontLeft] = {robot::JointMode::angle, 0.4};
   robot.run(60, command);
-  command.flipper_rad[robot::kFrontLeft] = 0;
+  command.flipper[robot::kFrontLeft].value = 0;
   robot.run(60, command);
   robot.run(10, {});
   robot.transport.close();

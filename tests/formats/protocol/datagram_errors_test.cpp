@@ -5,6 +5,7 @@
 
 #include "formats/protocol/relay_datagram.hpp"
 #include "tests/formats/protocol/encoded.hpp"
+#include "tests/support/robot_command.hpp"
 
 using kenaf::protocol::DecodeError;
 using namespace kenaf::protocol::relay;
@@ -30,7 +31,7 @@ DecodeError error_of(const std::vector<std::byte>& bytes) {
 const std::vector<Datagram> kOneOfEach{Hello{1, 0.01, 0.5, true, true},
                                        Welcome{1, 0, 0.01, true},
                                        Refused{1, RefusedReason::busy, {}, 0},
-                                       Command{1, 1, 0, {}, 15, {}},
+                                       Command{1, 1, 0, kenaf::support::command_of({}, 15)},
                                        empty_state(),
                                        Bye{1},
                                        Ping{1, 1},
@@ -82,8 +83,9 @@ TEST_CASE("NaN and infinity are refused in every number") {
     CHECK(error_of(encoded(Hello{1, bad, 0.5, true, true})) == DecodeError::not_finite);
     CHECK(error_of(encoded(Hello{1, 0.5, bad, true, true})) == DecodeError::not_finite);
     CHECK(error_of(encoded(Welcome{1, bad, 0.5, true})) == DecodeError::not_finite);
-    CHECK(error_of(encoded(Command{1, 1, 1, {0, bad}, 0, {}})) == DecodeError::not_finite);
-    CHECK(error_of(encoded(Command{1, 1, 1, {}, 0, {0, 0, 0, bad}})) == DecodeError::not_finite);
+    CHECK(error_of(encoded(Command{1, 1, 1, kenaf::support::command_of({0, bad})})) == DecodeError::not_finite);
+    CHECK(error_of(encoded(Command{1, 1, 1, kenaf::support::command_of({}, 0, {0, 0, 0, bad})})) ==
+          DecodeError::not_finite);
   }
   // A State has 31 numbers in its last 248 bytes; an exponent of all ones makes each of them infinite.
   const std::vector<std::byte> state = encoded(empty_state());
@@ -98,7 +100,7 @@ TEST_CASE("Flags, masks and enumerations out of their range are refused") {
   CHECK(error_of(with(hello, 32, 2)) == DecodeError::bad_value);
   CHECK(error_of(with(hello, 33, 255)) == DecodeError::bad_value);
   CHECK(error_of(with(encoded(Welcome{1, 0, 0.01, true}), 32, 2)) == DecodeError::bad_value);
-  CHECK(error_of(with(encoded(Command{1, 1, 0, {}, 0, {}}), 40, 0x10)) == DecodeError::bad_value);
+  CHECK(error_of(with(encoded(Command{1, 1, 0, kenaf::support::command_of({})}), 40, 0x10)) == DecodeError::bad_value);
   const std::vector<std::byte> state = encoded(empty_state());
   CHECK(error_of(with(state, 28, 0x80)) == DecodeError::bad_value);  // a field bit that does not exist
   CHECK(error_of(with(state, 30, 0x80)) == DecodeError::bad_value);  // one that would be held

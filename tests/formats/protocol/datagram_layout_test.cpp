@@ -7,6 +7,7 @@
 
 #include "formats/protocol/relay_datagram.hpp"
 #include "tests/formats/protocol/encoded.hpp"
+#include "tests/support/robot_command.hpp"
 
 using kenaf::protocol::DecodeError;
 using namespace kenaf::protocol::relay;
@@ -64,7 +65,7 @@ TEST_CASE("Refused is 218 bytes: the reason, 200 characters padded with zeros, t
 }
 
 TEST_CASE("Command is 73 bytes") {
-  check_bytes(Command{kSessionValue, 0x01020304, 7, {1.0, -1.0}, 0b0101, {0.5, 0, 2.0, 0}},
+  check_bytes(Command{kSessionValue, 0x01020304, 7, kenaf::support::command_of({1.0, -1.0}, 0b0101, {0.5, 0, 2.0, 0})},
               "4b 4e 41 46 01 04 49 00 " + kSession + "04 03 02 01 07 00 00 00 " + kOne + kMinusOne + "05 " + kHalf +
                   kZero + kTwo + kZero);
 }
@@ -104,16 +105,16 @@ TEST_CASE("Bye is the header alone, Ping and Pong carry their number") {
 }
 
 TEST_CASE("Every value comes back, -0 and the smallest double too") {
-  Command command{~0ull, ~0u, ~0u, {-0.0, 5e-324}, 0x0f, {-1.7976931348623157e308, 0.1, 1.0 / 3, -2.5}};
+  Command command{~0ull, ~0u, ~0u,
+                  kenaf::support::command_of({-0.0, 5e-324}, 0x0f, {-1.7976931348623157e308, 0.1, 1.0 / 3, -2.5})};
   Datagram read = Bye{9};
   REQUIRE(decode(encoded(command), read) == DecodeError::none);
   const Command& again = std::get<Command>(read);
   CHECK(again.session == command.session);
   CHECK(again.sequence == command.sequence);
   CHECK(again.frame == command.frame);
-  CHECK(std::memcmp(again.track_speed_mps.data(), command.track_speed_mps.data(), sizeof command.track_speed_mps) == 0);
-  CHECK(again.flipper_mask == command.flipper_mask);
-  CHECK(again.flipper_rad == command.flipper_rad);
+  CHECK(again.robot == command.robot);
+  CHECK(std::signbit(again.robot.track_speed_mps[kenaf::robot::kLeft]));
 }
 
 TEST_CASE("A reason of full length and one that claims more than there is room for") {

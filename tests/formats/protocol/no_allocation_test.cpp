@@ -9,6 +9,7 @@
 #include "formats/protocol/relay_datagram.hpp"
 #include "formats/protocol/usarsim_message.hpp"
 #include "tests/formats/protocol/encoded.hpp"
+#include "tests/support/robot_command.hpp"
 
 namespace {
 std::atomic<std::size_t> allocations{0};
@@ -56,10 +57,9 @@ TEST_CASE("Encoding and decoding a datagram allocates nothing") {
   std::array<std::byte, kMaxDatagramBytes> bytes;
   Datagram out = Bye{1};
   CHECK(allocations_in([&] {
-          for (const Datagram& d :
-               {Datagram{kenaf::protocol::relay::empty_state()}, Datagram{Command{1, 1, 1, {}, 0, {}}}}) {
-            if (decode(std::span(bytes).first(encode(d, bytes)), out) != kenaf::protocol::DecodeError::none)
-              std::abort();
+          for (const Datagram& d : {Datagram{kenaf::protocol::relay::empty_state()},
+                                    Datagram{Command{1, 1, 1, kenaf::support::command_of({})}}}) {
+            if (decode(std::span(bytes).first(encode(d, bytes)), out) != DecodeError::none) std::abort();
           }
         }) == 0);
 }
