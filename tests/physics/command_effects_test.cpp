@@ -53,6 +53,22 @@ TEST_CASE("Command delay: whole steps, and between two steps in proportion") {
   }
 }
 
+TEST_CASE("A flipper that is kept has the command of before, the tracks have the new one") {
+  CommandChannel channel = channel_with({});
+  robot::Command command = drive(0.1, 0.1);
+  command.flipper[robot::kFrontLeft] = {robot::JointMode::speed, 0.8};
+  channel.send(command);
+  (void)channel.step();
+  command = robot::idle_command();
+  command.flipper[robot::kRearRight] = {robot::JointMode::angle, 0.25};
+  channel.send(command);
+  const robot::Command& now = channel.step();
+  CHECK(now.track_speed_mps == std::array{0.0, 0.0});
+  CHECK(now.flipper[robot::kFrontLeft] == robot::JointCommand{robot::JointMode::speed, 0.8});
+  CHECK(now.flipper[robot::kFrontRight] == robot::JointCommand{robot::JointMode::angle, 1});  // of drive()
+  CHECK(now.flipper[robot::kRearRight] == robot::JointCommand{robot::JointMode::angle, 0.25});
+}
+
 TEST_CASE("Command delay: between two modes of a joint there is nothing") {
   CommandChannel channel = channel_with({.command_delay_s = 1.5 * kStep_s});
   robot::Command command;
