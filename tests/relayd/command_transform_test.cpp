@@ -1,9 +1,10 @@
 // Commands as USARSim text. Signs by hand: a track forward is a wheel spinning forward; USARSim's flipper joints turn
 // nose down where positive, so a tip that goes up is a negative angle in front and a positive one in the rear.
 #include "relayd/command_transform.hpp"
-#include "tests/support/robot_command.hpp"
 
 #include <catch2/catch.hpp>
+
+#include "tests/support/robot_command.hpp"
 
 using namespace kenaf;
 using namespace kenaf::relayd;

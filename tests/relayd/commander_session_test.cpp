@@ -1,12 +1,13 @@
 // Who commands the robot: rules of docs/relay-protocol.md with a clock of the test's own.
 #include "relayd/commander_session.hpp"
-#include "tests/support/robot_command.hpp"
 
 #include <spdlog/spdlog.h>
 
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
+
+#include "tests/support/robot_command.hpp"
 
 using namespace kenaf;
 using namespace kenaf::relayd;

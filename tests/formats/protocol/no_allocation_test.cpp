@@ -59,7 +59,8 @@ TEST_CASE("Encoding and decoding a datagram allocates nothing") {
   CHECK(allocations_in([&] {
           for (const Datagram& d : {Datagram{kenaf::protocol::relay::empty_state()},
                                     Datagram{Command{1, 1, 1, kenaf::support::command_of({})}}}) {
-            if (decode(std::span(bytes).first(encode(d, bytes)), out) != DecodeError::none) std::abort();
+            if (decode(std::span(bytes).first(encode(d, bytes)), out) != kenaf::protocol::DecodeError::none)
+              std::abort();
           }
         }) == 0);
 }
