@@ -1,6 +1,13 @@
 // The datagrams between the operator's console and the control process on the robot's PC: their contents as plain
-// structs, and two pure functions that encode and decode them (formats/protocol/datagram_codec.hpp). docs/operator.md
-// describes the layout.
+// structs, and two pure functions that encode and decode them (formats/protocol/datagram_codec.hpp).
+//
+// On the wire: little-endian, numbers as IEEE 754 doubles, no padding. Header, 16 bytes: u32 the bytes "KNOP", u8
+// version, u8 kind (1 Wish, 2 Status, 3 Taken, 4 Bye), u16 length of the whole datagram, u64 session. Then the fields
+// in the order of the structs; a bool or an enumeration is a u8, a Text a u8 length and its 160 characters. A Wish has
+// 79 bytes, a Status 617, a Taken 177, a Bye 16. A datagram that is cut, too long, of another version or out of range
+// is ignored, with a log line at most once a second. So is a Wish that is not newer than the newest; it is no sign of
+// life. Of Statuses only one with the highest sequence counts, or a lower one that echoes a newer wish (the control
+// restarted).
 //
 // Loss costs only latency: a Wish is complete and absolute and is sent at a fixed rate, so the next one compensates for
 // a lost one, and an older one that arrives late is dropped. Actions that must happen only once (a new flipper posture)

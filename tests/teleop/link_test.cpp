@@ -1,4 +1,4 @@
-// The bytes of every kind of datagram are written by hand from the layout of docs/operator.md, and each must read back
+// The bytes of every kind of datagram are written by hand from the layout of teleop/link.hpp, and each must read back
 // to the values that write the same bytes again. A datagram that is cut, prolonged or changed beyond its range is
 // refused with its reason. Everything that is sent can be read: numbers beyond their limits are written as the limit,
 // text as printable ASCII.
