@@ -1,5 +1,4 @@
-// Checks a recorded bus against the standards' rules. docs/can-tools.md has them as a table, with the evidence that
-// each needs.
+// Checks a recorded bus against the standards' rules. docs/can-tools.md lists them.
 //
 // Only evidence in the log is judged: for a log that begins in the middle, a node's state is not judged before it was
 // on the bus.
