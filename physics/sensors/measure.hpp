@@ -84,6 +84,7 @@ using RayCaster = std::function<std::optional<double>(const Eigen::Vector3d& fro
                                                       double max_m)>;
 SonarReading measure_sonar(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
                            const RayCaster& cast);
+// Obstacles are taken where they are now, the robot where it was the sensor's delay ago.
 RangeScanReading measure_range_scanner(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
                                        const RayCaster& cast);
 GpsReading measure_gps(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
