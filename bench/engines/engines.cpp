@@ -1,5 +1,6 @@
-// Kenaf's physics compared with MuJoCo's and ODE's: the same robot on the same terrain at the same time step, in one
-// run. docs/performance.md describes each engine's settings. Status 1 if a limit is missed.
+// Kenaf's physics beside MuJoCo's and ODE's: the same robot on the same terrain at the same time step, in one run.
+// compared_engines.hpp describes each engine's settings, docs/performance.md has the figures. Status 1 if a limit is
+// missed.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
