@@ -32,7 +32,7 @@ struct ChallengeKey {
   ChallengeKind kind = ChallengeKind::exact;
 };
 
-// Returns key.json, in the format kenaf-gap-key/1. The same key gives the same bytes.
+// Returns key.json, in the format kenaf-gap-key/1; "challenge" is the kind_name(). The same key gives the same bytes.
 std::string key_text(const ChallengeKey& key);
 // Throws std::runtime_error with words for the user if the text is not a key.
 ChallengeKey read_key(const std::string& text);

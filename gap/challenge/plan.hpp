@@ -97,7 +97,8 @@ struct CasePlan {
 const physics::EffectParameter& parameter_of(const HiddenEffect& hidden);
 
 // Returns the value that has the same effect in a model with the simulator's own contacts: ground compliance and
-// damping scale the contacts of the "real" side, which differ from the model's.
+// damping scale the contacts of the "real" side, which differ from the model's. Ground that gives twice as much under
+// contacts 1.25 times stiffer than the model's is a compliance of 1.6.
 double value_in_model(const CasePlan& plan, const HiddenEffect& hidden);
 
 // Returns the furthest value from neutral that a case may hide. It is within the range of a diagnosis' candidate both

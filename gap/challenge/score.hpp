@@ -70,7 +70,15 @@ struct SizeScore {
 std::vector<SizeScore> scores_by_size(const std::vector<ScoredCase>& cases);
 
 std::string score_markdown(const std::vector<ScoredCase>& cases);
-// Returns the score in the format kenaf-gap-score/1, docs/gap-challenge.md.
+// Returns the score in the format kenaf-gap-score/1, with the terms of docs/gap-challenge.md. A figure without cases
+// has no value, one that is no share no hits, and one without a target is neither met nor missed.
+//   {"format": "kenaf-gap-score/1",
+//    "figures": [{"id", "what", "cases", "hits", "value", "ci95", "target", "met"}],
+//    "cases": [{"name", "stratum", "hidden", "looks_like", "report", "small", "right", "named_alone",
+//               "can_be_told_apart", "names_wrong", "intervals": [{"name", "hidden", "value", "ci95"}],
+//               "shares": [{"name", "stage", "stated", "truth"}],
+//               "shrink_heldout": [{"before", "floor", "report", "truth"}],
+//               "shrink_unseen": {"before", "floor", "report", "truth"}}]}
 std::string score_json(const std::vector<ScoredCase>& cases);
 
 }  // namespace kenaf::gap::challenge
