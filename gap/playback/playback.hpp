@@ -52,7 +52,38 @@ Playback load_playback(const PlaybackRequest& request);
 // longer be read.
 PlayedRun prepare_run(const Playback& playback, std::size_t run);
 
-// Returns the data for the page, of all runs and of one; docs/compare.md describes the keys.
+// The playback protocol, kenaf-playback/1: HTTP as that of the live view (docs/live-view.md), with ?token= where one is
+// needed. SI units, radians, frames of runs (docs/logs.md); null is unknown.
+//
+//   /playback          200: JSON of playback_json(), all runs
+//   /playback/N        run N, from 0. 202 while it is being simulated: ask again. Then 200: JSON of played_run_json()
+//   /playback/N/scene  the world of that run, as /scene of the live view
+//
+// Keys of playback_json():
+//   format     "kenaf-playback/1"
+//   name       of the folder or file; source: the dataset's
+//   first      number of the run to begin with
+//   robot      {name, and the dimensions of a robot in the live view's `inventory`}
+//   corrected  whether there is a corrected robot
+//   report     {verdict, named: names of effects} or null
+//   runs       [{file, manoeuvre, world, rows: in the file, duration_s}]
+//   notes      on all runs, sentences
+//
+// Keys of played_run_json():
+//   file, manoeuvre, world, rows  as above
+//   t_s       s from the run's first row on; every list of a body has one number for each of these
+//   bodies    "recorded", then "nominal" and "corrected" if any: [{
+//               kind
+//               pose_from  "measured", "dead reckoning" or "nothing"
+//               pose       {x, y, z in m; roll, pitch, yaw in rad}, of frame B in W; missing with "nothing"
+//               flipper    four lists in rad: front left, front right, rear left, rear right; positive tip up
+//               track_m    two lists of travel in m: left, right
+//               channels   {column: list in the column's unit}}]
+//   channels  columns that can be drawn: [{column, unit, share of the gap, 0 to 1, if the report has it}]
+//   phases    [{phase, from_s, to_s}], of this run
+//   marks     phases of the report, largest share first: [{manoeuvre, phase, run: file of the repeat whose times these
+//             are, from_s, to_s, share: of the gap in all runs, 0 to 1}]
+//   notes     unexpected facts about this run, sentences
 std::string playback_json(const Playback& playback);
 std::string played_run_json(const Playback& playback, std::size_t run, const PlayedRun& played);
 

@@ -68,7 +68,7 @@ void write_channels(JsonWriter& out, const Playback& playback, const PlayedRun& 
 }  // namespace
 
 std::string playback_json(const Playback& playback) {
-  // One object with the keys in the order of docs/compare.md.
+  // One object with the keys in the order of playback.hpp.
   JsonWriter out;
   out.open('{').key("format").text("kenaf-playback/1").key("name").text(playback.name);
   out.key("source").text(playback.source).key("first").integer(playback.first);
@@ -95,7 +95,7 @@ std::string playback_json(const Playback& playback) {
 }
 
 std::string played_run_json(const Playback& playback, std::size_t index, const PlayedRun& played) {
-  // One object with the keys in the order of docs/compare.md.
+  // One object with the keys in the order of playback.hpp.
   const ListedRun& listed = playback.runs.at(index);
   JsonWriter out;
   out.open('{').key("file").text(played.entry.file).key("manoeuvre").text(played.entry.manoeuvre);

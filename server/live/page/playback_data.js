@@ -1,4 +1,5 @@
-// Recorded runs and their simulations as the server hands them out (docs/compare.md), and what they say at any time.
+// Recorded runs and their simulations as the server hands them out (gap/playback/playback.hpp), and what they say at
+// any time.
 import { address } from "./connection.js";
 
 const DEG = 180 / Math.PI;
