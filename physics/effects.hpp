@@ -21,7 +21,7 @@ std::string_view stage_name(Stage stage);
 struct Effects {
   // command: between the command that was sent and the one that the drives get
   double command_delay_s = 0;
-  double command_loss = 0;       // share of commands that do not arrive
+  double command_loss = 0;       // share of calls of World::set_command that do not arrive
   double command_gain = 1;       // of track speeds
   double command_gain_turn = 1;  // of the turn rate alone
   double command_limit_forward_spm = 0,
@@ -64,9 +64,9 @@ struct Effects {
   double gyro_bias_z_radps = 0;  // added to the reported yaw rate
   double gyro_scale = 1;         // of all three reported rates
   double gyro_delay_s = 0;
-  double posture_bias_rad = 0;  // added to the reported pitch
-  double posture_scale = 1;     // of reported roll and pitch
-  double posture_delay_s = 0;
+  double posture_bias_rad = 0;   // added to the reported pitch
+  double posture_scale = 1;      // of reported roll and pitch
+  double posture_delay_s = 0;    // the report's time stamp stays that of the nominal delay
   double posture_mount_rad = 0;  // the posture sensor is mounted turned about z
   double tracking_delay_s = 0;   // of the pose that motion capture or lidar reports; no sensor of the robot
   double tracking_scale = 1;     // of its x, y from the first pose on

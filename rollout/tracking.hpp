@@ -1,5 +1,7 @@
 // The robot's pose as motion capture or lidar reports it, without noise: the effects tracking_*, tracked_point_* and
-// clock_offset.
+// clock_offset. They act in the order delay, point, turn, scale, clock. Before the first pose the robot was where it
+// started; the point's offset is turned by yaw alone, without roll, pitch and z; a clock that is ahead repeats the last
+// pose at the end.
 //
 // Thread safety: none; one thread owns a Tracking.
 #pragma once

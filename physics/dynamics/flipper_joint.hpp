@@ -22,7 +22,8 @@ struct ServoCoupling {
 //
 // With a rigid coupling, the servo's row moves the arm. Otherwise the servo has an angle of its own: it moves as
 // commanded and drags the arm by a spring and a damper that engage at the end of the play. If the spring's torque would
-// exceed the servo's, the servo gives way.
+// exceed the servo's, the servo gives way. With play the arm hangs at half of it on its heavy side and falls through
+// when its weight passes over; the gear's teeth yield too, so play below some mrad acts as a compliance.
 class FlipperJoint : public btTypedConstraint {
  public:
   // `X_AJ`, `X_BJ`: the joint's frame in the frames of the two bodies' centres of mass. They coincide at angle 0; a
