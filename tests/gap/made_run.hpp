@@ -1,6 +1,7 @@
 // Runs whose columns are given functions of time.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
@@ -14,7 +15,7 @@ using ColumnOfTime = std::pair<std::string, std::function<double(double t_s)>>;
 
 inline runs::Run made_run(double duration_s, double period_s, const std::vector<ColumnOfTime>& columns) {
   runs::Run run{{"t_s"}, {{}}};
-  const auto rows = static_cast<std::size_t>(duration_s / period_s + 0.5);
+  const auto rows = static_cast<std::size_t>(std::lround(duration_s / period_s));
   for (std::size_t i = 0; i < rows; ++i) run.values[0].push_back(static_cast<double>(i) * period_s);
   for (const auto& [name, value_at] : columns) {
     run.columns.push_back(name);

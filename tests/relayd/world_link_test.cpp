@@ -22,7 +22,7 @@ namespace {
 bool connects_at_once(std::uint16_t port, std::vector<relayd::Descriptor>& kept) {
   relayd::Descriptor fd(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const sockaddr_in address = loopback(port);
-  ::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
+  (void)::connect(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
   pollfd connected{fd.get(), POLLOUT, 0};
   if (::poll(&connected, 1, 500) <= 0) return false;
   kept.push_back(std::move(fd));

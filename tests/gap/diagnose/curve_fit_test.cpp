@@ -170,7 +170,7 @@ TEST_CASE("Two effects that do the same share one explanation") {
 TEST_CASE("Four effects, each at 60 degrees to the others, are distinguished") {
   // edges of a simplex: inner products of 1/2
   std::vector<Whole> effects;
-  for (std::size_t i = 0; i < 4; ++i)
+  for (Eigen::Index i = 0; i < 4; ++i)
     effects.push_back(20 * (world().direction(4) + world().direction(i)) / std::sqrt(2.0));
   const double values[] = {0.3, -0.4, 0.1, 0.6};
   Whole gap = 2 * world().direction(5);

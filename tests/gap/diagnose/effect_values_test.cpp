@@ -25,9 +25,10 @@ bool holds(const Interval& interval, double truth) {
 // An effect that moves all channels of all manoeuvres, as a slow motion does: half a sine in 6 s.
 Whole slow_motion(const LinearWorld& world, double length) {
   Whole whole(world.bins());
-  for (Eigen::Index i = 0; i < whole.size(); ++i)
-    whole[i] = std::sin(0.13 * static_cast<double>(i % world.bins_of_channel()) +
-                        static_cast<double>(i / world.bins_of_manoeuvre()));
+  for (Eigen::Index i = 0; i < whole.size(); ++i) {
+    const Eigen::Index bin = i % world.bins_of_channel(), manoeuvre = i / world.bins_of_manoeuvre();
+    whole[i] = std::sin(0.13 * static_cast<double>(bin) + static_cast<double>(manoeuvre));
+  }
   return length / whole.norm() * whole;
 }
 

@@ -205,7 +205,7 @@ TEST_CASE("What is open in each run by itself is not a gap for an effect to expl
   const Whole yaw = world().in_channel(test::WorldChannel::yaw, 1);
   const Whole in_each_bin = yaw / yaw.maxCoeff();
   Whole starts = 5 * in_each_bin;
-  for (const std::size_t run : {1u, 2u}) starts.segment(run * world().bins_of_run(), world().bins_of_run()) *= -1;
+  for (const Eigen::Index run : {1, 2}) starts.segment(run * world().bins_of_run(), world().bins_of_run()) *= -1;
   const Whole gap = 0.5 * effects[0] + starts;
   Measured measured(world(), gap);
   for (std::size_t r = 0; r < world().runs(); ++r) measured.floor.open[r].local = world().by_run(10 * in_each_bin)[r];

@@ -35,7 +35,7 @@ TEST_CASE("A robot that looks backwards starts so: the mean of headings on eithe
   // first
   const auto yaw = [](double t_s) {
     const double rest[] = {3.140, -3.141, 3.139, -3.140};
-    return t_s < 1 ? rest[static_cast<int>(t_s / 0.25 + 0.5)] : 3.0;
+    return t_s < 1 ? rest[std::lround(t_s / 0.25)] : 3.0;
   };
   const Observation seen =
       observation_of({}, commanded_to_go(1, {{"x_m", zero}, {"y_m", zero}, {"yaw_rad", yaw}}), "a.csv");

@@ -2,6 +2,7 @@
 #include "gap/diagnose/repeats.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <random>
 
 #include "tests/gap/made_run.hpp"
@@ -18,7 +19,7 @@ using Groups = std::vector<std::vector<std::size_t>>;
 Observation commanded(const std::string& manoeuvre, double speed_mps, double from_s = 0, double duration_s = 4) {
   Observation observation{};
   observation.manoeuvre = manoeuvre;
-  for (int i = 0; i <= static_cast<int>(duration_s / 0.1 + 0.5); ++i) {
+  for (int i = 0; i <= std::lround(duration_s / 0.1); ++i) {
     robot::Command command;
     if (i * 0.1 >= from_s) command.track_speed_mps = {speed_mps, speed_mps};
     observation.replay.timed.push_back({i * 0.1, command});

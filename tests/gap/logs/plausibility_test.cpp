@@ -290,8 +290,10 @@ TEST_CASE(
   CHECK_THAT(found(changed(arc(), {"t_s"}, [](double t) { return t > 6 ? t + 1.7e9 : t; })), Catch::Contains("1 gaps"));
   // Written in bursts: four rows 1 ms apart, then 37 ms nothing.
   runs::Run bursts = arc();
-  for (std::size_t i = 0; i < bursts.row_count(); ++i)
-    column(bursts, "t_s")[i] = 0.04 * static_cast<double>(i / 4) + 0.001 * static_cast<double>(i % 4);
+  for (std::size_t i = 0; i < bursts.row_count(); ++i) {
+    const std::size_t burst = i / 4, row = i % 4;
+    column(bursts, "t_s")[i] = 0.04 * static_cast<double>(burst) + 0.001 * static_cast<double>(row);
+  }
   CHECK_THAT(found(bursts), Catch::Contains("use the times of measurement, not of writing"));
 }
 

@@ -1,6 +1,7 @@
 #include "server/world_server/clock.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 namespace kenaf::world_server {
 
@@ -9,8 +10,8 @@ namespace {
 // Steps that fall due when `wall_s` passes in ticks of a millisecond.
 int steps_in(Clock& clock, double& now_s, double wall_s) {
   int steps = 0;
-  const int ticks = static_cast<int>(wall_s * 1000 + 0.5);
-  for (int i = 0; i < ticks; ++i) {
+  const long ticks = std::lround(wall_s * 1000);
+  for (long i = 0; i < ticks; ++i) {
     now_s += 0.001;
     clock.pass(now_s);
     for (; clock.step_due(); ++steps) clock.stepped();
