@@ -44,6 +44,7 @@ float skylight(const Eigen::Vector3f& normal_W) {
 }
 
 int level(float colour) {
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): never negative, and for each pixel: no call
   return static_cast<int>(std::min(255.0f, std::max(0.0f, colour)) + 0.5f);
 }
 

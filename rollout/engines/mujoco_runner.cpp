@@ -154,6 +154,7 @@ class MujocoRunner : public Runner {
     mj_defaultVFS(files.get());
     constexpr const char* kName = "scene.xml";
     mj_makeEmptyFileVFS(files.get(), kName, static_cast<int>(text.xml.size()));
+    // NOLINTNEXTLINE(bugprone-not-null-terminated-result): a file has its size
     std::memcpy(files->filedata[mj_findFileVFS(files.get(), kName)], text.xml.data(), text.xml.size());
     char error[1000] = "";
     model_.reset(mj_loadXML(kName, files.get(), error, sizeof error));

@@ -84,6 +84,7 @@ int main(int argc, char** argv) {
       spdlog::critical("{}", error.what());
       status = 1;
     }
+    // NOLINTNEXTLINE(bugprone-bad-signal-to-kill-thread): the thread waits for it by sigwait
     pthread_kill(stopper.native_handle(), SIGTERM);  // in case no signal ended it
     stopper.join();
     return status;
