@@ -8,8 +8,7 @@
 #include <limits>
 #include <vector>
 
-using namespace kenaf::protocol;
-
+namespace kenaf::protocol::codec_test {
 namespace {
 
 enum class Colour : std::uint8_t { red = 1, green = 2 };
@@ -118,7 +117,7 @@ TEST_CASE("Every field is refused by its reason") {
   CHECK(with(35, 3) == DecodeError::bad_value);
 }
 
-TEST_CASE("Another protocol and another version are told apart, and the first that is wrong counts") {
+TEST_CASE("Another protocol and another version are seen apart, and the first that is wrong counts") {
   CHECK(error_of(encoded(Empty{1}), {kTest.magic + 1, kTest.version + 1}) == DecodeError::bad_magic);
   CHECK(error_of(encoded(Empty{1}), {kTest.magic, kTest.version + 1}) == DecodeError::bad_version);
   CHECK(error_of(encoded(Empty{0})) == DecodeError::bad_session);
@@ -129,11 +128,13 @@ TEST_CASE("Another protocol and another version are told apart, and the first th
 }
 
 TEST_CASE("Every error has words of its own") {
-  std::vector<std::string_view> told;
+  std::vector<std::string_view> seen;
   for (int code = 0; code <= static_cast<int>(DecodeError::bad_value); ++code) {
     const std::string_view words = describe(static_cast<DecodeError>(code));
     CHECK(words.size() > 10);
-    CHECK(std::find(told.begin(), told.end(), words) == told.end());
-    told.push_back(words);
+    CHECK(std::find(seen.begin(), seen.end(), words) == seen.end());
+    seen.push_back(words);
   }
 }
+
+}  // namespace kenaf::protocol::codec_test

@@ -2,7 +2,9 @@
 
 #include <catch2/catch.hpp>
 
-using namespace kenaf::protocol;
+using kenaf::protocol::HostPort;
+using kenaf::protocol::parse_host_port;
+using kenaf::protocol::split_host_port;
 
 TEST_CASE("Addresses, names and IPv6 addresses with and without brackets are hosts") {
   CHECK(parse_host_port("127.0.0.1:45454") == HostPort{"127.0.0.1", 45454});
