@@ -117,7 +117,7 @@ TEST_CASE("Every field is refused by its reason") {
   CHECK(with(35, 3) == DecodeError::bad_value);
 }
 
-TEST_CASE("Another protocol and another version are seen apart, and the first that is wrong counts") {
+TEST_CASE("Another protocol and another version are distinguished, and the first that is wrong counts") {
   CHECK(error_of(encoded(Empty{1}), {kTest.magic + 1, kTest.version + 1}) == DecodeError::bad_magic);
   CHECK(error_of(encoded(Empty{1}), {kTest.magic, kTest.version + 1}) == DecodeError::bad_version);
   CHECK(error_of(encoded(Empty{0})) == DecodeError::bad_session);
