@@ -9,6 +9,7 @@
 
 #include "tests/support/loopback.hpp"
 #include "tests/support/patience.hpp"
+#include "tests/support/robot_command.hpp"
 
 namespace kenaf::test {
 
@@ -109,7 +110,7 @@ std::vector<protocol::relay::State> FakeCommander::drive(
 
 protocol::relay::Command FakeCommander::command(std::uint32_t sequence, std::uint32_t frame, double left_mps,
                                                 double right_mps) const {
-  return {session_, sequence, frame, {left_mps, right_mps}, 0, {}};
+  return {session_, sequence, frame, support::command_of({left_mps, right_mps})};
 }
 
 std::string text_of(const protocol::relay::Refused& refused) {

@@ -94,10 +94,10 @@ TEST_CASE("The inertial sensor's y and z change their signs") {
         "{AngularVel 0.1000,-0.2000,-0.3000} {AngularAccel 4.0000,-5.0000,-6.0000} {Rotation 0.0100,-0.0200,-0.0300}");
 }
 
-TEST_CASE("Tachometer, touch and drives are told in the form of their dialect") {
-  CHECK(told(Dialect::ut2004, sensor(SensorType::tachometer, "Tachometer"),
-             physics::TachometerReading{{1, -2}, {3, -4}},
-             1) == "SEN {Time 1.0000} {Type Tachometer} {Name Tachometer} {Vel 1.0000,-2.0000} {Pos 3.0000,-4.0000}");
+TEST_CASE("Tachometer, touch and drives are reported in the form of their dialect") {
+  CHECK(message(Dialect::ut2004, sensor(SensorType::tachometer, "Tachometer"),
+                physics::TachometerReading{{1, -2}, {3, -4}}, 1) ==
+        "SEN {Time 1.0000} {Type Tachometer} {Name Tachometer} {Vel 1.0000,-2.0000} {Pos 3.0000,-4.0000}");
   CHECK(message(Dialect::ut2004, sensor(SensorType::touch, "Touch"), physics::TouchReading{false}, 1) ==
         "SEN {Time 1.0000} {Type Touch} {Name Touch Touch False}");
   CHECK(message(Dialect::udk, sensor(SensorType::touch, "Touch"), physics::TouchReading{true}, 1) ==
