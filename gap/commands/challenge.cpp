@@ -41,7 +41,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMostCases = 10000;
-constexpr double kMakingShare = 0.3, kMakingAgainShare = 0.03;  // of the total time, to estimate the time left
+// Shares of the total time, to estimate the time left.
+constexpr double kMakingShare = 0.3;        // of making the cases
+constexpr double kMakingAgainShare = 0.03;  // of making missing data again
 
 struct Options {
   std::string out;

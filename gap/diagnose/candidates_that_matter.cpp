@@ -11,9 +11,11 @@ namespace kenaf::gap::diagnose {
 namespace {
 
 // All chosen.
-constexpr std::size_t kMostCurves = 24, kMostOfKind = 3;
-constexpr double kMatters = 0.01, kMattersInKind = 0.2;  // of the squared gap
-constexpr double kLeastGain = 4;                         // of chi-squared: two sigma
+constexpr std::size_t kMostCurves = 24;  // candidates taken for their share of the whole gap
+constexpr double kMatters = 0.01;        // of the whole squared gap, least share of such a candidate
+constexpr std::size_t kMostOfKind = 3;   // candidates taken for their share of the gap in one kind of channels
+constexpr double kMattersInKind = 0.2;   // of the squared gap there, least share of such a candidate
+constexpr double kLeastGain = 4;         // of chi-squared: two sigma
 
 struct Explained {
   double share;

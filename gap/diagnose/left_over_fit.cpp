@@ -13,9 +13,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kMostTerms = 3, kMostHeldOutFolds = 10;  // chosen: ten as Hastie et al. recommend
-constexpr std::size_t kLeastRows = 12;                         // chosen: fewer are too few for four numbers
-constexpr double kBeyondNoise = 0.1;                           // of the noise's energy, minimum residual (chosen)
+constexpr std::size_t kMostTerms = 3;          // chosen
+constexpr std::size_t kMostHeldOutFolds = 10;  // chosen: as Hastie et al. recommend
+constexpr std::size_t kLeastRows = 12;         // chosen: fewer are too few for four numbers
+constexpr double kBeyondNoise = 0.1;           // of the noise's energy, minimum residual (chosen)
 constexpr double kSameCause = 0.5;    // correlation with a rejected candidate (chosen: a quarter of its variance)
 constexpr double kSameNumbers = 0.8;  // with a selected one (chosen: the rest is less than half of it)
 constexpr double kSameSign = 0.95;    // of the draws of the bootstrap (chosen)
@@ -211,7 +212,8 @@ class LeftOverSelection {
 
 std::vector<std::size_t> held_out_together(const LeftOverRows& rows, std::span<const std::size_t> group_of_run) {
   constexpr std::size_t kLeastGroups = 4;
-  constexpr double kStretches = 12, kShortest_s = 1;  // chosen: ten folds of them, longer than usual lags
+  constexpr double kStretches = 12;  // of all runs together; chosen: enough for ten folds
+  constexpr double kShortest_s = 1;  // length of a stretch; chosen: longer than usual lags
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> number;
   std::map<std::size_t, double> duration;  // of each run
   std::map<std::size_t, std::size_t> groups;

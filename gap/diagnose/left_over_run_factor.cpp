@@ -16,8 +16,9 @@ struct RunSums {
   VectorXd square, product;
 };
 
-constexpr double kBlock_s = 1.5, kApart_s = 0.5;  // chosen: a rate spans half a second
-constexpr std::size_t kBlockFolds = 4;            // chosen
+constexpr double kBlock_s = 1.5;        // length of a block, the unit that is held out (chosen)
+constexpr double kApart_s = 0.5;        // rows this close to a held-out block do not count: a rate spans half a second
+constexpr std::size_t kBlockFolds = 4;  // chosen
 
 std::size_t block_fold(double time_s) {
   return static_cast<std::size_t>(std::max(0.0, time_s) / kBlock_s) % kBlockFolds;

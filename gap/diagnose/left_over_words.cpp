@@ -15,8 +15,9 @@ using Eigen::VectorXd;
 // Two numbers count as equal if they differ by less than a quarter of the described slope, or by less than 0.05
 // (chosen).
 constexpr double kSameShare = 0.25, kSameRatio = 0.05;
-constexpr double kOneSided = 1.0 / 3;                  // of the other side's slope: smaller ones count as none (chosen)
-constexpr double kNearlyEvery = 0.9, kMost = 2.0 / 3;  // of the runs (chosen)
+constexpr double kOneSided = 1.0 / 3;  // of the other side's slope: smaller ones count as none (chosen)
+constexpr double kNearlyEvery = 0.9;   // of the runs: least share for "in nearly every run" (chosen)
+constexpr double kMost = 2.0 / 3;      // of the runs: least share for "in most runs" (chosen)
 constexpr double kSpeedsDiffer = 1.5;  // ratio of the 90 % and 10 % quantiles: below it there is one speed (chosen)
 
 bool turns(Quantity quantity) {

@@ -232,7 +232,8 @@ NoiseFloor with_open_shapes(const NoiseFloor& floor, const std::vector<OpenShape
 
 std::vector<OpenShapes> open_shapes(const std::vector<StageFeatures>& features, Predictor& predictor, Passage passage,
                                     const Variation& model, double start_sigma_m, double start_sigma_rad) {
-  constexpr std::size_t kOfStart = 3, kOpen = 7;  // start pose first, then numbers of the simulator
+  constexpr std::size_t kOfStart = 3;  // unknowns of the start pose, which come first
+  constexpr std::size_t kOpen = 7;     // these and the simulator's numbers
   // the model with each open number varied both ways, with late samples, and unchanged
   std::vector<Variation> variations(2 * kOpen + 2, model);
   variations[2 * kOpen].samples_late = kClockError;

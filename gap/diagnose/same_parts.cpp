@@ -5,7 +5,11 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-constexpr double kOfRange = 0.25, kSame = 0.01;  // chosen
+// Whole and part are compared at this share of the way to the end of the range (chosen).
+constexpr double kOfRange = 0.25;
+// Largest difference between the shifts of a whole and of a part that does the same, as a share of the whole's
+// (chosen).
+constexpr double kSame = 0.01;
 
 struct PartOfWhole {
   std::size_t part, whole;

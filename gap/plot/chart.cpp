@@ -18,8 +18,9 @@ constexpr double kLeft_px = 70, kRight_px = 14, kTop_px = 50, kBottom_px = 42;
 constexpr double kTitleBase_px = 16, kLegendBase_px = 38, kLegendSample_px = 24;
 constexpr double kLetter_px = 7.5;  // about the width of a letter at the font size of 13
 constexpr double kPixelsPerTick_x = 60, kPixelsPerTick_y = 26;
-constexpr double kTolerance_px = 0.15;                        // largest distance of a point from the drawn line
-constexpr double kLeastHeight_px = 90, kMostHeight_px = 340;  // of the plot, where the scales are equal
+constexpr double kTolerance_px = 0.15;  // largest distance of a point from the drawn line
+// Bounds of the plot's height where the scales are equal.
+constexpr double kLeastHeight_px = 90, kMostHeight_px = 340;
 
 std::string_view stroke_class(Stroke stroke) {
   constexpr std::string_view kClasses[] = {"solid", "dashed", "dotted", "hair", "wide"};
