@@ -12,17 +12,20 @@ namespace kenaf::gap::logs {
 namespace {
 
 // All chosen.
-constexpr Eigen::Index kMostGridPoints = 8192;  // of either log; a longer one gets a coarser grid
-constexpr double kShortestOverlap_s = 1;
-constexpr double kTellsSomething = 0.5;         // least r squared of a quantity that counts
-constexpr double kFollows = 0.8, kAbsurd = 10;  // least r squared, and factor beyond the gain's bounds, of a wrong unit
-constexpr double kRefuted = 2;                  // an offset is refuted by this many times the residual variance
-constexpr double kEnoughMotion = 0.2;  // share of the motion, as the log with less of it saw it, in the overlap
-constexpr double kWidestPeak_s = 2, kLargestError_s = 0.25;
-constexpr double kCorrelatedOver_s = 2;  // residuals farther apart count as independent
-constexpr double kFinest_s = 1e-9;       // least standard error: identical courses leave no residual at all
-constexpr Eigen::Index kMostFinePoints = 20000;
-constexpr double kBodyIsGoodEnough_s = 0.01;  // standard error with which quantities that slip are not needed
+constexpr Eigen::Index kMostGridPoints = 8192;   // of either log; a longer one gets a coarser grid
+constexpr Eigen::Index kMostFinePoints = 20000;  // at which a refinement compares both rates
+constexpr double kShortestOverlap_s = 1;         // of a quantity in both logs, for an offset to count
+constexpr double kTellsSomething = 0.5;          // least r squared of a quantity that counts
+constexpr double kFollows = 0.8;                 // least r squared with any gain, for a wrong unit or sign to be named
+constexpr double kAbsurd = 10;                   // factor beyond the gain's bounds that only a wrong unit explains
+constexpr double kRefuted = 2;                   // an offset is refuted by this many times the residual variance
+constexpr double kEnoughMotion = 0.2;            // least share in the overlap of all motion in the log with less of it
+constexpr double kWidestPeak_s = 2;              // widest range of offsets that fit about as well as the best
+constexpr double kUncertain_s = 1;               // standard error from which on a quantity determines no offset
+constexpr double kLargestError_s = 0.25;         // largest standard error of the result
+constexpr double kFinest_s = 1e-9;               // least standard error: identical courses leave no residual at all
+constexpr double kBodyIsGoodEnough_s = 0.01;     // standard error with which quantities that slip are not needed
+constexpr double kCorrelatedOver_s = 2;          // residuals farther apart count as independent
 
 using Eigen::ArrayXd;
 using Eigen::Index;
@@ -162,8 +165,7 @@ bool moves_in_overlap(const Quantity& quantity, Index k) {
 
 std::string what_a_gain_means(const CourseSeenTwice& seen, double gain) {
   const auto near = [&](double value) { return std::abs(std::log(std::abs(gain) / value)) < 0.4; };
-  std::string words =
-      fmt::format("{} would agree if that of the robot were {:.3g} times that of the motion capture", seen.name, gain);
+  std::string words = fmt::format("{} of the run is {:.3g} times that of the motion capture", seen.name, gain);
   if (gain < 0)
     words += ": one of the two has the wrong sign; x forward, y left, z up, so that a left turn is positive";
   else if (near(1e-3))
@@ -171,7 +173,9 @@ std::string what_a_gain_means(const CourseSeenTwice& seen, double gain) {
   else if (near(1e-2))
     words += ": the motion capture looks like centimetres; its columns are in metres";
   else if (near(1e3))
-    words += ": the run looks like millimetres; its columns are in metres, or is --mocap-units mm one too many?";
+    words +=
+        ": the run looks like millimetres, and its columns are in metres; or `--mocap-units mm` was given for data "
+        "in metres";
   else if (near(1 / 57.29578))
     words += ": the motion capture looks like degrees; name its columns roll_deg, pitch_deg, yaw_deg";
   else if (near(57.29578))
@@ -179,7 +183,7 @@ std::string what_a_gain_means(const CourseSeenTwice& seen, double gain) {
   return words;
 }
 
-// Throws NoOffset, with the unit or sign that would explain it if the logs agree with an unbounded gain.
+// Throws NoOffset, with the unit or sign that explains it if the logs agree with a gain outside its bounds.
 [[noreturn]] void no_agreement(std::vector<Quantity>& quantities, const Grid& grid) {
   const Coarse any = search(quantities, grid, true);
   double best = 0;
@@ -256,23 +260,30 @@ double bartlett_sum(const ArrayXd& x, Index most) {
   return sum;
 }
 
-// The variance of sum_i j(i) r(i) for stationary r: sum over lags k of w(k) [sum_i j(i) j(i + k)] gamma(k), with the
-// autocovariance gamma(k) = sum_i r(i) r(i + k) / n and Bartlett's weights w(k).
-double stationary_variance(const ArrayXd& j, const ArrayXd& r, Index most) {
-  const Index n = r.size();
-  double sum = j.square().sum() * r.square().sum();
+// The variance of sum_i slope(i) residual(i) for a stationary residual: sum over lags k of w(k) gamma(k)
+// [sum_i slope(i) slope(i + k)], with the autocovariance gamma(k) = sum_i residual(i) residual(i + k) / n and
+// Bartlett's weights w(k).
+double stationary_variance(const ArrayXd& slope, const ArrayXd& residual, Index most) {
+  const Index n = residual.size();
+  double sum = slope.square().sum() * residual.square().sum();
   for (Index lag = 1; lag <= std::min(most, n - 1); ++lag) {
     const double weight = 1 - static_cast<double>(lag) / static_cast<double>(most + 1);
     const auto pairs = [&](const ArrayXd& x) { return (x.head(n - lag) * x.tail(n - lag)).sum(); };
-    sum += 2 * weight * pairs(j) * pairs(r);
+    sum += 2 * weight * pairs(slope) * pairs(residual);
   }
   return sum / static_cast<double>(n);
 }
 
-// Least squares for offset o and gain g in a(t) = g b(t - o) + r(t), by Gauss-Newton from `start_s` with the gain
-// eliminated: g = a'b / b'b. The Jacobian of r by the offset is dr/do = g db/dt, less its part along b, which a change
-// of the gain absorbs: j = g (db/dt - b (db/dt)'b / b'b). The step is -j'r / j'j.
-// Empty if it leaves the neighbourhood, finds no motion or fits badly.
+// Least squares for offset and gain in robot(t) = gain capture(t - offset) + residual(t), by Gauss-Newton from
+// `start_s`. With sums over all t:
+//
+//   gain      = sum(robot capture) / sum(capture^2)    eliminated in each iteration
+//   slope     = d residual / d offset = gain (derivative - capture sum(derivative capture) / sum(capture^2)), where
+//               derivative = d capture / dt; its part along capture is left out, as a change of the gain absorbs it
+//   curvature = sum(slope^2)
+//   change_s  = -sum(slope residual) / curvature       step of the offset
+//
+// Empty if it leaves the neighbourhood, finds no motion, fits badly or leaves the offset uncertain.
 std::optional<QuantityOffset> refine(const CourseSeenTwice& seen, const Grid& grid, double start_s) {
   // Evaluates at the robot's own sample step, at no more than kMostFinePoints times.
   const double window_s = grid.window_s;
@@ -288,24 +299,25 @@ std::optional<QuantityOffset> refine(const CourseSeenTwice& seen, const Grid& gr
   double curvature = 0, correlation = 0;
   for (int iteration = 0; iteration < 30; ++iteration) {
     // Both rates at the present offset, and the derivative of the captured one by central differences.
-    std::vector<double> a, b, b_slope;
+    std::vector<double> robot_rates, capture_rates, capture_derivatives;
     for (Index i = 0; i < count; ++i) {
       const double t_s = span.first_s + static_cast<double>(i) * step_s, there_s = t_s - offset_s;
       const double robot = mean_rate(seen.robot, t_s, window_s), capture = mean_rate(seen.capture, there_s, window_s);
       const double before = mean_rate(seen.capture, there_s - grid.step_s, window_s);
       const double after = mean_rate(seen.capture, there_s + grid.step_s, window_s);
       if (std::isnan(robot + capture + before + after)) continue;
-      a.push_back(robot);
-      b.push_back(capture);
-      b_slope.push_back((after - before) / (2 * grid.step_s));
+      robot_rates.push_back(robot);
+      capture_rates.push_back(capture);
+      capture_derivatives.push_back((after - before) / (2 * grid.step_s));
     }
-    if (static_cast<double>(a.size()) * step_s < kShortestOverlap_s) return std::nullopt;
+    if (static_cast<double>(robot_rates.size()) * step_s < kShortestOverlap_s) return std::nullopt;
     const auto as_array = [](const std::vector<double>& v) {
       return Eigen::Map<const ArrayXd>(v.data(), static_cast<Index>(v.size()));
     };
-    const ArrayXd robot = as_array(a), capture = as_array(b), derivative = as_array(b_slope);
+    const ArrayXd robot = as_array(robot_rates), capture = as_array(capture_rates),
+                  derivative = as_array(capture_derivatives);
 
-    // Gain, residual r and Jacobian j.
+    // Gain, residual and its slope.
     const double energy = capture.square().sum();
     if (!(energy > 0)) return std::nullopt;
     gain = (robot * capture).sum() / energy;
@@ -322,13 +334,14 @@ std::optional<QuantityOffset> refine(const CourseSeenTwice& seen, const Grid& gr
     if (std::abs(change_s) < 1e-7) break;
   }
 
-  // Var(o) = (j'j)^-2 Var(j'r), with the larger of the two estimates of Var(j'r).
+  // Var(offset) = Var(sum(slope residual)) / curvature^2, with the larger of two estimates of the numerator.
   const auto most = std::min(static_cast<Index>(kCorrelatedOver_s / step_s), residual.size() / 4);
-  const double variance = std::max(stationary_variance(slope, residual, most), bartlett_sum(slope * residual, most)) /
-                          (curvature * curvature);
+  const double variance_s2 =
+      std::max(stationary_variance(slope, residual, most), bartlett_sum(slope * residual, most)) /
+      (curvature * curvature);
   const bool no_match = gain < seen.least_gain || gain > seen.most_gain || correlation * correlation < kTellsSomething;
-  if (no_match || !(variance < 1)) return std::nullopt;
-  return QuantityOffset{seen.name, offset_s, std::max(kFinest_s, std::sqrt(variance)), gain, correlation, false};
+  if (no_match || !(variance_s2 < kUncertain_s * kUncertain_s)) return std::nullopt;
+  return QuantityOffset{seen.name, offset_s, std::max(kFinest_s, std::sqrt(variance_s2)), gain, correlation, false};
 }
 
 bool moves(const Course& course, double enough) {
@@ -363,7 +376,8 @@ ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses) {
                           {}});
   const Coarse coarse = search(quantities, grid, false);
 
-  // Refuses a best lag without agreement or without motion in the overlap, one of several, and one by wrong units.
+  // Refuses the best lag if no quantity agrees there, if the robot hardly moves in the overlap, if other lags fit about
+  // as well, or if only a wrong unit or sign explains a gain.
   const auto tells = [&](const Quantity& quantity) { return tells_something(quantity, coarse.best); };
   if (coarse.log_likelihood <= 0 || std::ranges::none_of(quantities, tells)) no_agreement(quantities, grid);
   if (std::ranges::none_of(quantities, [&](const Quantity& q) { return tells(q) && moves_in_overlap(q, coarse.best); }))
@@ -399,7 +413,11 @@ ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses) {
     sum += weight * quantity.offset_s;
     result.from_tracks = result.from_tracks && slips(quantity);
   }
-  if (!(weights > 0)) no_agreement(quantities, grid);
+  if (!(weights > 0))
+    throw NoOffset(
+        fmt::format("run and motion capture agree roughly at an offset of {:.2f} s, but no quantity fits well enough "
+                    "there to determine it: do both record the same part of the drive?",
+                    start_s));
   result.offset_s = sum / weights;
 
   // The Birge ratio sqrt(chi^2 / (n - 1)) widens the error where quantities disagree by more than their own errors.

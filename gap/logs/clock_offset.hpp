@@ -5,9 +5,9 @@
 // robot's rate is fitted by the other one's times a gain, bounded to values that robots have; the offset with the
 // highest likelihood wins. Refinement: least squares for offset and gain, for each quantity by itself; the offsets are
 // averaged with inverse-variance weights. The standard error is that of least squares with correlated residuals:
-// Var = (j'j)^-2 Var(j'r), with Var(j'r) once from the autocovariance of the residuals r and once from that of the
-// products j r (Newey and West 1987), whichever is larger. Where quantities disagree beyond their errors, it is scaled
-// by the Birge ratio.
+// Var(offset) = Var(sum(slope residual)) / sum(slope^2)^2, with slope = d residual / d offset, and the numerator once
+// from the autocovariance of the residuals and once from that of the products (Newey and West 1987), whichever is
+// larger. Where quantities disagree beyond their errors, it is scaled by the Birge ratio.
 //
 // Limits: a sensor that reports late looks like a clock that is behind. Clock drift is not modelled.
 //
