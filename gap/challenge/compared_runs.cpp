@@ -17,7 +17,7 @@ ComparedRuns::ComparedRuns(const std::filesystem::path& dataset, unsigned thread
     : observations(diagnose::observe(dataset, "", "", kMostRuns)),
       features(diagnose::compared_features(observations, diagnose::DiagnosisOptions().span_s)),
       predictor(observations, features, diagnose::repeats_of(observations), threads, stop),
-      same_orders(diagnose::same_orders_of(observations)) {
+      same_command_sequence(diagnose::same_command_sequence_of(observations)) {
   predictor.simulate_nominal();
   for (std::size_t s = 0; s < kEachChannelOnce.size(); ++s) {
     const std::vector<diagnose::StageFeatures>& stage = features.of(kEachChannelOnce[s]);
@@ -37,7 +37,7 @@ Floors floors_around(ComparedRuns& runs, const diagnose::Variation& model) {
   for (std::size_t s = 0; s < floors.size(); ++s) {
     const diagnose::Passage passage = kEachChannelOnce[s];
     const std::vector<diagnose::StageFeatures>& features = runs.features.of(passage);
-    floors[s] = diagnose::noise_floor(features, runs.residuals[s], runs.same_orders,
+    floors[s] = diagnose::noise_floor(features, runs.residuals[s], runs.same_command_sequence,
                                       diagnose::open_shapes(features, runs.predictor, passage, model,
                                                             diagnose::kOpenStart_m, diagnose::kOpenStart_rad));
   }
@@ -68,8 +68,9 @@ double rms_of_repeats(const ComparedRuns& runs, const Floors& floors, const Diff
   double sum = 0, bins = 0;
   for (std::size_t s = 0; s < floors.size(); ++s) {
     const std::vector<diagnose::StageFeatures>& features = runs.features.of(kEachChannelOnce[s]);
-    const diagnose::Shift deviations = diagnose::deviations_from_repeats(features, residuals[s], runs.same_orders);
-    const std::vector<std::vector<bool>> shared = diagnose::shared_bins(features, runs.same_orders);
+    const diagnose::Shift deviations =
+        diagnose::deviations_from_repeats(features, residuals[s], runs.same_command_sequence);
+    const std::vector<std::vector<bool>> shared = diagnose::shared_bins(features, runs.same_command_sequence);
     for (std::size_t r = 0; r < deviations.size(); ++r) {
       if (deviations[r].size() == 0) continue;
       sum += floors[s].whiteners[r](deviations[r]).squaredNorm();

@@ -32,8 +32,8 @@ struct ComparedRuns {
   diagnose::Observations observations;
   diagnose::ComparedFeatures features;
   diagnose::Predictor predictor;
-  Differences residuals;  // measured minus nominal
-  std::vector<std::vector<std::size_t>> same_orders;
+  Differences residuals;                                        // measured minus nominal
+  std::vector<std::vector<std::size_t>> same_command_sequence;  // groups of runs: same_command_sequence_of()
 };
 
 Differences operator-(Differences a, const Differences& b);

@@ -28,13 +28,13 @@ class StageGap {
     if (!is_measured()) return;
     diagnose::Variation model = runs_.predictor.unvaried();
     model.robot = truth;
-    floor_ = diagnose::noise_floor(features_, residuals_, runs_.same_orders,
+    floor_ = diagnose::noise_floor(features_, residuals_, runs_.same_command_sequence,
                                    diagnose::open_shapes(features_, runs_.predictor, passage_, model,
                                                          diagnose::kOpenStart_m, diagnose::kOpenStart_rad));
     left_by_truth_ = difference(residuals_, shift(truth));
     const diagnose::KindSquares before = squares(residuals_);
     const diagnose::KindSquares repeats =
-        squares(diagnose::deviations_from_repeats(features_, left_by_truth_, runs_.same_orders));
+        squares(diagnose::deviations_from_repeats(features_, left_by_truth_, runs_.same_command_sequence));
     weights_ = diagnose::kind_weights(before, repeats);
     before_ = diagnose::weighted_rms(before, weights_);
     const double of_repeats = diagnose::weighted_rms(repeats, weights_);

@@ -10,8 +10,8 @@
 namespace kenaf::gap::diagnose {
 
 struct DecisionSettings {
-  double false_alarm = 0.005;       // probability of a verdict other than none without a gap
-  double negligible = 0.25;         // fraction of the noise's length: what explains less is not a visible gap (chosen)
+  double false_alarm = 0.005;       // probability of a verdict other than none without a gap, for both tests together
+  double negligible = 0.25;         // of the noise's Euclidean norm over all bins: less is not a visible gap (chosen)
   double false_incomplete = 0.005;  // probability of calling a complete explanation incomplete
   double evidence = 16;       // deviance an effect must gain: 4 sigma, for the best of some 70 candidates (chosen)
   double rival_evidence = 9;  // deviance by which a rival must be worse: 3 sigma

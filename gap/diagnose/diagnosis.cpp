@@ -107,7 +107,7 @@ std::vector<OpenModel> open_models(const StageDiagnosis& stage) {
   std::vector<OpenModel> models;
   const StageDecision& decision = stage.decision;
   if (decision.verdict == Verdict::ambiguous) {
-    const auto most = std::ranges::max_element(decision.effects, {}, [](const NamedEffect& effect) {
+    const auto most = std::ranges::max_element(decision.effects, {}, [](const ModelEffect& effect) {
       return effect.doubts.empty() ? effect.rivals.size() : 0;
     });
     const auto place = static_cast<std::size_t>(most - decision.effects.begin());
@@ -211,7 +211,7 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
         fmt::format("{}: no measured column can be compared, because the described robot has no sensor for any of them",
                     folder.string()));
   d.repeats = repeats_of(d.observations);
-  d.same_orders = same_orders_of(d.observations);
+  d.same_command_sequence = same_command_sequence_of(d.observations);
 
   // one simulator for all stages, so that stages which share a replay share its roll-outs
   ProgressReport progress(options.progress);
@@ -233,7 +233,7 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
       progress.begin(passage_name(passage), 0.02 + 0.32 * number, 0.34 + 0.32 * number, 100 * runs,
                      predictor.roll_outs());
       PreparedStage stage = prepare_stage({passage, &d.observations, &d.features.maps, &d.features.of(passage),
-                                           &d.repeats, &d.same_orders, stated_noise(d.observations.dataset)},
+                                           &d.repeats, &d.same_command_sequence, stated_noise(d.observations.dataset)},
                                           d.candidates, predictor);
       if (stage.nominal.data.groups.empty()) continue;
       d.stages.push_back(diagnose_stage(stage, predictor, stage_options));
@@ -258,10 +258,10 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
 
 Settings corrections(const Diagnosis& d) {
   const bool is_named = d.verdict == Verdict::named || d.verdict == Verdict::ambiguous;
-  // the interval narrowest relative to its value wins
+  // the interval narrowest relative to the change from the present value wins
   std::map<std::size_t, std::pair<double, double>> best;  // candidate: relative width, value
   for (const StageDiagnosis& stage : d.stages)
-    for (const NamedEffect& effect : stage.decision.effects) {
+    for (const ModelEffect& effect : stage.decision.effects) {
       if (is_named && !effect.doubts.empty()) continue;
       const Interval& value = effect.value.value;
       const double width =

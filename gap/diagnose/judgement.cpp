@@ -22,13 +22,13 @@ bool takes_off_enough(const HeldOutShares::OfEffect& share, const DecisionSettin
   return share.of_stage >= settings.stage_share && share.beyond_numbers >= settings.stage_share;
 }
 
-double change_by(const NamedEffect& effect, const candidates::Candidate& candidate) {
+double change_by(const ModelEffect& effect, const candidates::Candidate& candidate) {
   return std::abs(effect.value.value.value - candidate.present);
 }
 
 // Effects that substitute for each other, like a lag and a ramp: without one the others explain most of it, without all
 // of them the gap remains. They are named as a set, the smallest that explains enough.
-void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutShares::OfSet>& sets,
+void name_in_sets(std::vector<ModelEffect>& effects, const std::vector<HeldOutShares::OfSet>& sets,
                   const std::vector<HeldOutShares::OfSet>& sets_by_manoeuvre, const DecisionSettings& settings) {
   // their individual shares are unknown, so manoeuvres, and parts of them, may disagree on these
   const auto lacks_share = [&](std::size_t place) {
@@ -64,7 +64,7 @@ void name_in_sets(std::vector<NamedEffect>& effects, const std::vector<HeldOutSh
 
     // its members are named, as each other's partners and rivals
     for (const std::size_t place : places) {
-      NamedEffect& effect = effects[place];
+      ModelEffect& effect = effects[place];
       effect.doubts.clear();
       effect.share_of_set = share;
       for (const std::size_t other : places) {
@@ -94,7 +94,7 @@ void judge(StageDecision& d, std::span<const candidates::Candidate> candidates, 
            const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings) {
   using Share = HeldOutShares::OfEffect;
   for (std::size_t i = 0; i < d.effects.size(); ++i) {
-    NamedEffect& effect = d.effects[i];
+    ModelEffect& effect = d.effects[i];
     effect.share = shares.effects[i];
     effect.share_by_manoeuvre = shares_by_manoeuvre.effects[i];
     // an effect that a single manoeuvre shows can only be held out by repeats
@@ -119,7 +119,7 @@ void judge(StageDecision& d, std::span<const candidates::Candidate> candidates, 
   // then sets, and the verdict from what has a name
   name_in_sets(d.effects, shares.sets, shares_by_manoeuvre.sets, settings);
   bool any_named = false, any_rival = false;
-  for (const NamedEffect& effect : d.effects) {
+  for (const ModelEffect& effect : d.effects) {
     any_named |= effect.doubts.empty();
     any_rival |= effect.doubts.empty() && effect.rivals.size() > 1;
   }

@@ -1,4 +1,5 @@
-// Decides which effects of a best model get a name, alone or in sets, from their shares on held-out runs.
+// Decides which effects of a best model get a name, alone or in sets, from their shares on held-out runs, and with that
+// the verdict of a stage with a gap.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -16,8 +17,8 @@ namespace kenaf::gap::diagnose {
 std::vector<std::size_t> places_of_sets(const HeldOutShares& shares, const HeldOutShares& shares_by_manoeuvre,
                                         const DecisionSettings& settings);
 
-// Sets names, sets and doubts of the effects of a best model. `shares`, `shares_by_manoeuvre`: with repeats and with
-// manoeuvres held out.
+// Sets shares and doubts of the effects of a best model, joins them in sets, and sets the verdict. `shares`,
+// `shares_by_manoeuvre`: with repeats and with manoeuvres held out.
 void judge(StageDecision& decision, std::span<const candidates::Candidate> candidates, const HeldOutShares& shares,
            const HeldOutShares& shares_by_manoeuvre, const DecisionSettings& settings);
 

@@ -2,10 +2,10 @@
 //
 //   noise (diagonal) + discrepancy (of each channel) + L L'    and over all groups together + N N'
 //
-// L: shapes with a separate amount in each group, N: shapes with one amount in all groups, among them those of small
-// errors of the description's numbers. The sizes of these errors and of the discrepancies maximise the likelihood
-// (empirical Bayes), so a model with large residuals is trusted less, in the channels where they are large. All
-// computations are inner products of whitened columns.
+// L: local shapes, with a separate amount in each group, N: shared shapes, with one amount in all groups, here
+// including those of small errors of the description's numbers (P in docs/gap-method.md). The sizes of these errors and
+// of the discrepancies maximise the likelihood (empirical Bayes), so a model with large residuals is trusted less, in
+// the channels where they are large. All computations are inner products of whitened columns.
 //
 // Thread safety: values and pure functions.
 #pragma once

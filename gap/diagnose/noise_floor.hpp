@@ -2,8 +2,11 @@
 // the data, and open details of the simulation (the exact start pose, and numbers of the simulator without a physical
 // counterpart).
 //
-// The floor of a run is a Gaussian: independent noise of each bin, and a few shapes in time, each with an unknown
-// amount of standard deviation 1. docs/gap-method.md has the derivation.
+// The floor of a run is a Gaussian: independent noise of each bin, and a few shapes. A shape is the course, over all
+// bins of a run, by which one unknown at 1 sigma shifts the measurements; its amount is unknown, with mean 0 and
+// standard deviation 1. *Open* shapes are those of the start, the sensors and the simulator's numbers; *number* shapes
+// (number_shapes.hpp) are those of errors of the description. *Local* shapes have another amount in each manoeuvre,
+// *shared* ones the same in all. docs/gap-method.md has the derivation.
 //
 // Thread safety: values and pure functions.
 #pragma once

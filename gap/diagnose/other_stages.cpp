@@ -45,7 +45,7 @@ bool refutes(const StageDecision& decision, const Simulate& simulate, std::span<
 
 // The value of an effect or its rival, and both ends of its interval: a rival has the relative uncertainty of the
 // effect that it replaces.
-std::vector<Setting> values_of(const NamedEffect& effect, const Setting& setting,
+std::vector<Setting> values_of(const ModelEffect& effect, const Setting& setting,
                                std::span<const candidates::Candidate> candidates) {
   const Interval& own = effect.value.value;
   const candidates::Candidate& candidate = candidates[setting.candidate];
@@ -62,7 +62,7 @@ std::vector<Setting> values_of(const NamedEffect& effect, const Setting& setting
 std::vector<NamedElsewhere> named_elsewhere(const std::vector<StageDiagnosis>& stages, std::size_t s) {
   std::vector<NamedElsewhere> named;
   for (std::size_t other = 0; other < stages.size(); ++other)
-    for (const NamedEffect& effect : stages[other].decision.effects)
+    for (const ModelEffect& effect : stages[other].decision.effects)
       if (other != s && effect.doubts.empty() && effect.rivals.size() == 1)
         named.push_back({effect.candidate, effect.value.value});
   return named;
@@ -94,7 +94,7 @@ std::vector<RefutedElsewhere> refuted_elsewhere(const std::vector<StageDiagnosis
 bool concerns(const StageDecision& decision, std::span<const candidates::Candidate> candidates,
               const Elsewhere& elsewhere) {
   for (std::size_t e = 0; e < decision.effects.size(); ++e) {
-    const NamedEffect& effect = decision.effects[e];
+    const ModelEffect& effect = decision.effects[e];
     if (!effect.doubts.empty()) continue;
     const auto is_refuted = [&](std::size_t candidate) { return elsewhere.refutes(candidate).has_value(); };
     if (std::ranges::any_of(effect.rivals, is_refuted)) return true;

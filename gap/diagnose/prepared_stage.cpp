@@ -19,7 +19,7 @@ EffectCurves first_look(const StageData& data, std::span<const candidates::Candi
   return curves;
 }
 
-// After the first look, complete curves of the candidates that can matter.
+// After the first look, curves over the whole range of the candidates that can matter.
 void follow_those_that_matter(EffectCurves& curves, const StageData& data, std::span<const std::size_t> possible,
                               const Simulate& simulate) {
   const std::vector<std::size_t> matter =
@@ -73,8 +73,8 @@ PreparedStage prepare_stage(const StageInput& input, std::span<const candidates:
 
   // noise, and the simulation's open shapes around the nominal model
   NoiseFloor& floor = stage.nominal.floor;
-  floor =
-      noise_floor(features, stage.residuals, *input.same_orders, open_around(stage, predictor, {}), input.stated_noise);
+  floor = noise_floor(features, stage.residuals, *input.same_command_sequence, open_around(stage, predictor, {}),
+                      input.stated_noise);
   stage.nominal.data = data_in(stage, floor);
 
   // a first look at all candidates; errors of the description's numbers are the same in a baseline
@@ -84,7 +84,7 @@ PreparedStage prepare_stage(const StageInput& input, std::span<const candidates:
   stage.nominal.shapes_of_all_numbers = floor.number_shapes;
   stage.nominal.data = data_in(stage, floor);
 
-  // complete curves of those that can matter
+  // curves over the whole range of those that can matter
   const std::vector<std::size_t> distinct =
       without_same_parts(stage.nominal.data, candidates, stage.possible, simulate);
   forget_all_but(stage.curves, distinct);

@@ -16,9 +16,9 @@ struct StageInput {
   const Observations* observations;
   const std::vector<FeatureMap>* maps;
   const std::vector<StageFeatures>* features;
-  const std::vector<std::vector<std::size_t>>* repeats;      // same commands
-  const std::vector<std::vector<std::size_t>>* same_orders;  // same_orders_of()
-  std::vector<double> stated_noise;                          // for each of diagnosis_channels(), 0: not stated
+  const std::vector<std::vector<std::size_t>>* repeats;                // repeats_of()
+  const std::vector<std::vector<std::size_t>>* same_command_sequence;  // same_command_sequence_of()
+  std::vector<double> stated_noise;  // for each of diagnosis_channels(), 0: not stated
 };
 
 // A stage with all simulations that precede its decision.

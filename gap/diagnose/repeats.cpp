@@ -90,16 +90,17 @@ bool same_commands(const Observation& a, const Observation& b) {
 }
 
 // The sequence of distinct commands, regardless of duration.
-std::vector<robot::Command> orders_of(const Timed& commands, const Largest& largest) {
-  std::vector<robot::Command> orders;
+std::vector<robot::Command> distinct_commands_of(const Timed& commands, const Largest& largest) {
+  std::vector<robot::Command> distinct;
   for (const rollout::TimedCommand& timed : commands)
-    if (orders.empty() || !alike(orders.back(), timed.command, largest)) orders.push_back(timed.command);
-  return orders;
+    if (distinct.empty() || !alike(distinct.back(), timed.command, largest)) distinct.push_back(timed.command);
+  return distinct;
 }
 
-bool same_orders(const Observation& a, const Observation& b) {
+bool same_command_sequence(const Observation& a, const Observation& b) {
   const Largest largest = largest_of(a, b);
-  std::vector<robot::Command> fewer = orders_of(a.replay.timed, largest), more = orders_of(b.replay.timed, largest);
+  std::vector<robot::Command> fewer = distinct_commands_of(a.replay.timed, largest),
+                              more = distinct_commands_of(b.replay.timed, largest);
   if (fewer.size() > more.size()) std::swap(fewer, more);
   std::size_t found = 0;
   for (std::size_t i = 0; i < more.size() && found < fewer.size(); ++i) found += alike(fewer[found], more[i], largest);
@@ -132,9 +133,9 @@ std::vector<std::vector<std::size_t>> repeats_of(const Observations& observation
                    [](const Observation& a, const Observation& b) { return same_start(a, b) && same_commands(a, b); });
 }
 
-std::vector<std::vector<std::size_t>> same_orders_of(const Observations& observations) {
+std::vector<std::vector<std::size_t>> same_command_sequence_of(const Observations& observations) {
   return groups_of(observations, [](const Observation& a, const Observation& b) {
-    return same_start(a, b) && (same_commands(a, b) || same_orders(a, b));
+    return same_start(a, b) && (same_commands(a, b) || same_command_sequence(a, b));
   });
 }
 

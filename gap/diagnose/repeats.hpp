@@ -19,7 +19,7 @@ std::vector<std::vector<std::size_t>> repeats_of(const Observations& observation
 
 // The same, plus runs of the manoeuvre in which the operator gave the same commands at other times, or omitted some,
 // because the outcome differed. Their differences count as spread, like those of repeats.
-std::vector<std::vector<std::size_t>> same_orders_of(const Observations& observations);
+std::vector<std::vector<std::size_t>> same_command_sequence_of(const Observations& observations);
 
 // The run of a group with the median duration.
 std::size_t representative(const Observations& observations, const std::vector<std::size_t>& group);

@@ -36,7 +36,7 @@ void check_keeps_inputs(const std::filesystem::path& out, const std::filesystem:
 
 // Writes report.json, report.html and the robot's file, if any, atomically into `folder`; returns the path of the page.
 // Removes robot files of an earlier diagnosis that this one does not write. If this one was interrupted, keeps them and
-// the reports of a complete one: then writes report.partial.json and report.partial.html. Throws std::runtime_error on
+// the reports of a finished one: then writes report.partial.json and report.partial.html. Throws std::runtime_error on
 // failure.
 std::filesystem::path write_diagnosis(const Diagnosis& diagnosis, const std::filesystem::path& folder);
 

@@ -16,10 +16,10 @@ namespace {
 
 constexpr const char *kPage = "report.html", *kReport = "report.json";
 constexpr const char* kRobotFiles[] = {"robot.toml", "robot.candidate.toml"};
-// Reports of an interrupted diagnosis in a folder with complete ones.
+// Reports of an interrupted diagnosis in a folder with those of a finished one.
 constexpr const char *kPartialPage = "report.partial.html", *kPartialReport = "report.partial.json";
 
-bool has_complete_report(const fs::path& folder) {
+bool has_finished_report(const fs::path& folder) {
   if (!fs::exists(folder / kReport)) return false;
   const auto report = nlohmann::json::parse(runs::read_whole_file(folder / kReport), nullptr, false);
   return report.is_object() && report.contains("verdict") && !report.contains("interrupted");
@@ -62,7 +62,7 @@ fs::path write_diagnosis(const Diagnosis& d, const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw std::runtime_error(fmt::format("{}: cannot be created: {}", folder.string(), error.message()));
-  if (!d.interrupted.empty() && has_complete_report(folder)) {
+  if (!d.interrupted.empty() && has_finished_report(folder)) {
     runs::write_whole_file(folder / kPartialPage, diagnosis_html(d));
     runs::write_whole_file(folder / kPartialReport, diagnosis_json(d));
     return folder / kPartialPage;

@@ -69,7 +69,7 @@ Json where_json(const Diagnosis& d, std::optional<std::size_t> main) {
   return where;
 }
 
-Json effect_json(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect) {
+Json effect_json(const Diagnosis& d, const StageDiagnosis& stage, const ModelEffect& effect) {
   const candidates::Candidate& candidate = d.candidates[effect.candidate];
   const Interval& value = effect.value.value;
   // keys are documented in docs/gap-report.md
@@ -180,7 +180,7 @@ Json stage_json(const Diagnosis& d, std::size_t s) {
   json["explains_ci95"] = interval_json(explained_interval(stage));
   json["gap"] = gap_json(d, &stage);
   json["effects"] = Json::array();
-  for (const NamedEffect& effect : decision.effects) json["effects"].push_back(effect_json(d, stage, effect));
+  for (const ModelEffect& effect : decision.effects) json["effects"].push_back(effect_json(d, stage, effect));
   json["left"] = left_json(stage);
   json["p_gap"] = number(decision.p_gap);
   json["p_left"] = number(decision.p_left);
@@ -218,7 +218,7 @@ std::string diagnosis_json(const Diagnosis& d) {
   json["where"] = where_json(d, main);
   json["effects"] = Json::array();
   for (const StageDiagnosis& stage : d.stages)
-    for (const NamedEffect& effect : stage.decision.effects) {
+    for (const ModelEffect& effect : stage.decision.effects) {
       json["effects"].push_back(effect_json(d, stage, effect));
       json["effects"].back()["stage"] = passage_name(stage.passage);
     }

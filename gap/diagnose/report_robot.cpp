@@ -30,7 +30,7 @@ std::string contained(const Diagnosis& d, const Setting& setting) {
   std::vector<std::string> stages;
   std::string words = value_name(d.candidates[setting.candidate]);
   for (const StageDiagnosis& stage : d.stages)
-    for (const NamedEffect& effect : stage.decision.effects)
+    for (const ModelEffect& effect : stage.decision.effects)
       if (effect.candidate == setting.candidate) {
         stages.emplace_back(passage_name(stage.passage));
         if (effect.value.value.value == setting.value)
@@ -63,7 +63,7 @@ std::string top_of_file(const Diagnosis& d, const Settings& corrections, bool is
     if (is_named && names_found(stage).empty())
       lacks.push_back(fmt::format("- the cause of the gap {}: no effect is named", from_to(stage.passage)));
     if (is_named)
-      for (const NamedEffect& effect : stage.decision.effects)
+      for (const ModelEffect& effect : stage.decision.effects)
         if (!effect.doubts.empty() &&
             std::ranges::none_of(corrections, [&](const Setting& c) { return c.candidate == effect.candidate; }))
           lacks.push_back(fmt::format("- {}, which is not named: {}", d.candidates[effect.candidate].name,

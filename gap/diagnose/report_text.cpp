@@ -53,7 +53,7 @@ void add_stage(Screen& screen, const Diagnosis& d, std::size_t s) {
   screen.add(fmt::format("{}: {} of the whole gap; {}", name, percent(share_of_gap(d, s)), gap_in_words(d, stage)));
 
   // one line per effect: value, what it explains or why it has no name, partners, rivals
-  for (const NamedEffect& effect : stage.decision.effects) {
+  for (const ModelEffect& effect : stage.decision.effects) {
     const candidates::Candidate& candidate = d.candidates[effect.candidate];
     std::string line = "  " + value_in_words(candidate, effect.value);
     if (!effect.doubts.empty())

@@ -20,7 +20,7 @@ void add_once(std::vector<T>& all, const T& one) {
 }
 
 bool all_are_named(const StageDiagnosis& stage) {
-  return std::ranges::all_of(stage.decision.effects, [](const NamedEffect& effect) { return effect.doubts.empty(); });
+  return std::ranges::all_of(stage.decision.effects, [](const ModelEffect& effect) { return effect.doubts.empty(); });
 }
 
 // "only 3 %", "nothing"
@@ -32,7 +32,7 @@ std::string only(double share) {
 double explained_by_names(const StageDiagnosis& stage) {
   if (all_are_named(stage)) return explained(stage);
   double sum = 0;
-  for (const NamedEffect& effect : stage.decision.effects)
+  for (const ModelEffect& effect : stage.decision.effects)
     if (effect.doubts.empty()) sum += explained_by(stage, effect);
   return std::min(sum, explained(stage));
 }
@@ -91,7 +91,7 @@ std::string interval_text(const Interval& interval, std::string_view unit) {
 
 NamesFound names_found(const StageDiagnosis& stage) {
   NamesFound names;
-  for (const NamedEffect& effect : stage.decision.effects) {
+  for (const ModelEffect& effect : stage.decision.effects) {
     if (!effect.doubts.empty()) continue;
     const std::size_t place = static_cast<std::size_t>(&effect - stage.decision.effects.data());
     if (!effect.partners.empty() && effect.partners.front() < place) continue;  // already listed with its set
@@ -120,7 +120,7 @@ std::vector<std::string> candidate_names(const Diagnosis& d, std::span<const std
   return names;
 }
 
-std::vector<std::string> partner_names(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect) {
+std::vector<std::string> partner_names(const Diagnosis& d, const StageDiagnosis& stage, const ModelEffect& effect) {
   std::vector<std::string> names;
   for (const std::size_t place : effect.partners)
     names.push_back(d.candidates[stage.decision.effects[place].candidate].name);
@@ -190,11 +190,11 @@ double part_of_explained(const StageDiagnosis& stage, const HeldOutShares::OfEff
 }
 }  // namespace
 
-double explained_by(const StageDiagnosis& stage, const NamedEffect& effect) {
+double explained_by(const StageDiagnosis& stage, const ModelEffect& effect) {
   return stage.decision.effects.size() == 1 ? explained(stage) : part_of_explained(stage, effect.share);
 }
 
-double explained_by_set(const StageDiagnosis& stage, const NamedEffect& effect) {
+double explained_by_set(const StageDiagnosis& stage, const ModelEffect& effect) {
   return part_of_explained(stage, effect.share_of_set);
 }
 
@@ -259,7 +259,7 @@ std::string value_in_words(const candidates::Candidate& candidate, const EffectV
   return text;
 }
 
-std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& effect) {
+std::vector<std::string> doubts_in_words(const Diagnosis& d, const ModelEffect& effect) {
   const candidates::Candidate& candidate = d.candidates[effect.candidate];
   std::vector<std::string> words;
   // one clause per doubt with its figure; of shares, the smaller of repeats and manoeuvres held out
@@ -319,7 +319,7 @@ std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& 
 std::vector<std::string> all_doubts(const Diagnosis& d) {
   std::vector<std::string> words;
   for (const StageDiagnosis& stage : d.stages)
-    for (const NamedEffect& effect : stage.decision.effects)
+    for (const ModelEffect& effect : stage.decision.effects)
       if (!effect.doubts.empty())
         words.push_back(fmt::format("not named: {} ({}): {}", d.candidates[effect.candidate].name,
                                     passage_name(stage.passage), fmt::join(doubts_in_words(d, effect), "; ")));

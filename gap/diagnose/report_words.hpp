@@ -43,7 +43,7 @@ NamesFound names_found(const StageDiagnosis& stage);
 NamesFound names_found(const Diagnosis& d);  // of all stages, each once
 std::vector<std::string> candidate_names(const Diagnosis& d, std::span<const std::size_t> candidates);
 // Names of the effects with which together it explains enough.
-std::vector<std::string> partner_names(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect);
+std::vector<std::string> partner_names(const Diagnosis& d, const StageDiagnosis& stage, const ModelEffect& effect);
 // "com_forward or ground_slope"; if it may be several, "command_slew, drive_lag or both".
 std::string set_in_words(const Diagnosis& d, const AmbiguousSet& set);
 // "drive_lag and one of com_forward or ground_slope".
@@ -60,9 +60,9 @@ double explained(const StageDiagnosis& stage);
 // Its interval, from 0 to 1.
 Interval explained_interval(const StageDiagnosis& stage);
 // The share that one effect explains, as its part of the model's share. A single effect has the model's share.
-double explained_by(const StageDiagnosis& stage, const NamedEffect& effect);
+double explained_by(const StageDiagnosis& stage, const ModelEffect& effect);
 // The share that it explains with its partners.
-double explained_by_set(const StageDiagnosis& stage, const NamedEffect& effect);
+double explained_by_set(const StageDiagnosis& stage, const ModelEffect& effect);
 
 std::string from_to(Passage passage);  // "from command to drive"
 // The runs on which gap and shrink were measured: "runs held out"; with a single run, "the run fitted to, as there is
@@ -81,7 +81,7 @@ std::string value_name(const candidates::Candidate& candidate);
 // "command_slew slowness_s2pm = 0.69 s^2/m (95 % interval 0.65 to 0.72), nominal 0". Begins with the candidate's name.
 std::string value_in_words(const candidates::Candidate& candidate, const EffectValue& value);
 // Why an effect of the best model gets no name: "its value is at the end of its range (0 to 3 s)".
-std::vector<std::string> doubts_in_words(const Diagnosis& d, const NamedEffect& effect);
+std::vector<std::string> doubts_in_words(const Diagnosis& d, const ModelEffect& effect);
 // "not named: com_forward (drive to body): ...", for all effects of all stages.
 std::vector<std::string> all_doubts(const Diagnosis& d);
 // "8.10 noise units before, 1.90 after on runs held out; noise alone: 1.00".

@@ -12,8 +12,9 @@
 namespace kenaf::gap::diagnose {
 namespace {
 
-// Share of the gap beyond numbers' errors that a model must explain before the simulation's open shapes are taken
-// around it (chosen): around a model that does not fit, they are arbitrary.
+// Open shapes (noise_floor.hpp) come from simulations of a robot: of the nominal one, or of one with the effects of a
+// model if that explains at least this share of the gap beyond numbers' errors (chosen). Those of a model that does not
+// fit would be arbitrary.
 constexpr double kFits = 0.5;
 
 // Tests of a model's residual against noise and spread of repeats.
@@ -35,11 +36,14 @@ Chance chance_of(const StageData& data, const Model& model, const Model* with, c
   chance.improvement = left_by(model) - left_by(*with);
   const auto visible = static_cast<double>(
       std::ranges::count_if(curves.curves, [](const EffectCurve& curve) { return curve.visible > 1; }));
+  // the margin of rival_evidence, 3 sigma, is for details of the simulator: half a time step moves every sensor by half
+  // a millisecond, which is significant in little noise, and was taken for a delay of the posture sensor
   chance.p_effect = p_of_largest_square((chance.improvement - settings.rival_evidence) / test.inflation, visible);
   return chance;
 }
 
-// A significant excess in many cells, or an improvement large enough to be visible.
+// A significant excess in many cells, or an improvement by one effect that is significant and also large enough to be
+// visible. Each test has half of the probability of a false alarm.
 bool is_gap(const Chance& chance, const StageData& data, const DecisionSettings& settings) {
   const double negligible = settings.negligible * settings.negligible * static_cast<double>(bin_count(data));
   return chance.p_cells <= settings.false_alarm / 2 ||
@@ -87,13 +91,14 @@ StandingModel without_weak_effects(const StageData& data, const EffectCurves& cu
 
 // Whether the value is at an end of the range and would go beyond it.
 bool is_at_bound(const StageData& data, const StandingModel& standing, std::size_t place, double margin) {
-  constexpr double kAtBound = 1e-3, kInside = 0.9;  // of the range, of the way from the present value
+  constexpr double kAtBound = 1e-3;  // share of the range: a value closer to an end than this is at the end
+  constexpr double kInside = 0.9;    // share of the way from the present value to the end: a value inside
   const OnCurve& at = standing.model.places[place];
   const candidates::Candidate& candidate = standing.curves.candidates[at.curve];
   const double same = kAtBound * (candidate.max - candidate.min);
   const auto is_end = [&](double end) { return end != candidate.neutral && std::abs(at.value - end) < same; };
   if (!is_end(candidate.min) && !is_end(candidate.max)) return false;
-  // a saturated effect fits as well inside the range
+  // an effect that has saturated fits as well at a value inside the range
   std::vector<OnCurve> inside = standing.model.places;
   inside[place] =
       at_value(standing.curves.curves, at.curve, candidate.present + kInside * (at.value - candidate.present));
@@ -114,7 +119,7 @@ void describe_effects(StageDecision& d, const EffectCurves& curves, const Simula
   for (std::size_t i = 0; i < d.best.model.places.size(); ++i) {
     const Model without = fit_without(d.data, d.best, {{i}});
     const double evidence = without.deviance() - d.best.model.deviance();
-    NamedEffect effect{d.best.model.places[i].curve, values[i], evidence, {}, {}, false, {}, {}};
+    ModelEffect effect{d.best.model.places[i].curve, values[i], evidence, {}, {}, false, {}, {}};
     effect.ordinarily_off =
         curves.candidates[effect.candidate].whole * d.best.model.likelihood.discrepancies.numbers_off;
     effect.at_bound = is_at_bound(d.data, d.best, i, settings.rival_evidence);
@@ -140,21 +145,23 @@ std::optional<std::size_t> rival_in_place(const StageDecision& d, std::size_t ef
 void strike_rivals(StageDecision& d, std::size_t effect, std::span<const candidates::Candidate> candidates,
                    const Elsewhere& elsewhere) {
   std::vector<Settings>& models = d.models_of_rivals[effect];
-  if (settled_elsewhere(d, effect, candidates, elsewhere.named) == 0) models.resize(1);
+  if (settled_elsewhere(d, effect, candidates, elsewhere.named) == kItself) models.resize(kItself + 1);
   const auto is_refuted = [&](const Settings& model) { return elsewhere.refutes(model[effect].candidate).has_value(); };
-  models.erase(std::remove_if(models.begin() + 1, models.end(), is_refuted), models.end());
+  models.erase(std::remove_if(models.begin() + kItself + 1, models.end(), is_refuted), models.end());
   std::vector<std::size_t>& rivals = d.effects[effect].rivals;
   rivals.clear();
   for (const Settings& model : models) rivals.push_back(model[effect].candidate);
 }
 
-// Describes the best model's effects, the rivals that other stages allow, and the residual.
+// Describes the best model's effects, the rivals that other stages allow, and the residual. At most one effect is
+// replaced by a rival: afterwards the model has other values and rivals, about which other stages have found nothing
+// yet (settle_by_other_stages() asks them again).
 void describe(StageDecision& d, const EffectCurves& curves, const Simulate& simulate, const GapTest& test,
               const DecisionSettings& settings, const Elsewhere& elsewhere) {
   describe_effects(d, curves, simulate, settings);
   for (std::size_t i = 0; i < d.effects.size(); ++i) {
     const std::optional<std::size_t> rival = rival_in_place(d, i, curves.candidates, elsewhere);
-    if (!rival || *rival == 0) continue;
+    if (!rival || *rival == kItself) continue;
     const Settings settled = d.models_of_rivals[i][*rival];
     d.best =
         fit_side_by_side(d.data, curves, simulate, simulated_model(d.data, curves, simulate, settled, d.best.model));
@@ -185,7 +192,7 @@ std::string_view verdict_name(Verdict verdict) {
 std::optional<std::size_t> settled_elsewhere(const StageDecision& decision, std::size_t effect,
                                              std::span<const candidates::Candidate> candidates,
                                              std::span<const NamedElsewhere> elsewhere) {
-  const NamedEffect& chosen = decision.effects[effect];
+  const ModelEffect& chosen = decision.effects[effect];
   const Interval& own = chosen.value.value;
   const double change = std::abs(own.value - candidates[chosen.candidate].present);
   for (std::size_t r = 0; r < decision.models_of_rivals[effect].size(); ++r)
@@ -226,7 +233,7 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& known
   d.verdict = Verdict::unknown;
   if (d.singles.empty() || d.nominal_deviance - d.singles.front().deviance() < settings.evidence) return d;
 
-  // open shapes are taken around a model that fits, instead of the nominal one
+  // open shapes of the robot with a model that fits, instead of those of the nominal one
   const auto left_by = [&](const Model& model) {
     return squares_in_noise(d.data,
                             without_shared_shapes(d.data, rest_of(d.data, model), model.likelihood.discrepancies));

@@ -1,5 +1,7 @@
-// Decides which effects explain the gap of one stage: none, some by name, some that these runs cannot distinguish, or
-// none of the candidates. The residual of a model is reported and removes no name: via the discrepancy (likelihood.hpp)
+// Decides whether a stage has a gap, and finds the model that explains it best, with values, evidence and rivals of its
+// effects. Which of them get a name is for judge() (judgement.hpp) to decide, from their shares on held-out runs.
+//
+// A residual beyond noise alone keeps no effect from a name: it is reported, and via the discrepancy (likelihood.hpp)
 // it weakens evidence and widens intervals. docs/gap-method.md has the reasoning.
 //
 // Thread safety: pure functions, except that the simulator runs. Deterministic.
@@ -19,7 +21,12 @@
 
 namespace kenaf::gap::diagnose {
 
-enum class Verdict { none, named, ambiguous, unknown };
+enum class Verdict {
+  none,       // no gap beyond noise and the spread of repeats
+  named,      // a gap, and effects that explain it
+  ambiguous,  // the same, but these runs cannot distinguish some effect from its rivals
+  unknown,    // a gap, and no effect with a name
+};
 std::string_view verdict_name(Verdict verdict);
 
 // Reasons why an effect of the best model gets no name.
@@ -34,7 +41,8 @@ enum class Doubt {
   little_explained,  // in the channels where it acts, the whole model explains too little on held-out runs
 };
 
-// The data of a stage around a model: the same noise, and the simulation's open shapes with these effects.
+// The data of a stage around a model: the same noise, and the open shapes (noise_floor.hpp) of the simulation with the
+// model's effects.
 struct StageAround {
   NoiseFloor floor;
   StageData data;
@@ -50,16 +58,18 @@ struct GapTest {
   double stretch_s = 1;  // of a cell
 };
 
-struct NamedEffect {
+// An effect of a best model, with or without a name.
+struct ModelEffect {
   std::size_t candidate;
   EffectValue value;
-  double evidence = 0;              // additional deviance of the model without it
+  double evidence = 0;  // additional deviance of the model without it
+  // Shares and doubts are those of judge(); until then there are none.
   HeldOutShares::OfEffect share{};  // on runs held out
   // On held-out manoeuvres; equal to `share` if there is only one, NaN if only one shows the effect.
   HeldOutShares::OfEffect share_by_manoeuvre{};
   bool at_bound = false;
-  std::vector<Doubt> doubts;        // none: it is named, alone or in a set
-  std::vector<std::size_t> rivals;  // candidates that explain as much in its place, itself first
+  std::vector<Doubt> doubts;        // none after judge(): it is named, alone or in a set
+  std::vector<std::size_t> rivals;  // candidates that explain as much in its place, first itself (kItself)
   // For an effect that explains enough only together with others of the model, as each compensates for the others:
   // their places, and the share of all of them. They are among the rivals.
   std::vector<std::size_t> partners{};
@@ -69,11 +79,14 @@ struct NamedEffect {
   std::optional<Passage> refuted_by{};  // the stage whose residual it would increase
 };
 
+// Index of an effect itself among its rivals, and of the best model among the models with these.
+inline constexpr std::size_t kItself = 0;
+
 struct StageDecision {
-  Verdict verdict = Verdict::none;
+  Verdict verdict = Verdict::none;                      // with effects: of judge()
   StandingModel best;                                   // no places: nominal
-  std::vector<NamedEffect> effects;                     // of the best model, in the order of its places
-  std::vector<std::vector<Settings>> models_of_rivals;  // by effect: models with its rivals in its place
+  std::vector<ModelEffect> effects;                     // of the best model, in the order of its places
+  std::vector<std::vector<Settings>> models_of_rivals;  // by effect: models with its rivals in its place, first kItself
   std::vector<Model> singles;                           // best first
   NoiseFloor floor;                                     // around the best model
   StageData data;
@@ -83,6 +96,8 @@ struct StageDecision {
   bool complete = false;  // the residual is within noise and spread
 };
 
+// Without a gap the verdict is `none`. With one it is `unknown`: if there are effects, judge() has to replace it.
+//
 // `elsewhere`: if another stage names one of an effect's rivals at a value within both intervals, both stages show that
 // rival: it replaces the effect and has no rivals. Rivals that another stage refutes are dropped, and a refuted effect
 // is replaced by a rival that is not refuted.
@@ -93,18 +108,19 @@ StageDecision decide_stage(const StageAround& nominal, const EffectCurves& curve
 // Another best model with which a stage is decided again.
 struct OtherModel {
   Settings model;   // refitted together
-  Settings around;  // the simulation's open shapes are taken around this one
+  Settings around;  // the simulation's open shapes are those of the robot with these effects
 };
 // `decided` with only these of its best model's effects: unnamed effects must not influence the others.
 OtherModel with_effects_alone(const StageDecision& decided, std::span<const std::size_t> places);
 // `decided` with the model of a rival of one effect.
 OtherModel with_rival(const StageDecision& decided, std::size_t effect, std::size_t rival);
-// Decides again; single effects stay unchanged.
+// Decides again: the other model becomes the best one, `singles` stay unchanged. The verdict has to be judged again.
 StageDecision decide_again(StageDecision decided, const OtherModel& other, const EffectCurves& curves,
                            const Simulate& simulate, const Around& around, const GapTest& test,
                            const DecisionSettings& settings, const Elsewhere& elsewhere = {});
 
-// Index of the first of an effect's rivals, including itself, that another stage names at such a value.
+// Index of the first of an effect's rivals, including itself, that another stage names at a value within both
+// intervals.
 std::optional<std::size_t> settled_elsewhere(const StageDecision& decision, std::size_t effect,
                                              std::span<const candidates::Candidate> candidates,
                                              std::span<const NamedElsewhere> elsewhere);

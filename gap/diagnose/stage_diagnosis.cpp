@@ -119,7 +119,7 @@ void weigh(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& pred
   if (!best.places.empty())
     stage.left = left_by(places_held_out(view, input.passage, decision.best, by_repeat, threads));
   // around the model: the nominal robot may fall in only one of two repeats where the real one does not
-  std::vector<VectorXd> spread = deviations_from_repeats(features, stage.left, *input.same_orders);
+  std::vector<VectorXd> spread = deviations_from_repeats(features, stage.left, *input.same_command_sequence);
   for (std::size_t r = 0; r < spread.size(); ++r)
     if (spread[r].size() > 0) spread[r].array() *= noise_of_difference(features[r]).array();
 
@@ -141,14 +141,14 @@ void weigh(StageDiagnosis& stage, const PreparedStage& prepared, Predictor& pred
 }
 
 // Whether only its value keeps an effect from a name.
-bool has_doubtful_value(const NamedEffect& effect) {
+bool has_doubtful_value(const ModelEffect& effect) {
   constexpr std::array kOfValue{Doubt::end_of_range, Doubt::disagreement, Doubt::trend};
   return !effect.doubts.empty() &&
          std::ranges::all_of(effect.doubts, [&](Doubt doubt) { return std::ranges::count(kOfValue, doubt) > 0; });
 }
 
 bool has_name(const StageDecision& decision, std::size_t candidate) {
-  return std::ranges::any_of(decision.effects, [&](const NamedEffect& effect) {
+  return std::ranges::any_of(decision.effects, [&](const ModelEffect& effect) {
     return effect.candidate == candidate && effect.doubts.empty();
   });
 }
@@ -198,7 +198,8 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
     result.data = data_in(prepared, result.floor);
     return result;
   };
-  const std::vector<VectorXd> deviations = deviations_from_repeats(features, stage.residuals, *input.same_orders);
+  const std::vector<VectorXd> deviations =
+      deviations_from_repeats(features, stage.residuals, *input.same_command_sequence);
   const GapTest test{inflation_from_repeats(features, stage.nominal_floor, deviations, options.stretch_s),
                      options.stretch_s};
   stage.decision = decide_stage(prepared.nominal, prepared.curves, simulate, around, test, options.decision, elsewhere);
@@ -216,7 +217,7 @@ StageDiagnosis diagnose_stage(const PreparedStage& prepared, Predictor& predicto
     for (std::size_t e = 0; e < stage.decision.effects.size(); ++e) {
       if (!has_doubtful_value(stage.decision.effects[e])) continue;
       const std::vector<std::size_t>& rivals = stage.decision.effects[e].rivals;
-      for (std::size_t r = 1; r < rivals.size(); ++r) {
+      for (std::size_t r = kItself + 1; r < rivals.size(); ++r) {
         StageDiagnosis again = decided_again(with_rival(stage.decision, e, r));
         if (!has_name(again.decision, rivals[r])) continue;
         add_rivals(again.decision, e, stage.decision);
@@ -275,7 +276,7 @@ void widen_intervals(StageDiagnosis& stage, const PreparedStage& prepared, Predi
   const VectorXd errors =
       errors_of_values(decision.data, decision.best, numbers, simulator_of(prepared, predictor), seed);
   for (std::size_t e = 0; e < decision.effects.size(); ++e) {
-    NamedEffect& effect = decision.effects[e];
+    ModelEffect& effect = decision.effects[e];
     effect.value.value =
         widened(effect.value.value, errors[static_cast<Eigen::Index>(e)], prepared.candidates[effect.candidate]);
   }

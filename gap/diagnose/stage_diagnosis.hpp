@@ -41,7 +41,7 @@ struct StageDiagnosis {
   GapPlaces where, where_left;
   Isolability isolability;
   std::vector<SingleEvidence> ranking;  // best first
-  std::vector<Dependence> left_over;    // dependences of the residual, largest share first; none if complete
+  std::vector<Dependence> left_over;    // dependences of the residual, largest share first; none if `complete`
 
   bool is_measured() const { return !decision.data.groups.empty(); }
 };

@@ -89,7 +89,7 @@ std::string where_is_it(const Diagnosis& d) {
   return items.empty() ? "<p>Nowhere.</p>" : bullets(items);
 }
 
-std::string effect_item(const Diagnosis& d, const StageDiagnosis& stage, const NamedEffect& effect) {
+std::string effect_item(const Diagnosis& d, const StageDiagnosis& stage, const ModelEffect& effect) {
   const candidates::Candidate& candidate = d.candidates[effect.candidate];
   const std::string words = value_in_words(candidate, effect.value);  // begins with the name
   std::string item = fmt::format("{}: <b>{}</b>{}", with_capital(from_to(stage.passage)), escaped(candidate.name),
@@ -107,7 +107,7 @@ std::string effect_item(const Diagnosis& d, const StageDiagnosis& stage, const N
 
 std::string without_name(const Diagnosis& d, const StageDiagnosis& stage) {
   std::vector<std::string> doubted;
-  for (const NamedEffect& effect : stage.decision.effects)
+  for (const ModelEffect& effect : stage.decision.effects)
     if (!effect.doubts.empty())
       doubted.push_back(
           fmt::format("{} ({})", d.candidates[effect.candidate].name, fmt::join(doubts_in_words(d, effect), "; ")));
@@ -124,7 +124,7 @@ std::string which_effects(const Diagnosis& d) {
   std::vector<std::string> items;
   for (const std::size_t s : stages_described(d)) {
     const StageDiagnosis& stage = d.stages[s];
-    for (const NamedEffect& effect : stage.decision.effects)
+    for (const ModelEffect& effect : stage.decision.effects)
       if (effect.doubts.empty()) items.push_back(effect_item(d, stage, effect));
     if (std::string others = without_name(d, stage); !others.empty()) items.push_back(std::move(others));
   }

@@ -41,7 +41,7 @@ std::vector<std::size_t> joined(const MatrixXd& angle_deg, std::vector<std::size
 // Rows of the isolability: effects of the best model, their rivals, then those that explain most alone.
 std::vector<std::size_t> shown_rows(const StageDiagnosis& stage) {
   std::vector<std::size_t> wanted, rows;
-  for (const NamedEffect& effect : stage.decision.effects) {
+  for (const ModelEffect& effect : stage.decision.effects) {
     wanted.push_back(effect.candidate);
     wanted.insert(wanted.end(), effect.rivals.begin(), effect.rivals.end());
   }

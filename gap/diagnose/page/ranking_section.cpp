@@ -21,7 +21,7 @@ std::string ranking_figure(const Diagnosis& d, const StageDiagnosis& stage) {
   for (std::size_t i = 0; i < std::min(kMostRows, ranking.size()); ++i) {
     const SingleEvidence& single = ranking[i];
     const bool in_best = std::ranges::any_of(
-        stage.decision.effects, [&](const NamedEffect& effect) { return effect.candidate == single.candidate; });
+        stage.decision.effects, [&](const ModelEffect& effect) { return effect.candidate == single.candidate; });
     chart.rows.push_back(
         {d.candidates[single.candidate].name,
          {{std::max(0.0, single.explains) * 100, plot::Shape::bar, in_best ? plot::Ink::third : plot::Ink::real, {}}},

@@ -84,7 +84,7 @@ std::string shrink_figure(const Diagnosis& d, const StageDiagnosis& stage) {
   return to_svg(chart);
 }
 
-std::string value_figure(const Diagnosis& d, const NamedEffect& effect) {
+std::string value_figure(const Diagnosis& d, const ModelEffect& effect) {
   const candidates::Candidate& candidate = d.candidates[effect.candidate];
   const Interval& value = effect.value.value;
   plot::RowChart chart;
@@ -105,7 +105,7 @@ std::string effects_table(const Diagnosis& d, const StageDiagnosis& stage) {
               {},
               {0, 1}};
   // one row per effect: whether it has a name, its value, and its share of the gap
-  for (const NamedEffect& effect : stage.decision.effects) {
+  for (const ModelEffect& effect : stage.decision.effects) {
     const candidates::Candidate& candidate = d.candidates[effect.candidate];
     std::string name = "yes";
     if (!effect.doubts.empty())
@@ -148,7 +148,7 @@ std::string stage_section(const Diagnosis& d, std::size_t s) {
   if (has_gap || has_model(stage)) {
     html += "<div class=\"figures\">\n" + gap_figure(d, stage);
     if (has_model(stage)) html += shrink_figure(d, stage);
-    for (const NamedEffect& effect : stage.decision.effects) html += value_figure(d, effect);
+    for (const ModelEffect& effect : stage.decision.effects) html += value_figure(d, effect);
     html += "</div>\n";
   }
   if (!stage.decision.effects.empty()) html += effects_table(d, stage);

@@ -209,7 +209,7 @@ TEST_CASE("Where no next manoeuvre was asked for, the page says that, not that n
 TEST_CASE("Doubts are in words, with the numbers they go by") {
   Diagnosis d = made_diagnosis();
   StageDiagnosis& stage = d.stages[1];
-  NamedEffect& effect = stage.decision.effects[0];
+  ModelEffect& effect = stage.decision.effects[0];
   const auto doubt = [&](Doubt of) {
     effect.doubts = {of};
     return answers_of(d);

@@ -37,7 +37,7 @@ inline runs::Run run_ahead_by(double ahead_m, double faster_mps = 0) {
 
 inline constexpr double kMadeModel = 0.85;  // share of its stage that the model of drives explains
 
-inline gap::diagnose::NamedEffect made_effect(std::size_t candidate, gap::diagnose::Interval value, double share) {
+inline gap::diagnose::ModelEffect made_effect(std::size_t candidate, gap::diagnose::Interval value, double share) {
   return {candidate,
           {value, 0, 1},
           400,

@@ -33,10 +33,10 @@ Groups groups_of(std::vector<Observation> runs) {
   return repeats_of(observations);
 }
 
-Groups same_orders(std::vector<Observation> runs) {
+Groups same_command_sequence(std::vector<Observation> runs) {
   Observations observations;
   observations.runs = std::move(runs);
-  return same_orders_of(observations);
+  return same_command_sequence_of(observations);
 }
 
 // Each order for a second.
@@ -70,7 +70,7 @@ TEST_CASE("Runs that begin in another motion do not repeat each other, whatever 
   };
   // as recorded: with the same commands, one comes out of driving backward, the other out of a turn
   CHECK(groups_of({begun(-0.59, -0.21), begun(0.58, -0.03)}) == Groups{{0}, {1}});
-  CHECK(same_orders({begun(-0.59, -0.21), begun(0.58, -0.03)}) == Groups{{0}, {1}});
+  CHECK(same_command_sequence({begun(-0.59, -0.21), begun(0.58, -0.03)}) == Groups{{0}, {1}});
   // 30 mm/s of noise in speeds at rest; and one that stands, to which nothing was added
   CHECK(groups_of({begun(0.03, -0.03), begun(-0.03, 0.03), commanded("a", 0.8)}) == Groups{{0, 1, 2}});
   CHECK(groups_of({begun(0.5, 0.5), commanded("a", 0.8)}) == Groups{{0}, {1}});
@@ -91,15 +91,15 @@ TEST_CASE("An order that comes a little later is the same order") {
   CHECK(groups_of({commanded("a", 0.3), commanded("a", 0.3, 2)}) == Groups{{0}, {1}});
 }
 
-TEST_CASE("The same orders at other times, or one of them left out, are another outcome of the same manoeuvre") {
-  CHECK(same_orders({commanded("a", 0.3), commanded("a", 0.3, 2)}) == Groups{{0, 1}});
-  CHECK(same_orders({ordered({0, 0.2, 0.5, 0.1}), ordered({0, 0.5, 0.1}), ordered({0, 0, 0, 0.2, 0.5, 0.1})}) ==
-        Groups{{0, 1, 2}});
+TEST_CASE("The same commands at other times, or one of them left out, are another outcome of the same manoeuvre") {
+  CHECK(same_command_sequence({commanded("a", 0.3), commanded("a", 0.3, 2)}) == Groups{{0, 1}});
+  CHECK(same_command_sequence({ordered({0, 0.2, 0.5, 0.1}), ordered({0, 0.5, 0.1}),
+                               ordered({0, 0, 0, 0.2, 0.5, 0.1})}) == Groups{{0, 1, 2}});
   // in another order, or with an order that the other one never gave
-  CHECK(same_orders({ordered({0, 0.2, 0.5}), ordered({0, 0.5, 0.2})}) == Groups{{0}, {1}});
-  CHECK(same_orders({ordered({0, 0.2, 0.5}), ordered({0, 0.3, 0.5})}) == Groups{{0}, {1}});
+  CHECK(same_command_sequence({ordered({0, 0.2, 0.5}), ordered({0, 0.5, 0.2})}) == Groups{{0}, {1}});
+  CHECK(same_command_sequence({ordered({0, 0.2, 0.5}), ordered({0, 0.3, 0.5})}) == Groups{{0}, {1}});
   // a short log is not part of everything
-  CHECK(same_orders({ordered({0, 0.2, 0.5, 0.1, 0.4}), ordered({0, 0.4})}) == Groups{{0}, {1}});
+  CHECK(same_command_sequence({ordered({0, 0.2, 0.5, 0.1, 0.4}), ordered({0, 0.4})}) == Groups{{0}, {1}});
 }
 
 TEST_CASE("The same commands on another world are another group") {

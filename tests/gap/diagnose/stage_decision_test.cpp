@@ -41,7 +41,7 @@ std::vector<Whole> with_look_alike(double degrees, const LinearWorld& of = world
 
 std::vector<std::size_t> candidates_of(const StageDecision& decision) {
   std::vector<std::size_t> result;
-  for (const NamedEffect& effect : decision.effects) result.push_back(effect.candidate);
+  for (const ModelEffect& effect : decision.effects) result.push_back(effect.candidate);
   return result;
 }
 
@@ -64,7 +64,7 @@ TEST_CASE("One effect is named alone, at its value") {
     const StageDecision decision = world().decide(effects, value * effects[3] + world().noise(seed));
     REQUIRE(decision.verdict == Verdict::named);
     REQUIRE(candidates_of(decision) == std::vector<std::size_t>{3});
-    const NamedEffect& effect = decision.effects[0];
+    const ModelEffect& effect = decision.effects[0];
     CHECK(effect.rivals == std::vector<std::size_t>{3});
     CHECK(effect.doubts.empty());
     CHECK(effect.value.value.value == Approx(value).margin(4.0 / kLength));  // its sigma is 1 / 60
@@ -80,7 +80,7 @@ TEST_CASE("Two effects are both named, at their values") {
     const StageDecision decision = world().decide(effects, 0.5 * effects[1] - 0.4 * effects[6] + world().noise(seed));
     REQUIRE(decision.verdict == Verdict::named);
     REQUIRE_THAT(candidates_of(decision), Catch::Matchers::UnorderedEquals(std::vector<std::size_t>{1, 6}));
-    for (const NamedEffect& effect : decision.effects) {
+    for (const ModelEffect& effect : decision.effects) {
       CHECK(effect.doubts.empty());
       CHECK(effect.value.value.value == Approx(effect.candidate == 1 ? 0.5 : -0.4).margin(4.0 / kLength));
     }
@@ -159,7 +159,7 @@ TEST_CASE("Of two effects one has a look-alike: the other one is sure all the sa
   const StageDecision decision = world().decide(effects, 0.5 * effects[2] + 0.5 * effects[7] + world().noise(2));
   REQUIRE(decision.verdict == Verdict::ambiguous);
   REQUIRE(decision.effects.size() == 2);
-  for (const NamedEffect& effect : decision.effects)
+  for (const ModelEffect& effect : decision.effects)
     if (effect.candidate == 7)
       CHECK(effect.rivals == std::vector<std::size_t>{7});
     else
