@@ -9,9 +9,12 @@ namespace kenaf::physics {
 namespace {
 
 constexpr btScalar kDeepest_m = 0.03;  // deeper inside, a face is not the one that is touched
-constexpr btScalar kSideways = 0.15;   // a normal with a smaller part in the slice belongs to a wall beside it
-constexpr btScalar kFacing = 0.9;      // cosine: a run faces a side of the ground
-constexpr btScalar kConeSlack = 0.05;  // sine: an edge is touched from within its two faces' normals
+// A normal whose part in the slice's plane is shorter belongs to a wall beside the slice. Above the kSideFace of
+// contact.cpp, below which a normal gives no direction along the belt: a point found in a slice always has one.
+constexpr btScalar kSideways = 0.15;
+constexpr btScalar kFacing = 0.9;  // least cosine between a face's normal and that of the run that faces it, reversed
+// An edge or corner is touched along a combination of its faces' unit normals with coefficients of at least minus this.
+constexpr btScalar kConeSlack = 0.05;
 constexpr int kMeshSlices = 5, kBoxSlices = 3;
 
 // A feature's number: slice and place in the low bits, the part of the ground in the high ones.
@@ -19,27 +22,27 @@ constexpr std::uint64_t feature(std::uint64_t ground, std::uint32_t slice, std::
   return ground << 12 | slice << 8 | place;
 }
 
-// Where the slices are, and the share of the belt's width that each stands for.
+// Where the slices are, and the weight of the points in each.
 struct Slices {
-  std::array<btScalar, kMeshSlices> y, share;
+  std::array<btScalar, kMeshSlices> y, weight;
   int count;
 };
 
 Slices slices(const BeltShape& belt, int count) {
-  // Evenly spaced from edge to edge, weighted by the trapezoidal rule; the shares add up to 2, as those of a plane's
+  // Evenly spaced from edge to edge, weighted by the trapezoidal rule; the weights add up to 2, as those of a plane's
   // two slices do.
   Slices s{{}, {}, count};
   for (int i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     s.y[k] = belt.half_width * (2.0 * i / (count - 1) - 1);
-    s.share[k] = (i == 0 || i == count - 1 ? 1.0 : 2.0) / (count - 1);
+    s.weight[k] = (i == 0 || i == count - 1 ? 1.0 : 2.0) / (count - 1);
   }
   return s;
 }
 
 // The points of the outline that can touch a face of unit normal `normal`: the lowest of each disc, and those of the
-// run that faces it, at the ends of equal pieces, weighted by the trapezoidal rule. `use(place, point, share)`; points
-// have y = 0.
+// run that faces it, at the ends of equal pieces, weighted by the trapezoidal rule. `use(place, point, weight)`;
+// points have y = 0.
 template <typename Use>
 void outline_points(const BeltShape& belt, const btVector3& normal, const Use& use) {
   for (int disc = 0; disc < 2; ++disc)
@@ -51,12 +54,13 @@ void outline_points(const BeltShape& belt, const btVector3& normal, const Use& u
     use(static_cast<std::uint32_t>(i + 1), from + (to - from) * (static_cast<btScalar>(i) / belt.pieces), 1.0);
 }
 
-// The points of the outline that meet a wall beside it: the ends of both runs, and both tips.
+// The points of the outline that stand for the belt's side face where it meets a wall: the ends of both runs, and both
+// tips.
 template <typename Use>
-void side_points(const BeltShape& belt, const Use& use) {
+void side_face_points(const BeltShape& belt, const Use& use) {
   std::uint32_t place = 0;
-  for (const btScalar side : {-1, 1})
-    for (const int disc : {0, 1}) use(place++, furthest_on_disc(belt, disc, {belt.lean, 0, side * belt.rise}));
+  for (const btScalar up : {-1, 1})
+    for (const int disc : {0, 1}) use(place++, furthest_on_disc(belt, disc, {belt.lean, 0, up * belt.rise}));
   use(place++, furthest_on_disc(belt, 0, {-1, 0, 0}));
   use(place++, furthest_on_disc(belt, 1, {1, 0, 0}));
 }
@@ -117,9 +121,9 @@ class BoxTouches {
         c.x() + reach[0] < -belt_.radius[0] - kTouching_m || btFabs(c.z()) > reach[2] + r)
       return;
 
-    // How deep the two overlap across the belt, and on which side the box lies.
+    // How deep the two overlap across the belt, and beside which of its side faces the box lies.
     overlap_ = std::min(belt_.half_width + c.y() + reach[1], belt_.half_width - c.y() + reach[1]);
-    side_ = c.y() > 0 ? 1 : -1;
+    box_side_ = c.y() > 0 ? 1 : -1;
     if (overlap_ <= 0) return;
     for (std::size_t k = 0; k < corner_.size(); ++k) {
       corner_[k] = c;
@@ -138,17 +142,17 @@ class BoxTouches {
     corners();
 
     // Where the shortest way out is sideways, the box is a wall beside the belt.
-    if (overlap_ < kDeepest_m && overlap_ < depth_in_plane()) side();
+    if (overlap_ < kDeepest_m && overlap_ < depth_in_plane()) touch_side_face();
   }
 
  private:
-  void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar share, bool holds_lugs,
+  void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar weight, bool holds_lugs,
            std::uint64_t id) {
     // A point deeper in the slice than the overlap across it belongs to a wall that the belt's side face meets.
-    if (-gap <= overlap_) out_.push_back({p, normal, gap, share, holds_lugs, id});
+    if (-gap <= overlap_) out_.push_back({p, normal, gap, weight, holds_lugs, id});
   }
 
-  // Calls use(axis, side, normal, flat) for each face that is not beside the slices; `flat` is the normal's part in the
+  // Calls use(axis, sign, normal, flat) for each face that is not beside the slices; `flat` is the normal's part in the
   // slices' plane, of unit length.
   template <typename Use>
   void for_each_face(Use&& use) const {
@@ -183,8 +187,8 @@ class BoxTouches {
     for_each_face([&](int j, int sign, const btVector3& normal, const btVector3& flat) {
       if (depth_below(j, normal, flat) < -kTouching_m) return;
       const std::uint32_t face = static_cast<std::uint32_t>(2 * j + (sign > 0));
-      outline_points(belt_, flat, [&](std::uint32_t place, const btVector3& p, btScalar share) {
-        face_points(j, normal, face, s, place, p, share);
+      outline_points(belt_, flat, [&](std::uint32_t place, const btVector3& p, btScalar weight) {
+        face_points(j, normal, face, s, place, p, weight);
       });
     });
   }
@@ -192,7 +196,7 @@ class BoxTouches {
   // A point of the outline, in each slice. Where the face extends under the whole width, the belt's two edges carry all
   // the load, as on a plane.
   void face_points(int j, const btVector3& normal, std::uint32_t face, const Slices& s, std::uint32_t place,
-                   btVector3 p, btScalar share) {
+                   btVector3 p, btScalar weight) {
     const auto move_to = [&](std::size_t k) { p.setY(s.y[k]); };
     const auto gap_here = [&] { return normal.dot(p - box_.center) - box_.half[j]; };
     const auto counts = [](btScalar gap) { return gap <= kTouching_m && gap >= -kDeepest_m; };
@@ -213,20 +217,20 @@ class BoxTouches {
       move_to(k);
       const btScalar gap = gap_here();
       if (!counts(gap)) continue;
-      add(p - normal * (gap / 2), normal, gap, share * (whole ? 1 : s.share[k]), false,
+      add(p - normal * (gap / 2), normal, gap, weight * (whole ? 1 : s.weight[k]), false,
           feature(face, static_cast<std::uint32_t>(k), place));
     }
   }
 
   // A point of an edge against the belt's outline: it touches if the outline's normal there, reversed, lies between the
   // normals of the edge's two faces.
-  void edge_point(const BoxEdge& edge, const btVector3& p, btScalar share, std::uint64_t id) {
+  void edge_point(const BoxEdge& edge, const btVector3& p, btScalar weight, std::uint64_t id) {
     const OutlineDistance at = distance_to_outline(belt_, p.x(), p.z());
     if (at.distance > kTouching_m || at.distance < -kDeepest_m) return;
     const int j1 = (edge.axis + 1) % 3, j2 = (edge.axis + 2) % 3;
     const btVector3 normal = -at.outward;
     if (!within_cone(normal, box_.axes.getColumn(j1) * edge.sign(j1), box_.axes.getColumn(j2) * edge.sign(j2))) return;
-    add(p + at.outward * (at.distance / -2), normal, at.distance, share,
+    add(p + at.outward * (at.distance / -2), normal, at.distance, weight,
         lies_across(corner_[edge.to] - corner_[edge.from]), id);
   }
 
@@ -247,7 +251,7 @@ class BoxTouches {
     for (std::size_t k = 0; k < kBoxSlices; ++k) {
       const btScalar t = (s.y[k] - p0.y()) / rise;
       if (t < 0 || t > 1) continue;
-      edge_point(edge, p0 + (p1 - p0) * t, s.share[k], feature(6 + e, static_cast<std::uint32_t>(k), 0));
+      edge_point(edge, p0 + (p1 - p0) * t, s.weight[k], feature(6 + e, static_cast<std::uint32_t>(k), 0));
     }
   }
 
@@ -272,8 +276,8 @@ class BoxTouches {
     const btScalar low = std::min(p0.y(), p1.y()), high = std::max(p0.y(), p1.y());
     for (std::size_t k = 0; k < kBoxSlices; ++k)
       if (low <= s.y[k] && s.y[k] <= high && high - low > 1e-9) return;
-    // Golden section search: along a line, the distance to a convex outline has one minimum. 24 iterations narrow the
-    // edge down by 0.618^24 = 1e-5.
+    // Golden section search: along a line, the distance to a convex outline has one minimum. 24 iterations narrow
+    // it down to 0.618^24 = 1e-5 of the edge's length.
     const auto distance = [&](btScalar t) {
       const btVector3 p = p0 + (p1 - p0) * t;
       return distance_to_outline(belt_, p.x(), p.z()).distance;
@@ -295,25 +299,27 @@ class BoxTouches {
   }
 
   // The belt's side face against the box; replaces all contacts that were found in the slices.
-  void side() {
+  void touch_side_face() {
     out_.resize(first_);
 
-    // The normal: of the box's face that faces the belt's side, within kSideways, else across the belt.
-    btVector3 normal(0, -side_, 0);
+    // The normal: that of the box's face that faces the belt's side face, if it is within 32 degrees of the belt's
+    // axis; else that axis.
+    constexpr btScalar kFacesIt = 1 - kSideways;  // cosine
+    btVector3 normal(0, -box_side_, 0);
     for (int j = 0; j < 3; ++j) {
       const btVector3 axis = box_.axes.getColumn(j);
-      if (btFabs(axis.y()) > 1 - kSideways) normal = axis.y() * side_ > 0 ? -axis : axis;
+      if (btFabs(axis.y()) > kFacesIt) normal = axis.y() * box_side_ > 0 ? -axis : axis;
     }
 
     // All points lie half way into the overlap and have its depth.
-    const btScalar y = side_ * belt_.half_width;
+    const btScalar y = box_side_ * belt_.half_width;
     const auto touch = [&](const btVector3& p, std::uint32_t place) {
       out_.push_back({p, normal, -overlap_, 1, false, feature(20, 0, place)});
     };
 
     // Points of the belt's side face within the box.
-    side_points(belt_, [&](std::uint32_t place, btVector3 p) {
-      p.setY(y - side_ * overlap_ / 2);
+    side_face_points(belt_, [&](std::uint32_t place, btVector3 p) {
+      p.setY(y - box_side_ * overlap_ / 2);
       if (in_slabs(box_, p - box_.center, -1)) touch(p, place);
     });
 
@@ -323,7 +329,7 @@ class BoxTouches {
       const btVector3 &p0 = corner_[edge.from], &p1 = corner_[edge.to];
       const btScalar rise = p1.y() - p0.y();
       if (btFabs(rise) < 1e-9) continue;
-      const btScalar t = (y - side_ * overlap_ / 2 - p0.y()) / rise;
+      const btScalar t = (y - box_side_ * overlap_ / 2 - p0.y()) / rise;
       if (t < 0 || t > 1) continue;
       const btVector3 p = p0 + (p1 - p0) * t;
       if (distance_to_outline(belt_, p.x(), p.z()).distance <= 0) touch(p, 8 + e);
@@ -341,31 +347,31 @@ class BoxTouches {
   std::vector<BeltTouch>& out_;
   std::size_t first_;
   std::array<btVector3, 8> corner_;
-  btScalar overlap_ = 0, side_ = 1;
+  btScalar overlap_ = 0, box_side_ = 1;
 };
 
 }  // namespace
 
 void touch_plane(const BeltShape& belt, const btVector3& normal, btScalar offset, std::vector<BeltTouch>& out) {
   const btScalar in_plane = btSqrt(normal.x() * normal.x() + normal.z() * normal.z());
-  const auto touch = [&](btVector3 p, btScalar y, btScalar share, std::uint64_t id) {
+  const auto touch = [&](btVector3 p, btScalar y, btScalar weight, std::uint64_t id) {
     p.setY(y);
     const btScalar gap = normal.dot(p) - offset;
-    if (gap <= kTouching_m) out.push_back({p - normal * (gap / 2), normal, gap, share, false, id});
+    if (gap <= kTouching_m) out.push_back({p - normal * (gap / 2), normal, gap, weight, false, id});
   };
 
   // A wall beside the belt meets its side face.
   if (in_plane < kSideways) {
     const btScalar y = normal.y() > 0 ? -belt.half_width : belt.half_width;
-    side_points(belt, [&](std::uint32_t place, const btVector3& p) { touch(p, y, 1, feature(0, 2, place)); });
+    side_face_points(belt, [&](std::uint32_t place, const btVector3& p) { touch(p, y, 1, feature(0, 2, place)); });
     return;
   }
 
   // Ground: the outline's points at both edges of the belt.
   const btVector3 flat(normal.x() / in_plane, 0, normal.z() / in_plane);
   for (const std::uint32_t slice : {0u, 1u})
-    outline_points(belt, flat, [&](std::uint32_t place, const btVector3& p, btScalar share) {
-      touch(p, slice ? belt.half_width : -belt.half_width, share, feature(0, slice, place));
+    outline_points(belt, flat, [&](std::uint32_t place, const btVector3& p, btScalar weight) {
+      touch(p, slice ? belt.half_width : -belt.half_width, weight, feature(0, slice, place));
     });
 }
 
@@ -375,25 +381,25 @@ void touch_box(const BeltShape& belt, const BoxInT& box, std::vector<BeltTouch>&
 
 void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<BeltTouch>& out) {
   const btScalar in_plane = btSqrt(t.normal.x() * t.normal.x() + t.normal.z() * t.normal.z());
-  const btVector3 sides[3] = {t.corner[1] - t.corner[0], t.corner[2] - t.corner[1], t.corner[0] - t.corner[2]};
+  const btVector3 edge[3] = {t.corner[1] - t.corner[0], t.corner[2] - t.corner[1], t.corner[0] - t.corner[2]};
 
   // A point of the belt touches the face if it projects into the triangle: on the inner side of all three edges,
-  // (side x (p - corner)) . n >= 0.
+  // (edge x (p - corner)) . n >= 0.
   const auto inside = [&](const btVector3& p) {
     for (int i = 0; i < 3; ++i)
-      if (sides[i].cross(p - t.corner[i]).dot(t.normal) < 0) return false;
+      if (edge[i].cross(p - t.corner[i]).dot(t.normal) < 0) return false;
     return true;
   };
-  const auto face = [&](const btVector3& p, btScalar share, std::uint64_t id) {
+  const auto face = [&](const btVector3& p, btScalar weight, std::uint64_t id) {
     const btScalar gap = t.normal.dot(p - t.corner[0]);
     if (gap <= kTouching_m && gap >= -kDeepest_m && inside(p))
-      out.push_back({p - t.normal * (gap / 2), t.normal, gap, share, false, id});
+      out.push_back({p - t.normal * (gap / 2), t.normal, gap, weight, false, id});
   };
 
   // A triangle beside the belt meets its side face.
   if (in_plane < kSideways) {
     const btScalar y = t.normal.y() > 0 ? -belt.half_width : belt.half_width;
-    side_points(belt, [&](std::uint32_t place, btVector3 p) {
+    side_face_points(belt, [&](std::uint32_t place, btVector3 p) {
       p.setY(y);
       face(p, 1, feature(t.index, kMeshSlices, place));
     });
@@ -404,25 +410,25 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
   const btVector3 flat(t.normal.x() / in_plane, 0, t.normal.z() / in_plane);
   const Slices s = slices(belt, kMeshSlices);
   for (int k = 0; k < s.count; ++k) {
-    const btScalar y = s.y[static_cast<std::size_t>(k)], slice_share = s.share[static_cast<std::size_t>(k)];
+    const btScalar y = s.y[static_cast<std::size_t>(k)], slice_weight = s.weight[static_cast<std::size_t>(k)];
     const auto slice = static_cast<std::uint32_t>(k);
-    outline_points(belt, flat, [&](std::uint32_t place, btVector3 p, btScalar share) {
+    outline_points(belt, flat, [&](std::uint32_t place, btVector3 p, btScalar weight) {
       p.setY(y);
-      face(p, share * slice_share, feature(t.index, slice, place));
+      face(p, weight * slice_weight, feature(t.index, slice, place));
     });
 
-    // ... and the triangle's own edges where they cross the slice, p = corner + side (y - corner_y) / side_y: an edge
+    // ... and the triangle's own edges where they cross the slice, p = corner + edge (y - corner_y) / edge_y: an edge
     // touches if the outline's normal there lies between the normals of its two faces.
     for (int i = 0; i < 3; ++i) {
-      if (!t.owns_edge[i] || btFabs(sides[i].y()) < 1e-9) continue;
-      const btScalar along = (y - t.corner[i].y()) / sides[i].y();
+      if (!t.owns_edge[i] || btFabs(edge[i].y()) < 1e-9) continue;
+      const btScalar along = (y - t.corner[i].y()) / edge[i].y();
       if (along < 0 || along > 1) continue;
-      const btVector3 p = t.corner[i] + sides[i] * along;
+      const btVector3 p = t.corner[i] + edge[i] * along;
       const OutlineDistance at = distance_to_outline(belt, p.x(), p.z());
       if (at.distance > kTouching_m || at.distance < -kDeepest_m ||
           !within_cone(-at.outward, t.normal, t.neighbour_normal[i]))
         continue;
-      out.push_back({p - at.outward * (at.distance / 2), -at.outward, at.distance, slice_share, lies_across(sides[i]),
+      out.push_back({p - at.outward * (at.distance / 2), -at.outward, at.distance, slice_weight, lies_across(edge[i]),
                      feature(t.index, slice, static_cast<std::uint32_t>(33 + i))});
     }
   }

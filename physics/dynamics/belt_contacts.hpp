@@ -5,8 +5,8 @@
 //  - a face of the ground touches the lowest points of both discs and points along the straight run that faces it;
 //  - an edge of the ground that crosses the slice touches the outline;
 //  - beside the outline nothing drives: a side face meets the ground like any other surface.
-// All points within 1 mm of the ground are returned. So a track's load spreads over its length and width whatever the
-// ground consists of, and does not depend on how the robot came to stand there.
+// All points that are pressed into the ground or within 1 mm of it are returned. So a track's load spreads over its
+// length and width whatever the ground consists of, and does not depend on how the robot came to stand there.
 // Everything is in the belt's frame T. Thread safety: pure functions.
 #pragma once
 
@@ -21,7 +21,7 @@ struct BeltTouch {
   btVector3 p_T;          // half way between belt and ground
   btVector3 normal_T;     // unit, out of the ground
   btScalar gap_m;         // negative: pressed in
-  btScalar share;         // of a contact's stiffness that this point stands for
+  btScalar weight;        // factor of stiffness and damping; grows with the area that the point stands for
   bool holds_lugs;        // lugs catch behind it: an edge of the ground across the belt, or a corner; not a face
   std::uint64_t feature;  // identifies the contact from step to step
 };

@@ -24,7 +24,7 @@ struct Meeting {
   // without a belt.
   btVector3 belt_axis_a, belt_axis_b;
   btScalar driving_a, driving_b;
-  btScalar kept;  // share of the last step's friction impulse that this step starts from
+  btScalar warm_start_share;  // of the last step's friction impulse that this step starts from
 
   Meeting(const btCollisionObject& a, const btCollisionObject& b, SolverBody* solver_a, SolverBody* solver_b,
           const Surface& on_a, const Surface& on_b);
@@ -32,10 +32,10 @@ struct Meeting {
 
 // One point where they touch, from whichever algorithm.
 struct Touch {
-  btVector3 p_W, normal_W;  // from B to A
-  btScalar gap_m, share;
+  btVector3 p_W, normal_W;  // the normal points from B to A
+  btScalar gap_m, weight;   // weight: factor of stiffness and damping
   bool holds_lugs;
-  btScalar* kept[3];  // storage of the impulses from step to step: normal, along, across
+  btScalar* stored_impulse[3];  // where it is kept from step to step: normal, along, across
 };
 
 class Contact {
@@ -71,6 +71,8 @@ class Contact {
   // Three rows: normal, along, across; the linear part in lane 0, the angular part in lane 1.
   TwoVectors row_[3];       // Jacobian: row velocity for a unit velocity of A: axis, arm x axis
   TwoVectors response_[3];  // velocity change of A for a unit impulse
+  // The same for B, but the linear part of response_b_ lacks B's inverse mass: apply() multiplies the sum of the three
+  // rows by it. Another order of these products would change the last digits of every result.
   TwoVectors row_b_[3], response_b_[3];
   btScalar inverse_mass_a_;
   // Friction quantities: along in lane 0, across in lane 1.
@@ -85,7 +87,7 @@ class Contact {
   Two mu_, inverse_mu_;
   Two belt_gain_a_, belt_gain_b_;  // slip for a unit belt speed; 0 without a belt
   Two belt_push_a_, belt_push_b_;  // belt speed for a unit friction impulse
-  btScalar* kept_[3];
+  btScalar* stored_impulse_[3];
   const Collider *collider_a_, *collider_b_;
   btVector3 p_W_;
 };

@@ -124,7 +124,7 @@ void ContactSolver::make_joints(const btAlignedObjectArray<btTypedConstraint*>& 
 void ContactSolver::make_contacts(btDispatcher& dispatcher, btScalar time_step) {
   // exp(-h (|u| / 20 mm + 1 / 0.5 s)) of the friction impulses is left to start from.
   for (const auto& [belt, body] : belts_)
-    belt->kept = std::exp(-time_step * (std::abs(belt->speed_mps) / kRenewal_m + 1 / kCreep_s));
+    belt->warm_start_share = std::exp(-time_step * (std::abs(belt->speed_mps) / kRenewal_m + 1 / kCreep_s));
 
   // Group by group, the contacts of its manifolds and belt pairs.
   const auto manifolds = static_cast<std::size_t>(dispatcher.getNumManifolds());
@@ -146,9 +146,9 @@ void ContactSolver::make_contacts(btDispatcher& dispatcher, btScalar time_step) 
 void ContactSolver::start_belts() {
   for (const auto& [belt, body] : belts_) {
     belt->motor_impulse_ns =
-        std::clamp(belt->kept * belt->motor_impulse_ns, belt->min_impulse_ns, belt->max_impulse_ns);
-    belt->friction_impulse_ns *= belt->kept;
-    belt->viscous_impulse_ns *= belt->kept;
+        std::clamp(belt->warm_start_share * belt->motor_impulse_ns, belt->min_impulse_ns, belt->max_impulse_ns);
+    belt->friction_impulse_ns *= belt->warm_start_share;
+    belt->viscous_impulse_ns *= belt->warm_start_share;
     belt->speed_mps +=
         (belt->motor_impulse_ns + belt->friction_impulse_ns + belt->viscous_impulse_ns) / belt->moving_mass_kg;
     belt->load_ns = 0;
@@ -194,7 +194,7 @@ void ContactSolver::add_belt_pair(BeltPair& pair, btScalar time_step) {
   for (BeltContact& contact : pair.contacts) {
     const BeltTouch& at = contact.touch;
     const Touch touch{pair.X_WT * at.p_T, pair.X_WT.getBasis() * at.normal_T,
-                      at.gap_m,           at.share,
+                      at.gap_m,           at.weight,
                       at.holds_lugs,      {&contact.impulse[0], &contact.impulse[1], &contact.impulse[2]}};
     contacts_.emplace_back(meeting, touch, settings_, time_step);
   }
@@ -212,8 +212,8 @@ btScalar ContactSolver::solve_running_gear(Belt& belt, btScalar time_step) {
   };
   const double m = belt.moving_mass_kg;
 
-  // Motor: speed = target - droop * impulse, with both after the change d: u + d / m = target - droop (p + d), so
-  //   d = (target - u - droop p) m / (1 + droop m). Without droop the speed becomes the target.
+  // Motor: speed = target - droop * impulse, with both after a change c of the impulse: u + c / m = target - droop
+  // (p + c), so c = (target - u - droop p) m / (1 + droop m). Without droop the speed becomes the target.
   const double short_mps = belt.target_mps - belt.speed_mps - belt.droop_mpspns * belt.motor_impulse_ns;
   push(belt.motor_impulse_ns, belt.motor_impulse_ns + short_mps * m / (1 + belt.droop_mpspns * m), belt.min_impulse_ns,
        belt.max_impulse_ns);
@@ -224,8 +224,9 @@ btScalar ContactSolver::solve_running_gear(Belt& belt, btScalar time_step) {
     push(belt.viscous_impulse_ns, -free_mps / (1 / damping_ns + 1 / m), -1e9, 1e9);
   }
 
-  // Dry and rolling friction: stops the belt as far as its limit allows. Without a load too, as the last step's rolling
-  // friction has to go. The load is a sum of changes and may end below 0.
+  // Dry and rolling friction: the impulse that stops the belt, within its limit. With a limit of 0 too if there is an
+  // impulse, of the warm start or of an earlier iteration: that one has to go. The load is a sum of changes, which
+  // rounding may leave below 0.
   if (const double dry_ns = belt.dry_friction_ns + belt.rolling_resistance * std::max(belt.load_ns, 0.0);
       dry_ns > 0 || belt.friction_impulse_ns != 0)
     push(belt.friction_impulse_ns, belt.friction_impulse_ns - belt.speed_mps * m, -dry_ns, dry_ns);

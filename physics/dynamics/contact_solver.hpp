@@ -35,9 +35,10 @@ class ContactSolver {
   std::span<const Contact> contacts() const { return contacts_; }
 
  private:
-  // Room for one side of a robot, so that a step need not allocate. In a field of pallets each of its three belts is
-  // near ten or more of them.
-  static constexpr std::size_t kManyContacts = 128, kManyPairs = 48;
+  // Room for one side of a robot, so that a step need not allocate: contacts, and pairs of a belt and an object near
+  // it. In a field of pallets each of a side's three belts is near ten or more of them.
+  static constexpr std::size_t kManyContacts = 128;
+  static constexpr std::size_t kManyPairs = 48;
 
   struct BeltOfBody {
     Belt* belt;

@@ -188,7 +188,8 @@ double Scene::depth_in_mesh(const Eigen::Vector3d& p_W) const {
 }
 
 void Scene::place_free(RobotModel& robot, Pose X_WB, bool start_joints) {
-  constexpr int kMaxLifts = 1000, kLiftsToDouble = 100;  // over 2 km in all
+  constexpr int kMaxLifts = 1000;
+  constexpr int kLiftsToDouble = 100;  // the search step doubles after so many lifts: over 2 km in all
   double search_step_m = 0.02;
   // Deep inside a mesh, the robot would touch none of its triangles.
   X_WB.p.z() += depth_in_mesh(X_WB.p);
@@ -196,7 +197,7 @@ void Scene::place_free(RobotModel& robot, Pose X_WB, bool start_joints) {
   for (int i = 1; i <= kMaxLifts; ++i) {
     const double lift_m = lift_needed(robot, search_step_m);
     if (lift_m <= 0) return;
-    if (i % kLiftsToDouble == 0) search_step_m *= 2;  // out of tall obstacles
+    if (i % kLiftsToDouble == 0) search_step_m *= 2;  // for tall obstacles
     X_WB.p.z() += lift_m + kFree_m;
     robot.place(X_WB, start_joints);
   }

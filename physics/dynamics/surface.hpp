@@ -25,8 +25,8 @@ struct Belt {
   double motor_impulse_ns = 0;
   double friction_impulse_ns = 0;  // dry and rolling, of the running gear
   double viscous_impulse_ns = 0;
-  double load_ns = 0;  // normal impulse on it
-  double kept = 1;     // share of the friction impulses that the next step starts from
+  double load_ns = 0;           // normal impulse on it
+  double warm_start_share = 1;  // of the last step's impulses that the next step starts from, normal ones apart
 };
 
 struct Surface {

@@ -23,9 +23,9 @@ std::vector<BeltTouch> on_box(const BeltShape& shape, const btVector3& size, con
   return out;
 }
 
-double share_of(const std::vector<BeltTouch>& touches) {
+double weight_of(const std::vector<BeltTouch>& touches) {
   double sum = 0;
-  for (const BeltTouch& touch : touches) sum += touch.share;
+  for (const BeltTouch& touch : touches) sum += touch.weight;
   return sum;
 }
 
@@ -41,9 +41,9 @@ TEST_CASE("On level ground a belt touches along its run, with equal parts of its
     CHECK(std::abs(touch.p_T.y()) == Approx(0.04));
     // both ends stand for half a piece
     const bool end = touch.p_T.x() < 1e-9 || touch.p_T.x() > 0.4 - 1e-9;
-    CHECK(touch.share == (end ? 0.5 : 1.0));
+    CHECK(touch.weight == (end ? 0.5 : 1.0));
   }
-  CHECK(share_of(out) == Approx(8));
+  CHECK(weight_of(out) == Approx(8));
   // 2 mm above ground, and on the other side of it
   out.clear();
   touch_plane(belt(), {0, 0, 1}, -0.052, out);
@@ -61,7 +61,7 @@ TEST_CASE("An edge presses into an arc along the arc's own normal") {
     CHECK(touch.normal_T.x() == Approx(-c));
     CHECK(touch.normal_T.z() == Approx(c));
   }
-  CHECK(share_of(out) == Approx(2));
+  CHECK(weight_of(out) == Approx(2));
 }
 
 TEST_CASE("A belt half on a box is carried by that half, up to the box's edge") {
