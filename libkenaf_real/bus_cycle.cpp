@@ -121,7 +121,7 @@ std::string BusCycle::loss_of(std::size_t i) const {
   if (drive.restarted) return fmt::format("{} has restarted: was its supply interrupted?", name);
   if (!drive.state_at) return fmt::format("{} sends no process data", name);
   if (is_silent(drive.state_at, kSilentDrive_s))
-    return fmt::format("{} is silent since {:.2f} s", name, seconds(*image_.sync_at() - *drive.state_at));
+    return fmt::format("{} has been silent for {:.2f} s", name, seconds(*image_.sync_at() - *drive.state_at));
   return fmt::format("{} is not enabled any more: its state is \"{}\" (statusword {:#06x})", name,
                      describe(canopen::power_state_of(drive.statusword)), drive.statusword);
 }

@@ -12,8 +12,10 @@
 
 namespace kenaf::real {
 
-// A drive silent for this long is lost; a sensor too, but the robot continues without it.
-inline constexpr double kSilentDrive_s = 0.05, kSilentSensor_s = 0.1;
+// A drive silent for this long is lost, and with it the robot.
+inline constexpr double kSilentDrive_s = 0.05;
+// A sensor silent for this long is lost; the robot continues without it.
+inline constexpr double kSilentSensor_s = 0.1;
 
 // Throws hrt::Error(HRT_E_CONFIG) if the period is too short for the bus to carry a cycle with a margin for errors and
 // other traffic, or too long: a drive's silence would show too late, or after fewer than two lost frames.

@@ -60,7 +60,7 @@ void Master::check_pause() {
   stop_heartbeat();
   throw HeldUp(HRT_E_LINK,
                fmt::format("this program was held up for {:.2f} s: its heartbeat was missed, and the drives stopped by "
-                           "themselves; hrt_close() and hrt_kenaf_init() start them again",
+                           "themselves; to start them again, call hrt_close(), then hrt_kenaf_init()",
                            std::chrono::duration<double>(pause).count()));
 }
 

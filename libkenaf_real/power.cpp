@@ -23,17 +23,19 @@ constexpr Time kPowerUp = std::chrono::seconds(3);  // relays and capacitors
 constexpr Time kModeChange = std::chrono::seconds(1);
 // A drive may report "attained" of the previous homing for this long.
 constexpr Time kHomingBegins = std::chrono::milliseconds(100);
-constexpr Time kEmergencyFollows = std::chrono::milliseconds(20);  // its statusword
+// A drive's emergency message may come so much later than the statusword that shows the fault.
+constexpr Time kEmergencyFollows = std::chrono::milliseconds(20);
 constexpr Time kPowerDown = std::chrono::milliseconds(300);
 // Leaving quick stop straight to operation (CiA 402, transition 16) keeps the torque of flippers that carry the robot,
 // but not every drive supports it; after this many cycles quick stop is left through "switch on disabled".
 constexpr int kHoldThroughQuickStop = 20;
-// Returning needs a rising edge to "enable" (can/candrives/power_states.hpp). A drive that stopped by itself because
-// its master died still has "enable" as its last controlword: so it first gets "quick stop", which has no effect in
-// that state (CiA 402-2, 10), and again every few cycles, since a frame may get lost.
+// A drive leaves quick stop for operation only by an "enable" that follows another controlword: repeated ones do not
+// count (PowerStates in can/candrives/power_states.hpp). One that stopped by itself because its master died has
+// "enable" as its last controlword. So it first gets "quick stop", which has no effect in that state (CiA 402-2, 10),
+// and gets it again every few cycles, since a frame may get lost.
 constexpr int kEdgeEachCycles = 4;
 constexpr double kHomeTolerance_rad = 0.05;  // between a drive's position after homing and the expected one
-constexpr double kStanding = 0.01;           // share of the full speed
+constexpr double kStanding = 0.01;           // a track slower than this share of its full speed stands
 
 PowerState state_of(const BusCycle& cycle, std::size_t i) {
   return canopen::power_state_of(cycle.image().drive(i).statusword);
@@ -45,7 +47,7 @@ std::int32_t hold_target(const BusCycle& cycle, std::size_t i) {
 
 std::string not_enabled(const BusCycle& cycle, std::size_t i) {
   const DriveInput& drive = cycle.image().drive(i);
-  return fmt::format("{} does not get enabled: it is in the state \"{}\" (statusword {:#06x}){}{}",
+  return fmt::format("{} could not be enabled: it is in the state \"{}\" (statusword {:#06x}){}{}",
                      to_string(drive_node(cycle.bus(), i)), describe(state_of(cycle, i)), drive.statusword,
                      drive.emergency ? ": " : "", drive.emergency ? describe(*drive.emergency) : "");
 }
@@ -116,7 +118,7 @@ void write_mode(BusCycle& cycle, std::size_t i, DriveMode mode) {
   const Time until = cycle.master().now() + kModeChange;
   while (cycle.master().read(node, object::mode_display, "mode in force") != static_cast<std::int64_t>(mode)) {
     if (cycle.master().now() > until)
-      throw Error(HRT_E_DEVICE, fmt::format("{} does not take up the mode {}", to_string(node), describe(mode)));
+      throw Error(HRT_E_DEVICE, fmt::format("{} did not switch to the mode {}", to_string(node), describe(mode)));
   }
 }
 
@@ -146,10 +148,11 @@ void check_home(const BusCycle& cycle, std::size_t i) {
   const double measured_rad = position_from_drive(drive.units, cycle.image().drive(i).position);
   const double mirrored_rad = position_from_drive(drive.units, -position_to_drive(drive.units, home_rad));
   const bool stays = drive.homing->method == 35 || drive.homing->method == 37;
-  // a drive that moves stops behind its switch, or continues to a position its manufacturer chose: only a wrong sign
-  // can be detected
-  const double speed = drive.homing->speed_radps, stopping_rad = speed * speed / drive.homing->acceleration_radps2;
-  const double margin_rad = stays ? kHomeTolerance_rad : kHomeTolerance_rad + stopping_rad;
+  // a drive that moves stops beyond its switch, or continues to a position its manufacturer chose: only a wrong sign
+  // can be detected. The margin has twice the stopping distance, v^2 / (2 a).
+  const double speed = drive.homing->speed_radps;
+  const double twice_stopping_rad = speed * speed / drive.homing->acceleration_radps2;
+  const double margin_rad = stays ? kHomeTolerance_rad : kHomeTolerance_rad + twice_stopping_rad;
   if (std::abs(measured_rad - home_rad) <= margin_rad) return;
   if (!stays && std::abs(measured_rad - mirrored_rad) > margin_rad) return;
   throw Error(
@@ -189,14 +192,20 @@ void home(BusCycle& cycle) {
         return fmt::format("{} was not home within {} s (statusword {:#06x})", to_string(drive_node(cycle.bus(), i)),
                            patience_s, status(i));
       });
-  // In profile position mode bit 4 is a new set-point: it must be low, and seen as low, before the mode changes.
-  int cycles_down = 0;
+  // In profile position mode bit 4 is a new set-point: it must be low, and seen as low, before the mode changes. So
+  // these orders, without it, are sent in three cycles. run_until asks for drive 0 first, and once in each cycle.
+  constexpr int kCyclesLow = 3;
+  int cycles_low = 0;
   run_until(
       cycle, kModeChange,
       [&](std::size_t i) {
         return DriveOrder{canopen::kControlEnable, hold_target(cycle, i)};
       },
-      [&](std::size_t i) { return i > 0 || ++cycles_down > 2; }, [&](std::size_t i) { return not_enabled(cycle, i); });
+      [&](std::size_t i) {
+        if (i == 0) ++cycles_low;
+        return cycles_low >= kCyclesLow;
+      },
+      [&](std::size_t i) { return not_enabled(cycle, i); });
   for (std::size_t i = 0; i < kDriveCount; ++i) {
     if (homes(i)) check_home(cycle, i);
   }
@@ -258,8 +267,9 @@ void lose(BusCycle& cycle, std::size_t drive) {
   const std::string emergency = cycle.emergency_of(drive);
   throw Error(
       HRT_E_DEVICE,
-      fmt::format("{}{}{}; all drives were commanded to stop; hrt_close() and hrt_kenaf_init() start them again", loss,
-                  emergency.empty() ? "" : ": ", emergency));
+      fmt::format(
+          "{}{}{}; all drives were commanded to stop; to start them again, call hrt_close(), then hrt_kenaf_init()",
+          loss, emergency.empty() ? "" : ": ", emergency));
 }
 
 std::string power_down(BusCycle& cycle) {

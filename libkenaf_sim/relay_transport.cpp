@@ -164,16 +164,17 @@ std::optional<robot::State> RelayTransport::take(const protocol::relay::Datagram
   // Refused: the relay ended this session.
   if (const auto* refused = std::get_if<protocol::relay::Refused>(&datagram)) {
     if (refused->session != session_) return std::nullopt;
-    throw Error(HRT_E_LINK, fmt::format("the relay at {} ended the session: {}; hrt_close() and hrt_kenaf_init() again",
-                                        relay_, words(*refused)));
+    throw Error(HRT_E_LINK,
+                fmt::format("the relay at {} ended the session: {}; call hrt_close(), then hrt_kenaf_init()", relay_,
+                            words(*refused)));
   }
 
   // State: one of another session is late; if the relay has lost its world server, no newer one will come.
   const auto* state = std::get_if<protocol::relay::State>(&datagram);
   if (state == nullptr || state->session != session_) return std::nullopt;
   if (state->world_server_lost) {
-    throw Error(HRT_E_LINK, fmt::format("the relay at {} lost its world server; once it is back, hrt_close() and "
-                                        "hrt_kenaf_init() again",
+    throw Error(HRT_E_LINK, fmt::format("the relay at {} lost its world server; once it is back, call hrt_close(), "
+                                        "then hrt_kenaf_init()",
                                         relay_));
   }
 

@@ -17,8 +17,8 @@ class Driver {
   Driver(const Manoeuvre& manoeuvre, const std::array<double, robot::kFlipperCount>& flipper_rad);
 
   // Returns the command from `t_s` on, which must not decrease; empty if the manoeuvre is over, and the last command
-  // holds. A phase ends at the first call at which its end condition holds; the next one begins then, or the last one
-  // if the next one is given up.
+  // holds. A phase ends at the first call at which its end condition holds; then the next one begins. If that one
+  // is to be given up at that moment (Phase::give_up), the manoeuvre's last phase begins instead.
   std::optional<robot::Command> command(double t_s, const physics::Pose& X_WB);
 
   // When a replay's next command is due; infinity for phases, which react at each call.

@@ -53,7 +53,7 @@ struct Situation {
 
 // Calls of hrt.h for one turn, in this order.
 struct Order {
-  bool stop;           // hrt_stop(): the tracks stop, moving flippers stay where they are
+  bool stop;           // hrt_stop(): the tracks stop, and flippers that are moving hold where they are
   bool move_flippers;  // hrt_set_flippers(flipper_deg)
   std::array<double, kFlipperCount> flipper_deg;
   std::array<double, kTrackCount> track_mmps;  // hrt_set_tracks(), every turn: also the robot's sign of life

@@ -39,8 +39,8 @@ struct DriveUnits {
 struct Homing {
   std::int8_t method;  // CiA 402, table of homing methods: 37 = at the present position; others move
   double home_rad;     // flipper's angle at the home position
-  int offset_direction =
-      1;  // +1: at home the drive's position is its object 0x607C; -1: minus that, as others read CiA 402
+  // +1: at home the drive's position is its object 0x607C; -1: minus that, as others read CiA 402
+  int offset_direction = 1;
   double speed_radps;
   double acceleration_radps2;
   double patience_s;  // for the homing of a flipper
@@ -50,15 +50,15 @@ struct DriveOnBus {
   canopen::NodeId node;
   canopen::DriveMode mode;  // tracks: profile or cyclic velocity; flippers: profile or cyclic position
   DriveUnits units;
-  // m/s or rad/s and their derivatives
-  double max_speed, acceleration, quick_stop_deceleration;
-  double min_position, max_position;  // flippers only
-  std::optional<Homing> homing;       // flippers; nullopt: the encoder is absolute
+  double max_speed;                              // m/s or rad/s
+  double acceleration, quick_stop_deceleration;  // m/s^2 or rad/s^2
+  double min_position, max_position;             // rad; flippers only
+  std::optional<Homing> homing;                  // flippers; nullopt: the encoder is absolute
 };
 
 struct InclinometerAxis {
   bool lateral;     // CiA 410: the slope along the sensor's lateral axis; false: along its longitudinal axis
-  int direction;    // +1 or -1: from the sensor's slope to the robot's angle (roll, pitch: positive nose down)
+  int direction;    // +1 or -1: from the sensor's slope to the robot's angle: roll left side up, pitch nose down
   double zero_rad;  // the sensor's slope, after direction, when the robot is level
 };
 
@@ -70,22 +70,22 @@ struct InclinometerOnBus {
 struct GyroOnBus {
   canopen::NodeId node;
   std::uint8_t pdo;              // 1 to 4: number of the TPDO, as configured in the device; nothing is written to it
-  std::uint8_t first_bit, bits;  // position of the yaw rate in it: a signed little-endian number
+  std::uint8_t first_bit, bits;  // place of the yaw rate in it, a signed little-endian number, and its width
   double units_per_radps;        // with the sign that makes a turn to the left positive
 };
 
 struct RobotBus {
-  std::string interface;   // "can0"
-  int bit_rate;            // bits per second, as the interface is configured; used for the bus load
-  canopen::NodeId master;  // the node id whose heartbeat the drives watch
-  double master_heartbeat_s,
-      master_silence_s;     // sent so often; after this long without it the drives stop by themselves
-  double node_heartbeat_s;  // period of the nodes' heartbeats
-  double answer_s;          // patience for each answer during set-up
-  bool has_currents = true,
-       has_battery = true;  // the drives measure their current, the left track's the voltage of its supply
-  double track_gauge_m;     // between the tracks' centre lines; 0: not in the description
-  double speed_loop_s;      // time constant of the track drives' own speed control: for simulated ones only
+  std::string interface;      // "can0"
+  int bit_rate;               // bits per second, as the interface is configured; used for the bus load
+  canopen::NodeId master;     // the node id whose heartbeat the drives watch
+  double master_heartbeat_s;  // period of that heartbeat
+  double master_silence_s;    // the drives stop by themselves after this long without it
+  double node_heartbeat_s;    // period of the nodes' heartbeats
+  double answer_s;            // patience for each answer during set-up
+  bool has_currents = true;   // the drives measure their current
+  bool has_battery = true;    // the left track's drive measures the voltage of its supply
+  double track_gauge_m;       // between the tracks' centre lines; 0: not in the description
+  double speed_loop_s;        // time constant of the track drives' own speed control: for simulated ones only
   std::array<DriveOnBus, kDriveCount> drives;
   std::optional<InclinometerOnBus> inclinometer;
   std::optional<GyroOnBus> gyro;

@@ -14,8 +14,9 @@ struct DriveSetup {
   canopen::NodeId node;
   std::string name;
   MotorScale scale;
-  bool absolute_encoder;                        // false: position 0 is where the motor is at power on, until homing
-  bool has_current = true, has_voltage = true;  // false: without the objects 0x6075 and 0x6078; 0x6079
+  bool absolute_encoder;    // false: position 0 is where the motor is at power on, until homing
+  bool has_current = true;  // false: without the objects 0x6075 and 0x6078
+  bool has_voltage = true;  // false: without the object 0x6079
 };
 
 class Drive final : public Slave {

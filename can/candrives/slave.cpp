@@ -18,6 +18,7 @@ namespace {
 
 // Objects of the communication profile; a communication reset affects only these.
 constexpr std::uint16_t kFirstCommunicationObject = 0x1000, kLastCommunicationObject = 0x1fff;
+// Objects of the manufacturer and of the device profile.
 constexpr std::uint16_t kFirstDeviceObject = 0x2000, kLastDeviceObject = 0x9fff;
 
 // NMT reaction of a node to the loss of its master, object 0x1029:1.

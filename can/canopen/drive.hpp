@@ -97,8 +97,9 @@ inline constexpr MappedObject controlword{{0x6040, 0}, ObjectType::unsigned16},
 }  // namespace object
 
 // Quick stop option code: slow down on the quick stop ramp and stay in quick stop active, with torque, so that flippers
-// keep holding the robot. Abort connection option code: the same quick stop on loss of the master's heartbeat or of the
-// bus.
-inline constexpr std::int16_t kQuickStopAndStay = 6, kAbortByQuickStop = 3;
+// keep holding the robot.
+inline constexpr std::int16_t kQuickStopAndStay = 6;
+// Abort connection option code: the same quick stop on loss of the master's heartbeat or of the bus.
+inline constexpr std::int16_t kAbortByQuickStop = 3;
 
 }  // namespace kenaf::canopen

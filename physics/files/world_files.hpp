@@ -9,7 +9,8 @@ namespace kenaf::physics {
 
 class WorldFiles {
  public:
-  static constexpr std::size_t kMostFileBytes = std::size_t{16} << 20U, kMostBytes = std::size_t{64} << 20U;
+  static constexpr std::size_t kMostFileBytes = std::size_t{16} << 20U;
+  static constexpr std::size_t kMostBytes = std::size_t{64} << 20U;  // of all files together
 
   // `folder` empty: the world may not refer to files.
   explicit WorldFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}

@@ -79,7 +79,7 @@ drive_fault() {  # CLAIM WORDS FAULT PROGRAM_WORDS
   begin "$1"; tell "$3"; said program.log "$4"; stands "$2" "received: $3"
   tell all healed; said program.log recovered; end
 }
-drive_fault 6 "track right silent" "node 2 silent" "lost: track right (node 2) is silent"
+drive_fault 6 "track right silent" "node 2 silent" "lost: track right (node 2) has been silent"
 drive_fault 7 "flipper rear left in fault" "node 5 fault 0x2310" "0x2310"
 drive_fault 8 "track left restarts" "node 1 power loss" "lost: track left (node 1)"
 
