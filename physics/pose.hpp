@@ -1,4 +1,4 @@
-// A rigid pose and its roll, pitch, yaw. World and body frames: x forward, y left, z up (REP 103).
+// A rigid pose and its roll, pitch, yaw. Body frames: x forward, y left, z up; world frames: z up (REP 103).
 //
 // Thread safety: values and pure functions.
 #pragma once

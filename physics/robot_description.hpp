@@ -124,7 +124,8 @@ struct SensorDescription {
   bool operator==(const SensorDescription&) const = default;
 };
 
-// A camera mount with links that turn, driven by MISPKG. Massless: it moves no body.
+// A mission package, as USARSim calls it: a camera mount with links that turn, driven by MISPKG. Massless: it moves no
+// body.
 struct MissionPackageDescription {
   struct Link {
     double min_rad, max_rad, max_speed_radps;

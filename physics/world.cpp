@@ -14,7 +14,7 @@ namespace kenaf::physics {
 namespace {
 
 void check_pose(const Pose& X, const char* what) {
-  constexpr double kWorldEdge_m = 1e6;
+  constexpr double kWorldEdge_m = 1e6;  // beyond kFurthest_m, where a robot has a fault
   if (!X.p.allFinite() || !X.q.coeffs().allFinite() || X.p.norm() > kWorldEdge_m || std::abs(X.q.norm() - 1) > 1e-3)
     throw std::invalid_argument(std::string(what) +
                                 ": the pose is not finite, too far away, or its rotation is not one");
@@ -39,8 +39,11 @@ bool is_number(const Pose& X) {
   return X.p.allFinite() && X.q.coeffs().allFinite();
 }
 
-// Beyond these limits a robot's simulation counts as failed.
-constexpr double kFastest_mps = 50, kFastest_radps = 500, kLowest_m = -100, kFurthest_m = 1e5;
+// Beyond these limits a robot's simulation counts as failed: it exploded, or it left the world.
+constexpr double kFastest_mps = 50;
+constexpr double kFastest_radps = 500;
+constexpr double kLowest_m = -100;
+constexpr double kFurthest_m = 1e5;  // from the origin
 
 std::string fault_of(const RobotTruth& truth, double t_s) {
   const double speed = truth.v_WB_mps.norm(), spin = truth.w_WB_radps.norm();
@@ -132,7 +135,7 @@ struct World::Implementation {
     entry.sensors->record(truth, time_s(), entry.currents.track_a, entry.currents.flipper_a, touches);
   }
 
-  // Puts loose boxes whose poses a faulty robot has made invalid back to their first poses.
+  // Puts loose boxes whose poses a faulty robot has made invalid back to their initial poses.
   void put_back_boxes() {
     for (const auto& [id, box] : boxes)
       if (!is_number(scene->box_pose(id))) scene->move_box(id, box.X_WBox);

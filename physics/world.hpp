@@ -1,7 +1,11 @@
 // The simulated world: ground, boxes and any number of tracked robots, stepped with a fixed time step.
 //
 // Deterministic: the same descriptions, settings, seed and calls give the same bits. Independent of sockets, wall-clock
-// time and USARSim. Frame W: x forward, y left, z up; SI units.
+// time and USARSim. World frame W: z up, x and y as in the world file. Body frame B: origin at the body's geometric
+// centre, x forward, y left, z up. SI units.
+//
+// A function that takes the id of a robot or box throws std::out_of_range if this world has none of that id, except
+// cast_ray, which then ignores no robot.
 //
 // Thread safety: none; one thread owns a World. Two Worlds share nothing and may run on two threads.
 #pragma once
@@ -37,7 +41,8 @@ class World {
 
   // Places a robot at rest with all joints at their start angles. If it would touch ground or a box, it is lifted
   // straight up until it is free. `name` seeds its sensors' noise: another robot placed with the same name behaves the
-  // same. Throws std::invalid_argument if the pose is not finite or too far away.
+  // same. Throws std::invalid_argument if the pose is not finite or more than 1000 km from W's origin; from 100 km on
+  // the robot has a fault at once, see fault().
   RobotId add_robot(const RobotDescription& description, const std::string& name, const Pose& X_WB);
   void remove_robot(RobotId id);
   std::vector<RobotId> robots() const;
@@ -46,23 +51,28 @@ class World {
 
   // In force from the next step on. Values that are not finite leave the ones set before.
   void set_command(RobotId id, const robot::Command& command);
-  // Turns a link (from 0) of a mission package, within its limits of angle and speed.
+  // A mission package is a camera mount with links that turn (USARSim's word). Turns link `link` of package `package`,
+  // both counted from 0 in the order of the description, within its limits of angle and speed. Throws
+  // std::out_of_range if there is none.
   void set_mission_link(RobotId id, std::size_t package, std::size_t link, double angle_rad);
   double mission_link_rad(RobotId id, std::size_t package, std::size_t link) const;
   // Moves a robot and puts it at rest; lifts it as add_robot does. After a fault, the robot starts afresh as from
-  // add_robot, including joints, sensors and command.
+  // add_robot, including joints, sensors and command. Throws as add_robot does.
   void teleport(RobotId id, const Pose& X_WB);
   // Sets the robot in motion where it is, as if `command` had been sent for long: drives turn at these speeds, and
   // follow `command` from there. Friction and mass decide in the next steps how the motion continues. Does nothing for
   // a robot with a fault. Throws std::invalid_argument if a value is not finite.
   void set_in_motion(RobotId id, const RobotMotion& motion, const robot::Command& command);
-  // From the next step on, until changed, belts have exactly the stated speeds and flippers' servos the stated angles,
-  // regardless of motor limits, lags and commands. Angles are directions: a flipper goes the short way, at most at
-  // 10 rad/s. Play and compliance, between servo and arm, still act on the arm. A drive that is released follows its
-  // command from its speed at that moment. Forces and currents are those that the motion requires. teleport() and
-  // reset() end it. Throws std::invalid_argument if a value is not finite.
+  // From the next step on, until changed, belts have exactly the stated speeds, and flippers' servos turn to the stated
+  // angles, regardless of motor limits, lags and commands. Angles are directions: a servo goes the short way, at most
+  // at 10 rad/s, and is there at the end of the step if that suffices. Play and compliance, between servo and arm,
+  // still act on the arm. A drive that is released follows its command from its speed at that moment. Forces and
+  // currents are those that the motion requires. teleport() and reset() end it. Throws std::invalid_argument if a value
+  // is not finite.
   void prescribe(RobotId id, const PrescribedMotion& motion);
-  // Restarts a sensor's integration: encoder counts, odometry and tachometer angle at 0, INS at `pose`.
+  // Restarts the integration of a sensor, an index into robot_description(id).sensors: encoder counts, odometry and
+  // tachometer angle at 0, INS at `pose`; without `pose` the INS reports the robot's true pose again. Throws
+  // std::out_of_range if there is no such sensor.
   void reset_sensor(RobotId id, std::size_t sensor, const std::optional<GroundTruthReading>& pose = {});
 
   // Advances everything by one time step.
@@ -72,27 +82,29 @@ class World {
   RobotTruth truth(RobotId id) const;
   DriveCurrents drive_currents(RobotId id) const;
   // Describes what went wrong with a robot's simulation; empty if nothing did. A fault is a pose that is not finite, a
-  // speed beyond anything on tracks, or a fall out of the world. The robot is then taken out of the dynamics at its
-  // last valid pose until it is teleported or the world is reset; its sensors report, in finite numbers, that it stands
-  // there. A loose box whose pose it made invalid returns to its first one.
+  // speed beyond anything on tracks, or a place out of the world: 100 m below z = 0, or 100 km from the origin. The
+  // robot is then taken out of the dynamics at its last valid pose until it is teleported or the world is reset; its
+  // sensors report, in finite numbers, that it stands there. A loose box whose pose the robot has made invalid returns
+  // to its initial pose.
   const std::string& fault(RobotId id) const;
   // Appends to `out` the readings that are due, in the order of the description: those of each sensor whose period has
   // passed since its last report by this call. A second call without a step between appends nothing.
   void read_sensors(RobotId id, std::vector<SensorSample>& out);
 
+  // Both throw std::invalid_argument as add_robot does; add_box also for a size, mass or friction out of range.
   BoxId add_box(const Box& box);
   void move_box(BoxId id, const Pose& X_WBox);
   void remove_box(BoxId id);
   Pose box_pose(BoxId id) const;
   // The description's boxes in its order, then the others in the order in which they were added.
   std::vector<BoxId> boxes() const;
-  const Box& box(BoxId id) const;  // as described or added; its pose is the first one
+  const Box& box(BoxId id) const;  // as described or added, with its initial pose
 
   // The first surface along a ray; `ignore` is a robot that the ray passes through.
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,
                                  std::optional<RobotId> ignore = std::nullopt) const;
 
-  // Back to time 0: every robot at the pose of its add_robot, every box at its first pose, noise from the seed again.
+  // Back to time 0: every robot at the pose of its add_robot, every box at its initial pose, noise from the seed again.
   void reset();
 
  private:

@@ -1,5 +1,5 @@
 // Description of a world: ground, boxes and start poses, read from an SDF file in share/worlds/ by libsdformat.
-// World frame W: x forward, y left, z up. SI units. Thread safety: a value.
+// World frame W: z up, x and y as in the file. SI units. Thread safety: a value.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // Values of a world's interface: settings, identifiers of robots and boxes, and states of a robot.
-// SI units; frame W: x forward, y left, z up; B: the robot's body.
+// SI units; frames W of the world and B of the robot's body as in physics/world.hpp.
 //
 // Thread safety: values.
 #pragma once

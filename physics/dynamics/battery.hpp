@@ -6,11 +6,11 @@
 
 namespace kenaf::physics {
 
-// Returns the current that a motor takes from the battery, in amperes. The bridge chops: the battery supplies the
-// motor's current only for the share of time in which the motor needs the voltage, `force_share` (over the force at
-// standstill) plus `speed_share` (over the speed without load, negative against the force). A motor that is turned
-// against its force generates a voltage: if that suffices, the battery supplies nothing, and gets nothing back, since
-// the energy is burnt in the bridge.
+// Returns the current that a motor takes from the battery, in amperes. The motor's H-bridge chops: the battery
+// supplies the motor's current only in its duty cycle, the share of the voltage that the motor needs: `force_share`
+// (over the force at standstill) plus `speed_share` (over the speed without load, negative against the force). A motor
+// that is turned against its force generates a voltage: if that suffices, the battery supplies nothing, and gets
+// nothing back, since the energy is burnt in the bridge.
 double battery_current_a(double motor_current_a, double force_share, double speed_share, double voltage_share);
 
 class Battery {

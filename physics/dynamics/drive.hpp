@@ -10,7 +10,7 @@ namespace kenaf::physics {
 // as far as its force reaches. When driving, the available force falls linearly from standstill to zero at the maximum
 // speed (the torque-speed line of a DC motor); when braking, all of it is available. Both ends of the line scale with
 // the battery's voltage. A loop with droop has no integrator: its motor's force is (reference - speed) / droop, within
-// the same limits. On the line the bridge is fully on: the motor takes the current that voltage and winding allow.
+// the same limits. On the line the H-bridge is fully on: the motor takes the current that voltage and winding allow.
 // The effect drive_lag is a second lag before the loop's: with lags a and b a step is followed as
 // 1 - (a exp(-t/a) - b exp(-t/b)) / (a - b). drive_torque_limit scales the line at standstill; speed without load and
 // amperes per newton stay. Dry friction is a bound in the solver, so it holds a belt still up to its force.
