@@ -1,6 +1,6 @@
 /* Drives onto a box that is higher than the tracks' end wheels: front flippers up, on to the box until they have
  * lifted the nose, rear flippers down to push, and all flippers straight once the robot lies level on top. It feels
- * its way by the posture sensor alone. In simulation: kenaf-world --world step-100; the box begins 1 m ahead. */
+ * its way by the orientation sensor alone. In simulation: kenaf-world --world step-100; the box begins 1 m ahead. */
 #include <kenaf/hrt.h>
 #include <stdio.h>
 

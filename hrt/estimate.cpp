@@ -11,14 +11,14 @@
 namespace kenaf::hrt {
 namespace {
 
-// This time constant reduces a posture sensor's white noise of 0.1 degrees in 10 ms cycles to 0.03 degrees, while the
-// lag stays far below what affects the last, slow part of a turn.
+// This time constant reduces an orientation sensor's white noise of 0.1 degrees in 10 ms cycles to 0.03 degrees, while
+// the lag stays far below what affects the last, slow part of a turn.
 constexpr double kHeadingSmoothing_s = 0.05;
 
 // Thirty years: the difference of two such times in nanoseconds still fits 64 bits.
 constexpr double kLongest_s = 1e9;
 
-// A posture sensor that is silent for longer counts as lost.
+// An orientation sensor that is silent for longer counts as lost.
 constexpr double kPostureLost_s = 0.25;
 
 // Travel below this is encoder resolution, not motion.
@@ -57,7 +57,7 @@ const Estimate& Estimator::update(const robot::State& state) {
     now.travel_m = 0.5 * (track_m_[robot::kLeft] + track_m_[robot::kRight]);
   }
 
-  // Heading: unwrapped and smoothed posture sensor if available, else from the encoders.
+  // Heading: unwrapped and smoothed orientation sensor if available, else from the encoders.
   const double before_rad = now.heading_rad;
   const double turned_rad =
       (moved_m[robot::kRight] - moved_m[robot::kLeft]) / settings_.track_gauge_m * settings_.turn_efficiency;
@@ -85,7 +85,8 @@ const Estimate& Estimator::update(const robot::State& state) {
     if (posture_gap_s_ > kPostureLost_s) now.heading_rad += std::exchange(gap_turn_rad_, 0);
   }
 
-  // Odometry along the mean heading of the step; with a posture sensor, the travel is projected onto the horizontal.
+  // Odometry along the mean heading of the step; with an orientation sensor, the travel is projected onto the
+  // horizontal.
   const double yaw_rad = now.heading_rad - start_heading_rad_;
   const double mean_rad = first ? yaw_rad : 0.5 * (yaw_rad + now.odometry_yaw_rad);
   const double slope_rad = (state.fields & robot::kHasPosture) != 0 ? state.posture_rad[1] : 0;

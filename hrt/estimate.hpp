@@ -14,7 +14,7 @@ struct Estimate {
   double dt_s = 0;  // since the previous cycle; 0 in the first one
   bool has_encoders = false;
   bool has_currents = false;
-  double heading_rad = 0;  // unwrapped: counts full turns; smoothed if from the posture sensor
+  double heading_rad = 0;  // unwrapped: counts full turns; smoothed if from the orientation sensor
   double travel_m = 0;     // mean of both tracks
   double still_s = 0;      // time for which both tracks have stood still
   double max_track_a = 0;  // the larger magnitude of the two currents
@@ -23,7 +23,7 @@ struct Estimate {
 
 struct EstimatorSettings {
   double track_gauge_m;
-  double turn_efficiency;  // used without a posture sensor
+  double turn_efficiency;  // used without an orientation sensor
 };
 
 class Estimator {

@@ -67,7 +67,7 @@ struct Effects {
   double posture_bias_rad = 0;   // added to the reported pitch
   double posture_scale = 1;      // of reported roll and pitch
   double posture_delay_s = 0;    // the report's time stamp stays that of the nominal delay
-  double posture_mount_rad = 0;  // the posture sensor is mounted turned about z
+  double posture_mount_rad = 0;  // the orientation sensor is mounted turned about z
   double tracking_delay_s = 0;   // of the pose that motion capture or lidar reports; no sensor of the robot
   double tracking_scale = 1;     // of its x, y from the first pose on
   double tracked_point_forward_m = 0, tracked_point_left_m = 0;  // in B, of the point whose pose that is

@@ -121,7 +121,7 @@ inline constexpr Column kAll[] = {
     asked("acc_x_mps2", "m/s^2", acceleration),
     asked("acc_y_mps2", "m/s^2", acceleration),
     asked("acc_z_mps2", "m/s^2", acceleration),
-    // Beyond the format: the robot's own posture sensor, and the state of the cycle.
+    // Beyond the format: the robot's own orientation sensor, and the state of the cycle.
     of_robot("posture_roll_rad", "rad", posture, kWraps),
     of_robot("posture_pitch_rad", "rad", posture, kWraps),
     of_robot("posture_yaw_rad", "rad", posture, kWraps),

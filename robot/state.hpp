@@ -15,7 +15,7 @@ namespace kenaf::robot {
 
 // Which fields of a State were measured. A field without its bit is 0 and has no meaning.
 enum StateField : std::uint32_t {
-  kHasPosture = 1u << 0,      // posture_rad: the robot's own posture sensor
+  kHasPosture = 1u << 0,      // posture_rad: the robot's own orientation sensor
   kHasEncoders = 1u << 1,     // track_m, track_mps
   kHasFlippers = 1u << 2,     // flipper_rad
   kHasCurrents = 1u << 3,     // track_a, flipper_a

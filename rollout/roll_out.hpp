@@ -42,9 +42,9 @@ struct RollOut {
 
 // The effects of `robot` apply to robot and ground. The robot stands still at the start, with its flippers where the
 // first phase has them; its commands are recorded from t_s = 0 on. Position and yaw come from motion capture, roll and
-// pitch from the posture sensor (INS), the rest from IMU, Encoder, Tachometer and Drives. Columns of a sensor that the
-// robot does not have are omitted; a sensor slower than the rows leaves cells empty.
-// Throws std::invalid_argument if the options are inconsistent or the manoeuvre has neither phases nor commands.
+// pitch from the orientation sensor (INS), the rest from IMU, Encoder, Tachometer and Drives. Columns of a sensor that
+// the robot does not have are omitted; a sensor slower than the rows leaves cells empty. Throws std::invalid_argument
+// if the options are inconsistent or the manoeuvre has neither phases nor commands.
 RollOut roll_out(const physics::RobotDescription& robot, const physics::WorldDescription& world,
                  const Manoeuvre& manoeuvre, const RollOutOptions& options);
 

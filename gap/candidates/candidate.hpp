@@ -61,7 +61,7 @@ std::vector<Candidate> catalogue_candidates(const physics::RobotDescription& rob
 //
 // Excluded because they change runs by rounding only: sprocket_radius_m (commands and recorded tracks are in metres)
 // and the positions of INS and IMU (they change only accelerations, which the diagnosis does not read; a rotated or
-// tilted posture sensor is posture_mount or posture_bias).
+// tilted orientation sensor is posture_mount or posture_bias).
 std::vector<Candidate> description_candidates(const physics::RobotDescription& robot);
 
 // Both of these.

@@ -183,7 +183,7 @@ constexpr DescribedNumber kDescribed[] = {
 std::string_view delayed(physics::SensorType type) {
   switch (type) {
     case physics::SensorType::ins:
-      return "the posture sensor reports late";
+      return "the orientation sensor reports late";
     case physics::SensorType::imu:
       return "gyro and acceleration are reported late";
     case physics::SensorType::encoder:

@@ -29,9 +29,9 @@ struct MergedRun {
 };
 
 // Returns the quantities that run and capture both measured, for estimate_clock_offset(): turns about the body's axes
-// from gyro, posture sensor or the run's own pose; travel of the tracks, and their difference if nothing else measured
-// turns. Bounds of the gain: 0.8 to 1.25 of gyros, 0.5 to 3 of belts. Tracks are not used if the body's turns give the
-// offset to 10 ms.
+// from gyro, orientation sensor or the run's own pose; travel of the tracks, and their difference if nothing else
+// measured turns. Bounds of the gain: 0.8 to 1.25 of gyros, 0.5 to 3 of belts. Tracks are not used if the body's turns
+// give the offset to 10 ms.
 std::vector<CourseSeenTwice> courses_seen_twice(const runs::Run& run, const MotionCapture& capture);
 
 // Returns the run with x_m, y_m, z_m, roll_rad, pitch_rad and yaw_rad from the capture, as far as it measured them,

@@ -54,7 +54,7 @@ class RunChecks {
   // Unwrapped roll, pitch or yaw while the robot is upright: near pitch pi/2 yaw jumps, and upside down the angles
   // turn the other way.
   Course upright_angle(const std::string& name, double most_tilt_rad = kUpright_rad) const;
-  // For each row, by the newest roll and pitch of the pose, or else of the posture sensor, if there are any.
+  // For each row, by the newest roll and pitch of the pose, or else of the orientation sensor, if there are any.
   std::vector<bool> upright(double most_tilt_rad = kUpright_rad) const;
   Course rate(const std::string& name) const;             // of a column of rates
   Course forward(double most_tilt_rad = INFINITY) const;  // travel of the pose along its heading

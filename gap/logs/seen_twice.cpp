@@ -13,8 +13,8 @@
 namespace kenaf::gap::logs {
 namespace {
 
-// Gains that robots have: a gyro, a posture sensor or another pose agrees with motion capture; belts slip; and with
-// slip the difference of the track speeds turns a robot far less than without. Gauges from 0.1 to 2 m.
+// Gains that robots have: a gyro, an orientation sensor or another pose agrees with motion capture; belts slip; and
+// with slip the difference of the track speeds turns a robot far less than without. Gauges from 0.1 to 2 m.
 constexpr double kLeastGain = 0.8, kMostGain = 1.25;
 constexpr double kLeastBelt = 0.5, kMostBelt = 3;
 constexpr double kLeastGauge_m = 0.1, kMostGauge_m = 10;
@@ -109,7 +109,7 @@ std::vector<CourseSeenTwice> courses_seen_twice(const runs::Run& run, const Moti
         kMostGain, kEnough_rad, false);
   };
 
-  // Turns come from the best sensor there is: the gyro, else the posture sensor, else the run's own pose.
+  // Turns come from the best sensor there is: the gyro, else the orientation sensor, else the run's own pose.
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string name = std::string("gyro_") + kAxes[axis] + "_radps";
     const auto rate = run.column(name);

@@ -18,8 +18,8 @@ struct ReckonedPath {
       yaw_rad;  // for each row, in frame W; starts at (0, 0) with the first measured yaw, or 0
 };
 
-// Uses the pose's angles, or those of the posture sensor (posture_yaw_rad, ...), whose zero is not the world's. Empty
-// unless travel or speed of both tracks was measured.
+// Uses the pose's angles, or those of the orientation sensor (posture_yaw_rad, ...), whose zero is not the world's.
+// Empty unless travel or speed of both tracks was measured.
 std::optional<ReckonedPath> reckon(const runs::Run& run, const physics::RobotDescription& robot);
 
 // Returns a track's travel at each row, from its encoder or its speed. An empty cell holds the value before it, at the

@@ -22,11 +22,13 @@
  *
  * Lock step
  *   A simulator in lock step (the default) does not begin the next cycle before this one is answered. After a blocking
- *   call of this header has returned, the library holds the answer until the program's next blocking call, but no
- *   longer than until the program has worked or slept for hold_s since its last call that set something; time in which
- *   it waits for a processor or a disk does not count, up to a second in all. So a program of blocking calls, with any
- *   setting calls between them, gives the same run every time, at every speed of the simulator and on a busy machine.
- *   If a program works or sleeps longer than hold_s, robot time continues meanwhile. The real robot does not wait.
+ *   call of this header has returned, the library holds the answer until the same thread's next blocking call. It gives
+ *   that up once the thread has worked or slept for hold_s, counted from the return of the blocking call and anew from
+ *   each call that sets something (hrt_set_tracks, hrt_set_flipper(s), hrt_stop). Time in which the thread waits for a
+ *   processor or a disk does not count, but an answer is never held for more than 1 s of wall-clock time. So a program
+ *   of blocking calls, with any setting calls between them, gives the same run every time, at every speed of the
+ *   simulator and on a busy machine. If a program works or sleeps longer than hold_s, robot time continues meanwhile.
+ *   The real robot does not wait.
  *
  * Units and frames
  *   Millimetres, degrees, seconds, amperes, volts. The body frame is x forward, y left, z up (REP 103); angles of a
@@ -51,18 +53,20 @@
  * Errors
  *   A function returns HRT_OK (0) or one of the negative HRT_E... values, explained by hrt_last_error(). No function
  *   ends the process, throws through this interface, or crashes on a null pointer (HRT_E_ARGUMENT). A function that
- *   fails because of its arguments or its state changes nothing. Once the robot is lost, every function that needs it
- *   fails, and only hrt_close and a new init help: with HRT_E_LINK or, in libkenaf_real, with HRT_E_DEVICE if a drive
- *   is silent, in fault or restarted. HRT_E_LINK below includes that HRT_E_DEVICE.
+ *   fails because of its arguments, or because it may not be called at that moment, changes nothing in the robot; its
+ *   own comment says what becomes of output arguments.
+ *   The robot is lost if the link to it breaks or, in libkenaf_real, if a drive is silent, in fault or restarted. From
+ *   then on every function that needs the robot fails, with HRT_E_LINK or, because of a drive, with HRT_E_DEVICE, and
+ *   only hrt_close and a new init help. Comments below list HRT_E_LINK alone for both.
  *
  * Safety
- *   - A motion ends with an error instead of a hang: stuck, link lost, or time limit exceeded. After any of these the
+ *   - A motion ends with an error instead of a hang: stuck, robot lost, or time limit exceeded. After any of these the
  *     tracks are commanded to stop.
  *   - Track speeds hold until changed, but no longer than command_timeout_s after the last call of any hrt_ function; a
  *     blocking call counts as calling for its whole duration.
- *   - If the whole program falls silent (killed, hung, network cut), the robot stops by itself: a simulated one
- *     command_timeout_s after its last command, the real one master_silence_s (of its description) after the library's
- *     last heartbeat. This does not depend on the program.
+ *   - If nothing comes from the program's process any more (killed, suspended, network cut), the robot stops by itself:
+ *     a simulated one command_timeout_s after the library's last command, the real one master_silence_s (of its
+ *     description) after the library's last heartbeat. This does not depend on the program.
  *   - The simulation is not the robot. A program that is safe in simulation is not necessarily safe on the robot.
  */
 #ifndef KENAF_HRT_H
@@ -94,7 +98,7 @@ enum {
   HRT_E_BUSY = -2,            /* another motion is under way; the robot or a recording is already open */
   HRT_E_ARGUMENT = -3,        /* a null pointer, a number that is not finite or out of range */
   HRT_E_CONFIG = -4,          /* the configuration file or an environment variable is wrong: file, line, column named */
-  HRT_E_LINK = -5,            /* no answer from the robot or its simulation; only hrt_close and a new init help.
+  HRT_E_LINK = -5,            /* no answer from the robot or its simulation, or the robot is lost, see Errors.
                                  hrt_get_picture also: no answer from the cameras, and its next call tries again */
   HRT_E_REFUSED = -6,         /* the relay answered, but refuses the robot; libkenaf_real: another program has it. The
                                  reason is in hrt_last_error() */
@@ -103,7 +107,7 @@ enum {
   HRT_E_STOPPED = -9,         /* hrt_stop or hrt_set_tracks of another thread ended this motion */
   HRT_E_CLOSED = -10,         /* hrt_close of another thread ended this call */
   HRT_E_DEVICE = -11,         /* no such device or camera, no answer from it, or the request is not supported.
-                                 libkenaf_real also: a drive and so the robot is lost, as with HRT_E_LINK */
+                                 libkenaf_real also: the robot is lost because of a drive, see Errors */
   HRT_E_RECORD = -12,         /* the recording could not be written, or is incomplete */
   HRT_E_INTERNAL = -13        /* out of memory or threads, or a defect of the library */
 };
@@ -133,8 +137,9 @@ typedef struct hrt_config {
 
   /* Cycle and link. */
   double period_s;          /* one cycle, robot time: 0.001 to 1, default 0.01; libkenaf_real: at most 0.02, and long
-                               enough for its bus load (else HRT_E_CONFIG): some 0.006 at 500 kbit/s */
-  double command_timeout_s; /* silence after which the tracks stop, robot time: 0.01 to 10, default 0.1; not below
+                               enough for its bus load (else HRT_E_CONFIG): about 0.006 at 500 kbit/s */
+  double command_timeout_s; /* the tracks stop after this long without an hrt_ call or, in a simulator, without a
+                               command from the library, see Safety; robot time: 0.01 to 10, default 0.1; not below
                                period_s */
   double link_timeout_s;    /* libkenaf_sim: silence that means a lost link, wall clock: 0.05 to 10, default 0.5 */
   double connect_timeout_s; /* libkenaf_sim: how long init waits for the robot, wall clock: 0.05 to 60, default 3 */
@@ -146,14 +151,16 @@ typedef struct hrt_config {
   double turn_acceleration_degps2;  /* 10 to 3600, default 120 */
   double distance_tolerance_mm;     /* 0.1 to 100, default 1 */
   double angle_tolerance_deg;       /* 0.05 to 10, default 0.3 */
-  double stuck_time_s;              /* without progress, robot time: 0.1 to 60, default 1 */
-  double stuck_current_a;           /* a track's current that counts as stuck after stuck_time_s; 0 to 1000, 0 = off */
+  double stuck_time_s;              /* a motion without progress for this long is stuck, robot time: 0.1 to 60,
+                                       default 1 */
+  double stuck_current_a;           /* a motion with more current in a track for stuck_time_s is stuck too: 0 to 1000,
+                                       default 0 = off */
   double track_gauge_mm;            /* between the tracks' centre lines: 50 to 5000, default 200 */
-  double turn_efficiency;           /* turn of the body per turn by the tracks, which slip when turning: 0.1 to 2,
-                                       default 1. Used only without a posture sensor. */
+  double turn_efficiency;           /* the body's turn over the one that the tracks' travel would give without slip:
+                                       0.1 to 2, default 1. Used only without an orientation sensor. */
 
   /* libkenaf_sim. */
-  double hold_s;          /* time a program may work or sleep while a cycle waits: 0 to 0.2, default 0.05 */
+  double hold_s;          /* how long lock step lets a program work or sleep, see Lock step: 0 to 0.2, default 0.05 */
   int32_t lockstep;       /* 1: robot time waits for this program (default); 0: it does not */
   int32_t reset_robot;    /* 1: init returns the robot to its start pose (default); 0: it stays where it is */
   char relay[128];        /* HOST:PORT of kenaf-relayd, default 127.0.0.1:45454 */
@@ -166,7 +173,8 @@ typedef struct hrt_config {
                              the path of a TOML file; default "kenaf" */
 
   /* Recording. */
-  char record[1024];      /* a file: hrt_kenaf_init starts a recording into it, see hrt_record_start; "" = none */
+  char record[1024];      /* a file: hrt_kenaf_init starts a recording into it, see hrt_record_start; default "": no
+                             recording */
 
   /* libkenaf_sim: pictures. */
   char camera_server[128]; /* HOST:PORT of the world server's cameras, default 127.0.0.1:5003; see hrt_get_picture */
@@ -197,7 +205,7 @@ static inline hrt_config hrt_config_default(void) {
  * start pose. Odometry begins at 0.
  * Blocks up to connect_timeout_s of wall-clock time; libkenaf_real: can_timeout_s until all nodes have started, a
  * second or two to configure them, and the homing. Cannot be interrupted, not even by hrt_close() in another thread.
- * HRT_E_BUSY: the robot is open already (one whose link was lost is closed and reopened), or is being opened or closed;
+ * HRT_E_BUSY: the robot is open already (a lost one is closed and reopened), or is being opened or closed;
  * HRT_E_CONFIG; HRT_E_LINK: no answer, hrt_last_error() says what to start; HRT_E_REFUSED: another program has the
  * robot, or the relay has no world server; HRT_E_DEVICE: (libkenaf_real) no SocketCAN in the kernel, no such interface,
  * interface down, or a node, named in hrt_last_error() with the reason, that does not start, is not of the expected
@@ -219,21 +227,21 @@ int hrt_close(void);
 
 /* ---- Motions: blocking, closed-loop, one at a time ----
  *
- * Both follow a trapezoidal speed profile by the sensors and return once the goal is reached within its tolerance and
- * the robot stands still, with the tracks commanded to 0. A motion starts from the goal heading of the previous one if
- * the robot is still near it (2 degrees), so that the errors of successive motions do not accumulate.
+ * Both follow a trapezoidal speed profile, corrected by the sensors, and return once the goal is reached within its
+ * tolerance and the robot stands still, with the tracks commanded to 0. A motion starts from the goal heading of the
+ * previous one if the robot is still near it (2 degrees), so that the errors of successive motions do not accumulate.
  *
- * HRT_E_NOT_INITIALISED; HRT_E_BUSY: another thread's motion is under way; HRT_E_ARGUMENT; HRT_E_LINK; HRT_E_STUCK: no
- * progress by the sensors for stuck_time_s - travel is measured at the tracks, so tracks spinning in front of a wall
- * are not detected unless stuck_current_a is set; HRT_E_TIMEOUT: after three times the duration of the profile (five
+ * HRT_E_NOT_INITIALISED; HRT_E_BUSY: another thread's motion is under way; HRT_E_ARGUMENT; HRT_E_LINK; HRT_E_STUCK: the
+ * sensors show no progress for stuck_time_s (travel is measured at the tracks, so tracks spinning in front of a wall
+ * are not detected unless stuck_current_a is set); HRT_E_TIMEOUT: after three times the duration of the profile (five
  * times for a turn) plus 5 s; HRT_E_STOPPED; HRT_E_CLOSED; HRT_E_DEVICE: the robot has no track encoders. */
 
-/* Drives `mm` straight forward (negative: backward), -1000000 to 1000000, and holds the heading by the posture sensor
- * or, without one, by the track encoders. */
+/* Drives `mm` straight forward (negative: backward), -1000000 to 1000000, and holds the heading by the orientation
+ * sensor or, without one, by the track encoders. */
 int hrt_go_forward(double mm);
 
 /* Turns in place by `deg` to the left (negative: to the right), -36000 to 36000; 720 are two full turns. Measured by
- * the posture sensor or, without one, by the track encoders and turn_efficiency. */
+ * the orientation sensor or, without one, by the track encoders and turn_efficiency. */
 int hrt_turning(double deg);
 
 /* ---- Direct control: does not block ---- */
@@ -254,8 +262,9 @@ int hrt_set_flipper(int flipper, double deg);
 /* Commands all four at once. */
 int hrt_set_flippers(double front_left_deg, double front_right_deg, double rear_left_deg, double rear_right_deg);
 
-/* Stops: tracks to 0 at once, moving flippers stay where they are. A motion or hrt_wait_flippers in another thread
- * returns HRT_E_STOPPED. Does not block. HRT_E_NOT_INITIALISED, HRT_E_LINK. */
+/* Stops: tracks to 0 at once; flippers that are still moving are commanded to the angles measured last and hold them. A
+ * motion or hrt_wait_flippers in another thread returns HRT_E_STOPPED. Does not block. HRT_E_NOT_INITIALISED,
+ * HRT_E_LINK. */
 int hrt_stop(void);
 
 /* ---- Waiting: blocking, robot time ---- */
@@ -277,7 +286,7 @@ double hrt_time(void);
 /* Bits of hrt_state.valid: which members were measured. Members whose bit is missing are 0. A sensor slower than the
  * cycle keeps bit and value until it measures again; a recording has the value only in cycles that measured it. */
 enum {
-  HRT_HAS_POSTURE = 1 << 0,  /* roll, pitch, yaw by the robot's posture sensor */
+  HRT_HAS_POSTURE = 1 << 0,  /* roll, pitch, yaw by the robot's orientation sensor; in names, "posture" means this */
   HRT_HAS_ENCODERS = 1 << 1, /* track_mm, track_mmps, odometry */
   HRT_HAS_FLIPPERS = 1 << 2, /* flipper_deg */
   HRT_HAS_CURRENTS = 1 << 3, /* track_a, flipper_a */
@@ -307,7 +316,8 @@ typedef struct hrt_state {
   uint64_t cycle;    /* number of the cycle, 1 = the first one after init */
   double time_s;     /* robot time of the measurement */
 
-  double roll_deg, pitch_deg, yaw_deg; /* body in world, each in (-180, 180]; yaw is 0 where the sensor has its zero */
+  double roll_deg, pitch_deg, yaw_deg; /* body in world, each in (-180, 180]; yaw is 0 where the sensor has its zero:
+                                          to hold a heading, use odometry_yaw_deg */
   double gyro_degps[3];                /* turn rate about x, y, z of the body */
   double acceleration_mmps2[3];        /* along x, y, z of the body; at rest on level ground 0, 0, +9807 */
 
@@ -318,13 +328,13 @@ typedef struct hrt_state {
   double flipper_a[4];
   double battery_v;
 
-  /* Dead reckoning by the library since init: the tracks' mean travel along the posture sensor's heading and slope, or
-   * along the encoders' heading if there is no such sensor. Start: 0, 0, 0; x is forward at the start, y left. Yaw is
-   * not wrapped: it counts full turns. Tracks slip, so this drifts. */
+  /* Dead reckoning by the library since init: the tracks' mean travel along the orientation sensor's heading and slope,
+   * or along the encoders' heading if there is no such sensor. Start: 0, 0, 0; x is forward at the start, y left. Yaw
+   * is not wrapped: it counts full turns. Tracks slip, so this drifts. */
   double odometry_x_mm, odometry_y_mm, odometry_yaw_deg;
 
-  /* Pose of the body's centre in the world, from an external source: a simulator's ground truth. The real robot does
-   * not know it: a control program must not need it. */
+  /* Pose in the world of the body frame, whose origin is the body's geometric centre, from an external
+   * source: a simulator's ground truth. The real robot does not know it: a control program must not need it. */
   double pose_x_mm, pose_y_mm, pose_z_mm, pose_roll_deg, pose_pitch_deg, pose_yaw_deg;
 
   /* Commands of the newest answer to the robot, before the robot limits them. */
@@ -346,7 +356,7 @@ static inline hrt_state hrt_state_init(void) {
 }
 
 /* Copies the newest state, all of it from one cycle. Does not block. state->size must be set. HRT_E_NOT_INITIALISED;
- * HRT_E_ARGUMENT: null or the size of no version of this header; HRT_E_LINK: the link is lost, *state holds the last
+ * HRT_E_ARGUMENT: null or the size of no version of this header; HRT_E_LINK: the robot is lost, *state holds the last
  * state that arrived. */
 int hrt_get_state(hrt_state* state);
 
@@ -411,8 +421,8 @@ typedef struct hrt_picture {
   char camera[64];       /* the camera's name; "" if the server does not report it */
 } hrt_picture;
 
-/* Returns one for hrt_get_picture that has had no picture yet. Use one for each camera and loop, and a new one after
- * hrt_kenaf_init, because cameras restart their counts. */
+/* Returns an empty hrt_picture for hrt_get_picture: its number is 0, so that the first call gets any picture. Use one
+ * for each camera and loop, and a new one after hrt_kenaf_init, because cameras restart their counts. */
 static inline hrt_picture hrt_picture_init(void) {
   hrt_picture picture;
   memset(&picture, 0, sizeof picture);
@@ -437,7 +447,7 @@ static inline hrt_picture hrt_picture_init(void) {
  * HRT_E_DEVICE: no such camera: hrt_last_error() lists the existing ones. libkenaf_real: the description gives it no
  *   device, or the device is missing, in use, unplugged, silent, no camera, or lacks the resolution. Either: the
  *   picture is damaged or larger than 4096 x 4096.
- * HRT_E_LINK: the robot's link is lost; or (libkenaf_sim) no server at camera_server, or it falls silent or sends
+ * HRT_E_LINK: the robot is lost; or (libkenaf_sim) no server at camera_server, or it falls silent or sends
  *   something else.
  * HRT_E_CONFIG: camera_server is no HOST:PORT, or (libkenaf_real) a [[camera]] of the description is wrong.
  * HRT_E_CLOSED; HRT_E_NOT_INITIALISED.
@@ -463,7 +473,7 @@ int hrt_record_start(const char* path);
  * it could not be written, or rows were lost because the disk was too slow: hrt_last_error() says how many. */
 int hrt_record_stop(void);
 
-/* ---- Words ---- */
+/* ---- Error texts and version ---- */
 
 /* Returns the reason for the last failure in this thread, one line of English without a line end; "" if there was none.
  * Never null. Valid until this thread's next hrt_ call fails. */

@@ -91,7 +91,7 @@ TEST_CASE("A sensor that begins late or pauses makes nothing jump") {
   CHECK(now.heading_rad == Approx(0.2));  // from 1 to 1.2 it turned
 }
 
-TEST_CASE("A posture sensor slower than the cycle is followed as fast as one that is not") {
+TEST_CASE("An orientation sensor slower than the cycle is followed as fast as one that is not") {
   Estimator estimator({0.2, 1});
   robot::State state = state_at(1, 0, 0);
   state.fields |= robot::kHasPosture;
@@ -105,7 +105,7 @@ TEST_CASE("A posture sensor slower than the cycle is followed as fast as one tha
 }
 
 TEST_CASE(
-    "A posture sensor that is lost leaves the heading to the encoders, and one that comes back makes it not jump") {
+    "A lost orientation sensor leaves the heading to the encoders, and when it comes back the heading does not jump") {
   Estimator estimator({0.2, 1});
   const auto state = [](std::uint32_t cycle, double right_m, std::optional<double> yaw_rad) {
     robot::State out = state_at(cycle, 0, right_m);

@@ -1,6 +1,6 @@
 // The motions are tested as pure state machines, against a plant whose behaviour is known in closed form. Goals are
 // reached within their tolerance whatever the sign, rides take the time that the speed profile predicts, and a square
-// closes. The posture sensor holds the heading where the tracks differ and measures turns, past 180 degrees too,
+// closes. The orientation sensor holds the heading where the tracks differ and measures turns, past 180 degrees too,
 // however much the tracks slip; without it the encoders and turn_efficiency count. Stuck, overcurrent and time-out are
 // told apart, in robot time.
 #include <catch2/catch.hpp>
@@ -150,7 +150,7 @@ TEST_CASE("Positive is to the left: the right track drives forward") {
   CHECK(step.track_speed_mps[1] == -step.track_speed_mps[0]);
 }
 
-TEST_CASE("Without a posture sensor a turn is the encoders' times turn_efficiency") {
+TEST_CASE("Without an orientation sensor a turn is the encoders' times turn_efficiency") {
   PlantSettings settings{.turn_efficiency = 0.6, .has_posture = false};
   Ride calibrated(settings, 0.6);
   CHECK(calibrated.turn(90 * kOneDegree).code == HRT_OK);
@@ -171,7 +171,7 @@ TEST_CASE("Blocked tracks are stuck after stuck_time_s of robot time") {
   }
 }
 
-TEST_CASE("Noise of the posture sensor is no progress") {
+TEST_CASE("Noise of the orientation sensor is no progress") {
   Ride ride({.yaw_noise_rad = 0.1 * kOneDegree, .tracks_blocked = true});
   CHECK(ride.turn(90 * kOneDegree).code == HRT_E_STUCK);
   CHECK(ride.duration_s < 3);

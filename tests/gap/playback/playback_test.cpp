@@ -146,7 +146,7 @@ TEST_CASE("Dead reckoning gives the path where no pose was measured") {
   CHECK_FALSE(reckon(test::made_run(1, 0.01, {{"track_left_m", metre}}), kenaf));
 }
 
-TEST_CASE("Dead reckoning where tracks and angles have holes, or the angles are the posture sensor's") {
+TEST_CASE("Dead reckoning where tracks and angles have holes, or the angles are an INS's") {
   const physics::RobotDescription kenaf = physics::load_robot("kenaf");
   const auto metre = [](double t_s) { return t_s; };
   // encoders that count from 5 m and tell it from 0.1 s on: from 5.1 to 5.99 m
