@@ -42,7 +42,7 @@ std::vector<Cost> measure(const std::string& world_name, int pictures) {
   const physics::RobotId id = world.add_robot(robot, "R1", X_WB);
   robot::Command command;
   command.track_speed_mps = {0.4, 0.4};
-  for (robot::JointCommand& flipper : command.flipper) flipper.value = 0.6;
+  command.flipper.fill({robot::JointMode::angle, 0.6});
   world.set_command(id, command);
 
   // Each stage of each picture is timed by itself; the first round, which allocates, is not counted.

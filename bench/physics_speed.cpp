@@ -41,8 +41,10 @@ void measure(const Case& scene, double time_s) {
   const RobotDescription robot = load_robot("kenaf");
   robot::Command command;
   command.track_speed_mps = {scene.left_mps, scene.right_mps};
-  for (const robot::Flipper f : {robot::kFrontLeft, robot::kFrontRight}) command.flipper[f].value = scene.front_rad;
-  for (const robot::Flipper f : {robot::kRearLeft, robot::kRearRight}) command.flipper[f].value = scene.rear_rad;
+  for (const robot::Flipper f : {robot::kFrontLeft, robot::kFrontRight})
+    command.flipper[f] = {robot::JointMode::angle, scene.front_rad};
+  for (const robot::Flipper f : {robot::kRearLeft, robot::kRearRight})
+    command.flipper[f] = {robot::JointMode::angle, scene.rear_rad};
   for (int i = 0; i < scene.robots; ++i) {
     const StartPose& start = description.start_poses[static_cast<std::size_t>(i) % description.start_poses.size()];
     Pose X_WB = start.X_WB;

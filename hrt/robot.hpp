@@ -33,7 +33,7 @@ namespace kenaf::hrt {
 struct Snapshot {
   robot::State measured{};
   Estimate estimate;
-  robot::Command commanded = robot::idle_command();
+  robot::Command commanded;
   std::uint64_t lost_cycles = 0;
   double round_trip_s = 0;
   std::string warning;
@@ -138,12 +138,12 @@ class Robot {
   Estimate estimate_;
   std::uint64_t lost_cycles_ = 0;
   std::string warning_;
-  robot::Command command_ = robot::idle_command();   // the newest answer, in force from the next cycle on
-  robot::Command in_force_ = robot::idle_command();  // the previous answer: in force since measured_
+  robot::Command command_;   // the newest answer, in force from the next cycle on
+  robot::Command in_force_;  // the previous answer: in force since measured_
   std::array<double, robot::kTrackCount> user_track_mps_{};
   bool stopped_by_silence_ = false;  // silence has set them to 0, and no speed was requested since
   std::array<double, robot::kTrackCount> motion_track_mps_{};
-  std::array<robot::JointCommand, robot::kFlipperCount> user_flipper_ = robot::idle_command().flipper;
+  std::array<robot::JointCommand, robot::kFlipperCount> user_flipper_{};
   std::optional<double> goal_heading_rad_;  // of the previous motion, while nothing else has moved the robot
   double last_call_t_s_ = 0;
   std::vector<Call*> calls_;  // the waiting ones

@@ -57,7 +57,7 @@ Manoeuvre replay(const runs::Run& run, const std::string& file) {
   robot::Command command;  // at rest until the first one
   for (std::size_t i = 0; i < flippers.size(); ++i) {
     flippers[i] = run.column(fmt::format("cmd_flipper_{}_rad", robot::kFlipperNames[i]));
-    if (replay.start->flipper_rad) command.flipper[i].value = (*replay.start->flipper_rad)[i];
+    command.flipper[i] = {robot::JointMode::angle, replay.start->flipper_rad ? (*replay.start->flipper_rad)[i] : 0};
   }
   for (std::size_t row = 0; row < time.size(); ++row) {
     const auto take = [row](Column column, double& value) {

@@ -61,7 +61,7 @@ struct Command {
   std::uint64_t session;
   std::uint32_t sequence;  // starts at 1, one more for each new Command; a resent Command keeps its sequence
   std::uint32_t frame;     // the State this answers; 0 before the first
-  robot::Command robot = robot::idle_command();  // flippers: an angle, or keep
+  robot::Command robot;    // flippers: an angle, or keep
 };
 
 // Measurements and the state of the session. stopped_by_silence: no Command came within command_timeout_s.

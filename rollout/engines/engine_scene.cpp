@@ -26,8 +26,10 @@ EngineScene climb(const std::string& name, WorldDescription world, double x_m, d
   scene.robot = load_robot("kenaf");
   scene.X_start.p = {x_m, 0, z_m};
   scene.command.track_speed_mps = {kDrive_mps, kDrive_mps};
-  for (const robot::Flipper f : {robot::kFrontLeft, robot::kFrontRight}) scene.command.flipper[f].value = front_rad;
-  for (const robot::Flipper f : {robot::kRearLeft, robot::kRearRight}) scene.command.flipper[f].value = rear_rad;
+  for (const robot::Flipper f : {robot::kFrontLeft, robot::kFrontRight})
+    scene.command.flipper[f] = {robot::JointMode::angle, front_rad};
+  for (const robot::Flipper f : {robot::kRearLeft, robot::kRearRight})
+    scene.command.flipper[f] = {robot::JointMode::angle, rear_rad};
   scene.duration_s = duration_s;
   return scene;
 }
@@ -66,7 +68,7 @@ EngineScene on_plane(const RobotDescription& robot, double slope_rad) {
   scene.world.planes.push_back({X_WP, 1});
   scene.robot = robot;
   scene.X_start = compose(X_WP, {{0, 0, belly_height_m(robot)}, Eigen::Quaterniond::Identity()});
-  for (robot::JointCommand& flipper : scene.command.flipper) flipper.value = 1;
+  scene.command.flipper.fill({robot::JointMode::angle, 1});
   return scene;
 }
 

@@ -194,7 +194,7 @@ TEST_CASE("Bad arguments are named and change nothing") {
   REQUIRE(hrt_wait_cycle(nullptr) == HRT_OK);
   const std::lock_guard lock(robot->mutex);
   CHECK(robot->commands.front().track_speed_mps == std::array<double, 2>{0, 0});
-  CHECK(robot->commands.front().flipper == kenaf::robot::idle_command().flipper);
+  CHECK(robot->commands.front().flipper == kenaf::robot::Command{}.flipper);
 }
 
 TEST_CASE("Every error has a name, and only those") {

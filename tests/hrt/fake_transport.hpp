@@ -49,7 +49,7 @@ class FakeTransport final : public Transport {
  private:
   std::shared_ptr<FakeRobot> robot_;
   bool first_ = true, answered_ = false;
-  robot::Command command_ = robot::idle_command();
+  robot::Command command_;
 };
 
 // What make_transport() makes from now on.

@@ -34,7 +34,7 @@ struct Ride {
         return step;
       }
       top_speed_mps = std::max(top_speed_mps, std::abs(step.track_speed_mps[1]));
-      kenaf::robot::Command command = kenaf::robot::idle_command();
+      kenaf::robot::Command command;
       command.track_speed_mps = step.track_speed_mps;
       now = estimator.update(plant.advance(command));
     }
@@ -145,7 +145,7 @@ TEST_CASE("Positive is to the left: the right track drives forward") {
   Ride ride({});
   TurnInPlace turn(ride.limits, 90 * kOneDegree, ride.now);
   (void)turn.step(ride.now);
-  const MotionStep step = turn.step(ride.estimator.update(ride.plant.advance(kenaf::robot::idle_command())));
+  const MotionStep step = turn.step(ride.estimator.update(ride.plant.advance(kenaf::robot::Command{})));
   CHECK(step.track_speed_mps[0] < 0);
   CHECK(step.track_speed_mps[1] == -step.track_speed_mps[0]);
 }

@@ -321,7 +321,7 @@ TEST_CASE("Wrong arguments are refused") {
   CHECK(hrt_get_picture(nullptr, HRT_PICTURE_RGB, nullptr, 1, 1, &picture) == HRT_E_ARGUMENT);
   CHECK(hrt_get_picture(std::string(64, 'x').c_str(), HRT_PICTURE_RGB, room, sizeof room, 1, &picture) ==
         HRT_E_ARGUMENT);
-  CHECK_THAT(hrt_last_error(), Catch::Contains("at most 63 bytes"));
+  CHECK_THAT(hrt_last_error(), Catch::Contains("longer than 63 bytes"));
   for (const double timeout_s : {-1.0, 61.0, std::nan("")}) CHECK(get_rgb(picture, timeout_s) == HRT_E_ARGUMENT);
   hrt_picture zero;
   std::memset(&zero, 0, sizeof zero);

@@ -98,7 +98,7 @@ class Plant {
     pushing = false;
   }
 
-  robot::Command in_force_ = robot::idle_command();
+  robot::Command in_force_;
   std::mt19937 generator_{1};
   std::normal_distribution<double> noise_{0, 1};
 };

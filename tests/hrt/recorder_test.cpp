@@ -93,7 +93,7 @@ TEST_CASE("A disk that stalls for as many cycles as the queue holds costs neithe
   Recorder recorder(recording_in(folder), false);
   // If one add() waited for the disk, it would wait for good: nobody reads before all of them are done.
   constexpr std::uint32_t kRows = Recorder::kQueueRows;
-  for (std::uint32_t i = 0; i < kRows; ++i) recorder.add(state_of(i), robot::idle_command(), 0.01 * i);
+  for (std::uint32_t i = 0; i < kRows; ++i) recorder.add(state_of(i), robot::Command{}, 0.01 * i);
   disk.resume();
   recorder.finish();
   const runs::Run run = disk.written();
@@ -107,7 +107,7 @@ TEST_CASE("A disk that stalls for longer loses rows, still without a wait, and t
   StalledDisk disk(recording_in(folder));
   Recorder recorder(recording_in(folder), false);
   constexpr std::uint32_t kRows = 3 * Recorder::kQueueRows;
-  for (std::uint32_t i = 0; i < kRows; ++i) recorder.add(state_of(i), robot::idle_command(), 0.01 * i);
+  for (std::uint32_t i = 0; i < kRows; ++i) recorder.add(state_of(i), robot::Command{}, 0.01 * i);
   disk.resume();
   std::string said;
   try {
@@ -251,7 +251,7 @@ TEST_CASE("A value that is only held is not recorded as measured") {
   state.posture_rad = {0.1, 0.2, 0.3};
   state.battery_v = 24;
   state.fields = robot::kHasPosture | robot::kHasBattery | robot::held(robot::kHasPosture);
-  const hrt::RecordRow row = hrt::record_row(state, robot::idle_command(), 0);
+  const hrt::RecordRow row = hrt::record_row(state, robot::Command{}, 0);
   const auto cell = [&](const char* name) {
     const auto columns = hrt::record_columns();
     return row[static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin())];

@@ -291,7 +291,7 @@ TEST_CASE("A relay hears from a commander that thinks, and robot time stands sti
   sim::RelayTransport transport;
   transport.open(config_for(relay.address()));
   REQUIRE(transport.wait_state());
-  transport.send(robot::idle_command());
+  transport.send(robot::Command{});
   REQUIRE(transport.wait_state());
   const int before = relay.repeats();
   while (relay.repeats() < before + 3) {
@@ -299,7 +299,7 @@ TEST_CASE("A relay hears from a commander that thinks, and robot time stands sti
     std::this_thread::sleep_for(1ms);
   }
   CHECK(relay.commands().size() == 1);
-  transport.send(robot::idle_command());
+  transport.send(robot::Command{});
   const auto state = transport.wait_state();
   REQUIRE(state);
   CHECK(state->frame == 3);

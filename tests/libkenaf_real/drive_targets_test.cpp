@@ -35,7 +35,7 @@ TEST_CASE("Without a command flippers keep where they are, and tracks stand") {
   const ProcessImage image = image_at(bus, 12345);
   DriveTargets targets(bus, image);
   for (int k = 0; k < 10; ++k) {
-    const DriveOrders orders = targets.step(robot::idle_command(), image, 0.01);
+    const DriveOrders orders = targets.step(robot::Command{}, image, 0.01);
     for (std::size_t i = 0; i < canbus::kDriveCount; ++i) {
       CHECK(orders[i].controlword == kControlEnable);
       CHECK(orders[i].target == (canbus::is_track(i) ? 0 : 12345));
@@ -44,7 +44,7 @@ TEST_CASE("Without a command flippers keep where they are, and tracks stand") {
 }
 
 TEST_CASE("A cyclic track speed is ramped by the description's acceleration, a profile one is the drive's to ramp") {
-  robot::Command command = robot::idle_command();
+  robot::Command command;
   command.track_speed_mps = {0.2, -0.2};
   const canbus::RobotBus cyclic = bus_with(DriveMode::cyclic_velocity, DriveMode::cyclic_position);
   const ProcessImage image = image_at(cyclic, 0);
@@ -68,7 +68,7 @@ TEST_CASE(
   const canbus::RobotBus bus = bus_with(DriveMode::profile_velocity, DriveMode::profile_position);
   const ProcessImage image = image_at(bus, 0);
   DriveTargets targets(bus, image);
-  robot::Command command = robot::idle_command();
+  robot::Command command;
   command.track_speed_mps = {99, -99};
   command.flipper[0] = {robot::JointMode::angle, 6};
   const DriveOrders orders = targets.step(command, image, 0.01);
@@ -85,13 +85,13 @@ TEST_CASE("A flipper that stands outside of its limits stays there until it is t
     const ProcessImage image = image_at(bus, outside);
     DriveTargets targets(bus, image);
     for (int k = 0; k < 10; ++k) {
-      const DriveOrders orders = targets.step(robot::idle_command(), image, 0.01);
+      const DriveOrders orders = targets.step(robot::Command{}, image, 0.01);
       for (std::size_t i = robot::kTrackCount; i < canbus::kDriveCount; ++i) {
         CHECK(orders[i].controlword == kControlEnable);
         CHECK(orders[i].target == outside);
       }
     }
-    robot::Command command = robot::idle_command();
+    robot::Command command;
     command.flipper[0] = {robot::JointMode::angle, 3};
     const DriveOrders orders = targets.step(command, image, 0.01);
     // 15 rad/s^2 in 10 ms: 0.15 rad/s, and so 0.0015 rad; a drive in profile mode has its own ramp

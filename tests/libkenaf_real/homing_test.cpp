@@ -70,7 +70,7 @@ TEST_CASE("Homing is not taken for done by what a drive says of the one before")
     return true;
   };
   robot.open();
-  for (const double angle_rad : robot.run(1, robot::idle_command()).flipper_rad)
+  for (const double angle_rad : robot.run(1, robot::Command{}).flipper_rad)
     CHECK(angle_rad == Approx(-3.14).margin(0.03));
   CHECK(robot.wire.now() > *begun + std::chrono::seconds(6));
 }
@@ -96,7 +96,7 @@ TEST_CASE("A drive that takes the home offset the other way round is named, and 
   }
   RobotOnBus robot(minus.path());
   robot.open();
-  for (const double angle_rad : robot.run(2, robot::idle_command()).flipper_rad)
+  for (const double angle_rad : robot.run(2, robot::Command{}).flipper_rad)
     CHECK(angle_rad == Approx(0.7).margin(1e-3));
 }
 

@@ -70,5 +70,5 @@ TEST_CASE("Currents without the unit that they are in are none") {
     return true;
   };
   robot.open();
-  CHECK((robot.run(1, robot::idle_command()).fields & robot::kHasCurrents) == 0);
+  CHECK((robot.run(1, robot::Command{}).fields & robot::kHasCurrents) == 0);
 }

@@ -80,7 +80,7 @@ TEST_CASE("Drives that hold the robot keep their torque while the next program t
       case End::interface_down:
         robot.wire.go_down("CAN interface 'can0' went down");
         robot.wire.run_until(robot.wire.now() + std::chrono::milliseconds(300));
-        CHECK_THROWS_AS(robot.run(1, robot::idle_command()), hrt::Error);
+        CHECK_THROWS_AS(robot.run(1, robot::Command{}), hrt::Error);
         robot.transport.close();
         robot.wire.come_up();
         break;

@@ -96,7 +96,7 @@ struct RobotOnBus {
 };
 
 inline robot::Command drive_at(double left_mps, double right_mps) {
-  robot::Command command = robot::idle_command();
+  robot::Command command;
   command.track_speed_mps = {left_mps, right_mps};
   return command;
 }

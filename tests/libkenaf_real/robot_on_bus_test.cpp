@@ -21,7 +21,7 @@ TEST_CASE("Opening enables all drives and moves nothing") {
   CHECK(robot.all_are(PowerState::operation_enabled));
   CHECK(robot.plant.state().track_m == std::array<double, 2>{});
   CHECK(robot.plant.state().flipper_rad == std::array<double, 4>{});
-  const robot::State state = robot.run(1, robot::idle_command());
+  const robot::State state = robot.run(1, robot::Command{});
   CHECK(state.frame == 1);  // those of power-up are not the program's
   CHECK((state.fields &
          (robot::kHasPosture | robot::kHasEncoders | robot::kHasFlippers | robot::kHasCurrents | robot::kHasBattery)) ==
@@ -51,7 +51,7 @@ TEST_CASE("Both tracks forward are forward, and as far as their ramp lets them")
 TEST_CASE("A flipper goes to its angle in the time of its trapezoid, the others stay") {
   RobotOnBus robot;
   robot.open();
-  robot::Command command = robot::idle_command();
+  robot::Command command;
   command.flipper[robot::kRearLeft] = {robot::JointMode::angle, 1.0};
   // 1 rad at 1.5 rad/s and 15 rad/s^2: 0.85 / 1.5 + 2 * 0.1 = 0.767 s; the command takes three cycles until the drive
   // has it
@@ -75,7 +75,7 @@ TEST_CASE("Roll, pitch and yaw have the robot's signs") {
   robot.open();
   robot.plant.roll_rad = 0.1;    // left side up
   robot.plant.pitch_rad = -0.2;  // nose up
-  robot::State state = robot.run(2, robot::idle_command());
+  robot::State state = robot.run(2, robot::Command{});
   CHECK(state.posture_rad[0] == Approx(0.1).margin(1e-4));  // 0.01 degrees of resolution
   CHECK(state.posture_rad[1] == Approx(-0.2).margin(1e-4));
   robot.plant.roll_rad = robot.plant.pitch_rad = 0;
@@ -151,7 +151,7 @@ TEST_CASE("A bus that has a master already is refused") {
 TEST_CASE("An interrupt ends the wait for a state") {
   RobotOnBus robot;
   robot.open();
-  robot.run(3, robot::idle_command());
+  robot.run(3, robot::Command{});
   robot.transport.interrupt();
   CHECK_FALSE(robot.transport.wait_state());
 }
@@ -160,7 +160,7 @@ TEST_CASE("A robot with cyclic modes drives the same way, on the master's ramps"
   const ChangedRobot cyclic({{"profile velocity", "cyclic velocity"}, {"profile position", "cyclic position"}});
   RobotOnBus robot(cyclic.path());
   robot.open();
-  const robot::State before = robot.run(1, robot::idle_command());
+  const robot::State before = robot.run(1, robot::Command{});
   robot::Command command = drive_at(0.2, 0.2);
   command.flipper[robot::kFrontRight] = {robot::JointMode::angle, -0.8};
   const robot::State after = robot.run(101, command);
@@ -177,9 +177,9 @@ TEST_CASE("Flippers without absolute encoders are homed where they stand, or at 
   RobotOnBus robot(here.path());
   robot.open();
   // the arm stood at what the description calls 0.7 rad, wherever the encoder began
-  const robot::State state = robot.run(2, robot::idle_command());
+  const robot::State state = robot.run(2, robot::Command{});
   for (const double angle_rad : state.flipper_rad) CHECK(angle_rad == Approx(0.7).margin(1e-3));
-  robot::Command command = robot::idle_command();
+  robot::Command command;
   command.flipper.fill({robot::JointMode::angle, 0.2});
   CHECK(robot.run(150, command).flipper_rad[robot::kFrontLeft] == Approx(0.2).margin(1e-3));
 }
@@ -187,11 +187,11 @@ TEST_CASE("Flippers without absolute encoders are homed where they stand, or at 
 TEST_CASE("A program that answers too late is told so, cycle by cycle") {
   RobotOnBus robot;
   robot.open();
-  robot.run(5, robot::idle_command());
+  robot.run(5, robot::Command{});
   (void)robot.transport.wait_state();
   robot.wire.run_until(robot.wire.now() + std::chrono::milliseconds(25));  // two SYNCs went by
-  robot.transport.send(robot::idle_command());
-  const robot::State state = robot.run(2, robot::idle_command());
+  robot.transport.send(robot::Command{});
+  const robot::State state = robot.run(2, robot::Command{});
   CHECK(state.late_commands == 1);
 }
 
@@ -205,16 +205,16 @@ TEST_CASE("What was late while the robot was opened is not counted as the progra
   };
   robot.open();
   CHECK(was_held_up);
-  CHECK(robot.run(2, robot::idle_command()).late_commands == 0);
+  CHECK(robot.run(2, robot::Command{}).late_commands == 0);
 }
 
 TEST_CASE("A SYNC that stops is a link that is lost") {
   RobotOnBus robot;
   robot.open();
-  robot.run(5, robot::idle_command());
+  robot.run(5, robot::Command{});
   robot.wire.stop_sync();
   try {
-    robot.run(20, robot::idle_command());
+    robot.run(20, robot::Command{});
     FAIL("it went on without SYNC");
   } catch (const hrt::Error& error) {
     CHECK(error.code() == HRT_E_LINK);
@@ -228,13 +228,13 @@ TEST_CASE("A track_gauge_mm that is not the described robot's is warned of") {
     RobotOnBus robot;
     robot.config.track_gauge_mm = gauge_mm;
     robot.open();
-    robot.run(2, robot::idle_command());
+    robot.run(2, robot::Command{});
     CHECK_THAT(robot.transport.warning(), Catch::StartsWith(says));
     CHECK(robot.transport.warning().empty() == (std::string(says) == ""));
     if (robot.transport.warning().empty()) continue;
     CHECK_THAT(robot.transport.warning(), Catch::Contains("200 mm"));
     robot.wire.inject({candrives::FaultKind::silent, 7});
-    robot.run(15, robot::idle_command());
+    robot.run(15, robot::Command{});
     CHECK_THAT(robot.transport.warning(),
                Catch::StartsWith("inclinometer (node 7) is silent") && Catch::Contains("track_gauge_mm is 250"));
   }
@@ -263,7 +263,7 @@ TEST_CASE("A period that the bus cannot carry, or that is too long to notice a d
     RobotOnBus robot;
     robot.config.period_s = period_s;
     robot.open();
-    CHECK(robot.run(10, robot::idle_command()).late_commands == 0);
+    CHECK(robot.run(10, robot::Command{}).late_commands == 0);
   }
 }
 

@@ -13,7 +13,7 @@ constexpr double kStep_s = 0.001, kGauge_m = 0.4;
 
 CommandChannel channel_with(const Effects& effects, std::uint64_t seed = 1, const char* robot = "a") {
   CommandChannel channel(effects, seed, robot, kGauge_m, kStep_s);
-  channel.restart({});
+  channel.restart(drive(0, 0));
   return channel;
 }
 
@@ -59,7 +59,7 @@ TEST_CASE("A flipper that is kept has the command of before, the tracks have the
   command.flipper[robot::kFrontLeft] = {robot::JointMode::speed, 0.8};
   channel.send(command);
   (void)channel.step();
-  command = robot::idle_command();
+  command = robot::Command{};
   command.flipper[robot::kRearRight] = {robot::JointMode::angle, 0.25};
   channel.send(command);
   const robot::Command& now = channel.step();

@@ -51,9 +51,9 @@ TEST_CASE("Every line is read") {
 }
 
 TEST_CASE("What is none is refused with its line") {
-  CHECK(refusal("press w\njump\n") == "line 2: 'jump' is none of press, hold, wait, say and no time");
-  CHECK(refusal("press y") == "line 1: the key 'y' means nothing");
-  CHECK(refusal("hold 3 for 1") == "line 1: the key '3' is not one to hold");
+  CHECK(refusal("press w\njump\n") == "line 2: 'jump' is neither press, hold, wait or say nor a time");
+  CHECK(refusal("press y") == "line 1: the key 'y' has no meaning");
+  CHECK(refusal("hold 3 for 1") == "line 1: the key '3' cannot be held");
   CHECK(refusal("hold w") == "line 1: 'for' or 'until' is missing");
   CHECK(refusal("hold w until z_mm > 1") == "line 1: 'within' is missing");
   CHECK(refusal("wait until height > 1 within 2") == "line 1: there is no value 'height'");

@@ -48,7 +48,7 @@ physics::World driven_world(const Options& options) {
   const physics::RobotId robot = world.add_robot(physics::load_robot(options.robot), "R1", X_WB);
   robot::Command command;
   command.track_speed_mps.fill(options.track_mps);
-  for (robot::JointCommand& flipper : command.flipper) flipper.value = options.flippers_rad;
+  command.flipper.fill({robot::JointMode::angle, options.flippers_rad});
   world.set_command(robot, command);
   const auto& packages = world.robot_description(robot).mission_packages;
   const std::size_t links = packages.empty() ? 0 : packages.front().links.size();

@@ -74,7 +74,7 @@ TEST_CASE("Homing methods 17 and 18: onto the switch, slowly back, home where it
 }
 
 TEST_CASE("Homing ends with an error where the motor is held up, and stops where it is told to", "[homing]") {
-  SECTION("told to: bit 4 goes") {
+  SECTION("on command: bit 4 goes") {
     EasyRobot robot(IdealPlant(), with_homing());
     begin_homing(robot, 3, 17, 0);
     robot.wait(200);

@@ -59,25 +59,25 @@ TEST_CASE("What is no line is refused in words that quote it") {
   const auto refuses = [](const std::string& line, const std::string& part) {
     CHECK_THROWS_WITH(parse_candump_line(line), Catch::Contains(part));
   };
-  refuses("", "no time");
-  refuses("1436509052.249713 vcan0 123#", "no time");
-  refuses("(12) vcan0 123#", "no time");
-  refuses("(-1.5) vcan0 123#", "no time");
-  refuses("(99999999999.5) vcan0 123#", "no time");
-  refuses("(9999999999.5) vcan0 123#", "no time");  // 64 bits of nanoseconds end in 2262
+  refuses("", "not a time");
+  refuses("1436509052.249713 vcan0 123#", "not a time");
+  refuses("(12) vcan0 123#", "not a time");
+  refuses("(-1.5) vcan0 123#", "not a time");
+  refuses("(99999999999.5) vcan0 123#", "not a time");
+  refuses("(9999999999.5) vcan0 123#", "not a time");  // 64 bits of nanoseconds end in 2262
   refuses("(1.5)", "not the name of an interface");
-  refuses("(1.5) vcan0", "no frame");
-  refuses("(1.5) vcan0 123", "no frame");
+  refuses("(1.5) vcan0", "not a frame");
+  refuses("(1.5) vcan0 123", "not a frame");
   refuses("(1.5) vcan0 12#00", "\"12\" is not an identifier");
   refuses("(1.5) vcan0 800#00", "\"800\" is not an identifier");
   refuses("(1.5) vcan0 45678901#00", "not an identifier");
   refuses("(1.5) vcan0 123#1", "\"1\" is not frame data");
-  refuses("(1.5) vcan0 123#11.", "no data");
-  refuses("(1.5) vcan0 123#112233445566778899", "no data");
-  refuses("(1.5) vcan0 123#R9", "no data");
-  refuses("(1.5) vcan0 123##", "no data");
-  refuses("(1.5) vcan0 123##1" + std::string(130, '0'), "no data");
-  refuses("(1.5) vcan0 123#11_E", "no data");
-  refuses("(1.5) vcan0 20000004#R", "no data");
+  refuses("(1.5) vcan0 123#11.", "not frame data");
+  refuses("(1.5) vcan0 123#112233445566778899", "not frame data");
+  refuses("(1.5) vcan0 123#R9", "not frame data");
+  refuses("(1.5) vcan0 123##", "not frame data");
+  refuses("(1.5) vcan0 123##1" + std::string(130, '0'), "not frame data");
+  refuses("(1.5) vcan0 123#11_E", "not frame data");
+  refuses("(1.5) vcan0 20000004#R", "not frame data");
   refuses("(1.5) vcan0 123#11 X", "follows the frame");
 }

@@ -50,7 +50,7 @@ grep -vE ' vcan0 (000#820[1-8]|77F#05)$' sent && fail "4: it has sent the frames
 
 export KENAF_CAN_TIMEOUT_S=3
 play_starts 1 2 3 4 6 8
-expect 5 vcan0 HRT_E_DEVICE "as: flipper rear left (node 5), inclinometer (node 7);"
+expect 5 vcan0 HRT_E_DEVICE ": flipper rear left (node 5), inclinometer (node 7);"
 stop
 
 # An error frame, as a driver gives it to those who ask: CAN_ERR_FLAG with CAN_ERR_BUSOFF (<linux/can/error.h>).

@@ -113,8 +113,9 @@ moves = [
 TEST_CASE("What is wrong in a file of own effects is said with file, line and column") {
   using Catch::StartsWith;
   CHECK_THAT(error_with("name = \"load_behind\"\n", ""), StartsWith("own.toml:1:1: effect[0].name is missing"));
-  CHECK_THAT(error_with("load_behind", "load behind"), StartsWith("own.toml:2:8: effect[0].name must be of"));
-  CHECK_THAT(error_with("load_behind", "mass"), StartsWith("own.toml:2:8: effect[0].name is the name of an effect"));
+  CHECK_THAT(error_with("load_behind", "load behind"), StartsWith("own.toml:2:8: effect[0].name must consist of"));
+  CHECK_THAT(error_with("load_behind", "mass"),
+             StartsWith("own.toml:2:8: effect[0].name is already the name of an effect"));
   CHECK_THAT(error_with("\"body\"", "\"wheels\""),
              StartsWith("own.toml:4:9: effect[0].stage is \"wheels\", but must be one of command, drive, body"));
   CHECK_THAT(error_with("\"kg\"", "\"\""), StartsWith("own.toml:6:8: effect[0].unit must be one line"));

@@ -151,7 +151,7 @@ TEST_CASE("What the catalogue does not have is unknown, none is missed, a name i
   }
 }
 
-TEST_CASE("A name is wrong where it is not hidden, also in addition to right ones; a set is no name") {
+TEST_CASE("A name is wrong where it is not hidden, also in addition to right ones, and a set is no name") {
   const CasePlan single = plan_of(Stratum::single, {kMass});
   CHECK_FALSE(judge(single, reported("named", {"mass"})).names_wrong);
   CHECK(judge(single, reported("named", {"mass", "com_up"})).names_wrong);

@@ -264,7 +264,7 @@ TEST_CASE("A motion capture's columns: angles, quaternions in any order, millime
   // A row that lacks a part is no measurement.
   CHECK(read("t_s,x_m,y_m,yaw_rad\n0,0,0,0\n1,,0,0\n2,1,1,1\n3,1,1,\n").poses.size() == 2);
 
-  CHECK_THROWS_WITH(read("t_s,x_m,y_m\n0,0,0\n1,1,1\n"), Catch::Contains("m.csv:1:1: neither yaw_rad nor qx"));
+  CHECK_THROWS_WITH(read("t_s,x_m,y_m\n0,0,0\n1,1,1\n"), Catch::Contains("m.csv:1:1: contains neither yaw_rad nor qx"));
   CHECK_THROWS_WITH(read("t_s,x_m,yaw_rad\n0,0,0\n1,1,1\n"), Catch::Contains("no column y_m"));
   CHECK_THROWS_WITH(read("t_s,x_m,x_mm,y_m,yaw_rad\n0,0,0,0,0\n"), Catch::Contains("both x_m and x_mm"));
   CHECK_THROWS_WITH(read("t_s,x_m,y_m,qx,qy,qz,qw\n0,0,0,0,0,0,1\n1,0,0,0,0,0,0\n"),

@@ -301,7 +301,7 @@ TEST_CASE("Dead encoders, frozen poses and commands that were not recorded") {
   const auto frozen = [](const std::vector<std::string>& names) {
     return found(changed(arc(), names, [](double) { return 0.5; }));
   };
-  CHECK_THAT(frozen({"track_left_mps"}), Catch::Contains("run.csv: track_left_mps: never changes, while") &&
+  CHECK_THAT(frozen({"track_left_mps"}), Catch::Contains("run.csv: track_left_mps: never changes, although") &&
                                              Catch::Contains("the encoder is dead"));
   CHECK_THAT(frozen({"x_m", "y_m", "z_m", "yaw_rad"}), Catch::Contains("run.csv: x_m: never changes, nor does y_m"));
   CHECK_THAT(frozen({"yaw_rad"}), Catch::Contains("the heading is not measured"));
@@ -318,10 +318,7 @@ TEST_CASE("Dead encoders, frozen poses and commands that were not recorded") {
   CHECK_THAT(found(repeated), Catch::StartsWith("warning: run.csv:402: x_m: is constant to the last digit for 1.99 s"));
 }
 
-TEST_CASE(
-    "A column that repeats each value until the next one came is reported with the duration, and not whole counts of a "
-    "live "
-    "sensor") {
+TEST_CASE("Held values are reported with their duration, the whole counts of a live sensor are not") {
   const auto held = [](runs::Run run, const std::string& name, std::size_t rows) {
     std::vector<double>& values = column(run, name);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = values[i - i % rows];
