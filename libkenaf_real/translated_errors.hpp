@@ -1,5 +1,5 @@
-// What the rooms below libkenaf_real throw, as the hrt::Error that a program is told: the one place that chooses its
-// code.
+// Translates what the rooms below libkenaf_real throw into the hrt::Error that a program sees. No
+// other place chooses its code.
 //
 //   DescriptionError  HRT_E_CONFIG   the robot's file, with line and column
 //   NoBus             HRT_E_DEVICE   there is no such CAN interface, or it is down

@@ -18,7 +18,7 @@ struct JointCommand {
   bool operator==(const JointCommand&) const = default;
 };
 
-// What the robot shall do from its next cycle on, on a bus, in a datagram and in the simulator alike. Absolute: it
+// The command for the robot from its next cycle on, on a bus, in a datagram and in the simulator alike. Absolute: it
 // holds until the next one. A Command that nobody filled in stops the tracks and leaves the flippers as they are.
 struct Command {
   std::array<double, kTrackCount> track_speed_mps{};  // surface speed of each track relative to the body, + = forward

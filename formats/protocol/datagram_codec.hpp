@@ -1,7 +1,7 @@
-// What the project's binary datagrams have in common: header, fields, and what is wrong with bytes that are none. A
-// protocol (relay_datagram.hpp; the operator's link, teleop/link.hpp) has its messages as plain structs and lists each
-// one's fields in one function, `walk`, which writes with a DatagramWriter and reads with a DatagramReader. So the two
-// cannot disagree, and there is one way to write each message.
+// Header, fields and decode errors that the project's binary datagrams share. A protocol (relay_datagram.hpp; the
+// operator's link, teleop/link.hpp) has its messages as plain structs and lists each one's fields in one function,
+// `walk`, which writes with a DatagramWriter and reads with a DatagramReader. So the two cannot disagree, and there is
+// one way to write each message.
 //
 // On the wire everything is little-endian without padding, numbers are IEEE 754 doubles:
 //   u32 magic, u8 version, u8 kind, u16 length of the whole datagram, u64 session; then the fields of the kind
@@ -40,7 +40,7 @@ enum class DecodeError : std::uint8_t {
 // For a log line, such as "a datagram cut short", "not a datagram of this protocol (bad magic)".
 std::string_view describe(DecodeError error);
 
-// What all datagrams of a protocol begin with.
+// The beginning of every datagram of a protocol.
 struct DatagramProtocol {
   std::uint32_t magic;
   std::uint8_t version;
@@ -62,7 +62,7 @@ class DatagramWriter {
   }
   void counter(std::uint32_t value) { integer(value); }
   void number(double value) { integer(std::bit_cast<std::uint64_t>(value)); }
-  // What is beyond the limit is written as the limit, NaN as 0: what is sent can be read.
+  // A number beyond the limit is written as the limit, NaN as 0, so that the receiver can read it.
   void number(double value, double limit);
   template <std::size_t n>
   void numbers(const std::array<double, n>& values, auto... limit) {
@@ -138,7 +138,7 @@ class DatagramReader {
   void text_and_length(std::span<char> characters, std::size_t& length);
   // The same, with the number first.
   void length_and_text(std::size_t& length, std::span<char> characters);
-  // What else a protocol asks of a field that was read.
+  // A further condition of the protocol on a field that was read.
   void check(bool fine) {
     if (!fine) fail(DecodeError::bad_value);
   }

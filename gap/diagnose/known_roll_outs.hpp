@@ -16,7 +16,7 @@
 
 namespace kenaf::gap::diagnose {
 
-// What drives the simulated robot.
+// The source of motion of the simulated robot.
 enum class Replay { commands, belts };
 
 struct RollOut {
