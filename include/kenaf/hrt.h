@@ -145,25 +145,25 @@ typedef struct hrt_config {
   double connect_timeout_s; /* libkenaf_sim: how long init waits for the robot, wall clock: 0.05 to 60, default 3 */
 
   /* Motions: hrt_go_forward and hrt_turning. */
-  double max_speed_mmps;            /* 1 to 2000, default 200 */
-  double acceleration_mmps2;        /* 10 to 10000, default 400; also the deceleration */
-  double max_turn_degps;            /* 1 to 360, default 45 */
-  double turn_acceleration_degps2;  /* 10 to 3600, default 120 */
-  double distance_tolerance_mm;     /* 0.1 to 100, default 1 */
-  double angle_tolerance_deg;       /* 0.05 to 10, default 0.3 */
-  double stuck_time_s;              /* a motion without progress for this long is stuck, robot time: 0.1 to 60,
-                                       default 1 */
-  double stuck_current_a;           /* a motion with more current in a track for stuck_time_s is stuck too: 0 to 1000,
-                                       default 0 = off */
-  double track_gauge_mm;            /* between the tracks' centre lines: 50 to 5000, default 200 */
-  double turn_efficiency;           /* the body's turn over the one that the tracks' travel would give without slip:
-                                       0.1 to 2, default 1. Used only without an orientation sensor. */
+  double max_speed_mmps;           /* 1 to 2000, default 200 */
+  double acceleration_mmps2;       /* 10 to 10000, default 400; also the deceleration */
+  double max_turn_degps;           /* 1 to 360, default 45 */
+  double turn_acceleration_degps2; /* 10 to 3600, default 120 */
+  double distance_tolerance_mm;    /* 0.1 to 100, default 1 */
+  double angle_tolerance_deg;      /* 0.05 to 10, default 0.3 */
+  double stuck_time_s;             /* a motion without progress for this long is stuck, robot time: 0.1 to 60,
+                                      default 1 */
+  double stuck_current_a;          /* a motion with more current in a track for stuck_time_s is stuck too: 0 to 1000,
+                                      default 0 = off */
+  double track_gauge_mm;           /* between the tracks' centre lines: 50 to 5000, default 200 */
+  double turn_efficiency;          /* the body's turn over the one that the tracks' travel would give without slip:
+                                      0.1 to 2, default 1. Used only without an orientation sensor. */
 
   /* libkenaf_sim. */
-  double hold_s;          /* how long lock step lets a program work or sleep, see Lock step: 0 to 0.2, default 0.05 */
-  int32_t lockstep;       /* 1: robot time waits for this program (default); 0: it does not */
-  int32_t reset_robot;    /* 1: init returns the robot to its start pose (default); 0: it stays where it is */
-  char relay[128];        /* HOST:PORT of kenaf-relayd, default 127.0.0.1:45454 */
+  double hold_s;       /* how long lock step lets a program work or sleep, see Lock step: 0 to 0.2, default 0.05 */
+  int32_t lockstep;    /* 1: robot time waits for this program (default); 0: it does not */
+  int32_t reset_robot; /* 1: init returns the robot to its start pose (default); 0: it stays where it is */
+  char relay[128];     /* HOST:PORT of kenaf-relayd, default 127.0.0.1:45454 */
 
   /* libkenaf_real. */
   double can_timeout_s;   /* how long init waits until all nodes of the bus have started, wall clock: 0.05 to 60,
@@ -173,8 +173,8 @@ typedef struct hrt_config {
                              the path of a TOML file; default "kenaf" */
 
   /* Recording. */
-  char record[1024];      /* a file: hrt_kenaf_init starts a recording into it, see hrt_record_start; default "": no
-                             recording */
+  char record[1024]; /* a file: hrt_kenaf_init starts a recording into it, see hrt_record_start; default "": no
+                        recording */
 
   /* libkenaf_sim: pictures. */
   char camera_server[128]; /* HOST:PORT of the world server's cameras, default 127.0.0.1:5003; see hrt_get_picture */
@@ -309,12 +309,12 @@ enum {
 
 /* State of the robot as of one cycle. */
 typedef struct hrt_state {
-  uint32_t size;     /* sizeof(hrt_state) of the program, so that the struct can grow: see hrt_state_init() */
-  uint32_t valid;    /* HRT_HAS_... */
-  uint32_t activity; /* HRT_MOTION_ACTIVE ... */
+  uint32_t size;               /* sizeof(hrt_state) of the program, so that the struct can grow: see hrt_state_init() */
+  uint32_t valid;              /* HRT_HAS_... */
+  uint32_t activity;           /* HRT_MOTION_ACTIVE ... */
   uint32_t flippers_commanded; /* bit i: commanded_flipper_deg[i] was commanded since init */
-  uint64_t cycle;    /* number of the cycle, 1 = the first one after init */
-  double time_s;     /* robot time of the measurement */
+  uint64_t cycle;              /* number of the cycle, 1 = the first one after init */
+  double time_s;               /* robot time of the measurement */
 
   double roll_deg, pitch_deg, yaw_deg; /* body in world, each in (-180, 180]; yaw is 0 where the sensor has its zero:
                                           to hold a heading, use odometry_yaw_deg */

@@ -1,6 +1,7 @@
 /* Holds the kernel's CAN sockets to what a CANopen master needs of them: can_probe INTERFACE
  *
- * 1. CAN_RAW_FILTER lets through the identifiers asked for and no others, with standard and extended ones distinguished.
+ * 1. CAN_RAW_FILTER lets through the identifiers asked for and no others, with standard and extended ones
+ * distinguished.
  * 2. CAN_RAW_ERR_FILTER lets error frames through to those who ask, and to nobody else.
  * 3. CAN_BCM sends a frame cyclically, until it is stopped.
  * 4. CAN_BCM reports a frame whose content changed, and one that stays away.
