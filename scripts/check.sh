@@ -16,7 +16,7 @@ esac
 scripts/install-dependencies.sh
 
 # a source package has no history: then all that is there is looked at
-all_sources() { find . -path ./build -prune -o \( -name '*.cpp' -o -name '*.hpp' -o -name '*.c' \) -print; }
+all_sources() { find . -path ./build -prune -o \( -name '*.cpp' -o -name '*.hpp' -o -name '*.c' -o -name '*.h' \) -print; }
 if ! all_sources | xargs clang-format --dry-run --Werror; then
   echo "check: these files are not formatted; clang-format -i FILE does it" >&2
   exit 1
