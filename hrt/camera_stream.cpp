@@ -28,7 +28,7 @@ std::shared_ptr<const CameraPicture> CameraStream::wait(std::uint64_t had, Clock
   wanted_until_ = std::max(now, until) + kIdleAfter;
   wanted_.notify_one();
   changed_.wait_until(lock, until, [&] { return failure_ || is_there(); });
-  if (failure_) throw Error(failure_->code, failure_->text);
+  if (failure_) throw failure_->error();
   wanted_until_ = std::max(wanted_until_, Clock::now() + kIdleAfter);
   return is_there() ? newest_ : nullptr;
 }

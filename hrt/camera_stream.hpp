@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "hrt/camera.hpp"
+#include "hrt/error.hpp"
 #include "kenaf/hrt.h"
 
 namespace kenaf::hrt {
@@ -37,11 +38,6 @@ class CameraStream {
   void close();
 
  private:
-  // The contents of an Error: copies of one Error share its text, so each waiting thread throws its own.
-  struct Failure {
-    int code;
-    std::string text;
-  };
   void run();
   void fetch();
   bool wait_until_wanted();  // false: closed

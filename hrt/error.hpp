@@ -1,5 +1,5 @@
 // How a failure propagates inside the library: thrown as an Error, turned into a return code at the C interface
-// (hrt.cpp) and nowhere else. A thread of the library keeps the Error that ended it, for the next call to throw.
+// (hrt.cpp) and nowhere else. A thread of the library keeps the Failure that ended it, for the next calls to throw.
 //
 // Thread safety: a value.
 #pragma once
@@ -19,6 +19,14 @@ class Error : public std::runtime_error {
 
  private:
   int code_;
+};
+
+// An Error that other threads throw later. Its text is its own, while copies of an exception share one.
+struct Failure {
+  int code;
+  std::string text;
+
+  Error error() const { return {code, text}; }
 };
 
 }  // namespace kenaf::hrt

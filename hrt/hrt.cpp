@@ -91,7 +91,7 @@ void throw_if(const std::exception_ptr& failure) {
   if (failure) std::rethrow_exception(failure);
 }
 void throw_if_lost(const Snapshot& snapshot) {
-  if (snapshot.lost) throw *snapshot.lost;
+  if (snapshot.lost) throw snapshot.lost->error();
 }
 
 struct Opened {

@@ -202,7 +202,7 @@ void Robot::end_calls(const std::function<bool(const Call&)>& which, int code, c
 
 std::unique_lock<std::mutex> Robot::lock_open() {
   std::unique_lock lock(mutex_);
-  if (failure_) throw *failure_;
+  if (failure_) throw failure_->error();
   last_call_t_s_ = estimate_.t_s;
   return lock;
 }
@@ -320,8 +320,8 @@ void Robot::close() {
   {
     const std::lock_guard lock(mutex_);
     closing_ = true;
-    failure_ = Error(HRT_E_CLOSED, "hrt_close() was called");
-    end_calls([](const Call&) { return true; }, HRT_E_CLOSED, failure_->what());
+    failure_ = Failure{HRT_E_CLOSED, "hrt_close() was called"};
+    end_calls([](const Call&) { return true; }, HRT_E_CLOSED, failure_->text);
     program_acted_.notify_one();
   }
   std::optional<Error> not_stopped;
@@ -367,7 +367,7 @@ void Robot::run(robot::State state) {
 
 void Robot::fail(int code, const std::string& text) {
   const std::lock_guard lock(mutex_);
-  if (!failure_) failure_ = Error(code, text);
+  if (!failure_) failure_ = Failure{code, text};
   end_calls([](const Call&) { return true; }, code, text);
 }
 

@@ -38,7 +38,7 @@ struct Snapshot {
   double round_trip_s = 0;
   std::string warning;
   bool motion_active = false, paused = false, stopped_by_silence = false, recording = false, lockstep = false;
-  std::optional<Error> lost;  // why, if the robot is lost or closed
+  std::optional<Failure> lost;  // why, if the robot is lost or closed
 };
 
 // Thread safety: every function may be called from any thread. All but snapshot(), is_lost() and robot_time_at() throw
@@ -130,7 +130,7 @@ class Robot {
 
   mutable std::mutex mutex_;  // guards all members below
   std::condition_variable call_ended_, program_acted_;
-  std::optional<Error> failure_;  // link lost or closed: set once
+  std::optional<Failure> failure_;  // link lost or closed: set once
   bool closing_ = false;
   robot::State measured_{};
   std::chrono::steady_clock::time_point measured_at_;  // when it was received
