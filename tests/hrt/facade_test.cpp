@@ -334,8 +334,8 @@ TEST_CASE("A robot that is being closed asks its transport nothing more") {
   robot.close();
   snapshot = robot.snapshot();
   REQUIRE(snapshot.lost);
-  CHECK(snapshot.lost->code() == HRT_E_CLOSED);
-  CHECK(std::string(snapshot.lost->what()) == "hrt_close() was called");
+  CHECK(snapshot.lost->code == HRT_E_CLOSED);
+  CHECK(snapshot.lost->text == "hrt_close() was called");
   CHECK(snapshot.round_trip_s == 0);
   CHECK(snapshot.measured.frame > 0);
 }
