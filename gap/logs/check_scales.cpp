@@ -10,7 +10,8 @@ namespace {
 
 // Chosen. Least correlation of quantities that go together; least factors that no slip, gain or gear explains, so that
 // they come from a wrong unit.
-constexpr double kTogether = 0.8, kLengthFactor = 20, kAngleFactor = 15;
+constexpr double kTogether = 0.8, kLengthFactor = 20, kAngleFactor = 15,
+                 kYawFactor = 30;  // smaller ones: check_factors()
 constexpr double kSameWay = 1.4;
 constexpr double kLeastMove_m = 0.1, kLeastTurn_rad = 0.2;
 constexpr double kDegreesInARadian = 180 / std::numbers::pi;
@@ -100,11 +101,11 @@ void RunChecks::check_same_length(const std::string& name, const std::string& ot
 }
 
 void RunChecks::check_same_angle(const std::string& name, const std::string& other,
-                                 const std::optional<Relation>& relation, double enough) {
+                                 const std::optional<Relation>& relation, double enough, double least_factor) {
   if (!relation || relation->correlation < kTogether || std::min(relation->first, relation->second) < enough) return;
   if (found(name) || found(other)) return;
-  const bool first_large = relation->ratio > kAngleFactor;
-  if (!first_large && relation->ratio > 1 / kAngleFactor) return;
+  const bool first_large = relation->ratio > least_factor;
+  if (!first_large && relation->ratio > 1 / least_factor) return;
   const double factor = first_large ? relation->ratio : 1 / relation->ratio;
   add(Severity::refuse, first_large ? name : other,
       fmt::format("looks like degrees: it is {:.3g} times what {} says; columns are in radians", factor,
@@ -215,7 +216,7 @@ void RunChecks::check_scales() {
   for (const std::string_view flipper : robot::kFlipperNames) {
     const std::string angle = fmt::format("flipper_{}_rad", flipper), command = "cmd_" + angle;
     const auto relation = relate_values(command, angle);
-    check_same_angle(command, angle, relation, kLeastTurn_rad);
+    check_same_angle(command, angle, relation, kLeastTurn_rad, kAngleFactor);
     // A servo too weak for its load lets the arm go the other way, too, but not as far.
     if (relation && std::abs(std::log(relation->ratio)) > std::log(kSameWay)) continue;
     check_turned_sign(angle, command, relation, kLeastTurn_rad, kLeastTurn_rad,
@@ -226,7 +227,7 @@ void RunChecks::check_scales() {
   for (const auto& [angle, axis] : {std::pair{"yaw_rad", "z"}, {"pitch_rad", "y"}, {"roll_rad", "x"}}) {
     const std::string gyro = std::string("gyro_") + axis + "_radps";
     const auto relation = relate(upright_angle(angle), rate(gyro));
-    check_same_angle(angle, gyro, relation, kLeastTurn_rad / 5);
+    check_same_angle(angle, gyro, relation, kLeastTurn_rad / 5, angle[0] == 'y' ? kYawFactor : kAngleFactor);
     check_turned_sign(angle, gyro, relation, kLeastTurn_rad, kLeastTurn_rad,
                       "x forward, y left, z up: roll is positive right side down, pitch nose down, yaw to the left");
   }

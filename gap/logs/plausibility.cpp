@@ -53,6 +53,7 @@ std::vector<Finding> check_run(const runs::Run& run, const std::string& file, co
   if (any_refused(findings)) return findings;  // with false times all rates are false
   checks.check_ranges();
   checks.check_scales();
+  checks.check_factors();
   checks.check_commands();
   checks.check_constants();
   checks.check_held();

@@ -7,11 +7,16 @@
 // have none.
 //
 // Units and signs are judged where two quantities go together (correlation of their mean rates over 0.2 s at least 0.8)
-// and differ by more than slip and gears explain: 20 times for lengths, 15 for angles. Euler angles count only within 1
-// rad of upright. A pose's sign against the tracks is refused if it is wrong on level ground too (roll and pitch below
-// 0.1 rad, where measured) and the pose goes 0.5 to 1.25 times as far (yaw: 0.15 to 1.25 times, by the robot's gauge).
-// A yaw that never changes is refused if the gyro, or without one the tracks, show a turn. A live sensor in whole
-// counts is not taken for a held one: it changes in each row while its quantity moves by more than four counts.
+// and differ by more than slip and gears explain: 20 times for lengths, 15 for angles. Smaller factors are judged where
+// both go in proportion (scale_factor.hpp, is_certain()): travel over speed of a track beyond 0.8 to 1.25, yaw over
+// gyro beyond 1.5 times, commands over speeds of both tracks beyond 2.1 times, and below that only if the drives follow
+// in proportion or the factor is a unit's; the pose's path on level ground over the tracks' beyond 0.4 to 1.5; turns
+// over those of belts without slip beyond 0.08 to 1.5. Factors that are far beyond, or a unit's, are refused, others
+// warned of. The column that others contradict is named, or both. Euler angles count only within 1 rad of upright. A
+// pose's sign against the tracks is refused if it is wrong on level ground too (roll and pitch below 0.1 rad, where
+// measured) and the pose goes 0.5 to 1.25 times as far (yaw: 0.15 to 1.25 times, by the robot's gauge). A yaw that
+// never changes is refused if the gyro, or without one the tracks, show a turn. A live sensor in whole counts is not
+// taken for a held one: it changes in each row while its quantity moves by more than four counts.
 //
 // Thread safety: pure functions.
 #pragma once

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "gap/logs/course.hpp"
 #include "gap/logs/plausibility.hpp"
@@ -29,9 +30,10 @@ class RunChecks {
   RunChecks(const runs::Run& run, std::string file, const physics::RobotDescription* robot)
       : run_(run), file_(std::move(file)), robot_(robot) {}
 
-  void check_clock();   // must precede check_scales(): false times falsify all rates
-  void check_scales();  // units and signs of quantities that go together
-  void check_ranges();  // impossible values
+  void check_clock();    // must precede check_scales(): false times falsify all rates
+  void check_scales();   // units and signs of quantities that go together
+  void check_factors();  // smaller factors between them; after check_scales()
+  void check_ranges();   // impossible values
   void check_commands();
   void check_constants();
   void check_held();
@@ -68,7 +70,7 @@ class RunChecks {
 
   void check_same_length(const std::string& name, const std::string& other, const std::optional<Relation>& relation);
   void check_same_angle(const std::string& name, const std::string& other, const std::optional<Relation>& relation,
-                        double enough);
+                        double enough, double least_factor);
   void check_turned_sign(const std::string& name, const std::string& other, const std::optional<Relation>& relation,
                          double enough_first, double enough_second, const std::string& what_to_do);
   void check_pose_against_tracks();
@@ -77,6 +79,13 @@ class RunChecks {
   void check_against_tracks(const std::string& name, const std::optional<Relation>& relation,
                             const std::optional<Relation>& on_level, double enough, double least_ratio,
                             double most_ratio, const std::string& what_to_do);
+  // Each compares two quantities and names the one that the others contradict, or both.
+  void check_travel_factor();    // travel against speed of a track
+  void check_command_factor();   // commands against speeds
+  void check_distance_factor();  // tracks against the pose's path
+  void check_gyro_factor();      // gyro against yaw
+  void check_turn_factor();      // tracks against turns of the body
+  std::optional<double> sprocket_radius_m() const;
   bool turns() const;  // by its gyro, or without one by its measured tracks
 
   const runs::Run& run_;
