@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "formats/runs/csv_cells.hpp"
 #include "formats/runs/whole_file.hpp"
 
 namespace kenaf::runs {
@@ -22,11 +23,6 @@ constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets wri
 // Limits of memory, chosen: 2^24 values are 134 MB.
 constexpr std::size_t kMostValues = std::size_t{1} << 24, kLongestLine = std::size_t{1} << 20;
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-
-struct Cell {
-  std::string_view text;  // without blanks around it
-  std::size_t column;     // of its first character in the line, from 1
-};
 
 // Line of an error in the text.
 struct Place {
@@ -44,58 +40,37 @@ std::string in_quotes(std::string_view text) {
   return "'" + std::string(text.substr(0, kLongest)) + (text.size() > kLongest ? "...'" : "'");
 }
 
-Cell trimmed(std::string_view text, std::size_t column) {
-  const std::size_t first = std::min(text.size(), text.find_first_not_of(" \t"));
-  text.remove_prefix(first);
-  text = text.substr(0, text.find_last_not_of(" \t") + 1);
-  return {text, column + first};
-}
-
-void split(std::string_view line, std::vector<Cell>& cells) {
-  cells.clear();
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = std::min(line.size(), line.find(',', begin));
-    cells.push_back(trimmed(line.substr(begin, end - begin), begin + 1));
-    if (end == line.size()) return;
-    begin = end + 1;
-  }
-}
-
 bool only_blanks(std::string_view text) {
   return text.find_first_not_of(" \t\r\n") == std::string_view::npos;
 }
 
-std::optional<double> finite_number(std::string_view text) {
-  double value = 0;
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
 // Returns the index of the time column. Throws RunFileError if the header is invalid.
-std::size_t check_columns(const std::vector<Cell>& cells, const Place& place) {
+std::size_t check_columns(const std::vector<CsvCell>& cells, const Place& place) {
   std::set<std::string_view> names;
-  for (const Cell& cell : cells) {
+  for (const CsvCell& cell : cells) {
     if (cell.text.empty()) fail(place, cell.column, "a column without a name");
     if (cell.text.find('\r') != cell.text.npos) fail(place, cell.column, "a column name contains a line end");
     if (!names.insert(cell.text).second)
       fail(place, cell.column, "the column " + in_quotes(cell.text) + " is named twice");
   }
-  const auto time = std::ranges::find(cells, kTimeColumn, &Cell::text);
+  const auto time = std::ranges::find(cells, kTimeColumn, &CsvCell::text);
   if (time == cells.end()) fail(place, 1, "no column t_s; the first line names the columns, t_s among them");
   return static_cast<std::size_t>(time - cells.begin());
 }
 
-double read_cell(const Cell& cell, const std::string& column_name, const Place& place) {
+double read_cell(const CsvCell& cell, const std::string& column_name, DecimalNumbers& numbers, const Place& place) {
   if (cell.text.empty()) return kNotMeasured;
-  const std::optional<double> value = finite_number(cell.text);
-  if (!value) {
-    fail(place, cell.column,
-         in_quotes(cell.text) + " in column " + in_quotes(column_name) +
-             " is not a finite number; leave the cell empty where nothing was measured");
-  }
-  return *value;
+  if (const std::optional<double> value = numbers.read(cell.text)) return *value;
+  const bool by_mark = DecimalNumbers().read(cell.text).has_value();
+  fail(place, cell.column,
+       in_quotes(cell.text) + " in column " + in_quotes(column_name) +
+           (by_mark ? std::string(" has another decimal mark than the numbers before, which have a decimal ") +
+                          (numbers.mark() == ',' ? "comma" : "point")
+                    : " is not a finite number; leave the cell empty where nothing was measured"));
+}
+
+std::string separated_by(char separator) {
+  return separator == ';' ? "semicolons" : separator == '\t' ? "tabs" : "commas";
 }
 
 void check_time(double time_s, double last_time_s, std::size_t column, const Place& place) {
@@ -120,6 +95,7 @@ class RunReader {
   Run finish() {
     if (!begun_.empty()) take_line();
     if (!has_header_) fail({place_.file, 1}, 1, "the file is empty; its first line names the columns, t_s among them");
+    run_.reading = reading();
     return std::move(run_);
   }
 
@@ -129,7 +105,9 @@ class RunReader {
     if (place_.line == 0 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
     if (line.ends_with('\r')) line.remove_suffix(1);
     ++place_.line;
-    if (!only_blanks(line)) {
+    if (!has_header_ && first_blank_ == 0 && line.starts_with('#')) {
+      // a comment before the header
+    } else if (!only_blanks(line)) {
       if (first_blank_ != 0) refuse_blank();
       has_header_ ? take_row(line) : take_header(line);
     } else if (first_blank_ == 0) {
@@ -146,39 +124,58 @@ class RunReader {
   }
 
   void take_header(std::string_view line) {
-    split(line, cells_);
+    separator_ = separator_of(line, kTimeColumn);
+    split_cells(line, separator_, cells_);
     time_column_ = check_columns(cells_, place_);
-    for (const Cell& cell : cells_) run_.columns.emplace_back(cell.text);
+    for (const CsvCell& cell : cells_) run_.columns.push_back(unquoted(cell));
     run_.values.resize(cells_.size());
+    run_.first_line = place_.line + 1;
     has_header_ = true;
   }
 
   void take_row(std::string_view line) {
-    split(line, cells_);
+    split_cells(line, separator_, cells_);
     if (cells_.size() != run_.columns.size()) {
-      fail(place_, cells_.size() > run_.columns.size() ? cells_[run_.columns.size()].column : line.size() + 1,
-           "the row has " + std::to_string(cells_.size()) + " cells, but the first line names " +
-               std::to_string(run_.columns.size()) + " columns");
+      const bool more = cells_.size() > run_.columns.size();
+      fail(place_, more ? cells_[run_.columns.size()].column : line.size() + 1,
+           "the row has " + std::to_string(cells_.size()) + " cells, but the " + header_in_words() + " names " +
+               std::to_string(run_.columns.size()) + " columns" +
+               (separator_ != ',' ? ", with " + separated_by(separator_) + " between them"
+                : more            ? "; numbers with decimal commas need semicolons between the cells, or quotes"
+                                  : ""));
     }
     if ((run_.row_count() + 1) * cells_.size() > kMostValues)
       fail(place_, 1,
            "more than " + std::to_string(kMostValues) + " values; that is beyond an hour of 40 columns at " +
                "100 Hz: cut the file into one for each run");
     for (std::size_t i = 0; i < cells_.size(); ++i) {
-      run_.values[i].push_back(read_cell(cells_[i], run_.columns[i], place_));
+      run_.values[i].push_back(read_cell(cells_[i], run_.columns[i], numbers_, place_));
     }
     const double time_s = run_.values[time_column_].back();
     check_time(time_s, last_time_s_, cells_[time_column_].column, place_);
     last_time_s_ = time_s;
   }
 
+  std::string header_in_words() const {
+    return run_.first_line == 2 ? "first line" : "header in line " + std::to_string(run_.first_line - 1);
+  }
+
+  std::string reading() const {
+    std::string text;
+    if (separator_ != ',') text = separated_by(separator_) + " between the cells";
+    if (numbers_.mark() == ',') text += (text.empty() ? "" : ", ") + std::string("decimal commas");
+    return text;
+  }
+
   Place place_;        // the last line taken; 0: none yet
   std::string begun_;  // a line whose end has not come yet
   bool has_header_ = false;
   std::size_t first_blank_ = 0, time_column_ = 0;
+  char separator_ = ',';
+  DecimalNumbers numbers_;
   std::string blank_;
   double last_time_s_ = -std::numeric_limits<double>::infinity();
-  std::vector<Cell> cells_;
+  std::vector<CsvCell> cells_;
   Run run_;
 };
 
@@ -216,14 +213,14 @@ RunWriter::RunWriter(std::filesystem::path file, std::vector<std::string> column
     : file_(std::move(file)), column_count_(columns.size()), last_time_s_(-std::numeric_limits<double>::infinity()) {
   for (const std::string& column : columns) {
     if (!line_.empty()) line_ += ',';
-    line_ += column;
+    line_ += as_csv_cell(column);
   }
   const std::string name = file_.string();
   const Place place{name, 1};
-  std::vector<Cell> cells;
-  split(line_, cells);
-  if (!std::ranges::equal(cells, columns, {}, &Cell::text) || line_.find('\n') != std::string::npos) {
-    fail(place, 1, "a column name contains a comma or a line end, or begins or ends with a blank");
+  std::vector<CsvCell> cells;
+  split_cells(line_, ',', cells);
+  if (!std::ranges::equal(cells, columns, {}, unquoted) || line_.find('\n') != std::string::npos) {
+    fail(place, 1, "a column name contains a line end, or begins or ends with a blank");
   }
   time_column_ = check_columns(cells, place);
   line_ += '\n';

@@ -29,6 +29,9 @@ class RunFileError : public std::runtime_error {
 struct Run {
   std::vector<std::string> columns;         // "t_s" is always among them
   std::vector<std::vector<double>> values;  // values[column][row]
+  // How the file was read where it is not as docs/logs.md describes: "semicolons between the cells, decimal commas".
+  std::string reading{};
+  std::size_t first_line = 2;  // of the first row in the file, from 1
 
   std::size_t row_count() const { return values.empty() ? 0 : values.front().size(); }
   // The values of a column, or an empty span if the run does not have it.
@@ -38,10 +41,12 @@ struct Run {
 // Whether a column has any cell that is not NaN.
 bool any_measured(std::span<const double> column);
 
-// Reads a run. Throws RunFileError if there is no such file or no t_s, times do not strictly increase, a cell is no
-// finite number, a row has another count of cells, a column is named twice or not at all, or there are more than 2^24
-// values (an hour of 40 columns at 100 Hz has fewer). Unknown columns are kept. Memory is bounded by the values, not by
-// the file.
+// Reads a run. Other forms of CSV are recognised and named in Run::reading: semicolons or tabs between the cells, which
+// may have decimal commas then. Cells may be quoted (RFC 4180), lines that begin with # may precede the header.
+// Throws RunFileError if there is no such file or no t_s, times do not strictly increase, a cell is no finite number, a
+// file has decimal points and decimal commas, a row has another count of cells, a column is named twice or not at all,
+// or there are more than 2^24 values (an hour of 40 columns at 100 Hz has fewer). Unknown columns are kept. Memory is
+// bounded by the values, not by the file.
 Run read_run(const std::filesystem::path& file);
 Run parse_run(std::string_view text, std::string_view name_for_errors);
 

@@ -11,6 +11,7 @@
 #include "gap/commands/commands.hpp"
 #include "gap/logs/copies.hpp"
 #include "gap/logs/lifted_robot.hpp"
+#include "gap/logs/other_forms.hpp"
 #include "gap/logs/plausibility.hpp"
 
 namespace kenaf::gap::commands {
@@ -33,6 +34,7 @@ void check(const std::filesystem::path& folder) {
   logs::KnownRuns known_runs;
   logs::HeldInRuns held;
   logs::LiftedRobot lifted;
+  logs::OtherForms forms;
   const auto take = [&](const std::vector<logs::Finding>& findings) {
     print(findings);
     for (const logs::Finding& finding : findings)
@@ -43,6 +45,7 @@ void check(const std::filesystem::path& folder) {
   for (const runs::DatasetRun& entry : dataset.runs) {
     const runs::Run run = runs::read_run(folder / entry.file);
     columns.push_back(run.columns);
+    forms.look_at(run, entry.file);
     if (const auto copy = known_runs.copy(run, entry.file)) take({*copy});
     if (!entry.fault.empty()) continue;
     std::vector<logs::Finding> found = logs::check_run(run, entry.file, &robot);
@@ -52,6 +55,7 @@ void check(const std::filesystem::path& folder) {
   }
 
   // Findings over all runs.
+  take(forms.findings());
   take(held.findings());
   if (const auto finding = lifted.finding()) take({*finding});
   take(logs::check_noise(dataset, columns));

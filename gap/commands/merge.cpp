@@ -86,8 +86,10 @@ void add_merge_command(CLI::App& program) {
     // Merges; errors get the names of the files, which the merge does not know.
     const runs::Run run = runs::read_run(options->run);
     const logs::LengthUnit unit = options->units == "mm" ? logs::LengthUnit::millimetres : logs::LengthUnit::metres;
-    const logs::MotionCapture capture =
-        logs::motion_capture_of(runs::read_run(options->capture), options->capture, unit);
+    const runs::Run captured = runs::read_run(options->capture);
+    for (const auto& [name, file] : {std::pair{&options->run, &run}, {&options->capture, &captured}})
+      if (!file->reading.empty()) std::printf("%s: is read with %s\n", name->c_str(), file->reading.c_str());
+    const logs::MotionCapture capture = logs::motion_capture_of(captured, options->capture, unit);
     const logs::MergedRun merged = [&] {
       try {
         return logs::merge_pose(run, capture, options->merge);

@@ -10,6 +10,7 @@
 
 #include "formats/runs/whole_file.hpp"
 #include "gap/datasets/dataset_files.hpp"
+#include "gap/logs/other_forms.hpp"
 #include "physics/world_description.hpp"
 #include "rollout/manoeuvre.hpp"
 
@@ -98,10 +99,14 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
   const std::string asked_robot = request.robot.empty() ? "kenaf" : request.robot;
   const physics::RobotDescription robot =
       physics::load_robot(there ? runs::resolve_beside(request.out, there->robot, ".toml") : asked_robot);
+  logs::OtherForms forms;
   for (const RecordedRun& run : request.runs) {
-    const std::vector<logs::Finding> findings = logs::check_run(runs::read_run(run.file), run.file.string(), &robot);
+    const runs::Run recorded = runs::read_run(run.file);
+    forms.look_at(recorded, run.file.string());
+    const std::vector<logs::Finding> findings = logs::check_run(recorded, run.file.string(), &robot);
     result.findings.insert(result.findings.end(), findings.begin(), findings.end());
   }
+  std::ranges::move(forms.findings(), std::back_inserter(result.findings));
   result.refused = logs::any_refused(result.findings) && !request.unchecked;
   if (result.refused) return result;
 

@@ -11,6 +11,7 @@
 #include "gap/logs/copies.hpp"
 #include "gap/logs/held_samples.hpp"
 #include "gap/logs/lifted_robot.hpp"
+#include "gap/logs/other_forms.hpp"
 #include "gap/logs/plausibility.hpp"
 #include "robot/angles.hpp"
 #include "rollout/measured_motion.hpp"
@@ -178,6 +179,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
   std::vector<logs::Finding> copies;
   logs::HeldInRuns held;
   logs::LiftedRobot lifted;
+  logs::OtherForms forms;
   for (const runs::DatasetRun& entry : entries) {
     // unusable: failed simulations and copies
     if (!entry.fault.empty()) {
@@ -186,6 +188,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     }
     Observation observation{entry.file, entry.manoeuvre, 0, {}, {}, {}, 0};
     observation.run = runs::read_run(folder / entry.file);
+    forms.look_at(observation.run, entry.file);
     if (const auto copy = known_runs.copy(observation.run, entry.file)) {
       copies.push_back(*copy);
       continue;
@@ -222,6 +225,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
   }
 
   // findings that concern several runs, once each
+  for (const logs::Finding& finding : forms.findings()) result.warnings.push_back(in_words(finding));
   for (const logs::Finding& finding : held.findings())
     result.warnings.push_back(in_words(finding) + " (repeats left out)");
   if (!copies.empty())

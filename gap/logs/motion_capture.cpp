@@ -96,7 +96,7 @@ MotionCapture motion_capture_of(const runs::Run& table, std::string_view name_fo
     }
     if (!measured) continue;
     const auto refuse = [&](const std::string& what) {
-      throw runs::RunFileError(fmt::format("{}:{}:1: {}", name_for_errors, row + 2, what));
+      throw runs::RunFileError(fmt::format("{}:{}:1: {}", name_for_errors, table.first_line + row, what));
     };
 
     // Refuses values that no robot has, and a quaternion that is no rotation.

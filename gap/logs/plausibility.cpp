@@ -6,6 +6,7 @@
 #include <set>
 
 #include "gap/logs/lifted_robot.hpp"
+#include "gap/logs/other_forms.hpp"
 #include "gap/logs/run_checks.hpp"
 
 namespace kenaf::gap::logs {
@@ -88,14 +89,17 @@ std::vector<Finding> check_plausibility(const runs::Dataset& dataset, std::span<
   std::vector<Finding> findings;
   HeldInRuns held;
   LiftedRobot lifted;
+  OtherForms forms;
   for (std::size_t i = 0; i < std::min(runs.size(), dataset.runs.size()); ++i) {
     columns.push_back(runs[i].columns);
+    forms.look_at(runs[i], dataset.runs[i].file);
     if (!dataset.runs[i].fault.empty()) continue;
     std::vector<Finding> found = check_run(runs[i], dataset.runs[i].file, robot);
     held.take_off(found);
     std::ranges::move(found, std::back_inserter(findings));
     if (robot != nullptr) lifted.look_at(runs[i], robot->track_gauge_m());
   }
+  std::ranges::move(forms.findings(), std::back_inserter(findings));
   std::ranges::move(held.findings(), std::back_inserter(findings));
   if (const auto finding = lifted.finding()) findings.push_back(*finding);
   std::ranges::move(check_noise(dataset, columns), std::back_inserter(findings));

@@ -45,7 +45,7 @@ class RunChecks {
   using Severity = Finding::Severity;
   std::span<const double> column(const std::string& name) const { return run_.column(name); }
   bool has(const std::string& name) const;  // with at least one value
-  static std::size_t line(std::size_t row) { return row + 2; }
+  std::size_t line(std::size_t row) const { return run_.first_line + row; }
   void add(Severity severity, const std::string& name, const std::string& text, std::size_t at_line = 0) {
     findings_.push_back({severity, file_, at_line, name, text});
   }

@@ -47,6 +47,64 @@ TEST_CASE("Blanks, line ends of Windows, a byte order mark, a plus and empty lin
   CHECK(values(run.column("x_m")) == std::vector<double>{1.5, 2});
 }
 
+TEST_CASE("Quotes of RFC 4180: around names and cells, doubled inside, with separators inside") {
+  const Run run = parse_run("\"t_s\",\"x \"\"best\"\", m\" , y_m\n\"0\",\"1.5\",\n 0.1 ,\"\",\"-2e1\"\n", "run.csv");
+  CHECK(run.columns == std::vector<std::string>{"t_s", "x \"best\", m", "y_m"});
+  CHECK(values(run.column("t_s")) == std::vector<double>{0, 0.1});
+  CHECK(run.values[1][0] == 1.5);
+  CHECK(std::isnan(run.values[1][1]));
+  CHECK(run.column("y_m")[1] == -20);
+  CHECK(run.reading.empty());
+  // errors count columns from the quote's content, and an open quote is part of the cell
+  CHECK_THAT(refusal_of_run("t_s,x_m\n0,\"n.a.\"\n"), Catch::StartsWith("run.csv:2:4: 'n.a.' in column 'x_m'"));
+  CHECK_THAT(refusal_of_run("t_s,x_m\n0,\"1\n"), Catch::StartsWith("run.csv:2:3: '\"1' in column 'x_m'"));
+}
+
+TEST_CASE("Semicolons or tabs between the cells, decimal commas, and what is said of them") {
+  for (const std::string separator : {";", "\t"}) {
+    const auto text = [&](std::string of_commas) {
+      for (std::size_t at; (at = of_commas.find('|')) != of_commas.npos;) of_commas.replace(at, 1, separator);
+      return of_commas;
+    };
+    const std::string words = separator == ";" ? "semicolons between the cells" : "tabs between the cells";
+    const Run points = parse_run(text("x_m|t_s\n0.5|0\n|1\n"), "run.csv");
+    CHECK(points.columns == std::vector<std::string>{"x_m", "t_s"});
+    CHECK(points.column("x_m")[0] == 0.5);
+    CHECK(std::isnan(points.column("x_m")[1]));
+    CHECK(points.reading == words);
+    const Run commas = parse_run(text("t_s|x_m\r\n12,345|-0,5\r\n13|1,5e-1\r\n"), "run.csv");
+    CHECK(values(commas.column("t_s")) == std::vector<double>{12.345, 13});
+    CHECK(values(commas.column("x_m")) == std::vector<double>{-0.5, 0.15});
+    CHECK(commas.reading == words + ", decimal commas");
+    CHECK_THAT(refusal_of_run(text("t_s|x_m\n0|1|2\n")),
+               Catch::Contains("3 cells") && Catch::Contains(words.substr(0, 4)));
+    CHECK_THAT(
+        refusal_of_run(text("t_s|x_m\n0,5|1\n1,5|0.5\n")),
+        Catch::StartsWith("run.csv:3:5: '0.5' in column 'x_m' has another decimal mark than the numbers before"));
+    CHECK_THAT(refusal_of_run(text("t_s|x_m\n0|1.234,5\n")), Catch::Contains("is not a finite number"));
+  }
+  // in quotes a decimal comma is none between cells
+  const Run quoted = parse_run("t_s,x_m\n\"0,5\",\"1,25\"\n", "run.csv");
+  CHECK(quoted.column("x_m")[0] == 1.25);
+  CHECK(quoted.reading == "decimal commas");
+  // without them nobody knows which comma is which
+  CHECK_THAT(refusal_of_run("t_s,x_m\n0,5,1,25\n"),
+             Catch::StartsWith("run.csv:2:5: the row has 4 cells, but the first line names 2 columns; numbers with "
+                               "decimal commas need semicolons between the cells, or quotes"));
+}
+
+TEST_CASE("Comments before the header are left out, and lines counted with them") {
+  const Run run = parse_run("\xEF\xBB\xBF# a log of 2024; t_s in seconds\n#\nt_s,x_m\n0,1\n", "run.csv");
+  CHECK(run.columns == std::vector<std::string>{"t_s", "x_m"});
+  CHECK(run.row_count() == 1);
+  CHECK(run.first_line == 4);
+  CHECK(parse_run("t_s\n0\n", "run.csv").first_line == 2);
+  CHECK_THAT(refusal_of_run("# one\nt_s,x_m\n0\n"),
+             Catch::StartsWith("run.csv:3:2: the row has 1 cells, but the header in line 2 names 2 columns"));
+  CHECK_THAT(refusal_of_run("t_s,x_m\n# two\n0,1\n"), Catch::StartsWith("run.csv:2:"));
+  CHECK_THAT(refusal_of_run("# only\n"), Catch::Contains("the file is empty"));
+}
+
 TEST_CASE("A last line without its end is a row, a header alone is a run without rows") {
   CHECK(parse_run("t_s\n0\n1", "run.csv").row_count() == 2);
   CHECK(parse_run("t_s,x_m", "run.csv").row_count() == 0);
@@ -108,6 +166,17 @@ TEST_CASE("Names of columns that the reader takes are written as they are") {
   CHECK(read_file(folder / "run.csv") == text);
 }
 
+TEST_CASE("Names with commas, quotes around them or a first # are written in quotes and read back") {
+  const TemporaryFolder folder;
+  const std::vector<std::string> names{"#", "t_s", "x, m", "\"x\"", "a\"b"};
+  RunWriter writer(folder / "run.csv", names);
+  const double row[] = {1, 2, 3, 4, 5};
+  writer.add_row(row);
+  writer.finish();
+  CHECK(read_file(folder / "run.csv") == "\"#\",t_s,\"x, m\",\"\"\"x\"\"\",a\"b\n1,2,3,4,5\n");
+  CHECK(read_run(folder / "run.csv").columns == names);
+}
+
 TEST_CASE("The file is whole or absent, an interrupted run leaves its rows in the part file") {
   const TemporaryFolder folder;
   {
@@ -133,7 +202,6 @@ TEST_CASE("The writer refuses what the reader would refuse, and goes on") {
   const TemporaryFolder folder;
   CHECK_THROWS_AS(RunWriter(folder / "a.csv", {"x_m"}), RunFileError);
   CHECK_THROWS_AS(RunWriter(folder / "a.csv", {"t_s", "t_s"}), RunFileError);
-  CHECK_THROWS_AS(RunWriter(folder / "a.csv", {"t_s", "x,m"}), RunFileError);
   CHECK_THROWS_AS(RunWriter(folder / "a.csv", {"t_s", "x\nm"}), RunFileError);
   CHECK_THROWS_AS(RunWriter(folder / "a.csv", {"t_s", "x\rm"}), RunFileError);
   CHECK_THROWS_AS(RunWriter(folder / "a.csv", {"t_s", " x_m"}), RunFileError);
