@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "formats/runs/csv_cells.hpp"
+#include "formats/runs/time_stamps.hpp"
 #include "formats/runs/whole_file.hpp"
 
 namespace kenaf::runs {
@@ -95,6 +96,7 @@ class RunReader {
   Run finish() {
     if (!begun_.empty()) take_line();
     if (!has_header_) fail({place_.file, 1}, 1, "the file is empty; its first line names the columns, t_s among them");
+    count_in_seconds();
     run_.reading = reading();
     return std::move(run_);
   }
@@ -160,10 +162,23 @@ class RunReader {
     return run_.first_line == 2 ? "first line" : "header in line " + std::to_string(run_.first_line - 1);
   }
 
+  // Times in another unit become seconds. Steps of less than a double can tell apart then are refused.
+  void count_in_seconds() {
+    std::vector<double>& times = run_.values[time_column_];
+    time_unit_ = time_unit(times);
+    if (!time_unit_) return;
+    double before_s = -std::numeric_limits<double>::infinity();
+    for (std::size_t row = 0; row < times.size(); ++row) {
+      times[row] /= time_unit_->in_a_second;
+      check_time(times[row], std::exchange(before_s, times[row]), 1, {place_.file, run_.first_line + row});
+    }
+  }
+
   std::string reading() const {
     std::string text;
     if (separator_ != ',') text = separated_by(separator_) + " between the cells";
     if (numbers_.mark() == ',') text += (text.empty() ? "" : ", ") + std::string("decimal commas");
+    if (time_unit_) text += (text.empty() ? "" : ", ") + ("t_s in " + time_unit_->words) + " converted to seconds";
     return text;
   }
 
@@ -173,6 +188,7 @@ class RunReader {
   std::size_t first_blank_ = 0, time_column_ = 0;
   char separator_ = ',';
   DecimalNumbers numbers_;
+  std::optional<TimeUnit> time_unit_;
   std::string blank_;
   double last_time_s_ = -std::numeric_limits<double>::infinity();
   std::vector<CsvCell> cells_;

@@ -28,7 +28,7 @@ std::string length_unit(double factor) {
 }  // namespace
 
 void RunChecks::check_clock() {
-  constexpr double kCoarse_s = 0.5, kGapSteps = 10, kOddShare = 0.1, kEpoch_s = 1e6;
+  constexpr double kCoarse_s = 0.5, kGapSteps = 10, kOddShare = 0.1, kEpoch_s = 1e6, kLongestStep_s = 10;
   const auto t_s = column("t_s");
   const double median_s = median_step(t_s, t_s);
 
@@ -57,6 +57,12 @@ void RunChecks::check_clock() {
                    fmt::format("looks like {}: it steps by {:.3g}, and the travel over that time is {:.3g} times that "
                                "of the speeds; divide it by {:.0f}",
                                name, median_s, relation->ratio, per_second));
+  if (median_s > kLongestStep_s)
+    return add(
+        Severity::refuse, "t_s",
+        fmt::format("steps by {:.3g}, too long for seconds: it is in another unit, or no log of a drive; convert "
+                    "it to seconds",
+                    median_s));
   if (median_s >= kCoarse_s)
     add(Severity::warn, "t_s",
         fmt::format("steps by {:.3g} s: too coarse for a diagnosis, if it is in seconds", median_s));

@@ -65,6 +65,8 @@ std::vector<Finding> check_run(const runs::Run& run, const std::string& file, co
 
 std::vector<Finding> check_units(const runs::Run& run, const std::string& file) {
   RunChecks checks(run, file, nullptr);
+  checks.check_clock();
+  if (std::vector<Finding> of_clock = checks.take(); any_refused(of_clock)) return of_clock;
   checks.check_ranges();
   checks.check_scales();
   return checks.take();

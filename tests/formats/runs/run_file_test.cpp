@@ -105,6 +105,33 @@ TEST_CASE("Comments before the header are left out, and lines counted with them"
   CHECK_THAT(refusal_of_run("# only\n"), Catch::Contains("the file is empty"));
 }
 
+TEST_CASE("Times in nanoseconds, microseconds or milliseconds become seconds where there is no doubt") {
+  // ten rows from `first` on, `step` apart
+  const auto rows = [](double first, double step) {
+    std::string text = "t_s,x_m\n";
+    for (int i = 0; i < 10; ++i) text += std::to_string(first + i * step) + ",1\n";
+    return parse_run(text, "run.csv");
+  };
+  const Run since_1970 = rows(1.7e18, 1e7);
+  CHECK(since_1970.column("t_s").front() == 1.7e9);
+  CHECK(since_1970.column("t_s").back() == Approx(1.7e9 + 0.09).epsilon(0).margin(1e-6));
+  CHECK(since_1970.reading == "t_s in nanoseconds since 1970 converted to seconds");
+  CHECK(rows(1.7e15, 1e4).reading == "t_s in microseconds since 1970 converted to seconds");
+  CHECK(rows(1.7e12, 10).reading == "t_s in milliseconds since 1970 converted to seconds");
+  CHECK(rows(1.7e12, 10).column("t_s")[1] == 1.7e9 + 0.01);
+  // since the computer was started
+  CHECK(rows(5e12, 1e7).reading == "t_s in nanoseconds converted to seconds");
+  CHECK(rows(5e12, 1e7).column("t_s")[1] == 5000.01);
+  CHECK(rows(5e9, 2e4).reading == "t_s in microseconds converted to seconds");
+  CHECK(rows(0, 50).column("t_s")[3] == 0.15);
+  // seconds; a step that may be one of two units
+  CHECK(rows(1.7e9, 0.01).reading.empty());
+  CHECK(rows(0, 0.5).reading.empty());
+  CHECK(rows(0, 10).reading.empty());
+  CHECK(rows(0, 1000).reading.empty());
+  CHECK(rows(0, 1000).column("t_s")[1] == 1000);
+}
+
 TEST_CASE("A last line without its end is a row, a header alone is a run without rows") {
   CHECK(parse_run("t_s\n0\n1", "run.csv").row_count() == 2);
   CHECK(parse_run("t_s,x_m", "run.csv").row_count() == 0);

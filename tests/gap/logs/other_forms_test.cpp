@@ -31,3 +31,19 @@ TEST_CASE("A motion capture with semicolons, decimal commas and a comment: its p
                                                     gap::logs::LengthUnit::metres),
                     "m.csv:4:1: an implausible time or position");
 }
+
+TEST_CASE("Times that cannot be seconds are named, and no other column for them") {
+  // 20 rows 1000 apart: microseconds a thousand times a second if 0.2 m/s make the travel, else nobody knows
+  const auto words = [](double travel_a_row_m) {
+    std::string text =
+        "t_s,cmd_track_left_mps,cmd_track_right_mps,track_left_mps,track_right_mps,track_left_m,x_m,y_m\n";
+    for (int i = 0; i < 20; ++i)
+      text += std::to_string(1000 * i) + ",0.2,0.2,0.2,0.2," + std::to_string(travel_a_row_m * i) + ",0,0\n";
+    const auto findings = gap::logs::check_run(runs::parse_run(text, "run.csv"), "run.csv", nullptr);
+    REQUIRE(findings.size() == 1);
+    CHECK(gap::logs::any_refused(findings));
+    return in_words(findings[0]);
+  };
+  CHECK_THAT(words(0.0002), Catch::StartsWith("run.csv: t_s: looks like microseconds: it steps by 1e+03"));
+  CHECK_THAT(words(0), Catch::StartsWith("run.csv: t_s: steps by 1e+03, too long for seconds"));
+}
