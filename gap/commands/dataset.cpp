@@ -49,6 +49,7 @@ void add_dataset_command(CLI::App& program) {
       ->type_name("SOURCE")
       ->capture_default_str();
   command->add_option("--description", request.description, "free text, for a new dataset");
+  command->add_flag("--unwrap", request.unwrap, "write the travel of tracks whose counter wraps without its jumps");
   command->add_flag("--unchecked", request.unchecked, "also accept runs that the checks refuse");
 
   command->callback([options] {
@@ -66,6 +67,7 @@ void add_dataset_command(CLI::App& program) {
     if (result.refused)
       throw std::runtime_error("nothing was written; if a run is right nevertheless, give --unchecked");
 
+    for (const std::string& done : result.changed) std::printf("%s\n", done.c_str());
     for (std::size_t i = 0; i < result.runs.size(); ++i)
       std::printf("%s: %s, from %s\n", result.runs[i].file.c_str(), result.runs[i].manoeuvre.c_str(),
                   asked.runs[i].file.c_str());

@@ -11,6 +11,7 @@
 #include "gap/commands/commands.hpp"
 #include "gap/commands/option_checks.hpp"
 #include "gap/logs/merge_pose.hpp"
+#include "gap/logs/wrapped_travel.hpp"
 
 namespace kenaf::gap::commands {
 namespace {
@@ -44,7 +45,7 @@ void add_merge_command(CLI::App& program) {
   struct Options {
     std::string run, capture, out, units = "m";
     logs::MergeOptions merge;
-    bool force = false;
+    bool force = false, unwrap = false;
   };
   // Shared with the callback, which runs after this function has returned.
   const auto options = std::make_shared<Options>();
@@ -72,6 +73,7 @@ void add_merge_command(CLI::App& program) {
                    "run time minus motion capture time, if known; otherwise it is estimated")
       ->check(number_in(-1e12, 1e12))
       ->type_name("SECONDS");
+  command->add_flag("--unwrap", options->unwrap, "write the travel of tracks whose counter wraps without its jumps");
   command->add_flag("--force", options->force, "replace the output file if it exists");
 
   command->callback([options] {
@@ -84,11 +86,15 @@ void add_merge_command(CLI::App& program) {
           fmt::format("{}: exists already; give another file, or --force to replace it", options->out));
 
     // Merges; errors get the names of the files, which the merge does not know.
-    const runs::Run run = runs::read_run(options->run);
+    runs::Run run = runs::read_run(options->run);
     const logs::LengthUnit unit = options->units == "mm" ? logs::LengthUnit::millimetres : logs::LengthUnit::metres;
     const runs::Run captured = runs::read_run(options->capture);
-    for (const auto& [name, file] : {std::pair{&options->run, &run}, {&options->capture, &captured}})
-      if (!file->reading.empty()) std::printf("%s: is read with %s\n", name->c_str(), file->reading.c_str());
+    const std::pair<const std::string&, const runs::Run&> files[] = {{options->run, run}, {options->capture, captured}};
+    for (const auto& [name, file] : files)
+      if (!file.reading.empty()) std::printf("%s: is read with %s\n", name.c_str(), file.reading.c_str());
+    if (options->unwrap)
+      for (const std::string& done : logs::unwrap_travel(run))
+        std::printf("%s: %s\n", options->run.c_str(), done.c_str());
     const logs::MotionCapture capture = logs::motion_capture_of(captured, options->capture, unit);
     const logs::MergedRun merged = [&] {
       try {

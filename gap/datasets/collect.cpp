@@ -11,6 +11,7 @@
 #include "formats/runs/whole_file.hpp"
 #include "gap/datasets/dataset_files.hpp"
 #include "gap/logs/other_forms.hpp"
+#include "gap/logs/wrapped_travel.hpp"
 #include "physics/world_description.hpp"
 #include "rollout/manoeuvre.hpp"
 
@@ -70,6 +71,12 @@ class Copies {
           fmt::format("{}: cannot be copied from {}: {}", to.string(), from.string(), error.message()));
     files_.erase(part);
   }
+  void add(const runs::Run& run, const fs::path& to) {
+    files_.insert(to.string() + kUnfinished);
+    files_.insert(to);
+    runs::write_run(to, run);
+    files_.erase(to.string() + kUnfinished);
+  }
   void add(const std::vector<fs::path>& made) { files_.insert(made.begin(), made.end()); }
   void keep() { files_.clear(); }
 
@@ -101,7 +108,10 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
       physics::load_robot(there ? runs::resolve_beside(request.out, there->robot, ".toml") : asked_robot);
   logs::OtherForms forms;
   for (const RecordedRun& run : request.runs) {
-    const runs::Run recorded = runs::read_run(run.file);
+    runs::Run recorded = runs::read_run(run.file);
+    if (request.unwrap)
+      for (const std::string& done : logs::unwrap_travel(recorded))
+        result.changed.push_back(fmt::format("{}: {}", run.file.string(), done));
     forms.look_at(recorded, run.file.string());
     const std::vector<logs::Finding> findings = logs::check_run(recorded, run.file.string(), &robot);
     result.findings.insert(result.findings.end(), findings.begin(), findings.end());
@@ -143,7 +153,13 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
   for (std::size_t i = 0; i < request.runs.size(); ++i) {
     const RecordedRun& run = request.runs[i];
     const std::string name = free_name(run.file, folder, names);
-    copies.add(run.file, folder / name);
+    // The runs were read one by one; one that changes is read again.
+    std::optional<runs::Run> changed;
+    if (request.unwrap) {
+      changed = runs::read_run(run.file);
+      if (logs::unwrap_travel(*changed).empty()) changed.reset();
+    }
+    changed ? copies.add(*changed, folder / name) : copies.add(run.file, folder / name);
     const std::string world = lies_there(worlds[i]) ? there->world : world_files.add(worlds[i]);
     copies.add(world_files.made());
     result.runs.push_back({name, run.manoeuvre, world == dataset.world ? std::string() : world});

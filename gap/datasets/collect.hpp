@@ -22,6 +22,7 @@ struct CollectRequest {
   std::string world;            // shipped name or SDF file; empty: that of each shipped manoeuvre, else the dataset's
   std::string source = "real";  // or "sim"
   std::string description;
+  bool unwrap = false;     // write the tracks' travel without the jumps of counters that wrap (wrapped_travel.hpp)
   bool unchecked = false;  // also take runs that check_run() refuses
   std::filesystem::path out;
 };
@@ -30,6 +31,7 @@ struct CollectedDataset {
   bool extended = false;                // the dataset existed before
   std::vector<runs::DatasetRun> runs;   // those added, in the order requested
   std::vector<logs::Finding> findings;  // of those; with file names as given
+  std::vector<std::string> changed;     // what `unwrap` did
   bool refused = false;                 // a finding refuses a run: nothing was written
 };
 

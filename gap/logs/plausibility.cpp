@@ -52,6 +52,7 @@ std::vector<Finding> check_run(const runs::Run& run, const std::string& file, co
   checks.check_clock();
   std::vector<Finding> findings = checks.take();
   if (any_refused(findings)) return findings;  // with false times all rates are false
+  checks.check_wraps();
   checks.check_ranges();
   checks.check_scales();
   checks.check_factors();

@@ -93,6 +93,7 @@ Course RunChecks::belts(double left, double right) const {
     const std::string of_left = fmt::format(fmt::runtime(name), "left"),
                       of_right = fmt::format(fmt::runtime(name), "right");
     if (!has(of_left) || !has(of_right)) continue;
+    if (travel_wraps_ && of_left.ends_with("_m")) continue;
     const auto a = column(of_left), b = column(of_right);
     std::vector<double> sum(t_s.size());
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] = left * a[i] + right * b[i];

@@ -31,6 +31,7 @@ class RunChecks {
       : run_(run), file_(std::move(file)), robot_(robot) {}
 
   void check_clock();    // must precede check_scales(): false times falsify all rates
+  void check_wraps();    // must precede those below: jumps of travel falsify them
   void check_scales();   // units and signs of quantities that go together
   void check_factors();  // smaller factors between them; after check_scales()
   void check_ranges();   // impossible values
@@ -92,6 +93,7 @@ class RunChecks {
   std::string file_;
   const physics::RobotDescription* robot_;
   std::vector<Finding> findings_;
+  bool travel_wraps_ = false;  // then speeds stand for the tracks
 };
 
 }  // namespace kenaf::gap::logs

@@ -1,5 +1,6 @@
 // Recorded runs become a dataset, and more are added to it; nothing that was there is changed.
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 
 #include "formats/description/data_files.hpp"
@@ -66,6 +67,29 @@ TEST_CASE("Runs are added at the end, what somebody wrote into dataset.toml stay
   CHECK(runs::read_dataset(folder / "data").runs.size() == 3);
   CHECK(read_file(folder / "data/a.csv") == first);
   CHECK(read_file(folder / "data/a-3.csv") == read_file(folder / "a.csv"));
+}
+
+TEST_CASE("A counter that wraps refuses a run, and with --unwrap its travel goes on in the dataset") {
+  const TemporaryFolder folder;
+  record(folder, "a.csv");
+  // 0.2 m/s for 3 s; the counters fall from 0.25 m back to 0, at 1.25 s and 2.5 s
+  runs::Run run = runs::read_run(folder / "a.csv");
+  for (const char* name : {"track_left_m", "track_right_m"}) {
+    run.columns.push_back(name);
+    run.values.emplace_back();
+    for (const double t_s : run.values[0]) run.values.back().push_back(std::fmod(0.2 * t_s + 1e-9, 0.25));
+  }
+  runs::write_run(folder / "wraps.csv", run);
+  const Outcome refused = kenaf_gap(folder, "dataset wraps.csv --manoeuvre straight --out data");
+  CHECK(refused.status == 2);
+  CHECK_THAT(refused.error, Catch::Contains("wraps.csv:127: track_left_m: jumps by 0.25 m, 2 times"));
+  const Outcome outcome = kenaf_gap(folder, "dataset wraps.csv a.csv --manoeuvre straight --out data --unwrap");
+  INFO(outcome.error);
+  REQUIRE(outcome.status == 0);
+  CHECK_THAT(outcome.out, Catch::StartsWith("wraps.csv: track_left_m: unwrapped 2 times by 0.25 m\n"
+                                            "wraps.csv: track_right_m: unwrapped 2 times by 0.25 m\n"));
+  CHECK(runs::read_run(folder / "data/wraps.csv").column("track_right_m").back() == Approx(0.2 * 2.99).margin(1e-6));
+  CHECK(read_file(folder / "data/a.csv") == read_file(folder / "a.csv"));
 }
 
 TEST_CASE("A dataset with a world and a robot of its own is added to from another folder") {
