@@ -10,6 +10,7 @@
 
 #include "gap/commands/commands.hpp"
 #include "gap/commands/option_checks.hpp"
+#include "gap/logs/capture_up.hpp"
 #include "gap/logs/merge_pose.hpp"
 #include "gap/logs/wrapped_travel.hpp"
 
@@ -39,11 +40,26 @@ void print(const logs::MergedRun& merged) {
     std::printf("the column %s of the run is kept as %s\n", name.c_str(), kept.c_str());
 }
 
+logs::Up up_of(const std::string& name) {
+  for (const logs::Up up : {logs::Up::y, logs::Up::minus_y, logs::Up::minus_z})
+    if (name == logs::name_of(up)) return up;
+  return logs::Up::z;
+}
+
+void check_up(const runs::Run& run, const logs::MotionCapture& capture, const std::string& file) {
+  const auto seen = logs::up_seen(run, capture);
+  if (!seen) return;
+  throw std::runtime_error(
+      fmt::format("{}: its {} axis points up, not z: {}. Nothing was written. Give --up {}, or --up z if z is up "
+                  "nevertheless",
+                  file, logs::name_of(seen->up), seen->why, logs::name_of(seen->up)));
+}
+
 }  // namespace
 
 void add_merge_command(CLI::App& program) {
   struct Options {
-    std::string run, capture, out, units = "m";
+    std::string run, capture, out, units = "m", up;
     logs::MergeOptions merge;
     bool force = false, unwrap = false;
   };
@@ -58,6 +74,9 @@ void add_merge_command(CLI::App& program) {
       ->check(CLI::IsMember({"m", "mm"}))
       ->type_name("UNIT")
       ->capture_default_str();
+  command->add_option("--up", options->up, "axis of MOCAP that points up: z, y, -y or -z [z, unless another is seen]")
+      ->check(CLI::IsMember({"z", "y", "-y", "-z"}))
+      ->type_name("AXIS");
   command->add_flag("--keep-frame", options->merge.keep_frame,
                     "keep the frame of the motion capture; otherwise the first pose is the origin, x forward");
   command->add_option("--start", options->merge.start_s, "average the first pose over this time; 0: the first row [0]")
@@ -95,7 +114,9 @@ void add_merge_command(CLI::App& program) {
     if (options->unwrap)
       for (const std::string& done : logs::unwrap_travel(run))
         std::printf("%s: %s\n", options->run.c_str(), done.c_str());
-    const logs::MotionCapture capture = logs::motion_capture_of(captured, options->capture, unit);
+    const logs::MotionCapture capture = logs::with_z_up(logs::motion_capture_of(captured, options->capture, unit),
+                                                        up_of(options->up), options->capture);
+    if (options->up.empty()) check_up(run, capture, options->capture);
     const logs::MergedRun merged = [&] {
       try {
         return logs::merge_pose(run, capture, options->merge);
