@@ -12,7 +12,7 @@ namespace {
 // they come from a wrong unit.
 constexpr double kTogether = 0.8, kLengthFactor = 20, kAngleFactor = 15,
                  kYawFactor = 30;  // smaller ones: check_factors()
-constexpr double kSameWay = 1.4;
+constexpr double kSameWay = 1.4, kAsCommanded = 4;
 constexpr double kLeastMove_m = 0.1, kLeastTurn_rad = 0.2;
 constexpr double kDegreesInARadian = 180 / std::numbers::pi;
 constexpr double kDragged = 0.2;      // share of the travel commanded to the other track
@@ -198,13 +198,17 @@ void RunChecks::check_scales() {
     if (!may_be_dragged(by_command)) check_same_length(command, speed, by_command);
     check_same_length(travel, speed, by_travel);
     const std::string words = "a track that carries the robot forward is positive, on both sides";
-    check_turned_sign(speed, command, by_command, enough_asked_m, kLeastMove_m,
-                      words + "; or are left and right exchanged?");
+    // With a turned sign a track goes about as far as commanded. One that goes much farther is dragged, one that hardly
+    // moves is within a dead band.
+    if (!by_command || std::abs(std::log(by_command->ratio)) < std::log(kAsCommanded))
+      check_turned_sign(speed, command, by_command, enough_asked_m, kLeastMove_m,
+                        words + "; or are left and right exchanged?");
     check_turned_sign(travel, speed, by_travel, kLeastMove_m, kLeastMove_m, words);
     if (!has(speed)) {
       const auto both = relate(rate(command), adding(travel));
       if (!may_be_dragged(both)) check_same_length(command, travel, both);
-      check_turned_sign(travel, command, both, kLeastMove_m, kLeastMove_m, words);
+      if (!both || std::abs(std::log(both->ratio)) < std::log(kAsCommanded))
+        check_turned_sign(travel, command, both, enough_asked_m, kLeastMove_m, words);
     }
   }
 

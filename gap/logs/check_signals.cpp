@@ -12,6 +12,8 @@ namespace {
 // Chosen.
 constexpr double kMoves_m = 0.1, kCarries_m = 0.3, kSeen_m = 0.2, kTurns_rad = 0.3;
 constexpr std::size_t kFewestValues = 10;
+// Below them a drive may stand: share of the other track's way, and mean speed.
+constexpr double kSmallShare = 0.2, kSlow_mps = 0.05;
 // Turns larger than a gyro's bias and differences of tracks larger than slip cause; the gauge of an unknown robot.
 constexpr double kTurnWithin_s = 2, kTurnsByTracks_rad = 1, kWidest_m = 1;
 
@@ -83,16 +85,23 @@ bool RunChecks::turns() const {
 void RunChecks::check_constants() {
   // Tracks: speed and travel must change while they are commanded to; a constant command may give a constant speed.
   const bool pose_moves = farthest_from_start() > kSeen_m;
+  double most_commanded_m = 0;
+  for (const std::string side : kSides)
+    most_commanded_m = std::max(most_commanded_m, total_change(rate("cmd_track_" + side + "_mps")));
   for (const std::string side : kSides) {
     const double commanded_m = total_change(rate("cmd_track_" + side + "_mps"));
     if (commanded_m < kMoves_m) continue;
+    // A drive need not start by a command that is slower than its dead band, or small beside the other track's.
+    const bool must_start = commanded_m >= kSmallShare * most_commanded_m &&
+                            commanded_m >= kSlow_mps * (column("t_s").back() - column("t_s").front());
     for (const std::string& name : {"track_" + side + "_mps", "track_" + side + "_m"}) {
       if (!constant(column(name))) continue;
       const bool turns = std::ranges::any_of(column(name), [](double value) { return std::abs(value) > 0; });
       const bool as_commanded = turns && constant(column("cmd_track_" + side + "_mps"));
       if (name.ends_with("_mps") && as_commanded) continue;
+      const bool stands = !must_start && !turns;
       const bool other = has("track_" + side + (name.ends_with("_mps") ? "_m" : "_mps"));
-      add(pose_moves ? Severity::refuse : Severity::warn, name,
+      add(pose_moves && !stands ? Severity::refuse : Severity::warn, name,
           fmt::format(
               "never changes, although {:.3g} m are commanded{}: the encoder is dead or its column was not recorded{}",
               commanded_m, pose_moves ? " and the robot moves" : "",
