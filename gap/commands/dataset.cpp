@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 
@@ -50,7 +51,9 @@ void add_dataset_command(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--description", request.description, "free text, for a new dataset");
   command->add_flag("--unwrap", request.unwrap, "write the travel of tracks whose counter wraps without its jumps");
-  command->add_flag("--unchecked", request.unchecked, "also accept runs that the checks refuse");
+  command->add_flag("--unchecked", request.refused_runs.unchecked, "also accept runs that the checks refuse");
+  command->add_flag("--strict", request.refused_runs.strict,
+                    "write nothing if a run is refused; otherwise up to a tenth of the runs are left out");
 
   command->callback([options] {
     datasets::CollectRequest& asked = options->request;
@@ -70,7 +73,10 @@ void add_dataset_command(CLI::App& program) {
     for (const std::string& done : result.changed) std::printf("%s\n", done.c_str());
     for (std::size_t i = 0; i < result.runs.size(); ++i)
       std::printf("%s: %s, from %s\n", result.runs[i].file.c_str(), result.runs[i].manoeuvre.c_str(),
-                  asked.runs[i].file.c_str());
+                  asked.runs[result.added[i]].file.c_str());
+    for (std::size_t i = 0; i < asked.runs.size(); ++i)
+      if (std::ranges::find(result.added, i) == result.added.end())
+        std::printf("%s: left out, as it is refused\n", asked.runs[i].file.c_str());
     std::printf("%s: %zu runs %s\n", asked.out.c_str(), result.runs.size(),
                 result.extended ? "added" : "in a new dataset");
   });

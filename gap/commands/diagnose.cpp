@@ -40,6 +40,9 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
       ->add_option("--without", diagnosis.without, "effects to leave out of the search, by name, separated by commas")
       ->delimiter(',')
       ->type_name("EFFECT");
+  command->add_flag("--unchecked", diagnosis.refused_runs.unchecked, "also use runs that the checks refuse");
+  command->add_flag("--strict", diagnosis.refused_runs.strict,
+                    "end if a run is refused; otherwise up to a tenth of the runs are left out");
   command->add_flag_callback(
       "--no-next", [&diagnosis] { diagnosis.propose_next = false; },
       "do not propose the next manoeuvre, which needs further simulations");

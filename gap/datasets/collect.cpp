@@ -115,9 +115,11 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
     forms.look_at(recorded, run.file.string());
     const std::vector<logs::Finding> findings = logs::check_run(recorded, run.file.string(), &robot);
     result.findings.insert(result.findings.end(), findings.begin(), findings.end());
+    if (!logs::any_refused(findings) || request.refused_runs.unchecked)
+      result.added.push_back(static_cast<std::size_t>(&run - request.runs.data()));
   }
   std::ranges::move(forms.findings(), std::back_inserter(result.findings));
-  result.refused = logs::any_refused(result.findings) && !request.unchecked;
+  result.refused = request.refused_runs.too_many(request.runs.size() - result.added.size(), request.runs.size());
   if (result.refused) return result;
 
   // All worlds must load.
@@ -127,8 +129,8 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
     return there && request.world.empty() && world == there->world;
   };
   std::vector<std::string> worlds;
-  for (const RecordedRun& run : request.runs) {
-    worlds.push_back(world_of(request, run, shipped, there));
+  for (const std::size_t i : result.added) {
+    worlds.push_back(world_of(request, request.runs[i], shipped, there));
     if (lies_there(worlds.back())) continue;
     std::vector<std::string> what_is_not_simulated;
     physics::load_world(worlds.back(), what_is_not_simulated);  // throws if it does not load
@@ -150,8 +152,8 @@ CollectedDataset collect_dataset(const CollectRequest& request) {
   // Runs and worlds are copied, then dataset.toml names them.
   std::set<std::string> names;
   Copies copies;
-  for (std::size_t i = 0; i < request.runs.size(); ++i) {
-    const RecordedRun& run = request.runs[i];
+  for (std::size_t i = 0; i < result.added.size(); ++i) {
+    const RecordedRun& run = request.runs[result.added[i]];
     const std::string name = free_name(run.file, folder, names);
     // The runs were read one by one; one that changes is read again.
     std::optional<runs::Run> changed;

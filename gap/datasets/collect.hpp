@@ -22,17 +22,18 @@ struct CollectRequest {
   std::string world;            // shipped name or SDF file; empty: that of each shipped manoeuvre, else the dataset's
   std::string source = "real";  // or "sim"
   std::string description;
-  bool unwrap = false;     // write the tracks' travel without the jumps of counters that wrap (wrapped_travel.hpp)
-  bool unchecked = false;  // also take runs that check_run() refuses
+  bool unwrap = false;  // write the tracks' travel without the jumps of counters that wrap (wrapped_travel.hpp)
+  logs::RefusedRuns refused_runs;  // what to do with runs that check_run() refuses
   std::filesystem::path out;
 };
 
 struct CollectedDataset {
   bool extended = false;                // the dataset existed before
   std::vector<runs::DatasetRun> runs;   // those added, in the order requested
+  std::vector<std::size_t> added;       // their places in the request: others were refused and left out
   std::vector<logs::Finding> findings;  // of those; with file names as given
   std::vector<std::string> changed;     // what `unwrap` did
-  bool refused = false;                 // a finding refuses a run: nothing was written
+  bool refused = false;                 // too many runs are refused: nothing was written
 };
 
 // Copies the runs into the folder `out` under their own names, with a number if a name is taken, and writes or extends

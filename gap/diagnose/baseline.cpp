@@ -72,9 +72,10 @@ StageFeatures less(const StageFeatures& stage, const MeanResiduals& means) {
 
 }  // namespace
 
-Baseline observe_baseline(const std::filesystem::path& folder, Observations& now, const std::string& world) {
+Baseline observe_baseline(const std::filesystem::path& folder, Observations& now, const std::string& world,
+                          const logs::RefusedRuns& refused_runs) {
   const Observations both =
-      joined(now, observe(folder, now.robot_name, world, std::numeric_limits<std::size_t>::max()));
+      joined(now, observe(folder, now.robot_name, world, std::numeric_limits<std::size_t>::max(), refused_runs));
   const std::size_t count = now.runs.size();
 
   // for each new run, the baseline's runs of its group

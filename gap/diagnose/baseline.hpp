@@ -23,7 +23,8 @@ struct Baseline {
 // Reads the runs of `folder` that repeat those of `now`: same world, commands and initial speed; manoeuvre names do not
 // matter. Removes runs of `now` without a repeat, with a warning. `world` as for observe(). Throws like observe(), and
 // runs::RunFileError if no run is left.
-Baseline observe_baseline(const std::filesystem::path& folder, Observations& now, const std::string& world);
+Baseline observe_baseline(const std::filesystem::path& folder, Observations& now, const std::string& world,
+                          const logs::RefusedRuns& refused_runs = {});
 
 // Subtracts the baseline's mean residual from `now.of_stage`. Drops bins that no baseline run has. `residuals`:
 // measured minus nominal for each stage and each baseline run; `before`: the baseline's features.

@@ -201,9 +201,10 @@ Diagnosis diagnose_dataset(const std::filesystem::path& folder, const DiagnosisO
   d.options.stop = nullptr;
 
   // what is compared: runs, candidates, features, and which runs repeat each other
-  d.observations = observe(folder, options.robot, options.world, options.most_runs);
+  d.observations = observe(folder, options.robot, options.world, options.most_runs, options.refused_runs);
   std::optional<Baseline> baseline;
-  if (!options.against.empty()) baseline = observe_baseline(options.against, d.observations, options.world);
+  if (!options.against.empty())
+    baseline = observe_baseline(options.against, d.observations, options.world, options.refused_runs);
   d.candidates = candidates_for(d.observations, options);
   d.features = compared_features(d.observations, options.span_s);
   if (std::ranges::all_of(d.features.maps, [](const FeatureMap& map) { return map.bins().empty(); }))

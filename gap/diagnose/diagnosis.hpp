@@ -31,6 +31,7 @@ struct DiagnosisOptions {
   std::vector<std::string> without;  // candidates to leave out, by effect name or key, with all equivalent ones;
                                      // unknown names throw std::invalid_argument
   std::size_t most_runs = 24;        // runs that are used, at most, of a larger dataset
+  logs::RefusedRuns refused_runs{};  // what to do with implausible runs
   bool propose_next = true;          // propose manoeuvres if the verdict leaves a choice
   unsigned jobs = 0;                 // threads; 0: one per core
   std::uint64_t seed = 1;

@@ -89,21 +89,22 @@ void empty_repeats(runs::Run& run, const std::string& name) {
   for (const std::size_t row : held->repeats) run.values[column][row] = std::nan("");
 }
 
-// Clears the columns of dead sensors, and cells that only repeat a value. Throws if something is certainly wrong.
-void check(runs::Run& run, const std::string& file, const fs::path& folder, logs::HeldInRuns& held,
-           Observations& result) {
+// Clears the columns of dead sensors, and cells that only repeat a value. Returns what is certainly wrong, or nothing
+// if that is taken nevertheless.
+std::optional<std::string> check(runs::Run& run, const std::string& file, bool unchecked, logs::HeldInRuns& held,
+                                 Observations& result) {
   std::vector<logs::Finding> found = logs::check_run(run, file, &result.robot);
   for (const logs::Finding& finding : found)
     if (finding.severity == logs::Finding::Severity::held) empty_repeats(run, finding.column);
   held.take_off(found);
   for (const logs::Finding& finding : found) {
     const std::string words = in_words(finding);
-    if (finding.severity == logs::Finding::Severity::refuse)
-      throw runs::RunFileError(fmt::format("{}/{}", folder.string(), words));
+    if (finding.severity == logs::Finding::Severity::refuse && !unchecked) return words;
     const bool is_dead = finding.severity == logs::Finding::Severity::dead;
     if (is_dead) empty_column(run, finding.column);
     result.warnings.push_back(is_dead ? words + " (left out)" : words);
   }
+  return std::nullopt;
 }
 
 // At most `most` runs, evenly from all manoeuvres, spread over the dataset.
@@ -161,8 +162,8 @@ Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const s
   return observation;
 }
 
-Observations observe(const fs::path& folder, const std::string& robot, const std::string& world,
-                     std::size_t most_runs) {
+Observations observe(const fs::path& folder, const std::string& robot, const std::string& world, std::size_t most_runs,
+                     const logs::RefusedRuns& refused_runs) {
   Observations result;
   // the dataset, its robot, and the runs that are used of it
   result.dataset = runs::read_dataset(folder);
@@ -177,6 +178,7 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
   std::map<std::string, std::size_t> worlds;
   logs::KnownRuns known_runs;
   std::vector<logs::Finding> copies;
+  std::vector<std::string> refused;
   logs::HeldInRuns held;
   logs::LiftedRobot lifted;
   logs::OtherForms forms;
@@ -195,7 +197,10 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     }
 
     // its commands, without implausible values
-    check(observation.run, entry.file, folder, held, result);
+    if (const auto wrong = check(observation.run, entry.file, refused_runs.unchecked, held, result)) {
+      refused.push_back(*wrong);
+      continue;
+    }
     count_time_from_zero(observation.run);
     const std::string path = (folder / entry.file).string();
     observation.replay = rollout::replay_of(observation.run, path);
@@ -217,6 +222,11 @@ Observations observe(const fs::path& folder, const std::string& robot, const std
     lifted.look_at(observation.run, result.robot.track_gauge_m());
     result.runs.push_back(std::move(observation));
   }
+
+  // runs that are certainly wrong are left out if they are few
+  if (refused_runs.too_many(refused.size(), entries.size()))
+    throw runs::RunFileError(fmt::format("{}/{}", folder.string(), refused.front()));
+  for (const std::string& words : refused) result.warnings.push_back(words + " (the run is left out)");
 
   // a robot lifted off the ground shows nothing of the body's motion: only its drives are compared
   if (const auto finding = lifted.finding()) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/runs/dataset.hpp"
+#include "gap/logs/plausibility.hpp"
 #include "physics/robot_description.hpp"
 #include "physics/world_description.hpp"
 #include "rollout/manoeuvre.hpp"
@@ -45,11 +46,12 @@ Observation observation_of(const runs::DatasetRun& entry, runs::Run run, const s
 // Reads at most `most_runs` runs of a dataset, drawn evenly from all manoeuvres: more would take longer with little
 // benefit. `robot` and `world`, if not empty, replace the dataset's own. Leaves out, with a warning, runs that are too
 // short, copies of others, or failed simulations. Throws runs::RunFileError or DescriptionError with file, line and
-// column if one cannot be read or is implausible (gap/logs/plausibility.hpp), or if none is left.
+// column if one cannot be read, too many are implausible (gap/logs/plausibility.hpp), or none is left; fewer
+// implausible ones are left out with a warning, or used as they are if `refused_runs` says so.
 //
 // Warns of channels that the described robot does not have, as they cannot be compared. Clears the values of certainly
 // dead sensors in a run, with a warning, as they would be taken for a gap.
 Observations observe(const std::filesystem::path& folder, const std::string& robot, const std::string& world,
-                     std::size_t most_runs);
+                     std::size_t most_runs, const logs::RefusedRuns& refused_runs = {});
 
 }  // namespace kenaf::gap::diagnose

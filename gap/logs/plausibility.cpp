@@ -22,6 +22,11 @@ bool any_refused(std::span<const Finding> findings) {
   return std::ranges::find(findings, Finding::Severity::refuse, &Finding::severity) != findings.end();
 }
 
+bool RefusedRuns::too_many(std::size_t refused, std::size_t all) const {
+  constexpr std::size_t kOneIn = 10;
+  return !unchecked && refused > 0 && (strict || refused * kOneIn > all);
+}
+
 void HeldInRuns::take_off(std::vector<Finding>& found) {
   for (const Finding& finding : found) {
     if (finding.severity != Finding::Severity::held) continue;

@@ -50,6 +50,15 @@ struct Finding {
 std::string in_words(const Finding& finding);
 bool any_refused(std::span<const Finding> findings);
 
+// What to do with runs that a finding refuses.
+struct RefusedRuns {
+  bool unchecked = false;  // take them nevertheless, findings are warnings
+  bool strict = false;     // let one refuse the whole dataset
+  // Whether `refused` of `all` runs refuse the dataset: more than a tenth of them (chosen), or one if strict. Fewer are
+  // left out: in a hundred runs one always has something.
+  bool too_many(std::size_t refused, std::size_t all) const;
+};
+
 // Collects the findings of Severity::held, which all runs of a log share: one remains for each column and says in how
 // many runs.
 class HeldInRuns {

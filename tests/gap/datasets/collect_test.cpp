@@ -69,6 +69,42 @@ TEST_CASE("Runs are added at the end, what somebody wrote into dataset.toml stay
   CHECK(read_file(folder / "data/a-3.csv") == read_file(folder / "a.csv"));
 }
 
+TEST_CASE("One odd run of many is left out by name, more than a tenth or --strict refuse the dataset") {
+  const TemporaryFolder folder;
+  std::string files;
+  for (int i = 0; i < 9; ++i) {
+    const std::string name = "run-" + std::to_string(i) + ".csv";
+    record(folder, name, 0.2 + 0.01 * i);
+    files += name + " ";
+  }
+  record(folder, "mm.csv", 0.2, 1000);
+  // one of ten
+  const Outcome strict = kenaf_gap(folder, "dataset " + files + "mm.csv --manoeuvre straight --out data --strict");
+  CHECK(strict.status == 2);
+  CHECK_FALSE(std::filesystem::exists(folder / "data"));
+  const Outcome outcome = kenaf_gap(folder, "dataset mm.csv " + files + "--manoeuvre straight --out data");
+  REQUIRE(outcome.status == 0);
+  CHECK_THAT(outcome.error, Catch::Contains("mm.csv: x_m: looks like millimetres"));
+  CHECK_THAT(outcome.out, Catch::StartsWith("run-0.csv: straight, from run-0.csv\n") &&
+                              Catch::EndsWith("mm.csv: left out, as it is refused\ndata: 9 runs in a new dataset\n"));
+  CHECK(runs::read_dataset(folder / "data").runs.size() == 9);
+  CHECK_FALSE(std::filesystem::exists(folder / "data/mm.csv"));
+
+  // the same of a dataset that was made without checks
+  REQUIRE(kenaf_gap(folder, "dataset " + files + "mm.csv --manoeuvre straight --out all --unchecked").status == 0);
+  const Outcome checked = kenaf_gap(folder, "check all");
+  CHECK(checked.status == 0);
+  CHECK_THAT(checked.out, Catch::EndsWith("10 runs; findings: 1 refused, 0 warned of\n"
+                                          "a diagnosis leaves 1 of 10 runs out; with --strict they refuse the "
+                                          "dataset\n"));
+  CHECK(kenaf_gap(folder, "check all --strict").status == 2);
+  // two of ten
+  record(folder, "mm-2.csv", 0.3, 1000);
+  CHECK(
+      kenaf_gap(folder, "dataset mm-2.csv mm.csv " + files.substr(0, 80) + " --manoeuvre straight --out two").status ==
+      2);
+}
+
 TEST_CASE("A counter that wraps refuses a run, and with --unwrap its travel goes on in the dataset") {
   const TemporaryFolder folder;
   record(folder, "a.csv");

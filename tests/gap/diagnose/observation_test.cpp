@@ -85,6 +85,32 @@ TEST_CASE("A quantity without a sensor in the description is reported, and not c
   }
 }
 
+TEST_CASE("An implausible run of ten is left out, of nine it ends the diagnosis, and is used unchecked") {
+  const test::TemporaryFolder folder;
+  const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
+  const auto millimetres = [](double t_s) { return t_s < 1 ? 0 : 200 * (t_s - 1); };
+  std::string toml = "format = \"kenaf-runs/1\"\nsource = \"real\"\nrobot = \"kenaf\"\nworld = \"flat\"\n";
+  const auto write = [&](int number, double (*way)(double)) {
+    const std::string name = std::to_string(number) + ".csv";
+    const auto yaw = [number](double t_s) { return 0.0001 * (number + 1) * std::sin(t_s); };
+    runs::write_run(folder / name, commanded_to_go(1, {{"x_m", way}, {"y_m", zero}, {"yaw_rad", yaw}}));
+    toml += "[[run]]\nfile = \"" + name + "\"\n";
+    test::write_file(folder / "dataset.toml", toml);
+  };
+  write(0, millimetres);
+  for (int i = 1; i < 9; ++i) write(i, x);
+  CHECK_THROWS_WITH(observe(folder.path(), "", "", 10), Catch::Contains("0.csv: x_m: looks like millimetres"));
+  CHECK(observe(folder.path(), "", "", 10, {.unchecked = true}).runs.size() == 9);
+  write(9, x);
+  const Observations seen = observe(folder.path(), "", "", 10);
+  CHECK(seen.runs.size() == 9);
+  CHECK(seen.runs.front().file == "1.csv");
+  CHECK(std::ranges::any_of(seen.warnings, [](const std::string& words) {
+    return words.starts_with("0.csv: x_m: looks like millimetres") && words.ends_with("(the run is left out)");
+  }));
+  CHECK_THROWS_WITH(observe(folder.path(), "", "", 10, {.strict = true}), Catch::Contains("looks like millimetres"));
+}
+
 TEST_CASE("A sensor that is dead in a run counts as not measured in it, and is reported") {
   const test::TemporaryFolder folder;
   const auto x = [](double t_s) { return t_s < 1 ? 0 : 0.2 * (t_s - 1); };
