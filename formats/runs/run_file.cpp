@@ -94,7 +94,7 @@ class RunReader {
   }
 
   Run finish() {
-    if (!begun_.empty()) take_line();
+    if (!begun_.empty() && !leave_out_cut_off()) take_line();
     if (!has_header_) fail({place_.file, 1}, 1, "the file is empty; its first line names the columns, t_s among them");
     count_in_seconds();
     run_.reading = reading();
@@ -158,6 +158,20 @@ class RunReader {
     last_time_s_ = time_s;
   }
 
+  // A last line without its end is left out if it is the beginning of a row: cells are missing, or its last is none
+  // yet, as "-" or "1e". Returns whether it is.
+  bool leave_out_cut_off() {
+    if (!has_header_ || first_blank_ != 0 || only_blanks(begun_)) return false;
+    split_cells(begun_, separator_, cells_);
+    DecimalNumbers numbers = numbers_;
+    const bool unfinished = !cells_.back().text.empty() && !numbers.read(cells_.back().text);
+    const bool is_cut = cells_.size() < run_.columns.size() || (cells_.size() == run_.columns.size() && unfinished);
+    if (is_cut)
+      cut_off_ = "line " + std::to_string(place_.line + 1) + " left out, where the file is cut off within cell " +
+                 std::to_string(cells_.size()) + " of " + std::to_string(run_.columns.size());
+    return is_cut;
+  }
+
   std::string header_in_words() const {
     return run_.first_line == 2 ? "first line" : "header in line " + std::to_string(run_.first_line - 1);
   }
@@ -179,6 +193,7 @@ class RunReader {
     if (separator_ != ',') text = separated_by(separator_) + " between the cells";
     if (numbers_.mark() == ',') text += (text.empty() ? "" : ", ") + std::string("decimal commas");
     if (time_unit_) text += (text.empty() ? "" : ", ") + ("t_s in " + time_unit_->words) + " converted to seconds";
+    if (!cut_off_.empty()) text += (text.empty() ? "" : ", ") + cut_off_;
     return text;
   }
 
@@ -189,7 +204,7 @@ class RunReader {
   char separator_ = ',';
   DecimalNumbers numbers_;
   std::optional<TimeUnit> time_unit_;
-  std::string blank_;
+  std::string blank_, cut_off_;
   double last_time_s_ = -std::numeric_limits<double>::infinity();
   std::vector<CsvCell> cells_;
   Run run_;

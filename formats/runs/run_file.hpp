@@ -43,10 +43,11 @@ bool any_measured(std::span<const double> column);
 
 // Reads a run. Other forms of CSV are recognised and named in Run::reading: semicolons or tabs between the cells, which
 // may have decimal commas then; times in another unit (time_stamps.hpp), which become seconds. Cells may be quoted (RFC
-// 4180), lines that begin with # may precede the header. Throws RunFileError if there is no such file or no t_s, times
-// do not strictly increase, a cell is no finite number, a file has decimal points and decimal commas, a row has another
-// count of cells, a column is named twice or not at all, or there are more than 2^24 values (an hour of 40 columns at
-// 100 Hz has fewer). Unknown columns are kept. Memory is bounded by the values, not by the file.
+// 4180), lines that begin with # may precede the header. A last line without its end that is cut off within a row is
+// left out, and named in Run::reading. Throws RunFileError if there is no such file or no t_s, times do not strictly
+// increase, a cell is no finite number, a file has decimal points and decimal commas, a row has another count of cells,
+// a column is named twice or not at all, or there are more than 2^24 values (an hour of 40 columns at 100 Hz has
+// fewer). Unknown columns are kept. Memory is bounded by the values, not by the file.
 Run read_run(const std::filesystem::path& file);
 Run parse_run(std::string_view text, std::string_view name_for_errors);
 

@@ -132,6 +132,23 @@ TEST_CASE("Times in nanoseconds, microseconds or milliseconds become seconds whe
   CHECK(rows(0, 1000).column("t_s")[1] == 1000);
 }
 
+TEST_CASE("A file that is cut off in the middle of a row is read without that row, whose line is named") {
+  for (const std::string rest : {"1", "1,", "1,2", "1,2,-", "1,2,1e-"}) {
+    const Run run = parse_run("t_s,x_m,y_m\n0,1,2\n" + rest, "run.csv");
+    INFO(rest);
+    CHECK(values(run.column("t_s")) == std::vector<double>{0});
+    CHECK(run.reading == "line 3 left out, where the file is cut off within cell " +
+                             std::to_string(1 + std::ranges::count(rest, ',')) + " of 3");
+  }
+  CHECK(parse_run("t_s,x_m,y_m\n0,1,2\n1,2,", "run.csv").row_count() == 2);
+  CHECK(parse_run("t_s;x_m\n0,5;1\n1", "run.csv").reading ==
+        "semicolons between the cells, decimal commas, line 3 left out, where the file is cut off within cell 1 of 2");
+  // with its line's end a short row is an error of whoever wrote it; so are too many cells, and words in the middle
+  CHECK_THAT(refusal_of_run("t_s,x_m,y_m\n0,1,2\n1,2\n"), Catch::StartsWith("run.csv:3:4: the row has 2 cells"));
+  CHECK_THAT(refusal_of_run("t_s,x_m\n0,1\n1,2,3"), Catch::StartsWith("run.csv:3:5: the row has 3 cells"));
+  CHECK_THAT(refusal_of_run("t_s,x_m,y_m\n0,1,2\n1,n.a.,3"), Catch::StartsWith("run.csv:3:3: 'n.a.'"));
+}
+
 TEST_CASE("A last line without its end is a row, a header alone is a run without rows") {
   CHECK(parse_run("t_s\n0\n1", "run.csv").row_count() == 2);
   CHECK(parse_run("t_s,x_m", "run.csv").row_count() == 0);
