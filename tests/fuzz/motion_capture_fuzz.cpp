@@ -19,7 +19,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     const runs::Run run = runs::parse_run(text.substr(0, between), "run");
     for (const gap::logs::Finding& finding : gap::logs::check_run(run, "run", nullptr))
-      if (finding.text.empty() || finding.line >= run.first_line + std::max<std::size_t>(run.row_count(), 1)) __builtin_trap();
+      if (finding.text.empty() || finding.line >= run.first_line + std::max<std::size_t>(run.row_count(), 1))
+        __builtin_trap();
     const auto capture =
         gap::logs::parse_motion_capture(text.substr(between + 1), "capture", gap::logs::LengthUnit::metres);
     for (const bool given : {true, false}) {
