@@ -135,6 +135,9 @@ std::string as_toml_key(const std::string& key) {
 }  // namespace
 
 Dataset read_dataset(const fs::path& folder) {
+  if (fs::is_regular_file(folder))
+    throw RunFileError(folder.string() + ": is a file, not the folder of a dataset; `kenaf-gap dataset " +
+                       folder.filename().string() + " --manoeuvre NAME --out FOLDER` makes a dataset of a run");
   const fs::path file = folder / kFileName;
   return parse_dataset(read_whole_file(file), file.string());
 }

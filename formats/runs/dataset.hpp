@@ -31,8 +31,8 @@ struct Dataset {
 };
 
 // Reads `folder`/dataset.toml. Unknown keys are ignored. Throws RunFileError with file, line and column if the file is
-// missing, is no TOML or has another format, a required key is missing or of another type, a noise is no positive
-// number, or there is no run, a run named twice or one outside of the folder.
+// missing, is no TOML or has another format, or `folder` is a file, a required key is missing or of another type, a
+// noise is no positive number, or there is no run, a run named twice or one outside of the folder.
 Dataset read_dataset(const std::filesystem::path& folder);
 Dataset parse_dataset(std::string_view toml_text, std::string_view name_for_errors);
 

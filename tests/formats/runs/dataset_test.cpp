@@ -1,5 +1,6 @@
 // dataset.toml: what is read, what is refused and where, and that what is written reads back.
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "formats/runs/dataset.hpp"
 #include "tests/formats/runs/temporary_folder.hpp"
@@ -84,6 +85,13 @@ TEST_CASE("What is refused of dataset.toml, with its line and column") {
   CHECK_THAT(refusal_of("run = 3\n" + kExample.substr(0, kExample.find("[[run]]"))),
              Catch::StartsWith("dataset.toml:1:7: 'run'"));
   CHECK_THROWS_WITH(read_dataset("/no/such/folder"), Catch::Contains("/no/such/folder/dataset.toml: cannot be opened"));
+}
+
+TEST_CASE("A run in place of a dataset's folder is named, with the command that makes a dataset of it") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "run.csv") << "t_s\n0\n";
+  CHECK_THROWS_WITH(read_dataset(folder / "run.csv"),
+                    Catch::Contains("run.csv: is a file") && Catch::Contains("kenaf-gap dataset run.csv --manoeuvre"));
 }
 
 TEST_CASE("What is written reads back, whatever its texts hold") {
