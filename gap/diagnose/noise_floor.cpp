@@ -6,6 +6,7 @@
 #include <set>
 
 #include "gap/diagnose/channels.hpp"
+#include "gap/logs/median.hpp"
 
 namespace kenaf::gap::diagnose {
 namespace {
@@ -20,12 +21,6 @@ constexpr double kTrimmed = 0.05;
 
 // A sample was taken at any time since the previous one: 1 sigma of a uniform distribution, as a fraction of its width.
 const double kClockError = 1 / std::sqrt(12.0);
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Second differences of consecutive bins suppress slow changes, and with them most of a gap.
 void add_second_differences(const StageFeatures& features, const VectorXd& values, const std::vector<bool>& known,
@@ -117,7 +112,7 @@ Spreads usual_spread(const std::vector<Spreads>& spreads) {
     std::vector<double> known;
     for (const Spreads& group : spreads)
       if (group[c] > 0) known.push_back(group[c]);
-    if (!known.empty()) usual[c] = median(known);
+    if (!known.empty()) usual[c] = logs::upper_median(known);
   }
   return usual;
 }
@@ -177,7 +172,7 @@ NoiseFloor noise_floor(const std::vector<StageFeatures>& features, const std::ve
   const auto noise_of = [&](std::size_t c) {
     const bool is_stated = !floor.from_repeats && !stated.empty() && stated[c] > 0;
     if (is_stated) return stated[c] / std::sqrt(static_cast<double>(full[c]));
-    return jumps[c].empty() ? 0 : kMadToSigma * median(jumps[c]);
+    return jumps[c].empty() ? 0 : kMadToSigma * logs::upper_median(jumps[c]);
   };
   for (std::size_t c = 0; c < channels; ++c)
     if (full[c] > 0) floor.sigma[c] = std::max(diagnosis_channels()[c].resolution, noise_of(c));

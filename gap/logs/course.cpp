@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "gap/logs/median.hpp"
 
 namespace kenaf::gap::logs {
 namespace {
@@ -67,9 +70,7 @@ double median_step(std::span<const double> t_s, std::span<const double> value) {
     last_s = t_s[i];
   }
   if (steps.empty()) return kUnknown;
-  const auto middle = steps.begin() + std::ssize(steps) / 2;
-  std::ranges::nth_element(steps, middle);
-  return *middle;
+  return upper_median(std::move(steps));
 }
 
 double longest_gap_s(double median_step_s) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "gap/logs/median.hpp"
+
 namespace kenaf::gap::logs {
 namespace {
 
@@ -35,12 +37,6 @@ double root_mean_square(const std::vector<PairOfRates>& rates, double PairOfRate
   return std::sqrt(sum / static_cast<double>(rates.size()));
 }
 
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 }  // namespace
 
 std::optional<ScaleFactor> scale_factor(const Course& first, const Course& second) {
@@ -63,14 +59,14 @@ std::optional<ScaleFactor> scale_factor(const Course& first, const Course& secon
     const double sign = rate.second < 0 ? -1 : 1;
     angles.push_back(std::atan2(sign * rate.first / still_first, sign * rate.second / still_second));
   }
-  const double ratio = std::tan(median_of(angles)) * still_first / still_second;
+  const double ratio = std::tan(upper_median(angles)) * still_first / still_second;
   if (!(ratio > 0)) return std::nullopt;
 
   // Outliers go.
   std::vector<double> sizes;
   const auto residual = [ratio](const PairOfRates& rate) { return std::abs(rate.first - ratio * rate.second); };
   for (const PairOfRates& rate : rates) sizes.push_back(residual(rate));
-  const double most = std::max(kOutlier * median_of(sizes), kLeastOutlier * still_first);
+  const double most = std::max(kOutlier * upper_median(sizes), kLeastOutlier * still_first);
   std::erase_if(rates, [&](const PairOfRates& rate) { return residual(rate) > most; });
   const auto kept = static_cast<double>(rates.size());
   if (kept < kFewestKept || kept < kLeastKept * moving) return std::nullopt;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "gap/logs/course.hpp"
+#include "gap/logs/median.hpp"
 #include "gap/logs/run_checks.hpp"
 
 namespace kenaf::gap::logs {
@@ -18,12 +19,6 @@ struct TravelStep {
   double excess_m;  // over what the speed, or the steps beside it, make of it
   double expected_m;
 };
-
-double median_size(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle, {}, [](double value) { return std::abs(value); });
-  return std::abs(*middle);
-}
 
 std::vector<TravelStep> steps_of(std::span<const double> t_s, std::span<const double> travel,
                                  std::span<const double> speed) {
@@ -56,8 +51,8 @@ std::optional<WrappedTravel> wrapped_travel(std::span<const double> t_s, std::sp
       steps_of(t_s, travel, runs::any_measured(speed) ? speed : std::span<const double>{});
   if (steps.empty()) return std::nullopt;
   std::vector<double> sizes;
-  for (const TravelStep& step : steps) sizes.push_back(step.excess_m);
-  const double usual_m = median_size(sizes);
+  for (const TravelStep& step : steps) sizes.push_back(std::abs(step.excess_m));
+  const double usual_m = upper_median(sizes);
 
   WrappedTravel wrapped{0, {}, {}};
   std::vector<double> jumps;
@@ -66,12 +61,12 @@ std::optional<WrappedTravel> wrapped_travel(std::span<const double> t_s, std::sp
     if (std::abs(step.excess_m) < least_m) continue;
     wrapped.rows.push_back(step.row);
     wrapped.sign.push_back(step.excess_m > 0 ? 1 : -1);
-    jumps.push_back(step.excess_m);
+    jumps.push_back(std::abs(step.excess_m));
   }
   if (jumps.empty()) return std::nullopt;
-  wrapped.modulus_m = median_size(jumps);
+  wrapped.modulus_m = upper_median(jumps);
   for (const double jump : jumps)
-    if (std::abs(std::abs(jump) / wrapped.modulus_m - 1) > kSameModulus) return std::nullopt;
+    if (std::abs(jump / wrapped.modulus_m - 1) > kSameModulus) return std::nullopt;
   return wrapped;
 }
 
