@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
-# Checks what no build checks: that all sources are formatted, and, of each file that a change touches, that it compiles
-# alone and that clang-tidy finds nothing in it.
+# Checks what no build checks: that all sources are formatted, that each file compiles alone, and that clang-tidy finds
+# nothing in those that a change touches.
 #
-#   scripts/check.sh           files that differ from the commit before, or from $BASE
-#   scripts/check.sh --all     all files; takes an hour
+#   scripts/check.sh           the change: what differs from the commit before, or from $BASE
+#   scripts/check.sh --all     the change: everything; takes an hour
 #
-# Starts no further file after $CHECK_SECONDS (default: no limit); says how many it checked. Exit status 0: nothing found.
+# Neither of the last two starts a further file after $CHECK_SECONDS (default: no limit); files that the change affects
+# come first. Says how many it checked. Exit status 0: nothing found.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 case ${1:-} in
   --all) since=$(git hash-object -t tree /dev/null) ;;
   "") since=${BASE:-HEAD~1} ;;
-  *) sed -n '2,9s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+  *) sed -n '2,10s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
 esac
 scripts/install-dependencies.sh
 
@@ -30,6 +31,8 @@ mkdir -p build
 cmake --preset debug -B build/check -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++ >build/check.log 2>&1 || { cat build/check.log >&2; exit 1; }
 mapfile -t files < <(git diff --name-only --diff-filter=d "$since" -- '*.cpp' '*.hpp' '*.c' ':!bench/engines' ':!tests/fuzz')
 
+scripts/compile-alone.py build/check --seconds "${CHECK_SECONDS:-inf}" --first "${files[@]}"
+
 CHECK_UNTIL=$(($(date +%s) + ${CHECK_SECONDS:-1000000}))
 export CHECK_UNTIL
 check_file() {
@@ -41,4 +44,4 @@ export -f check_file
 if [ ${#files[@]} -gt 0 ]; then
   printf '%s\n' "${files[@]}" | xargs -P "$(nproc)" -I{} bash -c 'check_file "$1"' check_file {} || exit 1
 fi
-echo "check: all files are formatted; $((${#files[@]} - $(wc -l <build/check.left))) of ${#files[@]} files compile alone, without a finding"
+echo "check: all files are formatted; $((${#files[@]} - $(wc -l <build/check.left))) of ${#files[@]} touched files are without a finding of clang-tidy"

@@ -21,6 +21,7 @@ case $mode in
     packages+=(
       # tests
       abigail-tools binutils catch2 chromium-headless-shell clang clang-format clang-tidy git iproute2 libclang-rt-14-dev llvm
+      python3
       # the CAN tests
       busybox-static can-utils cpio kmod qemu-system-x86 xz-utils
       # a diagnosis by several processes

@@ -107,8 +107,7 @@ std::vector<std::size_t> candidates_that_matter(const StageData& data, const Eff
 
   // each once, in order
   std::ranges::sort(matter);
-  const auto again = std::ranges::unique(matter);
-  matter.erase(again.begin(), again.end());
+  matter.erase(std::unique(matter.begin(), matter.end()), matter.end());
   return matter;
 }
 
