@@ -59,9 +59,10 @@ void keep_only_loader(Assimp::Importer& importer, const std::string& extension) 
 }
 
 // Assimp's Collada reader recurses into elements and instances of nodes without a limit, takes any file with a ZIP
-// directory at its end for an archive, and trusts the array lengths in accessors and the bones in skins. Expat, which
-// has limits, checks the file first. Both must see the same content: a document type, whose entities and defaults only
-// Expat resolves, is refused.
+// directory at its end for an archive, trusts the array lengths in accessors, the counts of primitives and the bones in
+// skins, and reads the lists <p> and <vcount> without end if they hold anything but numbers. Expat, which has limits,
+// checks the file first. Both must see the same content: a document type, whose entities and defaults only Expat
+// resolves, is refused.
 struct ColladaCheck {
   static constexpr int kMostNested = 100;
   struct Accessor {
@@ -73,6 +74,9 @@ struct ColladaCheck {
   int depth = 0;
   bool in_accessor = false;
   std::uint64_t parameters = 0;  // of this accessor
+  std::uint64_t bytes = 0;       // of the file
+  std::uint64_t primitives = 0;  // triangles or the like that the enclosing element counts
+  bool in_indices = false;       // in a list of whole numbers
   const char* refusal = nullptr;
   std::map<std::string, std::uint64_t> array_lengths;
   std::vector<Accessor> accessors;
@@ -106,8 +110,17 @@ void collada_start(void* user, const XML_Char* element, const XML_Char** attribu
     check.refusal =
         "has an <instance_node>, which is not supported; export the nodes themselves, or an OBJ or STL file";
 
-  // Arrays and accessors are collected, to be compared at the end of the file.
+  // Each primitive has at least one index for each offset of its inputs, and each index takes at least one byte.
   const std::string_view count = attribute(attributes, "count");
+  constexpr std::array<std::string_view, 7> kPrimitives{"lines",     "linestrips", "polygons", "polylist",
+                                                        "triangles", "trifans",    "tristrips"};
+  if (std::ranges::find(kPrimitives, name) != kPrimitives.end()) check.primitives = count_in(check, count, 0);
+  const std::uint64_t last_offset = name == "input" ? count_in(check, attribute(attributes, "offset"), 0) : 0;
+  if (check.primitives * (last_offset + 1) > check.bytes)
+    check.refusal = "counts more primitives than a file of this size can have";
+  if (name == "p" || name == "vcount") check.in_indices = true;
+
+  // Arrays and accessors are collected, to be compared at the end of the file.
   if (name.ends_with("_array")) {
     // Only a float_array holds numbers. If two have one id, assimp may use either: the shorter one counts.
     const std::uint64_t length = name == "float_array" ? count_in(check, count, 0) : 0;
@@ -133,7 +146,20 @@ void collada_start(void* user, const XML_Char* element, const XML_Char** attribu
 void collada_end(void* user, const XML_Char* element) {
   auto& check = *static_cast<ColladaCheck*>(user);
   --check.depth;
-  if (std::string_view(element) == "accessor") check.in_accessor = false;
+  const std::string_view name = element;
+  if (name == "accessor") check.in_accessor = false;
+  if (name == "p" || name == "vcount") check.in_indices = false;
+}
+
+void collada_text(void* user, const XML_Char* text, int length) {
+  auto& check = *static_cast<ColladaCheck*>(user);
+  constexpr std::string_view kOfWholeNumbers = "0123456789+- \t\r\n";
+  if (!check.in_indices ||
+      std::string_view(text, static_cast<std::size_t>(length)).find_first_not_of(kOfWholeNumbers) ==
+          std::string_view::npos)
+    return;
+  check.refusal = "has something other than whole numbers in a <p> or <vcount>";
+  XML_StopParser(check.parser, XML_FALSE);
 }
 
 void collada_document_type(void* user, const XML_Char*, const XML_Char*, const XML_Char*, int) {
@@ -146,8 +172,10 @@ void check_collada(std::string_view bytes) {
   const std::unique_ptr<XML_ParserStruct, decltype(&XML_ParserFree)> parser(XML_ParserCreate(nullptr), XML_ParserFree);
   ColladaCheck check;
   check.parser = parser.get();
+  check.bytes = bytes.size();
   XML_SetUserData(parser.get(), &check);
   XML_SetElementHandler(parser.get(), collada_start, collada_end);
+  XML_SetCharacterDataHandler(parser.get(), collada_text);
   XML_SetStartDoctypeDeclHandler(parser.get(), collada_document_type);
 
   // A well-formed file: no accessor may span more than its array has.

@@ -376,6 +376,11 @@ TEST_CASE("What would eat memory or stack is refused first") {
   CHECK(error("wide.dae", with("stride=\"3\"", "stride=\"2\"")).find("more parameters than its stride") !=
         std::string::npos);
   CHECK(error("words.dae", with("count=\"3\"", "count=\"three\"")).find("not a whole number") != std::string::npos);
+  CHECK(error("letter.dae", with("0 1 2", "0 1G2")).find("other than whole numbers in a <p>") != std::string::npos);
+  // a triangle is at least one byte of the file
+  CHECK(error("many.dae", with("triangles count=\"1\"", "triangles count=\"4000000000\"")).find("counts more") !=
+        std::string::npos);
+  CHECK(error("far.dae", with("offset=\"0\"", "offset=\"4000000000\"")).find("counts more") != std::string::npos);
   // a picture that says it is 60000 x 60000
   std::string png = kGrey8;
   png.replace(16, 8, std::string("\0\0\xea\x60\0\0\xea\x60", 8));
