@@ -103,6 +103,22 @@ void add_belt(Surface& surface, const BeltLoop& belt) {
   for (const double left : {1.0, -1.0}) add_side(surface, belt, left);
 }
 
+BeltLoop loop_of(const physics::TrackDescription& track, robot::Track side) {
+  BeltLoop belt{physics::track_outline(track), track.p_BT_m, track.width_m, Material::track_side, side, 1, {}};
+  if (side == robot::kRight) belt.p_LBelt.y() *= -1;
+  const double half_m = track.straight_m() / 2, radius_m = kWheelShare * track.end_radius_m;
+  if (half_m > 0) belt.wheels.push_back({{half_m, 0}, radius_m});
+  belt.wheels.push_back({{0, 0}, 0.7 * radius_m});  // a road wheel, or a wheel's hub
+  if (half_m > 0) belt.wheels.push_back({{-half_m, 0}, radius_m});
+  return belt;
+}
+
+BeltLoop loop_of(const physics::CasterDescription& caster) {
+  BeltLoop belt = loop_of(caster.as_wheel(), robot::kLeft);
+  belt.s_sign = 0;
+  return belt;
+}
+
 }  // namespace
 
 void add_box(Surface& surface, const Vector3d& size_m, const physics::Pose& X_LBox, Material material) {
@@ -128,14 +144,9 @@ void add_box(Surface& surface, const Vector3d& size_m, const physics::Pose& X_LB
 Surface body_surface(const physics::RobotDescription& robot) {
   Surface surface;
   add_box(surface, robot.body.size_m, {}, Material::hull);
-  const physics::TrackDescription& track = robot.track;
-  const double half_m = track.length_m / 2 - track.end_radius_m, radius_m = kWheelShare * track.end_radius_m;
-  for (const robot::Track side : {robot::kLeft, robot::kRight}) {
-    BeltLoop belt{physics::track_outline(track), track.p_BT_m, track.width_m, Material::track_side, side, 1, {}};
-    if (side == robot::kRight) belt.p_LBelt.y() *= -1;
-    for (const double x : {half_m, 0.0, -half_m}) belt.wheels.push_back({{x, 0}, x == 0 ? 0.7 * radius_m : radius_m});
-    add_belt(surface, belt);
-  }
+  for (const robot::Track side : {robot::kLeft, robot::kRight})
+    for (const physics::TrackDescription& track : robot.track) add_belt(surface, loop_of(track, side));
+  for (const physics::CasterDescription& caster : robot.caster) add_belt(surface, loop_of(caster));
   return surface;
 }
 

@@ -38,7 +38,7 @@ std::string warning_of_gauge(const canbus::RobotBus& robot, double configured_mm
   if (described_mm <= 0 || std::abs(configured_mm - described_mm) <= kGaugeTolerance * described_mm) return {};
   return fmt::format(
       "track_gauge_mm is {:.0f}, but the robot's description has tracks that are {:.0f} mm apart "
-      "([track] left_center_m): turns come out wrong",
+      "(left_center_m): turns come out wrong",
       configured_mm, described_mm);
 }
 

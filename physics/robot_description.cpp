@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <set>
 
@@ -23,6 +24,8 @@ using description::TomlReader;
 using std::numbers::pi;
 constexpr Range kFriction{.min = 0, .max = 10};
 constexpr Range kMaxDelay{.min = 0, .max = 10};
+constexpr std::size_t kMaxWheelsASide = 8;
+constexpr std::size_t kMaxCasters = 4;
 constexpr std::size_t kMaxSensors = 64;
 constexpr std::size_t kMaxRays = 4096;
 constexpr std::size_t kMaxCameras = 8;
@@ -63,6 +66,60 @@ TrackDescription read_track(TomlReader table) {
   if (track.p_BT_m.y() <= track.width_m / 2) table.fail("left_center_m", "must have a y of more than half of width_m");
   table.finish();
   return track;
+}
+
+// A pair of wheels.
+TrackDescription read_wheel(TomlReader& table) {
+  const double radius_m = table.number("radius_m", kPositive);
+  const TrackDescription wheel{
+      .length_m = 2 * radius_m,
+      .end_radius_m = radius_m,
+      .width_m = table.number("width_m", kPositive),
+      .p_BT_m = table.vector3("left_center_m"),
+      .friction_along = table.number("friction_along", kFriction),
+      .friction_across = table.number("friction_across", kFriction),
+      .pieces = 1,
+      .lug_height_m = 0,
+  };
+  if (wheel.p_BT_m.y() <= wheel.width_m / 2) table.fail("left_center_m", "must have a y of more than half of width_m");
+  table.finish();
+  return wheel;
+}
+
+CasterDescription read_caster(TomlReader& table) {
+  const CasterDescription caster{
+      .p_BC_m = table.vector3("center_m"),
+      .radius_m = table.number("radius_m", kPositive),
+      .width_m = table.number("width_m", kPositive),
+      .friction = table.number("friction", kFriction),
+  };
+  table.finish();
+  return caster;
+}
+
+// A robot has tracks, with or without flippers, or wheels, with or without casters.
+void read_running_gear(TomlReader& file, RobotDescription& robot) {
+  if (!file.has("wheel")) {
+    if (file.has("caster")) file.fail("caster", "is for robots with [[wheel]]: a robot on tracks has none");
+    robot.track.push_back(read_track(file.table("track")));
+    return;
+  }
+  if (file.has("track"))
+    file.fail("wheel", "and [track] exclude each other: a robot drives on two tracks, or on wheels alone");
+  if (file.has("flipper")) file.fail("wheel", "and [flipper] exclude each other: flippers belong to robots on tracks");
+  for (TomlReader& table : file.tables("wheel")) {
+    robot.track.push_back(read_wheel(table));
+    if (robot.track.size() > kMaxWheelsASide)
+      table.fail("left_center_m", fmt::format("is one wheel too many: at most {} on a side", kMaxWheelsASide));
+    if (robot.track.size() > 1 && robot.track.back().p_BT_m.x() >= robot.track[robot.track.size() - 2].p_BT_m.x())
+      table.fail("left_center_m", "must have a smaller x than the wheel before: the front one comes first");
+  }
+  if (robot.track.empty()) file.fail("wheel", "is empty: a robot has a wheel on each side at least");
+  for (TomlReader& table : file.tables("caster")) {
+    robot.caster.push_back(read_caster(table));
+    if (robot.caster.size() > kMaxCasters)
+      table.fail("center_m", fmt::format("is one caster too many: at most {}", kMaxCasters));
+  }
 }
 
 TrackDriveDescription read_drive(TomlReader table) {
@@ -223,6 +280,18 @@ CameraDescription read_camera(TomlReader& table, const std::vector<MissionPackag
   return camera;
 }
 
+// From the front end to the rear end of all that rolls, if each is as long as `length_m` says, about its centre.
+double reach_m(const RobotDescription& robot, double (*length_m)(const TrackDescription&)) {
+  std::vector<TrackDescription> rolling = robot.track;
+  for (const CasterDescription& caster : robot.caster) rolling.push_back(caster.as_wheel());
+  double front_m = -std::numeric_limits<double>::infinity(), rear_m = std::numeric_limits<double>::infinity();
+  for (const TrackDescription& t : rolling) {
+    front_m = std::max(front_m, t.p_BT_m.x() + length_m(t) / 2);
+    rear_m = std::min(rear_m, t.p_BT_m.x() - length_m(t) / 2);
+  }
+  return front_m - rear_m;
+}
+
 Effects read_effects(TomlReader file) {
   Effects effects;
   for (const EffectInfo& effect : effect_catalogue()) {
@@ -243,12 +312,45 @@ std::string_view usarsim_type_name(SensorType type) {
   return kTypeNames[static_cast<std::size_t>(type)];
 }
 
+TrackDescription CasterDescription::as_wheel() const {
+  return {.length_m = 2 * radius_m,
+          .end_radius_m = radius_m,
+          .width_m = width_m,
+          .p_BT_m = p_BC_m,
+          .friction_along = friction,
+          .friction_across = friction,
+          .pieces = 1,
+          .lug_height_m = 0};
+}
+
 double RobotDescription::total_mass_kg() const {
   return body.mass_kg + (has_flippers() ? static_cast<double>(robot::kFlipperCount) * flipper.front().mass_kg : 0.0);
 }
 
 double RobotDescription::track_gauge_m() const {
-  return 2 * track.p_BT_m.y();
+  double sum_m = 0;
+  for (const TrackDescription& t : track) sum_m += 2 * t.p_BT_m.y();
+  return sum_m / static_cast<double>(track.size());
+}
+
+double RobotDescription::track_length_m() const {
+  return reach_m(*this, [](const TrackDescription& t) { return t.length_m; });
+}
+
+double RobotDescription::contact_length_m() const {
+  return reach_m(*this, [](const TrackDescription& t) { return t.straight_m(); });
+}
+
+double RobotDescription::outer_width_m() const {
+  double half_m = 0;
+  for (const TrackDescription& t : track) half_m = std::max(half_m, t.p_BT_m.y() + t.width_m / 2);
+  return 2 * half_m;
+}
+
+double RobotDescription::ride_height_m() const {
+  double height_m = track.front().end_radius_m - track.front().p_BT_m.z();
+  for (const TrackDescription& t : track) height_m = std::max(height_m, t.end_radius_m - t.p_BT_m.z());
+  return height_m;
 }
 
 double RobotDescription::encoder_factor(robot::Track side) const {
@@ -262,7 +364,7 @@ RobotDescription parse_robot(std::string_view toml_text, const std::string& name
   robot.name = std::filesystem::path(name_for_errors).stem().string();
   robot.usarsim_class = file.text("usarsim_class");
   robot.body = read_body(file.table("body"));
-  robot.track = read_track(file.table("track"));
+  read_running_gear(file, robot);
   robot.drive = read_drive(file.table("drive"));
   if (file.has("flipper")) {
     robot.flipper.push_back(read_flipper(file.table("flipper")));

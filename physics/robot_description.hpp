@@ -30,7 +30,8 @@ struct BodyDescription {
   bool operator==(const BodyDescription&) const = default;
 };
 
-// A track is a stadium: a rectangle with a half circle at each end, swept across its width.
+// A track is a stadium: a rectangle with a half circle at each end, swept across its width. A wheel is a track without
+// a rectangle: length_m = 2 end_radius_m, pieces 1, no lugs.
 struct TrackDescription {
   double length_m;  // over both end arcs
   double end_radius_m;
@@ -41,11 +42,24 @@ struct TrackDescription {
   int pieces;           // number of pieces of the belly with contacts of their own, which spread the load along it
   double lug_height_m;  // height of the belt's profile that catches behind an edge
 
+  double straight_m() const { return length_m - 2 * end_radius_m; }  // of the rectangle; 0: a wheel
   bool operator==(const TrackDescription&) const = default;
 };
 
+// A wheel that swivels and is not driven: it slides in all directions alike.
+struct CasterDescription {
+  Eigen::Vector3d p_BC_m;  // its centre
+  double radius_m;
+  double width_m;
+  double friction;  // what its swivelling and rolling cost
+
+  TrackDescription as_wheel() const;  // at its place, not of the left side
+  bool operator==(const CasterDescription&) const = default;
+};
+
+// The drive of one side, whose wheels all turn together.
 struct TrackDriveDescription {
-  double sprocket_radius_m;  // surface speed per spin
+  double sprocket_radius_m;  // surface speed per spin; of a wheel, its radius
   double max_speed_mps;
   double max_force_n;                // at the belt, at standstill
   double time_constant_s;            // of the closed speed loop
@@ -162,7 +176,8 @@ struct RobotDescription {
   std::string name;           // stem of its file's name
   std::string usarsim_class;  // "USARBot.Kenaf"
   BodyDescription body;
-  TrackDescription track;
+  std::vector<TrackDescription> track;    // of the left side: one track, or at least one wheel, the front one first
+  std::vector<CasterDescription> caster;  // of robots with wheels
   TrackDriveDescription drive;
   std::vector<FlipperDescription> flipper;  // empty, or one that stands for all four
   FlipperServoDescription servo{};
@@ -173,8 +188,13 @@ struct RobotDescription {
   Effects effects;  // switched on by [effects.NAME] tables
 
   bool has_flippers() const { return !flipper.empty(); }
+  bool has_wheels() const { return track.front().straight_m() == 0; }
   double total_mass_kg() const;
-  double track_gauge_m() const;                    // between the tracks' centre planes
+  double track_gauge_m() const;     // between the centre planes of the tracks, or of the wheels in the mean
+  double track_length_m() const;    // from the front end to the rear end of the tracks, or wheels and casters
+  double contact_length_m() const;  // of the line on which they touch flat ground: a track's belly, or the wheel base
+  double outer_width_m() const;     // from the left side of the left ones to the right side of the right ones
+  double ride_height_m() const;     // of B's origin when they stand on flat ground
   double encoder_factor(robot::Track side) const;  // metres that its encoder reports per metre
 
   bool operator==(const RobotDescription&) const = default;

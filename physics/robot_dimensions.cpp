@@ -5,10 +5,11 @@ namespace kenaf::physics {
 RobotDimensions dimensions_of(const RobotDescription& robot) {
   RobotDimensions out;
   out.body_size_m = robot.body.size_m;
-  out.track_length_m = robot.track.length_m;
-  out.track_radius_m = robot.track.end_radius_m;
-  out.track_width_m = robot.track.width_m;
-  out.p_BT_m = robot.track.p_BT_m;
+  for (const TrackDescription& track : robot.track)
+    out.tracks.push_back({track.length_m, track.end_radius_m, track.width_m, track.p_BT_m});
+  for (const CasterDescription& caster : robot.caster)
+    out.casters.push_back({2 * caster.radius_m, caster.radius_m, caster.width_m, caster.p_BC_m});
+  out.ride_height_m = robot.ride_height_m();
   out.max_speed_mps = robot.drive.max_speed_mps;
   out.has_flippers = robot.has_flippers();
   if (!out.has_flippers) return out;

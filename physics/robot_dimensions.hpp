@@ -4,16 +4,24 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "physics/robot_description.hpp"
 
 namespace kenaf::physics {
 
+// A track or a wheel, whose length is twice its radius.
+struct BeltDimensions {
+  double length_m, radius_m, width_m;
+  Eigen::Vector3d p_B_m;  // its centre
+};
+
 // Dimensions of a robot, and limits of its drives.
 struct RobotDimensions {
   Eigen::Vector3d body_size_m{0, 0, 0};
-  double track_length_m = 0, track_radius_m = 0, track_width_m = 0;
-  Eigen::Vector3d p_BT_m{0, 0, 0};  // centre of the left track; the right one is its mirror image
+  std::vector<BeltDimensions> tracks;  // of the left side, the front one first; the right ones are mirror images
+  std::vector<BeltDimensions> casters;
+  double ride_height_m = 0;  // of B's origin on flat ground
   bool has_flippers = false;
   double flipper_length_m = 0, pivot_radius_m = 0, tip_radius_m = 0, flipper_width_m = 0;
   Eigen::Vector3d p_BPivot_m{0, 0, 0};  // of the front left flipper; the others are mirror images

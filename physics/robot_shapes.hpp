@@ -12,7 +12,7 @@ namespace kenaf::physics {
 // The outline of a prism in its x-z plane, in order.
 using Outline = std::vector<Eigen::Vector2d>;
 
-Outline track_outline(const TrackDescription& track);
+Outline track_outline(const TrackDescription& track);  // a circle for a wheel
 
 // A flipper around its pivot: x from the pivot to the tip drum.
 Outline flipper_outline(const FlipperDescription& flipper);

@@ -7,7 +7,6 @@ namespace kenaf::bench {
 namespace {
 
 using namespace physics;
-using engines::belly_height_m;
 using engines::on_plane;
 
 constexpr double kGravity = 9.80665;
@@ -63,7 +62,7 @@ double sink_m(const Engine& engine, const RobotDescription& robot) {
   const EngineScene scene = on_plane(robot, 0);
   const auto runner = engine.build(scene);
   run(*runner, 2, scene.time_step_s);
-  return belly_height_m(robot) - runner->pose().p.z();
+  return robot.ride_height_m() - runner->pose().p.z();
 }
 
 // Yaw rate w of two belts that run against each other, each with its load spread evenly over its straight run and
@@ -90,7 +89,7 @@ double turn_rate_radps(const TrackDescription& track, double speed_mps) {
 
 double turn_error(const Engine& engine, RobotDescription robot) {
   constexpr double kSpeed_mps = 0.2, kTime_s = 3;
-  robot.track.friction_across = robot.track.friction_along;
+  robot.track.front().friction_across = robot.track.front().friction_along;
   EngineScene scene = on_plane(robot, 0);
   scene.command.track_speed_mps = {-kSpeed_mps, kSpeed_mps};
   const auto runner = engine.build(scene);
@@ -102,7 +101,7 @@ double turn_error(const Engine& engine, RobotDescription robot) {
     turned += std::remainder(now - yaw, 2 * std::numbers::pi);
     yaw = now;
   }
-  return turned / kTime_s / turn_rate_radps(robot.track, kSpeed_mps) - 1;
+  return turned / kTime_s / turn_rate_radps(robot.track.front(), kSpeed_mps) - 1;
 }
 
 }  // namespace

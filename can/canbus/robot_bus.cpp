@@ -182,6 +182,15 @@ void check_nodes(TomlReader& table, const RobotBus& bus) {
   if (bus.gyro) take(bus.gyro->node, "gyro", "gyro");
 }
 
+// Between the tracks, or the wheels in the mean; 0 if the description has neither.
+double gauge_m(TomlReader& file) {
+  if (file.has("track")) return 2 * file.table("track").vector3("left_center_m").y();
+  std::vector<TomlReader> wheels = file.tables("wheel");
+  double sum_m = 0;
+  for (TomlReader& wheel : wheels) sum_m += 2 * wheel.vector3("left_center_m").y();
+  return wheels.empty() ? 0 : sum_m / static_cast<double>(wheels.size());
+}
+
 }  // namespace
 
 RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for_errors) {
@@ -211,7 +220,7 @@ RobotBus parse_robot_bus(std::string_view toml_text, const std::string& name_for
   bus.answer_s = table.number("answer_s", {.min = 0.01, .max = 10});
 
   // Drives take speeds, limits and radius from the tables that the simulator reads too.
-  if (file.has("track")) bus.track_gauge_m = 2 * file.table("track").vector3("left_center_m").y();
+  bus.track_gauge_m = gauge_m(file);
   read_tracks(table.table("track"), file.table("drive"), bus);
   if (!file.has("flipper"))
     table.fail("flipper", "has no [flipper] in this description: this library drives robots with four");

@@ -23,7 +23,7 @@ struct RangeOfEffect {
 };
 
 double length_m(const RobotDescription& robot) {
-  return robot.track.length_m;
+  return robot.track_length_m();
 }
 
 // Limited by the track gauge: a centre of mass farther out would be above one track.
@@ -123,7 +123,7 @@ bool can_show(const RobotDescription& robot, const EffectInfo& effect, bool has_
   if (effect.name.starts_with("posture_")) return has_sensor(robot, {ins});
   if (effect.name.starts_with("gyro_")) return has_sensor(robot, {imu});
   if (effect.name.starts_with("encoder_")) return has_sensor(robot, {encoder, tachometer});
-  if (effect.name == "lug_height") return robot.track.lug_height_m > 0;
+  if (effect.name == "lug_height") return robot.track.front().lug_height_m > 0;
   return true;
 }
 

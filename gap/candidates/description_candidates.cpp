@@ -46,32 +46,32 @@ SearchRange moment(const RobotDescription& robot, double value) {
 
 // A fixed fraction of the track's length to both sides.
 SearchRange along(const RobotDescription& robot, double value) {
-  return {value - 0.15 * robot.track.length_m, value + 0.15 * robot.track.length_m};
+  return {value - 0.15 * robot.track_length_m(), value + 0.15 * robot.track_length_m()};
 }
 SearchRange upward(const RobotDescription& robot, double value) {
-  return {value - 0.09 * robot.track.length_m, value + 0.15 * robot.track.length_m};
+  return {value - 0.09 * robot.track_length_m(), value + 0.15 * robot.track_length_m()};
 }
 SearchRange across(const RobotDescription& robot, double value) {
-  const double reach = std::min(0.15 * robot.track.length_m, 0.25 * robot.track_gauge_m());
+  const double reach = std::min(0.15 * robot.track_length_m(), 0.25 * robot.track_gauge_m());
   return {value - reach, value + reach};
 }
 // Half of the end radius: beyond it the hull would touch the ground or be far above it.
 SearchRange height(const RobotDescription& robot, double value) {
-  return {value - robot.track.end_radius_m / 2, value + robot.track.end_radius_m / 2};
+  return {value - robot.track.front().end_radius_m / 2, value + robot.track.front().end_radius_m / 2};
 }
 
 // Two numbers with a fixed order may each go half way to the other, so that both can do so at once.
 double between_length_and_ends_m(const RobotDescription& robot) {
-  return robot.track.length_m / 2 + robot.track.end_radius_m;
+  return robot.track.front().length_m / 2 + robot.track.front().end_radius_m;
 }
 double between_separation_and_width_m(const RobotDescription& robot) {
-  return (robot.track_gauge_m() + robot.track.width_m) / 2;
+  return (robot.track_gauge_m() + robot.track.front().width_m) / 2;
 }
 SearchRange track_length(const RobotDescription& robot, double value) {
   return {std::max(value / 2, between_length_and_ends_m(robot)), 2 * value};
 }
 SearchRange contact_length(const RobotDescription& robot, double value) {
-  const double ends_m = 2 * robot.track.end_radius_m;
+  const double ends_m = 2 * robot.track.front().end_radius_m;
   const SearchRange length = track_length(robot, value + ends_m);
   return {length.min - ends_m, length.max - ends_m};
 }
@@ -90,10 +90,10 @@ SearchRange hull_length(const RobotDescription&, double value) {
   return {0.5 * value, 1.5 * value};
 }
 SearchRange hull_width(const RobotDescription& robot, double value) {
-  return within(half_to_twice(value), {0, robot.track_gauge_m() - robot.track.width_m});
+  return within(half_to_twice(value), {0, robot.track_gauge_m() - robot.track.front().width_m});
 }
 SearchRange hull_height(const RobotDescription& robot, double value) {
-  return within(half_to_twice(value), {0, 2 * (robot.track.end_radius_m - robot.track.p_BT_m.z())});
+  return within(half_to_twice(value), {0, 2 * (robot.ride_height_m())});
 }
 
 // The arm stays longer than the difference of the drum radii, even with all three numbers at the ends of their ranges.
@@ -113,7 +113,7 @@ SearchRange pivot_ahead(const RobotDescription& robot, double value) {
 
 // Up to 3 % of the end radius at least, so a robot described without lugs may have some.
 SearchRange lugs(const RobotDescription& robot, double value) {
-  return {0, std::max(3 * value, 0.03 * robot.track.end_radius_m)};
+  return {0, std::max(3 * value, 0.03 * robot.track.front().end_radius_m)};
 }
 SearchRange time_constant(const RobotDescription&, double value) {
   return {0, std::max(kLongestConstant_s, value)};
@@ -153,6 +153,16 @@ constexpr DescribedNumber kDescribed[] = {
      "friction_along"},
     {"track.friction_across", "1", Stage::contact, "friction of the main belts across", doubled, "friction_across"},
     {"track.lug_height_m", "m", Stage::contact, "height of the lugs that catch at an edge", lugs, "lug_height"},
+    {"wheel.base_m", "m", Stage::body, "distance of the front and rear axles", doubled},
+    {"wheel.radius_m", "m", Stage::body, "radius of the wheels, which sets the ride height", doubled},
+    {"wheel.width_m", "m", Stage::body, "width of the wheels", track_width},
+    {"wheel.separation_m", "m", Stage::body, "distance between the left and right wheels' centre planes", separation},
+    {"wheel.forward_m", "m", Stage::body, "position of the wheels along x", along},
+    {"wheel.up_m", "m", Stage::body, "height of the wheels on the body", height},
+    {"wheel.friction_along", "1", Stage::contact, "friction of the wheels in rolling direction", doubled,
+     "friction_along"},
+    {"wheel.friction_across", "1", Stage::contact, "friction of the wheels across", doubled, "friction_across"},
+    {"caster.friction", "1", Stage::contact, "friction of the casters", doubled},
     {"drive.max_speed_mps", "m/s", Stage::drive, "the track motors' speed without load", doubled},
     {"drive.max_force_n", "N", Stage::drive, "the track motors' force at standstill", doubled, "drive_torque_limit"},
     {"drive.time_constant_s", "s", Stage::drive, "first-order lag of the track's speed loop", time_constant},
@@ -211,7 +221,7 @@ bool does_more(std::string_view effect, const RobotDescription& robot) {
 // An effect is equivalent only if it exists and changes nothing else.
 bool does_the_same(std::string_view effect, const RobotDescription& robot) {
   if (does_more(effect, robot)) return false;
-  if (effect == "lug_height" && robot.track.lug_height_m == 0) return false;
+  if (effect == "lug_height" && robot.track.front().lug_height_m == 0) return false;
   return effect.starts_with("track.") || physics::find_effect(effect) != nullptr;
 }
 
@@ -236,7 +246,7 @@ void add_candidate(std::vector<Candidate>& candidates, const DescribedNumber& de
   candidate.whole = value != 0 ? std::abs(value) : described.whole_of_nothing.value_or(range.max - range.min);
   if (does_the_same(described.same_as, robot)) candidate.same_as = described.same_as;
   if (does_more(described.same_as, robot)) candidate.part_of = described.same_as;
-  candidate.keys = {number->written_as};
+  candidate.keys = number->written_as;
   candidate.set = number->set;
   candidates.push_back(std::move(candidate));
 }

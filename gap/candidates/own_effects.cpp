@@ -85,7 +85,8 @@ std::vector<OwnMove> read_moves(description::TomlReader& table, const RobotDescr
   std::set<std::string> keys;  // as in the file: a number moved twice would not move linearly
   for (description::TomlReader& move : table.tables("moves")) {
     moves.push_back(read_move(move, robot));
-    if (!keys.insert(moves.back().number.written_as).second) move.fail("key", "is already changed by this effect");
+    for (const std::string& key : moves.back().number.written_as)
+      if (!keys.insert(key).second) move.fail("key", "is already changed by this effect");
     if (moves.size() > kMaxMoves)
       move.fail("key", fmt::format("is one too many: an effect changes at most {} numbers", kMaxMoves));
   }
@@ -118,7 +119,8 @@ Candidate read_effect(description::TomlReader& table, const RobotDescription& ro
   if (candidate.min == candidate.max) table.fail("max", "must be more than min");
   const std::vector<OwnMove> moves = read_moves(table, robot);
   table.finish();
-  for (const OwnMove& move : moves) candidate.keys.push_back(move.number.written_as);
+  for (const OwnMove& move : moves)
+    candidate.keys.insert(candidate.keys.end(), move.number.written_as.begin(), move.number.written_as.end());
 
   // each number x becomes x (1 + scale by) + add by, with by = value - neutral
   candidate.set = [moves, neutral = candidate.neutral](RobotDescription& varied, double value) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "gap/candidates/wheel_numbers.hpp"
+
 namespace kenaf::gap::candidates {
 namespace {
 
@@ -48,9 +50,11 @@ struct Flipper {
   static auto& of(auto& robot) { return number_in<member, index>(robot.flipper.front()); }
 };
 template <auto member, int index = kNoVector>
-using Body = InSection<&RobotDescription::body, member, index>;
+struct Track {
+  static auto& of(auto& robot) { return number_in<member, index>(robot.track.front()); }
+};
 template <auto member, int index = kNoVector>
-using Track = InSection<&RobotDescription::track, member, index>;
+using Body = InSection<&RobotDescription::body, member, index>;
 template <auto member, int index = kNoVector>
 using Drive = InSection<&RobotDescription::drive, member, index>;
 template <auto member, int index = kNoVector>
@@ -90,15 +94,6 @@ constexpr PlainNumber kOfEveryRobot[] = {
     {"body.inertia_kgm2[1]", kAboveZero, Body<&BodyDescription::inertia_kgm2, 1>{}},
     {"body.inertia_kgm2[2]", kAboveZero, Body<&BodyDescription::inertia_kgm2, 2>{}},
     {"body.friction", kFrictionRange, Body<&BodyDescription::friction>{}},
-    {"track.length_m", kAboveZero, Track<&TrackDescription::length_m>{}},
-    {"track.end_radius_m", kAboveZero, Track<&TrackDescription::end_radius_m>{}},
-    {"track.width_m", kAboveZero, Track<&TrackDescription::width_m>{}},
-    {"track.left_center_m[0]", kAnyNumber, Track<&TrackDescription::p_BT_m, 0>{}},
-    {"track.left_center_m[1]", kAboveZero, Track<&TrackDescription::p_BT_m, 1>{}},
-    {"track.left_center_m[2]", kAnyNumber, Track<&TrackDescription::p_BT_m, 2>{}},
-    {"track.friction_along", kFrictionRange, Track<&TrackDescription::friction_along>{}},
-    {"track.friction_across", kFrictionRange, Track<&TrackDescription::friction_across>{}},
-    {"track.lug_height_m", kLugRange, Track<&TrackDescription::lug_height_m>{}},
     {"drive.sprocket_radius_m", kAboveZero, Drive<&TrackDriveDescription::sprocket_radius_m>{}},
     {"drive.max_speed_mps", kAboveZero, Drive<&TrackDriveDescription::max_speed_mps>{}},
     {"drive.max_force_n", kAboveZero, Drive<&TrackDriveDescription::max_force_n>{}},
@@ -109,6 +104,18 @@ constexpr PlainNumber kOfEveryRobot[] = {
     {"drive.idle_amperes", kZeroOrMore, Drive<&TrackDriveDescription::idle_amperes>{}},
     {"battery.open_circuit_v", kAboveZero, Battery<&BatteryDescription::open_circuit_v>{}},
     {"battery.internal_resistance_ohm", kZeroOrMore, Battery<&BatteryDescription::internal_resistance_ohm>{}},
+};
+
+constexpr PlainNumber kOfTracks[] = {
+    {"track.length_m", kAboveZero, Track<&TrackDescription::length_m>{}},
+    {"track.end_radius_m", kAboveZero, Track<&TrackDescription::end_radius_m>{}},
+    {"track.width_m", kAboveZero, Track<&TrackDescription::width_m>{}},
+    {"track.left_center_m[0]", kAnyNumber, Track<&TrackDescription::p_BT_m, 0>{}},
+    {"track.left_center_m[1]", kAboveZero, Track<&TrackDescription::p_BT_m, 1>{}},
+    {"track.left_center_m[2]", kAnyNumber, Track<&TrackDescription::p_BT_m, 2>{}},
+    {"track.friction_along", kFrictionRange, Track<&TrackDescription::friction_along>{}},
+    {"track.friction_across", kFrictionRange, Track<&TrackDescription::friction_across>{}},
+    {"track.lug_height_m", kLugRange, Track<&TrackDescription::lug_height_m>{}},
 };
 
 constexpr PlainNumber kOfFlippers[] = {
@@ -130,22 +137,27 @@ constexpr PlainNumber kOfFlippers[] = {
 };
 
 RobotNumber number_of(const PlainNumber& plain) {
-  return {std::string(plain.key), std::string(plain.key), plain.range, plain.read, plain.write};
+  return {std::string(plain.key), {std::string(plain.key)}, plain.range, plain.read, plain.write};
 }
 
 double contact_length_m(const RobotDescription& robot) {
-  return robot.track.length_m - 2 * robot.track.end_radius_m;
+  return robot.contact_length_m();
 }
 
 void add_derived(std::vector<RobotNumber>& numbers) {
-  numbers.push_back({"track.separation_m", "track.left_center_m[1]", kAboveZero,
+  numbers.push_back({"track.separation_m",
+                     {"track.left_center_m[1]"},
+                     kAboveZero,
                      [](const RobotDescription& robot) { return robot.track_gauge_m(); },
-                     [](RobotDescription& robot, double value) { robot.track.p_BT_m.y() = value / 2; }});
-  numbers.push_back({"track.contact_length_m", "track.length_m", kAboveZero, contact_length_m,
+                     [](RobotDescription& robot, double value) { robot.track.front().p_BT_m.y() = value / 2; }});
+  numbers.push_back({"track.contact_length_m",
+                     {"track.length_m"},
+                     kAboveZero,
+                     contact_length_m,
                      [](RobotDescription& robot, double value) {
                        // subtracting and adding again does not always restore the same bits
                        if (value != contact_length_m(robot))
-                         robot.track.length_m = value + 2 * robot.track.end_radius_m;
+                         robot.track.front().length_m = value + 2 * robot.track.front().end_radius_m;
                      }});
 }
 
@@ -156,7 +168,9 @@ void add_sensors(const RobotDescription& described, std::vector<RobotNumber>& nu
     const auto find = [name = sensor.name](auto& robot) {
       return std::ranges::find(robot.sensors, name, &physics::SensorDescription::name);
     };
-    numbers.push_back({key, key, kDelayRange,
+    numbers.push_back({key,
+                       {key},
+                       kDelayRange,
                        [find](const RobotDescription& robot) {
                          const auto found = find(robot);
                          return found == robot.sensors.end() ? 0 : found->delay_s;
@@ -174,7 +188,7 @@ void add_effects(std::vector<RobotNumber>& numbers) {
     for (const physics::EffectParameter& parameter : effect.parameters) {
       const std::string key = fmt::format("effects.{}.{}", effect.name, parameter.name);
       numbers.push_back({key,
-                         key,
+                         {key},
                          {.min = parameter.min, .max = parameter.max},
                          [at = parameter.value](const RobotDescription& robot) { return robot.effects.*at; },
                          [at = parameter.value](RobotDescription& robot, double value) { robot.effects.*at = value; }});
@@ -200,7 +214,11 @@ std::vector<RobotNumber> robot_numbers(const RobotDescription& robot) {
   for (const PlainNumber& plain : kOfEveryRobot) numbers.push_back(number_of(plain));
   if (robot.has_flippers())
     for (const PlainNumber& plain : kOfFlippers) numbers.push_back(number_of(plain));
-  add_derived(numbers);
+  if (!robot.has_wheels()) {
+    for (const PlainNumber& plain : kOfTracks) numbers.push_back(number_of(plain));
+    add_derived(numbers);
+  }
+  for (RobotNumber& number : wheel_numbers(robot)) numbers.push_back(std::move(number));
   add_sensors(robot, numbers);
   add_effects(numbers);
   return numbers;
@@ -219,7 +237,8 @@ std::string why_impossible(const RobotDescription& robot) {
   const Eigen::Vector3d& I = robot.body.inertia_kgm2;
   if (2 * I.maxCoeff() > I.sum() * (1 + 1e-9))
     return "body.inertia_kgm2 has a moment that is larger than the sum of the two others";
-  const TrackDescription& track = robot.track;
+  if (std::string why = why_impossible_wheels(robot); !why.empty() || robot.has_wheels()) return why;
+  const TrackDescription& track = robot.track.front();
   if (track.length_m <= 2 * track.end_radius_m)
     return fmt::format("track.length_m is {}, but must be more than twice track.end_radius_m", track.length_m);
   if (track.p_BT_m.y() <= track.width_m / 2)

@@ -21,19 +21,20 @@ struct NumberRange {
 };
 
 // Keys are written as in the file: "drive.max_force_n", "body.center_of_mass_m[2]", "effects.command_gain.gain";
-// sensors by name, "sensor[INS].delay_s". Two are derived, as a robot is usually measured by them:
+// sensors by name, "sensor[INS].delay_s"; wheels as wheel_numbers.hpp has them. Two are derived, as a robot on tracks
+// is usually measured by them:
 // - "track.separation_m", between the centre planes of the tracks: twice the y of left_center_m;
 // - "track.contact_length_m", of the flat belly: length_m less both end radii. The ends keep their radius.
 struct RobotNumber {
   std::string key;
-  std::string written_as;  // the key in the file; differs from `key` for derived numbers only
-  NumberRange range;       // the values that parse_robot() accepts for this number alone
+  std::vector<std::string> written_as;  // the keys in the file that set() changes; just `key` but for derived numbers
+  NumberRange range;                    // the values that parse_robot() accepts for this number alone
   std::function<double(const physics::RobotDescription&)> get;
   std::function<void(physics::RobotDescription&, double)> set;  // setting the value that get() returns changes no bit
 };
 
-// All numbers of this robot. Excluded: flippers if it has none, integers, noise, cameras, ray sensors, [can], and
-// command_loss, which is random.
+// All numbers of this robot. Excluded: flippers, tracks or wheels if it has none, integers, noise, cameras, ray
+// sensors, [can], and command_loss, which is random.
 std::vector<RobotNumber> robot_numbers(const physics::RobotDescription& robot);
 // Returns nothing if this robot has no such number.
 std::optional<RobotNumber> find_robot_number(const physics::RobotDescription& robot, std::string_view key);

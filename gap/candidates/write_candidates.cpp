@@ -17,12 +17,24 @@ namespace {
 
 using physics::RobotDescription;
 
-// The location of a number in a file: nested tables, or the [[sensor]] of a name; a key; the index in an array.
+// The location of a number in a file: nested tables, or the [[sensor]] of a name, or a [[wheel]] or [[caster]] by its
+// index; a key; the index in an array.
 struct TomlPlace {
   std::vector<std::string> tables;
-  std::string sensor, key;
+  std::string sensor;
+  std::optional<std::size_t> table_index{};  // in the array of tables `tables`.back()
+  std::string key;
   std::optional<std::size_t> index;
 };
+
+// Cuts "[2]" off the end of a name; arrays of numbers have at most three elements, those of wheels at most eight.
+std::optional<std::size_t> take_index(std::string_view& name) {
+  const std::size_t bracket = name.find('[');
+  if (bracket == name.npos) return std::nullopt;
+  const auto index = static_cast<std::size_t>(name[bracket + 1] - '0');
+  name = name.substr(0, bracket);
+  return index;
+}
 
 TomlPlace place_of(std::string_view written_as) {
   constexpr std::string_view kSensor = "sensor[";
@@ -33,12 +45,12 @@ TomlPlace place_of(std::string_view written_as) {
     place.key = written_as.substr(end + 2);
     return place;
   }
-  for (std::size_t point; (point = written_as.find('.')) != written_as.npos; written_as.remove_prefix(point + 1))
-    place.tables.emplace_back(written_as.substr(0, point));
-  if (const std::size_t bracket = written_as.find('['); bracket != written_as.npos) {
-    place.index = static_cast<std::size_t>(written_as[bracket + 1] - '0');  // at most three elements
-    written_as = written_as.substr(0, bracket);
+  for (std::size_t point; (point = written_as.find('.')) != written_as.npos; written_as.remove_prefix(point + 1)) {
+    std::string_view table = written_as.substr(0, point);
+    place.table_index = take_index(table);
+    place.tables.emplace_back(table);
   }
+  place.index = take_index(written_as);
   place.key = written_as;
   return place;
 }
@@ -50,6 +62,7 @@ toml::table* table_at(toml::table& root, const TomlPlace& place) {
       if (sensor.as_table()->get("name")->value<std::string>() == place.sensor) return sensor.as_table();
     return nullptr;
   }
+  if (place.table_index) return root[place.tables.back()].as_array()->get(*place.table_index)->as_table();
   toml::table* table = &root;
   for (const std::string& name : place.tables)
     if (toml::node* next = table->get(name); !next || !(table = next->as_table())) return nullptr;

@@ -12,7 +12,7 @@ using R = Regressor;
 // Causes of a dependence on `on`, padded with empty names.
 struct Cause {
   Regressor on;
-  std::array<std::string_view, 5> look_at;
+  std::array<std::string_view, 6> look_at;
 };
 
 constexpr Cause kOfTracks[] = {
@@ -30,17 +30,19 @@ constexpr Cause kOfTracks[] = {
     {R::pitch, {"drive_droop", "mass", "body.mass_kg", "drive.max_force_n"}},
     {R::time, {"battery_sag"}}};
 
-constexpr Cause kOfCurrent[] = {{R::simulated, {"drive.amperes_per_newton", "friction_across", "mass", "body.mass_kg"}},
-                                {R::delay, {"drive_lag", "command_delay"}},
-                                {R::lag, {"drive_lag", "drive.time_constant_s"}},
-                                {R::constant, {"drive.idle_amperes"}},
-                                {R::direction, {"drive.idle_amperes", "drive_coulomb", "rolling_resistance"}},
-                                {R::speed, {"drive_asymmetry", "rolling_resistance"}},
-                                {R::turn, {"friction_asymmetry", "com_left", "ground_bank"}},
-                                {R::turn_size, {"friction_across", "track.friction_across", "track.contact_length_m"}},
-                                {R::acceleration, {"mass", "body.mass_kg", "drive.moving_mass_kg"}},
-                                {R::pitch, {"mass", "body.mass_kg"}},
-                                {R::time, {"drive_coulomb"}}};
+constexpr Cause kOfCurrent[] = {
+    {R::simulated, {"drive.amperes_per_newton", "friction_across", "mass", "body.mass_kg"}},
+    {R::delay, {"drive_lag", "command_delay"}},
+    {R::lag, {"drive_lag", "drive.time_constant_s"}},
+    {R::constant, {"drive.idle_amperes"}},
+    {R::direction, {"drive.idle_amperes", "drive_coulomb", "rolling_resistance"}},
+    {R::speed, {"drive_asymmetry", "rolling_resistance"}},
+    {R::turn, {"friction_asymmetry", "com_left", "ground_bank"}},
+    {R::turn_size,
+     {"friction_across", "track.friction_across", "track.contact_length_m", "wheel.friction_across", "wheel.base_m"}},
+    {R::acceleration, {"mass", "body.mass_kg", "drive.moving_mass_kg"}},
+    {R::pitch, {"mass", "body.mass_kg"}},
+    {R::time, {"drive_coulomb"}}};
 
 constexpr Cause kOfBattery[] = {{R::constant, {"battery.open_circuit_v"}},
                                 {R::load, {"battery.internal_resistance_ohm", "battery_sag"}},
@@ -69,22 +71,25 @@ constexpr Cause kOfSideways[] = {{R::simulated, {"friction_across", "com_forward
                                  {R::delay, {"tracking_delay", "clock_offset"}},
                                  {R::lag, {"tracking_delay", "friction_across"}}};
 
-constexpr Cause kOfYawRate[] = {{R::simulated, {"track.separation_m", "track.contact_length_m", "friction_across"}},
-                                {R::delay, {"tracking_delay", "clock_offset", "command_delay", "drive_lag"}},
-                                {R::lag, {"tracking_delay", "drive_lag", "yaw_inertia", "friction_across"}},
-                                {R::constant, {"drive_asymmetry", "friction_asymmetry", "ground_bank"}},
-                                {R::direction, {"friction_across"}},
-                                {R::speed, {"drive_asymmetry", "friction_asymmetry", "com_left"}},
-                                {R::turn_size, {"drive_asymmetry", "friction_asymmetry", "com_left"}},
-                                {R::acceleration, {"com_left", "friction_asymmetry"}},
-                                {R::load, {"friction_asymmetry", "com_left"}}};
+constexpr Cause kOfYawRate[] = {
+    {R::simulated,
+     {"track.separation_m", "track.contact_length_m", "wheel.separation_m", "wheel.base_m", "friction_across"}},
+    {R::delay, {"tracking_delay", "clock_offset", "command_delay", "drive_lag"}},
+    {R::lag, {"tracking_delay", "drive_lag", "yaw_inertia", "friction_across"}},
+    {R::constant, {"drive_asymmetry", "friction_asymmetry", "ground_bank"}},
+    {R::direction, {"friction_across"}},
+    {R::speed, {"drive_asymmetry", "friction_asymmetry", "com_left"}},
+    {R::turn_size, {"drive_asymmetry", "friction_asymmetry", "com_left"}},
+    {R::acceleration, {"com_left", "friction_asymmetry"}},
+    {R::load, {"friction_asymmetry", "com_left"}}};
 
 // A gyro has its own errors; otherwise as the pose.
-constexpr Cause kOfGyro[] = {
-    {R::simulated, {"track.separation_m", "track.contact_length_m", "friction_across", "gyro_scale"}},
-    {R::delay, {"gyro_delay", "clock_offset", "command_delay", "drive_lag"}},
-    {R::lag, {"drive_lag", "yaw_inertia", "friction_across", "gyro_delay"}},
-    {R::constant, {"gyro_bias", "drive_asymmetry", "friction_asymmetry", "ground_bank"}}};
+constexpr Cause kOfGyro[] = {{R::simulated,
+                              {"track.separation_m", "track.contact_length_m", "wheel.separation_m", "wheel.base_m",
+                               "friction_across", "gyro_scale"}},
+                             {R::delay, {"gyro_delay", "clock_offset", "command_delay", "drive_lag"}},
+                             {R::lag, {"drive_lag", "yaw_inertia", "friction_across", "gyro_delay"}},
+                             {R::constant, {"gyro_bias", "drive_asymmetry", "friction_asymmetry", "ground_bank"}}};
 
 constexpr Cause kOfPitch[] = {{R::simulated, {"posture_scale"}},
                               {R::delay, {"posture_delay"}},
@@ -102,11 +107,12 @@ constexpr Cause kOfRoll[] = {{R::simulated, {"posture_scale"}},
                              {R::turn, {"com_up", "ground_compliance"}},
                              {R::place_y, {"ground_bank"}}};
 
-constexpr Cause kOfHeight[] = {{R::constant, {"obstacle_height", "ground_compliance", "track.end_radius_m"}},
-                               {R::pitch, {"obstacle_height", "obstacle_position"}},
-                               {R::place_x, {"ground_slope", "obstacle_position"}},
-                               {R::place_y, {"ground_bank"}},
-                               {R::speed, {"ground_compliance"}}};
+constexpr Cause kOfHeight[] = {
+    {R::constant, {"obstacle_height", "ground_compliance", "track.end_radius_m", "wheel.radius_m"}},
+    {R::pitch, {"obstacle_height", "obstacle_position"}},
+    {R::place_x, {"ground_slope", "obstacle_position"}},
+    {R::place_y, {"ground_bank"}},
+    {R::speed, {"ground_compliance"}}};
 
 struct Causes {
   std::span<const Cause> of_term;

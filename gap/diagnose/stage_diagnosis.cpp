@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "gap/candidates/robot_numbers.hpp"
 #include "gap/diagnose/cells.hpp"
 #include "gap/diagnose/channels.hpp"
 #include "gap/diagnose/errors_of_values.hpp"
@@ -53,6 +54,13 @@ void take_part(VectorXd& of_run, const VectorXd& other, const RunPart& part, con
       of_run[i] = other[i];
 }
 
+// Removes keys of numbers that the robot does not have: those of wheels from a robot on tracks, and the reverse.
+void keep_those_of(const physics::RobotDescription& robot, std::vector<std::string>& keys) {
+  std::erase_if(keys, [&](const std::string& key) {
+    return physics::find_effect(key) == nullptr && !candidates::find_robot_number(robot, key);
+  });
+}
+
 // The best model's residual, regressed on measured quantities.
 std::vector<Dependence> left_over_of(const StageInput& input, Predictor& predictor, const Variation& best,
                                      const NoiseFloor& floor) {
@@ -73,7 +81,9 @@ std::vector<Dependence> left_over_of(const StageInput& input, Predictor& predict
       }
       runs.push_back(std::move(run));
     }
-  return describe_left_over(runs, input.passage == Passage::command_to_drive);
+  std::vector<Dependence> found = describe_left_over(runs, input.passage == Passage::command_to_drive);
+  for (Dependence& dependence : found) keep_those_of(input.observations->robot, dependence.look_at);
+  return found;
 }
 
 // Cross-validates the best model by simulating the runs of each fold with the values fitted to the others, and judges

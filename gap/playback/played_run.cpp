@@ -38,10 +38,6 @@ void add_column(runs::Run& run, std::string_view name, const std::vector<double>
   }
 }
 
-double standing_height_m(const physics::RobotDescription& robot) {
-  return robot.track.end_radius_m - robot.track.p_BT_m.z();
-}
-
 std::map<std::string, std::vector<double>> channels_of(const runs::Run& run, std::span<const double> times_s) {
   std::map<std::string, std::vector<double>> channels;
   const auto add = [&](std::string_view column) {
@@ -171,7 +167,7 @@ PlayedRun play_run(const runs::DatasetRun& entry, const runs::Run& run, const st
 
   // The simulations come first, since the recorded robot may take its height from the nominal one.
   const PlayedBody* nominal = played.bodies.size() > 1 ? &played.bodies[1] : nullptr;
-  const double standing_m = standing_height_m(robots.nominal);
+  const double standing_m = robots.nominal.ride_height_m();
   for (std::size_t i = played.bodies.size(); i-- > 0;) {
     if (played.bodies[i].pose_from == PoseFrom::nothing) continue;
     complete_pose(played.bodies[i], i == 0 ? nominal : nullptr, standing_m, played.notes);

@@ -41,10 +41,15 @@ Slices slices(const BeltShape& belt, int count) {
 }
 
 // The points of the outline that can touch a face of unit normal `normal`: the lowest of each disc, and those of the
-// run that faces it, at the ends of equal pieces, weighted by the trapezoidal rule. `use(place, point, weight)`;
+// run that faces it, at the ends of equal pieces, weighted by the trapezoidal rule; of a wheel its lowest point, with
+// the weight of one piece. `use(place, point, weight)`;
 // points have y = 0.
 template <typename Use>
 void outline_points(const BeltShape& belt, const btVector3& normal, const Use& use) {
+  if (belt.discs() == 1) {
+    use(0, furthest_on_disc(belt, 0, -normal), 1.0);
+    return;
+  }
   for (int disc = 0; disc < 2; ++disc)
     use(static_cast<std::uint32_t>(disc), furthest_on_disc(belt, disc, -normal), 0.5);
   const btVector3 run_normal(belt.lean, 0, normal.z() > 0 ? -belt.rise : belt.rise);
@@ -60,7 +65,8 @@ template <typename Use>
 void side_face_points(const BeltShape& belt, const Use& use) {
   std::uint32_t place = 0;
   for (const btScalar up : {-1, 1})
-    for (const int disc : {0, 1}) use(place++, furthest_on_disc(belt, disc, {belt.lean, 0, up * belt.rise}));
+    for (int disc = 0; disc < belt.discs(); ++disc)
+      use(place++, furthest_on_disc(belt, disc, {belt.lean, 0, up * belt.rise}));
   use(place++, furthest_on_disc(belt, 0, {-1, 0, 0}));
   use(place++, furthest_on_disc(belt, 1, {1, 0, 0}));
 }

@@ -1,5 +1,5 @@
 // The outline of a belt: the convex hull of two discs, swept across a width. A main track has two discs of one radius;
-// a flipper a large one at its pivot and a small one at its tip.
+// a flipper a large one at its pivot and a small one at its tip; a wheel is one disc, of length 0.
 //
 // Frame T of a belt: x from disc 0 to disc 1, y across, z up, origin at the centre of disc 0. It is parallel to the
 // frame of the body that carries it. Arcs are exact, not polygons, so nothing bumps over corners.
@@ -16,7 +16,7 @@ namespace kenaf::physics {
 
 struct BeltShape {
   std::array<btScalar, 2> radius{};
-  btScalar length = 1;  // between the discs' centres
+  btScalar length = 1;  // between the discs' centres; 0: a wheel, both radii alike
   btScalar half_width;
   btVector3 p_BodyT;  // in the frame of the collision shape
   int pieces;         // of a straight run, which has a contact point at each end of each piece
@@ -24,8 +24,10 @@ struct BeltShape {
 
   // Derived. The straight runs' outward unit normals are n = (lean, 0, +-rise). A tangent of both discs has
   // n . c0 + r0 = n . c1 + r1, so lean = (r0 - r1) / length: not vertical where the radii differ.
-  btScalar lean = (radius[0] - radius[1]) / length;
+  btScalar lean = length > 0 ? (radius[0] - radius[1]) / length : 0;
   btScalar rise = btSqrt(1 - lean * lean);
+
+  int discs() const { return length > 0 ? 2 : 1; }
 };
 
 // Signed distance from a point of the plane y = 0 to the outline.

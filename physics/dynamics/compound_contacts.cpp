@@ -6,8 +6,9 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include <array>
+#include <memory>
 #include <new>
-#include <stdexcept>
+#include <span>
 
 namespace kenaf::physics {
 namespace {
@@ -51,9 +52,13 @@ bool near_in(const btTransform& X_CW, const Piece& a, const Piece& b) {
 
 class CompoundAlgorithm : public btCollisionAlgorithm {
  public:
-  // `swapped`: the second body is the compound.
-  CompoundAlgorithm(const btCollisionAlgorithmConstructionInfo& info, bool swapped)
-      : btCollisionAlgorithm(info), swapped_(swapped) {}
+  // `swapped`: the second body is the compound. The counts are of the compound's pieces and of the other body's.
+  CompoundAlgorithm(const btCollisionAlgorithmConstructionInfo& info, bool swapped, std::size_t count,
+                    std::size_t other_count)
+      : btCollisionAlgorithm(info), other_count_(other_count), swapped_(swapped) {
+    if (count * other_count > few_.size()) many_ = std::make_unique<btCollisionAlgorithm*[]>(count * other_count);
+    pairs_ = {many_ ? many_.get() : few_.data(), count * other_count};
+  }
   ~CompoundAlgorithm() override {
     for (btCollisionAlgorithm*& pair : pairs_) end(pair);
   }
@@ -66,12 +71,11 @@ class CompoundAlgorithm : public btCollisionAlgorithm {
     // Each pair of pieces has an algorithm of its own from when their boxes overlap in both frames until they no longer
     // do in W.
     const btTransform X_CW = compound.getWorldTransform().inverse();
-    const std::size_t count = piece_count(compound), other_count = piece_count(other);
-    for (std::size_t j = 0; j < other_count; ++j) {
+    for (std::size_t j = 0; j < other_count_; ++j) {
       const Piece b(other, j);
-      for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t i = 0; i < pairs_.size() / other_count_; ++i) {
         const Piece a(compound, i);
-        btCollisionAlgorithm*& pair = pairs_[i * CompoundContacts::kMostPieces + j];
+        btCollisionAlgorithm*& pair = pairs_[i * other_count_ + j];
         if (!TestAabbAgainstAabb2(a.low_W, a.high_W, b.low_W, b.high_W))
           end(pair);
         else if (pair || near_in(X_CW, a, b))
@@ -128,7 +132,12 @@ class CompoundAlgorithm : public btCollisionAlgorithm {
     pair = nullptr;
   }
 
-  std::array<btCollisionAlgorithm*, CompoundContacts::kMostPieces * CompoundContacts::kMostPieces> pairs_{};
+  // Of each piece with each of the other body's; null where they are apart. Robots on tracks need no memory of their
+  // own.
+  std::array<btCollisionAlgorithm*, CompoundContacts::kFewPieces * CompoundContacts::kFewPieces> few_{};
+  std::unique_ptr<btCollisionAlgorithm*[]> many_;
+  std::span<btCollisionAlgorithm*> pairs_;
+  std::size_t other_count_;
   bool swapped_;
 };
 
@@ -138,10 +147,10 @@ btCollisionAlgorithm* CompoundContacts::Create::CreateCollisionAlgorithm(btColli
                                                                          const btCollisionObjectWrapper* body0,
                                                                          const btCollisionObjectWrapper* body1) {
   static_assert(sizeof(CompoundAlgorithm) <= sizeof(btCompoundCollisionAlgorithm));  // room in Bullet's pool
-  if (piece_count(*body0) > kMostPieces || piece_count(*body1) > kMostPieces)
-    throw std::length_error("a compound has too many pieces");
+  const std::size_t count0 = piece_count(*body0), count1 = piece_count(*body1);
   void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(CompoundAlgorithm));
-  return m_swapped ? new (memory) CompoundAlgorithm(info, true) : new (memory) CompoundAlgorithm(info, false);
+  return m_swapped ? new (memory) CompoundAlgorithm(info, true, count1, count0)
+                   : new (memory) CompoundAlgorithm(info, false, count0, count1);
 }
 
 CompoundContacts::CompoundContacts(btCollisionDispatcher& dispatcher) {

@@ -1,5 +1,5 @@
-// Contacts of a compound (a robot's hull with its tracks) with any other body: those of its pieces, each by the
-// dispatcher's algorithm for the two shapes.
+// Contacts of a compound (a robot's hull with its tracks or wheels) with any other body: those of its pieces, each by
+// the dispatcher's algorithm for the two shapes.
 //
 // Replaces Bullet's own, which allocates lists whenever a compound comes near another body.
 #pragma once
@@ -12,7 +12,7 @@ namespace kenaf::physics {
 
 class CompoundContacts {
  public:
-  static constexpr std::size_t kMostPieces = 3;  // of one compound
+  static constexpr std::size_t kFewPieces = 3;  // of a robot on tracks; more need memory when two bodies come near
 
   // Makes `dispatcher` use it for compounds with planes, boxes, convex hulls, meshes and compounds.
   explicit CompoundContacts(btCollisionDispatcher& dispatcher);

@@ -11,15 +11,16 @@ namespace {
 
 constexpr int kFlipperPieces = 2;  // of a straight run, with contacts at the ends of each
 
+// `lug_height_m` is the description's.
 Surface belt_surface(const RobotDescription& robot, robot::Track side, double friction_along, double friction_across,
-                     Belt* belt, double axis_y) {
+                     double lug_height_m, Belt* belt, double axis_y) {
   const Effects& effects = robot.effects;
   const double grip = side_factor(side, effects.friction_asymmetry);
   return {.friction_along = friction_along * effects.friction_along_scale * grip,
           .friction_across = friction_across * effects.friction_across_scale * grip,
           .belt = belt,
           .axis_y = axis_y,
-          .lug_height_m = robot.track.lug_height_m * effects.lug_height_scale,
+          .lug_height_m = lug_height_m * effects.lug_height_scale,
           .compliance_scale = effects.ground_compliance_scale,
           .damping_scale = effects.ground_damping_scale};
 }
@@ -94,44 +95,59 @@ void RobotModel::leave_dynamics() {
 
 void RobotModel::make_hull(RobotId id) {
   const BodyDescription body = with_body_effects(description.body, description.effects);
-  const TrackDescription& track = description.track;
   X_BCom_ = btTransform(btQuaternion::getIdentity(), to_bullet(body.p_BBcm_m));
   hull_collider_.robot = static_cast<std::uint32_t>(id);
-  hull_shape_ = std::make_unique<btCompoundShape>(false);  // without a tree: it has three pieces
-  const auto add = [this](std::unique_ptr<btCollisionShape> shape, const Surface& surface) {
-    hull_shape_->addChildShape(X_BCom_.inverse(), shape.get());
-    hull_pieces_.push_back(std::move(shape));
-    hull_collider_.surfaces.push_back(surface);
-  };
+  hull_shape_ = std::make_unique<btCompoundShape>(false);  // without a tree: it has few pieces
 
-  // Main tracks: a belt for the ground, and a prism for everything else.
+  // Main tracks or wheels; all of a side run with its belt.
   for (const robot::Track side : {robot::kLeft, robot::kRight}) {
-    Eigen::Vector3d center = track.p_BT_m;
-    if (side == robot::kRight) center.y() = -center.y();
-    const Surface surface =
-        belt_surface(description, side, track.friction_along, track.friction_across, &belts_[side], 1);
-    const double straight_m = track.length_m - 2 * track.end_radius_m;
-    track_belts_[side] = {.radius = {track.end_radius_m, track.end_radius_m},
-                          .length = straight_m,
-                          .half_width = track.width_m / 2,
-                          .p_BodyT = to_bullet(Eigen::Vector3d(center - Eigen::Vector3d(straight_m / 2, 0, 0))),
-                          .pieces = track.pieces,
-                          .surface = surface};
-    track_tags_[side].belt = &track_belts_[side];
-    auto shape = make_prism(track_outline(track), track.width_m, center);
-    shape->setUserPointer(&track_tags_[side]);
-    add(std::move(shape), surface);
+    for (const TrackDescription& track : description.track) {
+      Eigen::Vector3d center = track.p_BT_m;
+      if (side == robot::kRight) center.y() = -center.y();
+      add_belt_to_hull(track, center,
+                       belt_surface(description, side, track.friction_along, track.friction_across, track.lug_height_m,
+                                    &belts_[side], 1));
+    }
   }
 
-  // The body between them: a hull, not a btBoxShape, so that all of a robot meets the ground by the same algorithm.
+  // Casters are wheels that slide, on a surface without a belt; the body between the tracks slides too.
+  const auto sliding = [this](double friction) {
+    return Surface{.friction_along = friction,
+                   .friction_across = friction,
+                   .compliance_scale = description.effects.ground_compliance_scale,
+                   .damping_scale = description.effects.ground_damping_scale};
+  };
+  for (const CasterDescription& caster : description.caster)
+    add_belt_to_hull(caster.as_wheel(), caster.p_BC_m, sliding(caster.friction));
+
+  // A hull, not a btBoxShape, so that all of a robot meets the ground by the same algorithm.
   const Eigen::Vector2d half(body.size_m.x() / 2, body.size_m.z() / 2);
-  add(make_prism({{half.x(), -half.y()}, half, {-half.x(), half.y()}, -half}, body.size_m.y(), {0, 0, 0}),
-      {.friction_along = body.friction,
-       .friction_across = body.friction,
-       .compliance_scale = description.effects.ground_compliance_scale,
-       .damping_scale = description.effects.ground_damping_scale});
+  add_to_hull(make_prism({{half.x(), -half.y()}, half, {-half.x(), half.y()}, -half}, body.size_m.y(), {0, 0, 0}),
+              sliding(body.friction));
   hull_ = make_body(body.mass_kg, *hull_shape_, to_bullet(body.inertia_kgm2), hull_collider_);
   body_list_.push_back(hull_.get());
+}
+
+void RobotModel::add_to_hull(std::unique_ptr<btConvexHullShape> shape, const Surface& surface) {
+  hull_shape_->addChildShape(X_BCom_.inverse(), shape.get());
+  hull_pieces_.push_back(std::move(shape));
+  hull_collider_.surfaces.push_back(surface);
+}
+
+// A belt for the ground, and a prism for everything else.
+void RobotModel::add_belt_to_hull(const TrackDescription& track, const Eigen::Vector3d& p_BT_m,
+                                  const Surface& surface) {
+  TaggedBelt& tagged = *hull_belts_.emplace_back(std::make_unique<TaggedBelt>());
+  tagged.belt = {.radius = {track.end_radius_m, track.end_radius_m},
+                 .length = track.straight_m(),
+                 .half_width = track.width_m / 2,
+                 .p_BodyT = to_bullet(Eigen::Vector3d(p_BT_m - Eigen::Vector3d(track.straight_m() / 2, 0, 0))),
+                 .pieces = track.pieces,
+                 .surface = surface};
+  tagged.tag.belt = &tagged.belt;
+  auto shape = make_prism(track_outline(track), track.width_m, p_BT_m);
+  shape->setUserPointer(&tagged.tag);
+  add_to_hull(std::move(shape), surface);
 }
 
 void RobotModel::make_flipper(robot::Flipper which, RobotId id) {
@@ -153,8 +169,9 @@ void RobotModel::make_flipper(robot::Flipper which, RobotId id) {
   // Collision shape and belt, with the centre of mass as origin.
   flipper.shape = make_prism(outline, f.width_m, -com);
   flipper.collider.robot = static_cast<std::uint32_t>(id);
-  const Surface surface = belt_surface(description, side, f.friction_along, f.friction_across,
-                                       f.belt_driven ? &belts_[side] : nullptr, front ? 1 : -1);
+  const Surface surface =
+      belt_surface(description, side, f.friction_along, f.friction_across, description.track.front().lug_height_m,
+                   f.belt_driven ? &belts_[side] : nullptr, front ? 1 : -1);
   flipper.collider.surfaces = {surface};
   flipper.belt = {.radius = {f.pivot_radius_m, f.tip_radius_m},
                   .length = f.length_m,

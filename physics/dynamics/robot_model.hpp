@@ -1,4 +1,4 @@
-// One robot as Bullet bodies: hull with main tracks, four flippers on joints, and the belts' drives.
+// One robot as Bullet bodies: hull with main tracks or wheels, four flippers on joints, and the belts' drives.
 #pragma once
 
 #include <array>
@@ -65,6 +65,8 @@ class RobotModel {
 
   void enter_dynamics();
   void make_hull(RobotId id);
+  void add_to_hull(std::unique_ptr<btConvexHullShape> shape, const Surface& surface);
+  void add_belt_to_hull(const TrackDescription& track, const Eigen::Vector3d& p_BT_m, const Surface& surface);
   void make_flipper(robot::Flipper which, RobotId id);
   FlipperServoDescription servo_now() const;
   // Factor on a track's commanded speed.
@@ -74,8 +76,12 @@ class RobotModel {
   btDiscreteDynamicsWorld& world_;
   ContactSolver& solver_;
   std::vector<std::unique_ptr<btCollisionShape>> hull_pieces_;
-  std::array<BeltShape, robot::kTrackCount> track_belts_;
-  std::array<ShapeTag, robot::kTrackCount> track_tags_;
+  // Of the hull: tracks or wheels, and casters.
+  struct TaggedBelt {
+    BeltShape belt;
+    ShapeTag tag;
+  };
+  std::vector<std::unique_ptr<TaggedBelt>> hull_belts_;
   std::unique_ptr<btCompoundShape> hull_shape_;
   std::unique_ptr<btRigidBody> hull_;
   Collider hull_collider_;

@@ -50,7 +50,7 @@ Engine engine_named(std::string_view name) {
 // Bodies and belts with their effects, for engines that know none.
 RobotDescription with_effects(RobotDescription robot) {
   robot.body = with_body_effects(robot.body, robot.effects);
-  robot.track.friction_along *= robot.effects.friction_along_scale;
+  for (TrackDescription& track : robot.track) track.friction_along *= robot.effects.friction_along_scale;
   for (FlipperDescription& flipper : robot.flipper) flipper.friction_along *= robot.effects.friction_along_scale;
   return robot;
 }

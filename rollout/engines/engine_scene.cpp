@@ -48,18 +48,29 @@ std::vector<Eigen::Vector3d> hull_of(const Outline& outline, double width_m, con
   return points;
 }
 
+// As many contacts as Kenaf, which on a plane has two at each end of its pieces; the other engines have four for each
+// box and two for each drum: 4 boxes + 4 >= 2 (pieces + 1).
+int boxes_of(const TrackDescription& track) {
+  return track.straight_m() > 0 ? std::max(1, (2 * (track.pieces + 1) - 4 + 3) / 4) : 0;
+}
+
+Belted track_at(const TrackDescription& track, const Eigen::Vector3d& center, std::optional<robot::Track> side) {
+  const Eigen::Vector3d to_drum(track.straight_m() / 2, 0, 0);
+  return {center - to_drum,      center + to_drum,
+          track.end_radius_m,    track.end_radius_m,
+          track.width_m,         track.friction_along,
+          track.friction_across, side,
+          boxes_of(track),       hull_of(track_outline(track), track.width_m, center)};
+}
+
 }  // namespace
 
 std::vector<EngineScene> climbs() {
-  const double z_m = belly_height_m(load_robot("kenaf"));
+  const double z_m = load_robot("kenaf").ride_height_m();
   return {climb("straight, level", shipped("flat"), 0, z_m, 1, 1, 5),
           climb("step of 100 mm", shipped("step-100"), 0.3, z_m, 0.8, 0, 7),
           climb("step of 200 mm", shipped("step-200"), 0.3, z_m, 0.8, 0, 7),
           climb("trench of 300 mm", shipped("trench-300"), 0.4, z_m, 0, 0, 7)};
-}
-
-double belly_height_m(const RobotDescription& robot) {
-  return robot.track.end_radius_m - robot.track.p_BT_m.z();
 }
 
 EngineScene on_plane(const RobotDescription& robot, double slope_rad) {
@@ -67,7 +78,7 @@ EngineScene on_plane(const RobotDescription& robot, double slope_rad) {
   const Pose X_WP{Eigen::Vector3d::Zero(), rotation_from({0, slope_rad, 0})};
   scene.world.planes.push_back({X_WP, 1});
   scene.robot = robot;
-  scene.X_start = compose(X_WP, {{0, 0, belly_height_m(robot)}, Eigen::Quaterniond::Identity()});
+  scene.X_start = compose(X_WP, {{0, 0, robot.ride_height_m()}, Eigen::Quaterniond::Identity()});
   scene.command.flipper.fill({robot::JointMode::angle, 1});
   return scene;
 }
@@ -83,25 +94,15 @@ double servo_torque_nm(const EngineScene& scene) {
 
 RobotParts parts_of(const RobotDescription& robot) {
   RobotParts parts;
-  const TrackDescription& track = robot.track;
-  // As many contacts as Kenaf, which on a plane has two at each end of its pieces; the other engines have four for each
-  // box and two for each drum: 4 boxes + 4 >= 2 (pieces + 1).
-  const int boxes = std::max(1, (2 * (track.pieces + 1) - 4 + 3) / 4);
   for (const robot::Track side : {robot::kLeft, robot::kRight}) {
-    Eigen::Vector3d center = track.p_BT_m;
-    if (side == robot::kRight) center.y() = -center.y();
-    const Eigen::Vector3d to_drum(track.length_m / 2 - track.end_radius_m, 0, 0);
-    parts.tracks[side] = {center - to_drum,
-                          center + to_drum,
-                          track.end_radius_m,
-                          track.end_radius_m,
-                          track.width_m,
-                          track.friction_along,
-                          track.friction_across,
-                          side,
-                          boxes,
-                          hull_of(track_outline(track), track.width_m, center)};
+    for (const TrackDescription& track : robot.track) {
+      Eigen::Vector3d center = track.p_BT_m;
+      if (side == robot::kRight) center.y() = -center.y();
+      parts.tracks.push_back(track_at(track, center, side));
+    }
   }
+  for (const CasterDescription& caster : robot.caster)
+    parts.tracks.push_back(track_at(caster.as_wheel(), caster.p_BC_m, std::nullopt));
 
   // Flippers, of uniform density: moments from the outline's second moments per area.
   if (!robot.has_flippers()) return parts;
@@ -138,6 +139,7 @@ std::vector<Cuboid> straight_part(const Belted& shape, int boxes) {
   const Eigen::Vector3d size((shape.p_front_m - shape.p_rear_m).x() / boxes, shape.width_m,
                              2 * std::min(shape.rear_radius_m, shape.front_radius_m));
   std::vector<Cuboid> out;
+  if (shape.boxes == 0) return out;
   for (int i = 0; i < boxes; ++i)
     out.push_back({shape.p_rear_m + (shape.p_front_m - shape.p_rear_m) * ((i + 0.5) / boxes), size});
   return out;

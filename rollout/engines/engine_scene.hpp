@@ -37,25 +37,24 @@ struct EngineScene {
 
 // The climbs that are timed. Flippers hold one posture for each obstacle.
 std::vector<EngineScene> climbs();
-// Height of the body frame over level ground.
-double belly_height_m(const physics::RobotDescription& robot);
 // The robot at rest on a plane that falls away forward by `slope_rad`, flippers folded up.
 EngineScene on_plane(const physics::RobotDescription& robot, double slope_rad);
 
-// Two drums with a belt around: track (equal drums) or flipper. Profile in x and z, swept along y.
+// Two drums with a belt around: track (equal drums) or flipper; or a wheel, where both are one. Profile in x and z,
+// swept along y.
 struct Belted {
   Eigen::Vector3d p_rear_m, p_front_m;  // drum centres, of the flipper: pivot and tip
   double rear_radius_m, front_radius_m, width_m;
   double friction_along, friction_across;
-  std::optional<robot::Track> belt;     // the track with whose speed it runs
-  int boxes;                            // of the straight part, for about as many contacts as Kenaf has
+  std::optional<robot::Track> belt;     // the side with whose speed it runs; none: it slides
+  int boxes;                            // of the straight part, for about as many contacts as Kenaf has; 0: a wheel
   std::vector<Eigen::Vector3d> hull_m;  // corners of the convex hull of both drums
 };
 
 struct Cuboid {
   Eigen::Vector3d center_m, size_m;
 };
-// The straight part between the drums, cut into boxes of equal length; as high as the smaller drum.
+// The straight part between the drums, cut into boxes of equal length; as high as the smaller drum. Empty for a wheel.
 std::vector<Cuboid> straight_part(const Belted& shape, int boxes);
 
 struct Arm {
@@ -71,8 +70,8 @@ double flipper_at_start(const EngineScene& scene, std::size_t flipper);
 double servo_torque_nm(const EngineScene& scene);
 
 struct RobotParts {
-  std::array<Belted, robot::kTrackCount> tracks;  // in B
-  std::vector<Arm> arms;                          // in the order of robot::Flipper
+  std::vector<Belted> tracks;  // tracks, or wheels and casters, in B
+  std::vector<Arm> arms;       // in the order of robot::Flipper
 };
 RobotParts parts_of(const physics::RobotDescription& robot);
 

@@ -135,8 +135,9 @@ class ModelText {
     for (const Cuboid& c : straight_part(b, options_.shapes == Shapes::boxes ? b.boxes : 1))
       geoms += geom("box", "", c.center_m, c.size_m / 2, b.friction_along, belt);
     const std::string along_y = "euler=\"90 0 0\"";
-    return geoms + geom("cylinder", along_y, b.p_rear_m, {b.rear_radius_m, b.width_m / 2, 0}, b.friction_along, belt) +
-           geom("cylinder", along_y, b.p_front_m, {b.front_radius_m, b.width_m / 2, 0}, b.friction_along, belt);
+    geoms += geom("cylinder", along_y, b.p_rear_m, {b.rear_radius_m, b.width_m / 2, 0}, b.friction_along, belt);
+    if (b.boxes == 0) return geoms;  // a wheel
+    return geoms + geom("cylinder", along_y, b.p_front_m, {b.front_radius_m, b.width_m / 2, 0}, b.friction_along, belt);
   }
 
   Options options_;

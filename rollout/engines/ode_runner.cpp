@@ -154,7 +154,7 @@ class OdeRunner : public Runner {
       dGeomSetOffsetQuaternion(geom, along_y);
     };
     drum(b.p_rear_m, b.rear_radius_m);
-    drum(b.p_front_m, b.front_radius_m);
+    if (b.boxes > 0) drum(b.p_front_m, b.front_radius_m);
   }
 
   void add_block(const Box& block) {

@@ -69,11 +69,24 @@ JsonWriter& JsonWriter::rotation(const Eigen::Quaterniond& q) {
   return numbers(std::array{q.w(), q.x(), q.y(), q.z()}, 5);
 }
 
+namespace {
+
+void write_belts(JsonWriter& out, std::string_view key, const std::vector<physics::BeltDimensions>& belts) {
+  out.key(key).open('[');
+  for (const physics::BeltDimensions& belt : belts) {
+    out.comma().open('{').key("length").number(belt.length_m).key("radius").number(belt.radius_m);
+    out.key("width").number(belt.width_m).key("at").vector(belt.p_B_m).close('}');
+  }
+  out.close(']');
+}
+
+}  // namespace
+
 void write_dimensions(JsonWriter& out, const physics::RobotDimensions& size) {
   out.key("body").vector(size.body_size_m);
-  out.key("track").open('{');
-  out.key("length").number(size.track_length_m).key("radius").number(size.track_radius_m);
-  out.key("width").number(size.track_width_m).key("at").vector(size.p_BT_m).close('}');
+  write_belts(out, "tracks", size.tracks);
+  write_belts(out, "casters", size.casters);
+  out.key("ride_height").number(size.ride_height_m);
   if (size.has_flippers) {
     out.key("flipper").open('{');
     out.key("length").number(size.flipper_length_m).key("width").number(size.flipper_width_m);

@@ -36,7 +36,8 @@ class JsonWriter {
   std::string out_;
 };
 
-// Writes the members from which a page draws a robot: "body", "track", "flipper", "max_speed" (docs/live-view.md).
+// Writes the members from which a page draws a robot: "body", "tracks", "casters", "ride_height", "flipper",
+// "max_speed" (docs/live-view.md).
 void write_dimensions(JsonWriter& out, const physics::RobotDimensions& size);
 
 }  // namespace kenaf::live

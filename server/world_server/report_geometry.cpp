@@ -27,11 +27,13 @@ std::string_view short_class_name(const physics::RobotDescription& robot) {
 
 // Dimensions without the flippers, which move.
 protocol::frames::Vector3 dimensions_m(const physics::RobotDescription& robot) {
-  const double half_height_m = robot.body.size_m.z() / 2;
-  const double top_m = std::max(half_height_m, robot.track.p_BT_m.z() + robot.track.end_radius_m);
-  const double bottom_m = std::min(-half_height_m, robot.track.p_BT_m.z() - robot.track.end_radius_m);
-  return {std::max(robot.body.size_m.x(), robot.track.length_m),
-          std::max(robot.body.size_m.y(), robot.track_gauge_m() + robot.track.width_m), top_m - bottom_m};
+  double top_m = robot.body.size_m.z() / 2, bottom_m = -top_m;
+  for (const physics::TrackDescription& track : robot.track) {
+    top_m = std::max(top_m, track.p_BT_m.z() + track.end_radius_m);
+    bottom_m = std::min(bottom_m, track.p_BT_m.z() - track.end_radius_m);
+  }
+  return {std::max(robot.body.size_m.x(), robot.track_length_m()),
+          std::max(robot.body.size_m.y(), robot.outer_width_m()), top_m - bottom_m};
 }
 
 void write_robot_geometry(MessageWriter& writer, const physics::RobotDescription& robot,
@@ -43,7 +45,7 @@ void write_robot_geometry(MessageWriter& writer, const physics::RobotDescription
       .numbers("COG", wire_vector(robot.body.p_BBcm_m), format)
       .number("WheelRadius", robot.drive.sprocket_radius_m, format)
       .number("WheelSeparation", robot.track_gauge_m(), format)
-      .number("WheelBase", robot.track.length_m - 2 * robot.track.end_radius_m, format)
+      .number("WheelBase", robot.contact_length_m(), format)
       .end();
 }
 

@@ -59,8 +59,7 @@ void drive_ackermann(SessionRobot& robot, const MessageView& message) {
   const auto slope = [](double steer_rad) {
     return std::tan(std::clamp(steer_rad, -kSteepestSteer_rad, kSteepestSteer_rad));
   };
-  const physics::TrackDescription& track = robot.description->track;
-  const double wheel_base_m = std::max(0.01, track.length_m - 2 * track.end_radius_m);
+  const double wheel_base_m = std::max(0.01, robot.description->contact_length_m());
   const double speed_mps = surface_speed(robot, held.speed);
   set_body_velocity(robot, speed_mps, speed_mps * (slope(held.front_rad) - slope(held.rear_rad)) / wheel_base_m);
 }

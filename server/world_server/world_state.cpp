@@ -28,12 +28,13 @@ void read_robot(const Simulation& simulation, const Session& session, RobotState
   const SessionRobot& robot = *session.robot;
   const physics::RobotTruth truth = simulation.world.truth(robot.id);
   const physics::DriveCurrents currents = simulation.world.drive_currents(robot.id);
-  // Identity and fixed dimensions.
+  // Identity and fixed dimensions; the latter only of another robot than the last time, since they allocate.
+  if (state.robot != robot.id || state.dimensions.tracks.empty())
+    state.dimensions = physics::dimensions_of(*robot.description);
   state.id = session.id;
   state.robot = robot.id;
   state.name = robot.name;
   state.class_name = robot.description->usarsim_class;
-  state.dimensions = physics::dimensions_of(*robot.description);
 
   // True motion and the drives' measurements.
   state.X_WB = truth.X_WB;

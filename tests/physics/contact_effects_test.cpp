@@ -29,7 +29,7 @@ Eigen::Vector3d slid_m(const RobotDescription& robot, const WorldDescription& fl
 
 // From the body's centre straight down to what the tracks stand on.
 double belly_below_m() {
-  const TrackDescription track = load_robot("kenaf").track;
+  const TrackDescription track = load_robot("kenaf").track.front();
   return track.end_radius_m - track.p_BT_m.z();
 }
 
@@ -66,7 +66,7 @@ TEST_CASE("Friction asymmetry, along: belts that spin push with what their own s
   // From rest the belts are at 0.4 m/s after some milliseconds, the robot at 0.1 m/s² times the time: they spin. Each
   // bears half of the robot.
   RobotDescription robot = tracks_with({.friction_asymmetry = 0.6});
-  robot.track.friction_along = robot.track.friction_across = 0.1;
+  robot.track.front().friction_along = robot.track.front().friction_across = 0.1;
   robot.drive.time_constant_s = 0;
   World world(ground(), {}, 1);
   const RobotId id = world.add_robot(robot, "a", {});
@@ -84,7 +84,7 @@ TEST_CASE("Friction asymmetry, across: a robot that lies on one side more slides
   // springs at y = (+-b +-w) / 2 the load is linear in y, so that the left two bear 1/2 + b c / (b² + w²) of it.
   RobotDescription robot = tracks_with({});
   robot.body.p_BBcm_m = Eigen::Vector3d(0, 0.05, -belly_below_m());
-  const double b = robot.track_gauge_m(), w = robot.track.width_m, left = 0.5 + b * 0.05 / (b * b + w * w);
+  const double b = robot.track_gauge_m(), w = robot.track.front().width_m, left = 0.5 + b * 0.05 / (b * b + w * w);
   const double slope = 0.9, t = 0.4;
   for (const double ratio : {0.0, 0.8, -0.8}) {
     robot.effects.friction_asymmetry = ratio;
@@ -141,8 +141,8 @@ TEST_CASE("Lug height: on edges a belt holds up to the friction angle and the lu
          0});
   const auto moved_m = [&](double lug_scale, double slope_rad, const WorldDescription& on) {
     RobotDescription robot = tracks_with({.lug_height_scale = lug_scale});
-    robot.track.friction_along = 0.3;
-    robot.track.lug_height_m = 0.0005;
+    robot.track.front().friction_along = 0.3;
+    robot.track.front().lug_height_m = 0.0005;
     return slid_m(robot, on, slope_rad, 0, 0.2).x();
   };
   const double friction_angle = std::atan(0.3);
@@ -161,8 +161,8 @@ TEST_CASE("Lug height: on edges a belt holds up to the friction angle and the lu
 // and beyond it slide as a block does.
 TEST_CASE("Lug height: on edges along the belt lugs do nothing") {
   RobotDescription robot = tracks_with({.lug_height_scale = 3});
-  robot.track.friction_along = 0.3;
-  robot.track.lug_height_m = 0.0005;
+  robot.track.front().friction_along = 0.3;
+  robot.track.front().lug_height_m = 0.0005;
   WorldDescription ridges;
   ridges.start_poses.push_back({"start", {}});
   for (const double y : {-0.45 * robot.track_gauge_m(), 0.45 * robot.track_gauge_m()})

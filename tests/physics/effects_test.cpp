@@ -24,7 +24,7 @@ struct Drive {
 // Two seconds over a low step, with turns and moving flippers, and everything that is measured on the way.
 Drive drive_with(const Effects& effects) {
   RobotDescription robot = load_robot("kenaf");
-  robot.track.lug_height_m = 0.0005;
+  robot.track.front().lug_height_m = 0.0005;
   robot.effects = effects;
   WorldDescription nominal = ground();
   nominal.boxes.push_back(fixed_box({1, 2, 0.02}, {0.85, 0, 0.01}));

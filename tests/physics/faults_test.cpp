@@ -34,7 +34,7 @@ TEST_CASE("A robot whose numbers end is named, and its neighbour drives on to th
   RobotDescription wild = load_robot("kenaf");
   std::string expected;
   SECTION("explodes: belts that pull with ten times its weight reach 50 m/s in 0.5 s") {
-    wild.track.friction_along = 10;
+    wild.track.front().friction_along = 10;
     wild.drive.max_speed_mps = 1e5;
     wild.drive.max_force_n = 1e6;
     expected = "exploded";

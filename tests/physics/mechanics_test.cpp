@@ -29,7 +29,7 @@ double tilt_of(const Pose& X_WP, const Pose& X_WB) {
 // Kenaf without flippers and with its centre `height_m` above the ground.
 RobotDescription tall_robot(double height_m) {
   RobotDescription robot = plain_tracks(2);
-  const double ground_z = robot.track.p_BT_m.z() - robot.track.end_radius_m;
+  const double ground_z = robot.track.front().p_BT_m.z() - robot.track.front().end_radius_m;
   robot.body.p_BBcm_m = {0, 0, ground_z + height_m};
   return robot;
 }
@@ -95,8 +95,8 @@ TEST_CASE("A block that is pushed over an edge tips once its centre is beyond it
 TEST_CASE("A robot on a slope tips over its belly's end, or over its track's edge, where its centre is above it") {
   const double height_m = 0.34;
   const RobotDescription robot = tall_robot(height_m);
-  const double half_length = robot.track.length_m / 2 - robot.track.end_radius_m;
-  const double half_width = robot.track.p_BT_m.y() + robot.track.width_m / 2;
+  const double half_length = robot.track.front().length_m / 2 - robot.track.front().end_radius_m;
+  const double half_width = robot.track.front().p_BT_m.y() + robot.track.front().width_m / 2;
   struct Case {
     double heading, reach_m;
   };

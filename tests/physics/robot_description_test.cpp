@@ -38,7 +38,7 @@ TEST_CASE("Kenaf is what is known of it") {
   CHECK(robot.name == "kenaf");
   CHECK(robot.usarsim_class == "USARBot.Kenaf");
   CHECK(robot.total_mass_kg() == Approx(20));
-  CHECK(robot.track.friction_along == 1.3);
+  CHECK(robot.track.front().friction_along == 1.3);
   CHECK(robot.track_gauge_m() == Approx(0.2));
   // the whole robot's centre of mass, flippers straight out: 50 mm below its centre. An arm's own centre lies on its
   // axis.
@@ -46,15 +46,19 @@ TEST_CASE("Kenaf is what is known of it") {
   CHECK(z == Approx(-0.05).margin(1e-4));
   // the envelope: 0.6 x 0.4 x 0.18 m with the flippers folded over the body
   const auto& f = robot.flipper.front();
-  CHECK(robot.track.length_m <= 0.6);
+  CHECK(robot.track.front().length_m <= 0.6);
   CHECK(f.p_BPivot_m.x() + f.pivot_radius_m <= 0.3);
   CHECK(2 * (f.p_BPivot_m.y() + f.width_m / 2) <= 0.4);
-  CHECK(robot.body.size_m.z() / 2 + robot.track.end_radius_m - robot.track.p_BT_m.z() <= 0.18);
+  CHECK(robot.body.size_m.z() / 2 + robot.track.front().end_radius_m - robot.track.front().p_BT_m.z() <= 0.18);
   CHECK(f.length_m + f.tip_radius_m <= f.p_BPivot_m.x());  // front and rear do not meet when folded
 }
 
 TEST_CASE("All shipped robots load, by class too") {
-  for (const char* name : {"kenaf", "p2dx", "p2at", "marmotte"}) CHECK(load_robot(name).name == name);
+  for (const char* name : {"kenaf", "marmotte"}) CHECK_FALSE(load_robot(name).has_wheels());
+  for (const char* name : {"p2dx", "p2at", "p3at", "husky", "jackal", "warthog"}) {
+    CHECK(load_robot(name).name == name);
+    CHECK(load_robot(name).has_wheels());
+  }
   CHECK(robot_name_for_class("USARBot.Kenaf") == "kenaf");
   CHECK(robot_name_for_class("usarbot.kenaf") == "kenaf");
   CHECK(robot_name_for_class("P2AT") == "p2at");
@@ -92,6 +96,45 @@ TEST_CASE("What is wrong is said with file, line and column") {
         std::string::npos);
   CHECK_THROWS_AS(load_robot("no-such-robot"), kenaf::description::DescriptionError);
   CHECK_THROWS_AS(load_robot("./no-such-file.toml"), kenaf::description::DescriptionError);
+}
+
+TEST_CASE("A robot drives on tracks or on wheels") {
+  const std::string wheel =
+      "[[wheel]]\nleft_center_m = [0.2, 0.3, 0]\nradius_m = 0.1\nwidth_m = 0.04\nfriction_along = 1\n"
+      "friction_across = 1\n";
+  const auto with = [](const std::string& more) { return error_with("[drive]", more + "[drive]"); };
+  CHECK(with(wheel).find("wheel and [track] exclude each other") != std::string::npos);
+  CHECK(with("[[caster]]\ncenter_m = [0, 0, 0]\n").find("caster is for robots with [[wheel]]") != std::string::npos);
+
+  // Kenaf's file without its track, or with wheels in its place
+  std::string text = kenaf_text();
+  const std::size_t track = text.find("[track]");
+  text.erase(track, text.find("[drive]") - track);
+  const auto error = [&](const std::string& in_place) {
+    try {
+      parse_robot(std::string(text).insert(track, in_place), "test.toml");
+    } catch (const kenaf::description::DescriptionError& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  CHECK(error("").find("track is missing") != std::string::npos);
+  CHECK(error(wheel).find("wheel and [flipper] exclude each other") != std::string::npos);
+  text.erase(text.find("[flipper]"), text.find("[battery]") - text.find("[flipper]"));
+  CHECK(error(wheel).empty());
+  CHECK_THROWS_WITH(parse_robot("wheel = []\n" + text, "test.toml"), Catch::Contains("wheel is empty"));
+  CHECK(error(wheel + wheel).find("wheel[1].left_center_m must have a smaller x than the wheel before") !=
+        std::string::npos);
+  const auto changed = [&](const std::string& was, const std::string& is) {
+    std::string other = wheel;
+    return error(other.replace(other.find(was), was.size(), is));
+  };
+  CHECK(changed("[0.2, 0.3, 0]", "[0.2, 0.02, 0]").find("must have a y of more than half of width_m") !=
+        std::string::npos);
+  CHECK(changed("radius_m = 0.1", "radius_m = 0").find("wheel[0].radius_m is 0, but must be more than 0") !=
+        std::string::npos);
+  CHECK(changed("radius_m = 0.1", "radius_m = 0.1\nsteering = true").find("steering is not a known key") !=
+        std::string::npos);
 }
 
 TEST_CASE("Effects, lugs and a servo's encoder stand in the description, or stay neutral") {

@@ -41,8 +41,8 @@ inline TriangleMesh roof(double ridge_m) {
 inline RobotDescription plain_tracks(double friction) {
   RobotDescription robot = load_robot("kenaf");
   robot.flipper.clear();
-  robot.track.friction_along = robot.track.friction_across = friction;
-  robot.track.lug_height_m = 0;  // lugs hold at an edge even where the belt is smooth
+  robot.track.front().friction_along = robot.track.front().friction_across = friction;
+  robot.track.front().lug_height_m = 0;  // lugs hold at an edge even where the belt is smooth
   return robot;
 }
 

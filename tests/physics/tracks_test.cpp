@@ -116,13 +116,13 @@ namespace {
 // friction: the rate at which the friction's moment is zero,
 //   sum [ y (v - w y) - w x^2 ] / |(v - w y, w x)| = 0 over one track.
 double uniform_pressure_turn_radps(const RobotDescription& robot, double speed_mps) {
-  const double length = robot.track.length_m - 2 * robot.track.end_radius_m;
-  const double inner = robot.track.p_BT_m.y() - robot.track.width_m / 2;
+  const double length = robot.track.front().length_m - 2 * robot.track.front().end_radius_m;
+  const double inner = robot.track.front().p_BT_m.y() - robot.track.front().width_m / 2;
   const auto moment = [&](double w) {
     double sum = 0;
     for (int i = 0; i < 100; ++i) {
       for (int j = 0; j < 20; ++j) {
-        const double x = length * ((i + 0.5) / 100 - 0.5), y = inner + robot.track.width_m * (j + 0.5) / 20;
+        const double x = length * ((i + 0.5) / 100 - 0.5), y = inner + robot.track.front().width_m * (j + 0.5) / 20;
         sum += (y * (speed_mps - w * y) - w * x * x) / std::hypot(speed_mps - w * y, w * x);
       }
     }
@@ -136,13 +136,13 @@ double uniform_pressure_turn_radps(const RobotDescription& robot, double speed_m
 }  // namespace
 
 TEST_CASE("The turning rate comes out of the load's spread") {
-  for (const char* name : {"kenaf", "p2at"}) {
+  for (const char* name : {"kenaf", "marmotte"}) {
     RobotDescription robot = load_robot(name);
     robot.flipper.clear();
-    robot.track.pieces = 6;
+    robot.track.front().pieces = 6;
     robot.body.p_BBcm_m.x() = 0;
     for (const double friction : {0.5, 1.0}) {
-      robot.track.friction_along = robot.track.friction_across = friction;
+      robot.track.front().friction_along = robot.track.front().friction_across = friction;
       robot.drive.max_force_n = 1000;
       World world(ground(), {}, 1);
       const RobotId id = world.add_robot(robot, "a", {});
@@ -165,16 +165,16 @@ TEST_CASE("The turning rate comes out of the load's spread") {
 TEST_CASE("The turning rate is that of the contacts' own loads") {
   for (const int pieces : {1, 2, 6}) {
     RobotDescription robot = plain_tracks(1);
-    robot.track.pieces = pieces;
+    robot.track.front().pieces = pieces;
     robot.body.p_BBcm_m.x() = 0;
     robot.drive.max_force_n = 1000;
-    const double speed_mps = 0.2, length = robot.track.length_m - 2 * robot.track.end_radius_m;
+    const double speed_mps = 0.2, length = robot.track.front().length_m - 2 * robot.track.front().end_radius_m;
     const auto moment = [&](double w) {
       double sum = 0;
       for (const double side : {-0.5, 0.5}) {
         for (int i = 0; i <= pieces; ++i) {
           const double x = length * (static_cast<double>(i) / pieces - 0.5);
-          const double y = robot.track.p_BT_m.y() + side * robot.track.width_m;
+          const double y = robot.track.front().p_BT_m.y() + side * robot.track.front().width_m;
           const double share = i == 0 || i == pieces ? 0.5 : 1;
           sum += share * (y * (speed_mps - w * y) - w * x * x) / (std::hypot(speed_mps - w * y, w * x) + 1e-9);
         }
@@ -268,7 +268,7 @@ TEST_CASE("Tracks have no more traction than the motor or the ground can give") 
     description.boxes.push_back(fixed_box({0.1, 2, 1}, {0.5, 0, 0.5}));
     RobotDescription robot = plain_tracks(friction);
     robot.drive.max_force_n = max_force_n;
-    robot.track.friction_across = 0;  // else the belts climb the wall
+    robot.track.front().friction_across = 0;  // else the belts climb the wall
     World world(description, {}, 1);
     const RobotId id = world.add_robot(robot, "a", {});
     world.set_command(id, drive(0.1, 0.1));

@@ -81,9 +81,9 @@ TEST_CASE("Kenaf drives over a half cylinder of 150 mm") {
 // tests/physics/tracks_test.cpp). gz-sim's vehicle has 0.7, and so has Kenaf here.
 TEST_CASE("With a friction of 0.7 the tilted box needs flippers") {
   physics::RobotDescription robot = physics::load_robot("kenaf");
-  robot.track.friction_along = robot.track.friction_across = 0.7;
+  robot.track.front().friction_along = robot.track.front().friction_across = 0.7;
   robot.flipper.front().friction_along = robot.flipper.front().friction_across = 0.7;
-  robot.track.lug_height_m = 0;
+  robot.track.front().lug_height_m = 0;
   const Manoeuvre over = rollout::load_manoeuvre("tilted-box");
   const RollOut out = drive(robot, over);
   INFO("ended at x = " << out.end.X_WB.p.x());

@@ -47,8 +47,8 @@ TEST_CASE("The operator of the steps goes on where the robot's belts have reache
   const std::vector<rollout::Phase> phases = rollout::load_manoeuvre("step-300-flippers").phases;
   const auto hook = std::ranges::find(phases, "hook", &rollout::Phase::name);
   REQUIRE(hook != phases.end());
-  const double axle_x_m = robot.track.length_m / 2 - robot.track.end_radius_m,
-               belly_z_m = robot.track.p_BT_m.z() - robot.track.end_radius_m,
+  const double axle_x_m = robot.track.front().length_m / 2 - robot.track.front().end_radius_m,
+               belly_z_m = robot.track.front().p_BT_m.z() - robot.track.front().end_radius_m,
                nose_up_rad = -std::prev(hook)->end.pitch_below_rad.value();
   const double x_m = 1 - (axle_x_m * std::cos(nose_up_rad) - belly_z_m * std::sin(nose_up_rad));
   REQUIRE(hook->give_up);

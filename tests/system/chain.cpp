@@ -9,14 +9,15 @@ namespace kenaf::system_test {
 
 using support::Process;
 
-Chain::Chain(const std::string& speed, const std::string& world, bool has_cameras)
+Chain::Chain(const std::string& speed, const std::string& world, bool has_cameras, const std::string& robot_class)
     : speed_(speed), world_name_(world), has_cameras_(has_cameras) {
   start_world();
   const std::filesystem::path port_file = folder() / "relay.port";
-  relay_ = std::make_unique<Process>(std::vector<std::string>{KENAF_BIN_DIR "/kenaf-relayd", "--world-server",
-                                                              "127.0.0.1:" + std::to_string(world_port_), "--listen",
-                                                              "127.0.0.1:0", "--port-file", port_file.string()},
-                                     folder() / "relay.log");
+  relay_ = std::make_unique<Process>(
+      std::vector<std::string>{KENAF_BIN_DIR "/kenaf-relayd", "--world-server",
+                               "127.0.0.1:" + std::to_string(world_port_), "--listen", "127.0.0.1:0", "--port-file",
+                               port_file.string(), "--class", robot_class},
+      folder() / "relay.log");
   relay_port_ = support::wait_for_port(port_file, *relay_);
 }
 

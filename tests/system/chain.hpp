@@ -17,8 +17,9 @@ using Environment = std::map<std::string, std::string>;
 
 class Chain {
  public:
-  // Starts both servers on ephemeral loopback ports; `speed` is kenaf-world's.
-  explicit Chain(const std::string& speed, const std::string& world = "flat", bool has_cameras = false);
+  // Starts both servers on ephemeral loopback ports; `speed` is kenaf-world's, `robot_class` the relay's.
+  explicit Chain(const std::string& speed, const std::string& world = "flat", bool has_cameras = false,
+                 const std::string& robot_class = "USARBot.Kenaf");
 
   // A user program that drives through this chain; `name` is a program of the build's bin folder.
   support::Process start_program(const std::string& name, Environment environment = {}) const;

@@ -18,8 +18,9 @@ using namespace std::chrono_literals;
 
 namespace {
 
-support::Process start_square(Chain& chain) {
-  return chain.start_program("square_sim", {{"KENAF_RECORD", (chain.folder() / "square.csv").string()}});
+support::Process start_square(Chain& chain, Environment environment = {}) {
+  environment["KENAF_RECORD"] = (chain.folder() / "square.csv").string();
+  return chain.start_program("square_sim", environment);
 }
 
 std::vector<Pose2> path_driven(Chain& chain, support::Process& program) {
@@ -60,6 +61,18 @@ TEST_CASE("The square closes, goes round its corners, and both servers end clean
   chain.world().signal(SIGTERM);
   CHECK(chain.relay().wait() == 0);
   CHECK(chain.world().wait() == 0);
+}
+
+// The program is told the robot's gauge, and nothing else of it.
+TEST_CASE("Robots on wheels drive the square too") {
+  for (const auto& [robot_class, gauge_mm] : {std::pair{"USARBot.Husky", "555"}, {"USARBot.P3AT", "394"}}) {
+    Chain chain("0", "flat", false, robot_class);
+    support::Process program = start_square(chain, {{"KENAF_TRACK_GAUGE_MM", gauge_mm}});
+    const std::vector<Pose2> path = path_driven(chain, program);
+    INFO(robot_class);
+    CHECK(std::hypot(path.back().x_m - path.front().x_m, path.back().y_m - path.front().y_m) < 0.010);
+    CHECK(distance_to(path, path.front().x_m + 0.1, path.front().y_m + 0.1) < 0.015);
+  }
 }
 
 TEST_CASE("Half, double and full speed drive the same path", "[long]") {

@@ -16,14 +16,14 @@ const Projection kTop{Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()};
 physics::RobotDescription round_robot() {
   physics::RobotDescription robot{};
   robot.body.size_m = {0.4, 0.1, 0.1};
-  robot.track = {.length_m = 0.6,
-                 .end_radius_m = 0.06,
-                 .width_m = 0.1,
-                 .p_BT_m = {0, 0.1, 0},
-                 .friction_along = 1,
-                 .friction_across = 1,
-                 .pieces = 1,
-                 .lug_height_m = 0};
+  robot.track = {{.length_m = 0.6,
+                  .end_radius_m = 0.06,
+                  .width_m = 0.1,
+                  .p_BT_m = {0, 0.1, 0},
+                  .friction_along = 1,
+                  .friction_across = 1,
+                  .pieces = 1,
+                  .lug_height_m = 0}};
   physics::FlipperDescription flipper{};
   flipper.length_m = 0.2;
   flipper.pivot_radius_m = 0.05;

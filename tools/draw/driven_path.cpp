@@ -69,7 +69,7 @@ bool DrivenPath::climbs() const {
 DrivenPath driven_path(const runs::Run& run, const std::string& name, const physics::RobotDescription& robot) {
   const double start_rad = robot.has_flippers() ? robot.flipper.front().start_angle_rad : 0;
   // Without measured height the robot stands on the ground z = 0.
-  const double resting_height_m = robot.track.end_radius_m - robot.track.p_BT_m.z();
+  const double resting_height_m = robot.ride_height_m();
   Channel x(run, "x_m", 0), y(run, "y_m", 0), z(run, "z_m", resting_height_m);
   Channel roll(run, "roll_rad", 0), pitch(run, "pitch_rad", 0), yaw(run, "yaw_rad", 0);
   std::vector<Channel> flippers;

@@ -60,7 +60,8 @@ void draw_legend(const Canvas& canvas, const Scene& scene) {
     canvas.stroke(colour, 3);
   });
   entry(19, "hull", [&](const Point& at) { swatch(at, palette::kHull, palette::kHullEdge); });
-  entry(19, "track", [&](const Point& at) { swatch(at, palette::kTrack, palette::kBelt); });
+  entry(19, scene.robot.has_wheels() ? "wheel" : "track",
+        [&](const Point& at) { swatch(at, palette::kTrack, palette::kBelt); });
   if (scene.robot.has_flippers()) {
     entry(19, "flipper", [&](const Point& at) { swatch(at, palette::kFlipper, palette::kBelt); });
   }

@@ -15,6 +15,7 @@ constexpr double kLugSpacing_m = 0.03;
 // Details for a readable picture; no description has them.
 constexpr double kBeltThickness = 0.24;  // of the smaller drum's radius
 constexpr double kWheelShare = 0.6;      // of its drum's radius
+constexpr double kHubShare = 0.3;        // of its wheel's radius
 constexpr int kRoadWheels = 3;
 
 std::vector<Vector3d> circle(const Vector3d& centre_B, double radius_m) {
@@ -26,7 +27,7 @@ std::vector<Vector3d> circle(const Vector3d& centre_B, double radius_m) {
   return points;
 }
 
-// A belt around two drums whose axes run along y: a main track or a flipper.
+// A belt around two drums whose axes run along y: a main track or a flipper; or a wheel, where both are one.
 struct Belt {
   PartKind kind;
   Vector3d first_B, second_B;  // centres of the drums, in the belt's middle plane
@@ -39,13 +40,16 @@ std::vector<Belt> belts_of(const physics::RobotDescription& robot, const Posture
     return Vector3d(p.x() * front, p.y() * left, p.z());
   };
 
-  // Main tracks: the drums' centres are one end radius from the ends.
+  // Main tracks and wheels: the drums' centres are one end radius from the ends, those of a wheel the same.
   for (const double left : {1.0, -1.0}) {
-    const Vector3d centre_B = mirrored(robot.track.p_BT_m, 1, left);
-    const Vector3d half(robot.track.length_m / 2 - robot.track.end_radius_m, 0, 0);
-    const double radius_m = robot.track.end_radius_m;
-    belts.push_back({PartKind::track, centre_B + half, centre_B - half, radius_m, radius_m, robot.track.width_m});
+    for (const physics::TrackDescription& track : robot.track) {
+      const Vector3d centre_B = mirrored(track.p_BT_m, 1, left), half(track.straight_m() / 2, 0, 0);
+      belts.push_back({track.straight_m() > 0 ? PartKind::track : PartKind::wheel, centre_B + half, centre_B - half,
+                       track.end_radius_m, track.end_radius_m, track.width_m});
+    }
   }
+  for (const physics::CasterDescription& caster : robot.caster)
+    belts.push_back({PartKind::wheel, caster.p_BC_m, caster.p_BC_m, caster.radius_m, caster.radius_m, caster.width_m});
 
   // Flippers: from the pivot along (cos, 0, sin) of the angle, forward in front and backward behind.
   if (!robot.has_flippers()) return belts;
@@ -74,6 +78,7 @@ std::vector<Point> projected(const std::vector<Vector3d>& points_B, const physic
 std::vector<std::vector<Vector3d>> lugs_of(const Belt& belt) {
   std::vector<std::vector<Vector3d>> lugs;
   const Vector3d along = belt.second_B - belt.first_B;
+  if (along.isZero()) return lugs;
   Vector3d normal = Vector3d(-along.z(), 0, along.x()).normalized();
   if (normal.z() < 0) normal = -normal;
   const Vector3d half_width(0, belt.width_m / 2, 0);
@@ -87,8 +92,9 @@ std::vector<std::vector<Vector3d>> lugs_of(const Belt& belt) {
   return lugs;
 }
 
-// The wheels inside of the loop: one in each drum, under a main track also between them.
+// The wheels inside of the loop: one in each drum, under a main track also between them; the hub of a wheel.
 std::vector<std::vector<Vector3d>> wheels_of(const Belt& belt, const Vector3d& sideways) {
+  if (belt.kind == PartKind::wheel) return {circle(belt.first_B + sideways, kHubShare * belt.first_radius_m)};
   std::vector<std::vector<Vector3d>> wheels{circle(belt.first_B + sideways, kWheelShare * belt.first_radius_m),
                                             circle(belt.second_B + sideways, kWheelShare * belt.second_radius_m)};
   if (belt.kind != PartKind::track) return wheels;
@@ -138,7 +144,7 @@ std::vector<Vector3d> box_corners(const Vector3d& size_m) {
 void draw_belt(const Canvas& canvas, const Mapping& map, const Part& part, double paleness) {
   const double pixels_per_metre = map.pixels_per_metre();
   const Colour belt = paler(palette::kBelt, paleness);
-  const Colour body = paler(part.kind == PartKind::track ? palette::kTrack : palette::kFlipper, paleness);
+  const Colour body = paler(part.kind == PartKind::flipper ? palette::kFlipper : palette::kTrack, paleness);
   const double line = std::clamp(0.004 * pixels_per_metre, 0.7, 1.6);
   canvas.polygon(map(part.outline));
   canvas.fill(part.shows_face ? belt : body);

@@ -17,7 +17,7 @@ struct Projection {
   Eigen::Vector3d toward_viewer_W() const { return right_W.cross(up_W); }
 };
 
-enum class PartKind { hull, track, flipper };
+enum class PartKind { hull, track, wheel, flipper };
 
 struct Part {
   PartKind kind;

@@ -112,7 +112,7 @@ void draw_times(const Canvas& canvas, const Mapping& map, const DrivenPath& path
 std::optional<Mapping> draw_side_view(const Canvas& canvas, const Rectangle& area, const Scene& scene) {
   const DrivenPath& first = scene.paths.front();
   const Projection projection{main_direction(first), Vector3d::UnitZ()};
-  const double robot_m = scene.robot.track.length_m;
+  const double robot_m = scene.robot.track_length_m();
   const std::vector<std::size_t> instants = spaced_postures(first, 1.05 * robot_m, robot_m / 2);
 
   // The area: all paths and the drawn robots, with room for the times above them.

@@ -56,12 +56,12 @@ std::optional<Mapping> same_horizontal(const Rectangle& area, const Bounds& boun
 }  // namespace
 
 bool needs_close_up(const Scene& scene) {
-  return path_bounds(scene).extent() < 1.2 * scene.robot.track.length_m;
+  return path_bounds(scene).extent() < 1.2 * scene.robot.track_length_m();
 }
 
 void draw_top_view(const Canvas& canvas, const Rectangle& area, const Scene& scene,
                    const std::optional<Mapping>& like) {
-  const double robot_m = scene.robot.track.length_m;
+  const double robot_m = scene.robot.track_length_m();
   const bool crowded = needs_close_up(scene);  // then only the start and the end are drawn
   const DrivenPath& first = scene.paths.front();
   std::vector<std::size_t> instants = spaced_postures(first, 1.35 * robot_m, robot_m / 2);

@@ -57,12 +57,11 @@ export function createPlaybackView(list, shown, complain) {
       for (const object of [model.root, ribbon]) { stage.scene.remove(object); dispose(object); }
     }
     if (!run) return;
-    const { track } = list.robot, belly_m = track.radius - track.at[2];
     bodies = run.bodies.filter((body) => body.pose).map((body, i) => {
       const model = makeRobot(list.robot), hue = colour(`--${body.kind}`);
       if (body.kind !== "recorded") tint(model.root, hue);
       // a little higher each, so that none hides in another
-      const ribbon = makeRibbon(run, body, hue, belly_m - 0.006 - 0.003 * i);
+      const ribbon = makeRibbon(run, body, hue, list.robot.ride_height - 0.006 - 0.003 * i);
       stage.scene.add(model.root, ribbon);
       return { body, model, ribbon, hue };
     });

@@ -17,19 +17,22 @@ export function createPosture() {
   function draw(about) {
     side.replaceChildren();
     back.replaceChildren();
-    const scale = 110 / (about.track.length + 2 * (about.flipper?.length ?? 0.05));
+    const { tracks, casters, body } = about;
+    const front_m = tracks[0].at[0] + tracks[0].length / 2, rear_m = tracks[tracks.length - 1].at[0] - tracks[tracks.length - 1].length / 2;
+    const scale = 110 / (front_m - rear_m + 2 * (about.flipper?.length ?? 0.05));
     for (const svg of [side, back]) add(svg, "line", { class: "level", x1: -58, x2: 58, y1: 0, y2: 0 });
-    const { track, body } = about;
-    const outline = (group, width, height, y, className) => add(group, "rect", { class: className, x: -width / 2 * scale, y: (-y - height / 2) * scale,
+    const outline = (group, width, height, x, y, className) => add(group, "rect", { class: className, x: (x - width / 2) * scale, y: (-y - height / 2) * scale,
       width: width * scale, height: height * scale, rx: Math.min(height, width) / 2 * scale * (className === "track" ? 1 : 0.25) });
     const front = add(side, "g", {}), rear = add(back, "g", {});
-    outline(front, body[0], body[2], 0, "hull");
-    outline(front, track.length, 2 * track.radius, track.at[2], "track");
-    outline(rear, body[1], body[2], 0, "hull");
-    for (const y of [track.at[1], -track.at[1]]) {
-      add(rear, "rect", { class: "track", x: (y - track.width / 2) * scale, y: (-track.at[2] - track.radius) * scale, width: track.width * scale, height: 2 * track.radius * scale, rx: 2 });
-    }
     // nose to the left, as the robot is seen from its left side
+    outline(front, body[0], body[2], 0, 0, "hull");
+    for (const { length, radius, at } of [...casters, ...tracks]) outline(front, length, 2 * radius, -at[0], at[2], "track");
+    outline(rear, body[1], body[2], 0, 0, "hull");
+    for (const { width, radius, at } of tracks) {
+      for (const y of [at[1], -at[1]]) {
+        add(rear, "rect", { class: "track", x: (y - width / 2) * scale, y: (-at[2] - radius) * scale, width: width * scale, height: 2 * radius * scale, rx: 2 });
+      }
+    }
     const arms = about.flipper ? [0, 2].map((i) => add(front, "line", { class: "arm", "stroke-width": 1.5 * about.flipper.tip_radius * scale, "data-arm": i })) : [];
     const labels = [side, back].map((svg) => add(svg, "text", { x: -58, y: 42 }));
     parts = { front, rear, arms, labels, scale };

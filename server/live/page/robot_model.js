@@ -1,4 +1,4 @@
-// A robot as three.js objects: hull, two tracks, four flippers; belts run and flippers turn.
+// A robot as three.js objects: hull, two tracks or its wheels, four flippers; belts run and flippers turn.
 //
 // Frame of the server: x forward, y left, z up.
 import * as THREE from "/three/build/three.module.js";
@@ -20,9 +20,10 @@ function beltTexture() {
   return texture;
 }
 
-// The outline around two discs of radius r0 at x = 0 and r1 at x = length, counterclockwise seen from -y, closed.
+// The outline around two discs of radius r0 at x = 0 and r1 at x = length, counterclockwise seen from -y, closed. A
+// length of 0 makes a circle.
 function beltOutline(length, r0, r1) {
-  const lean = Math.acos(Math.max(-1, Math.min(1, (r0 - r1) / length))), points = [];
+  const lean = Math.acos(Math.max(-1, Math.min(1, length > 0 ? (r0 - r1) / length : 0))), points = [];
   const arc = (x, r, from, to) => {
     for (let i = 0; i <= 12; ++i) {
       const a = from + (to - from) * i / 12;
@@ -85,15 +86,20 @@ export function makeRobot(about) {
   eye.position.set(0.42 * x, 0, z / 2 + 0.02);
   root.add(deck, eye);
 
-  const { track, flipper } = about;
-  const runs = track.length - 2 * track.radius;
+  const { flipper } = about;
+  const addBelt = ({ length, radius, width, at }, y, texture) => {
+    const runs = length - 2 * radius;
+    const belt = makeBelt(beltOutline(runs, radius, radius), width, texture, sideMaterial);
+    belt.position.set(at[0] - runs / 2, y, at[2]);
+    root.add(belt);
+  };
+  // one texture for all that turns with a side
   const tracks = [1, -1].map((side) => {
     const texture = beltTexture();
-    const belt = makeBelt(beltOutline(runs, track.radius, track.radius), track.width, texture, sideMaterial);
-    belt.position.set(track.at[0] - runs / 2, side * track.at[1], track.at[2]);
-    root.add(belt);
+    for (const track of about.tracks) addBelt(track, side * track.at[1], texture);
     return texture;
   });
+  for (const caster of about.casters) addBelt(caster, caster.at[1], beltTexture());
   const arms = !flipper ? [] : [[1, 1], [1, -1], [-1, 1], [-1, -1]].map(([ahead, side]) => {
     const mount = new THREE.Group(), arm = new THREE.Group(), texture = beltTexture();
     arm.add(makeBelt(beltOutline(flipper.length, flipper.pivot_radius, flipper.tip_radius), flipper.width, texture, armMaterial));

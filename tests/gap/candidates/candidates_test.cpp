@@ -137,9 +137,9 @@ TEST_CASE("The tracks' separation moves the planes of both tracks") {
   CHECK(separation->parameter == "separation_m");
   CHECK(separation->keys == std::vector<std::string>{"track.left_center_m[1]"});
   const RobotDescription wider = with(robot, *separation, 0.3);
-  CHECK(wider.track.p_BT_m.y() == 0.15);
+  CHECK(wider.track.front().p_BT_m.y() == 0.15);
   CHECK(wider.track_gauge_m() == 0.3);
-  CHECK(wider.track.p_BT_m.x() == robot.track.p_BT_m.x());
+  CHECK(wider.track.front().p_BT_m.x() == robot.track.front().p_BT_m.x());
 }
 
 TEST_CASE("The belly gets shorter with the track, whose ends keep their radius") {
@@ -151,16 +151,16 @@ TEST_CASE("The belly gets shorter with the track, whose ends keep their radius")
   CHECK(belly->present == Approx(0.45));
   CHECK(belly->same_as == "track.length_m");
   const RobotDescription shorter = with(robot, *belly, 0.35);
-  CHECK(shorter.track.length_m == Approx(0.48));
-  CHECK(shorter.track.end_radius_m == robot.track.end_radius_m);
+  CHECK(shorter.track.front().length_m == Approx(0.48));
+  CHECK(shorter.track.front().end_radius_m == robot.track.front().end_radius_m);
 }
 
 TEST_CASE("The belly as it is described leaves the track as it is, though its length is not the sum of its parts") {
   RobotDescription robot = robot_of("kenaf");
-  robot.track.length_m = 0.9;
-  robot.track.end_radius_m = 0.1;
-  const double flat_m = robot.track.length_m - 2 * robot.track.end_radius_m;
-  REQUIRE(flat_m + 2 * robot.track.end_radius_m != robot.track.length_m);  // in floating point
+  robot.track.front().length_m = 0.9;
+  robot.track.front().end_radius_m = 0.1;
+  const double flat_m = robot.track.front().length_m - 2 * robot.track.front().end_radius_m;
+  REQUIRE(flat_m + 2 * robot.track.front().end_radius_m != robot.track.front().length_m);  // in floating point
   const std::vector<Candidate> candidates = description_candidates(robot);
   CHECK(test::same_bits(with(robot, *find_candidate(candidates, "track.contact_length_m"), flat_m), robot));
 }

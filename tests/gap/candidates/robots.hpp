@@ -23,17 +23,9 @@ inline physics::RobotDescription robot_of(const std::string& name) {
 // Every number that a description has, but mounts, mission packages and cameras.
 inline std::vector<double> all_numbers(const physics::RobotDescription& robot) {
   const auto& body = robot.body;
-  const auto& track = robot.track;
   const auto& drive = robot.drive;
   std::vector<double> numbers{body.mass_kg,
                               body.friction,
-                              track.length_m,
-                              track.end_radius_m,
-                              track.width_m,
-                              track.friction_along,
-                              track.friction_across,
-                              static_cast<double>(track.pieces),
-                              track.lug_height_m,
                               drive.sprocket_radius_m,
                               drive.max_speed_mps,
                               drive.max_force_n,
@@ -52,7 +44,17 @@ inline std::vector<double> all_numbers(const physics::RobotDescription& robot) {
   const auto add = [&numbers](const Eigen::Vector3d& vector) {
     numbers.insert(numbers.end(), vector.begin(), vector.end());
   };
-  for (const auto& vector : {body.size_m, body.p_BBcm_m, body.inertia_kgm2, track.p_BT_m}) add(vector);
+  for (const auto& vector : {body.size_m, body.p_BBcm_m, body.inertia_kgm2}) add(vector);
+  for (const auto& track : robot.track) {
+    for (const double value : {track.length_m, track.end_radius_m, track.width_m, track.friction_along,
+                               track.friction_across, static_cast<double>(track.pieces), track.lug_height_m})
+      numbers.push_back(value);
+    add(track.p_BT_m);
+  }
+  for (const auto& caster : robot.caster) {
+    for (const double value : {caster.radius_m, caster.width_m, caster.friction}) numbers.push_back(value);
+    add(caster.p_BC_m);
+  }
   for (const auto& flipper : robot.flipper) {
     for (const double value : {flipper.mass_kg, flipper.length_m, flipper.pivot_radius_m, flipper.tip_radius_m,
                                flipper.width_m, flipper.friction_along, flipper.friction_across, flipper.min_angle_rad,

@@ -153,8 +153,8 @@ scale = 2.0
   const std::string changed = robot_toml_with(text, Values{{own.front(), 0.05}});
   // 0.2 m + 0.05 m apart, so 0.125 m to the left; 0.09 m times 1 + 2 * 0.05
   const RobotDescription read = physics::parse_robot(changed, "robot.toml");
-  CHECK(read.track.p_BT_m.y() == Approx(0.125));
-  CHECK(read.track.width_m == Approx(0.099));
+  CHECK(read.track.front().p_BT_m.y() == Approx(0.125));
+  CHECK(read.track.front().width_m == Approx(0.099));
   CHECK(test::same_bits(read, test::with(robot, own.front(), 0.05)));
   CHECK(comments_of(changed) == comments_of(text));
 }

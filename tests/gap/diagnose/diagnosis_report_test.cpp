@@ -214,7 +214,7 @@ TEST_CASE("A number of the description is written in its place") {
   Diagnosis d = made_diagnosis_of_one_stage();
   d.stages[0].decision.effects = {made_effect(track_separation, {0.5, 0.49, 0.51}, 0.8)};
   const physics::RobotDescription robot = robot_in(robot_file(d).text);
-  CHECK(robot.track.p_BT_m.y() == 0.25);
+  CHECK(robot.track.front().p_BT_m.y() == 0.25);
 }
 
 TEST_CASE("A robot.toml is written whatever the description has already, and its comments hold no hostile bytes") {

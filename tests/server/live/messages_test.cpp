@@ -141,7 +141,7 @@ TEST_CASE("An inventory says what everything is, and is new when somebody comes 
   const json robot = json::parse(inventory_message(one))["robots"][0];
   CHECK(robot["placed"] == true);
   CHECK(robot["class"] == "USARBot.Kenaf");
-  CHECK(robot["track"]["length"] == 0.58);
+  CHECK(robot["tracks"][0]["length"] == 0.58);
   CHECK(robot["flipper"]["at"] == json::array({0.225, 0.17, -0.025}));
   CHECK(robot["max_speed"] == 0.5);
   one.robots[0].robot = kenaf::physics::RobotId{31};

@@ -82,8 +82,7 @@ TEST_CASE("Forward is x for a robot that was not turned") {
 
 TEST_CASE("An Ackermann command drives the curve of its steering angle") {
   Kenaf kenaf("USARBot.P2DX");
-  const auto& track = kenaf.description().track;
-  const double wheel_base_m = track.length_m - 2 * track.end_radius_m;
+  const double wheel_base_m = 0.215;  // from the axle, at x = 0.045 m, to the caster, at -0.17 m
   // Positive FrontSteer turns right: the left track runs faster. v = 1 rad/s x radius; turn rate = v tan(0.1) / base.
   kenaf.send("DRIVE {Speed 1} {FrontSteer 0.1} {RearSteer 0}\r\n");
   const double turn_radps = kenaf.radius_m() * std::tan(0.1) / wheel_base_m;
@@ -96,8 +95,7 @@ TEST_CASE("An Ackermann command drives the curve of its steering angle") {
 
 TEST_CASE("A curve at full speed is driven slower, not wider") {
   Kenaf kenaf("USARBot.P2DX");
-  const auto& track = kenaf.description().track;
-  const double wheel_base_m = track.length_m - 2 * track.end_radius_m;
+  const double wheel_base_m = 0.215;  // from the axle, at x = 0.045 m, to the caster, at -0.17 m
   const double half_gauge_m = kenaf.description().track_gauge_m() / 2;
   // Half the difference of the sides over half their sum: half the gauge over the radius of the curve, at any speed.
   const auto bend = [&] { return (kenaf.left_mps() - kenaf.right_mps()) / (kenaf.left_mps() + kenaf.right_mps()); };

@@ -39,7 +39,7 @@ TEST_CASE("A state holds the clock, and each robot with its posture, its command
   CHECK(robot.client_silent_s == Approx(1));
   CHECK(robot.has_client);
   CHECK(robot.holder == OperatorId{0});
-  CHECK(robot.dimensions.track_length_m == 0.58);
+  CHECK(robot.dimensions.tracks.at(0).length_m == 0.58);
 
   REQUIRE(take_robot(talk.simulation, robot.id, OperatorId{9}).empty());
   read_state(talk.simulation, state);
