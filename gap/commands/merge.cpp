@@ -33,6 +33,12 @@ void print(const logs::MergedRun& merged) {
           "  from the tracks alone: if the body follows its belts with a delay, the offset is wrong by that delay\n");
     std::printf("  both logs cover %.1f s\n", offset.overlap_s);
   }
+  if (const logs::ClockDrift& drift = merged.drift; drift.standard_error > 0)
+    std::printf("the clocks drift: the offset grows by %.0f ppm, standard error %.0f ppm, and is %.4f s at %.1f s\n",
+                1e6 * drift.rate, 1e6 * drift.standard_error, drift.offset_s, drift.at_s);
+  else if (drift.rate != 0)
+    std::printf("the offset grows by %.0f ppm, as given, and is %.4f s at %.1f s\n", 1e6 * drift.rate, drift.offset_s,
+                drift.at_s);
   const std::size_t rows = merged.run.row_count();
   std::printf("%zu of %zu rows have a pose, between captured ones at most %.3g s apart\n", merged.rows_with_pose, rows,
               merged.max_gap_s);
@@ -89,9 +95,16 @@ void add_merge_command(CLI::App& program) {
       ->type_name("SECONDS");
   command
       ->add_option("--offset", options->merge.offset_s,
-                   "run time minus motion capture time, if known; otherwise it is estimated")
+                   "run time minus motion capture time at the run's first row, if known; otherwise it is estimated")
       ->check(number_in(-1e12, 1e12))
       ->type_name("SECONDS");
+  command
+      ->add_option_function<double>(
+          "--drift", [options](double ppm) { options->merge.drift = 1e-6 * ppm; },
+          "growth of the offset in millionths, if known; 0: clocks of the same speed; otherwise it is estimated, or 0 "
+          "with --offset")
+      ->check(number_in(-1e5, 1e5))
+      ->type_name("PPM");
   command->add_flag("--unwrap", options->unwrap, "write the travel of tracks whose counter wraps without its jumps");
   command->add_flag("--force", options->force, "replace the output file if it exists");
 

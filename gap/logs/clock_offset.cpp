@@ -8,24 +8,20 @@
 #include <limits>
 #include <optional>
 
+#include "gap/logs/offset_refinement.hpp"
+
 namespace kenaf::gap::logs {
 namespace {
 
 // All chosen.
-constexpr Eigen::Index kMostGridPoints = 8192;   // of either log; a longer one gets a coarser grid
-constexpr Eigen::Index kMostFinePoints = 20000;  // at which a refinement compares both rates
-constexpr double kShortestOverlap_s = 1;         // of a quantity in both logs, for an offset to count
-constexpr double kTellsSomething = 0.5;          // least r squared of a quantity that counts
-constexpr double kFollows = 0.8;                 // least r squared with any gain, for a wrong unit or sign to be named
-constexpr double kAbsurd = 10;                   // factor beyond the gain's bounds that only a wrong unit explains
-constexpr double kRefuted = 2;                   // an offset is refuted by this many times the residual variance
-constexpr double kEnoughMotion = 0.2;            // least share in the overlap of all motion in the log with less of it
-constexpr double kWidestPeak_s = 2;              // widest range of offsets that fit about as well as the best
-constexpr double kUncertain_s = 1;               // standard error from which on a quantity determines no offset
-constexpr double kLargestError_s = 0.25;         // largest standard error of the result
-constexpr double kFinest_s = 1e-9;               // least standard error: identical courses leave no residual at all
-constexpr double kBodyIsGoodEnough_s = 0.01;     // standard error with which quantities that slip are not needed
-constexpr double kCorrelatedOver_s = 2;          // residuals farther apart count as independent
+constexpr Eigen::Index kMostGridPoints = 8192;  // of either log; a longer one gets a coarser grid
+constexpr double kFollows = 0.8;                // least r squared with any gain, for a wrong unit or sign to be named
+constexpr double kAbsurd = 10;                  // factor beyond the gain's bounds that only a wrong unit explains
+constexpr double kRefuted = 2;                  // an offset is refuted by this many times the residual variance
+constexpr double kEnoughMotion = 0.2;           // least share in the overlap of all motion in the log with less of it
+constexpr double kWidestPeak_s = 2;             // widest range of offsets that fit about as well as the best
+constexpr double kLargestError_s = 0.25;        // largest standard error of the result
+constexpr double kBodyIsGoodEnough_s = 0.01;    // standard error with which quantities that slip are not needed
 
 using Eigen::ArrayXd;
 using Eigen::Index;
@@ -249,101 +245,6 @@ void check_unique(const std::vector<Quantity>& quantities, const Grid& grid, Ind
                     grid.offset_s(grid.first_lag() + best), grid.offset_s(grid.first_lag() + rival)));
 }
 
-// Newey and West's variance of the sum of x: sum over lags k from -most to most of w(k) sum_i x(i) x(i + k), with
-// Bartlett's weights w(k) = 1 - |k| / (most + 1), which keep it from becoming negative.
-double bartlett_sum(const ArrayXd& x, Index most) {
-  double sum = x.square().sum();
-  for (Index lag = 1; lag <= std::min(most, x.size() - 1); ++lag) {
-    const double weight = 1 - static_cast<double>(lag) / static_cast<double>(most + 1);
-    sum += 2 * weight * (x.head(x.size() - lag) * x.tail(x.size() - lag)).sum();
-  }
-  return sum;
-}
-
-// The variance of sum_i slope(i) residual(i) for a stationary residual: sum over lags k of w(k) gamma(k)
-// [sum_i slope(i) slope(i + k)], with the autocovariance gamma(k) = sum_i residual(i) residual(i + k) / n and
-// Bartlett's weights w(k).
-double stationary_variance(const ArrayXd& slope, const ArrayXd& residual, Index most) {
-  const Index n = residual.size();
-  double sum = slope.square().sum() * residual.square().sum();
-  for (Index lag = 1; lag <= std::min(most, n - 1); ++lag) {
-    const double weight = 1 - static_cast<double>(lag) / static_cast<double>(most + 1);
-    const auto pairs = [&](const ArrayXd& x) { return (x.head(n - lag) * x.tail(n - lag)).sum(); };
-    sum += 2 * weight * pairs(slope) * pairs(residual);
-  }
-  return sum / static_cast<double>(n);
-}
-
-// Least squares for offset and gain in robot(t) = gain capture(t - offset) + residual(t), by Gauss-Newton from
-// `start_s`. With sums over all t:
-//
-//   gain      = sum(robot capture) / sum(capture^2)    eliminated in each iteration
-//   slope     = d residual / d offset = gain (derivative - capture sum(derivative capture) / sum(capture^2)), where
-//               derivative = d capture / dt; its part along capture is left out, as a change of the gain absorbs it
-//   curvature = sum(slope^2)
-//   change_s  = -sum(slope residual) / curvature       step of the offset
-//
-// Empty if it leaves the neighbourhood, finds no motion, fits badly or leaves the offset uncertain.
-std::optional<QuantityOffset> refine(const CourseSeenTwice& seen, const Grid& grid, double start_s) {
-  // Evaluates at the robot's own sample step, at no more than kMostFinePoints times.
-  const double window_s = grid.window_s;
-  Span span;
-  span.add(seen.robot);
-  const double sample_s = median_step(seen.robot.t_s, seen.robot.value);
-  const double step_s =
-      std::max(std::min(grid.step_s, sample_s), span.length_s() / static_cast<double>(kMostFinePoints));
-  const auto count = static_cast<Index>(span.length_s() / step_s) + 1;
-
-  double offset_s = start_s, gain = 0;
-  ArrayXd residual, slope;
-  double curvature = 0, correlation = 0;
-  for (int iteration = 0; iteration < 30; ++iteration) {
-    // Both rates at the present offset, and the derivative of the captured one by central differences.
-    std::vector<double> robot_rates, capture_rates, capture_derivatives;
-    for (Index i = 0; i < count; ++i) {
-      const double t_s = span.first_s + static_cast<double>(i) * step_s, there_s = t_s - offset_s;
-      const double robot = mean_rate(seen.robot, t_s, window_s), capture = mean_rate(seen.capture, there_s, window_s);
-      const double before = mean_rate(seen.capture, there_s - grid.step_s, window_s);
-      const double after = mean_rate(seen.capture, there_s + grid.step_s, window_s);
-      if (std::isnan(robot + capture + before + after)) continue;
-      robot_rates.push_back(robot);
-      capture_rates.push_back(capture);
-      capture_derivatives.push_back((after - before) / (2 * grid.step_s));
-    }
-    if (static_cast<double>(robot_rates.size()) * step_s < kShortestOverlap_s) return std::nullopt;
-    const auto as_array = [](const std::vector<double>& v) {
-      return Eigen::Map<const ArrayXd>(v.data(), static_cast<Index>(v.size()));
-    };
-    const ArrayXd robot = as_array(robot_rates), capture = as_array(capture_rates),
-                  derivative = as_array(capture_derivatives);
-
-    // Gain, residual and its slope.
-    const double energy = capture.square().sum();
-    if (!(energy > 0)) return std::nullopt;
-    gain = (robot * capture).sum() / energy;
-    correlation = gain * std::sqrt(energy / robot.square().sum());
-    residual = robot - gain * capture;
-    slope = gain * (derivative - capture * ((derivative * capture).sum() / energy));
-    curvature = slope.square().sum();
-    if (!(curvature > 0)) return std::nullopt;
-
-    // Steps are limited to half a window, within which the derivative holds; two windows away is another solution.
-    const double change_s = -(slope * residual).sum() / curvature;
-    offset_s += std::clamp(change_s, -0.5 * window_s, 0.5 * window_s);
-    if (std::abs(offset_s - start_s) > 2 * window_s) return std::nullopt;
-    if (std::abs(change_s) < 1e-7) break;
-  }
-
-  // Var(offset) = Var(sum(slope residual)) / curvature^2, with the larger of two estimates of the numerator.
-  const auto most = std::min(static_cast<Index>(kCorrelatedOver_s / step_s), residual.size() / 4);
-  const double variance_s2 =
-      std::max(stationary_variance(slope, residual, most), bartlett_sum(slope * residual, most)) /
-      (curvature * curvature);
-  const bool no_match = gain < seen.least_gain || gain > seen.most_gain || correlation * correlation < kTellsSomething;
-  if (no_match || !(variance_s2 < kUncertain_s * kUncertain_s)) return std::nullopt;
-  return QuantityOffset{seen.name, offset_s, std::max(kFinest_s, std::sqrt(variance_s2)), gain, correlation, false};
-}
-
 bool moves(const Course& course, double enough) {
   const auto [least, most] = std::ranges::minmax(course.value);
   return most - least >= enough;
@@ -390,7 +291,8 @@ ClockOffset estimate_clock_offset(const std::vector<CourseSeenTwice>& courses) {
   ClockOffset result;
   const double start_s = grid.offset_s(grid.first_lag() + coarse.best);
   for (const Quantity& quantity : quantities) {
-    if (const auto refined = refine(*quantity.seen, grid, start_s)) result.quantities.push_back(*refined);
+    if (const auto refined = refine_offset(*quantity.seen, {grid.window_s, grid.step_s}, start_s))
+      result.quantities.push_back(*refined);
     result.overlap_s = std::max(result.overlap_s, at(quantity, coarse.best).count * grid.step_s);
   }
 

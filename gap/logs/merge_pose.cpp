@@ -65,6 +65,26 @@ void put_start_at_origin(std::vector<std::optional<CapturedPose>>& poses, double
   }
 }
 
+double offset_at(const ClockDrift& drift, double time_s) {
+  return drift.offset_s + drift.rate * (time_s - drift.at_s);
+}
+
+void set_clocks(MergedRun& merged, const MotionCapture& capture, const MergeOptions& options) {
+  if (options.offset_s) {
+    const auto t_s = merged.run.column("t_s");
+    merged.offset = {.offset_s = *options.offset_s, .quantities = {}};
+    merged.drift = {options.drift.value_or(0), 0, *options.offset_s, t_s.empty() ? 0 : t_s.front()};
+    return;
+  }
+  const std::vector<CourseSeenTwice> courses = courses_seen_twice(merged.run, capture);
+  merged.offset = estimate_clock_offset(courses);
+  const auto estimated = options.drift ? std::nullopt : estimate_clock_drift(courses, merged.offset);
+  // A given drift holds about the middle of the run, where the offset is that of all its motion.
+  const auto t_s = merged.run.column("t_s");
+  merged.drift = estimated.value_or(
+      ClockDrift{options.drift.value_or(0), 0, merged.offset.offset_s, (t_s.front() + t_s.back()) / 2});
+}
+
 }  // namespace
 
 MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const MergeOptions& options) {
@@ -73,16 +93,15 @@ MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const M
     throw runs::RunFileError(
         fmt::format("the run goes from {:.3g} to {:.3g} s, which is implausible", t_s.front(), t_s.back()));
 
-  // The offset is given or estimated: capture time = run time - offset.
-  MergedRun merged{run, {}, 0, 0, {}};
+  // Offset and drift are given or estimated: capture time = run time - offset(run time).
+  MergedRun merged{run, {}, {}, 0, 0, {}};
   merged.max_gap_s = options.max_gap_s.value_or(kLongestGapSteps * median_step_of(capture));
-  merged.offset = options.offset_s ? ClockOffset{.offset_s = *options.offset_s, .quantities = {}}
-                                   : estimate_clock_offset(courses_seen_twice(run, capture));
+  set_clocks(merged, capture, options);
 
   // The pose at each row's time, where there is one.
   std::vector<std::optional<CapturedPose>> poses;
   for (const double time_s : t_s)
-    poses.push_back(pose_between(capture, time_s - merged.offset.offset_s, merged.max_gap_s));
+    poses.push_back(pose_between(capture, time_s - offset_at(merged.drift, time_s), merged.max_gap_s));
   merged.rows_with_pose =
       static_cast<std::size_t>(std::ranges::count_if(poses, [](const auto& p) { return p.has_value(); }));
   if (merged.rows_with_pose == 0)

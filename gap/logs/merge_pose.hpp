@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "formats/runs/run_file.hpp"
+#include "gap/logs/clock_drift.hpp"
 #include "gap/logs/clock_offset.hpp"
 #include "gap/logs/motion_capture.hpp"
 
@@ -16,13 +17,15 @@ namespace kenaf::gap::logs {
 struct MergeOptions {
   bool keep_frame = false;            // otherwise the first merged pose becomes the origin in x, y and yaw; z stays
   double start_s = 0;                 // the first pose is the mean over this time; 0: a single pose
-  std::optional<double> offset_s{};   // clock offset, if known; empty: estimated
+  std::optional<double> offset_s{};   // clock offset at the run's first row, if known; empty: estimated
+  std::optional<double> drift{};      // ClockDrift::rate, if known; empty: estimated, or 0 with a known offset
   std::optional<double> max_gap_s{};  // longest time between captured poses to interpolate; empty: 2.5 median steps
 };
 
 struct MergedRun {
   runs::Run run;       // columns of the run in order, then those of the pose
   ClockOffset offset;  // without quantities if it was given
+  ClockDrift drift;    // which the pose's times follow; rate 0: clocks of the same speed
   double max_gap_s;
   std::size_t rows_with_pose;
   std::vector<std::pair<std::string, std::string>> renamed;  // columns that were replaced: old name, kept as

@@ -83,6 +83,7 @@ struct CaptureOptions {
   double period_s = 1 / 120.0;
   double noise = 1;  // times 1 mm and 2 mrad
   double frame_yaw_rad = 0, frame_x_m = 0, frame_y_m = 0;
+  double drift = 0;  // growth of the offset per second of robot's time; the offset is that at 0
 };
 
 inline gap::logs::MotionCapture captured(const Drive& drive, unsigned seed, const CaptureOptions& options) {
@@ -99,7 +100,7 @@ inline gap::logs::MotionCapture captured(const Drive& drive, unsigned seed, cons
     const double y = pose.y_m + options.noise * 0.001 * noise(random);
     const Eigen::Vector2d p = frame * Eigen::Vector2d(x, y) + Eigen::Vector2d(options.frame_x_m, options.frame_y_m);
     const double yaw = options.frame_yaw_rad + pose.yaw_rad + options.noise * 0.002 * noise(random);
-    capture.poses.push_back({t - options.offset_s,
+    capture.poses.push_back({t - options.offset_s - options.drift * t,
                              {p.x(), p.y(), 0.09},
                              Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()))});
   }

@@ -11,6 +11,7 @@ using namespace kenaf;
 using test::captured;
 using test::CaptureOptions;
 using test::Drive;
+using test::DrivenPath;
 using test::robot_log;
 using test::winding_drive;
 
@@ -186,6 +187,50 @@ TEST_CASE("Merged poses are the true ones at the run's times, as far as straight
   // The capture's last pose is up to 1/120 s before the run's last row.
   CHECK(merged.rows_with_pose >= t.size() - 1);
   CHECK(merged.run.column("gyro_z_radps").size() == t.size());
+}
+
+TEST_CASE("Clocks that drift apart are found within three times the standard error, others are not") {
+  const Drive drive = winding_drive(120);
+  for (const double drift : {200e-6, -1000e-6}) {
+    for (const bool gyro : {true, false}) {
+      const auto merged =
+          gap::logs::merge_pose(robot_log(drive, 7, gyro), captured(drive, 7, {.offset_s = 1.5, .drift = drift}), {});
+      INFO("drift " << drift << ": " << merged.drift.rate << " +- " << merged.drift.standard_error);
+      CHECK(std::abs(merged.drift.rate - drift) < 3 * merged.drift.standard_error);
+      // 200 ppm over 120 s are 24 ms
+      CHECK(merged.drift.standard_error < 0.2 * std::abs(drift));
+      CHECK(std::abs(merged.drift.offset_s - (1.5 + drift * merged.drift.at_s)) < 0.003);
+    }
+  }
+  for (unsigned seed = 1; seed <= 6; ++seed)
+    CHECK(gap::logs::merge_pose(robot_log(drive, seed), captured(drive, seed, {.offset_s = 1.5}), {}).drift.rate == 0);
+}
+
+TEST_CASE("The pose follows the drift of the clocks to both ends of the run") {
+  // 1000 ppm: at 110 s the capture is 0.11 s off; at up to 0.8 rad/s one offset for all would be wrong by 44 mrad there
+  const Drive drive = winding_drive(120);
+  const DrivenPath path(drive);
+  const auto merged = gap::logs::merge_pose(robot_log(drive, 3),
+                                            captured(drive, 3, {.offset_s = -2, .noise = 0, .drift = 1000e-6}), {});
+  const auto t = merged.run.column("t_s"), yaw = merged.run.column("yaw_rad");
+  double worst_rad = 0;
+  for (std::size_t i = 0; i < t.size(); ++i)
+    if (!std::isnan(yaw[i]))
+      worst_rad = std::max(worst_rad, std::abs(std::remainder(yaw[i] - path.at(t[i]).yaw_rad, 2 * std::numbers::pi)));
+  CHECK(worst_rad < 0.004);
+}
+
+TEST_CASE("A given drift is taken as it is, from the run's first row on if the offset is given too") {
+  const Drive drive = winding_drive(30);
+  const auto run = robot_log(drive, 2);
+  const auto capture = captured(drive, 2, {.offset_s = 1, .drift = 500e-6});
+  const auto none = gap::logs::merge_pose(run, capture, {.drift = 0.0});
+  CHECK(none.drift.rate == 0);
+  CHECK(none.drift.offset_s == none.offset.offset_s);
+  const auto both = gap::logs::merge_pose(run, capture, {.offset_s = 1.0, .drift = 500e-6});
+  CHECK(both.drift.rate == 500e-6);
+  CHECK(both.drift.at_s == 0);
+  CHECK(both.drift.offset_s == 1);
 }
 
 TEST_CASE("A capture whose frame is turned by 40 degrees and shifted gives the same columns") {
