@@ -34,8 +34,8 @@ void match(ComparedRun& run, const CompareOptions& options) {
         "{} against {}: {} x {} frames are too many for unlimited matching; give --band SECONDS of at most {:.3g}",
         run.real_file, run.sim_file, run.real.size(), run.sim.size(), frames * sim_period_s(run)));
   }
-  run.matching = match_paths(vertical_path(run.real), vertical_path(run.sim), band);
-  run.errors = run_errors(run.real, run.sim, run.matching.pairs);
+  run.matching = match_paths(path_in(run.plane, run.real), path_in(run.plane, run.sim), band);
+  run.errors = run_errors(run.plane, run.real, run.sim, run.matching.pairs);
 }
 
 PoseFrames frames_of(const runs::DatasetRun& run, const fs::path& folder) {
@@ -87,6 +87,17 @@ Comparison compare_datasets(const fs::path& real_folder, const fs::path& sim_fol
       continue;
     }
 
+    // Both in one plane: one that has a height is compared without it to one that has none.
+    const Plane plane = plane_of(real_frames.frames, sim_frames.frames);
+    real_frames.frames = frames_in(plane, std::move(real_frames.frames));
+    sim_frames.frames = frames_in(plane, std::move(sim_frames.frames));
+    if (std::min(real_frames.frames.size(), sim_frames.frames.size()) < 2) {
+      const bool of_real = real_frames.frames.size() < 2;
+      leave_out(of_real, of_real ? pair.real : pair.sim, "has no y_m, and its counterpart no z_m");
+      leave_out(!of_real, of_real ? pair.sim : pair.real, "has no z_m, and its counterpart no y_m");
+      continue;
+    }
+
     // The simulated run is moved to the real one's start, then matched frame by frame.
     ComparedRun run{real.manoeuvre,
                     pair.repeat,
@@ -94,6 +105,7 @@ Comparison compare_datasets(const fs::path& real_folder, const fs::path& sim_fol
                     sim.file,
                     world_of(real, comparison.real, real_folder),
                     world_of(sim, comparison.sim, sim_folder),
+                    plane,
                     std::move(real_frames.frames),
                     std::move(sim_frames.frames),
                     {},

@@ -26,6 +26,7 @@ struct ComparedRun {
   std::size_t repeat;                 // of the manoeuvre, from 0
   std::string real_file, sim_file;    // as the datasets name them
   std::string real_world, sim_world;  // names or paths as load_world() takes them
+  Plane plane;                        // in which the paths are matched
   std::vector<PoseFrame> real, sim;   // sim as aligned
   StartOffset start_offset;           // offset by which sim was moved; zero without CompareOptions::align_start
   Matching matching;

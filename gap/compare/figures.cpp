@@ -96,6 +96,14 @@ PathsChart paths_to_scale(const ComparedRun& run, double PoseFrame::*height, dou
   return paths;
 }
 
+PathsChart from_above(const ComparedRun& run, double width_px) {
+  PathsChart paths = paths_to_scale(run, &PoseFrame::y_m, width_px);
+  paths.chart.title = "Paths of the body's centre from above, to scale";
+  paths.chart.y_label = "y (m)";
+  paths.chart.include = {paths.bounds.min().array() - kAround_m, paths.bounds.max().array() + kAround_m};
+  return paths;
+}
+
 bool has_y(const std::vector<PoseFrame>& frames) {
   return std::ranges::none_of(frames, [](const PoseFrame& frame) { return std::isnan(frame.y_m); });
 }
@@ -103,6 +111,7 @@ bool has_y(const std::vector<PoseFrame>& frames) {
 }  // namespace
 
 Chart path_figure(const ComparedRun& run, const physics::WorldDescription* world, double width_px) {
+  if (run.plane == Plane::ground) return from_above(run, width_px).chart;
   auto [chart, bounds] = paths_to_scale(run, &PoseFrame::z_m, width_px);
   chart.title = "Paths of the body's centre in the vertical plane, to scale";
   chart.y_label = "z (m)";
@@ -116,21 +125,21 @@ Chart path_figure(const ComparedRun& run, const physics::WorldDescription* world
 }
 
 std::optional<Chart> plan_figure(const ComparedRun& run, double width_px) {
-  if (!has_y(run.real) || !has_y(run.sim)) return std::nullopt;
-  auto [chart, bounds] = paths_to_scale(run, &PoseFrame::y_m, width_px);
-  if (bounds.sizes().y() < kAside_m) return std::nullopt;
-  chart.title = "Paths of the body's centre from above, to scale";
-  chart.y_label = "y (m)";
-  chart.include = {bounds.min().array() - kAround_m, bounds.max().array() + kAround_m};
-  return chart;
+  if (run.plane == Plane::ground || !has_y(run.real) || !has_y(run.sim)) return std::nullopt;
+  PathsChart paths = from_above(run, width_px);
+  if (paths.bounds.sizes().y() < kAside_m) return std::nullopt;
+  return std::move(paths.chart);
 }
 
-Chart pitch_figure(const ComparedRun& run, double width_px) {
-  Chart chart = over_time(run, "Pitch, matched frames", "pitch, nose down (deg)", width_px);
+Chart angle_figure(const ComparedRun& run, double width_px) {
+  const bool of_pitch = run.plane == Plane::vertical;
+  Chart chart = of_pitch ? over_time(run, "Pitch, matched frames", "pitch, nose down (deg)", width_px)
+                         : over_time(run, "Yaw, matched frames", "yaw, to the left (deg)", width_px);
+  double PoseFrame::*const angle = of_pitch ? &PoseFrame::pitch_rad : &PoseFrame::yaw_rad;
   Line real{{}, Ink::real, Stroke::solid, "real"}, sim{{}, Ink::sim, Stroke::dashed, "simulated"};
-  for (const PoseFrame& frame : run.real) real.points.emplace_back(frame.t_s, degrees(frame.pitch_rad));
+  for (const PoseFrame& frame : run.real) real.points.emplace_back(frame.t_s, degrees(frame.*angle));
   for (const FramePair& pair : run.matching.pairs) {
-    sim.points.emplace_back(run.real[pair.real].t_s, degrees(run.sim[pair.sim].pitch_rad));
+    sim.points.emplace_back(run.real[pair.real].t_s, degrees(run.sim[pair.sim].*angle));
   }
   for (Line* line : {&real, &sim}) line->points = plot::envelope(line->points, kColumns);
   chart.lines = {std::move(real), std::move(sim)};
@@ -138,7 +147,9 @@ Chart pitch_figure(const ComparedRun& run, double width_px) {
 }
 
 Chart position_error_figure(const ComparedRun& run, double width_px) {
-  Chart chart = over_time(run, "Position error per frame, norm of (x, z); means dashed", "error (mm)", width_px);
+  Chart chart =
+      over_time(run, fmt::format("Position error per frame, norm of {}; means dashed", coordinates(run.plane)),
+                "error (mm)", width_px);
   const double matched_mm = kMillimetres * run.errors.matched_summary.position_m.mean();
   const double same_time_mm = kMillimetres * run.errors.same_time_summary.position_m.mean();
   chart.lines = {error_line(run, run.errors.same_time, &FrameError::position_m, kMillimetres, Ink::faint, Stroke::solid,

@@ -12,12 +12,15 @@
 
 namespace kenaf::gap::compare {
 
-// Side view, to scale, with the world's section behind; `world` may be null.
+// Side view, to scale, with the world's section behind; `world` may be null. Of runs that are compared in the ground
+// plane: top view, without a world.
 plot::Chart path_figure(const ComparedRun& run, const physics::WorldDescription* world, double width_px);
-// Top view, to scale. Empty if the robots stay near a line along x or y was not measured.
+// Top view, to scale, of runs that are compared in the vertical plane. Empty if the robots stay near a line along x or
+// y was not measured.
 std::optional<plot::Chart> plan_figure(const ComparedRun& run, double width_px);
-// Draws the simulated pitch at the time of the real frame that it is matched with.
-plot::Chart pitch_figure(const ComparedRun& run, double width_px);
+// Draws the simulated pitch at the time of the real frame that it is matched with; the yaw of runs that are compared in
+// the ground plane.
+plot::Chart angle_figure(const ComparedRun& run, double width_px);
 plot::Chart position_error_figure(const ComparedRun& run, double width_px);
 plot::Chart angle_error_figure(const ComparedRun& run, double width_px);
 

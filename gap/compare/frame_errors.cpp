@@ -7,8 +7,6 @@ namespace kenaf::gap::compare {
 
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
 // Calls `action` with each quantity of an error and its summary.
 template <typename Error, typename Action>
 void for_each_quantity(const Error& error, ErrorSummary& summary, const Action& action) {
@@ -22,13 +20,11 @@ void for_each_quantity(const Error& error, ErrorSummary& summary, const Action& 
 
 }  // namespace
 
-FrameError frame_error(const PoseFrame& real, const PoseFrame& sim) {
-  return {std::hypot(sim.x_m - real.x_m, sim.z_m - real.z_m),
-          sim.y_m - real.y_m,
-          wrapped(sim.roll_rad - real.roll_rad),
-          wrapped(sim.pitch_rad - real.pitch_rad),
-          wrapped(sim.yaw_rad - real.yaw_rad),
-          sim.t_s - real.t_s};
+FrameError frame_error(Plane plane, const PoseFrame& real, const PoseFrame& sim) {
+  const double second_m = plane == Plane::vertical ? sim.z_m - real.z_m : sim.y_m - real.y_m;
+  return {std::hypot(sim.x_m - real.x_m, second_m), sim.y_m - real.y_m,
+          wrapped(sim.roll_rad - real.roll_rad),    wrapped(sim.pitch_rad - real.pitch_rad),
+          wrapped(sim.yaw_rad - real.yaw_rad),      sim.t_s - real.t_s};
 }
 
 void Summary::add(double error, double weight) {
@@ -76,14 +72,14 @@ std::vector<double> pair_weights(const std::vector<FramePair>& pairs) {
   return weights;
 }
 
-RunErrors run_errors(const std::vector<PoseFrame>& real, const std::vector<PoseFrame>& sim,
+RunErrors run_errors(Plane plane, const std::vector<PoseFrame>& real, const std::vector<PoseFrame>& sim,
                      const std::vector<FramePair>& pairs) {
   // Matched: a pair counts with its weight, in the summary and in the mean of its real frame.
-  RunErrors errors{{}, {}, {}, {}, frame_error(real.back(), sim.back())};
+  RunErrors errors{{}, {}, {}, {}, frame_error(plane, real.back(), sim.back())};
   const std::vector<double> weights = pair_weights(pairs);
   errors.matched.assign(real.size(), FrameError{});
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const FrameError error = frame_error(real[pairs[k].real], sim[pairs[k].sim]);
+    const FrameError error = frame_error(plane, real[pairs[k].real], sim[pairs[k].sim]);
     errors.matched_summary.add(error, weights[k]);
     FrameError& mean = errors.matched[pairs[k].real];
     mean.position_m += weights[k] * error.position_m;
@@ -96,7 +92,7 @@ RunErrors run_errors(const std::vector<PoseFrame>& real, const std::vector<PoseF
 
   // Same time: against the interpolated simulated pose.
   for (const PoseFrame& frame : real) {
-    errors.same_time.push_back(frame_error(frame, pose_at(sim, frame.t_s)));
+    errors.same_time.push_back(frame_error(plane, frame, pose_at(sim, frame.t_s)));
     errors.same_time.back().time_s = kUnknown;
     errors.same_time_summary.add(errors.same_time.back());
   }

@@ -18,13 +18,13 @@
 namespace kenaf::gap::compare {
 
 struct FrameError {
-  double position_m;  // the norm of the difference of (x, z), never negative
+  double position_m;  // the norm of the difference in the plane of the comparison, never negative
   double y_m;
   double roll_rad, pitch_rad, yaw_rad;
   double time_s;  // how much later the simulated frame is; NaN if compared at the same time
 };
 
-FrameError frame_error(const PoseFrame& real, const PoseFrame& sim);
+FrameError frame_error(Plane plane, const PoseFrame& real, const PoseFrame& sim);
 
 // Summary of the absolute values of an error. All figures are NaN if there were none.
 class Summary {
@@ -57,7 +57,7 @@ struct RunErrors {
   FrameError at_end;  // between the two last frames
 };
 
-RunErrors run_errors(const std::vector<PoseFrame>& real, const std::vector<PoseFrame>& sim,
+RunErrors run_errors(Plane plane, const std::vector<PoseFrame>& real, const std::vector<PoseFrame>& sim,
                      const std::vector<FramePair>& pairs);
 
 // Returns the weight of each pair: one over the number of pairs that contain its real frame.

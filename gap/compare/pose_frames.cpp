@@ -85,23 +85,21 @@ double wrapped(double angle_rad) {
 PoseFrames pose_frames(const runs::Run& run) {
   const auto t_s = run.column("t_s"), x_m = run.column("x_m"), z_m = run.column("z_m");
   if (run.row_count() == 0) return {{}, "has no rows"};
-  if (x_m.empty() || z_m.empty()) {
-    return {{},
-            x_m.empty() && z_m.empty() ? "x_m and z_m were not measured"
-            : x_m.empty()              ? "x_m was not measured"
-                                       : "z_m was not measured"};
-  }
+  const bool has_height = runs::any_measured(z_m);
+  const auto second_m = has_height ? z_m : run.column("y_m");
+  if (!runs::any_measured(x_m)) return {{}, "x_m was not measured"};
+  if (!runs::any_measured(second_m)) return {{}, "neither z_m nor y_m was measured"};
   if (const std::string impossible = find_impossible(run); !impossible.empty()) return {{}, impossible};
 
   // The frames, then their other quantities, as far as they were measured.
   PoseFrames result;
   for (std::size_t row = 0; row < t_s.size(); ++row) {
-    if (std::isnan(x_m[row]) || std::isnan(z_m[row])) continue;
-    result.frames.push_back({t_s[row], x_m[row], z_m[row], std::numeric_limits<double>::quiet_NaN(),
-                             std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
-                             std::numeric_limits<double>::quiet_NaN()});
+    if (std::isnan(x_m[row]) || std::isnan(second_m[row])) continue;
+    result.frames.push_back(
+        {t_s[row], x_m[row], has_height ? z_m[row] : kUnknown, kUnknown, kUnknown, kUnknown, kUnknown});
   }
-  if (result.frames.size() < 2) return {{}, "fewer than two rows have both x_m and z_m"};
+  if (result.frames.size() < 2)
+    return {{}, std::string("fewer than two rows have both x_m and ") + (has_height ? "z_m" : "y_m")};
   fill(result.frames, &PoseFrame::y_m, t_s, run.column("y_m"), Kind::length);
   fill(result.frames, &PoseFrame::roll_rad, t_s, run.column("roll_rad"), Kind::angle);
   fill(result.frames, &PoseFrame::pitch_rad, t_s, run.column("pitch_rad"), Kind::angle);
@@ -112,13 +110,7 @@ PoseFrames pose_frames(const runs::Run& run) {
 PoseFrame pose_at(const std::vector<PoseFrame>& frames, double t_s) {
   const auto after = std::ranges::lower_bound(frames, t_s, {}, &PoseFrame::t_s);
   if (after == frames.end() || (after == frames.begin() && after->t_s != t_s)) {
-    return {t_s,
-            std::numeric_limits<double>::quiet_NaN(),
-            std::numeric_limits<double>::quiet_NaN(),
-            std::numeric_limits<double>::quiet_NaN(),
-            std::numeric_limits<double>::quiet_NaN(),
-            std::numeric_limits<double>::quiet_NaN(),
-            std::numeric_limits<double>::quiet_NaN()};
+    return {t_s, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
   }
   if (after->t_s == t_s) return *after;
   const PoseFrame &a = *(after - 1), &b = *after;
@@ -132,10 +124,19 @@ PoseFrame pose_at(const std::vector<PoseFrame>& frames, double t_s) {
           between(a.yaw_rad, b.yaw_rad, share, Kind::angle)};
 }
 
-std::vector<Eigen::Vector2d> vertical_path(const std::vector<PoseFrame>& frames) {
+Plane plane_of(const std::vector<PoseFrame>& real, const std::vector<PoseFrame>& sim) {
+  return std::isnan(real.front().z_m) || std::isnan(sim.front().z_m) ? Plane::ground : Plane::vertical;
+}
+
+std::vector<PoseFrame> frames_in(Plane plane, std::vector<PoseFrame> frames) {
+  if (plane == Plane::ground) std::erase_if(frames, [](const PoseFrame& frame) { return std::isnan(frame.y_m); });
+  return frames;
+}
+
+std::vector<Eigen::Vector2d> path_in(Plane plane, const std::vector<PoseFrame>& frames) {
   std::vector<Eigen::Vector2d> path;
   path.reserve(frames.size());
-  for (const PoseFrame& frame : frames) path.emplace_back(frame.x_m, frame.z_m);
+  for (const PoseFrame& frame : frames) path.emplace_back(frame.x_m, plane == Plane::vertical ? frame.z_m : frame.y_m);
   return path;
 }
 

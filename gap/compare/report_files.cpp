@@ -50,6 +50,7 @@ Json as_json(const ComparedRun& run, std::size_t index) {
           {"real_world", run.real_world},
           {"sim_world", run.sim_world},
           {"matched_file", matched_file_name(index)},
+          {"plane", run.plane == Plane::vertical ? "vertical" : "ground"},
           {"real_frames", run.real.size()},
           {"sim_frames", run.sim.size()},
           {"pairs", run.matching.pairs.size()},
@@ -89,16 +90,36 @@ std::string matched_csv(const ComparedRun& run) {
   std::string csv =
       "real_frame,sim_frame,weight,real_t_s,sim_t_s,real_x_m,real_z_m,real_pitch_rad,sim_x_m,sim_z_m,sim_pitch_rad,"
       "position_error_m,y_error_m,roll_error_rad,pitch_error_rad,yaw_error_rad,time_difference_s,"
-      "same_time_position_error_m,same_time_pitch_error_rad\n";
+      "same_time_position_error_m,same_time_pitch_error_rad,real_y_m,real_yaw_rad,sim_y_m,sim_yaw_rad,"
+      "same_time_yaw_error_rad\n";
   const std::vector<double> weights = pair_weights(run.matching.pairs);
   for (std::size_t k = 0; k < run.matching.pairs.size(); ++k) {
     const FramePair& pair = run.matching.pairs[k];
     const PoseFrame &real = run.real[pair.real], &sim = run.sim[pair.sim];
-    const FrameError error = frame_error(real, sim), &same_time = run.errors.same_time[pair.real];
+    const FrameError error = frame_error(run.plane, real, sim), &same_time = run.errors.same_time[pair.real];
     fmt::format_to(std::back_inserter(csv), "{},{}", pair.real, pair.sim);
-    for (const double value : {weights[k], real.t_s, sim.t_s, real.x_m, real.z_m, real.pitch_rad, sim.x_m, sim.z_m,
-                               sim.pitch_rad, error.position_m, error.y_m, error.roll_rad, error.pitch_rad,
-                               error.yaw_rad, error.time_s, same_time.position_m, same_time.pitch_rad}) {
+    for (const double value : {weights[k],
+                               real.t_s,
+                               sim.t_s,
+                               real.x_m,
+                               real.z_m,
+                               real.pitch_rad,
+                               sim.x_m,
+                               sim.z_m,
+                               sim.pitch_rad,
+                               error.position_m,
+                               error.y_m,
+                               error.roll_rad,
+                               error.pitch_rad,
+                               error.yaw_rad,
+                               error.time_s,
+                               same_time.position_m,
+                               same_time.pitch_rad,
+                               real.y_m,
+                               real.yaw_rad,
+                               sim.y_m,
+                               sim.yaw_rad,
+                               same_time.yaw_rad}) {
       csv += ',';
       if (!std::isnan(value)) fmt::format_to(std::back_inserter(csv), "{:.9g}", value);
     }

@@ -80,11 +80,13 @@ std::vector<std::size_t> drawn_runs(const Comparison& comparison) {
 std::string summary_table(const Comparison& comparison, const std::vector<std::size_t>& drawn) {
   std::string html =
       "<div class=\"tables\"><table>\n<tr><th rowspan=\"3\">run</th><th rowspan=\"3\">frames</th>"
-      "<th class=\"group\" colspan=\"9\">matched frames</th><th class=\"group\" colspan=\"6\">same time</th></tr>\n<tr>"
+      "<th class=\"group\" colspan=\"12\">matched frames</th><th class=\"group\" colspan=\"9\">same "
+      "time</th></tr>\n<tr>"
       "<th class=\"group\" colspan=\"3\">position (mm)</th><th class=\"group\" colspan=\"3\">pitch (deg)</th>"
-      "<th class=\"group\" colspan=\"3\">time difference (s)</th><th class=\"group\" colspan=\"3\">position (mm)</th>"
-      "<th class=\"group\" colspan=\"3\">pitch (deg)</th></tr>\n<tr>";
-  for (int i = 0; i < 5; ++i) html += "<th class=\"first\">mean</th><th>RMS</th><th>max</th>";
+      "<th class=\"group\" colspan=\"3\">yaw (deg)</th><th class=\"group\" colspan=\"3\">time difference (s)</th>"
+      "<th class=\"group\" colspan=\"3\">position (mm)</th><th class=\"group\" colspan=\"3\">pitch (deg)</th>"
+      "<th class=\"group\" colspan=\"3\">yaw (deg)</th></tr>\n<tr>";
+  for (int i = 0; i < 7; ++i) html += "<th class=\"first\">mean</th><th>RMS</th><th>max</th>";
   html += "</tr>\n";
   for (const SummaryRow& row : summary_rows(comparison)) {
     const bool is_run = row.kind == SummaryRow::Kind::run;
@@ -94,13 +96,15 @@ std::string summary_table(const Comparison& comparison, const std::vector<std::s
                 : fmt::format("<td>{}</td>", escaped(row.title));
     html += fmt::format("<td>{:.0f}</td>", row.matched.position_m.weight());
     html += cells(row.matched.position_m, kMillimetres, 1) + cells(row.matched.pitch_rad, kDegrees, 2) +
-            cells(row.matched.time_s, 1, 2) + cells(row.same_time.position_m, kMillimetres, 1) +
-            cells(row.same_time.pitch_rad, kDegrees, 2) + "</tr>\n";
+            cells(row.matched.yaw_rad, kDegrees, 2) + cells(row.matched.time_s, 1, 2) +
+            cells(row.same_time.position_m, kMillimetres, 1) + cells(row.same_time.pitch_rad, kDegrees, 2) +
+            cells(row.same_time.yaw_rad, kDegrees, 2) + "</tr>\n";
   }
   return html + "</table></div>\n";
 }
 
-std::string quantities_table(const RunErrors& errors) {
+std::string quantities_table(const ComparedRun& run) {
+  const RunErrors& errors = run.errors;
   std::string html =
       "<div class=\"tables\"><table>\n<tr><th rowspan=\"2\">error</th>"
       "<th class=\"group\" colspan=\"3\">matched frames</th><th class=\"group\" colspan=\"3\">same time</th>"
@@ -114,7 +118,8 @@ std::string quantities_table(const RunErrors& errors) {
                         cells(errors.same_time_summary.*summary, scale, decimals),
                         number(scale * errors.at_end.*end, decimals));
   };
-  row("position, norm of (x, z) (mm)", &ErrorSummary::position_m, &FrameError::position_m, kMillimetres, 1);
+  row(fmt::format("position, norm of {} (mm)", coordinates(run.plane)), &ErrorSummary::position_m,
+      &FrameError::position_m, kMillimetres, 1);
   row("y (mm)", &ErrorSummary::y_m, &FrameError::y_m, kMillimetres, 1);
   row("roll (deg)", &ErrorSummary::roll_rad, &FrameError::roll_rad, kDegrees, 2);
   row("pitch (deg)", &ErrorSummary::pitch_rad, &FrameError::pitch_rad, kDegrees, 2);
@@ -142,9 +147,9 @@ std::string run_section(const Comparison& comparison, std::size_t index, Worlds&
       start_sentence(run, comparison.options), matched_file_name(index));
   html += "<div class=\"figures\">\n" + to_svg(path_figure(run, worlds.find(run.real_world), kWide_px));
   if (const auto plan = plan_figure(run, kWide_px)) html += to_svg(*plan);
-  html += to_svg(pitch_figure(run, kWide_px)) + to_svg(position_error_figure(run, kHalf_px)) +
+  html += to_svg(angle_figure(run, kWide_px)) + to_svg(position_error_figure(run, kHalf_px)) +
           to_svg(angle_error_figure(run, kHalf_px)) + "</div>\n";
-  return html + quantities_table(run.errors);
+  return html + quantities_table(run);
 }
 
 std::string left_out_list(const Comparison& comparison) {
@@ -184,8 +189,9 @@ std::string comparison_html(const Comparison& comparison) {
   html += dataset_line("Real", comparison.real, comparison.real_folder);
   html += dataset_line("Simulated", comparison.sim, comparison.sim_folder);
   html +=
-      "<p class=\"soft\">DP matching pairs the frames of both runs in order, so that the distances of their positions "
-      "(x, z) are smallest. It compares paths and hides delays: two runs along one path match without error, whatever "
+      "<p class=\"soft\">DP matching pairs the frames of both runs in order, so that the distances of their positions, "
+      "(x, z), or (x, y) where a run has no z, are smallest. It compares paths and hides delays: two runs along one "
+      "path match without error, whatever "
       "their delay. Two columns show the delay: time difference (of the matched simulated frame; it means little while "
       "the robot is at rest) and same time (errors without matching). All values are absolute.</p>\n";
   for (const std::string& note : worlds.notes) html += fmt::format("<p>{}</p>\n", escaped(note));

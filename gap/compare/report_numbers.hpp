@@ -13,6 +13,9 @@ inline constexpr double kMillimetres = 1e3, kDegrees = 57.29577951308232;
 // Formats with the given number of decimals; "-" if unknown.
 std::string number(double value, int decimals);
 
+// "(x, z)" or "(x, y)".
+std::string coordinates(Plane plane);
+
 // "step-200-flippers", "step-200-flippers #2" if the manoeuvre has repeats, "run-003.csv" if it has no name.
 std::string run_title(const Comparison& comparison, std::size_t run);
 

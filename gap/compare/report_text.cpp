@@ -27,6 +27,7 @@ void add_row(std::string& text, const SummaryRow& row, std::size_t width) {
   text += fmt::format("{:<{}}", row.title, width);
   column(row.matched.position_m, kMillimetres, 1);
   column(row.matched.pitch_rad, kDegrees, 2);
+  column(row.matched.yaw_rad, kDegrees, 2);
   text += fmt::format("{:>7}", number(row.matched.time_s.max(), 2));
   text += fmt::format("{:>9}{:>7}\n", number(kMillimetres * row.same_time.position_m.mean(), 1),
                       number(kMillimetres * row.same_time.position_m.max(), 1));
@@ -36,6 +37,10 @@ void add_row(std::string& text, const SummaryRow& row, std::size_t width) {
 
 std::string number(double value, int decimals) {
   return std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, decimals);
+}
+
+std::string coordinates(Plane plane) {
+  return plane == Plane::vertical ? "(x, z)" : "(x, y)";
 }
 
 std::string run_title(const Comparison& comparison, std::size_t index) {
@@ -85,10 +90,11 @@ std::string comparison_text(const Comparison& comparison) {
   // Two lines of head, then the rows and the runs that were left out.
   std::size_t width = 12;
   for (const SummaryRow& row : rows) width = std::max(width, row.title.size());
-  std::string text = fmt::format("{:<{}}{:>21} {:>21} {:>7}  {:>14}\n", "matched frames", width, "position, mm",
-                                 "pitch, degrees", "warp, s", "same time, mm");
-  text += fmt::format("{:<{}}{:>7}{:>7}{:>7} {:>7}{:>7}{:>7} {:>7}{:>9}{:>7}\n", "", width, "mean", "RMS", "max",
-                      "mean", "RMS", "max", "max", "mean", "max");
+  std::string text = fmt::format("{:<{}}{:>21} {:>21} {:>21} {:>7}  {:>14}\n", "matched frames", width, "position, mm",
+                                 "pitch, degrees", "yaw, degrees", "warp, s", "same time, mm");
+  text += fmt::format("{:<{}}", "", width);
+  for (int i = 0; i < 3; ++i) text += fmt::format("{:>7}{:>7}{:>7} ", "mean", "RMS", "max");
+  text += fmt::format("{:>7}{:>9}{:>7}\n", "max", "mean", "max");
   for (const SummaryRow& row : rows) add_row(text, row, width);
   if (left_away > 0) text += fmt::format("({} more in compare.html)\n", plural(left_away, "row"));
   for (std::size_t i = 0; i < std::min(kMostLeftOut, comparison.left_out.size()); ++i) {

@@ -24,11 +24,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!real.unusable.empty() || !sim.unusable.empty()) return 0;
 
   gap::compare::ComparedRun run{};
+  run.plane = gap::compare::plane_of(real.frames, sim.frames);
+  for (gap::compare::PoseFrames* side : {&real, &sim})
+    side->frames = gap::compare::frames_in(run.plane, std::move(side->frames));
+  if (real.frames.size() < 2 || sim.frames.size() < 2) return 0;
   run.real_world = "none.sdf";  // said on the page; one that is there would only be slow
   run.start_offset = gap::compare::align_start(real.frames, sim.frames, 0.5);
-  run.matching =
-      gap::compare::match_paths(gap::compare::vertical_path(real.frames), gap::compare::vertical_path(sim.frames));
-  run.errors = gap::compare::run_errors(real.frames, sim.frames, run.matching.pairs);
+  run.matching = gap::compare::match_paths(gap::compare::path_in(run.plane, real.frames),
+                                           gap::compare::path_in(run.plane, sim.frames));
+  run.errors = gap::compare::run_errors(run.plane, real.frames, sim.frames, run.matching.pairs);
   run.real = real.frames;
   run.sim = sim.frames;
   if (!(run.matching.cost_m >= 0) || run.errors.matched.size() != run.real.size()) __builtin_trap();

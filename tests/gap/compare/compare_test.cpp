@@ -145,6 +145,21 @@ TEST_CASE("Angles that were not measured are null and take nothing else away") {
   CHECK_THAT(read_file(folder / "out/compare.html"), Catch::Contains("not measured"));
 }
 
+TEST_CASE("A run without a height is compared in the ground plane, and its page shows it from above") {
+  const TemporaryFolder folder;
+  make_dataset(folder / "real", {{"drive", 0, 0, 0, "t_s,x_m,y_m,spare_a,spare_b,spare_c,yaw_rad"}});
+  make_dataset(folder / "sim", {{"drive"}});
+  REQUIRE(kenaf_gap(folder, "compare real sim --out out").status == 0);
+  const json report = json::parse(read_file(folder / "out/compare.json"));
+  CHECK(report["runs"][0]["plane"] == "ground");
+  CHECK(report["runs"][0]["matched"]["position_m"]["max"].get<double>() == Approx(0).margin(1e-9));
+  CHECK(report["runs"][0]["matched"]["pitch_rad"]["mean"].is_null());
+  CHECK(report["runs"][0]["matched"]["yaw_rad"]["max"].get<double>() == Approx(0).margin(1e-9));
+  const std::string page = read_file(folder / "out/compare.html");
+  CHECK_THAT(page, Catch::Contains("norm of (x, y)") && Catch::Contains("from above, to scale") &&
+                       Catch::Contains("Yaw, matched frames") && !Catch::Contains("nan"));
+}
+
 TEST_CASE("A run without a place is left out in words, with its counterpart, where none is left that is an error") {
   const TemporaryFolder folder;
   const TestRun blind{"blind", 0, 0, 0, "t_s,spare_a,y_m,spare_b,roll_rad,pitch_rad,yaw_rad"};
@@ -153,14 +168,14 @@ TEST_CASE("A run without a place is left out in words, with its counterpart, whe
   REQUIRE(kenaf_gap(folder, "compare real sim --out out").status == 0);
   const json report = json::parse(read_file(folder / "out/compare.json"));
   REQUIRE(report["left_out"].size() == 2);
-  CHECK(report["left_out"][0]["why"] == "x_m and z_m were not measured");
+  CHECK(report["left_out"][0]["why"] == "x_m was not measured");
   CHECK(report["left_out"][1]["why"] == "its counterpart run-0.csv cannot be compared");
 
   make_dataset(folder / "other", {blind});
   const Outcome nothing = kenaf_gap(folder, "compare other sim --out none");
   CHECK(nothing.status == 2);
   CHECK_THAT(nothing.error, Catch::Contains("no pair of runs can be compared") &&
-                                Catch::Contains("real run-0.csv (blind): x_m and z_m were not measured"));
+                                Catch::Contains("real run-0.csv (blind): x_m was not measured"));
   CHECK_FALSE(fs::exists(folder / "none"));
 }
 

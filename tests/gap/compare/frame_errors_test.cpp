@@ -22,20 +22,23 @@ std::vector<PoseFrame> drive(int wait, int rest, double z_m = 0.1) {
 }
 
 RunErrors compared(const std::vector<PoseFrame>& real, const std::vector<PoseFrame>& sim) {
-  return run_errors(real, sim, match_paths(vertical_path(real), vertical_path(sim)).pairs);
+  return run_errors(Plane::vertical, real, sim,
+                    match_paths(path_in(Plane::vertical, real), path_in(Plane::vertical, sim)).pairs);
 }
 
 }  // namespace
 
 TEST_CASE("One frame: the norm of (x, z), differences simulated less real, angles wrapped") {
   const PoseFrame real{1.0, 0, 0, 5, 0.1, 0, 3.1}, sim{1.5, 0.003, 0.004, 4, -0.1, 0.2, -3.1};
-  const FrameError error = frame_error(real, sim);
+  const FrameError error = frame_error(Plane::vertical, real, sim);
   CHECK(error.position_m == Approx(0.005));
   CHECK(error.y_m == -1);
   CHECK(error.roll_rad == Approx(-0.2));
   CHECK(error.pitch_rad == Approx(0.2));
   CHECK(error.yaw_rad == Approx(2 * (3.14159265358979 - 3.1)));
   CHECK(error.time_s == 0.5);
+  // in the ground plane: 3 mm along x, 1 m along y
+  CHECK(frame_error(Plane::ground, real, sim).position_m == Approx(std::hypot(0.003, 1)));
 }
 
 TEST_CASE("Mean, RMS and maximum of sizes, what was not measured is not counted") {
@@ -83,7 +86,7 @@ TEST_CASE("Every real frame counts once, however many simulated frames it is mat
   sim.resize(5);
   for (PoseFrame& frame : sim) frame.z_m += 1;
   sim[4] = real[1];
-  const RunErrors errors = run_errors(real, sim, pairs);
+  const RunErrors errors = run_errors(Plane::vertical, real, sim, pairs);
   CHECK(errors.matched_summary.position_m.weight() == Approx(2));
   CHECK(errors.matched[0].position_m == Approx(1).epsilon(1e-4));
   CHECK(errors.matched_summary.position_m.mean() == Approx(0.5).epsilon(1e-4));

@@ -69,13 +69,33 @@ TEST_CASE("Angles are interpolated the shorter way round") {
 }
 
 TEST_CASE("Why a run cannot be compared") {
-  CHECK(why_unusable("t_s,x_m\n0,0\n1,0\n") == "z_m was not measured");
+  CHECK(why_unusable("t_s,x_m\n0,0\n1,0\n") == "neither z_m nor y_m was measured");
+  CHECK(why_unusable("t_s,x_m,z_m,y_m\n0,0,,\n1,0,,\n") == "neither z_m nor y_m was measured");
   CHECK(why_unusable("t_s,z_m\n0,0\n1,0\n") == "x_m was not measured");
-  CHECK(why_unusable("t_s\n0\n1\n") == "x_m and z_m were not measured");
+  CHECK(why_unusable("t_s\n0\n1\n") == "x_m was not measured");
   CHECK(why_unusable("t_s,x_m,z_m\n0,0,0\n1,0,\n") == "fewer than two rows have both x_m and z_m");
   CHECK(why_unusable("t_s,x_m,z_m\n0,0,0\n1,2e6,0\n") == "x_m is beyond 1000 km");
   CHECK(why_unusable("t_s,x_m,z_m,yaw_rad\n0,0,0,1e300\n1,0,0,0\n") == "yaw_rad is beyond 1000000 rad");
   CHECK(why_unusable("t_s,x_m,z_m\n-1e300,0,0\n1,0,0\n") == "t_s is beyond 1000000000 s");
+}
+
+TEST_CASE("A run without a height has frames in the ground plane") {
+  const auto planar = frames_of("t_s,x_m,y_m,yaw_rad\n0,0,0,0\n1,1,,0\n2,2,0.5,0.1\n");
+  REQUIRE(planar.size() == 2);  // the middle row has no place
+  CHECK(std::isnan(planar[1].z_m));
+  CHECK(planar[1].y_m == 0.5);
+  // a column that is there and empty is no height
+  CHECK(frames_of("t_s,x_m,y_m,z_m\n0,0,0,\n1,1,1,\n").size() == 2);
+
+  // two runs are compared in the plane that both have
+  const auto whole = frames_of("t_s,x_m,y_m,z_m\n0,0,,0.1\n1,1,0.2,0.1\n2,2,0.4,0.2\n");
+  CHECK(plane_of(whole, whole) == Plane::vertical);
+  CHECK(plane_of(whole, planar) == Plane::ground);
+  CHECK(plane_of(planar, whole) == Plane::ground);
+  CHECK(frames_in(Plane::vertical, whole).size() == 3);
+  CHECK(frames_in(Plane::ground, whole).size() == 2);  // before its first y it has none
+  CHECK(path_in(Plane::vertical, whole)[2] == Eigen::Vector2d(2, 0.2));
+  CHECK(path_in(Plane::ground, whole)[2] == Eigen::Vector2d(2, 0.4));
 }
 
 TEST_CASE("The pose at a time: at a frame, between frames, and none outside") {
