@@ -80,6 +80,21 @@ TEST_CASE("Forward is x for a robot that was not turned") {
   CHECK(std::abs(kenaf.truth().X_WB.p.y()) < 0.02);
 }
 
+TEST_CASE("A client of USARSim's P3AT drives it on its wheels") {
+  Kenaf kenaf("USARBot.P3AT");
+  // 3 rad/s on wheels of 0.111 m: 0.333 m/s; 2 s less what it takes to get there, 0.1 s
+  kenaf.send("DRIVE {Left 3} {Right 3}\r\n");
+  REQUIRE(kenaf.run(2));
+  CHECK(kenaf.truth().X_WB.p.x() == Approx(0.333 * 1.9).epsilon(0.03));
+  // On the spot to the left, slower than slipless wheels 0.394 m apart: 0.666 / 0.394 = 1.69 rad/s.
+  const double before_rad = physics::roll_pitch_yaw(kenaf.truth().X_WB.q).z();
+  kenaf.send("DRIVE {Left -3} {Right 3}\r\n");
+  REQUIRE(kenaf.run(1));
+  const double turned_rad = physics::roll_pitch_yaw(kenaf.truth().X_WB.q).z() - before_rad;
+  CHECK(turned_rad > 0.8);
+  CHECK(turned_rad < 1.5);
+}
+
 TEST_CASE("An Ackermann command drives the curve of its steering angle") {
   Kenaf kenaf("USARBot.P2DX");
   const double wheel_base_m = 0.215;  // from the axle, at x = 0.045 m, to the caster, at -0.17 m
