@@ -13,7 +13,6 @@ namespace kenaf::gap::logs {
 namespace {
 
 constexpr double kLongestGapSteps = 2.5;  // chosen: one captured pose may be missing
-constexpr std::array<const char*, 6> kPoseColumns = {"x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad"};
 
 double median_step_of(const MotionCapture& capture) {
   std::vector<double> t_s;
@@ -115,7 +114,7 @@ MergedRun merge_pose(const runs::Run& run, const MotionCapture& capture, const M
   const std::array<bool, 6> measured = {true, true, capture.has_z, capture.has_tilt, capture.has_tilt, true};
   for (std::size_t i = 0; i < kPoseColumns.size(); ++i) {
     if (!measured[i]) continue;
-    const std::string name = kPoseColumns[i];
+    const std::string name(kPoseColumns[i]);
     // A column of the run that holds values is kept under another name; merging twice is refused.
     auto found = std::ranges::find(out.columns, name);
     if (found != out.columns.end() && runs::any_measured(out.column(name))) {

@@ -3,8 +3,10 @@
 // Thread safety: pure functions.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/runs/run_file.hpp"
@@ -13,6 +15,9 @@
 #include "gap/logs/motion_capture.hpp"
 
 namespace kenaf::gap::logs {
+
+inline constexpr std::array<std::string_view, 6> kPoseColumns = {"x_m",      "y_m",       "z_m",
+                                                                 "roll_rad", "pitch_rad", "yaw_rad"};
 
 struct MergeOptions {
   bool keep_frame = false;            // otherwise the first merged pose becomes the origin in x, y and yaw; z stays

@@ -65,6 +65,7 @@ std::vector<Finding> check_run(const runs::Run& run, const std::string& file, co
   checks.check_constants();
   checks.check_held();
   checks.check_pose();
+  checks.check_drift();
   std::ranges::move(checks.take(), std::back_inserter(findings));
   return findings;
 }

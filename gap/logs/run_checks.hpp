@@ -39,6 +39,7 @@ class RunChecks {
   void check_constants();
   void check_held();
   void check_pose();
+  void check_drift();  // of the pose's clock; long
 
   std::vector<Finding> take() { return std::move(findings_); }
 

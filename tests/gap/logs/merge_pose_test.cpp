@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "gap/logs/merge_pose.hpp"
+#include "gap/logs/plausibility.hpp"
 #include "tests/gap/kenaf_gap.hpp"
 #include "tests/gap/recorded_drive.hpp"
 
@@ -218,6 +219,23 @@ TEST_CASE("The pose follows the drift of the clocks to both ends of the run") {
     if (!std::isnan(yaw[i]))
       worst_rad = std::max(worst_rad, std::abs(std::remainder(yaw[i] - path.at(t[i]).yaw_rad, 2 * std::numbers::pi)));
   CHECK(worst_rad < 0.004);
+}
+
+TEST_CASE("A run whose pose was merged by one offset, although the clocks drift, is warned of") {
+  const Drive drive = winding_drive(60);
+  const auto warnings = [&](double rate) {
+    // merged as if both clocks had the same speed: at both ends the pose is 30 s of drift off
+    const auto run =
+        gap::logs::merge_pose(robot_log(drive, 3), captured(drive, 3, {.drift = rate}), {.drift = 0.0}).run;
+    std::vector<std::string> found;
+    for (const auto& finding : gap::logs::check_run(run, "run.csv", nullptr))
+      if (finding.text.find("clock drifts") != std::string::npos) found.push_back(finding.text);
+    return found;
+  };
+  CHECK(warnings(0).empty());
+  const auto found = warnings(1000e-6);  // 60 ms over the run
+  REQUIRE(found.size() == 1);
+  CHECK_THAT(found[0], Catch::Contains("ppm") && Catch::Contains("merge the pose again"));
 }
 
 TEST_CASE("A given drift is taken as it is, from the run's first row on if the offset is given too") {
