@@ -20,6 +20,11 @@ pkg_check_modules(assimp REQUIRED IMPORTED_TARGET assimp>=5.2)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(nettle REQUIRED IMPORTED_TARGET nettle>=3.8)
 pkg_check_modules(cairo REQUIRED IMPORTED_TARGET cairo)
+pkg_check_modules(sqlite REQUIRED IMPORTED_TARGET sqlite3>=3.40)
+find_package(BZip2 REQUIRED)
+find_package(ZLIB REQUIRED)
+pkg_check_modules(lz4 REQUIRED IMPORTED_TARGET liblz4>=1.9)
+pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd>=1.5)
 pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg>=2.1)
 
 # The 3D library of the live view's page; a Debian package of JavaScript has no CMake file.
