@@ -93,6 +93,18 @@ std::vector<double> TomlReader::numbers(std::string_view key, std::size_t count,
   return out;
 }
 
+std::vector<std::string> TomlReader::texts(std::string_view key, std::size_t min, std::size_t max) {
+  const toml::array* list = node(key).as_array();
+  const std::string count = min == max ? fmt::to_string(min) : fmt::format("{} to {}", min, max);
+  if (!list || list->size() < min || list->size() > max) fail(key, fmt::format("must be a list of {} strings", count));
+  std::vector<std::string> out;
+  for (const toml::node& item : *list) {
+    if (!item.is_string()) fail(key, fmt::format("must be a list of {} strings", count));
+    out.push_back(*item.value<std::string>());
+  }
+  return out;
+}
+
 Eigen::Vector3d TomlReader::vector3(std::string_view key, Range range) {
   return Eigen::Vector3d::Map(numbers(key, 3, range).data());
 }
