@@ -26,6 +26,7 @@ void add_dataset_command(CLI::App& program);
 // `ranks`: processes that share the work; the first one writes and prints.
 void add_diagnose_command(CLI::App& program, const Ranks& ranks);
 void add_effects_command(CLI::App& program);
+void add_export_command(CLI::App& program);
 void add_import_command(CLI::App& program);
 void add_manoeuvres_command(CLI::App& program);
 void add_merge_command(CLI::App& program);

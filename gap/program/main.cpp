@@ -28,6 +28,7 @@ constexpr void (*kCommands[])(CLI::App&) = {
     kenaf::gap::commands::add_dataset_command,
     [](CLI::App& program) { kenaf::gap::commands::add_diagnose_command(program, {}); },
     kenaf::gap::commands::add_effects_command,
+    kenaf::gap::commands::add_export_command,
     kenaf::gap::commands::add_import_command,
     kenaf::gap::commands::add_manoeuvres_command,
     kenaf::gap::commands::add_merge_command,
