@@ -8,6 +8,7 @@
 
 #include "gap/recordings/guess_entries.hpp"
 #include "gap/recordings/mapping.hpp"
+#include "gap/recordings/name_words.hpp"
 #include "gap/recordings/units.hpp"
 #include "robot/columns.hpp"
 
@@ -33,10 +34,13 @@ std::string in_toml(const std::string& text) {
   return quoted + '"';
 }
 
-// Text of a recording within a comment.
+// Text of a recording within a comment, where TOML allows no control characters and UTF-8 alone.
 std::string in_comment(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  const bool keeps_others = is_utf8(text);
+  for (char& c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F || (byte >= 0x80 && !keeps_others)) c = '?';
+  }
   return text;
 }
 
@@ -134,7 +138,7 @@ class Writer {
   }
 
   void write_time_column() {
-    if (survey_.time_column.empty())
+    if (survey_.time_column.empty() || !is_utf8(survey_.time_column))
       line("time_column = \"\"", "", "which column has the times");
     else
       line("time_column = " + in_toml(survey_.time_column));
@@ -158,7 +162,7 @@ class Writer {
 
   std::string topic_in_words(const SurveyedTopic& topic) const {
     if (topic.topic.name.empty()) return "";
-    return fmt::format(" of {} ({} messages)", topic.topic.type.empty() ? "unknown type" : topic.topic.type,
+    return fmt::format(", in {} ({} messages)", topic.topic.type.empty() ? "unknown type" : topic.topic.type,
                        topic.topic.count);
   }
 

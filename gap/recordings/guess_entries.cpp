@@ -300,6 +300,13 @@ void take_pose(const Looked& looked, GuessedEntries& entries) {
   }
 }
 
+bool has_all_columns(const SurveyedTopic& topic, const TablePose& pose) {
+  const auto is_there = [&topic](const std::string& column) {
+    return is_utf8(column) && signal_from(topic, column) != nullptr;
+  };
+  return std::ranges::all_of(pose.position, is_there) && std::ranges::all_of(pose.rotation, is_there);
+}
+
 // The words behind the topic; of a key in brackets too.
 Looked look_at(const SurveyedTopic& topic, const Signal& signal) {
   return {topic, signal, words_in(signal.from), words_in(signal.path)};
@@ -311,12 +318,14 @@ GuessedEntries guess_entries(const Survey& survey) {
   GuessedEntries entries;
   for (const SurveyedTopic& topic : survey.topics) {
     for (const Signal& signal : topic.signals) {
+      if (!is_utf8(signal.from)) continue;
       const Looked looked = look_at(topic, signal);
       take_column(looked, entries);
       take_drive(looked, entries);
       take_pose(looked, entries);
     }
     for (const TablePose& pose : survey.poses) {
+      if (!has_all_columns(topic, pose)) continue;  // as a body without its rotation
       const bool is_motion_capture = survey.form != "TUM" && survey.form != "EuRoC";
       entries.poses.push_back({pose, fmt::format("the body '{}' of {}", pose.body, survey.form),
                                is_motion_capture ? "which axis points up, and that the body's axes are the robot's"

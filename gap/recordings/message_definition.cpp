@@ -14,7 +14,7 @@ namespace kenaf::gap::recordings {
 namespace {
 
 constexpr std::size_t kDeepest = 32;
-constexpr std::size_t kMostFieldsOfAll = 100000;  // chosen, of all messages of a definition
+constexpr std::size_t kMostFieldsOfAll = 20000;  // chosen, of all messages of a definition
 constexpr std::string_view kWhite = " \t\r\f\v";
 
 struct Named {
@@ -67,6 +67,13 @@ bool is_name(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, fits);
 }
 
+bool is_type_name(std::string_view text) {
+  std::string without_slashes;
+  for (const char c : text)
+    if (c != '/') without_slashes += c;
+  return is_name(without_slashes);
+}
+
 // A field as its line says, with the type's name where it is no number or text.
 struct FieldLine {
   MessageField field;
@@ -89,6 +96,8 @@ class Parser {
     for_each_line(text->second, [&](std::string_view line, std::size_t number) {
       std::optional<FieldLine> parsed = field_in(line, type, number);
       if (!parsed) return;
+      if (std::ranges::find(message.fields, parsed->field.name, &MessageField::name) != message.fields.end())
+        throw RecordingError(fmt::format("the definition of {}: two fields '{}'", type, parsed->field.name));
       if (++fields_ > kMostFieldsOfAll) throw RecordingError("its definition has too many fields");
       if (!parsed->type.empty()) parsed->field.message = add(full_name(parsed->type, type), depth + 1);
       message.fields.push_back(std::move(parsed->field));
@@ -127,8 +136,7 @@ class Parser {
     base = base.substr(0, base.find("<="));  // bounded texts are as long as they say
     if (const auto kind = kind_of(base, version_))
       parsed.field.kind = *kind;
-    else if (std::string(base).find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_/") ==
-             std::string::npos)
+    else if (is_type_name(base))
       parsed.type = base;
     else
       fail("no type of a field");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <nlohmann/json.hpp>
 
 namespace kenaf::gap::recordings {
 namespace {
@@ -74,6 +75,14 @@ std::string unit_in(std::string_view name) {
   for (const UnitWord& word : kUnitWords)
     if (small.ends_with(word.ending)) return std::string(word.unit);
   return {};
+}
+
+bool is_utf8(std::string_view name) {
+  try {
+    return !nlohmann::json(name).dump().empty();  // strict
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
 }
 
 }  // namespace kenaf::gap::recordings

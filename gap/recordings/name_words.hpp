@@ -27,4 +27,7 @@ std::string corner_in(const Words& words);
 // A unit that is named, as units.hpp spells it; empty: none.
 std::string unit_in(std::string_view name);
 
+// Whether a mapping, which is TOML, can hold the name.
+bool is_utf8(std::string_view name);
+
 }  // namespace kenaf::gap::recordings

@@ -89,11 +89,24 @@ class TableReader {
     } catch (const RecordingError& error) {
       throw RecordingError(fmt::format("{}: {}", name_, error.what()));
     }
+    drop_poses_without_columns();
     form_->table.values.resize(form_->table.columns.size());
     texts_.resize(form_->table.columns.size());
     used_ = static_cast<std::size_t>(std::ranges::count(form_->used, true));
     for (std::size_t i = form_->first_row; i < head_.size(); ++i) take_row(head_[i]);
     head_.clear();
+  }
+
+  // As of a body that is exported without its rotation, or of two bodies of one name.
+  void drop_poses_without_columns() {
+    Table& table = form_->table;
+    const auto is_missing = [&table](const std::string& name) {
+      return std::ranges::find(table.columns, name) == table.columns.end();
+    };
+    const std::size_t dropped = std::erase_if(table.poses, [&](const TablePose& pose) {
+      return std::ranges::any_of(pose.position, is_missing) || std::ranges::any_of(pose.rotation, is_missing);
+    });
+    if (dropped > 0) table.remarks.push_back(fmt::format("{} bodies lack a column of their pose", dropped));
   }
 
   void take_row(std::string_view line) {

@@ -204,3 +204,8 @@ TEST_CASE("JSON messages have the same paths") {
   CHECK(listed(json, message).at("parts[a].x") == 4);
   CHECK(listed(json, std::string(100000, '[') + std::string(100000, ']')).empty());
 }
+
+TEST_CASE("Definitions with two fields of one name, or with a type that has no name, are refused") {
+  CHECK_THROWS_WITH(reader("float64 a\nint8 a\n"), Catch::Contains("two fields 'a'"));
+  CHECK_THROWS_WITH(reader("<=0 c\n"), Catch::Contains("no type of a field"));
+}

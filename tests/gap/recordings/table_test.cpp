@@ -182,6 +182,15 @@ TEST_CASE("What is no table is refused with the file's name and what is missing"
   }
 }
 
+TEST_CASE("Bodies that lack a column, and names that a mapping cannot hold, make no pose") {
+  const Table table = parsed(
+      "NO_OF_FRAMES\t1\nFREQUENCY\t100\nBODY_NAMES\tr\tr\nr X\tY\tZ\tRoll\tPitch\tYaw\tr X\tY\tRoll\tPitch\tYaw\n"
+      "1\t2\t3\t4\t5\t6\t0\t0\t0\t0\t0\n");
+  CHECK(table.poses.size() == 2);  // of one name, so both have the columns of the first
+  CHECK(parsed("NO_OF_FRAMES\t1\nFREQUENCY\t100\nBODY_NAMES\tr\nr X\tY\tRoll\tPitch\tYaw\n1\t2\t4\t5\t6\n")
+            .poses.empty());
+}
+
 TEST_CASE("Dates that are none are no dates") {
   CHECK(seconds_of_date("1970-01-02 00:00:00Z") == 86400);
   for (const char* text : {"", "2024", "2024-13-01 00:00:00", "2024-02-30 00:00:00", "2024-01-01 25:00:00",
