@@ -49,7 +49,7 @@ Opened open(const std::string& path) {
 
 // The file that is asked for: in a folder, and where a name without an extension is given, of the recording's name.
 fs::path out_file(const ImportOptions& options, const std::string& extension) {
-  const fs::path out = options.out;
+  fs::path out = options.out;
   if (!fs::is_directory(out) && out.has_extension()) return out;
   fs::path recording = fs::path(options.recording).lexically_normal();
   if (recording.filename().empty()) recording = recording.parent_path();

@@ -33,8 +33,14 @@ struct Looked {
   Words words, last;  // of the whole, and of the part behind the last dot or slash
 };
 
+// The axis at the end of a name, before its unit of at most two words: "gyro_z_rad_s".
 std::string axis_at_end(const Words& words) {
-  return !words.empty() && has_any({words.back()}, {"x", "y", "z"}) ? words.back() : std::string();
+  constexpr std::size_t kUnitWords = 2;
+  for (std::size_t i = 0; i < words.size() && i <= kUnitWords; ++i) {
+    const std::string& word = words[words.size() - 1 - i];
+    if (word == "x" || word == "y" || word == "z") return word;
+  }
+  return {};
 }
 
 // A column's name with its side or corner in the place of '*'.
@@ -93,7 +99,7 @@ std::optional<Side> side_of_drive(const Looked& looked, bool& by_place) {
 
 // The unit of a speed or travel: as its name says, or as its message has it.
 std::string belt_unit(const Looked& looked, bool is_speed) {
-  const std::string named = unit_in(looked.signal.path);
+  std::string named = unit_in(looked.signal.path);
   if (!named.empty()) return named;
   const bool turns =
       is_joint_state(looked.topic) || has_any(looked.words, {"wheel", "sprocket", "motor", "drivers", "motors"});
@@ -141,6 +147,16 @@ std::optional<ColumnGuess> inertial(const Looked& looked) {
               axis == "z" ? "at rest on level ground it reads +9.81" : "", rank);
 }
 
+// Turn rates and accelerations of a sensor S in the form of EuRoC: "w_RS_S_x [rad s^-1]", "a_RS_S_x [m s^-2]".
+std::optional<ColumnGuess> euroc_inertial(const Looked& looked) {
+  const std::string& name = looked.signal.path;
+  const bool rates = name.starts_with("w_RS_S_"), accelerations = name.starts_with("a_RS_S_");
+  if ((!rates && !accelerations) || name.size() < 8 || name[7] < 'x' || name[7] > 'z') return std::nullopt;
+  const std::string axis(1, name[7]), check = axis == "x" ? "the sensor's axes are the robot's" : "";
+  if (rates) return made(looked, "gyro_" + axis + "_radps", "rad/s", "a turn rate of EuRoC", check, 30);
+  return made(looked, "acc_" + axis + "_mps2", "m/s^2", "an acceleration of EuRoC", check, 30);
+}
+
 std::optional<ColumnGuess> battery(const Looked& looked) {
   const bool is_voltage = has_any(looked.words, {"voltage", "vbat", "volts"});
   const bool of_cell = has_any(looked.words, {"cell", "cells", "motor", "driver", "drivers"});
@@ -151,7 +167,7 @@ std::optional<ColumnGuess> battery(const Looked& looked) {
 }
 
 void take_column(const Looked& looked, GuessedEntries& entries) {
-  for (const auto rule : {own_column, flipper, track, inertial, battery}) {
+  for (const auto rule : {own_column, flipper, track, inertial, euroc_inertial, battery}) {
     std::optional<ColumnGuess> guess = rule(looked);
     if (!guess) continue;
     const auto known = entries.columns.find(guess->column);

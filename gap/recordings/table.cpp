@@ -10,6 +10,7 @@
 #include "formats/runs/run_file.hpp"
 #include "formats/runs/time_stamps.hpp"
 #include "formats/runs/whole_file.hpp"
+#include "gap/recordings/iso_date.hpp"
 #include "gap/recordings/recording_error.hpp"
 #include "gap/recordings/table_forms.hpp"
 

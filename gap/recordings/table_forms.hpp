@@ -31,8 +31,4 @@ struct TableForm {
 // with what is missing.
 TableForm recognise_table(std::span<const std::string> lines);
 
-// "2024-05-01 12:00:00.25" or with T, and with Z or an offset "+02:00" behind it, as seconds since 1970; without an
-// offset as UTC. Empty if the text is none.
-std::optional<double> seconds_of_date(std::string_view text);
-
 }  // namespace kenaf::gap::recordings

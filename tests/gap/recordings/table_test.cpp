@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "gap/recordings/iso_date.hpp"
 #include "gap/recordings/recording_error.hpp"
-#include "gap/recordings/table_forms.hpp"
 
 using namespace kenaf::gap::recordings;
 
