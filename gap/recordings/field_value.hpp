@@ -1,6 +1,7 @@
 // A number found in a message. Thread safety: a value.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -16,6 +17,9 @@ struct FieldValue {
 
 // Takes a path as parse_field_path() reads it, and the number there.
 using TakeField = std::function<void(const std::string& path, const FieldValue& value)>;
+
+// Takes what was found at one of several paths.
+using TakeFound = std::function<void(std::size_t path, const std::optional<FieldValue>& found)>;
 
 // Of one message no more numbers are listed, chosen: pictures and clouds of points have millions.
 inline constexpr std::size_t kMostListed = 500;

@@ -75,6 +75,20 @@ const Json* element_of(const Json& object, const Json& array, const PathStep& st
   return place && *place < array.size() ? &array[*place] : nullptr;
 }
 
+std::optional<FieldValue> value_in(const Json& json, const FieldPath& path) {
+  const Json* at = &json;
+  JsonStamp stamp = stamp_of(*at);
+  for (const PathStep& step : path) {
+    const Json* object = at;
+    at = member(*object, step.field);
+    if (at != nullptr && (step.index || !step.key.empty())) at = element_of(*object, *at, step);
+    if (at == nullptr) return std::nullopt;
+    if (const JsonStamp own = stamp_of(*at)) stamp = own;
+  }
+  const std::optional<double> value = number_of(at);
+  return value ? std::optional(FieldValue{*value, stamp}) : std::nullopt;
+}
+
 // Lists the numbers of a message.
 class JsonLister {
  public:
@@ -123,19 +137,9 @@ class JsonLister {
 
 }  // namespace
 
-std::optional<FieldValue> find_json_field(std::string_view text, const FieldPath& path) {
+void find_json_fields(std::string_view text, std::span<const FieldPath> paths, const TakeFound& take) {
   const Json json = parsed(text);
-  const Json* at = &json;
-  JsonStamp stamp = stamp_of(*at);
-  for (const PathStep& step : path) {
-    const Json* object = at;
-    at = member(*object, step.field);
-    if (at != nullptr && (step.index || !step.key.empty())) at = element_of(*object, *at, step);
-    if (at == nullptr) return std::nullopt;
-    if (const JsonStamp own = stamp_of(*at)) stamp = own;
-  }
-  const std::optional<double> value = number_of(at);
-  return value ? std::optional(FieldValue{*value, stamp}) : std::nullopt;
+  for (std::size_t i = 0; i < paths.size(); ++i) take(i, value_in(json, paths[i]));
 }
 
 void list_json_fields(std::string_view text, const TakeField& take) {

@@ -4,7 +4,7 @@
 // Thread safety: pure functions.
 #pragma once
 
-#include <optional>
+#include <span>
 #include <string_view>
 
 #include "gap/recordings/field_path.hpp"
@@ -12,9 +12,9 @@
 
 namespace kenaf::gap::recordings {
 
-// Returns the number at `path`; empty if there is none. Throws RecordingError if `text` is no JSON. A stamp is
-// `header.stamp` or `timestamp` of the innermost object around it, with `sec` and `nsec` or `nanosec`.
-std::optional<FieldValue> find_json_field(std::string_view text, const FieldPath& path);
+// Calls `take` with the number at each path; empty if there is none. Throws RecordingError if `text` is no JSON. A
+// stamp is `header.stamp` or `timestamp` of the innermost object around it, with `sec` and `nsec` or `nanosec`.
+void find_json_fields(std::string_view text, std::span<const FieldPath> paths, const TakeFound& take);
 void list_json_fields(std::string_view text, const TakeField& take);
 
 }  // namespace kenaf::gap::recordings

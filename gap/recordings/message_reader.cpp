@@ -48,10 +48,17 @@ std::string MessageReader::wrong_with(const FieldPath& path) const {
   return serialised == nullptr ? std::string() : wrong_with_path(serialised->definitions, path);
 }
 
-std::optional<FieldValue> MessageReader::find(std::string_view message, const FieldPath& path) const {
+void MessageReader::find(std::string_view message, std::span<const FieldPath> paths, const TakeFound& take) const {
   const auto* serialised = std::get_if<Serialised>(&how_);
-  if (serialised == nullptr) return find_json_field(message, path);
-  return find_field(serialised->definitions, payload_of(message, serialised->version), path);
+  if (serialised == nullptr) return find_json_fields(message, paths, take);
+  const PayloadCursor payload = payload_of(message, serialised->version);
+  for (std::size_t i = 0; i < paths.size(); ++i) take(i, find_field(serialised->definitions, payload, paths[i]));
+}
+
+std::optional<FieldValue> MessageReader::find(std::string_view message, const FieldPath& path) const {
+  std::optional<FieldValue> found;
+  find(message, std::span(&path, 1), [&found](std::size_t, const std::optional<FieldValue>& field) { found = field; });
+  return found;
 }
 
 void MessageReader::list(std::string_view message, const TakeField& take) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -24,8 +25,9 @@ class MessageReader {
   // Returns why no message can have a number at `path`; empty if it can, or if only messages can tell (JSON).
   std::string wrong_with(const FieldPath& path) const;
 
-  // The number at `path`, with which nothing is wrong; empty if the message has no such element. Throws RecordingError
-  // if the message is damaged.
+  // Calls `take` for the numbers at the paths, with which nothing is wrong, in their order; empty where the message has
+  // no such element. Throws RecordingError where the message is damaged, after it has given what comes before.
+  void find(std::string_view message, std::span<const FieldPath> paths, const TakeFound& take) const;
   std::optional<FieldValue> find(std::string_view message, const FieldPath& path) const;
   void list(std::string_view message, const TakeField& take) const;
 

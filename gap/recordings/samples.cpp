@@ -16,7 +16,6 @@ namespace {
 // A source whose samples are being gathered.
 struct Gathering {
   Source source;
-  FieldPath path;
   Samples samples;
   std::uint64_t failed = 0;
   std::string first_reason;
@@ -29,7 +28,8 @@ struct Gathering {
 // A topic that has sources.
 struct UsedTopic {
   MessageReader reader;
-  std::vector<std::size_t> gatherings;
+  std::vector<FieldPath> paths{};
+  std::vector<std::size_t> gatherings{};  // of the paths
 };
 
 [[noreturn]] void fail_from(const std::string& from, const std::string& why) {
@@ -74,11 +74,14 @@ class Gatherer {
  public:
   void add(Gathering& gathering, double t_s, double value) {
     if (!std::isfinite(value) || !std::isfinite(t_s)) return gathering.fail("no finite number");
-    if (++count_ > kMostSamples)
-      throw RecordingError(
-          fmt::format("more than {} values; take a part of the recording with --from and --to", kMostSamples));
+    if (++count_ > kMostSamples) return;  // check() tells
     gathering.samples.t_s.push_back(t_s);
     gathering.samples.value.push_back(value);
+  }
+  void check() const {
+    if (count_ > kMostSamples)
+      throw RecordingError(
+          fmt::format("more than {} values; take a part of the recording with --from and --to", kMostSamples));
   }
   static void finish(std::vector<Gathering>& gatherings, Collected& collected) {
     for (Gathering& gathering : gatherings) {
@@ -133,15 +136,16 @@ class RecordingCollector {
       if (!wrong.empty()) why = wrong;
     }
     if (!best) fail_from(source.from, why.empty() ? "no such topic; the recording has " + topics() : why);
+    used_.at(*best).paths.push_back(parse_field_path(source.from.substr(longest + 1)));
     used_.at(*best).gatherings.push_back(gatherings_.size());
-    gatherings_.push_back({source, parse_field_path(source.from.substr(longest + 1)), {}, 0, {}});
+    gatherings_.push_back({source, {}, 0, {}});
   }
 
   // Why the topic has no number at `path`. Makes the topic's reader.
   std::string wrong_with(std::size_t topic, const std::string& path) {
     try {
       if (!used_.contains(topic))
-        used_.emplace(topic, UsedTopic{MessageReader(recording_.topics[topic], options_.definitions), {}});
+        used_.emplace(topic, UsedTopic{MessageReader(recording_.topics[topic], options_.definitions)});
       return used_.at(topic).reader.wrong_with(parse_field_path(path));
     } catch (const RecordingError& error) {
       return error.what();
@@ -160,17 +164,24 @@ class RecordingCollector {
     ++seen_[message.topic];
     const auto used = used_.find(message.topic);
     if (used == used_.end()) return true;
-    for (const std::size_t i : used->second.gatherings) take_value(used->second.reader, message, log_s, gatherings_[i]);
+    take_values(used->second, message, log_s);
+    gatherer_.check();
     return true;
   }
 
-  void take_value(const MessageReader& reader, const Message& message, double log_s, Gathering& gathering) {
-    std::optional<FieldValue> field;
+  void take_values(const UsedTopic& topic, const Message& message, double log_s) {
+    std::size_t taken = 0;
     try {
-      field = reader.find(message.bytes, gathering.path);
+      topic.reader.find(message.bytes, topic.paths, [&](std::size_t i, const std::optional<FieldValue>& field) {
+        take_value(gatherings_[topic.gatherings[i]], field, log_s);
+        taken = i + 1;
+      });
     } catch (const RecordingError& error) {
-      return gathering.fail(error.what());
+      for (; taken < topic.gatherings.size(); ++taken) gatherings_[topic.gatherings[taken]].fail(error.what());
     }
+  }
+
+  void take_value(Gathering& gathering, const std::optional<FieldValue>& field, double log_s) {
     if (!field) return gathering.fail("the message has no such element");
     const bool stamped = gathering.source.time == TimeFrom::header && field->stamp_ns.value_or(0) != 0;
     gatherer_.add(gathering, stamped ? since_begin(*field->stamp_ns) : log_s, field->value);
@@ -215,12 +226,13 @@ Collected collect(const Table& table, std::span<const Source> sources, const std
   std::vector<Gathering> gatherings;
   for (const Source& source : sources) {
     const std::span<const double> values = needed_column(table, source.from);
-    Gathering gathering{source, {}, {}, 0, {}};
+    Gathering gathering{source, {}, 0, {}};
     for (std::size_t row = 0; row < values.size(); ++row) {
       const double t_s = time_unit_s * (times[row] - begin);
       if (t_s < options.from_s || t_s > options.to_s || std::isnan(values[row])) continue;
       gatherer.add(gathering, t_s, values[row]);
     }
+    gatherer.check();
     gatherings.push_back(std::move(gathering));
   }
   Gatherer::finish(gatherings, collected);
