@@ -111,6 +111,12 @@ void check_form(const std::string& mapping_file, const recordings::Mapping& mapp
                                        mapping.form, options.recording, form));
 }
 
+void print_findings(const runs::Run& run, const fs::path& file, const std::optional<physics::RobotDescription>& robot) {
+  for (const logs::Finding& finding : logs::check_run(run, file.string(), robot ? &*robot : nullptr))
+    std::printf("%s: %s\n", finding.severity == logs::Finding::Severity::refuse ? "to be refused" : "warning",
+                logs::in_words(finding).c_str());
+}
+
 void import(const ImportOptions& options, const Opened& opened, const recordings::DefinitionTexts& definitions,
             const std::optional<physics::RobotDescription>& robot) {
   const recordings::Mapping mapping =
@@ -138,9 +144,10 @@ void import(const ImportOptions& options, const Opened& opened, const recordings
   std::printf("%s: %zu rows, %zu columns, %.3f s\n", file.c_str(), made.run.row_count(), made.run.columns.size(),
               made.run.column("t_s").back());
   for (const std::string& remark : made.remarks) std::printf("  %s\n", remark.c_str());
-  for (const logs::Finding& finding : logs::check_run(made.run, file.string(), robot ? &*robot : nullptr))
-    std::printf("%s: %s\n", finding.severity == logs::Finding::Severity::refuse ? "to be refused" : "warning",
-                logs::in_words(finding).c_str());
+  if (mapping.columns.empty() && mapping.drives.empty())
+    std::printf("a pose alone: kenaf-gap merge adds it to a run of the robot\n");
+  else
+    print_findings(made.run, file, robot);
 }
 
 void check_options(const ImportOptions& options) {

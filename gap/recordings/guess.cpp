@@ -80,10 +80,15 @@ class Writer {
       else
         for (const std::string& column : columns) entries_.columns.erase(column);
     }
-    const bool has_pose_columns = entries_.columns.contains("x_m");
-    if (!entries_.poses.empty() && entries_.poses.front().rank > 0 && !has_pose_columns)
-      pose_ = &entries_.poses.front();
+    choose_pose();
     choose_rows();
+  }
+
+  // A pose with its rotation is better than places that have a run's own names; a run's own angles are as good.
+  void choose_pose() {
+    if (entries_.poses.empty() || entries_.poses.front().rank <= 0 || entries_.columns.contains("yaw_rad")) return;
+    pose_ = &entries_.poses.front();
+    for (const char* column : {"x_m", "y_m", "z_m", "roll_rad", "pitch_rad"}) entries_.columns.erase(column);
   }
 
   void choose_rows() {
@@ -233,8 +238,11 @@ class Writer {
       }
       line("angle_unit = " + in_toml(pose.angle_unit));
     }
+    const std::string up = "up = " + in_toml(logs::name_of(pose.up));
     if (guess.asks_up)
-      line("up = " + in_toml(logs::name_of(pose.up)), "by default of the program", "the axis that points up");
+      line(up, "by default of the program", "the axis that points up");
+    else if (guess.topic->topic.name.empty())
+      line("#" + up, "without this line z, unless another is seen", "the axis that points up");
     line("frame = \"start\"", "the first pose becomes the origin; \"world\" keeps the frame", "");
     write_time(*guess.topic);
   }

@@ -119,6 +119,43 @@ TEST_CASE("An export of Motive becomes a run of the pose alone") {
   CHECK(run.column("z_m")[10] == Approx(0.09));
 }
 
+TEST_CASE("A capture whose y axis points up is refused until the mapping says so, and is merged then") {
+  const TemporaryFolder folder;
+  // Winding, mostly to the capture's left, which is -z, as y points up. The robot's log is 2 s behind.
+  std::string capture = "t_s,x_mm,y_mm,z_mm,qx,qy,qz,qw\n", log = "t_s,track_left_mps,track_right_mps,gyro_z_radps\n";
+  const auto turn_radps = [](double t) {
+    return t > 1 && t < 9 ? 0.4 * std::sin(1.3 * t) + 0.3 * std::sin(2.9 * t) : 0;
+  };
+  double yaw = 1.4, x = 0, y = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const double t = 0.01 * i, w = turn_radps(t), v = t > 1 && t < 9 ? 0.2 : 0;
+    for (const double value : {t + 2, 1000 * x, 90.0, -1000 * y, 0.0, std::sin(yaw / 2), 0.0, std::cos(yaw / 2)})
+      capture += (capture.back() == '\n' ? "" : ",") + nlohmann::json(value).dump();
+    for (const double value : {t, v - 0.1 * w, v + 0.1 * w, w})
+      log += (log.back() == '\n' ? "" : ",") + nlohmann::json(value).dump();
+    capture += '\n', log += '\n';
+    yaw += 0.01 * w, x += 0.01 * v * std::cos(yaw), y += 0.01 * v * std::sin(yaw);
+  }
+  test::write_file(folder / "capture.csv", capture);
+  test::write_file(folder / "log.csv", log);
+  REQUIRE(kenaf_gap(folder, "import capture.csv --guess --out m.toml").status == 0);
+  const Outcome refused = kenaf_gap(folder, "import capture.csv --mapping m.toml --out pose.csv");
+  CHECK(refused.status == 2);
+  CHECK_THAT(refused.error, Catch::Contains("up = \"y\""));
+  test::write_file(folder / "m.toml", test::read_file(folder / "m.toml") + "up = \"y\"\n");
+  const Outcome made = kenaf_gap(folder, "import capture.csv --mapping m.toml --out pose.csv");
+  INFO(made.error);
+  REQUIRE(made.status == 0);
+  CHECK_THAT(made.out, Catch::Contains("a pose alone"));
+  const Outcome merged = kenaf_gap(folder, "merge log.csv pose.csv --out run.csv");
+  INFO(merged.error);
+  REQUIRE(merged.status == 0);
+  // Both clocks begin with their first row.
+  CHECK_THAT(merged.out, Catch::Contains("time offset: "));
+  const runs::Run run = runs::read_run(folder / "run.csv");
+  CHECK(run.column("z_m")[500] == Approx(0.09));
+}
+
 TEST_CASE("Wrong uses of import are refused with what to do, and nothing is written") {
   const TemporaryFolder folder;
   const std::string mcap = kFixtures + "foreign-plain.mcap";
