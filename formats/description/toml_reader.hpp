@@ -37,7 +37,7 @@ class TomlReader {
   bool boolean(std::string_view key);
   std::string text(std::string_view key);
   std::vector<double> numbers(std::string_view key, std::size_t count, Range range = kAny);  // a list of so many
-  std::vector<std::string> texts(std::string_view key, std::size_t min, std::size_t max);      // a list of min to max
+  std::vector<std::string> texts(std::string_view key, std::size_t min, std::size_t max);    // a list of min to max
   Eigen::Vector3d vector3(std::string_view key, Range range = kAny);
   Eigen::Vector3d vector3_or(std::string_view key, const Eigen::Vector3d& fallback);
   TomlReader table(std::string_view key);
