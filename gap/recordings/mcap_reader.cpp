@@ -369,10 +369,7 @@ Recording open_mcap(const ByteSource& source) {
   recording.form = "MCAP";
   recording.topics = topics_of(*index);
   recording.remarks = index->remarks;
-  if (!index->blocks.empty()) {
-    recording.first_ns = std::ranges::min(index->blocks, {}, &McapBlock::first_ns).first_ns;
-    recording.last_ns = std::ranges::max(index->blocks, {}, &McapBlock::last_ns).last_ns;
-  }
+  for (const McapBlock& block : index->blocks) widen_times(recording, block.first_ns, block.last_ns);
   recording.visit = [index](const TakeMessage& take, const TellProgress& tell) {
     return McapVisit(*index).run(take, tell);
   };

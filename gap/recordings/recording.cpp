@@ -130,8 +130,7 @@ Recording open_folder(const fs::path& folder) {
       whole.topics[piece.topic.back()].count += topic.count;
     }
     whole.form = part.form;
-    whole.first_ns = pieces->empty() ? part.first_ns : std::min(whole.first_ns, part.first_ns);
-    whole.last_ns = pieces->empty() ? part.last_ns : std::max(whole.last_ns, part.last_ns);
+    widen_times(whole, part.first_ns, part.last_ns);
     add_remarks(whole.remarks, file, part.remarks);
     pieces->push_back(std::move(piece));
   }
@@ -142,6 +141,13 @@ Recording open_folder(const fs::path& folder) {
 }
 
 }  // namespace
+
+void widen_times(Recording& recording, std::int64_t first_ns, std::int64_t last_ns) {
+  if (first_ns == 0 && last_ns == 0) return;
+  const bool is_first = recording.first_ns == 0 && recording.last_ns == 0;
+  recording.first_ns = is_first ? first_ns : std::min(recording.first_ns, first_ns);
+  recording.last_ns = is_first ? last_ns : std::max(recording.last_ns, last_ns);
+}
 
 std::size_t topic_index(std::vector<Topic>& topics, const Topic& topic) {
   const auto same = std::ranges::find_if(topics, [&topic](const Topic& known) {

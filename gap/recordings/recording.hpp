@@ -43,6 +43,9 @@ struct Recording {
   std::function<std::vector<std::string>(const TakeMessage&, const TellProgress&)> visit;
 };
 
+// Takes the times of a part of the recording into first_ns and last_ns. Both 0: the part has no messages.
+void widen_times(Recording& recording, std::int64_t first_ns, std::int64_t last_ns);
+
 // The topic's place in `topics`, after it was added if none has its name, type and encodings. Throws RecordingError
 // beyond 10000 topics.
 std::size_t topic_index(std::vector<Topic>& topics, const Topic& topic);

@@ -326,10 +326,7 @@ Recording open_rosbag1(const ByteSource& source) {
     index->topic_of[id] = at;
   }
   recording.remarks = index->remarks;
-  if (!index->chunks.empty()) {
-    recording.first_ns = std::ranges::min(index->chunks, {}, &BagChunk::first_ns).first_ns;
-    recording.last_ns = std::ranges::max(index->chunks, {}, &BagChunk::last_ns).last_ns;
-  }
+  for (const BagChunk& chunk : index->chunks) widen_times(recording, chunk.first_ns, chunk.last_ns);
   recording.visit = [index](const TakeMessage& take, const TellProgress& tell) {
     return BagVisit(*index).run(take, tell);
   };

@@ -57,6 +57,14 @@ TEST_CASE("Chunks that overlap in time are visited in the order of time") {
   CHECK(all.messages == std::vector<Taken>{{"/a", 100, "a"}, {"/a", 200, "b"}, {"/a", 300, "c"}, {"/a", 400, "d"}});
 }
 
+TEST_CASE("A chunk without messages, which has the times 0, does not count for the begin of the recording") {
+  const Recording recording =
+      opened(head() + chunk(0, 0, kDescribed) + chunk(100, 200, message(4, 100, "a") + message(4, 200, "b")) + end());
+  CHECK(recording.first_ns == 100);
+  CHECK(recording.last_ns == 200);
+  CHECK(visited(recording).messages.size() == 2);
+}
+
 TEST_CASE("An MCAP file that is cut off anywhere is read as far as it goes") {
   const std::string records = kDescribed + message(4, 100, "one");
   const std::string whole = head() + chunk(100, 100, records) + chunk(200, 200, message(4, 200, "two")) + end();
