@@ -103,6 +103,23 @@ TEST_CASE("A transform is found by the frame that it leads to, with its own stam
   CHECK(listed(tf, message).at("transforms[base_link].transform.translation.x") == 8);
 }
 
+TEST_CASE("A driver's speed is found by its place in a feedback's list") {
+  // As robots of Clearpath report it: two drivers of current, duty cycle, flag and measured velocity.
+  const MessageReader feedback = reader(
+      "std_msgs/Header header\nDriver[] drivers\n==========\nMSG: pkg/Driver\nfloat32 current\nfloat32 duty_cycle\n"
+      "bool driver_fault\nfloat32 measured_velocity\n");
+  const auto driver = [](float current, float velocity) {
+    return bytes_of(current) + bytes_of(0.5F) + "\0ppp"s + bytes_of(velocity);  // 16 bytes, all at multiples of 4
+  };
+  const std::string message =
+      kLittle + u32(7) + u32(0) + u32(1) + "\0ppp"s + u32(2) + driver(1.5F, -2) + driver(2.5F, 3);
+  CHECK(value_at(feedback, message, "drivers[0].measured_velocity") == -2);
+  CHECK(value_at(feedback, message, "drivers[1].measured_velocity") == 3);
+  CHECK(value_at(feedback, message, "drivers[1].current") == 2.5);
+  CHECK(feedback.find(message, parse_field_path("drivers[1].current"))->stamp_ns == 7000000000);
+  CHECK_FALSE(feedback.find(message, parse_field_path("drivers[2].current")));
+}
+
 TEST_CASE("ROS 1 has no padding, its texts no zero, and its times are primitive") {
   const MessageReader made = reader(
       "Header header\ntime t\nduration d\nbyte b\nfloat64[2] pair\nint32 LIMIT=5\nstring TEXT=a # b\n"
