@@ -93,11 +93,24 @@ std::map<std::int64_t, std::size_t> read_topics(const Database& database, std::v
     }
     topic_of[query.number(0)] = topic_index(topics, topic);
   }
-  Query counts(database, "SELECT topic_id, count(*) FROM messages GROUP BY topic_id");
-  while (counts.next())
-    if (const auto topic = topic_of.find(counts.number(0)); topic != topic_of.end())
-      topics[topic->second].count += static_cast<std::uint64_t>(counts.number(1));
   return topic_of;
+}
+
+// Counts the messages and finds the first and last time, as far as the file can be read.
+std::uint64_t count_messages(const Database& database, const std::map<std::int64_t, std::size_t>& topic_of,
+                             Recording& recording) {
+  std::uint64_t all = 0;
+  Query query(database, "SELECT topic_id, timestamp FROM messages");
+  try {
+    for (; query.next(); ++all) {
+      if (const auto topic = topic_of.find(query.number(0)); topic != topic_of.end())
+        ++recording.topics[topic->second].count;
+      widen_times(recording, query.number(1), query.number(1));
+    }
+  } catch (const RecordingError&) {
+    // The visit says how far it got.
+  }
+  return all;
 }
 
 // One visit of all messages.
@@ -108,7 +121,7 @@ class SqliteVisit {
 
   std::vector<std::string> run(const TakeMessage& take, const TellProgress& tell) {
     Query query(database_, "SELECT topic_id, timestamp, data FROM messages ORDER BY timestamp");
-    for (std::uint64_t i = 0; query.next(); ++i) {
+    for (std::uint64_t i = 0; next(query, i); ++i) {
       if (tell && i % kTellEach == 0 && all_ > 0) tell(static_cast<double>(i) / static_cast<double>(all_));
       const auto topic = topic_of_.find(query.number(0));
       if (topic == topic_of_.end())
@@ -116,7 +129,7 @@ class SqliteVisit {
       else if (!take_one(topic->second, query.number(1), query.bytes(2), take))
         break;
     }
-    std::vector<std::string> remarks;
+    std::vector<std::string> remarks = std::move(remarks_);
     if (unknown_ > 0) remarks.push_back(fmt::format("{} messages of no topic of the file are left out", unknown_));
     if (damaged_ > 0)
       remarks.push_back(fmt::format("{} messages cannot be unpacked and are left out: {}", damaged_, why_));
@@ -124,6 +137,16 @@ class SqliteVisit {
   }
 
  private:
+  // Ends at what is damaged, with a remark.
+  bool next(Query& query, std::uint64_t messages_before) {
+    try {
+      return query.next();
+    } catch (const RecordingError& error) {
+      remarks_.push_back(fmt::format("{} messages are read, then: {}", messages_before, error.what()));
+      return false;
+    }
+  }
+
   bool take_one(std::size_t topic, std::int64_t log_ns, std::string_view bytes, const TakeMessage& take) {
     if (!begins_as_zstd(bytes)) return take({topic, log_ns, bytes});
     std::string unpacked;
@@ -140,6 +163,7 @@ class SqliteVisit {
   const std::map<std::int64_t, std::size_t>& topic_of_;
   std::uint64_t all_, unknown_ = 0, damaged_ = 0;
   std::string why_;
+  std::vector<std::string> remarks_;
 };
 
 Recording recording_in(const Database& database) {
@@ -150,13 +174,7 @@ Recording recording_in(const Database& database) {
   recording.form = "rosbag2 (SQLite)";
   const auto topic_of =
       std::make_shared<const std::map<std::int64_t, std::size_t>>(read_topics(database, recording.topics));
-  std::uint64_t all = 0;
-  for (const Topic& topic : recording.topics) all += topic.count;
-  Query times(database, "SELECT min(timestamp), max(timestamp) FROM messages");
-  if (times.next()) {
-    recording.first_ns = times.number(0);
-    recording.last_ns = times.number(1);
-  }
+  const std::uint64_t all = count_messages(database, *topic_of, recording);
   recording.visit = [database, topic_of, all](const TakeMessage& take, const TellProgress& tell) {
     return SqliteVisit(database, *topic_of, all).run(take, tell);
   };

@@ -110,6 +110,24 @@ TEST_CASE("A folder of rosbag2 is read piece by piece in the order of their numb
   CHECK(visited(recording).messages == std::vector<Taken>{{"/a", 1000, "\1"}, {"/b", 2000, "\2"}, {"/a", 3000, "\3"}});
 }
 
+TEST_CASE("An SQLite bag with a damaged page is read up to there, with a remark") {
+  const TemporaryFolder folder;
+  // 40 messages of 3000 bytes on pages of their own, in the order of time
+  std::string rows = "INSERT INTO topics VALUES(1,'/a','std_msgs/msg/Float64','cdr','');";
+  for (int i = 0; i < 40; ++i)
+    rows += "INSERT INTO messages VALUES(" + std::to_string(i) + ",1," + std::to_string(1000 + i) + ",zeroblob(3000));";
+  make(folder / "a.db3", kTables + rows);
+  std::string bytes = read_file(folder / "a.db3");
+  REQUIRE(bytes.size() > 30 * 4096);
+  const std::size_t page = 30;  // by its number one that holds messages of the second half
+  bytes.replace(page * 4096, 4096, std::string(4096, '\xFF'));
+  const Visited all = visited(open_sqlite_bag_in_memory(bytes));
+  CHECK(all.messages.size() > 5);
+  CHECK(all.messages.size() < 40);
+  REQUIRE(all.remarks.size() == 1);
+  CHECK(all.remarks[0].find("messages are read, then: SQLite cannot read it") != std::string::npos);
+}
+
 TEST_CASE("An SQLite file that computes its rows, or is none of rosbag2, is refused") {
   const TemporaryFolder folder;
   make(folder / "view.db3",
