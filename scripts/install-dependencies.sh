@@ -10,7 +10,7 @@ packages=(
   cmake g++ ninja-build pkg-config
   libassimp-dev libboost-dev libboost-system-dev libbullet-dev libbz2-dev libcairo2-dev libcli11-dev libeigen3-dev libembree-dev libexpat1-dev
   libfmt-dev libjs-three liblz4-dev libncurses-dev libpng-dev libsdformat-dev libspdlog-dev libsqlite3-dev libtomlplusplus-dev
-  libturbojpeg0-dev libzstd-dev nettle-dev nlohmann-json3-dev zlib1g-dev
+  libturbojpeg0-dev liburdfdom-dev libzstd-dev nettle-dev nlohmann-json3-dev zlib1g-dev
   # the package
   dpkg-dev file help2man
 )
@@ -20,8 +20,8 @@ case $mode in
   all | bench)
     packages+=(
       # tests
-      abigail-tools binutils catch2 chromium-headless-shell clang clang-format clang-tidy git iproute2 libclang-rt-14-dev llvm
-      python3
+      abigail-tools binutils catch2 chromium-headless-shell clang clang-format clang-tidy git iproute2 libclang-rt-14-dev
+      liburdfdom-tools llvm python3
       # the CAN tests
       busybox-static can-utils cpio kmod qemu-system-x86 xz-utils
       # a diagnosis by several processes
