@@ -5,7 +5,7 @@
 set -eu
 program=$1
 "$program" --help
-"$program" --help | sed -n '/^Subcommands:/,$ s/^  \([a-z]\{1,\}\) .*/\1/p' | while read -r command; do
+"$program" --help | sed -n '/^Subcommands:/,$ s/^  \([a-z-]\{1,\}\) .*/\1/p' | while read -r command; do
   "$program" "$command" --help | awk '
     NR == 1 { what = $0; next }
     sub(/^Usage: /, "") { printf "\n%s:\n  %s\n\n", $0, what; next }
