@@ -33,7 +33,7 @@ outside=$(grep -E '^-- (Installing|Up-to-date): ' "$work/install.log" | grep -vF
 holding=$(LC_ALL=C grep -rlaP "(?<![\w./-])\Q$source\E(?![\w.-])" "$prefix" || true)
 [ -z "$holding" ] || fail "the source folder's path is in $holding"
 
-programs=(kenaf-candrives kenaf-canlog kenaf-draw kenaf-relayd kenaf-world)
+programs=(kenaf-candrives kenaf-canlog kenaf-describe kenaf-draw kenaf-relayd kenaf-world)
 for program in kenaf-gap kenaf-gap-mpi; do  # a build may be without them
   [ ! -e "$prefix/bin/$program" ] || programs+=("$program")
 done
@@ -116,7 +116,7 @@ holds "$library" "lib/(.*/)?libkenaf_sim\.so\.$abi" "lib/(.*/)?libkenaf_real\.so
 holds libkenaf-dev include/kenaf/hrt.h "lib/(.*/)?libkenaf_sim\.so" "lib/(.*/)?libkenaf_real\.so" \
   "lib/(.*/)?cmake/kenaf/kenafConfig.cmake" "lib/(.*/)?pkgconfig/kenaf-sim.pc" "lib/(.*/)?pkgconfig/kenaf-real.pc"
 holds kenaf-data share/kenaf/robots/kenaf.toml share/kenaf/worlds/flat.sdf share/kenaf/manoeuvres/turn.toml
-holds kenaf bin/kenaf-world bin/kenaf-relayd bin/kenaf-draw bin/kenaf-canlog bin/kenaf-candrives \
+holds kenaf bin/kenaf-world bin/kenaf-relayd bin/kenaf-describe bin/kenaf-draw bin/kenaf-canlog bin/kenaf-candrives \
   share/man/man1/kenaf-world.1 lib/systemd/system/kenaf-relayd.service lib/systemd/system/kenaf-world.service \
   share/kenaf/page/index.html share/kenaf/page/three/three.module.js share/kenaf/page/three/OrbitControls.js \
   share/doc/kenaf/README.md share/doc/kenaf/docs/user-guide.md share/doc/kenaf/examples/square.c \
