@@ -3,7 +3,7 @@
 #
 #   scripts/test.sh                 check, release, asan, fuzz and tsan
 #   scripts/test.sh release asan    only the named parts, of:
-#       check     scripts/check.sh, its two slow parts for 90 s each
+#       check     scripts/check.sh, its two slow parts for 60 s each
 #       release   g++, as installed: all tests, the CAN bus, the package
 #       asan      clang, address and undefined behaviour sanitizers: the rooms that take input from others, without what only calculates
 #       fuzz      the fuzzers of that build, 1 s each: all but kenaf-gap's
@@ -37,7 +37,7 @@ build() {
 
 run_check() {
   step "check"
-  CHECK_SECONDS=90 scripts/check.sh
+  CHECK_SECONDS=60 scripts/check.sh
 }
 
 run_release() {
