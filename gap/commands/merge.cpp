@@ -18,6 +18,7 @@ namespace kenaf::gap::commands {
 namespace {
 
 void print(const logs::MergedRun& merged) {
+  // The offset, with what each quantity says of it, unless it was given.
   const logs::ClockOffset& offset = merged.offset;
   if (offset.quantities.empty()) {
     std::printf("time offset: %.4f s, as given\n", offset.offset_s);
@@ -33,6 +34,8 @@ void print(const logs::MergedRun& merged) {
           "  from the tracks alone: if the body follows its belts with a delay, the offset is wrong by that delay\n");
     std::printf("  both logs cover %.1f s\n", offset.overlap_s);
   }
+
+  // The drift, where there is one, and what the run got.
   if (const logs::ClockDrift& drift = merged.drift; drift.standard_error > 0)
     std::printf("the clocks drift: the offset grows by %.0f ppm, standard error %.0f ppm, and is %.4f s at %.1f s\n",
                 1e6 * drift.rate, 1e6 * drift.standard_error, drift.offset_s, drift.at_s);

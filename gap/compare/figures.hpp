@@ -12,8 +12,8 @@
 
 namespace kenaf::gap::compare {
 
-// Side view, to scale, with the world's section behind; `world` may be null. Of runs that are compared in the ground
-// plane: top view, without a world.
+// Side view, to scale, with the world's section behind; `world` may be null. Runs that are compared in the ground plane
+// have a top view, without a world.
 plot::Chart path_figure(const ComparedRun& run, const physics::WorldDescription* world, double width_px);
 // Top view, to scale, of runs that are compared in the vertical plane. Empty if the robots stay near a line along x or
 // y was not measured.

@@ -9,8 +9,8 @@
 // from the autocovariance of the residuals and once from that of the products (Newey and West 1987), whichever is
 // larger. Where quantities disagree beyond their errors, it is scaled by the Birge ratio.
 //
-// Limits: a sensor that reports late looks like a clock that is behind. Of clocks that drift apart it is the offset of
-// the middle of the motion; clock_drift.hpp has the rest.
+// Limits: a sensor that reports late looks like a clock that is behind. If the clocks drift apart, the result is the
+// offset in the middle of the motion; clock_drift.hpp estimates the drift.
 //
 // Thread safety: pure functions.
 #pragma once

@@ -50,7 +50,7 @@ struct Finding {
 std::string in_words(const Finding& finding);
 bool any_refused(std::span<const Finding> findings);
 
-// What to do with runs that a finding refuses.
+// Says what to do with runs that a finding refuses.
 struct RefusedRuns {
   bool unchecked = false;  // take them nevertheless, findings are warnings
   bool strict = false;     // let one refuse the whole dataset

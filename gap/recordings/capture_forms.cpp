@@ -83,6 +83,8 @@ void add_vicon_poses(const Cells& bodies, const Cells& units, TableForm& form) {
       return std::ranges::find(form.table.columns, body + "." + axis) != form.table.columns.end();
     };
     if (!has("TX") || !has("RX")) continue;
+
+    // A rotation vector, or with a fourth number a quaternion; millimetres, and degrees unless the units say radians.
     TablePose pose{body,
                    {body + ".TX", body + ".TY", body + ".TZ"},
                    {body + ".RX", body + ".RY", body + ".RZ"},
@@ -163,6 +165,8 @@ TableForm motive_form(std::span<const std::string> lines) {
   TableForm form;
   form.table.form = "Motive";
   form.first_row = header.axis_line + 1;
+
+  // Columns of time and of rigid bodies are read; markers and the rest are counted by their type.
   std::map<std::string, std::size_t> left_out;
   for (std::size_t i = 0; i < header.axis.size(); ++i) {
     const bool is_time = header.axis[i].starts_with("Time");

@@ -15,7 +15,7 @@ namespace kenaf::gap::recordings {
 struct PathStep {
   std::string field;
   std::optional<std::uint64_t> index{};  // of an element of an array, from 0
-  // Names the element. Of an array of numbers: by the message's own list of names (`name` of a JointState). Of an array
+  // Names the element. In an array of numbers: by the message's own list of names (`name` of a JointState). In an array
   // of messages: by their text (`child_frame_id` of a TransformStamped).
   std::string key{};
 };

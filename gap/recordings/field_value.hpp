@@ -21,7 +21,7 @@ using TakeField = std::function<void(const std::string& path, const FieldValue& 
 // Takes what was found at one of several paths.
 using TakeFound = std::function<void(std::size_t path, const std::optional<FieldValue>& found)>;
 
-// Of one message no more numbers are listed, chosen: pictures and clouds of points have millions.
+// Most numbers of one message that are listed, chosen: pictures and clouds of points have millions.
 inline constexpr std::size_t kMostListed = 500;
 inline constexpr std::uint64_t kMostListedOfArray = 64;
 

@@ -219,10 +219,13 @@ class Writer {
   }
 
   void write_pose(const PoseGuess& guess) {
+    // Its sources count as used.
     ++guess_.entries;
     const TablePose& pose = guess.pose;
     for (const std::string& from : pose.position) used_.insert(from);
     for (const std::string& from : pose.rotation) used_.insert(from);
+
+    // Place, then rotation in whichever form it has.
     line("");
     line("[pose]", guess.why + topic_in_words(*guess.topic), guess.check);
     line("position = " + list_in_toml(pose.position), "x, y, z", "");
@@ -238,6 +241,8 @@ class Writer {
       }
       line("angle_unit = " + in_toml(pose.angle_unit));
     }
+
+    // The axis that points up is asked for where nothing says it.
     const std::string up = "up = " + in_toml(logs::name_of(pose.up));
     if (guess.asks_up)
       line(up, "by default of the program", "the axis that points up");
@@ -250,6 +255,7 @@ class Writer {
   void list_unused() {
     line("");
     line("# Not used (stamps and covariances are not listed):");
+    // Topics of which nothing is used have a line with type and count; of the others only their fields are listed.
     std::size_t unused = 0;
     for (const SurveyedTopic& topic : survey_.topics) {
       std::vector<std::string> fields;
@@ -269,6 +275,8 @@ class Writer {
         list_fields(fields);
       }
     }
+
+    // Poses that lost to the chosen one, with the reason.
     for (const PoseGuess& pose : entries_.poses)
       if (&pose != pose_ && pose.rank > -2)
         line(fmt::format("#   {}: {}", in_comment(pose.pose.position[0]), in_comment(pose.why)));

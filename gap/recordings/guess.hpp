@@ -23,8 +23,8 @@ struct Guess {
   std::size_t to_check = 0;  // lines marked CHECK
 };
 
-// By the names of topics, fields and columns, their types, units in their names, and what their numbers are. What is
-// not used stands at the end, with type, count and why.
+// Guesses by the names of topics, fields and columns, their types, units in their names, and their numbers. Topics that
+// are not used are listed at the end, with type, count and why.
 Guess guess_mapping(const Survey& survey, const GuessFor& options);
 
 }  // namespace kenaf::gap::recordings

@@ -114,7 +114,7 @@ std::optional<ColumnGuess> track(const Looked& looked) {
     return std::nullopt;
   const std::string name = *side == Side::left ? "left" : "right";
   const bool is_belt = has_any(looked.words, {"track", "tracks", "belt", "tread"});
-  // Of several wheels on a side the front one, as any would do.
+  // Takes the front one of several wheels on a side; any would do.
   const int rank = (is_belt ? 45 : 40) - (has_any(looked.words, {"rear", "back", "mid", "middle"}) ? 5 : 0);
   const std::string check = by_place ? "whether [0] is left" : "its sign: positive forward";
   if (has_any(looked.words, {"current", "amps", "amperes"}))
@@ -207,7 +207,7 @@ void take_drive(const Looked& looked, GuessedEntries& entries) {
   const std::string w = turn_rate_beside(looked.topic, looked);
   if (w.empty()) return;
   const bool commanded = is_commanded(looked.words);
-  // Of several commands the one most often sent; of measured ones what is not called filtered.
+  // Takes the command that is sent most often, and a measured speed that is not called filtered.
   const int rank = commanded ? static_cast<int>(std::min<std::uint64_t>(looked.topic.topic.count, 1000000))
                    : has_any(looked.words, {"filtered", "ekf", "fused"}) ? 1
                                                                          : 2;
@@ -280,7 +280,7 @@ int rank_of_pose(const Words& words, std::string& why) {
   return 10;
 }
 
-// Of a list of transforms only that to the robot's body is its pose, and from `odom` it is one of the encoders.
+// In a list of transforms, only that to the robot's body is its pose, and from `odom` it is one of the encoders.
 void judge_transform(const std::string& begin, PoseGuess& guess) {
   const std::size_t open = begin.find("transforms[");
   if (open == begin.npos) return;

@@ -1,4 +1,4 @@
-// What the names in a recording say that its numbers are. For guess.cpp.
+// Entries of a mapping, guessed by the names in a recording. For guess.cpp.
 //
 // Thread safety: values and pure functions.
 #pragma once

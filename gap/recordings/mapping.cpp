@@ -177,6 +177,8 @@ Mapping parse_mapping(std::string_view toml_text, const std::string& name_for_er
   if (reader.text("format") != kMappingFormat) reader.fail("format", fmt::format("must be \"{}\"", kMappingFormat));
   Mapping mapping;
   const TimeFrom time = read_recording(reader.table("recording"), mapping);
+
+  // The entries, and the columns that they write: each only once.
   std::set<std::string> written;
   for (TomlReader& entry : reader.tables("column")) {
     mapping.columns.push_back(column_in(entry, time));
@@ -192,6 +194,8 @@ Mapping parse_mapping(std::string_view toml_text, const std::string& name_for_er
     for (const char* column : {"x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad", "pose"})
       add_written(entry, "position", column, written);
   }
+
+  // The rows may be those of any column that is written.
   if (written.empty()) reader.fail("column", "must be there, or [[drive]] or [pose]: nothing is mapped");
   read_rows(reader.table("rows"), written, mapping);
   reader.finish();

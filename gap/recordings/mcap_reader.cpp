@@ -30,7 +30,7 @@ struct McapChannel {
   std::string topic, message_encoding;
 };
 
-// What the file says of its channels, in its data or in its summary.
+// The channels and schemas of the file, from its data or its summary.
 struct Described {
   std::map<std::uint16_t, McapSchema> schemas;
   std::map<std::uint16_t, McapChannel> channels;

@@ -109,6 +109,7 @@ void McapWriter::add_message(std::uint16_t channel, std::uint64_t log_ns, std::s
 }
 
 void McapWriter::end_chunk() {
+  // The chunk with its messages, packed.
   if (chunk_.empty()) return;
   const std::string packed = compressed_zstd(chunk_);
   ChunkPlace place{chunk_first_ns_, chunk_last_ns_, size_, 0, {}, 0, packed.size(), chunk_.size()};
@@ -122,6 +123,8 @@ void McapWriter::end_chunk() {
                                       .raw(packed)
                                       .bytes()));
   place.length = size_ - place.offset;
+
+  // Behind it an index for each channel; the summary at the file's end points to both.
   for (const auto& [channel, messages] : chunk_index_) {
     place.index_offsets[channel] = size_;
     RecordBytes entries;

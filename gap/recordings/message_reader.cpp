@@ -18,7 +18,7 @@ Definitions definitions_for(const Topic& topic, RosVersion version, const Defini
     throw RecordingError(fmt::format("its definition is in '{}', which is not supported", topic.schema_encoding));
   DefinitionTexts texts;
   if (has_own) texts = split_definitions(topic.schema, topic.type);
-  // What the recording itself says comes first.
+  // The recording's own definition takes precedence.
   texts.insert(more.begin(), more.end());
   if (version == RosVersion::ros2) texts.insert(standard_definitions().begin(), standard_definitions().end());
   if (!texts.contains(short_type(topic.type)))

@@ -19,7 +19,7 @@ class PayloadCursor {
   static PayloadCursor of_cdr(std::string_view bytes);
   static PayloadCursor of_ros1(std::string_view bytes);
 
-  // Each throws RecordingError if the message ends before. Of a time the number is in seconds.
+  // Each throws RecordingError if the message ends before. A time is returned in seconds.
   double number(FieldKind kind);
   std::int64_t time_ns();  // of ROS 1: FieldKind::time
   std::uint32_t length();  // of a sequence

@@ -55,6 +55,7 @@ Eigen::Quaterniond rotation_of(const std::string& order, std::span<const double>
 }
 
 PoseOfSamples pose_of_samples(const PoseMapping& mapping, const Collected& collected) {
+  // Only times at which all numbers of a pose were recorded.
   std::vector<const Samples*> sources;
   for (const auto* names : {&mapping.position, &mapping.rotation})
     for (const std::string& from : *names) sources.push_back(&collected.samples.at({from, mapping.timing.time}));
@@ -62,6 +63,7 @@ PoseOfSamples pose_of_samples(const PoseMapping& mapping, const Collected& colle
   const std::size_t places = mapping.position.size();
   const bool is_quaternion = mapping.order == "quaternion";
 
+  // Each becomes a pose in SI units; a quaternion that is none is left out and counted.
   PoseOfSamples found{{{}, places == 3, mapping.order.find_first_not_of('z') != std::string::npos}, {}};
   std::size_t not_of_norm_1 = 0;
   for (std::size_t i = 0; i < all.t_s.size(); ++i) {
@@ -80,6 +82,8 @@ PoseOfSamples pose_of_samples(const PoseMapping& mapping, const Collected& colle
   }
   if (not_of_norm_1 > 0)
     found.remarks.push_back(fmt::format("{} poses are left out: their quaternion's norm is not 1", not_of_norm_1));
+
+  // Turned so that z points up, by the mapping or as it is seen.
   if (found.capture.poses.size() < 2) throw RecordingError("the [pose]: fewer than two poses have all their numbers");
   try {
     found.capture = logs::with_z_up(std::move(found.capture), mapping.up.value_or(logs::Up::z), "the [pose]");

@@ -1,4 +1,4 @@
-// What a recording of another program holds: topics, and their messages one after the other.
+// A recording of another program: its topics, and their messages one after the other.
 //
 // Thread safety: one thread at a time uses a recording.
 #pragma once
@@ -36,7 +36,7 @@ struct Recording {
   std::string form;  // for people and mappings: "MCAP", "rosbag2 (SQLite)", "rosbag 1"
   std::vector<Topic> topics;
   std::int64_t first_ns = 0, last_ns = 0;  // log times; both 0 without messages
-  // What the file has and cannot be read, or is wrong in it: "3 attachments are not read".
+  // Parts of the file that are wrong or cannot be read: "3 attachments are not read".
   std::vector<std::string> remarks;
   // Visits all messages in the order of log time. Memory does not grow with the file: see time_order.hpp. Returns
   // remarks on what could not be read, each with its place and count. Throws RecordingError if the file cannot be read.

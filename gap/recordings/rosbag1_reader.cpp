@@ -97,7 +97,7 @@ Topic topic_of_connection(const BagFields& head, std::string_view data) {
   return topic;
 }
 
-// What a chunk info or the reading of a chunk says of it.
+// A chunk, by its chunk info record or by reading it.
 struct BagChunkInfo {
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::max();
   std::int64_t last_ns = std::numeric_limits<std::int64_t>::min();

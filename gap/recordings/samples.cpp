@@ -217,11 +217,14 @@ Collected collect(const Recording& recording, std::span<const Source> sources, c
 
 Collected collect(const Table& table, std::span<const Source> sources, const std::string& time_column,
                   double time_unit_s, const CollectOptions& options) {
+  // Times count from the first row that has one.
   const std::span<const double> times = needed_column(table, time_column);
   const auto first = std::ranges::find_if(times, [](double t) { return std::isfinite(t); });
   const double begin = first == times.end() ? 0 : *first;
   Collected collected;
   collected.remarks = table.remarks;
+
+  // The cells of each source that hold a number within the wanted time.
   Gatherer gatherer;
   std::vector<Gathering> gatherings;
   for (const Source& source : sources) {
@@ -236,6 +239,8 @@ Collected collect(const Table& table, std::span<const Source> sources, const std
     gatherings.push_back(std::move(gathering));
   }
   Gatherer::finish(gatherings, collected);
+
+  // Every column is listed as used or not, with the count of its numbers.
   for (const std::string& name : table.columns) {
     const auto is_it = [&name](const Source& source) { return source.from == name; };
     const auto count = static_cast<std::uint64_t>(

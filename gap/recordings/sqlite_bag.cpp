@@ -48,7 +48,7 @@ class Query {
   sqlite3_stmt* statement_ = nullptr;
 };
 
-// What a hostile file could use against its reader is switched off (sqlite.org/security.html).
+// Switches off the features that a hostile file could use against its reader (sqlite.org/security.html).
 Database guarded(sqlite3* made, int result) {
   Database database(made, &sqlite3_close_v2);
   if (result != SQLITE_OK) fail_in(made);

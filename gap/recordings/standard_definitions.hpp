@@ -9,7 +9,7 @@
 
 namespace kenaf::gap::recordings {
 
-// Of ROS 2, with the fields in the order of common_interfaces of 2022 (Humble).
+// ROS 2 definitions, with the fields in the order of common_interfaces of 2022 (Humble).
 const DefinitionTexts& standard_definitions();
 
 // Reads all files PACKAGE/msg/NAME.msg or PACKAGE/NAME.msg below `folder`, as packages of ROS have them. Throws

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kMessagesOfTopic = 200;  // chosen
 
-// What is seen of a topic while the recording is visited.
+// A topic as it is seen while the recording is visited.
 class TopicSurvey {
  public:
   TopicSurvey(const Topic& topic, const DefinitionTexts& definitions, double duration_s) {

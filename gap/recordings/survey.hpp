@@ -1,4 +1,4 @@
-// What can be seen of a recording's numbers before it is mapped: the first messages of each topic, the columns of a
+// A look at a recording's numbers before it is mapped: the first messages of each topic, the columns of a
 // table.
 //
 // Thread safety: pure functions; one thread at a time uses a recording.
@@ -35,7 +35,7 @@ struct Survey {
   std::string form;
   double duration_s = 0;
   std::vector<SurveyedTopic> topics;  // of a table one without a name, whose signals are all columns
-  // Of a table.
+  // The rest is a table's alone.
   std::string time_column, time_unit;
   std::vector<TablePose> poses;
   std::vector<std::string> remarks;

@@ -35,7 +35,7 @@ struct Table {
   std::string time_column;                  // the one that the form has or whose name says so; empty: none
   std::string time_unit = "s";              // its unit: "s", "ms", "us" or "ns"
   std::vector<TablePose> poses;
-  // What was left out and how the text was read, with counts: "12 columns of 'Marker' are not read".
+  // How the text was read and what was left out, with counts: "12 columns of 'Marker' are not read".
   std::vector<std::string> remarks;
 
   std::size_t row_count() const { return values.empty() ? 0 : values.front().size(); }

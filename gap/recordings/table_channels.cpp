@@ -104,16 +104,21 @@ WrittenTable write_table(McapWriter& writer, const Table& table, const std::stri
   const std::span<const double> times = table.column(table.time_column);
   if (times.empty()) throw RecordingError("no column of time; name one t_s");
   const double unit_s = seconds_of_time_unit(table.time_unit).value_or(1);
+
+  // MCAP has no times before 0: then the first row's becomes 0.
   double first = INFINITY;
   for (const double t : times) first = std::fmin(first, t);
   const double begin = first < 0 ? first : 0;
 
+  // A channel for each group of columns.
   WrittenTable written;
   std::map<std::string, Group> groups = groups_of(table);
   for (auto& [name, group] : groups) {
     written.topics.push_back(prefix + name);
     group.channel = writer.add_channel(prefix + name, "kenaf." + name, schema_of(table, group));
   }
+
+  // A message for each row and group in which something was measured.
   for (std::size_t row = 0; row < times.size(); ++row) {
     const double t_s = unit_s * (times[row] - begin);
     if (!(t_s < kLatestTime_s)) {

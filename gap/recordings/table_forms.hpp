@@ -1,4 +1,4 @@
-// What the first lines of a table say of its form. For table.cpp.
+// Recognises the form of a table by its first lines. For table.cpp.
 #pragma once
 
 #include <optional>

@@ -76,7 +76,7 @@ class RobotModel {
   btDiscreteDynamicsWorld& world_;
   ContactSolver& solver_;
   std::vector<std::unique_ptr<btCollisionShape>> hull_pieces_;
-  // Of the hull: tracks or wheels, and casters.
+  // A part of the hull: a track, a wheel or a caster.
   struct TaggedBelt {
     BeltShape belt;
     ShapeTag tag;

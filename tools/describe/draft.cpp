@@ -28,7 +28,7 @@ std::string line_of(const Entry& entry) {
   return fmt::format("{:<{}}# {}\n", assignment, std::max(kCommentColumn, assignment.size() + 1), remark_of(entry));
 }
 
-// Of all tables of that name, or of the n-th one, counted from 1.
+// Returns all tables of that name; with `nth` > 0 the n-th alone.
 std::vector<Table*> tables_at(Draft& draft, std::string_view name, std::size_t nth) {
   std::vector<Table*> found;
   for (Table& table : draft.tables)

@@ -22,7 +22,7 @@ using std::numbers::pi;
 
 constexpr double kGravity_mps2 = 9.81;
 
-// What the tables are made of.
+// The sources of all tables.
 struct Robot {
   const UrdfModel& model;
   const Roles& roles;
@@ -150,7 +150,7 @@ Table caster_table(const Robot& robot, const Rolling& caster) {
   return table;
 }
 
-// What the joints of the wheels say; 0: nothing.
+// Limits and inertia by the joints of the wheels; 0: not stated.
 struct WheelJoints {
   double max_speed_mps = 0, max_force_n = 0, moving_mass_kg = 0;
 };
@@ -171,6 +171,7 @@ WheelJoints joints_of_wheels(const Robot& robot) {
 }
 
 Table drive_table(const Robot& robot) {
+  // Joints of wheels state limits; tracks have no joint, so theirs are chosen.
   const WheelJoints joints = joints_of_wheels(robot);
   const double radius_m = robot.rolling_radius_m();
   const double max_speed_mps = joints.max_speed_mps > 0 ? joints.max_speed_mps : 1.0;
@@ -284,7 +285,7 @@ Draft draft_of(const Robot& robot, const std::string& usarsim_class) {
 }  // namespace
 
 MadeDescription from_urdf(std::string_view xml, const std::string& file, const FromUrdfOptions& options) {
-  // What the URDF says.
+  // Reads the URDF and the roles of its links.
   MadeDescription made;
   Meshes meshes(options.folders);
   const UrdfModel model = read_urdf(xml, file, made.warnings);

@@ -187,6 +187,7 @@ std::optional<Friction> friction_of(const UrdfModel& model, const std::vector<st
 }
 
 void append_gazebo_sensors(const UrdfModel& model, const Pose& X_FB, Draft& draft, std::vector<std::string>& warnings) {
+  // The sensors that every description gets have their names already.
   std::set<std::string> names{"GroundTruth", "INS", "Encoder", "Odometry", "Tachometer", "Drives"}, camera_names;
   std::vector<Table> cameras;
   std::size_t sensors = 0;
@@ -198,6 +199,8 @@ void append_gazebo_sensors(const UrdfModel& model, const Pose& X_FB, Draft& draf
         if (sensor.name != "sensor" || !given) continue;
         const std::string type = type_for(*given);
         const Pose X_BS = mount_of(link, sensor, X_FB);
+
+        // Cameras are tables of their own and come last; unknown types, and those beyond the limits, are warned of.
         if (type.empty()) {
           warnings.push_back(fmt::format("link \"{}\": a description has no sensor of type \"{}\"", link.name, *given));
         } else if (type == "camera" ? cameras.size() == kMostCameras : sensors == kMostSensors) {

@@ -1,4 +1,4 @@
-// What URDF files say in <gazebo reference="LINK"> for Gazebo, and liburdfdom leaves out: friction and sensors.
+// Reads friction and sensors from <gazebo reference="LINK">, which liburdfdom leaves out.
 //
 // Thread safety: pure functions.
 #pragma once
@@ -23,8 +23,8 @@ std::optional<Friction> friction_of(const UrdfModel& model, const std::vector<st
                                     std::vector<std::string>& warnings);
 
 // Adds a table [[sensor]] for each <sensor> of type imu, gps or navsat, contact, sonar, ray or lidar (also gpu_), and
-// after those a [[camera]] for each camera (also depth, rgbd and the like). What is neither, or more than a description
-// can have, goes to `warnings`. X_FB: the body's frame in F.
+// after those a [[camera]] for each camera (also depth, rgbd and the like). Other types, and more than a description
+// can have, go to `warnings`. X_FB: the body's frame in F.
 void append_gazebo_sensors(const UrdfModel& model, const physics::Pose& X_FB, Draft& draft,
                            std::vector<std::string>& warnings);
 

@@ -7,7 +7,7 @@
 namespace kenaf::describe {
 namespace {
 
-// What a point mass of 1 kg at d adds (parallel axis theorem).
+// The inertia that a point mass of 1 kg at d adds (parallel axis theorem).
 Eigen::Matrix3d of_point(const Eigen::Vector3d& d) {
   return d.squaredNorm() * Eigen::Matrix3d::Identity() - d * d.transpose();
 }

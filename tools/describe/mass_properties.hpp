@@ -10,7 +10,7 @@
 
 namespace kenaf::describe {
 
-// Of a body, in some frame A.
+// Mass, centre of mass and inertia of a body, in some frame A.
 struct MassProperties {
   double mass_kg = 0;
   Eigen::Vector3d p_ACm_m{Eigen::Vector3d::Zero()};

@@ -21,7 +21,7 @@ struct RoleChoice {
 
 struct Roles {
   std::vector<Role> of_link;  // for each link of the model
-  // The topmost link of each; what is below it has its role too. Of tracks: all links.
+  // The topmost link of each; what is below it has its role too. Tracks list all links.
   std::vector<std::size_t> wheels, casters, flippers, tracks;
   std::vector<std::size_t> hull;  // those whose shapes make the box
 };

@@ -91,11 +91,14 @@ WheelPair pair_of(const UrdfModel& model, const Rolling& left, const Rolling& ri
 // Front to rear on each side, so that the n-th of both sides belong together.
 std::vector<WheelPair> pairs_of(const UrdfModel& model, std::vector<Rolling> wheels, double& y_m, double tolerance_m,
                                 std::vector<std::string>& warnings) {
+  // The plane between the outermost wheels divides left from right.
   const auto by_y = [](const Rolling& a, const Rolling& b) { return a.p_FW_m.y() < b.p_FW_m.y(); };
   const auto [rightmost, leftmost] = std::ranges::minmax_element(wheels, by_y);
   y_m = (rightmost->p_FW_m.y() + leftmost->p_FW_m.y()) / 2;
   std::vector<Rolling> left, right;
   for (const Rolling& wheel : wheels) (wheel.p_FW_m.y() > y_m ? left : right).push_back(wheel);
+
+  // Each side in order, and as many on both.
   const auto front_first = [](const Rolling& a, const Rolling& b) { return a.p_FW_m.x() > b.p_FW_m.x(); };
   std::ranges::stable_sort(left, front_first);
   std::ranges::stable_sort(right, front_first);
@@ -104,6 +107,8 @@ std::vector<WheelPair> pairs_of(const UrdfModel& model, std::vector<Rolling> whe
         fmt::format("{}: there are {} wheels on the left and {} on the right, among them \"{}\": wheels "
                     "come in pairs; --wheels chooses links",
                     model.file, left.size(), right.size(), model.links[wheels.front().link].name));
+
+  // The n-th of both sides are mirror images, each behind the one before.
   std::vector<WheelPair> pairs;
   for (std::size_t i = 0; i < left.size(); ++i) {
     pairs.push_back(pair_of(model, left[i], right[i], y_m, tolerance_m, warnings));

@@ -35,9 +35,9 @@ class Meshes {
   std::map<std::string, std::string> complaints_;
 };
 
-// Of a shape along A's axes. Empty for a mesh that was not read.
+// Returns the box around a shape along A's axes; empty for a mesh that was not read.
 Eigen::AlignedBox3d bounds_of(const Shape& shape, const physics::Pose& X_AS, Meshes& meshes);
-// Of all shapes of some links, in F.
+// The same around all shapes of some links, in F.
 Eigen::AlignedBox3d bounds_of(const UrdfModel& model, const std::vector<std::size_t>& links, Meshes& meshes);
 
 }  // namespace kenaf::describe

@@ -146,7 +146,7 @@ MassProperties mass_of(const urdf::Link& link, bool moves, const std::string& fi
   return moved({given.mass, Eigen::Vector3d::Zero(), I}, X_LI);
 }
 
-// What moves needs a mass, its own or that of a link fixed to it.
+// A moving link needs a mass, its own or that of a link fixed to it.
 void check_moving_masses(const UrdfModel& model) {
   std::vector<double> mass_kg(model.links.size(), 0);
   for (std::size_t i = model.links.size(); i-- > 0;) {

@@ -98,7 +98,7 @@ const XmlNode* XmlNode::below(std::string_view path) const {
 
 XmlNode parse_xml(std::string_view text, const std::string& file) {
   using description::DescriptionError;
-  // What Expat would take for another encoding, or another reader for the end.
+  // Refuses bytes that Expat would take for another encoding, or another reader for the end.
   if (text.size() > kMostBytes)
     throw DescriptionError(fmt::format("{}: is larger than the {} MiB that are read", file, kMostBytes >> 20));
   if (text.find('\0') != std::string_view::npos)

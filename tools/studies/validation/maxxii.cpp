@@ -72,8 +72,8 @@ void simulate(std::vector<State>& states) {
   }
 }
 
-// What the simulation leaves of a slip is fitted by least squares: left_share v, right_share v, and growth |v| v of
-// both sides.
+// The part of a slip that the simulation leaves is fitted by least squares: left_share v, right_share v, and growth |v|
+// v of both sides.
 Eigen::Vector3d fit(const std::vector<State>& states, std::size_t half) {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
