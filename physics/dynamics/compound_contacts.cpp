@@ -132,8 +132,8 @@ class CompoundAlgorithm : public btCollisionAlgorithm {
     pair = nullptr;
   }
 
-  // One for each piece with each of the other body's; null where they are apart. Robots on tracks need no memory of their
-  // own.
+  // One for each piece with each of the other body's; null where they are apart. Robots on tracks need no memory of
+  // their own.
   std::array<btCollisionAlgorithm*, CompoundContacts::kFewPieces * CompoundContacts::kFewPieces> few_{};
   std::unique_ptr<btCollisionAlgorithm*[]> many_;
   std::span<btCollisionAlgorithm*> pairs_;
