@@ -30,7 +30,7 @@ struct Piece {
   int index;
   btTransform X_W;
   btCollisionObjectWrapper wrapper;
-  btVector3 low_W, high_W;
+  btVector3 low_W{0, 0, 0}, high_W{0, 0, 0};  // the analyzer does not see that getAabb() sets both
 
   Piece(const btCollisionObjectWrapper& body, std::size_t number)
       : index(compound_of(body) ? static_cast<int>(number) : kWholeBody),
