@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gap/logs/course.hpp"
@@ -41,7 +42,7 @@ class RunChecks {
   void check_pose();
   void check_drift();  // of the pose's clock; long
 
-  std::vector<Finding> take() { return std::move(findings_); }
+  std::vector<Finding> take() { return std::exchange(findings_, {}); }
 
  private:
   using Severity = Finding::Severity;

@@ -80,7 +80,7 @@ void add_vicon_poses(const Cells& bodies, const Cells& units, TableForm& form) {
     const std::string& body = bodies[i];
     if (body.empty() || !seen.insert(body).second) continue;
     const auto has = [&](const std::string& axis) {
-      return std::ranges::find(form.table.columns, body + "." + axis) != form.table.columns.end();
+      return std::ranges::find(form.table.columns, fmt::format("{}.{}", body, axis)) != form.table.columns.end();
     };
     if (!has("TX") || !has("RX")) continue;
 
