@@ -71,7 +71,7 @@ TrackDescription read_track(TomlReader table) {
 // A pair of wheels.
 TrackDescription read_wheel(TomlReader& table) {
   const double radius_m = table.number("radius_m", kPositive);
-  const TrackDescription wheel{
+  TrackDescription wheel{
       .length_m = 2 * radius_m,
       .end_radius_m = radius_m,
       .width_m = table.number("width_m", kPositive),
@@ -87,7 +87,7 @@ TrackDescription read_wheel(TomlReader& table) {
 }
 
 CasterDescription read_caster(TomlReader& table) {
-  const CasterDescription caster{
+  CasterDescription caster{
       .p_BC_m = table.vector3("center_m"),
       .radius_m = table.number("radius_m", kPositive),
       .width_m = table.number("width_m", kPositive),
