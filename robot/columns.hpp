@@ -137,6 +137,12 @@ constexpr std::span<const Column> columns() {
   return column_table::kAll;
 }
 
+// Returns the column of that name, or null.
+constexpr const Column* find_column(std::string_view name) {
+  const auto found = std::ranges::find(columns(), name, &Column::name);
+  return found == columns().end() ? nullptr : &*found;
+}
+
 // The columns of a quantity.
 constexpr std::span<const Column> columns_of(Quantity quantity) {
   const auto first = std::ranges::lower_bound(columns(), quantity, {}, &Column::quantity);

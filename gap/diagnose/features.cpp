@@ -23,10 +23,6 @@ std::vector<bool> upright_rows(const runs::Run& measured) {
   return upright;
 }
 
-void unwrap(std::vector<double>& angles) {
-  for (std::size_t i = 1; i < angles.size(); ++i) angles[i] -= kTurn * std::round((angles[i] - angles[i - 1]) / kTurn);
-}
-
 }  // namespace
 
 FeatureMap::FeatureMap(const runs::Run& measured, double span_s, std::span<const std::string> left_out)
@@ -48,7 +44,7 @@ FeatureMap::FeatureMap(const runs::Run& measured, double span_s, std::span<const
     if (series.t_s.empty()) continue;
 
     // sums by span, in the order of time
-    if (channel.angle) unwrap(series.value);
+    if (channel.angle) logs::unwrap(series.value);
     series.interval_s = series.t_s.size() > 1 ? logs::median_step(series.t_s, series.value) : 0;
     for (std::size_t i = 0; i < series.t_s.size(); ++i) {
       // a time on a border belongs to the later span, despite rounding
@@ -82,7 +78,7 @@ std::vector<double> FeatureMap::simulated_at(const runs::Run& simulated, const S
 
   // angles are continued past +-pi, on the turn on which the measured one starts
   if (channel.angle) {
-    unwrap(value);
+    logs::unwrap(value);
     const double turns = std::round((series.value.front() - value.front()) / kTurn);
     for (double& angle : value) angle += kTurn * turns;
   }

@@ -65,8 +65,8 @@ ColumnGuess made(const Looked& looked, const std::string& column, const std::str
 
 std::optional<ColumnGuess> own_column(const Looked& looked) {
   const std::string& name = looked.signal.path;
-  const auto known = std::ranges::find(robot::columns(), name, &robot::Column::name);
-  if (known == robot::columns().end() || name == "t_s") return std::nullopt;
+  const robot::Column* known = robot::find_column(name);
+  if (known == nullptr || name == "t_s") return std::nullopt;
   return made(looked, name, std::string(known->unit), "it has the column's own name", "", kOwnName);
 }
 

@@ -21,11 +21,6 @@ constexpr double kEmpty = std::numeric_limits<double>::quiet_NaN();
 constexpr double kHold_s = 1, kStepsOfGap = 2.5;                // chosen; the latter as of a merged pose
 constexpr std::size_t kMostValuesOfRun = std::size_t{1} << 24;  // as read_run() takes
 
-const robot::Column* run_column(std::string_view name) {
-  const auto found = std::ranges::find(robot::columns(), name, &robot::Column::name);
-  return found == robot::columns().end() ? nullptr : &*found;
-}
-
 std::vector<double> held(const Samples& samples, std::span<const double> rows_s, double max_gap_s) {
   std::vector<double> values;
   for (const double t : rows_s) {
@@ -36,22 +31,11 @@ std::vector<double> held(const Samples& samples, std::span<const double> rows_s,
   return values;
 }
 
-// Adds whole turns where an angle jumps, so that it can be interpolated.
-std::vector<double> without_jumps(std::vector<double> angles) {
-  constexpr double kTurn_rad = 2 * std::numbers::pi;
-  double turns = 0;
-  for (std::size_t i = 1; i < angles.size(); ++i) {
-    const double step = angles[i] + turns - angles[i - 1];
-    turns -= kTurn_rad * std::round(step / kTurn_rad);
-    angles[i] += turns;
-  }
-  return angles;
-}
-
 std::vector<double> interpolated(const Samples& samples, std::span<const double> rows_s,
                                  std::optional<double> max_gap_s, bool wraps) {
   const double gap_s = max_gap_s.value_or(kStepsOfGap * logs::median_step(samples.t_s, samples.t_s));
-  const logs::Course course{samples.t_s, wraps ? without_jumps(samples.value) : samples.value, gap_s};
+  logs::Course course{samples.t_s, samples.value, gap_s};
+  if (wraps) logs::unwrap(course.value);
   std::vector<double> values;
   for (const double t : rows_s) {
     const double value = logs::value_at(course, t);
@@ -120,7 +104,7 @@ class RunMaker {
   }
 
   void add_column(const ColumnMapping& column) {
-    const robot::Column* known = run_column(column.column);
+    const robot::Column* known = robot::find_column(column.column);
     add(column.column, sampled(converted(collected_, column.from, column.timing, column.factor), rows_s_, column.timing,
                                known != nullptr && known->wraps));
   }
@@ -201,7 +185,7 @@ class RunMaker {
   // In the order of robot/columns.hpp.
   void put_in_order() {
     const auto place = [](const std::string& name) {
-      const robot::Column* known = run_column(name);
+      const robot::Column* known = robot::find_column(name);
       return known == nullptr ? robot::columns().size() : static_cast<std::size_t>(known - robot::columns().data());
     };
     std::vector<std::size_t> order(made_.run.columns.size());

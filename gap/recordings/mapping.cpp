@@ -60,11 +60,6 @@ double factor_in(TomlReader& reader, const std::string& unit_key, const std::str
   return sign * *factor;
 }
 
-const robot::Column* known_column(std::string_view name) {
-  const auto found = std::ranges::find(robot::columns(), name, &robot::Column::name);
-  return found == robot::columns().end() ? nullptr : &*found;
-}
-
 bool is_command(std::string_view column) {
   return column.starts_with("cmd_");
 }
@@ -72,7 +67,7 @@ bool is_command(std::string_view column) {
 ColumnMapping column_in(TomlReader& reader, TimeFrom time) {
   ColumnMapping mapping{reader.text("column"), reader.text("from"), 1, {}};
   if (mapping.column == "t_s") reader.fail("column", "must not be t_s, which the rows give");
-  const robot::Column* known = known_column(mapping.column);
+  const robot::Column* known = robot::find_column(mapping.column);
   std::optional<double> radius_m;
   if (reader.has("radius_m")) radius_m = reader.number("radius_m", description::kPositive);
   // Other columns than a run's own keep their numbers.

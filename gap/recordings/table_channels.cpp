@@ -16,8 +16,8 @@ namespace {
 constexpr double kLatestTime_s = 9e9;  // nanoseconds of later times do not fit
 
 std::string group_of(const std::string& column) {
-  const auto known = std::ranges::find(robot::columns(), column, &robot::Column::name);
-  if (known == robot::columns().end()) return "other";
+  const robot::Column* known = robot::find_column(column);
+  if (known == nullptr) return "other";
   switch (known->quantity) {
     case robot::Quantity::track_command:
     case robot::Quantity::flipper_command:
@@ -50,8 +50,8 @@ std::string group_of(const std::string& column) {
 }
 
 std::string unit_of_column(const std::string& column) {
-  const auto known = std::ranges::find(robot::columns(), column, &robot::Column::name);
-  return known == robot::columns().end() ? std::string() : std::string(known->unit);
+  const robot::Column* known = robot::find_column(column);
+  return known == nullptr ? std::string() : std::string(known->unit);
 }
 
 // A channel and the columns in its messages.
