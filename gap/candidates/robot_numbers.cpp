@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "gap/candidates/number_ranges.hpp"
 #include "gap/candidates/wheel_numbers.hpp"
 
 namespace kenaf::gap::candidates {
@@ -20,10 +21,6 @@ using physics::TrackDescription;
 using physics::TrackDriveDescription;
 
 // As in physics/robot_description.cpp.
-constexpr NumberRange kAnyNumber{};
-constexpr NumberRange kAboveZero{.min = 0, .open_min = true};
-constexpr NumberRange kZeroOrMore{.min = 0};
-constexpr NumberRange kFrictionRange{.min = 0, .max = 10};
 constexpr NumberRange kLugRange{.min = 0, .max = 0.05};
 constexpr NumberRange kDelayRange{.min = 0, .max = 10};
 constexpr NumberRange kMinAngleRange{.min = -2 * std::numbers::pi, .max = 0};

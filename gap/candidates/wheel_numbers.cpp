@@ -5,16 +5,14 @@
 #include <array>
 #include <functional>
 
+#include "gap/candidates/number_ranges.hpp"
+
 namespace kenaf::gap::candidates {
 namespace {
 
 using physics::CasterDescription;
 using physics::RobotDescription;
 using physics::TrackDescription;
-
-constexpr NumberRange kAnyPlace{};
-constexpr NumberRange kMoreThanZero{.min = 0, .open_min = true};
-constexpr NumberRange kGripRange{.min = 0, .max = 10};
 
 double radius_m(const TrackDescription& wheel) {
   return wheel.end_radius_m;
@@ -45,15 +43,15 @@ constexpr WheelNumber of_center(std::string_view key, NumberRange range) {
 
 // Alike on all wheels of most robots.
 constexpr std::array kOfTheWheel{
-    WheelNumber{"radius_m", kMoreThanZero, radius_m, set_radius},
-    plain<&TrackDescription::width_m>("width_m", kMoreThanZero),
-    plain<&TrackDescription::friction_along>("friction_along", kGripRange),
-    plain<&TrackDescription::friction_across>("friction_across", kGripRange),
+    WheelNumber{"radius_m", kAboveZero, radius_m, set_radius},
+    plain<&TrackDescription::width_m>("width_m", kAboveZero),
+    plain<&TrackDescription::friction_along>("friction_along", kFrictionRange),
+    plain<&TrackDescription::friction_across>("friction_across", kFrictionRange),
 };
 constexpr std::array kOfItsPlace{
-    of_center<0>("left_center_m[0]", kAnyPlace),
-    of_center<1>("left_center_m[1]", kMoreThanZero),
-    of_center<2>("left_center_m[2]", kAnyPlace),
+    of_center<0>("left_center_m[0]", kAnyNumber),
+    of_center<1>("left_center_m[1]", kAboveZero),
+    of_center<2>("left_center_m[2]", kAnyNumber),
 };
 
 std::string key_of_pair(std::size_t pair, std::string_view key) {
@@ -105,20 +103,20 @@ RobotNumber of_places(const RobotDescription& robot, std::string_view key, int a
 
 void add_places(const RobotDescription& robot, std::vector<RobotNumber>& numbers) {
   numbers.push_back(of_places(
-      robot, "separation_m", 1, kMoreThanZero, [](const RobotDescription& r) { return r.track_gauge_m(); },
+      robot, "separation_m", 1, kAboveZero, [](const RobotDescription& r) { return r.track_gauge_m(); },
       [](RobotDescription& r, double change) {
         for (TrackDescription& wheel : r.track) wheel.p_BT_m.y() += change / 2;
       }));
-  numbers.push_back(of_places(robot, "forward_m", 0, kAnyPlace, middle_m, [](RobotDescription& r, double change) {
+  numbers.push_back(of_places(robot, "forward_m", 0, kAnyNumber, middle_m, [](RobotDescription& r, double change) {
     for (TrackDescription& wheel : r.track) wheel.p_BT_m.x() += change;
   }));
   numbers.push_back(of_places(
-      robot, "up_m", 2, kAnyPlace, [](const RobotDescription& r) { return r.track.front().p_BT_m.z(); },
+      robot, "up_m", 2, kAnyNumber, [](const RobotDescription& r) { return r.track.front().p_BT_m.z(); },
       [](RobotDescription& r, double change) {
         for (TrackDescription& wheel : r.track) wheel.p_BT_m.z() += change;
       }));
   if (robot.track.size() == 1) return;
-  numbers.push_back(of_places(robot, "base_m", 0, kMoreThanZero, base_m, [](RobotDescription& r, double change) {
+  numbers.push_back(of_places(robot, "base_m", 0, kAboveZero, base_m, [](RobotDescription& r, double change) {
     const double middle = middle_m(r), stretch = change / base_m(r);
     for (TrackDescription& wheel : r.track) wheel.p_BT_m.x() += stretch * (wheel.p_BT_m.x() - middle);
   }));
@@ -131,11 +129,11 @@ void add_casters(const RobotDescription& robot, std::vector<RobotNumber>& number
     keys.push_back(fmt::format("caster[{}].friction", i));
     numbers.push_back({keys.back(),
                        {keys.back()},
-                       kGripRange,
+                       kFrictionRange,
                        [i](const RobotDescription& r) { return r.caster[i].friction; },
                        [i](RobotDescription& r, double value) { r.caster[i].friction = value; }});
   }
-  numbers.push_back({"caster.friction", keys, kGripRange,
+  numbers.push_back({"caster.friction", keys, kFrictionRange,
                      [](const RobotDescription& r) { return r.caster.front().friction; },
                      [](RobotDescription& r, double value) {
                        const double before = r.caster.front().friction;
