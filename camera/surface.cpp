@@ -104,8 +104,7 @@ void add_belt(Surface& surface, const BeltLoop& belt) {
 }
 
 BeltLoop loop_of(const physics::TrackDescription& track, robot::Track side) {
-  BeltLoop belt{physics::track_outline(track), track.p_BT_m, track.width_m, Material::track_side, side, 1, {}};
-  if (side == robot::kRight) belt.p_LBelt.y() *= -1;
+  BeltLoop belt{physics::track_outline(track), track.center_m(side), track.width_m, Material::track_side, side, 1, {}};
   const double half_m = track.straight_m() / 2, radius_m = kWheelShare * track.end_radius_m;
   if (half_m > 0) belt.wheels.push_back({{half_m, 0}, radius_m});
   belt.wheels.push_back({{0, 0}, 0.7 * radius_m});  // a road wheel, or a wheel's hub

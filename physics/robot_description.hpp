@@ -42,6 +42,10 @@ struct TrackDescription {
   int pieces;           // number of pieces of the belly with contacts of their own, which spread the load along it
   double lug_height_m;  // height of the belt's profile that catches behind an edge
 
+  // Its centre, or that of its mirror image on the right.
+  Eigen::Vector3d center_m(robot::Track side) const {
+    return side == robot::kLeft ? p_BT_m : Eigen::Vector3d(p_BT_m.x(), -p_BT_m.y(), p_BT_m.z());
+  }
   double straight_m() const { return length_m - 2 * end_radius_m; }  // of the rectangle; 0: a wheel
   bool operator==(const TrackDescription&) const = default;
 };

@@ -71,9 +71,10 @@ class CompoundAlgorithm : public btCollisionAlgorithm {
     // Each pair of pieces has an algorithm of its own from when their boxes overlap in both frames until they no longer
     // do in W.
     const btTransform X_CW = compound.getWorldTransform().inverse();
+    const std::size_t count = pairs_.size() / other_count_;
     for (std::size_t j = 0; j < other_count_; ++j) {
       const Piece b(other, j);
-      for (std::size_t i = 0; i < pairs_.size() / other_count_; ++i) {
+      for (std::size_t i = 0; i < count; ++i) {
         const Piece a(compound, i);
         btCollisionAlgorithm*& pair = pairs_[i * other_count_ + j];
         if (!TestAabbAgainstAabb2(a.low_W, a.high_W, b.low_W, b.high_W))

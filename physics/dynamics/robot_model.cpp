@@ -102,9 +102,7 @@ void RobotModel::make_hull(RobotId id) {
   // Main tracks or wheels; all of a side run with its belt.
   for (const robot::Track side : {robot::kLeft, robot::kRight}) {
     for (const TrackDescription& track : description.track) {
-      Eigen::Vector3d center = track.p_BT_m;
-      if (side == robot::kRight) center.y() = -center.y();
-      add_belt_to_hull(track, center,
+      add_belt_to_hull(track, track.center_m(side),
                        belt_surface(description, side, track.friction_along, track.friction_across, track.lug_height_m,
                                     &belts_[side], 1));
     }

@@ -95,11 +95,8 @@ double servo_torque_nm(const EngineScene& scene) {
 RobotParts parts_of(const RobotDescription& robot) {
   RobotParts parts;
   for (const robot::Track side : {robot::kLeft, robot::kRight}) {
-    for (const TrackDescription& track : robot.track) {
-      Eigen::Vector3d center = track.p_BT_m;
-      if (side == robot::kRight) center.y() = -center.y();
-      parts.tracks.push_back(track_at(track, center, side));
-    }
+    for (const TrackDescription& track : robot.track)
+      parts.tracks.push_back(track_at(track, track.center_m(side), side));
   }
   for (const CasterDescription& caster : robot.caster)
     parts.tracks.push_back(track_at(caster.as_wheel(), caster.p_BC_m, std::nullopt));
