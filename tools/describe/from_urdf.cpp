@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <optional>
 
 #include "physics/robot_description.hpp"
 #include "tools/describe/body_of_urdf.hpp"
@@ -118,16 +119,26 @@ Table track_table(const Robot& robot) {
   return table;
 }
 
+std::optional<double> if_positive(double value) {
+  return value > 0 ? std::optional(value) : std::nullopt;
+}
+
+// Adds the number that the URDF states, or where it states none the chosen one.
+void add_stated(Table& table, const char* key, std::optional<double> stated, const char* what_it_is, double otherwise,
+                const char* why) {
+  if (stated)
+    table.from_urdf(key, toml_number(*stated), what_it_is);
+  else
+    table.chosen(key, toml_number(otherwise), why);
+}
+
 Table wheel_table(const Robot& robot, const WheelPair& pair) {
   const double width_m = pair.width_m.value_or(rounded(pair.radius_m / 2));
   check_gap(robot, robot.model.links[pair.left.link].name, pair.half_gauge_m, width_m);
   Table table{.name = "wheel", .one_of_several = true, .entries = {}};
   table.from_urdf("left_center_m", place_in_B(robot, pair.x_m, pair.half_gauge_m, pair.z_m));
   table.from_urdf("radius_m", toml_number(pair.radius_m));
-  if (pair.width_m)
-    table.from_urdf("width_m", toml_number(width_m));
-  else
-    table.chosen("width_m", toml_number(width_m), "half of the radius");
+  add_stated(table, "width_m", pair.width_m, "", width_m, "half of the radius");
   std::vector<std::size_t> links = subtree(robot.model, pair.left.link);
   std::ranges::copy(subtree(robot.model, pair.right.link), std::back_inserter(links));
   add_friction(table, robot, links);
@@ -138,15 +149,9 @@ Table caster_table(const Robot& robot, const Rolling& caster) {
   Table table{.name = "caster", .one_of_several = true, .entries = {}};
   table.from_urdf("center_m", toml_vector(caster.p_FW_m - robot.body.X_FB.p));
   table.from_urdf("radius_m", toml_number(caster.radius_m));
-  if (caster.width_m)
-    table.from_urdf("width_m", toml_number(*caster.width_m));
-  else
-    table.chosen("width_m", toml_number(rounded(caster.radius_m / 2)), "half of the radius");
+  add_stated(table, "width_m", caster.width_m, "", rounded(caster.radius_m / 2), "half of the radius");
   const auto friction = friction_of(robot.model, subtree(robot.model, caster.link), robot.warnings);
-  if (friction)
-    table.from_urdf("friction", toml_number(friction->along), "for Gazebo");
-  else
-    table.chosen("friction", "0.03");
+  add_stated(table, "friction", friction ? std::optional(friction->along) : std::nullopt, "for Gazebo", 0.03, "");
   return table;
 }
 
@@ -180,19 +185,12 @@ Table drive_table(const Robot& robot) {
     table.chosen("sprocket_radius_m", toml_number(radius_m), "at the belt's outer face");
   else
     table.from_urdf("sprocket_radius_m", toml_number(radius_m), "the wheel's radius");
-  if (joints.max_speed_mps > 0)
-    table.from_urdf("max_speed_mps", toml_number(max_speed_mps), "velocity limit");
-  else
-    table.chosen("max_speed_mps", toml_number(max_speed_mps));
-  if (joints.max_force_n > 0)
-    table.from_urdf("max_force_n", toml_number(joints.max_force_n), "effort limits of a side");
-  else
-    table.chosen("max_force_n", toml_number(rounded(0.8 * robot.weight_n() / 2)), "friction of 0.8 gives way first");
+  add_stated(table, "max_speed_mps", if_positive(joints.max_speed_mps), "velocity limit", max_speed_mps, "");
+  add_stated(table, "max_force_n", if_positive(joints.max_force_n), "effort limits of a side",
+             rounded(0.8 * robot.weight_n() / 2), "friction of 0.8 gives way first");
   table.chosen("time_constant_s", "0.1");
-  if (joints.moving_mass_kg > 0)
-    table.from_urdf("moving_mass_kg", toml_number(joints.moving_mass_kg), "wheels of a side, without rotor and gear");
-  else
-    table.chosen("moving_mass_kg", toml_number(rounded(0.08 * robot.body.mass.mass_kg)), "8 % of the mass");
+  add_stated(table, "moving_mass_kg", if_positive(joints.moving_mass_kg), "wheels of a side, without rotor and gear",
+             rounded(0.08 * robot.body.mass.mass_kg), "8 % of the mass");
   table.chosen("encoder_counts_per_radian", "318.30988618", "2000 counts a turn");
   table.chosen("amperes_per_newton", toml_number(rounded(max_speed_mps / robot.battery_v())),
                fmt::format("what {} V give at full speed without losses", robot.battery_v()));
@@ -223,15 +221,9 @@ Table servo_table(const Robot& robot) {
   const FlipperSet& flippers = *robot.gear.flippers;
   const double max_speed_radps = flippers.velocity_radps > 0 ? flippers.velocity_radps : 1.5;
   Table table{.name = "servo", .entries = {}};
-  if (flippers.velocity_radps > 0)
-    table.from_urdf("max_speed_radps", toml_number(max_speed_radps), "velocity limit");
-  else
-    table.chosen("max_speed_radps", toml_number(max_speed_radps));
-  if (flippers.effort_nm > 0)
-    table.from_urdf("max_torque_nm", toml_number(flippers.effort_nm), "effort limit");
-  else
-    table.chosen("max_torque_nm", toml_number(rounded(robot.weight_n() * flippers.length_m / 4)),
-                 "two flippers lift an end of the robot");
+  add_stated(table, "max_speed_radps", if_positive(flippers.velocity_radps), "velocity limit", max_speed_radps, "");
+  add_stated(table, "max_torque_nm", if_positive(flippers.effort_nm), "effort limit",
+             rounded(robot.weight_n() * flippers.length_m / 4), "two flippers lift an end of the robot");
   table.chosen("amperes_per_nm", toml_number(rounded(max_speed_radps / robot.battery_v())), "without losses");
   return table;
 }
