@@ -1,11 +1,9 @@
 // The program kenaf-draw: pictures of the size asked for, and clear words where the input is wrong.
-#include <sys/wait.h>
-
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "formats/runs/dataset.hpp"
-#include "tests/formats/runs/temporary_folder.hpp"
+#include "tests/support/outcome.hpp"
 
 using namespace kenaf;
 using test::read_file;
@@ -14,19 +12,11 @@ using test::write_file;
 
 namespace {
 
-struct Outcome {
-  int status;
-  std::string out, error;
-};
-
-Outcome kenaf_draw(const TemporaryFolder& folder, const std::string& arguments) {
+test::Outcome kenaf_draw(const TemporaryFolder& folder, const std::string& arguments) {
   // Fontconfig keeps what it read until the process ends, which a leak sanitizer would report.
   write_file(folder / "leaks.txt", "leak:libfontconfig\n");
-  const std::string command = "cd '" + folder.path().string() +
-                              "' && LSAN_OPTIONS=suppressions=leaks.txt:print_suppressions=0 '" KENAF_DRAW "' " +
-                              arguments + " >out.txt 2>error.txt </dev/null";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder / "out.txt"), read_file(folder / "error.txt")};
+  return test::outcome_in(folder,
+                          "LSAN_OPTIONS=suppressions=leaks.txt:print_suppressions=0 '" KENAF_DRAW "' " + arguments);
 }
 
 unsigned big_endian(const std::string& bytes, std::size_t offset) {
@@ -52,7 +42,7 @@ const std::string kOverStep =
 TEST_CASE("A run becomes a PNG of the default size, and its end error is printed") {
   const TemporaryFolder folder;
   write_file(folder / "square.csv", kThereAndBack);
-  const Outcome outcome = kenaf_draw(folder, "square.csv --out square.png");
+  const test::Outcome outcome = kenaf_draw(folder, "square.csv --out square.png");
   CHECK(outcome.error == "");
   CHECK(outcome.status == 0);
   CHECK(outcome.out == "square: 2.000 m in 2.0 s, end 3.0 mm and 0.0° from the start\n");
@@ -65,8 +55,9 @@ TEST_CASE("The size asked for, every view, another run, another robot and world"
   write_file(folder / "step.csv", kOverStep);
   write_file(folder / "other.csv", kThereAndBack);
   for (const std::string view : {"top", "side", "auto"}) {
-    const Outcome outcome = kenaf_draw(folder, "step.csv --run other.csv --world step-200 --view " + view +
-                                                   " --size 800x500 --title 'Over the step' --out " + view + ".png");
+    const test::Outcome outcome =
+        kenaf_draw(folder, "step.csv --run other.csv --world step-200 --view " + view +
+                               " --size 800x500 --title 'Over the step' --out " + view + ".png");
     CHECK(outcome.error == "");
     CHECK(outcome.status == 0);
     check_png(read_file(folder / (view + ".png")), 800, 500);
@@ -90,7 +81,7 @@ TEST_CASE("Degenerate runs are drawn: one row, no movement, a turn on the spot")
   write_file(folder / "turn.csv", "t_s,x_m,y_m,yaw_rad\n0,0,0,0\n1,0,0,3\n2,0,0,-1\n");
   for (const std::string run : {"one", "still", "turn"}) {
     for (const std::string view : {"auto", "side"}) {
-      const Outcome outcome = kenaf_draw(folder, run + ".csv --out " + run + ".png --view " + view);
+      const test::Outcome outcome = kenaf_draw(folder, run + ".csv --out " + run + ".png --view " + view);
       CHECK(outcome.error == "");
       CHECK(outcome.status == 0);
     }
@@ -101,7 +92,7 @@ TEST_CASE("A run of a dataset is drawn with the dataset's robot and world") {
   const TemporaryFolder folder;
   write_file(folder / "run-000.csv", kThereAndBack);
   runs::write_dataset(folder.path(), {"sim", "kenaf", "no-such-world", "", {}, {{"run-000.csv", "", ""}}});
-  const Outcome outcome = kenaf_draw(folder, "run-000.csv --out a.png");
+  const test::Outcome outcome = kenaf_draw(folder, "run-000.csv --out a.png");
   CHECK(outcome.status == 2);
   CHECK_THAT(outcome.error, Catch::Contains("no-such-world"));
   CHECK(kenaf_draw(folder, "run-000.csv --world flat --out a.png").status == 0);
@@ -132,7 +123,7 @@ TEST_CASE("Wrong input: exit status 2, what is wrong and where, and no picture")
                         {"run.csv", "--out"},
                         {"--out a.png", "run is required"}}) {
     INFO(c.arguments);
-    const Outcome outcome = kenaf_draw(folder, c.arguments);
+    const test::Outcome outcome = kenaf_draw(folder, c.arguments);
     CHECK(outcome.status == 2);
     CHECK_THAT(outcome.error, Catch::Contains(c.words));
     CHECK_FALSE(std::filesystem::exists(folder / "a.png"));

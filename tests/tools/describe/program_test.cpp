@@ -1,10 +1,8 @@
 // The program kenaf-describe: files, what it says of them, and its exit status.
-#include <sys/wait.h>
-
 #include <catch2/catch.hpp>
 
 #include "physics/robot_description.hpp"
-#include "tests/formats/runs/temporary_folder.hpp"
+#include "tests/support/outcome.hpp"
 #include "tests/tools/describe/small_urdf.hpp"
 
 using namespace kenaf;
@@ -14,16 +12,8 @@ using test::write_file;
 
 namespace {
 
-struct Answer {
-  int status;
-  std::string out, error;
-};
-
-Answer kenaf_describe(const TemporaryFolder& folder, const std::string& arguments) {
-  const std::string command =
-      "cd '" + folder.path().string() + "' && '" KENAF_DESCRIBE "' " + arguments + " >out.txt 2>error.txt </dev/null";
-  const int status = std::system(command.c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_file(folder / "out.txt"), read_file(folder / "error.txt")};
+test::Outcome kenaf_describe(const TemporaryFolder& folder, const std::string& arguments) {
+  return test::outcome_in(folder, "'" KENAF_DESCRIBE "' " + arguments);
 }
 
 }  // namespace
@@ -31,7 +21,7 @@ Answer kenaf_describe(const TemporaryFolder& folder, const std::string& argument
 TEST_CASE("A URDF becomes a file that loads, and what was chosen is listed") {
   const TemporaryFolder folder;
   write_file(folder / "small.urdf", test::kSmallUrdf);
-  const Answer answer = kenaf_describe(
+  const test::Outcome answer = kenaf_describe(
       folder,
       "from-urdf small.urdf --out small.toml --set drive.time_constant_s=0.2 --set battery.open_circuit_v=24.0");
   CHECK(answer.status == 0);
@@ -46,10 +36,10 @@ TEST_CASE("A URDF becomes a file that loads, and what was chosen is listed") {
 TEST_CASE("Without --out, standard output has the file and nothing else") {
   const TemporaryFolder folder;
   write_file(folder / "small.urdf", test::kSmallUrdf);
-  const Answer made = kenaf_describe(folder, "from-urdf small.urdf --class USARBot.Mine");
+  const test::Outcome made = kenaf_describe(folder, "from-urdf small.urdf --class USARBot.Mine");
   CHECK(made.status == 0);
   CHECK(physics::parse_robot(made.out, "out").usarsim_class == "USARBot.Mine");
-  const Answer urdf = kenaf_describe(folder, "to-urdf kenaf");
+  const test::Outcome urdf = kenaf_describe(folder, "to-urdf kenaf");
   CHECK(urdf.status == 0);
   CHECK_THAT(urdf.out, Catch::StartsWith("<?xml") && Catch::EndsWith("</robot>\n"));
   CHECK_THAT(urdf.error, Catch::Contains("not in the URDF:") && Catch::Contains("tracks are fixed"));
@@ -62,7 +52,7 @@ TEST_CASE("A mesh beside the URDF, in a folder that is not the current one") {
              "v 0 0 0\nv 0.4 0 0\nv 0 0.2 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
   write_file(folder / "robot/small.urdf",
              test::replaced(test::kSmallUrdf, "<box size=\"0.4 0.3 0.1\"/>", "<mesh filename=\"hull.obj\"/>"));
-  const Answer answer = kenaf_describe(folder, "from-urdf robot/small.urdf");
+  const test::Outcome answer = kenaf_describe(folder, "from-urdf robot/small.urdf");
   CHECK(answer.status == 0);
   CHECK(physics::parse_robot(answer.out, "out").body.size_m.x() == Approx(0.4));
 }
@@ -86,7 +76,7 @@ TEST_CASE("Wrong input to kenaf-describe: exit status 2, what is wrong, and no f
                         {"both", "subcommand is required"},
                         {"", "subcommand is required"}}) {
     INFO(c.arguments);
-    const Answer answer = kenaf_describe(folder, c.arguments);
+    const test::Outcome answer = kenaf_describe(folder, c.arguments);
     CHECK(answer.status == 2);
     CHECK_THAT(answer.error, Catch::Contains(c.words));
     CHECK_FALSE(std::filesystem::exists(folder / "a"));
