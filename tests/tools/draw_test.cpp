@@ -43,7 +43,7 @@ TEST_CASE("A run becomes a PNG of the default size, and its end error is printed
   const TemporaryFolder folder;
   write_file(folder / "square.csv", kThereAndBack);
   const test::Outcome outcome = kenaf_draw(folder, "square.csv --out square.png");
-  CHECK(outcome.error == "");
+  CHECK(outcome.error.empty());
   CHECK(outcome.status == 0);
   CHECK(outcome.out == "square: 2.000 m in 2.0 s, end 3.0 mm and 0.0° from the start\n");
   check_png(read_file(folder / "square.png"), 1920, 1200);
@@ -58,7 +58,7 @@ TEST_CASE("The size asked for, every view, another run, another robot and world"
     const test::Outcome outcome =
         kenaf_draw(folder, "step.csv --run other.csv --world step-200 --view " + view +
                                " --size 800x500 --title 'Over the step' --out " + view + ".png");
-    CHECK(outcome.error == "");
+    CHECK(outcome.error.empty());
     CHECK(outcome.status == 0);
     check_png(read_file(folder / (view + ".png")), 800, 500);
   }
@@ -82,7 +82,7 @@ TEST_CASE("Degenerate runs are drawn: one row, no movement, a turn on the spot")
   for (const std::string run : {"one", "still", "turn"}) {
     for (const std::string view : {"auto", "side"}) {
       const test::Outcome outcome = kenaf_draw(folder, run + ".csv --out " + run + ".png --view " + view);
-      CHECK(outcome.error == "");
+      CHECK(outcome.error.empty());
       CHECK(outcome.status == 0);
     }
   }

@@ -25,7 +25,7 @@ TEST_CASE("A URDF becomes a file that loads, and what was chosen is listed") {
       folder,
       "from-urdf small.urdf --out small.toml --set drive.time_constant_s=0.2 --set battery.open_circuit_v=24.0");
   CHECK(answer.status == 0);
-  CHECK(answer.out == "");
+  CHECK(answer.out.empty());
   CHECK_THAT(answer.error, Catch::Contains("not in the URDF, so chosen; --set KEY=VALUE gives another value:\n") &&
                                Catch::Contains("  drive.idle_amperes = 0.3\n") && !Catch::Contains("time_constant_s"));
   const physics::RobotDescription robot = physics::load_robot((folder / "small.toml").string());
