@@ -1,5 +1,5 @@
 # What is installed beside the programs, find_package(kenaf), pkg-config, and the Debian packages. A component of the
-# installation is a package: library, development, data, programs, mpi.
+# installation is a package: library, development, data, programs, mpi, python.
 include(CMakePackageConfigHelpers)
 
 install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/kenaf" COMPONENT development)
@@ -10,7 +10,7 @@ install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" COMPONENT pro
   FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
 install(FILES include/kenaf/hrt.h DESTINATION "${CMAKE_INSTALL_DOCDIR}/include/kenaf" COMPONENT programs)  # pages lead to it
 install(DIRECTORY examples teleop DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs FILES_MATCHING
-  PATTERN "*.c" PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.hpp" PATTERN "*.script")
+  PATTERN "*.c" PATTERN "*.h" PATTERN "*.cpp" PATTERN "*.hpp" PATTERN "*.script" PATTERN "*.py")
 # What the operator's program includes of formats/, so that it can be built where it is installed.
 install(FILES formats/protocol/datagram_codec.cpp formats/protocol/datagram_codec.hpp
   formats/protocol/host_port.cpp formats/protocol/host_port.hpp formats/protocol/log_limiter.hpp
@@ -47,6 +47,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS "${PROJECT_BINARY_DIR}/lib")  # where the libraries are, for the Python modules
 set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS ON)  # on the same version of the others
 
 # The libraries without the simulator: on a robot's computer Bullet, Embree and OpenMPI have no business.
@@ -92,6 +93,19 @@ if(TARGET kenaf-gap-mpi)
 Shares the work of kenaf-gap diagnose between the processes that mpirun starts, on one or more machines.")
   set(CPACK_COMPONENT_MPI_DEPENDS data)
   set(CPACK_DEBIAN_MPI_PACKAGE_RECOMMENDS mpi-default-bin)  # mpirun
+endif()
+
+if(KENAF_HAS_PYTHON)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-kenaf)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION "simulation and control of tracked robots, for Python
+Simulated and recorded runs as NumPy arrays, many at once on all cores, the diagnosis of what differs
+between robot and simulation, and hrt.h as a module over either library.")
+  set(CPACK_COMPONENT_PYTHON_DEPENDS data library)
+  math(EXPR next_minor "${KENAF_PYTHON_MINOR} + 1")  # a module is for one minor version of the interpreter
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "python3 (>= 3.${KENAF_PYTHON_MINOR}), python3 (<< 3.${next_minor}), python3-numpy (>= 1:1.24)")
 endif()
 
 foreach(component ${CPACK_COMPONENTS_ALL})

@@ -11,6 +11,8 @@ packages=(
   libassimp-dev libboost-dev libboost-system-dev libbullet-dev libbz2-dev libcairo2-dev libcli11-dev libeigen3-dev libembree-dev libexpat1-dev
   libfmt-dev libjs-three liblz4-dev libncurses-dev libpng-dev libsdformat-dev libspdlog-dev libsqlite3-dev libtomlplusplus-dev
   libturbojpeg0-dev liburdfdom-dev libzstd-dev nettle-dev nlohmann-json3-dev zlib1g-dev
+  # the Python package
+  pybind11-dev python3-dev python3-numpy
   # the package
   dpkg-dev file help2man
 )
@@ -21,7 +23,7 @@ case $mode in
     packages+=(
       # tests
       abigail-tools binutils catch2 chromium-headless-shell clang clang-format clang-tidy git iproute2 libclang-rt-14-dev
-      liburdfdom-tools llvm python3
+      liburdfdom-tools llvm mypy python3
       # the CAN tests
       busybox-static can-utils cpio kmod qemu-system-x86 xz-utils
       # a diagnosis by several processes

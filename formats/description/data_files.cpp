@@ -12,8 +12,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// An install prefix has its libraries in lib/ or, on Debian, in lib/x86_64-linux-gnu/.
-constexpr int kDepthOfLibraries = 2;
+// An install prefix has its libraries in lib/ or, on Debian, in lib/x86_64-linux-gnu/, and modules of Python in
+// lib/python3.11/dist-packages/kenaf/.
+constexpr int kDepthOfLibraries = 4;
 
 // The shared library or program that holds this code.
 fs::path own_file() {
@@ -30,7 +31,7 @@ std::vector<fs::path> data_roots() {
   if (const fs::path program = fs::read_symlink("/proc/self/exe", ignored); !program.empty()) {
     roots.push_back(program.parent_path().parent_path() / "share" / "kenaf");
   }
-  // For libkenaf_real in a user's program, which may be anywhere.
+  // For libkenaf_real and the Python modules in a user's program, which may be anywhere.
   if (const fs::path library = fs::weakly_canonical(own_file(), ignored); !library.empty()) {
     fs::path prefix = library.parent_path();
     for (int up = 0; up < kDepthOfLibraries; ++up) {

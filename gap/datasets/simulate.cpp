@@ -19,14 +19,6 @@ namespace {
 
 constexpr int kMostRuns = 100000;
 
-// FNV-1a hash (http://www.isthe.com/chongo/tech/comp/fnv/) of everything that a run's noise depends on.
-std::uint64_t seed_of(std::uint64_t seed, const std::string& manoeuvre, int repeat) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  for (const char c : fmt::format("{} {} {}", seed, repeat, manoeuvre))
-    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return hash;
-}
-
 std::string description_of(const SimulationRequest& request) {
   std::string text = "Simulated.";
   if (!request.effects.empty()) text += fmt::format(" Effects: {}.", fmt::join(request.effects, " "));
@@ -41,6 +33,14 @@ struct Asked {
 };
 
 }  // namespace
+
+// FNV-1a hash (http://www.isthe.com/chongo/tech/comp/fnv/) of everything that a run's noise depends on.
+std::uint64_t seed_of_run(std::uint64_t seed, std::string_view manoeuvre, int repeat) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const char c : fmt::format("{} {} {}", seed, repeat, manoeuvre))
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return hash;
+}
 
 SimulatedDataset simulate_dataset(const SimulationRequest& request) {
   // Checks the request.
@@ -98,7 +98,7 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
   for_each_job(dataset.runs.size(), request.jobs, [&](std::size_t i) {
     const Asked& of = asked[i / repeats];
     rollout::RollOutOptions own = options;
-    own.seed = seed_of(request.seed, of.argument, static_cast<int>(i % repeats));
+    own.seed = seed_of_run(request.seed, of.argument, static_cast<int>(i % repeats));
     const rollout::RollOut out = rollout::roll_out(robot, *of.world, of.manoeuvre, own);
     runs::write_run(folder.path() / dataset.runs[i].file, out.run);
     SimulatedRun& run = result.runs[i];

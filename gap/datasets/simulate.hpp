@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "physics/world.hpp"
@@ -43,6 +44,9 @@ struct SimulatedDataset {
   std::vector<SimulatedRun> runs;     // in the order requested, repeats of a manoeuvre side by side
   std::vector<std::string> warnings;  // features of worlds that the simulator does not support
 };
+
+// Seed of the noise of one run: that of the `repeat`th (from 0) run of `manoeuvre`, named as in the request.
+std::uint64_t seed_of_run(std::uint64_t seed, std::string_view manoeuvre, int repeat);
 
 // Writes the dataset to `out`: all of it or, if it throws, nothing. A run whose simulation went wrong is written up to
 // that point and marked with its fault in dataset.toml. Throws std::exception with words for the user if the input is

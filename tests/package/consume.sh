@@ -76,6 +76,18 @@ expect_error "$work/project/build/square_real" can
 sed 's/^interface = .*/interface = "stranger0"/' "$source/share/robots/kenaf.toml" >"$prefix/share/kenaf/robots/stranger.toml"
 KENAF_ROBOT=stranger expect_error "$work/project/build/square_real" "no SocketCAN\|'stranger0'"
 
+# The Python package, if the build has it: its library and its data are those that were installed with it.
+module=$(dirname "$(find "$prefix/lib" -path '*dist-packages/kenaf/__init__.py')")
+if [ -e "$module/__init__.py" ]; then
+  libraries=$(dirname "$(find "$prefix" -name 'libkenaf_sim.so')")
+  python() { PYTHONPATH=$(dirname "$module") LD_LIBRARY_PATH=$libraries /usr/bin/python3 -B "$@"; }
+  [ "$(cd "$work" && python -c 'import kenaf; print(kenaf.simulate("straight").succeeded)')" = True ] ||
+    fail "the installed Python package does not simulate"
+  expect_error_of_square() { (cd "$work" && KENAF_LIBRARY=$1 KENAF_RELAY=127.0.0.1:9 python "$source/examples/python/square.py") 2>&1; }
+  grep -q relay <<<"$(expect_error_of_square sim)" || fail "the Python square does not say 'relay'"
+  grep -qi can <<<"$(expect_error_of_square real)" || fail "the Python square does not say 'CAN'"
+fi
+
 pkgconfig=$(dirname "$(find "$prefix" -name kenaf-sim.pc)")
 for library in sim real; do
   read -ra flags <<<"$(PKG_CONFIG_PATH=$pkgconfig pkg-config --cflags --libs "kenaf-$library")"
@@ -90,6 +102,7 @@ abi=$(sed -n 's/^#define HRT_ABI //p' "$source/include/kenaf/hrt.h")
 library=libkenaf$abi
 packages=("$library" libkenaf-dev kenaf-data kenaf)
 [ ! -e "$prefix/bin/kenaf-gap-mpi" ] || packages+=(kenaf-gap-mpi)
+[ ! -e "$module/__init__.py" ] || packages+=(python3-kenaf)
 deb() { ls "$work/$1"_*.deb; }
 files() { cat "$work/$1.files"; }
 field() { dpkg-deb --field "$(deb "$1")" "$2"; }
@@ -119,10 +132,13 @@ holds kenaf-data share/kenaf/robots/kenaf.toml share/kenaf/worlds/flat.sdf share
 holds kenaf bin/kenaf-world bin/kenaf-relayd bin/kenaf-describe bin/kenaf-draw bin/kenaf-canlog bin/kenaf-candrives \
   share/man/man1/kenaf-world.1 lib/systemd/system/kenaf-relayd.service lib/systemd/system/kenaf-world.service \
   share/kenaf/page/index.html share/kenaf/page/three/three.module.js share/kenaf/page/three/OrbitControls.js \
-  share/doc/kenaf/README.md share/doc/kenaf/docs/user-guide.md share/doc/kenaf/examples/square.c \
+  share/doc/kenaf/README.md share/doc/kenaf/docs/user-guide.md share/doc/kenaf/examples/square.c share/doc/kenaf/examples/python/square.py \
   share/doc/kenaf/include/kenaf/hrt.h
 [ ! -e "$prefix/bin/kenaf-gap" ] || holds kenaf bin/kenaf-gap share/man/man1/kenaf-gap.1
 [ ! -e "$prefix/bin/kenaf-gap-mpi" ] || holds kenaf-gap-mpi bin/kenaf-gap-mpi share/man/man1/kenaf-gap-mpi.1
+
+[ ! -e "$module/__init__.py" ] || holds python3-kenaf "lib/python3\.[0-9]+/dist-packages/kenaf/__init__\.py" \
+  "lib/python3\.[0-9]+/dist-packages/kenaf/(_core|hrt_sim|hrt_real)\..*\.so" "lib/python3\.[0-9]+/dist-packages/kenaf/py\.typed"
 
 # The units start what the packages install.
 for unit in "$work"/root/usr/lib/systemd/system/*.service; do
@@ -151,6 +167,7 @@ needs libkenaf-dev "$library (= $version)"
 needs kenaf "kenaf-data (= $version)" libbullet libturbojpeg0
 ! field kenaf Depends | grep libopenmpi || fail "kenaf brings OpenMPI"
 [ ! -e "$prefix/bin/kenaf-gap-mpi" ] || needs kenaf-gap-mpi "kenaf-data (= $version)"
+[ ! -e "$module/__init__.py" ] || needs python3-kenaf "kenaf-data (= $version)" "$library (= $version)" "python3 (<<" python3-numpy
 [ "$(field kenaf-data Architecture)" = all ] || fail "kenaf-data is not for all architectures"
 
 echo "consume: find_package, pkg-config and ${packages[*]} work"

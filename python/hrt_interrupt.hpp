@@ -1,0 +1,42 @@
+// Control-C during a call that blocks: the robot stops, and KeyboardInterrupt is raised.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include "python/hrt.hpp"
+
+namespace kenaf::python {
+
+// While it lives, a SIGINT also stops the robot (hrt_stop), which ends a motion, and a second one closes it
+// (hrt_close), which ends any other wait, such as for a paused simulation. Python's own handler is called as always.
+// Does something only on the main thread and where Python handles SIGINT; elsewhere Python raises no KeyboardInterrupt
+// either.
+class StopOnInterrupt {
+ public:
+  StopOnInterrupt();
+  ~StopOnInterrupt();
+  StopOnInterrupt(const StopOnInterrupt&) = delete;
+  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+
+ private:
+  bool active_ = false;
+};
+
+// Calls an hrt_ function that blocks, without the GIL. Raises what a signal handler raised meanwhile, or else what
+// raise_unless_ok() does.
+template <typename Function, typename... Arguments>
+void call_blocking(Function function, Arguments... arguments) {
+  int result = HRT_OK;
+  {
+    const StopOnInterrupt stop;
+    const pybind11::gil_scoped_release others_may_run;
+    result = function(arguments...);
+  }
+  if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
+  raise_unless_ok(result);
+}
+
+// hrt_sleep(), which hrt_stop() does not end, in parts between which signals are handled. Ends at the same cycle.
+void sleep_interruptibly(double seconds);
+
+}  // namespace kenaf::python

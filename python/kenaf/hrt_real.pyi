@@ -1,0 +1,1 @@
+from kenaf.hrt_sim import *
