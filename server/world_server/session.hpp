@@ -69,8 +69,9 @@ struct Session {
   std::uint32_t id = 0;  // never reused within one server
   std::string peer;      // for log lines
   protocol::usarsim::LineSplitter lines;
-  std::string out;     // not yet handed to the socket
-  bool close = false;  // the connection must be closed
+  std::string out;      // not yet handed to the socket
+  bool close = false;   // the connection must be closed
+  bool opened = false;  // its first line has come: it speaks no other protocol
 
   Formats formats{};
   bool extended = false;  // sent CONTROL {Type Session}

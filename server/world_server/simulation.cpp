@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/protocol/foreign_opening.hpp"
 #include "physics/terrain_effects.hpp"
 #include "server/world_server/manual_drive.hpp"
 #include "server/world_server/report.hpp"
@@ -41,6 +42,16 @@ std::vector<physics::BoxId> find_loose_boxes(const physics::World& world) {
   std::vector<physics::BoxId> boxes = world.boxes();
   std::erase_if(boxes, [&](physics::BoxId id) { return world.box(id).mass_kg == 0; });
   return boxes;
+}
+
+// Closes a session whose first bytes are those of another protocol; `opening` is its first line or a part of it.
+void refuse_foreign(Simulation& simulation, Session& session, std::string_view opening) {
+  const std::string_view protocol = protocol::foreign_protocol(opening);
+  if (protocol.empty()) return;
+  session.close = true;
+  if (simulation.connection_log.allow(simulation.wall_s)) {
+    spdlog::warn("{}: closed: it speaks {}, not USARSim", session.peer, protocol);
+  }
 }
 
 bool is_word(std::string_view text) {
@@ -90,11 +101,17 @@ void Simulation::disconnect(const Session& session) {
 void Simulation::receive(Session& session, std::string_view bytes, double now_wall_s) {
   wall_s = now_wall_s;
   if (session.close) return;
+  // TLS need not have a line end; its first byte tells.
+  if (!session.opened) refuse_foreign(*this, session, bytes.substr(0, 1));
+  if (session.close) return;
   if (!session.lines.push(bytes)) {
     ++session.bad_lines;
     complain(*this, session, "a line is longer than 64 KiB", "");
   }
   while (const auto line = session.lines.next()) {
+    if (!session.opened) refuse_foreign(*this, session, *line);
+    session.opened = true;
+    if (session.close) return;
     handle_line(session, *line);
     if (session.bad_lines > kMostBadLines) {
       spdlog::warn("{}: closed after {} lines that are not USARSim messages", session.peer, session.bad_lines);

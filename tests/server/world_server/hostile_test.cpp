@@ -45,6 +45,21 @@ TEST_CASE("Lines that are no messages are survived, and a client of nothing but 
   CHECK(talk.session->close);
 }
 
+TEST_CASE("A web page's request, TLS and SSH are closed with one line in the log, and nothing in them is obeyed") {
+  for (const std::string opening : {"POST / HTTP/1.1\r\nHost: localhost:3000\r\n\r\n", "\r\nGET /x HTTP/1.1\r\n",
+                                    "BREW /pot HTTP/1.1\r\n", "\x16\x03\x01\x02", "SSH-2.0-OpenSSH_9.2\r\n"}) {
+    for (const std::size_t piece : {std::size_t{1}, opening.size()}) {  // however it is cut
+      Conversation talk;
+      const WholeLog log;
+      for (std::size_t i = 0; i < opening.size(); i += piece) talk.send(opening.substr(i, piece));
+      talk.send("INIT {ClassName USARBot.P2DX}\r\nDRIVE {Left 1} {Right 1}\r\n");
+      CHECK(talk.session->close);
+      CHECK_FALSE(talk.session->robot);
+      CHECK(log.lines() == 1);
+    }
+  }
+}
+
 TEST_CASE("A thousand commands before INIT are one line in the log") {
   const auto lines_logged = [](bool udk, std::string_view line) {
     Conversation talk(fast(udk));
