@@ -52,13 +52,6 @@ int main(int argc, char** argv) {
   spdlog::set_level(spdlog::level::from_str(log_level));
   spdlog::flush_on(spdlog::level::info);
 
-  // Blocked in every thread, so that only the waiting thread gets them.
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-
   try {
     kenaf::live::ViewOptions view_options = kenaf::live::parse_view_options(view);
     view_options.token = kenaf::live::parse_view_token(token);
@@ -67,6 +60,15 @@ int main(int argc, char** argv) {
     kenaf::image_server::set_camera_port(camera_options, camera_port);
     kenaf::image_server::set_camera_image(camera_options, camera_image);
     kenaf::world_server::WorldServer server(options);
+
+    // Not before the world is loaded: until then a signal ends the program at once, whatever it waits for. From here on
+    // blocked in every thread, so that only the waiting thread gets them.
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGTERM);
+    sigaddset(&signals, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+
     const auto served_cameras = kenaf::image_server::open_cameras(server, camera_options, options.listen_address);
     const auto live_view = kenaf::live::open_view(server, view_options, served_cameras.feed.get());
     std::thread stopper([&] {
