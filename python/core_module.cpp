@@ -7,6 +7,7 @@ PYBIND11_MODULE(_core, module) {
   namespace py = pybind11;
   const py::exception<kenaf::runs::RunFileError> input_error(module, "InputError", PyExc_ValueError);
   input_error.attr("__module__") = "kenaf";  // where users find it
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): the type that pybind11 asks for
   py::register_exception_translator([](std::exception_ptr raised) {
     const py::object type = py::module_::import("kenaf._core").attr("InputError");
     try {

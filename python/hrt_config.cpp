@@ -19,7 +19,7 @@ void add_text(py::class_<hrt_config>& type, const char* name, char (hrt_config::
         if (text.size() >= size || text.find('\0') != std::string::npos)
           throw py::value_error(std::string(name) + ": has at most " + std::to_string(size - 1) +
                                 " bytes, none of them 0");
-        std::strcpy(config.*member, text.c_str());
+        std::memcpy(config.*member, text.c_str(), text.size() + 1);
       });
 }
 

@@ -39,7 +39,7 @@ py::object this_module() {
 
 py::object new_exception(py::module_& module, const std::string& name, const py::tuple& bases) {
   const auto whole = module.attr("__name__").cast<std::string>() + "." + name;
-  const auto made = py::reinterpret_steal<py::object>(PyErr_NewException(whole.c_str(), bases.ptr(), nullptr));
+  auto made = py::reinterpret_steal<py::object>(PyErr_NewException(whole.c_str(), bases.ptr(), nullptr));
   if (!made) throw py::error_already_set();
   module.attr(name.c_str()) = made;
   return made;

@@ -80,8 +80,11 @@ void sleep_interruptibly(double seconds) {
     return;
   }
   const double end_s = hrt_time() + seconds;
-  for (double left_s = seconds; left_s > kSameTime_s; left_s = end_s - hrt_time())
+  double left_s = seconds;
+  while (left_s > kSameTime_s) {
     call_blocking(hrt_sleep, std::min(left_s, kPart_s));
+    left_s = end_s - hrt_time();
+  }
 }
 
 }  // namespace kenaf::python

@@ -23,7 +23,7 @@ py::dict arrays_of(runs::Run run) {
 }
 
 Array array_of(const py::handle& values, std::vector<py::ssize_t> shape, const std::string& name) {
-  const Array array = Array::ensure(values);
+  Array array = Array::ensure(values);
   if (!array) {
     PyErr_Clear();
     throw std::invalid_argument(fmt::format("{}: is not an array of numbers", name));
