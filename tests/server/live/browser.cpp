@@ -121,7 +121,11 @@ json Browser::call(const std::string& method, json parameters) {
       note(answer);
       continue;
     }
-    if (answer.contains("error")) throw std::runtime_error(method + ": " + answer["error"].dump());
+    if (answer.contains("error")) {
+      const std::string error = method + ": " + answer["error"].dump();
+      if (error.find("Inspected target navigated") != std::string::npos) throw PageLeft(error);
+      throw std::runtime_error(error);
+    }
     return answer["result"];
   }
 }
@@ -157,7 +161,13 @@ json Browser::evaluate(const std::string& expression) {
 }
 
 void Browser::wait_for(const std::string& expression) {
-  const bool held = support::eventually([&] { return evaluate("Boolean(" + expression + ")") == true; });
+  const bool held = support::eventually([&] {
+    try {
+      return evaluate("Boolean(" + expression + ")") == true;
+    } catch (const PageLeft&) {
+      return false;  // it was asked while the page loaded itself anew
+    }
+  });
   if (!held) throw std::runtime_error("in vain waited for: " + expression);
 }
 

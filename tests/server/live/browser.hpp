@@ -8,11 +8,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace kenaf::live {
+
+// The page was left, or loaded anew, before it answered.
+struct PageLeft : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 class Browser {
  public:
@@ -30,7 +36,7 @@ class Browser {
   void mouse(const std::string& what, double x, double y);
   // What the expression is worth; a promise is waited for. Throws where it throws.
   nlohmann::json evaluate(const std::string& expression);
-  // Until the expression is true.
+  // Until the expression is true; the page may load itself anew meanwhile.
   void wait_for(const std::string& expression);
   void screenshot(const std::filesystem::path& png);
   // What the page complained of so far: errors, exceptions, what its policy kept out.
