@@ -54,18 +54,14 @@ DiagnosisOptions options_of(const py::dict& asked) {
   return options;
 }
 
-// As kenaf-gap diagnose: what would overwrite an input is refused before anything long starts.
-void check_out(const fs::path& out, const fs::path& folder, const DiagnosisOptions& options) {
-  gap::datasets::check_can_write(out);
-  gap::diagnose::check_keeps_inputs(out, folder, options.robot);
-  if (!options.against.empty()) gap::diagnose::check_is_other_folder(out, options.against);
-}
-
 // `asked`: the arguments of kenaf.diagnose(). `progress`: None or a function of what is done and of the share done.
 // Returns report.json, the text of the terminal, the page, and the robot's file ("" if there is none).
 py::tuple diagnose(const fs::path& folder, const py::dict& asked, const fs::path& out, const py::object& progress) {
   DiagnosisOptions options = options_of(asked);
-  if (!out.empty()) check_out(out, folder, options);
+  if (!out.empty()) {  // before anything long starts
+    gap::datasets::check_can_write(out);
+    gap::diagnose::check_keeps_inputs(out, folder, options);
+  }
 
   Doing doing;
   options.progress = [&doing](const gap::diagnose::Progress& now) { doing.set(now); };

@@ -68,8 +68,7 @@ void write_dataset(const fs::path& folder, const py::dict& dataset, bool force) 
                         .noise = dataset["noise"].cast<std::map<std::string, double>>(),
                         .runs = {}};
   for (const py::handle entry : dataset["runs"]) {
-    const std::string number = std::to_string(written.runs.size());
-    const std::string file = "run-" + std::string(3 - std::min<std::size_t>(3, number.size()), '0') + number + ".csv";
+    const std::string file = runs::numbered_run_file(written.runs.size());
     const std::string world = worlds.add(text(entry, "world"));
     runs::write_run(part.path() / file, run_of(entry["columns"]));
     written.runs.push_back(

@@ -117,9 +117,7 @@ Simulation simulation_of(const py::dict& asked, Loaded& loaded) {
   options.seed = gap::datasets::seed_of_run(asked["seed"].cast<std::uint64_t>(), asked["name"].cast<std::string>(),
                                             asked["repeat"].cast<int>());
   options.noise_scale = in_range(asked, "noise", 0, gap::datasets::kLargestScale);
-  const double scatter = in_range(asked, "scatter", 0, gap::datasets::kLargestScale);
-  options.start_scatter_m = rollout::kUsualScatter_m * scatter;
-  options.start_scatter_rad = rollout::kUsualScatter_rad * scatter;
+  rollout::scatter_starts(options, in_range(asked, "scatter", 0, gap::datasets::kLargestScale));
   options.sample_period_s = in_range(asked, "sample_period_s", options.physics.time_step_s, 1);
   return simulation;
 }
@@ -201,7 +199,9 @@ py::list manoeuvres() {
 
 py::list parameters(const std::string& robot) {
   py::list all;
-  for (const gap::candidates::Candidate& c : gap::candidates::all_candidates(physics::load_robot(robot), true)) {
+  const bool has_obstacles = true;  // as in a world that has them
+  for (const gap::candidates::Candidate& c :
+       gap::candidates::all_candidates(physics::load_robot(robot), has_obstacles)) {
     py::dict one;
     one["name"] = c.name;
     one["unit"] = c.unit;

@@ -24,4 +24,11 @@ void call(Function function, Arguments... arguments) {
   raise_unless_ok(function(arguments...));
 }
 
+// Calls an hrt_ function that may block, without the GIL, and returns its result.
+template <typename Function, typename... Arguments>
+int without_gil(Function function, Arguments... arguments) {
+  const pybind11::gil_scoped_release others_may_run;
+  return function(arguments...);
+}
+
 }  // namespace kenaf::python

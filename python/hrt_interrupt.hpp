@@ -29,8 +29,7 @@ void call_blocking(Function function, Arguments... arguments) {
   int result = HRT_OK;
   {
     const StopOnInterrupt stop;
-    const pybind11::gil_scoped_release others_may_run;
-    result = function(arguments...);
+    result = without_gil(function, arguments...);
   }
   if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
   raise_unless_ok(result);

@@ -24,12 +24,7 @@ void kenaf_init(const std::optional<hrt_config>& config) {
 }
 
 void close_robot() {
-  int result = HRT_OK;
-  {
-    const py::gil_scoped_release others_may_run;
-    result = hrt_close();
-  }
-  raise_unless_ok(result);
+  raise_unless_ok(without_gil(hrt_close));
 }
 
 hrt_state get_state() {

@@ -29,11 +29,8 @@ Picture get_picture(const std::string& camera, int format, double timeout_s, std
   picture.number = other_than;
   std::vector<unsigned char> bytes(kFirstGuess);
   for (int tries = 0;; ++tries) {
-    int result = HRT_OK;
-    {
-      const py::gil_scoped_release others_may_run;
-      result = hrt_get_picture(camera.c_str(), format, bytes.data(), bytes.size(), timeout_s, &picture);
-    }
+    const int result =
+        without_gil(hrt_get_picture, camera.c_str(), format, bytes.data(), bytes.size(), timeout_s, &picture);
     // too small for this one, which says so
     if (result == HRT_E_ARGUMENT && picture.bytes > bytes.size() && tries < kTries) {
       bytes.resize(picture.bytes);

@@ -29,6 +29,12 @@ struct RollOutOptions {
   double start_scatter_m = 0, start_scatter_rad = 0;
 };
 
+// Start poses of a robot that is placed by hand, `scale` times as far apart as usual; 0: all the same.
+inline void scatter_starts(RollOutOptions& options, double scale) {
+  options.start_scatter_m = kUsualScatter_m * scale;
+  options.start_scatter_rad = kUsualScatter_rad * scale;
+}
+
 struct RollOut {
   runs::Run run;           // columns of docs/logs.md
   bool succeeded = false;  // by the manoeuvre's own criterion; false without one

@@ -28,9 +28,9 @@ for effect in report.effects:
         print(f"  explains {effect.explains:.0%} of its stage's gap on runs held out")
 
 # The corrected robot does what the real one did.
-for run in dataset[:1]:
-    for name, values in (("as described", {}), ("corrected", report.values)):
-        simulated = kenaf.simulate(run, robot=dataset.robot, values=values, noise=0)
-        rows = min(run.row_count, simulated.row_count)
-        gap_m = abs(simulated["track_left_m"][:rows] - run["track_left_m"][:rows]).max()
-        print(f"{name}: the left track's travel is up to {gap_m * 1000:.1f} mm off")
+run = dataset[0]
+for name, values in (("as described", {}), ("corrected", report.values)):
+    simulated = kenaf.simulate(run, robot=dataset.robot, values=values, noise=0)
+    rows = min(run.row_count, simulated.row_count)
+    gap_m = abs(simulated["track_left_m"][:rows] - run["track_left_m"][:rows]).max()
+    print(f"{name}: the left track's travel is up to {gap_m * 1000:.1f} mm off")

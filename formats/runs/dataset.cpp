@@ -196,6 +196,13 @@ void write_dataset(const fs::path& folder, const Dataset& dataset) {
   write_whole_file(file, text);
 }
 
+std::string numbered_run_file(std::size_t index) {
+  constexpr std::size_t kDigits = 3;
+  std::string number = std::to_string(index);
+  if (number.size() < kDigits) number.insert(0, kDigits - number.size(), '0');
+  return "run-" + number + ".csv";
+}
+
 void append_runs(const fs::path& folder, std::span<const DatasetRun> runs) {
   const fs::path file = folder / kFileName;
   std::string text = read_whole_file(file);

@@ -3,6 +3,7 @@
 // Thread safety: values and pure functions.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <span>
@@ -29,6 +30,9 @@ struct Dataset {
   std::map<std::string, double> noise;  // 1 sigma by column, in its unit; unknown for missing columns
   std::vector<DatasetRun> runs;
 };
+
+// The file of a dataset's run number `index`, from 0: "run-007.csv".
+std::string numbered_run_file(std::size_t index);
 
 // Reads `folder`/dataset.toml. Unknown keys are ignored. Throws RunFileError with file, line and column if the file is
 // missing, is no TOML or has another format, or `folder` is a file, a required key is missing or of another type, a

@@ -1,7 +1,5 @@
 #include "gap/challenge/case_runs.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -71,8 +69,7 @@ runs::Run make_run(const CasePlan& plan, const physics::RobotDescription& robot,
   options.noise_scale = plan.noise_scale;
   options.mocap_noise_m *= plan.noise_scale;
   options.mocap_noise_rad *= plan.noise_scale;
-  options.start_scatter_m = rollout::kUsualScatter_m;
-  options.start_scatter_rad = rollout::kUsualScatter_rad;
+  rollout::scatter_starts(options, 1);
 
   // Another engine moves the body of an exact run; the noise is that of the run in Kenaf's own engine.
   rollout::RollOutOptions exact = options;
@@ -136,7 +133,7 @@ void write_case_runs(const CasePlan& plan, const physics::RobotDescription& robo
   const auto repeats = static_cast<std::size_t>(runs.repeats);
   for (std::size_t i = 0; i < runs.manoeuvres.size() * repeats; ++i) {
     const rollout::Manoeuvre manoeuvre = rollout::load_manoeuvre(runs.manoeuvres[i / repeats]);
-    dataset.runs.push_back({fmt::format("run-{:03}.csv", i), manoeuvre.name, manoeuvre.world});
+    dataset.runs.push_back({runs::numbered_run_file(i), manoeuvre.name, manoeuvre.world});
   }
   for_each_job(dataset.runs.size(), jobs, [&](std::size_t i) {
     diagnose::check_goes_on(stop);

@@ -66,9 +66,7 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
       };
     if (reports) {
       datasets::check_can_write(options->out);
-      diagnose::check_keeps_inputs(options->out, options->dataset, options->diagnosis.robot);
-      if (!options->diagnosis.against.empty())
-        diagnose::check_is_other_folder(options->out, options->diagnosis.against);
+      diagnose::check_keeps_inputs(options->out, options->dataset, options->diagnosis);
     }
 
     const diagnose::Diagnosis result = diagnose::diagnose_dataset(options->dataset, options->diagnosis);

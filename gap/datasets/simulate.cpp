@@ -59,8 +59,7 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
   rollout::RollOutOptions options;
   options.physics = request.physics;
   options.noise_scale = request.noise_scale;
-  options.start_scatter_m = rollout::kUsualScatter_m * request.scatter_scale;
-  options.start_scatter_rad = rollout::kUsualScatter_rad * request.scatter_scale;
+  rollout::scatter_starts(options, request.scatter_scale);
 
   // The manoeuvres with their worlds, each world loaded once. The map does not move its elements.
   SimulatedDataset result;
@@ -90,7 +89,7 @@ SimulatedDataset simulate_dataset(const SimulationRequest& request) {
     const rollout::Manoeuvre& manoeuvre = asked[i / repeats].manoeuvre;
     const std::string world = world_files.add(manoeuvre.world);
     dataset.runs.push_back(
-        {fmt::format("run-{:03}.csv", i), manoeuvre.name, world == dataset.world ? std::string() : world});
+        {runs::numbered_run_file(i), manoeuvre.name, world == dataset.world ? std::string() : world});
   }
 
   // Each run has its own seed and its own elements to write, so that the jobs are independent.

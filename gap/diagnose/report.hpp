@@ -28,11 +28,10 @@ struct RobotFile {
 };
 RobotFile robot_file(const Diagnosis& diagnosis);
 
-// Throw std::runtime_error if reports in `out` would overwrite their inputs, i.e. a dataset or the description `robot`
-// (empty: the dataset's), or a robot file that no diagnosis wrote. Call these before long calculations.
-void check_is_other_folder(const std::filesystem::path& out, const std::filesystem::path& dataset);
+// Throws std::runtime_error if reports in `out` would overwrite their inputs, i.e. a dataset or the description, or a
+// robot file that no diagnosis wrote. Call this before long calculations.
 void check_keeps_inputs(const std::filesystem::path& out, const std::filesystem::path& dataset,
-                        const std::string& robot);
+                        const DiagnosisOptions& options);
 
 // Writes report.json, report.html and the robot's file, if any, atomically into `folder`; returns the path of the page.
 // Removes robot files of an earlier diagnosis that this one does not write. If this one was interrupted, keeps them and

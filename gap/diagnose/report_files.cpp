@@ -30,22 +30,24 @@ bool same(const fs::path& a, const fs::path& b) {
   return fs::equivalent(a, b, neither_is_there);
 }
 
-}  // namespace
-
 void check_is_other_folder(const fs::path& out, const fs::path& dataset) {
   if (same(out, dataset))
     throw std::runtime_error(
         fmt::format("{}: is the folder of the dataset; give another folder for the reports", out.string()));
 }
 
-void check_keeps_inputs(const fs::path& out, const fs::path& dataset, const std::string& robot) {
+}  // namespace
+
+void check_keeps_inputs(const fs::path& out, const fs::path& dataset, const DiagnosisOptions& options) {
   check_is_other_folder(out, dataset);
+  if (!options.against.empty()) check_is_other_folder(out, options.against);
   const bool has_report = fs::exists(out / kPage) || fs::exists(out / kReport);
   for (const char* robot_file : kRobotFiles) {
     const fs::path replaced = out / robot_file;
     if (!fs::exists(replaced)) continue;
-    const std::string name =
-        robot.empty() ? runs::resolve_beside(dataset, runs::read_dataset(dataset).robot, ".toml") : robot;
+    const std::string name = options.robot.empty()
+                                 ? runs::resolve_beside(dataset, runs::read_dataset(dataset).robot, ".toml")
+                                 : options.robot;
     if (same(replaced, description::find_data_file("robots", name, ".toml")))
       throw std::runtime_error(fmt::format(
           "{}: is the description to diagnose, which the report would replace; give another folder for the reports",

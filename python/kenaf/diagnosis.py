@@ -10,8 +10,8 @@ import math
 import os
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Union
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar, Union
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from kenaf import _core
 from kenaf.runs import Dataset, FloatArray, PathLike, write_runs
 
 _FORMAT = "kenaf-gap-report/2"
+_Members = TypeVar("_Members")
 
 
 def _number(value: float | None) -> float:
@@ -27,6 +28,13 @@ def _number(value: float | None) -> float:
 
 def _numbers(values: Mapping[str, float | None]) -> dict[str, float]:
     return {name: _number(value) for name, value in values.items()}
+
+
+def _members(kind: type[_Members], read: Mapping[str, Any], **made: Any) -> _Members:
+    """Makes a dataclass of the members of `read` that have the names of its own, with NaN for null, and of `made`."""
+    of_kind: Any = kind
+    names = [member.name for member in fields(of_kind) if member.name in read and member.name not in made]
+    return kind(**{name: math.nan if read[name] is None else read[name] for name in names}, **made)
 
 
 @dataclass(frozen=True)
@@ -58,7 +66,7 @@ class Value(Interval):
     @staticmethod
     def _of_json(read: Mapping[str, Any]) -> Value:
         low, high = (_number(end) for end in read["ci95"])
-        return Value(_number(read["value"]), low, high, _number(read["spread"]), read["unit"], _number(read["nominal"]))
+        return _members(Value, read, low=low, high=high)
 
 
 @dataclass(frozen=True)
@@ -97,20 +105,12 @@ class Effect:
 
     @staticmethod
     def _of(read: Mapping[str, Any]) -> Effect:
-        return Effect(
-            name=read["name"],
+        return _members(
+            Effect,
+            read,
             parameters={name: Value._of_json(value) for name, value in read["parameters"].items()},
-            explains=_number(read["explains"]),
-            explains_by_manoeuvre=_number(read["explains_by_manoeuvre"]),
             channels=read["acts_most_in"]["channels"],
             explains_in_channels=_number(read["acts_most_in"]["explains"]),
-            evidence=_number(read["evidence"]),
-            at_bound=read["at_bound"],
-            is_named=read["is_named"],
-            rivals=read["rivals"],
-            partners=read["partners"],
-            explains_with_partners=_number(read["explains_with_partners"]),
-            doubts=read["doubts"],
         )
 
 
@@ -135,15 +135,12 @@ class Gap:
 
     @staticmethod
     def _of(read: Mapping[str, Any]) -> Gap:
-        return Gap(
-            before=_number(read["before"]),
-            after=_number(read["after"]),
-            floor=_number(read["floor"]),
+        return _members(
+            Gap,
+            read,
             shrink=Interval._of(read["shrink"], read["shrink_ci95"]),
-            shrink_by_manoeuvre=_number(read["shrink_by_manoeuvre"]),
             before_si=_numbers(read["before_si"]),
             after_si=_numbers(read["after_si"]),
-            heldout_runs=read["heldout_runs"],
         )
 
 
@@ -259,41 +256,25 @@ class Stage:
     @staticmethod
     def _of(read: Mapping[str, Any]) -> Stage:
         shown = read["isolability"]["effects"]
-        ranking = [
-            Ranked(
-                one["name"],
-                {name: _number(value["value"]) for name, value in one["parameters"].items()},
-                _number(one["explains"]),
-                _number(one["evidence"]),
-            )
-            for one in read["ranking"]
-        ]
-        return Stage(
+        return _members(
+            Stage,
+            read,
             name=read["stage"],
-            verdict=read["verdict"],
-            named=read["named"],
-            ambiguous_sets=read["ambiguous_sets"],
-            complete=read["complete"],
-            share_of_gap=_number(read["share_of_gap"]),
             explains=Interval._of(read["explains"], read["explains_ci95"]),
             gap=Gap._of(read["gap"]),
             effects=[Effect._of(one) for one in read["effects"]],
             left=_number(read["left"]["share"]),
-            depends_on=[_plain(Dependence, one) for one in read["left"]["depends_on"]],
-            p_gap=_number(read["p_gap"]),
-            p_left=_number(read["p_left"]),
-            noise_from_repeats=read["noise_from_repeats"],
-            channels=[_plain(ChannelGap, one) for one in read["where"]["channels"]],
-            phases=[_plain(PhaseGap, one) for one in read["where"]["phases"]],
-            ranking=ranking,
+            depends_on=[_members(Dependence, one) for one in read["left"]["depends_on"]],
+            channels=[_members(ChannelGap, one) for one in read["where"]["channels"]],
+            phases=[_members(PhaseGap, one) for one in read["where"]["phases"]],
+            ranking=[_members(Ranked, one, values=_values(one["parameters"])) for one in read["ranking"]],
             shown=shown,
             angle_deg=np.array(read["isolability"]["angle_deg"], dtype=np.float64).reshape(len(shown), len(shown)),
         )
 
 
-def _plain(kind: Any, read: Mapping[str, Any]) -> Any:
-    """Makes a dataclass whose members have the names of JSON's, with NaN for null."""
-    return kind(**{name: math.nan if value is None else value for name, value in read.items()})
+def _values(parameters: Mapping[str, Any]) -> dict[str, float]:
+    return {name: _number(parameter["value"]) for name, parameter in parameters.items()}
 
 
 @dataclass(frozen=True)
@@ -347,15 +328,11 @@ class Report:
 
     @staticmethod
     def _of(read: Mapping[str, Any], **more: str) -> Report:
-        return Report(
-            verdict=read["verdict"],
-            named=read["named"],
-            ambiguous_sets=read["ambiguous_sets"],
-            complete=read["complete"],
+        return _members(
+            Report,
+            read,
             stages=[Stage._of(stage) for stage in read["stages"]],
-            doubts=read["doubts"],
-            next_manoeuvres=[_plain(Proposal, one) for one in read["next_manoeuvres"]],
-            warnings=read["warnings"],
+            next_manoeuvres=[_members(Proposal, one) for one in read["next_manoeuvres"]],
             **more,
         )
 

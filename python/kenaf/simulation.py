@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kenaf import _core
-from kenaf.runs import FloatArray, Run
+from kenaf.runs import Run
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,18 +168,3 @@ def noise(robot: str = "kenaf", scale: float = 1.0) -> dict[str, float]:
     """Returns the noise of simulated columns, 1 sigma in the column's unit, as Dataset.noise takes it."""
     return _core.noise_of(robot, scale)
 
-
-__all__ = [
-    "Commands",
-    "FloatArray",
-    "Manoeuvre",
-    "Parameter",
-    "Simulation",
-    "manoeuvres",
-    "noise",
-    "parameters",
-    "robots",
-    "simulate",
-    "simulate_all",
-    "worlds",
-]
