@@ -47,6 +47,7 @@ constexpr P kFrictionAlong[] = {{"scale", "1", 1, 0.3, 1.5, &E::friction_along_s
 constexpr P kFrictionAcross[] = {{"scale", "1", 1, 0.2, 2, &E::friction_across_scale}};
 constexpr P kFrictionAsymmetry[] = {{"ratio", "1", 0, -1, 1, &E::friction_asymmetry}};
 constexpr P kSlipWithSpeed[] = {{"slip_spm", "s/m", 0, 0, 1, &E::slip_with_speed_spm}};
+constexpr P kShearDeformation[] = {{"modulus_m", "m", 0, 0, 0.1, &E::shear_deformation_m}};
 constexpr P kRollingResistance[] = {{"coefficient", "1", 0, 0, 0.2, &E::rolling_resistance}};
 constexpr P kLugHeight[] = {{"scale", "1", 1, 0, 3, &E::lug_height_scale}};
 constexpr P kGroundCompliance[] = {{"scale", "1", 1, 0.2, 50, &E::ground_compliance_scale}};
@@ -111,6 +112,8 @@ constexpr EffectInfo kCatalogue[] = {
     {"friction_asymmetry", Stage::contact, "the left belts have more friction than the right ones by this share",
      kFrictionAsymmetry},
     {"slip_with_speed", Stage::contact, "a belt at speed u carries the robot with u (1 - slip |u|)", kSlipWithSpeed},
+    {"shear_deformation", Stage::contact, "friction of the belts builds up as they slip, over this shear displacement",
+     kShearDeformation},
     {"rolling_resistance", Stage::contact, "belts are braked by this share of what presses on them",
      kRollingResistance},
     {"lug_height", Stage::contact, "height of the lugs that catch at an edge, multiplied", kLugHeight},

@@ -50,6 +50,7 @@ struct Effects {
   double friction_along_scale = 1, friction_across_scale = 1;
   double friction_asymmetry = 0;   // left belts have more friction by half of it, right ones less
   double slip_with_speed_spm = 0;  // belt's surface speed u drives as u (1 - this |u|)
+  double shear_deformation_m = 0;  // added to the description's: friction that builds up as a belt slips
   double rolling_resistance = 0;   // force against the belt's motion for a unit of normal force
   double lug_height_scale = 1;
   // terrain

@@ -61,6 +61,7 @@ TrackDescription read_track(TomlReader table) {
       .friction_across = table.number("friction_across", kFriction),
       .pieces = table.integer("pieces", 1, 32),
       .lug_height_m = table.number_or("lug_height_m", 0, {.min = 0, .max = 0.05}),
+      .shear_deformation_m = table.number_or("shear_deformation_m", 0, {.min = 0, .max = 0.2}),
   };
   if (track.length_m <= 2 * track.end_radius_m) table.fail("length_m", "must be more than twice end_radius_m");
   if (track.p_BT_m.y() <= track.width_m / 2) table.fail("left_center_m", "must have a y of more than half of width_m");

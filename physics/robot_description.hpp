@@ -41,6 +41,9 @@ struct TrackDescription {
   double friction_across;
   int pieces;           // number of pieces of the belly with contacts of their own, which spread the load along it
   double lug_height_m;  // height of the belt's profile that catches behind an edge
+  // Shear deformation modulus K of friction that builds up as a belt slips, of all belts (docs/physics.md); 0:
+  // Coulomb's friction. Not of wheels, whose length of contact is not known: 0.
+  double shear_deformation_m = 0;
 
   // Its centre, or that of its mirror image on the right.
   Eigen::Vector3d center_m(robot::Track side) const {

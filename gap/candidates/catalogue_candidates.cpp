@@ -87,6 +87,11 @@ constexpr RangeOfEffect kRangesOfEffects[] = {
      [](const RobotDescription& robot) {
        return SearchRange{0, 0.5 / robot.drive.max_speed_mps};
      }},
+    // loose ground has some hundredths of a metre (Wong 2.4), the belly of a small robot ten times as much
+    {"shear_deformation", "m",
+     [](const RobotDescription& robot) {
+       return SearchRange{0, 0.15 * length_m(robot)};
+     }},
     {"obstacle_height", "m",
      [](const RobotDescription& robot) {
        return SearchRange{-0.09 * length_m(robot), 0.09 * length_m(robot)};
@@ -123,6 +128,7 @@ bool can_show(const RobotDescription& robot, const EffectInfo& effect, bool has_
   if (effect.name.starts_with("posture_")) return has_sensor(robot, {ins});
   if (effect.name.starts_with("gyro_")) return has_sensor(robot, {imu});
   if (effect.name.starts_with("encoder_")) return has_sensor(robot, {encoder, tachometer});
+  if (effect.name == "shear_deformation") return !robot.has_wheels();
   if (effect.name == "lug_height") return robot.track.front().lug_height_m > 0;
   return true;
 }

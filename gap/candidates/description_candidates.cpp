@@ -115,6 +115,10 @@ SearchRange pivot_ahead(const RobotDescription& robot, double value) {
 SearchRange lugs(const RobotDescription& robot, double value) {
   return {0, std::max(3 * value, 0.03 * robot.track.front().end_radius_m)};
 }
+// As that of the effect, and beyond a description that has much of it.
+SearchRange shear(const RobotDescription& robot, double value) {
+  return {0, std::max(3 * value, 0.15 * robot.track.front().length_m)};
+}
 SearchRange time_constant(const RobotDescription&, double value) {
   return {0, std::max(kLongestConstant_s, value)};
 }
@@ -153,6 +157,8 @@ constexpr DescribedNumber kDescribed[] = {
      "friction_along"},
     {"track.friction_across", "1", Stage::contact, "friction of the main belts across", doubled, "friction_across"},
     {"track.lug_height_m", "m", Stage::contact, "height of the lugs that catch at an edge", lugs, "lug_height"},
+    {"track.shear_deformation_m", "m", Stage::contact, "shear displacement over which the belts' friction builds up",
+     shear, "shear_deformation"},
     {"wheel.base_m", "m", Stage::body, "distance of the front and rear axles", doubled},
     {"wheel.radius_m", "m", Stage::body, "radius of the wheels, which sets the ride height", doubled},
     {"wheel.width_m", "m", Stage::body, "width of the wheels", track_width},

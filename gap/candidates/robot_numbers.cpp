@@ -22,6 +22,7 @@ using physics::TrackDriveDescription;
 
 // As in physics/robot_description.cpp.
 constexpr NumberRange kLugRange{.min = 0, .max = 0.05};
+constexpr NumberRange kShearRange{.min = 0, .max = 0.2};
 constexpr NumberRange kDelayRange{.min = 0, .max = 10};
 constexpr NumberRange kMinAngleRange{.min = -2 * std::numbers::pi, .max = 0};
 constexpr NumberRange kMaxAngleRange{.min = 0, .max = 2 * std::numbers::pi};
@@ -113,6 +114,7 @@ constexpr PlainNumber kOfTracks[] = {
     {"track.friction_along", kFrictionRange, Track<&TrackDescription::friction_along>{}},
     {"track.friction_across", kFrictionRange, Track<&TrackDescription::friction_across>{}},
     {"track.lug_height_m", kLugRange, Track<&TrackDescription::lug_height_m>{}},
+    {"track.shear_deformation_m", kShearRange, Track<&TrackDescription::shear_deformation_m>{}},
 };
 
 constexpr PlainNumber kOfFlippers[] = {

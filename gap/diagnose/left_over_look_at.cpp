@@ -60,7 +60,7 @@ constexpr Cause kOfForward[] = {
     {R::turn, {"tracked_point_left", "com_left", "ground_bank"}},
     {R::turn_size, {"friction_along", "friction_across", "com_forward"}},
     {R::acceleration, {"tracking_delay", "clock_offset", "friction_along"}},
-    {R::load, {"friction_along", "rolling_resistance"}},
+    {R::load, {"friction_along", "rolling_resistance", "shear_deformation"}},
     {R::pitch, {"friction_along", "ground_slope"}}};
 
 constexpr Cause kOfSideways[] = {{R::simulated, {"friction_across", "com_forward"}},

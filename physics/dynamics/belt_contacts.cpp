@@ -42,21 +42,21 @@ Slices slices(const BeltShape& belt, int count) {
 
 // The points of the outline that can touch a face of unit normal `normal`: the lowest of each disc, and those of the
 // run that faces it, at the ends of equal pieces, weighted by the trapezoidal rule; of a wheel its lowest point, with
-// the weight of one piece. `use(place, point, weight)`;
-// points have y = 0.
+// the weight of one piece. `use(place, run_place, point, weight)`; run_place as in BeltTouch; points have y = 0.
 template <typename Use>
 void outline_points(const BeltShape& belt, const btVector3& normal, const Use& use) {
   if (belt.discs() == 1) {
-    use(0, furthest_on_disc(belt, 0, -normal), 1.0);
+    use(0, -1, furthest_on_disc(belt, 0, -normal), 1.0);
     return;
   }
-  for (int disc = 0; disc < 2; ++disc)
-    use(static_cast<std::uint32_t>(disc), furthest_on_disc(belt, disc, -normal), 0.5);
   const btVector3 run_normal(belt.lean, 0, normal.z() > 0 ? -belt.rise : belt.rise);
-  if (-run_normal.dot(normal) < kFacing) return;
+  const bool faces = -run_normal.dot(normal) >= kFacing;
+  for (int disc = 0; disc < 2; ++disc)
+    use(static_cast<std::uint32_t>(disc), faces ? disc * belt.pieces : -1, furthest_on_disc(belt, disc, -normal), 0.5);
+  if (!faces) return;
   const btVector3 from = furthest_on_disc(belt, 0, run_normal), to = furthest_on_disc(belt, 1, run_normal);
   for (int i = 1; i < belt.pieces; ++i)
-    use(static_cast<std::uint32_t>(i + 1), from + (to - from) * (static_cast<btScalar>(i) / belt.pieces), 1.0);
+    use(static_cast<std::uint32_t>(i + 1), i, from + (to - from) * (static_cast<btScalar>(i) / belt.pieces), 1.0);
 }
 
 // The points of the outline that stand for the belt's side face where it meets a wall: the ends of both runs, and both
@@ -153,9 +153,9 @@ class BoxTouches {
 
  private:
   void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar weight, bool holds_lugs,
-           std::uint64_t id) {
+           std::uint64_t id, int run_place = -1) {
     // A point deeper in the slice than the overlap across it belongs to a wall that the belt's side face meets.
-    if (-gap <= overlap_) out_.push_back({p, normal, gap, weight, holds_lugs, id});
+    if (-gap <= overlap_) out_.push_back({p, normal, gap, weight, holds_lugs, id, run_place});
   }
 
   // Calls use(axis, sign, normal, flat) for each face that is not beside the slices; `flat` is the normal's part in the
@@ -193,8 +193,8 @@ class BoxTouches {
     for_each_face([&](int j, int sign, const btVector3& normal, const btVector3& flat) {
       if (depth_below(j, normal, flat) < -kTouching_m) return;
       const std::uint32_t face = static_cast<std::uint32_t>(2 * j + (sign > 0));
-      outline_points(belt_, flat, [&](std::uint32_t place, const btVector3& p, btScalar weight) {
-        face_points(j, normal, face, s, place, p, weight);
+      outline_points(belt_, flat, [&](std::uint32_t place, int run_place, const btVector3& p, btScalar weight) {
+        face_points(j, normal, face, s, place, run_place, p, weight);
       });
     });
   }
@@ -202,7 +202,7 @@ class BoxTouches {
   // A point of the outline, in each slice. Where the face extends under the whole width, the belt's two edges carry all
   // the load, as on a plane.
   void face_points(int j, const btVector3& normal, std::uint32_t face, const Slices& s, std::uint32_t place,
-                   btVector3 p, btScalar weight) {
+                   int run_place, btVector3 p, btScalar weight) {
     const auto move_to = [&](std::size_t k) { p.setY(s.y[k]); };
     const auto gap_here = [&] { return normal.dot(p - box_.center) - box_.half[j]; };
     const auto counts = [](btScalar gap) { return gap <= kTouching_m && gap >= -kDeepest_m; };
@@ -224,7 +224,7 @@ class BoxTouches {
       const btScalar gap = gap_here();
       if (!counts(gap)) continue;
       add(p - normal * (gap / 2), normal, gap, weight * (whole ? 1 : s.weight[k]), false,
-          feature(face, static_cast<std::uint32_t>(k), place));
+          feature(face, static_cast<std::uint32_t>(k), place), run_place);
     }
   }
 
@@ -360,24 +360,24 @@ class BoxTouches {
 
 void touch_plane(const BeltShape& belt, const btVector3& normal, btScalar offset, std::vector<BeltTouch>& out) {
   const btScalar in_plane = btSqrt(normal.x() * normal.x() + normal.z() * normal.z());
-  const auto touch = [&](btVector3 p, btScalar y, btScalar weight, std::uint64_t id) {
+  const auto touch = [&](btVector3 p, btScalar y, btScalar weight, std::uint64_t id, int run_place) {
     p.setY(y);
     const btScalar gap = normal.dot(p) - offset;
-    if (gap <= kTouching_m) out.push_back({p - normal * (gap / 2), normal, gap, weight, false, id});
+    if (gap <= kTouching_m) out.push_back({p - normal * (gap / 2), normal, gap, weight, false, id, run_place});
   };
 
   // A wall beside the belt meets its side face.
   if (in_plane < kSideways) {
     const btScalar y = normal.y() > 0 ? -belt.half_width : belt.half_width;
-    side_face_points(belt, [&](std::uint32_t place, const btVector3& p) { touch(p, y, 1, feature(0, 2, place)); });
+    side_face_points(belt, [&](std::uint32_t place, const btVector3& p) { touch(p, y, 1, feature(0, 2, place), -1); });
     return;
   }
 
   // Ground: the outline's points at both edges of the belt.
   const btVector3 flat(normal.x() / in_plane, 0, normal.z() / in_plane);
   for (const std::uint32_t slice : {0u, 1u})
-    outline_points(belt, flat, [&](std::uint32_t place, const btVector3& p, btScalar weight) {
-      touch(p, slice ? belt.half_width : -belt.half_width, weight, feature(0, slice, place));
+    outline_points(belt, flat, [&](std::uint32_t place, int run_place, const btVector3& p, btScalar weight) {
+      touch(p, slice ? belt.half_width : -belt.half_width, weight, feature(0, slice, place), run_place);
     });
 }
 
@@ -396,10 +396,10 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
       if (edge[i].cross(p - t.corner[i]).dot(t.normal) < 0) return false;
     return true;
   };
-  const auto face = [&](const btVector3& p, btScalar weight, std::uint64_t id) {
+  const auto face = [&](const btVector3& p, btScalar weight, std::uint64_t id, int run_place) {
     const btScalar gap = t.normal.dot(p - t.corner[0]);
     if (gap <= kTouching_m && gap >= -kDeepest_m && inside(p))
-      out.push_back({p - t.normal * (gap / 2), t.normal, gap, weight, false, id});
+      out.push_back({p - t.normal * (gap / 2), t.normal, gap, weight, false, id, run_place});
   };
 
   // A triangle beside the belt meets its side face.
@@ -407,7 +407,7 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
     const btScalar y = t.normal.y() > 0 ? -belt.half_width : belt.half_width;
     side_face_points(belt, [&](std::uint32_t place, btVector3 p) {
       p.setY(y);
-      face(p, 1, feature(t.index, kMeshSlices, place));
+      face(p, 1, feature(t.index, kMeshSlices, place), -1);
     });
     return;
   }
@@ -418,9 +418,9 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
   for (int k = 0; k < s.count; ++k) {
     const btScalar y = s.y[static_cast<std::size_t>(k)], slice_weight = s.weight[static_cast<std::size_t>(k)];
     const auto slice = static_cast<std::uint32_t>(k);
-    outline_points(belt, flat, [&](std::uint32_t place, btVector3 p, btScalar weight) {
+    outline_points(belt, flat, [&](std::uint32_t place, int run_place, btVector3 p, btScalar weight) {
       p.setY(y);
-      face(p, weight * slice_weight, feature(t.index, slice, place));
+      face(p, weight * slice_weight, feature(t.index, slice, place), run_place);
     });
 
     // ... and the triangle's own edges where they cross the slice, p = corner + edge (y - corner_y) / edge_y: an edge

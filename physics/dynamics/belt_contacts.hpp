@@ -24,6 +24,9 @@ struct BeltTouch {
   btScalar weight;        // factor of stiffness and damping; grows with the area that the point stands for
   bool holds_lugs;        // lugs catch behind it: an edge of the ground across the belt, or a corner; not a face
   std::uint64_t feature;  // identifies the contact from step to step
+  // Its place along the straight run that faces the ground, in pieces from disc 0, 0 to BeltShape::pieces; -1: it is on
+  // no such run, but on an arc, an edge, a corner, a side face or a wheel.
+  int run_place = -1;
 };
 
 // Half space below the plane normal_T . p = offset.

@@ -70,6 +70,8 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
       belt_a_(meeting.surface_a->belt),
       belt_b_(meeting.surface_b->belt),
       inverse_mass_a_(body_a_->inverse_mass),
+      stretch_(touch.stretch),
+      shear_rate_(touch.shear_rate),
       stored_impulse_{touch.stored_impulse[0], touch.stored_impulse[1], touch.stored_impulse[2]},
       collider_a_(meeting.collider_a),
       collider_b_(meeting.collider_b),
@@ -165,6 +167,8 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
   // Sticking: the impulse -K^-1 slip stops all slip; K is the 2 x 2 matrix of the tangents.
   mu_ = Two{std::max(mu_along, kLeastFriction), std::max(mu_across, kLeastFriction)};
   inverse_mu_ = 1 / mu_;
+  slip_gain_ = k11_k22;
+  slip_coupling_ = k12;
   const btScalar k11 = k11_k22[0], k22 = k11_k22[1];
   const btScalar inverse_determinant = 1 / (k11 * k22 - k12 * k12);
   stick_[0] = Two{k22, -k12} * inverse_determinant;
@@ -206,6 +210,46 @@ void Contact::warm_start() {
   apply<false>(in_place(none), normal_impulse_, friction_impulse_);
 }
 
+[[gnu::always_inline]] inline Two Contact::coulomb_friction(Two slip, btScalar normal) const {
+  // Sticking: the impulse that stops the slip, if it lies within the limit ellipse.
+  const Two friction = friction_impulse_ - stick_[0] * slip[0] - stick_[1] * slip[1];
+  const Two scaled = friction * inverse_mu_;
+  if (scaled[0] * scaled[0] + scaled[1] * scaled[1] <= normal * normal) return friction;
+  // Sliding: projected gradient step, q - mu slip / eigenvalue, then back onto the circle of radius p_normal. Its fixed
+  // point is the impulse of maximum dissipation: there the ellipse's normal points against the slip.
+  const Two q = friction_impulse_ * inverse_mu_ - slide_step_ * slip;
+  const btScalar length = std::sqrt(q[0] * q[0] + q[1] * q[1]);
+  const btScalar scale = length > normal ? normal / length : 1;
+  return q * scale * mu_;
+}
+
+// The impulse lies on the ellipse of p_normal times the share that has built up, where its normal points against the
+// slip: p_i = -share p_normal mu_i² slip_i / |mu slip|, which is slip_i = -c_i p_i with a compliance of the row
+//   c_i = |mu slip| / (p_normal share mu_i²).
+// It is taken at the slip of now and solved with the row, implicitly: however steeply friction rises with slip, the
+// impulse never jumps over the one that stops it. c_i grows with the slip, so repeating this comes to rest from one
+// side.
+[[gnu::noinline]] Two Contact::sheared_friction(Two slip, btScalar normal) const {
+  const btScalar speed = std::sqrt(slip[0] * slip[0] + slip[1] * slip[1]);
+  const Two scaled_slip = mu_ * slip;
+  const btScalar mu = speed > 0 ? std::sqrt(scaled_slip[0] * scaled_slip[0] + scaled_slip[1] * scaled_slip[1]) / speed
+                                : std::max(mu_[0], mu_[1]);
+  const Two c = mu / (normal * sheared_share_per_slip(stretch_, shear_rate_, speed)) * inverse_mu_ * inverse_mu_;
+
+  // slip + K change = -c (p + change), solved for the change; K is the matrix from friction impulse to slip.
+  const Two left = slip + c * friction_impulse_, diagonal = slip_gain_ + c;
+  const btScalar determinant = diagonal[0] * diagonal[1] - slip_coupling_ * slip_coupling_;
+  const Two change =
+      Two{diagonal[1] * left[0] - slip_coupling_ * left[1], diagonal[0] * left[1] - slip_coupling_ * left[0]} /
+      -determinant;
+  const Two friction = friction_impulse_ + change;
+
+  // Never more than all of the friction, on the way there.
+  const Two q = friction * inverse_mu_;
+  const btScalar length = std::sqrt(q[0] * q[0] + q[1] * q[1]);
+  return length > normal ? friction * (normal / length) : friction;
+}
+
 template <bool kOnGround>
 [[gnu::always_inline]] inline btScalar Contact::solve_one(Moved a) {
   // Velocity change of A relative to B, without B's angular part, whose rows have arms of their own.
@@ -235,17 +279,7 @@ template <bool kOnGround>
     slip += normal_to_slip_ * normal_change;
     if (belt_a_) slip += belt_gain_a_ * a.belt_mps;
     if (!kOnGround && belt_b_) slip += belt_gain_b_ * belt_b_->speed_mps;
-    // Sticking: the impulse that stops the slip, if it lies within the limit ellipse.
-    friction = friction_impulse_ - stick_[0] * slip[0] - stick_[1] * slip[1];
-    const Two scaled = friction * inverse_mu_;
-    if (scaled[0] * scaled[0] + scaled[1] * scaled[1] > normal * normal) {
-      // Sliding: projected gradient step, q - mu slip / eigenvalue, then back onto the circle of radius p_normal. Its
-      // fixed point is the impulse of maximum dissipation: there the ellipse's normal points against the slip.
-      const Two q = friction_impulse_ * inverse_mu_ - slide_step_ * slip;
-      const btScalar length = std::sqrt(q[0] * q[0] + q[1] * q[1]);
-      const btScalar scale = length > normal ? normal / length : 1;
-      friction = q * scale * mu_;
-    }
+    friction = stretch_.to_m > 0 ? sheared_friction(slip, normal) : coulomb_friction(slip, normal);
   }
 
   // Apply the changes; the residual is the squared linear velocity change of A.

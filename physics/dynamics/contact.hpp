@@ -5,6 +5,7 @@
 #include <span>
 
 #include "physics/dynamics/bullet.hpp"
+#include "physics/dynamics/shear.hpp"
 #include "physics/dynamics/solver_body.hpp"
 #include "physics/dynamics/surface.hpp"
 
@@ -36,6 +37,8 @@ struct Touch {
   btScalar gap_m, weight;   // weight: factor of stiffness and damping
   bool holds_lugs;
   btScalar* stored_impulse[3];  // where it is kept from step to step: normal, along, across
+  ShearStretch stretch = {};    // on which the belt shears the ground; none: all of the friction
+  btScalar shear_rate = 0;      // as in Shearing
 };
 
 class Contact {
@@ -65,6 +68,9 @@ class Contact {
   btScalar solve_one(Moved a);
   template <bool kOnGround>
   void apply(Moved a, btScalar normal, Two friction);
+  // The friction impulses with all of the coefficient, and with the share that has built up.
+  Two coulomb_friction(Two slip, btScalar normal) const;
+  Two sheared_friction(Two slip, btScalar normal) const;
 
   SolverBody *body_a_, *body_b_;
   Belt *belt_a_, *belt_b_;
@@ -85,6 +91,10 @@ class Contact {
   Two stick_[2];        // inverse of the 2 x 2 matrix from friction impulse to slip
   Two slide_step_;      // 1 / (largest eigenvalue of the scaled matrix), times mu
   Two mu_, inverse_mu_;
+  Two slip_gain_;  // the diagonal of that 2 x 2 matrix, and what is beside it
+  btScalar slip_coupling_;
+  ShearStretch stretch_;
+  btScalar shear_rate_;
   Two belt_gain_a_, belt_gain_b_;  // slip for a unit belt speed; 0 without a belt
   Two belt_push_a_, belt_push_b_;  // belt speed for a unit friction impulse
   btScalar* stored_impulse_[3];

@@ -189,13 +189,19 @@ void ContactSolver::add_manifold(btPersistentManifold& manifold, btScalar time_s
 }
 
 void ContactSolver::add_belt_pair(BeltPair& pair, btScalar time_step) {
+  const Shearing shearing = shearing_of(*pair.belt, belt_ground_.pairs());
   const Meeting meeting(*pair.body, *pair.ground, solver_body(*pair.body), solver_body(*pair.ground),
                         pair.belt->surface, surface_of(*pair.ground, 0));
   for (BeltContact& contact : pair.contacts) {
     const BeltTouch& at = contact.touch;
-    const Touch touch{pair.X_WT * at.p_T, pair.X_WT.getBasis() * at.normal_T,
-                      at.gap_m,           at.weight,
-                      at.holds_lugs,      {&contact.impulse[0], &contact.impulse[1], &contact.impulse[2]}};
+    const Touch touch{pair.X_WT * at.p_T,
+                      pair.X_WT.getBasis() * at.normal_T,
+                      at.gap_m,
+                      at.weight,
+                      at.holds_lugs,
+                      {&contact.impulse[0], &contact.impulse[1], &contact.impulse[2]},
+                      shearing.rate > 0 ? stretch_of(*pair.belt, at, shearing) : ShearStretch{},
+                      shearing.rate};
     contacts_.emplace_back(meeting, touch, settings_, time_step);
   }
 }

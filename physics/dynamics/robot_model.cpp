@@ -21,6 +21,7 @@ Surface belt_surface(const RobotDescription& robot, robot::Track side, double fr
           .belt = belt,
           .axis_y = axis_y,
           .lug_height_m = lug_height_m * effects.lug_height_scale,
+          .shear_deformation_m = robot.track.front().shear_deformation_m + effects.shear_deformation_m,
           .compliance_scale = effects.ground_compliance_scale,
           .damping_scale = effects.ground_damping_scale};
 }

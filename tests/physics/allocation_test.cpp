@@ -65,6 +65,7 @@ Effects some_effects() {
   effects.flipper_compliance_radpnm = 0.001;
   effects.pitch_inertia_scale = 1.2;
   effects.slip_with_speed_spm = 0.1;
+  effects.shear_deformation_m = 0.003;
   effects.rolling_resistance = 0.02;
   effects.ground_compliance_scale = 2;
   effects.encoder_scale = 1.01;

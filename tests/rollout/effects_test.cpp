@@ -131,6 +131,7 @@ const std::map<std::string_view, Shows> kShows{
     {"friction_across", {turning, "yaw_rad"}},
     {"friction_asymmetry", {turning, "yaw_rad"}},
     {"slip_with_speed", {turning, "x_m"}},
+    {"shear_deformation", {turning, "yaw_rad"}},
     {"rolling_resistance", {turning, "track_left_a"}},
     {"lug_height", {stepping, "pitch_rad"}},
     {"ground_compliance", {falling, "acc_z_mps2"}},

@@ -106,6 +106,8 @@ TEST_CASE("Only effects that the robot can show are candidates, and none that is
   CHECK_FALSE(has(marmotte, true, "flipper_lag"));
   CHECK(has(kenaf, true, "lug_height"));
   CHECK_FALSE(has(marmotte, true, "lug_height"));  // described without lugs
+  CHECK(has(marmotte, true, "shear_deformation"));
+  CHECK_FALSE(has(robot_of("husky"), true, "shear_deformation"));  // wheels have no known length of contact
   CHECK(has(marmotte, true, "obstacle_height"));
   CHECK_FALSE(has(marmotte, false, "obstacle_height"));
   RobotDescription blind = marmotte;
@@ -190,6 +192,8 @@ TEST_CASE("A number of the description names the effect that does the same, wher
   // there are no lugs that an effect could multiply
   CHECK(find_candidate(kenaf, "track.lug_height_m")->same_as == "lug_height");
   CHECK(find_candidate(marmotte, "track.lug_height_m")->same_as == "");
+  // of flippers' belts too, like the effect
+  CHECK(find_candidate(kenaf, "track.shear_deformation_m")->same_as == "shear_deformation");
 }
 
 TEST_CASE("An effect that is kept in a number's place says by how much it is off where the number is") {

@@ -46,8 +46,9 @@ inline std::vector<double> all_numbers(const physics::RobotDescription& robot) {
   };
   for (const auto& vector : {body.size_m, body.p_BBcm_m, body.inertia_kgm2}) add(vector);
   for (const auto& track : robot.track) {
-    for (const double value : {track.length_m, track.end_radius_m, track.width_m, track.friction_along,
-                               track.friction_across, static_cast<double>(track.pieces), track.lug_height_m})
+    for (const double value :
+         {track.length_m, track.end_radius_m, track.width_m, track.friction_along, track.friction_across,
+          static_cast<double>(track.pieces), track.lug_height_m, track.shear_deformation_m})
       numbers.push_back(value);
     add(track.p_BT_m);
   }
