@@ -155,7 +155,7 @@ class BoxTouches {
   void add(const btVector3& p, const btVector3& normal, btScalar gap, btScalar weight, bool holds_lugs,
            std::uint64_t id, int run_place = -1) {
     // A point deeper in the slice than the overlap across it belongs to a wall that the belt's side face meets.
-    if (-gap <= overlap_) out_.push_back({p, normal, gap, weight, holds_lugs, id, run_place});
+    if (-gap <= overlap_) out_.push_back({p, normal, gap, weight, holds_lugs, run_place, id});
   }
 
   // Calls use(axis, sign, normal, flat) for each face that is not beside the slices; `flat` is the normal's part in the
@@ -320,7 +320,7 @@ class BoxTouches {
     // All points lie half way into the overlap and have its depth.
     const btScalar y = box_side_ * belt_.half_width;
     const auto touch = [&](const btVector3& p, std::uint32_t place) {
-      out_.push_back({p, normal, -overlap_, 1, false, feature(20, 0, place)});
+      out_.push_back({p, normal, -overlap_, 1, false, -1, feature(20, 0, place)});
     };
 
     // Points of the belt's side face within the box.
@@ -363,7 +363,7 @@ void touch_plane(const BeltShape& belt, const btVector3& normal, btScalar offset
   const auto touch = [&](btVector3 p, btScalar y, btScalar weight, std::uint64_t id, int run_place) {
     p.setY(y);
     const btScalar gap = normal.dot(p) - offset;
-    if (gap <= kTouching_m) out.push_back({p - normal * (gap / 2), normal, gap, weight, false, id, run_place});
+    if (gap <= kTouching_m) out.push_back({p - normal * (gap / 2), normal, gap, weight, false, run_place, id});
   };
 
   // A wall beside the belt meets its side face.
@@ -399,7 +399,7 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
   const auto face = [&](const btVector3& p, btScalar weight, std::uint64_t id, int run_place) {
     const btScalar gap = t.normal.dot(p - t.corner[0]);
     if (gap <= kTouching_m && gap >= -kDeepest_m && inside(p))
-      out.push_back({p - t.normal * (gap / 2), t.normal, gap, weight, false, id, run_place});
+      out.push_back({p - t.normal * (gap / 2), t.normal, gap, weight, false, run_place, id});
   };
 
   // A triangle beside the belt meets its side face.
@@ -435,7 +435,7 @@ void touch_triangle(const BeltShape& belt, const TriangleInT& t, std::vector<Bel
           !within_cone(-at.outward, t.normal, t.neighbour_normal[i]))
         continue;
       out.push_back({p - at.outward * (at.distance / 2), -at.outward, at.distance, slice_weight, lies_across(edge[i]),
-                     feature(t.index, slice, static_cast<std::uint32_t>(33 + i))});
+                     -1, feature(t.index, slice, static_cast<std::uint32_t>(33 + i))});
     }
   }
 }

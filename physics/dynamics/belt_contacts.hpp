@@ -18,15 +18,15 @@
 namespace kenaf::physics {
 
 struct BeltTouch {
-  btVector3 p_T;          // half way between belt and ground
-  btVector3 normal_T;     // unit, out of the ground
-  btScalar gap_m;         // negative: pressed in
-  btScalar weight;        // factor of stiffness and damping; grows with the area that the point stands for
-  bool holds_lugs;        // lugs catch behind it: an edge of the ground across the belt, or a corner; not a face
-  std::uint64_t feature;  // identifies the contact from step to step
+  btVector3 p_T;       // half way between belt and ground
+  btVector3 normal_T;  // unit, out of the ground
+  btScalar gap_m;      // negative: pressed in
+  btScalar weight;     // factor of stiffness and damping; grows with the area that the point stands for
+  bool holds_lugs;     // lugs catch behind it: an edge of the ground across the belt, or a corner; not a face
   // Its place along the straight run that faces the ground, in pieces from disc 0, 0 to BeltShape::pieces; -1: it is on
   // no such run, but on an arc, an edge, a corner, a side face or a wheel.
-  int run_place = -1;
+  int run_place;
+  std::uint64_t feature;  // identifies the contact from step to step
 };
 
 // Half space below the plane normal_T . p = offset.

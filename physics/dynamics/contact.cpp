@@ -71,7 +71,6 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
       belt_b_(meeting.surface_b->belt),
       inverse_mass_a_(body_a_->inverse_mass),
       stretch_(touch.stretch),
-      shear_rate_(touch.shear_rate),
       stored_impulse_{touch.stored_impulse[0], touch.stored_impulse[1], touch.stored_impulse[2]},
       collider_a_(meeting.collider_a),
       collider_b_(meeting.collider_b),
@@ -167,8 +166,6 @@ Contact::Contact(const Meeting& meeting, const Touch& touch, const ContactSettin
   // Sticking: the impulse -K^-1 slip stops all slip; K is the 2 x 2 matrix of the tangents.
   mu_ = Two{std::max(mu_along, kLeastFriction), std::max(mu_across, kLeastFriction)};
   inverse_mu_ = 1 / mu_;
-  slip_gain_ = k11_k22;
-  slip_coupling_ = k12;
   const btScalar k11 = k11_k22[0], k22 = k11_k22[1];
   const btScalar inverse_determinant = 1 / (k11 * k22 - k12 * k12);
   stick_[0] = Two{k22, -k12} * inverse_determinant;
@@ -234,13 +231,16 @@ void Contact::warm_start() {
   const Two scaled_slip = mu_ * slip;
   const btScalar mu = speed > 0 ? std::sqrt(scaled_slip[0] * scaled_slip[0] + scaled_slip[1] * scaled_slip[1]) / speed
                                 : std::max(mu_[0], mu_[1]);
-  const Two c = mu / (normal * sheared_share_per_slip(stretch_, shear_rate_, speed)) * inverse_mu_ * inverse_mu_;
+  const Two c = mu / (normal * sheared_share_per_slip(stretch_, speed)) * inverse_mu_ * inverse_mu_;
 
-  // slip + K change = -c (p + change), solved for the change; K is the matrix from friction impulse to slip.
-  const Two left = slip + c * friction_impulse_, diagonal = slip_gain_ + c;
-  const btScalar determinant = diagonal[0] * diagonal[1] - slip_coupling_ * slip_coupling_;
+  // slip + K change = -c (p + change), solved for the change; K is the matrix from friction impulse to slip. With S its
+  // inverse, which is at hand: (I + S c) change = -S (slip + c p).
+  const Two left = slip + c * friction_impulse_;
+  const Two stuck = stick_[0] * left[0] + stick_[1] * left[1];
+  const Two column_0 = Two{1, 0} + stick_[0] * c[0], column_1 = Two{0, 1} + stick_[1] * c[1];
+  const btScalar determinant = column_0[0] * column_1[1] - column_1[0] * column_0[1];
   const Two change =
-      Two{diagonal[1] * left[0] - slip_coupling_ * left[1], diagonal[0] * left[1] - slip_coupling_ * left[0]} /
+      Two{column_1[1] * stuck[0] - column_1[0] * stuck[1], column_0[0] * stuck[1] - column_0[1] * stuck[0]} /
       -determinant;
   const Two friction = friction_impulse_ + change;
 
@@ -250,7 +250,7 @@ void Contact::warm_start() {
   return length > normal ? friction * (normal / length) : friction;
 }
 
-template <bool kOnGround>
+template <bool kOnGround, bool kSomeShear>
 [[gnu::always_inline]] inline btScalar Contact::solve_one(Moved a) {
   // Velocity change of A relative to B, without B's angular part, whose rows have arms of their own.
   const bool b_moves = !kOnGround && body_b_;
@@ -279,7 +279,7 @@ template <bool kOnGround>
     slip += normal_to_slip_ * normal_change;
     if (belt_a_) slip += belt_gain_a_ * a.belt_mps;
     if (!kOnGround && belt_b_) slip += belt_gain_b_ * belt_b_->speed_mps;
-    friction = stretch_.to_m > 0 ? sheared_friction(slip, normal) : coulomb_friction(slip, normal);
+    friction = kSomeShear && stretch_.to > 0 ? sheared_friction(slip, normal) : coulomb_friction(slip, normal);
   }
 
   // Apply the changes; the residual is the squared linear velocity change of A.
@@ -297,14 +297,15 @@ Contact::Moved Contact::in_place(btScalar& none) const {
   return {body_a_->delta, belt_a_->speed_mps, belt_a_->load_ns};
 }
 
-btScalar Contact::solve(std::span<Contact> contacts) {
+template <bool kSomeShear>
+btScalar Contact::solve_each(std::span<Contact> contacts) {
   btScalar residual = 0, none = 0;
   for (auto next = contacts.begin(); next != contacts.end();) {
     const Contact& first = *next;
     const Moved place = first.in_place(none);
     // Between moving things: one at a time, in place.
     if (!first.on_ground()) {
-      residual = std::max(residual, next->solve_one<false>(place));
+      residual = std::max(residual, next->solve_one<false, kSomeShear>(place));
       ++next;
       continue;
     }
@@ -315,12 +316,16 @@ btScalar Contact::solve(std::span<Contact> contacts) {
     for (; next != contacts.end() && next->on_ground() && next->body_a_ == first.body_a_ &&
            next->belt_a_ == first.belt_a_;
          ++next)
-      residual = std::max(residual, next->solve_one<true>({delta, belt_mps, load_ns}));
+      residual = std::max(residual, next->solve_one<true, kSomeShear>({delta, belt_mps, load_ns}));
     place.delta = delta;
     place.belt_mps = belt_mps;
     place.load_ns = load_ns;
   }
   return residual;
+}
+
+btScalar Contact::solve(std::span<Contact> contacts, bool some_shear) {
+  return some_shear ? solve_each<true>(contacts) : solve_each<false>(contacts);
 }
 
 void Contact::finish() {

@@ -38,7 +38,6 @@ struct Touch {
   bool holds_lugs;
   btScalar* stored_impulse[3];  // where it is kept from step to step: normal, along, across
   ShearStretch stretch = {};    // on which the belt shears the ground; none: all of the friction
-  btScalar shear_rate = 0;      // as in Shearing
 };
 
 class Contact {
@@ -46,8 +45,9 @@ class Contact {
   Contact(const Meeting& meeting, const Touch& touch, const ContactSettings& settings, btScalar time_step);
 
   void warm_start();
-  // One iteration over contacts in their order. Returns the largest squared velocity change of a body A.
-  static btScalar solve(std::span<Contact> contacts);
+  // One iteration over contacts in their order. Returns the largest squared velocity change of a body A. `some_shear`:
+  // a contact of them may have a stretch; without, none of its cost.
+  static btScalar solve(std::span<Contact> contacts, bool some_shear);
   // Writes the impulses back to where they were taken from.
   void finish();
 
@@ -64,7 +64,9 @@ class Contact {
   };
   Moved in_place(btScalar& none) const;  // `none` stands in for a belt's state where A has no belt
   bool on_ground() const { return !body_b_ && !belt_b_; }
-  template <bool kOnGround>
+  template <bool kSomeShear>
+  static btScalar solve_each(std::span<Contact> contacts);
+  template <bool kOnGround, bool kSomeShear>
   btScalar solve_one(Moved a);
   template <bool kOnGround>
   void apply(Moved a, btScalar normal, Two friction);
@@ -91,10 +93,7 @@ class Contact {
   Two stick_[2];        // inverse of the 2 x 2 matrix from friction impulse to slip
   Two slide_step_;      // 1 / (largest eigenvalue of the scaled matrix), times mu
   Two mu_, inverse_mu_;
-  Two slip_gain_;  // the diagonal of that 2 x 2 matrix, and what is beside it
-  btScalar slip_coupling_;
   ShearStretch stretch_;
-  btScalar shear_rate_;
   Two belt_gain_a_, belt_gain_b_;  // slip for a unit belt speed; 0 without a belt
   Two belt_push_a_, belt_push_b_;  // belt speed for a unit friction impulse
   btScalar* stored_impulse_[3];

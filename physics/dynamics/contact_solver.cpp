@@ -129,6 +129,7 @@ void ContactSolver::make_contacts(btDispatcher& dispatcher, btScalar time_step) 
   // Group by group, the contacts of its manifolds and belt pairs.
   const auto manifolds = static_cast<std::size_t>(dispatcher.getNumManifolds());
   contacts_.clear();
+  some_shear_ = false;
   contacts_end_.clear();
   for (std::size_t group = 0; group < groups_.count(); ++group) {
     for (std::size_t i = touching_by_group_.begin_of(group); i < touching_by_group_.end_of(group); ++i) {
@@ -162,7 +163,8 @@ btScalar ContactSolver::iterate(std::size_t group, btScalar time_step) {
   for (std::size_t i = belts_by_group_.begin_of(group); i < belts_by_group_.end_of(group); ++i)
     residual = std::max(residual, solve_running_gear(*belts_[belts_by_group_.all()[i]].belt, time_step));
   const std::size_t first = group == 0 ? 0 : contacts_end_[group - 1];
-  return std::max(residual, Contact::solve(std::span(contacts_).subspan(first, contacts_end_[group] - first)));
+  return std::max(residual,
+                  Contact::solve(std::span(contacts_).subspan(first, contacts_end_[group] - first), some_shear_));
 }
 
 void ContactSolver::add_manifold(btPersistentManifold& manifold, btScalar time_step) {
@@ -190,6 +192,7 @@ void ContactSolver::add_manifold(btPersistentManifold& manifold, btScalar time_s
 
 void ContactSolver::add_belt_pair(BeltPair& pair, btScalar time_step) {
   const Shearing shearing = shearing_of(*pair.belt, belt_ground_.pairs());
+  some_shear_ |= shearing.rate > 0;
   const Meeting meeting(*pair.body, *pair.ground, solver_body(*pair.body), solver_body(*pair.ground),
                         pair.belt->surface, surface_of(*pair.ground, 0));
   for (BeltContact& contact : pair.contacts) {
@@ -200,8 +203,7 @@ void ContactSolver::add_belt_pair(BeltPair& pair, btScalar time_step) {
                       at.weight,
                       at.holds_lugs,
                       {&contact.impulse[0], &contact.impulse[1], &contact.impulse[2]},
-                      shearing.rate > 0 ? stretch_of(*pair.belt, at, shearing) : ShearStretch{},
-                      shearing.rate};
+                      shearing.rate > 0 ? stretch_of(*pair.belt, at, shearing) : ShearStretch{}};
     contacts_.emplace_back(meeting, touch, settings_, time_step);
   }
 }

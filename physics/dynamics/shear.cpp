@@ -58,17 +58,16 @@ ShearStretch stretch_of(const BeltShape& belt, const BeltTouch& touch, const She
   if (place < first || place > last || first == last) return {};
   // The belt enters at the end that its surface comes from.
   const int behind = shearing.forward == lower ? last - place : place - first;
-  const btScalar piece_m = belt.length * belt.rise / belt.pieces;
-  return {std::max(behind - 0.5, 0.0) * piece_m, std::min(behind + 0.5, 1.0 * (last - first)) * piece_m};
+  const btScalar piece = shearing.rate * belt.length * belt.rise / belt.pieces;
+  return {std::max(behind - 0.5, 0.0) * piece, std::min(behind + 0.5, 1.0 * (last - first)) * piece};
 }
 
-btScalar sheared_share_per_slip(const ShearStretch& stretch, btScalar rate, btScalar slip_mps) {
-  // The mean of 1 - exp(-rate s x) from x = a to b: with A = rate s a and D = rate s (b - a)
+btScalar sheared_share_per_slip(const ShearStretch& stretch, btScalar slip_mps) {
+  // The mean of 1 - exp(-s x) from x = a to b: with A = s a and D = s (b - a)
   //   1 - exp(-A) (1 - exp(-D)) / D = (1 - exp(-A)) + exp(-A) (1 - (1 - exp(-D)) / D).
-  const btScalar width_m = stretch.to_m - stretch.from_m;
-  const btScalar A = rate * slip_mps * stretch.from_m, D = rate * slip_mps * width_m;
-  // As the slip vanishes: rate (a + b) / 2, the middle of the stretch.
-  if (A + D < 1e-9) return rate * (stretch.from_m + width_m / 2);
+  const btScalar A = slip_mps * stretch.from, D = slip_mps * (stretch.to - stretch.from);
+  // As the slip vanishes: (a + b) / 2, the middle of the stretch.
+  if (A + D < 1e-9) return (stretch.from + stretch.to) / 2;
   return (-std::expm1(-A) + std::exp(-A) * mean_growth(D)) / slip_mps;
 }
 

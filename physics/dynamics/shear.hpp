@@ -27,10 +27,10 @@ struct BeltPair;
 struct BeltShape;
 struct BeltTouch;
 
-// The part of a belt's run that a contact point stands for: distances behind the place where the belt enters the
-// ground, 0 <= from_m < to_m; to_m = 0: there is no such part, the point has all of its friction.
+// The part of a belt's run that a contact point stands for, by how far a slip shears at its two ends: j / (K s), s/m,
+// which is x / (K |u|). 0 <= from < to; to = 0: there is no such part, the point has all of its friction.
 struct ShearStretch {
-  btScalar from_m = 0, to_m = 0;
+  btScalar from = 0, to = 0;
 };
 
 // The first and the last place (BeltTouch::run_place) of a run that is pressed into the ground. first > last: none.
@@ -50,8 +50,8 @@ Shearing shearing_of(const BeltShape& belt, std::span<BeltPair* const> pairs);
 // Requires shearing.rate > 0.
 ShearStretch stretch_of(const BeltShape& belt, const BeltTouch& touch, const Shearing& shearing);
 
-// The share of its friction that a stretch holds, divided by the slip (s/m). `rate`: as in Shearing. Finite at a
-// slip of 0. Requires stretch.to_m > 0, slip_mps >= 0.
-btScalar sheared_share_per_slip(const ShearStretch& stretch, btScalar rate, btScalar slip_mps);
+// The share of its friction that a stretch holds, divided by the slip (s/m). Finite at a slip of 0. Requires
+// stretch.to > 0, slip_mps >= 0.
+btScalar sheared_share_per_slip(const ShearStretch& stretch, btScalar slip_mps);
 
 }  // namespace kenaf::physics

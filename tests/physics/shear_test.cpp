@@ -71,17 +71,20 @@ double turn_on_the_spot_radps(const RobotDescription& robot, double belt_mps = k
 TEST_CASE("Shear: a stretch holds the mean of 1 - exp(-j / K) over its length") {
   // From the entry on, with i L / K = 1: 1 - (1 - 1/e) = 1/e. With 2: 1 - (1 - 1/e²) / 2 = 0.567668.
   const double rate = 1 / (0.01 * kBelt_mps);  // K = 10 mm
-  const auto share = [&](ShearStretch stretch, double slip_mps) {
-    return slip_mps * sheared_share_per_slip(stretch, rate, slip_mps);
+  const auto share_per_slip = [&](double from_m, double to_m, double slip_mps) {
+    return sheared_share_per_slip({rate * from_m, rate * to_m}, slip_mps);
   };
-  CHECK(share({0, 0.1}, 0.1 * kBelt_mps) == Approx(std::exp(-1)).epsilon(1e-12));
-  CHECK(share({0, 0.1}, 0.2 * kBelt_mps) == Approx(0.5676676416183064).epsilon(1e-12));
+  const auto share = [&](double from_m, double to_m, double slip_mps) {
+    return slip_mps * share_per_slip(from_m, to_m, slip_mps);
+  };
+  CHECK(share(0, 0.1, 0.1 * kBelt_mps) == Approx(std::exp(-1)).epsilon(1e-12));
+  CHECK(share(0, 0.1, 0.2 * kBelt_mps) == Approx(0.5676676416183064).epsilon(1e-12));
   // Two halves of a stretch have the whole's mean.
-  CHECK((share({0, 0.05}, 0.03) + share({0.05, 0.1}, 0.03)) / 2 == Approx(share({0, 0.1}, 0.03)).epsilon(1e-12));
+  CHECK((share(0, 0.05, 0.03) + share(0.05, 0.1, 0.03)) / 2 == Approx(share(0, 0.1, 0.03)).epsilon(1e-12));
   // Little slip: j / K in the middle. Much slip: all of it.
-  CHECK(sheared_share_per_slip({0.02, 0.04}, rate, 0) == Approx(0.03 * rate).epsilon(1e-12));
-  CHECK(sheared_share_per_slip({0.02, 0.04}, rate, 1e-9) == Approx(0.03 * rate).epsilon(1e-6));
-  CHECK(share({0.02, 0.04}, 10) == Approx(1).epsilon(1e-12));
+  CHECK(share_per_slip(0.02, 0.04, 0) == Approx(0.03 * rate).epsilon(1e-12));
+  CHECK(share_per_slip(0.02, 0.04, 1e-9) == Approx(0.03 * rate).epsilon(1e-6));
+  CHECK(share(0.02, 0.04, 10) == Approx(1).epsilon(1e-12));
 }
 
 TEST_CASE("Shear: a contact point stands for half a piece on both sides, from where the belt enters the ground") {
@@ -93,10 +96,10 @@ TEST_CASE("Shear: a contact point stands for half a piece on both sides, from wh
                           .gap_m = 0,
                           .weight = 1,
                           .holds_lugs = false,
-                          .feature = 0,
-                          .run_place = place};
+                          .run_place = place,
+                          .feature = 0};
     const ShearStretch s = stretch_of(belt, touch, {1, forward, pressed, {}});
-    return std::array{s.from_m, s.to_m};
+    return std::array{s.from, s.to};
   };
   using Stretch = std::array<double, 2>;
   const auto near = [](Stretch a, Stretch b) { return std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) < 1e-12; };
