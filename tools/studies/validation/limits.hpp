@@ -1,4 +1,4 @@
-// Static limits of slopes, steps and stairs, against closed forms. Flippers are left out.
+// Limits of slopes, steps and stairs, and the slip of belts that pull, against closed forms. Flippers are left out.
 #pragma once
 
 #include <vector>
@@ -11,11 +11,11 @@ std::vector<ComparisonRow> slope_limits();
 std::vector<ComparisonRow> step_limits();
 std::vector<ComparisonRow> stair_limits();
 
-// The slip of a robot that climbs a slope, as a share of its belts' speed, at shares of the steepest one. Coulomb
-// friction has none below the limit.
-struct SlipRow {
-  double share_of_limit, slip;
-};
-std::vector<SlipRow> slip_on_slopes();
+// The height of the centre of mass above the ground side of the belts at which a robot on stairs rocks back when a nose
+// leaves its rear end.
+std::vector<ComparisonRow> stair_balance();
+
+// Slip against pull, with Coulomb's friction and with one that builds up with shear displacement.
+std::vector<ComparisonRow> drawbar_pull();
 
 }  // namespace kenaf::validation

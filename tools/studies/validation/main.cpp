@@ -19,22 +19,18 @@ void print(const char* title, const std::vector<ComparisonRow>& rows) {
   for (const ComparisonRow& row : rows) fmt::print("{}", markdown(row));
 }
 
-void print(const std::vector<SlipRow>& rows) {
-  fmt::print("\n## Slip of Kenaf's belts on slopes, friction 0.7\n\n| slope over the steepest | slip |\n|---|---|\n");
-  for (const SlipRow& row : rows) fmt::print("| {:.2f} | {:.3f} |\n", row.share_of_limit, row.slip);
-}
-
 void print(const SteadyStates& states) {
   fmt::print("\n## MAXXII, {} steady states\n\n", states.count);
-  fmt::print("| turn over that of slipless tracks | states | measured (sd) | simulated | with the correction |\n");
+  fmt::print(
+      "| turn over that of slipless tracks, medians | states | measured (scatter) | simulated | with asymmetry |\n");
   fmt::print("|---|---|---|---|---|\n");
   for (const TurningKind& kind : states.kinds)
     fmt::print("| {} | {} | {:.3f} ({:.3f}) | {:.3f} | {:.3f} |\n", kind.name, kind.count, kind.measured,
-               kind.measured_sd, kind.simulated, kind.corrected);
-  fmt::print("\nrms of what the simulation leaves of the slips: {:.4f} m/s; with the correction {:.4f} m/s\n",
-             states.rms_mps, states.corrected_rms_mps);
-  fmt::print("correction: left {:.4f}, right {:.4f} of the track's speed, and {:.4f} s/m times its square\n",
-             states.left_share, states.right_share, states.growth_spm);
+               kind.measured_scatter, kind.simulated, kind.corrected);
+  fmt::print(
+      "\nmedian of what the simulation leaves of the slips' difference: {:.4f} m/s; with a drive asymmetry of {:.4f}, "
+      "fitted to the other half: {:.4f} m/s\n",
+      states.median_mps, states.drive_asymmetry, states.corrected_median_mps);
 }
 
 }  // namespace
@@ -50,9 +46,10 @@ int main(int argc, char** argv) try {
   if (!table.empty()) print(compare_steady_states(table));
   print("Turns on the spot, closed form", turns_by_closed_form());
   print("Slopes", slope_limits());
-  print(slip_on_slopes());
+  print("Drawbar pull", drawbar_pull());
   print("Steps", step_limits());
   print("Stairs", stair_limits());
+  print("Balance on stairs", stair_balance());
 } catch (const std::exception& error) {
   fmt::print(stderr, "validation-study: {}\n", error.what());
   return 1;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,9 +20,9 @@ namespace {
 constexpr double kGear = 34.45, kSprocket_m = 0.0856;  // of the motors' gears; of the tracks
 
 struct State {
-  double left_mps, right_mps;            // of the tracks, by their motors
-  double slip_left_mps, slip_right_mps;  // measured
-  double simulated_left_mps = 0, simulated_right_mps = 0;
+  double left_mps, right_mps;                              // of the tracks, by their motors
+  double slip_left_mps, slip_right_mps;                    // measured
+  std::array<double, 2> simulated_mps{}, corrected_mps{};  // slips: by the description; with the asymmetry
 };
 
 std::vector<State> read_states(const std::filesystem::path& table) {
@@ -62,31 +61,43 @@ std::vector<State> read_states(const std::filesystem::path& table) {
   return states;
 }
 
-void simulate(std::vector<State>& states) {
-  const physics::RobotDescription robot = physics::load_robot("maxxii");
-  for (State& state : states) {
-    const SteadyMotion motion = steady_motion(robot, state.left_mps, state.right_mps);
-    const double half_turn_mps = motion.turn_radps * robot.track_gauge_m() / 2;
-    state.simulated_left_mps = state.left_mps - (motion.forward_mps - half_turn_mps);
-    state.simulated_right_mps = state.right_mps - (motion.forward_mps + half_turn_mps);
-  }
+// Slips of the simulated robot in the same state, left and right.
+std::array<double, 2> simulated_slips_mps(const physics::RobotDescription& robot, const State& state) {
+  const SteadyMotion motion = steady_motion(robot, state.left_mps, state.right_mps);
+  const double half_turn_mps = motion.turn_radps * robot.track_gauge_m() / 2;
+  return {state.left_mps - (motion.forward_mps - half_turn_mps),
+          state.right_mps - (motion.forward_mps + half_turn_mps)};
 }
 
-// The part of a slip that the simulation leaves is fitted by least squares: left_share v, right_share v, and growth |v|
-// v of both sides.
-Eigen::Vector3d fit(const std::vector<State>& states, std::size_t half) {
-  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d b = Eigen::Vector3d::Zero();
-  const auto add = [&](const Eigen::Vector3d& row, double left_over) {
-    A += row * row.transpose();
-    b += row * left_over;
-  };
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// What the simulation leaves of the slips' difference, right less left.
+double left_over_mps(const State& s, const std::array<double, 2>& simulated_mps) {
+  return (s.slip_right_mps - simulated_mps[1]) - (s.slip_left_mps - simulated_mps[0]);
+}
+
+// The drive asymmetry that leaves the least sum of absolute differences over every second state: with an asymmetry a
+// the left track runs a / 2 faster and the right one as much slower than their motors say, which adds a times the mean
+// speed to the difference. Absolute values, because motors that did not follow their commands make some states outliers
+// of ten times the rest. The least sum of |y - a x| is at the median of y / x, weighted by |x|.
+double drive_asymmetry_of(const std::vector<State>& states, std::size_t half) {
+  std::vector<std::pair<double, double>> ratios;  // y / x and |x|
+  double all = 0;
   for (std::size_t i = half; i < states.size(); i += 2) {
-    const State& s = states[i];
-    add({s.left_mps, 0, std::abs(s.left_mps) * s.left_mps}, s.slip_left_mps - s.simulated_left_mps);
-    add({0, s.right_mps, std::abs(s.right_mps) * s.right_mps}, s.slip_right_mps - s.simulated_right_mps);
+    const double mean_mps = (states[i].left_mps + states[i].right_mps) / 2;
+    if (mean_mps == 0) continue;
+    ratios.emplace_back(left_over_mps(states[i], states[i].simulated_mps) / mean_mps, std::abs(mean_mps));
+    all += std::abs(mean_mps);
   }
-  return A.ldlt().solve(b);
+  std::ranges::sort(ratios);
+  double below = 0;
+  for (const auto& [ratio, weight] : ratios)
+    if ((below += weight) >= all / 2) return ratio;
+  return 0;
 }
 
 std::string kind_of(const State& state) {
@@ -96,59 +107,69 @@ std::string kind_of(const State& state) {
   return fmt::format("curve, {} track faster", right ? "right" : "left");
 }
 
-double turning(const State& state, double slip_left_mps, double slip_right_mps) {
-  return ((state.right_mps - slip_right_mps) - (state.left_mps - slip_left_mps)) / (state.right_mps - state.left_mps);
+std::string class_of(const State& state) {
+  const double difference_mps = std::abs(state.right_mps - state.left_mps);
+  for (const double limit_mps : {0.1, 0.2, 0.4})
+    if (difference_mps <= limit_mps) return fmt::format("tracks differ by up to {:.1f} m/s", limit_mps);
+  return "tracks differ by more";
+}
+
+double turning(const State& state, const std::array<double, 2>& slips_mps) {
+  return ((state.right_mps - slips_mps[1]) - (state.left_mps - slips_mps[0])) / (state.right_mps - state.left_mps);
+}
+
+TurningKind turning_kind(const std::string& name, const std::vector<const State*>& states) {
+  const auto median_turning = [&](const auto& slips_of) {
+    std::vector<double> values;
+    for (const State* state : states) values.push_back(turning(*state, slips_of(*state)));
+    return median(std::move(values));
+  };
+  const auto measured_slips = [](const State& s) { return std::array{s.slip_left_mps, s.slip_right_mps}; };
+  const double measured = median_turning(measured_slips);
+  std::vector<double> distances;
+  for (const State* state : states) distances.push_back(std::abs(turning(*state, measured_slips(*state)) - measured));
+  return {name,
+          states.size(),
+          measured,
+          median(std::move(distances)),
+          median_turning([](const State& s) { return s.simulated_mps; }),
+          median_turning([](const State& s) { return s.corrected_mps; })};
 }
 
 }  // namespace
 
 SteadyStates compare_steady_states(const std::filesystem::path& table) {
   std::vector<State> states = read_states(table);
-  simulate(states);
+  const physics::RobotDescription robot = physics::load_robot("maxxii");
+  for (State& state : states) state.simulated_mps = simulated_slips_mps(robot, state);
 
   // Each half is judged by the fit to the other one.
   SteadyStates result;
   result.count = states.size();
-  std::map<std::string, TurningKind> kinds;
-  double squares = 0, corrected_squares = 0;
+  std::vector<double> before_mps, after_mps;
   for (const std::size_t half : {0U, 1U}) {
-    const Eigen::Vector3d fitted = fit(states, 1 - half);
-    result.left_share += fitted[0] / 2;
-    result.right_share += fitted[1] / 2;
-    result.growth_spm += fitted[2] / 2;
+    physics::RobotDescription corrected = robot;
+    corrected.effects.drive_asymmetry = drive_asymmetry_of(states, 1 - half);
+    result.drive_asymmetry += corrected.effects.drive_asymmetry / 2;
     for (std::size_t i = half; i < states.size(); i += 2) {
-      const State& s = states[i];
-      const double left_mps =
-          s.simulated_left_mps + fitted[0] * s.left_mps + fitted[2] * std::abs(s.left_mps) * s.left_mps;
-      const double right_mps =
-          s.simulated_right_mps + fitted[1] * s.right_mps + fitted[2] * std::abs(s.right_mps) * s.right_mps;
-      squares +=
-          std::pow(s.slip_left_mps - s.simulated_left_mps, 2) + std::pow(s.slip_right_mps - s.simulated_right_mps, 2);
-      corrected_squares += std::pow(s.slip_left_mps - left_mps, 2) + std::pow(s.slip_right_mps - right_mps, 2);
-      if (s.left_mps == s.right_mps) continue;
-      TurningKind& kind = kinds[kind_of(s)];
-      const double measured = turning(s, s.slip_left_mps, s.slip_right_mps);
-      ++kind.count;
-      kind.measured += measured;
-      kind.measured_sd += measured * measured;
-      kind.simulated += turning(s, s.simulated_left_mps, s.simulated_right_mps);
-      kind.corrected += turning(s, left_mps, right_mps);
+      State& state = states[i];
+      state.corrected_mps = simulated_slips_mps(corrected, state);
+      before_mps.push_back(std::abs(left_over_mps(state, state.simulated_mps)));
+      after_mps.push_back(std::abs(left_over_mps(state, state.corrected_mps)));
     }
   }
-  const auto slips = static_cast<double>(2 * states.size());
-  result.rms_mps = std::sqrt(squares / slips);
-  result.corrected_rms_mps = std::sqrt(corrected_squares / slips);
+  result.median_mps = median(before_mps);
+  result.corrected_median_mps = median(after_mps);
 
-  // Sums become means and a standard deviation.
-  for (auto& [name, kind] : kinds) {
-    const auto n = static_cast<double>(kind.count);
-    kind.name = name;
-    kind.measured /= n;
-    kind.measured_sd = std::sqrt(std::max(0.0, kind.measured_sd / n - kind.measured * kind.measured));
-    kind.simulated /= n;
-    kind.corrected /= n;
-    result.kinds.push_back(kind);
+  // By the kind of turn, and by how fast it is.
+  std::map<std::string, std::vector<const State*>> kinds, classes;
+  for (const State& state : states) {
+    if (state.left_mps == state.right_mps) continue;
+    kinds[kind_of(state)].push_back(&state);
+    classes[class_of(state)].push_back(&state);
   }
+  for (const auto* groups : {&kinds, &classes})
+    for (const auto& [name, members] : *groups) result.kinds.push_back(turning_kind(name, members));
   return result;
 }
 

@@ -11,18 +11,20 @@
 namespace kenaf::validation {
 
 struct TurningKind {
-  std::string name;  // "on the spot", "curve, right track faster", ...
+  std::string name;  // "on the spot", "curve, right track faster", "tracks differ by up to 0.1 m/s", ...
   std::size_t count = 0;
-  double measured = 0, measured_sd = 0;  // turn over that of slipless tracks
-  double simulated = 0, corrected = 0;   // by the description; with what was fitted to the other half of the states
+  // Turn over that of slipless tracks, medians: measured, with the median distance from it; by the description; with
+  // the drive asymmetry.
+  double measured = 0, measured_scatter = 0;
+  double simulated = 0, corrected = 0;
 };
 
 struct SteadyStates {
   std::size_t count = 0;
-  // Fitted to one half of the states' slips and averaged over both halves: how much less the ground moves than a motor
-  // says, per side, in parts of the track's speed, and the growth of that with the speed.
-  double left_share = 0, right_share = 0, growth_spm = 0;
-  double rms_mps = 0, corrected_rms_mps = 0;  // of the slips, over the states left out of each fit
+  double drive_asymmetry = 0;  // as in physics::Effects; mean of the fits to the two halves of the states
+  // Median of what the simulation leaves of the slips' difference between the tracks: by the description, and with the
+  // asymmetry that was fitted to the other half.
+  double median_mps = 0, corrected_median_mps = 0;
   std::vector<TurningKind> kinds;
 };
 
