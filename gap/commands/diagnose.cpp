@@ -9,6 +9,7 @@
 #include "gap/commands/interrupt.hpp"
 #include "gap/commands/option_checks.hpp"
 #include "gap/commands/progress_line.hpp"
+#include "gap/commands/report_curves.hpp"
 #include "gap/datasets/dataset_files.hpp"
 #include "gap/diagnose/report.hpp"
 
@@ -17,6 +18,7 @@ namespace kenaf::gap::commands {
 void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
   struct Options {
     std::string dataset, out;
+    bool curves = false;
     diagnose::DiagnosisOptions diagnosis;
   };
   // Shared with the callback, which runs after this function has returned.
@@ -28,6 +30,9 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
   command->add_option("DATASET", options->dataset, "the runs, a folder; required")->type_name("");
   command->add_option("--out", options->out, "folder for report.json, report.html and the corrected robot; required")
       ->type_name("DIR");
+  command->add_flag("--curves", options->curves,
+                    "also write curves.mcap: the page's measured, nominal and corrected runs, for PlotJuggler and "
+                    "Foxglove");
   command
       ->add_option("--against", diagnosis.against,
                    "an earlier dataset of the same manoeuvres: names the changes since then")
@@ -74,6 +79,10 @@ void add_diagnose_command(CLI::App& program, const Ranks& ranks) {
     if (!result.interrupted.empty()) clear_progress_line();
     std::fputs(diagnose::diagnosis_text(result).c_str(), stdout);
     std::printf("\nThe report is in %s\n", diagnose::write_diagnosis(result, options->out).c_str());
+    if (!options->curves) return;
+    const std::filesystem::path curves = std::filesystem::path(options->out) / "curves.mcap";
+    write_report_curves(result, curves);
+    std::printf("The curves are in %s\n", curves.c_str());
   });
 }
 

@@ -69,6 +69,33 @@ TEST_CASE("A run that is exported and imported again is the same") {
   CHECK(again.column("battery_v")[0] == 25.5);
 }
 
+TEST_CASE("The curves of a diagnosis are its measured, nominal and corrected runs: of a lag, all but the nominal lag") {
+  const TemporaryFolder folder;
+  REQUIRE(kenaf_gap(folder, "simulate --manoeuvre speed-steps --effect drive_lag:lag_s=0.1 --out real").status == 0);
+  std::string others;
+  for (const auto& effect : nlohmann::json::parse(kenaf_gap(folder, "effects --robot kenaf --json").out))
+    if (effect["name"] != "drive_lag") others += (others.empty() ? "" : ",") + effect["name"].get<std::string>();
+  const Outcome outcome = kenaf_gap(folder, "diagnose real --no-next --curves --out out --without " + others);
+  INFO(outcome.error);
+  REQUIRE(outcome.status == 0);
+  CHECK_THAT(outcome.out, Catch::Contains("The curves are in out/curves.mcap"));
+
+  std::map<std::string, std::vector<double>> speeds_mps;
+  for (const test::Taken& message : test::visited(gap::recordings::open_recording(folder / "out/curves.mcap")).messages)
+    if (message.topic.ends_with("/tracks"))
+      speeds_mps[message.topic].push_back(nlohmann::json::parse(message.bytes).at("track_left_mps"));
+  REQUIRE(speeds_mps.size() == 3);
+  const std::vector<double>& real = speeds_mps.at("/run-000/real/tracks");
+  const auto distance = [&](const std::string& kind) {
+    const std::vector<double>& simulated = speeds_mps.at("/run-000/" + kind + "/tracks");
+    REQUIRE(simulated.size() == real.size());
+    double sum = 0;
+    for (std::size_t i = 0; i < real.size(); ++i) sum += std::abs(simulated[i] - real[i]);
+    return sum;
+  };
+  CHECK(distance("corrected") < 0.2 * distance("nominal"));
+}
+
 TEST_CASE("Several files and datasets have topics of their own, long ones many chunks") {
   const TemporaryFolder folder;
   std::string text = "t_s,track_left_mps\n";
