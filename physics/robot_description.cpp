@@ -23,6 +23,7 @@ using description::TomlReader;
 
 using std::numbers::pi;
 constexpr Range kFriction{.min = 0, .max = 10};
+constexpr Range kLugHeights{.min = 0, .max = 0.05};
 constexpr Range kMaxDelay{.min = 0, .max = 10};
 constexpr std::size_t kMaxWheelsASide = 8;
 constexpr std::size_t kMaxCasters = 4;
@@ -60,7 +61,7 @@ TrackDescription read_track(TomlReader table) {
       .friction_along = table.number("friction_along", kFriction),
       .friction_across = table.number("friction_across", kFriction),
       .pieces = table.integer("pieces", 1, 32),
-      .lug_height_m = table.number_or("lug_height_m", 0, {.min = 0, .max = 0.05}),
+      .lug_height_m = table.number_or("lug_height_m", 0, kLugHeights),
       .shear_deformation_m = table.number_or("shear_deformation_m", 0, {.min = 0, .max = 0.2}),
   };
   if (track.length_m <= 2 * track.end_radius_m) table.fail("length_m", "must be more than twice end_radius_m");
@@ -80,7 +81,7 @@ TrackDescription read_wheel(TomlReader& table) {
       .friction_along = table.number("friction_along", kFriction),
       .friction_across = table.number("friction_across", kFriction),
       .pieces = 1,
-      .lug_height_m = 0,
+      .lug_height_m = table.number_or("lug_height_m", 0, kLugHeights),
   };
   if (wheel.p_BT_m.y() <= wheel.width_m / 2) table.fail("left_center_m", "must have a y of more than half of width_m");
   table.finish();

@@ -3,6 +3,7 @@
 // tolerances, where they are as tight as Kenaf's own physics allows; speeds are Kenaf's.
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "rollout/roll_out.hpp"
 
@@ -106,4 +107,22 @@ TEST_CASE("With its belts off the robot does not move, on the ground, on a slope
     CHECK(std::abs(physics::roll_pitch_yaw(out.end.X_WB.q).z()) < 1e-3);
     CHECK_FALSE(out.end.X_WB.p.z() > 0.1);
   }
+}
+
+// The data sheets: Husky A200 has wheels of 0.165 m; the Pioneer 3-AT of 0.111 m climbs 0.1 m, by the tread of its
+// tyres: smooth ones of friction 0.8 slide on the edge.
+TEST_CASE("Husky and the Pioneer 3-AT drive the square and climb a step of 100 mm") {
+  for (const char* name : {"husky", "p3at"}) {
+    INFO(name);
+    const physics::RobotDescription robot = physics::load_robot(name);
+    const RollOut square = drive(robot, rollout::load_manoeuvre("square"));
+    CHECK(square.succeeded);
+    CHECK(std::abs(std::remainder(physics::roll_pitch_yaw(square.end.X_WB.q).z(), std::numbers::pi / 2)) < 0.1);
+    const RollOut step = drive(robot, rollout::load_manoeuvre("step-100"));
+    CHECK(step.succeeded);
+    CHECK(step.end.X_WB.p.z() == Approx(0.1 + robot.ride_height_m()).margin(0.01));
+  }
+  physics::RobotDescription smooth = physics::load_robot("p3at");
+  for (physics::TrackDescription& wheels : smooth.track) wheels.lug_height_m = 0;
+  CHECK_FALSE(drive(smooth, rollout::load_manoeuvre("step-100")).succeeded);
 }
