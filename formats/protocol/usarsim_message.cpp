@@ -25,12 +25,24 @@ std::string_view trim(std::string_view text) {
   return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-// A number with a decimal point and nothing around it.
+// Without the quotes around it, however many.
+std::string_view unquote(std::string_view text) {
+  text = trim(text);
+  while (text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front()) {
+    text = trim(text.substr(1, text.size() - 2));
+  }
+  return text;
+}
+
+// A number with a decimal point and nothing around it but the suffix of a literal in C# or Java: 1.0f, 1.0d.
 std::optional<double> read_number(std::string_view text) {
   if (text.starts_with('+') && text.size() > 1 && text[1] != '-') text.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
+  const std::string_view suffix(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  const bool literal = suffix.size() == 1 && std::string_view("fFdD").find(suffix[0]) != std::string_view::npos;
+  if (!suffix.empty() && !literal) return std::nullopt;
   return value;
 }
 
@@ -107,6 +119,25 @@ void append_numbers(std::string& out, std::span<const double> values, NumberForm
 
 }  // namespace
 
+std::span<const Group> MessageView::all() const {
+  return many_.empty() ? std::span(few_).first(few_count_) : std::span(many_);
+}
+
+void MessageView::clear() {
+  type = {};
+  few_count_ = 0;
+  many_.clear();
+}
+
+void MessageView::add(const Group& group) {
+  if (many_.empty() && few_count_ < few_.size()) {
+    few_[few_count_++] = group;
+    return;
+  }
+  if (many_.empty()) many_.assign(few_.begin(), few_.end());
+  many_.push_back(group);
+}
+
 std::optional<std::string_view> MessageView::find(std::string_view key) const {
   for (const Group& group : all()) {
     if (equal_ignoring_case(group.key, key)) return group.value;
@@ -130,35 +161,38 @@ std::string_view describe(ParseError error) {
       return "a group without its closing brace";
     case ParseError::text_between:
       return "text outside of the braces after the first group";
-    case ParseError::too_many_groups:
-      return "more than 64 groups";
   }
   return "unknown error of a message";
 }
 
 ParseError parse_message(std::string_view line, MessageView& out) {
-  out.type = {};
-  out.group_count = 0;
+  out.clear();
   line = trim(line);
   while (line.starts_with(kByteOrderMark)) line = trim(line.substr(kByteOrderMark.size()));
   if (line.empty()) return ParseError::empty;
   if (line.starts_with('{')) return ParseError::no_type;
 
-  // The type up to the first brace, then groups; only white space may stand between them.
+  // The type up to the first brace, then groups; only white space should stand between them.
+  ParseError first = ParseError::none;
+  const auto note = [&first](ParseError error) { first = first == ParseError::none ? error : first; };
   const std::size_t type_end = std::min(line.size(), line.find('{'));
   out.type = trim(line.substr(0, type_end));
   line.remove_prefix(type_end);
   while (!line.empty()) {
-    if (!line.starts_with('{')) return ParseError::text_between;
-    const std::size_t end = line.find_first_of("{}", 1);
-    if (end == std::string_view::npos || line[end] == '{') return ParseError::unclosed_group;
-    if (out.group_count == kMaxGroups) return ParseError::too_many_groups;
+    const std::size_t end = std::min(line.size(), line.find_first_of("{}", 1));
+    const bool closed = end < line.size() && line[end] == '}';
+    if (!closed) note(ParseError::unclosed_group);
     std::string_view value = line.substr(1, end - 1);
     const std::string_view key = next_word(value);
-    out.groups[out.group_count++] = {key, trim(value)};
-    line = trim(line.substr(end + 1));
+    if (closed || !key.empty()) out.add({key, unquote(value)});
+
+    // What stands before the next group is skipped.
+    line.remove_prefix(closed ? end + 1 : end);
+    const std::size_t next = std::min(line.size(), line.find('{'));
+    if (!trim(line.substr(0, next)).empty()) note(ParseError::text_between);
+    line.remove_prefix(next);
   }
-  return ParseError::none;
+  return first;
 }
 
 bool equal_ignoring_case(std::string_view a, std::string_view b) {
@@ -172,10 +206,10 @@ std::optional<double> parse_number(std::string_view text) {
 
 std::optional<bool> parse_bool(std::string_view text) {
   text = trim(text);
-  for (const std::string_view yes : {"true", "1", "yes", "on"}) {
+  for (const std::string_view yes : {"true", "t", "1", "yes", "y", "on"}) {
     if (equal_ignoring_case(text, yes)) return true;
   }
-  for (const std::string_view no : {"false", "0", "no", "off"}) {
+  for (const std::string_view no : {"false", "f", "0", "no", "n", "off"}) {
     if (equal_ignoring_case(text, no)) return false;
   }
   return std::nullopt;
@@ -246,6 +280,7 @@ MessageWriter& MessageWriter::begin(std::string_view type) {
 }
 
 MessageWriter& MessageWriter::text(std::string_view key, std::string_view value) {
+  if (value.empty()) return *this;
   return open_group(key, value).close_group();
 }
 

@@ -1,11 +1,12 @@
 // The USARSim text protocol's grammar, both ways, without allocation on the reading side.
 //
 //   line    := TYPE {group}* EOL          EOL read: CR, LF or any mix of them; EOL written: CR LF
-//   group   := '{' key [value] '}'        value: the rest of the group, trimmed; it may hold further key value pairs,
-//                                         as UT2004 writes `{Name ECLeft Tick 0}`
+//   group   := '{' key [value] '}'        value: the rest of the group, trimmed, without quotes around it; it may hold
+//                                         further key value pairs, as UT2004 writes `{Name ECLeft Tick 0}`
 //
 // Reading is lenient, for existing clients: types and keys ignore case, white space is optional, numbers of a vector
-// are separated by commas or blanks, and a decimal comma is accepted where it cannot be a separator.
+// are separated by commas or blanks, a decimal comma is accepted where it cannot be a separator, and numbers may end
+// like C's and Java's literals (1.0f). A line with an odd group keeps the others, as by UDK's parser.
 // Sources: the UT2004 and UDK USARSim servers and the clients listed in docs/world-server-protocol.md.
 //
 // Thread safety: values and pure functions. A MessageView refers to the line it was read from, which must outlive it.
@@ -18,10 +19,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace kenaf::protocol::usarsim {
 
-inline constexpr std::size_t kMaxGroups = 64;
 inline constexpr std::size_t kMaxLineBytes = 65536;
 
 struct Group {
@@ -31,36 +32,47 @@ struct Group {
 
 struct MessageView {
   std::string_view type;  // trimmed, case as it came
-  std::array<Group, kMaxGroups> groups;
-  std::size_t group_count = 0;
 
-  std::span<const Group> all() const { return {groups.data(), group_count}; }
+  // The groups, in the order of the line.
+  std::span<const Group> all() const;
 
   // The value of the first group with this key, ignoring case.
   std::optional<std::string_view> find(std::string_view key) const;
 
   // Whether the type matches, ignoring case.
   bool is(std::string_view expected_type) const;
+
+  void clear();
+  void add(const Group& group);
+
+ private:
+  std::array<Group, 64> few_;  // USARSim's own messages have no more, so that these need no allocation
+  std::size_t few_count_ = 0;
+  std::vector<Group> many_;  // all groups, as soon as they are more
 };
 
 enum class ParseError : std::uint8_t {
   none = 0,
-  empty,            // nothing but white space
-  no_type,          // begins with a brace
-  unclosed_group,   // '{' without '}'
-  text_between,     // text outside of braces after the first group
-  too_many_groups,  // more than kMaxGroups
+  empty,           // nothing but white space
+  no_type,         // begins with a brace
+  unclosed_group,  // '{' without '}': the group ends at the next '{' or at the end of the line
+  text_between,    // text outside of braces after the first group is skipped
 };
 std::string_view describe(ParseError error);
+// Whether the line has a message all the same.
+constexpr bool is_readable(ParseError error) {
+  return error != ParseError::empty && error != ParseError::no_type;
+}
 
-// Reads one line without its EOL. On an error `out` holds the part before it.
+// Reads one line without its EOL, and returns the first thing that is wrong with it. If is_readable(), `out` holds the
+// type and every group of the line; otherwise it is empty.
 ParseError parse_message(std::string_view line, MessageView& out);
 
 bool equal_ignoring_case(std::string_view a, std::string_view b);
 
 // Reads the whole text as one finite number, with optional white space around it; "1,5" is 1.5.
 std::optional<double> parse_number(std::string_view text);
-// "true", "True", "1", "yes" and their opposites.
+// "true", "True", "t", "1", "yes", "y", "on" and their opposites.
 std::optional<bool> parse_bool(std::string_view text);
 // Reads exactly `out.size()` numbers, separated by commas or blanks. If that does not give the count, commas are taken
 // as decimal signs: "4,5 1,9 1,8" and "4,5,1,9,1,8" are three numbers. If it returns false, `out` is unspecified.
@@ -105,6 +117,7 @@ class MessageWriter {
   explicit MessageWriter(std::string& out) : out_(out) {}
 
   MessageWriter& begin(std::string_view type);
+  // Writes nothing for an empty value: parsers of clients fail on a key alone.
   MessageWriter& text(std::string_view key, std::string_view value);
   MessageWriter& number(std::string_view key, double value, NumberFormat format);
   MessageWriter& integer(std::string_view key, std::int64_t value);

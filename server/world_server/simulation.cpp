@@ -133,11 +133,15 @@ void Simulation::handle_line(Session& session, std::string_view line) {
   MessageView message;
   const protocol::usarsim::ParseError error = protocol::usarsim::parse_message(line, message);
   if (error == protocol::usarsim::ParseError::empty) return;
-  if (error != protocol::usarsim::ParseError::none || !is_word(message.type)) {
+  const bool readable = protocol::usarsim::is_readable(error);
+  if (!readable || !is_word(message.type)) {
     ++session.bad_lines;
-    const bool parsed = error == protocol::usarsim::ParseError::none;
-    complain(*this, session, parsed ? "not a USARSim message" : protocol::usarsim::describe(error), line);
+    complain(*this, session, readable ? "not a USARSim message" : protocol::usarsim::describe(error), line);
     return;
+  }
+  // What an odd line has all the same is obeyed.
+  if (error != protocol::usarsim::ParseError::none) {
+    complain(*this, session, protocol::usarsim::describe(error), line);
   }
   const VerbEntry* entry = find_verb(message);
   if (entry == nullptr) {
@@ -181,9 +185,8 @@ void Simulation::send_due(Session& session) {
   for (std::string_view rest = deferred_lines_; !rest.empty();) {
     const std::size_t end = rest.find('\n');
     MessageView message;
-    if (protocol::usarsim::parse_message(rest.substr(0, end), message) == protocol::usarsim::ParseError::none) {
-      if (const VerbEntry* entry = find_verb(message)) entry->verb(*this, session, message);
-    }
+    protocol::usarsim::parse_message(rest.substr(0, end), message);
+    if (const VerbEntry* entry = find_verb(message)) entry->verb(*this, session, message);
     rest.remove_prefix(end + 1);
   }
   watch_silence(session);

@@ -26,19 +26,21 @@ void read_values(std::string_view value) {
 
 void check_line(std::string_view line) {
   MessageView message;
-  if (parse_message(line, message) != ParseError::none) return;
+  const bool readable = is_readable(parse_message(line, message));
+  if (readable == message.type.empty() || (!readable && !message.all().empty())) std::abort();
+  if (!readable) return;
   std::string written;
   MessageWriter writer(written);
   writer.begin(message.type);
   for (const Group& group : message.all()) {
     read_values(group.value);
-    writer.text(group.key, group.value);
+    writer.open_group(group.key, group.value).close_group();
   }
   MessageView again;
-  if (message.type.empty() || parse_message(written, again) != ParseError::none) std::abort();
-  if (again.group_count != message.group_count) std::abort();
-  for (std::size_t i = 0; i < again.group_count; ++i) {
-    if (again.groups[i].value != message.groups[i].value) std::abort();
+  if (parse_message(written, again) != ParseError::none) std::abort();
+  if (again.all().size() != message.all().size()) std::abort();
+  for (std::size_t i = 0; i < again.all().size(); ++i) {
+    if (again.all()[i].key != message.all()[i].key || again.all()[i].value != message.all()[i].value) std::abort();
   }
 }
 

@@ -118,11 +118,16 @@ TEST_CASE("Recorded sensor lines, with vectors and with groups of several pairs"
 
 TEST_CASE("What is written is read back") {
   std::string out;
-  MessageWriter(out).begin("RES").text("Status", "Failed").text("Reason", "no such robot").text("Note", "").end();
+  MessageWriter(out).begin("RES").text("Status", "Failed").text("Reason", "no such robot").end();
   MessageView view;
   REQUIRE(parse_message(std::string_view(out).substr(0, out.size() - 2), view) == ParseError::none);
   CHECK(view.find("Reason") == "no such robot");
-  CHECK(view.find("Note") == "");
+}
+
+TEST_CASE("A text without a character writes no group") {
+  std::string out;
+  MessageWriter(out).begin("RES").text("Name", "").text("Status", "Failed").text("Reason", "").end();
+  CHECK(out == "RES {Status Failed}\r\n");
 }
 
 TEST_CASE("Text from elsewhere cannot end its group or its line") {
