@@ -73,35 +73,44 @@ void drive_body_velocity(SessionRobot& robot, const MessageView& message) {
                     std::clamp(held.clockwise_radps, -kFastestAsked, kFastestAsked));
 }
 
-// {Name n} starts a set, {Order}, {Value} and {Steer} fill it; missing values are 0. Flippers do not steer.
-void drive_joints(Simulation& simulation, SessionRobot& robot, const MessageView& message) {
-  if (!robot.description->has_flippers()) return;
-  // One truth for the whole message: relative orders of several flippers start from the same moment.
-  const physics::RobotTruth truth = simulation.world.truth(robot.id);
-  std::optional<robot::Flipper> flipper;
-  auto order = std::optional(JointOrder::angle);
+// What a DRIVE says of one name.
+struct JointSet {
+  std::string_view name;
+  std::optional<JointOrder> order = JointOrder::angle;
   double value = 0;
-  // A set with an unknown flipper or order is skipped; the others take effect.
-  const auto finish = [&] {
-    if (flipper && order) {
-      robot.command.flipper[*flipper] = joint_command(*robot.description, truth, *flipper, *order, value);
-    }
-  };
+  bool is_given = false;  // there is an order or a value
+};
 
+// A set with an unknown joint or order is skipped. A name alone is no mistake: drivers of ROS name the robot itself.
+void obey(Simulation& simulation, Session& session, const physics::RobotTruth& truth, const JointSet& set) {
+  SessionRobot& robot = *session.robot;
+  const auto flipper = robot.description->has_flippers() ? find_flipper(set.name) : std::nullopt;
+  if (flipper && set.order) {
+    robot.command.flipper[*flipper] = joint_command(*robot.description, truth, *flipper, *set.order, set.value);
+  } else if (set.is_given) {
+    complain(simulation, session, "DRIVE: no such joint or order", set.name);
+  }
+}
+
+// {Name n} opens a set, {Order}, {Value} and {Steer} fill it; missing values are 0. Flippers do not steer.
+void drive_joints(Simulation& simulation, Session& session, const MessageView& message) {
+  // One truth for the whole message: relative orders of several flippers start from the same moment.
+  const physics::RobotTruth truth = simulation.world.truth(session.robot->id);
   // The next Name ends a set; the end of the message ends the last one.
+  JointSet set;
   for (const protocol::usarsim::Group& group : message.all()) {
     if (is_any_of(group.key, {"Name"})) {
-      finish();
-      flipper = find_flipper(group.value);
-      order = JointOrder::angle;
-      value = 0;
+      obey(simulation, session, truth, set);
+      set = {.name = group.value};
     } else if (is_any_of(group.key, {"Order"})) {
-      order = parse_joint_order(group.value);
+      set.order = parse_joint_order(group.value);
+      set.is_given = true;
     } else if (is_any_of(group.key, {"Value"})) {
-      value = protocol::usarsim::parse_number(group.value).value_or(0);
+      set.value = protocol::usarsim::parse_number(group.value).value_or(0);
+      set.is_given = true;
     }
   }
-  finish();
+  obey(simulation, session, truth, set);
 }
 
 // UT2004 righted a fallen robot by a torque. Here it is put upright where it lies.
@@ -127,9 +136,8 @@ void drive(Simulation& simulation, Session& session, const MessageView& message)
   SessionRobot& robot = *session.robot;
   robot.normalized = bool_of(message, "Normalized").value_or(robot.normalized);
   robot.light = bool_of(message, "Light").value_or(robot.light);
-  if (message.find("Name")) {
-    drive_joints(simulation, robot, message);
-  } else if (message.find("Left") || message.find("Right")) {
+  if (message.find("Name")) drive_joints(simulation, session, message);
+  if (message.find("Left") || message.find("Right")) {
     drive_skid(robot, message);
   } else if (message.find("Speed") || message.find("FrontSteer") || message.find("RearSteer")) {
     drive_ackermann(robot, message);
