@@ -142,6 +142,7 @@ void WorldLink::read_line(std::string_view line, Connection& connection) {
     note_malformed(protocol::usarsim::describe(error), line.size());
     return;
   }
+  note_warning();
   const bool is_frame = connection.transform.take(message_);
   if (!connection.handed_over) {
     connection.handshake.on_message(message_, is_frame, Clock::now(), connection.out);
@@ -196,6 +197,17 @@ bool WorldLink::take_requests() {
     any = true;
   });
   return any;
+}
+
+// RES {Type Robot} {Name n} {Status OK} {Warning words}
+void WorldLink::note_warning() {
+  if (!message_.is("RES")) return;
+  const auto words = message_.find("Warning");
+  if (!words) return;
+  if (const auto held_back = log_warnings_.allow()) {
+    spdlog::warn("the world server warns of robot {}: {} ({} more before)", message_.find("Name").value_or(""), *words,
+                 *held_back);
+  }
 }
 
 void WorldLink::note_malformed(std::string_view what, std::size_t bytes) {

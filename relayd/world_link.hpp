@@ -62,6 +62,7 @@ class WorldLink {
   void put(const WorldEvent& event);
   bool take_requests();
   void note_malformed(std::string_view what, std::size_t bytes);
+  void note_warning();
 
   const protocol::HostPort server_;
   const RobotPlacement placement_;
@@ -73,6 +74,7 @@ class WorldLink {
   const std::atomic<bool>* stopping_ = nullptr;
   protocol::usarsim::MessageView message_;
   protocol::LogLimiter log_malformed_;
+  protocol::LogLimiter log_warnings_;
   bool was_up_ = false;
 };
 

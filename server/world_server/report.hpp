@@ -14,5 +14,7 @@ void write_samples(std::vector<physics::SensorSample>& samples, const std::vecto
 void write_mission_packages(const Simulation& simulation, Session& session);
 // STA
 void write_status(const Simulation& simulation, Session& session);
+// RES {Time t} {Type Robot} {Name n} {Status OK} {Warning words}, for a client with a Session alone.
+void write_warning(const Simulation& simulation, Session& session, std::string_view words);
 
 }  // namespace kenaf::world_server

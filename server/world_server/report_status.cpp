@@ -82,4 +82,16 @@ void write_status(const Simulation& simulation, Session& session) {
   writer.end();
 }
 
+void write_warning(const Simulation& simulation, Session& session, std::string_view words) {
+  if (!session.extended) return;
+  protocol::usarsim::MessageWriter(session.out)
+      .begin("RES")
+      .number("Time", simulation.world.time_s(), session.formats.sensor_time)
+      .text("Type", "Robot")
+      .text("Name", session.robot->name)
+      .text("Status", "OK")
+      .text("Warning", words)
+      .end();
+}
+
 }  // namespace kenaf::world_server

@@ -1,16 +1,59 @@
 #include "server/world_server/start_poses.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
+#include <array>
 
 #include "formats/protocol/usarsim_message.hpp"
+#include "server/world_server/report.hpp"
 
 namespace kenaf::world_server {
 
-const physics::StartPose* find_start_pose(const physics::WorldDescription& world, std::string_view name) {
-  const auto found = std::ranges::find_if(world.start_poses, [name](const physics::StartPose& start) {
+namespace {
+
+// What clients of USARSim's maps have in their sources and launch files.
+struct UsualName {
+  std::string_view name;
+  std::size_t index;
+};
+constexpr std::array kUsualNames = {UsualName{"PlayerStart", 0}, UsualName{"RobotStart1", 0},
+                                    UsualName{"RobotStart2", 1}, UsualName{"RobotStart3", 2},
+                                    UsualName{"RobotStart4", 3}};
+
+auto find_by_name(const std::vector<physics::StartPose>& starts, std::string_view name) {
+  return std::ranges::find_if(starts, [name](const physics::StartPose& start) {
     return protocol::usarsim::equal_ignoring_case(start.name, name);
   });
-  return found == world.start_poses.end() ? nullptr : &*found;
+}
+
+void warn_of_namesakes(Simulation& simulation, Session& session) {
+  for (const auto& other : simulation.sessions) {
+    if (other.get() == &session || !other->robot) continue;
+    if (!protocol::usarsim::equal_ignoring_case(other->robot->name, session.robot->name)) continue;
+    spdlog::warn("{}: robot {} has the name of the robot of {}: a request by name finds one of them", session.peer,
+                 session.robot->name, other->peer);
+    for (Session* each : {&session, other.get()}) write_warning(simulation, *each, "another robot has the same name");
+    return;
+  }
+}
+
+}  // namespace
+
+std::vector<physics::StartPose> offered_start_poses(const physics::WorldDescription& world) {
+  std::vector<physics::StartPose> offered = world.start_poses;
+  for (const UsualName& usual : kUsualNames) {
+    const bool taken = find_by_name(world.start_poses, usual.name) != world.start_poses.end();
+    if (taken || usual.index >= world.start_poses.size()) continue;
+    offered.push_back({std::string(usual.name), world.start_poses[usual.index].X_WB});
+  }
+  return offered;
+}
+
+std::optional<physics::Pose> find_start_pose(const physics::WorldDescription& world, std::string_view name) {
+  const std::vector<physics::StartPose> offered = offered_start_poses(world);
+  const auto found = find_by_name(offered, name);
+  return found == offered.end() ? std::nullopt : std::optional(found->X_WB);
 }
 
 const physics::StartPose& free_start_pose(const physics::World& world, double clear_m) {
@@ -33,6 +76,7 @@ void place_robot(Simulation& simulation, Session& session, const physics::RobotD
   robot.command = Simulation::resting_command(description);
   robot.camera_field_of_view_rad = Simulation::unzoomed(description);
   simulation.apply_command(session);
+  warn_of_namesakes(simulation, session);
 }
 
 }  // namespace kenaf::world_server

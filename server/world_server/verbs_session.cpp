@@ -9,13 +9,18 @@ namespace kenaf::world_server {
 
 namespace {
 
-// nullopt: the requested start pose does not exist in this world.
+// nullopt: refused.
 std::optional<physics::Pose> wanted_pose(const Simulation& simulation, Session& session, const MessageView& message) {
-  if (const auto start = message.find("Start")) {
-    const physics::StartPose* pose = find_start_pose(simulation.world.description(), *start);
-    if (pose != nullptr) return pose->X_WB;
-    complain(simulation, session, "INIT refused: no such start pose in this world; GETSTARTPOSES lists them", *start);
-    return std::nullopt;
+  if (const std::string_view start = text_of(message, "Start"); !start.empty()) {
+    if (const auto X_WB = find_start_pose(simulation.world.description(), start)) return X_WB;
+    // UDK added the robot all the same, and its clients have names of its maps in their sources. A client that knows
+    // this server is told by the robot's absence.
+    if (session.extended) {
+      complain(simulation, session, "INIT refused: no such start pose in this world; GETSTARTPOSES lists them", start);
+      return std::nullopt;
+    }
+    complain(simulation, session, "INIT: no such start pose in this world, so another one; GETSTARTPOSES lists them",
+             start);
   }
   physics::Pose X_WB = free_start_pose(simulation.world).X_WB;
   if (const auto location = read_location(message, "Location")) {
@@ -63,7 +68,7 @@ void init(Simulation& simulation, Session& session, const MessageView& message) 
 }
 
 void get_start_poses(Simulation& simulation, Session& session, const MessageView&) {
-  const auto& starts = simulation.world.description().start_poses;
+  const std::vector<physics::StartPose> starts = offered_start_poses(simulation.world.description());
   const protocol::usarsim::NumberFormat format = session.formats.value;
   protocol::usarsim::MessageWriter writer(session.out);
   writer.begin("NFO").integer("StartPoses", static_cast<std::int64_t>(starts.size()));

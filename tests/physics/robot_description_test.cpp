@@ -55,7 +55,7 @@ TEST_CASE("Kenaf is what is known of it") {
 
 TEST_CASE("All shipped robots load, by class too") {
   for (const char* name : {"kenaf", "marmotte", "maxxii"}) CHECK_FALSE(load_robot(name).has_wheels());
-  for (const char* name : {"p2dx", "p2at", "p3at", "husky", "jackal", "warthog"}) {
+  for (const char* name : {"p2dx", "p2at", "p3at", "basicskidrobot", "husky", "jackal", "warthog"}) {
     CHECK(load_robot(name).name == name);
     CHECK(load_robot(name).has_wheels());
   }

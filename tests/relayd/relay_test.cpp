@@ -331,6 +331,16 @@ TEST_CASE("Hostile lines from the world server: a log line, nothing dead, nothin
   CHECK(relay.log().count("the world server sent") >= 1);
 }
 
+TEST_CASE("What the world server warns of is in the relay's log") {
+  FakeWorldOptions options;
+  options.garbage = "RES {Time 1} {Type Robot} {Name R1} {Status OK} {Warning another robot has the same name}\r\n";
+  FakeWorld world(options);
+  RunningRelay relay(world.port());
+  FakeCommander commander(relay.port(), 4);
+  REQUIRE(is_welcome(commander.hello(true)));
+  CHECK(relay.log().count("the world server warns of robot R1: another robot has the same name") >= 1);
+}
+
 TEST_CASE("Lines that arrive in pieces are put together") {
   FakeWorldOptions options;
   options.piece = 7;

@@ -98,10 +98,9 @@ TEST_CASE("Without a place the robot gets the first start pose that is free") {
   CHECK(other.robot->name != talk.session->robot->name);
 }
 
-TEST_CASE("A class that nobody described, or a start pose that is not there, gets no robot and no answer") {
-  for (const char* init :
-       {"INIT {ClassName USARBot.Hercules} {Name R1}\r\n", "INIT {Name R1}\r\n", "INIT\r\n",
-        "INIT {ClassName ../../etc/passwd}\r\n", "INIT {ClassName USARBot.Kenaf} {Start Moon}\r\n"}) {
+TEST_CASE("A class that nobody described gets no robot and no answer") {
+  for (const char* init : {"INIT {ClassName USARBot.Hercules} {Name R1}\r\n", "INIT {Name R1}\r\n", "INIT\r\n",
+                           "INIT {ClassName ../../etc/passwd}\r\n"}) {
     INFO(init);
     Conversation talk;
     CHECK(talk.answer_to(init).empty());
@@ -154,12 +153,12 @@ TEST_CASE("Start poses are told before INIT, in each dialect's form") {
   Conversation ut2004;
   const std::string groups = ut2004.answer_to("GETSTARTPOSES\r\n");
   CHECK(
-      groups.starts_with("NFO {StartPoses 16} {Name start_00 Location 0.0000,0.0000,0.0000 Orientation "
+      groups.starts_with("NFO {StartPoses 21} {Name start_00 Location 0.0000,0.0000,0.0000 Orientation "
                          "0.0000,0.0000,0.0000} {Name start_01 Location 0.0000,-2.0000,0.0000 Orientation "));
   Conversation udk(fast(true));
   const std::string triplets = udk.answer_to("GetStartPoses\r\n");
   CHECK(
-      triplets.starts_with("NFO {StartPoses 16} {start_00 0.0000,0.0000,0.0000 0.0000,0.0000,0.0000 start_01 "
+      triplets.starts_with("NFO {StartPoses 21} {start_00 0.0000,0.0000,0.0000 0.0000,0.0000,0.0000 start_01 "
                            "0.0000,-2.0000,0.0000 0.0000,0.0000,0.0000 start_02 "));
   CHECK(triplets.ends_with("0.0000,0.0000,0.0000}"));
 }
