@@ -297,7 +297,7 @@ void Simulation::tell_faults() {
           "{}: the simulation of robot {} failed: {}; the robot does not move until it is placed anew or the world is "
           "reset",
           session->peer, robot.name, fault);
-    answer(*this, *session, "Robot", robot.name, fault);
+    write_answer(*this, *session, "Robot", robot.name, fault, session->extended);
   }
 }
 

@@ -1,5 +1,6 @@
 #include "server/world_server/verbs.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -62,14 +63,20 @@ void complain(const Simulation& simulation, Session& session, std::string_view w
   spdlog::warn("{}: {}: \"{}\" ({} more since the last such line)", session.peer, what, printable(text), *suppressed);
 }
 
-void answer(const Simulation& simulation, Session& session, std::string_view type, std::string_view name,
-            std::string_view reason) {
+void write_answer(const Simulation& simulation, Session& session, std::string_view type, std::string_view name,
+                  Reason reason, bool with_reason) {
   protocol::usarsim::MessageWriter writer(session.out);
   writer.begin("RES").number("Time", simulation.world.time_s(), session.formats.sensor_time);
   writer.text("Type", printable(type)).text("Name", printable(name));
   writer.text("Status", reason.empty() ? "OK" : "Failed");
-  if (!reason.empty()) writer.text("Reason", reason);
+  if (with_reason) writer.text("Reason", reason);
   writer.end();
+}
+
+void answer(const Simulation& simulation, Session& session, std::string_view type, std::string_view name,
+            Reason reason) {
+  write_answer(simulation, session, type, name, reason, session.extended);
+  if (!reason.empty() && !session.extended) complain(simulation, session, reason, fmt::format("{} {}", type, name));
 }
 
 }  // namespace kenaf::world_server

@@ -56,7 +56,11 @@ inline constexpr std::string_view kNoRobotYet = "a command before INIT placed a 
 // Warns about a client's input `text`: the first warning is logged, further ones within 5 s are counted.
 void complain(const Simulation&, Session&, std::string_view what, std::string_view text);
 
-// RES {Time t} {Type type} {Name name} {Status OK}, or {Status Failed} {Reason reason} if a reason is given.
-void answer(const Simulation&, Session&, std::string_view type, std::string_view name, std::string_view reason = {});
+// RES {Time t} {Type type} {Name name} {Status OK}, or {Status Failed} if a reason is given. USARSim gave no reasons,
+// and its clients' parsers fail on groups that they do not know: {Reason reason} is for clients that know this server.
+void write_answer(const Simulation&, Session&, std::string_view type, std::string_view name, Reason reason,
+                  bool with_reason);
+// The same to a request, with the reason for a client with a Session; the log has it for any other.
+void answer(const Simulation&, Session&, std::string_view type, std::string_view name, Reason reason = kDone);
 
 }  // namespace kenaf::world_server

@@ -107,6 +107,7 @@ void control(Simulation& simulation, Session& session, const MessageView& messag
   } else if (is_any_of(type, {"Session"})) {
     reason = set_session(simulation, session, message);
     if (reason.empty()) return answer_session(simulation, session);
+    return write_answer(simulation, session, "Control", type, reason, true);  // who asks for one knows this server
   } else {
     reason = "this server has no such CONTROL";
   }

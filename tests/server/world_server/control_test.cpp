@@ -70,7 +70,7 @@ TEST_CASE("A step that makes no sense is refused") {
        {"", "{Time 0}", "{Time -1}", "{Time 1e9}", "{Steps 0}", "{Steps 0.5}", "{Steps 1e18}", "{Time x}"}) {
     INFO(step);
     const std::string answer = talk.answer_to("CONTROL {Type Step} " + std::string(step) + "\r\n");
-    CHECK(answer.starts_with(std::string(kOk) + "Step} {Status Failed} {Reason "));
+    CHECK(answer == std::string(kOk) + "Step} {Status Failed}");
   }
   CHECK_FALSE(talk.simulation.clock.paused());
 }
@@ -163,6 +163,7 @@ TEST_CASE("UDK's dialect answers extensions all the same") {
 
 TEST_CASE("A CONTROL that nobody knows is refused in words") {
   Conversation talk = with_robot();
+  talk.send("CONTROL {Type Session}\r\n");
   CHECK(talk.answer_to("CONTROL {Type Explode}\r\n") ==
         "RES {Time 0.0000} {Type Control} {Name Explode} {Status Failed} {Reason this server has no such CONTROL}");
   CHECK(talk.answer_to("CONTROL\r\n").find("{Status Failed}") != std::string::npos);

@@ -102,6 +102,7 @@ TEST_CASE("A box with RigidBody falls, one without stays where it is") {
 
 TEST_CASE("What cannot be done is refused with a reason") {
   Controller controller;
+  controller.send("CONTROL {Type Session}\r\n");
   CHECK(controller.ok("{Type Create} {ClassName Box} {Name A} {Location 0,0,-1}"));
   for (const char* groups :
        {"{Type Create} {ClassName USARPhysObj.Forklift} {Name F} {Location 0,0,0}",
