@@ -402,6 +402,10 @@ RobotDescription load_robot(const std::string& name_or_path) {
   return parse_robot(file.text, file.path);
 }
 
+std::size_t SensorDescription::scan_values() const {
+  return static_cast<std::size_t>(std::lround(field_of_view_rad / resolution_rad)) + 1;
+}
+
 std::string robot_name_for_class(std::string_view usarsim_class) {
   std::string name(usarsim_class.substr(usarsim_class.rfind('.') + 1));  // npos + 1 is 0
   for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -142,6 +142,7 @@ struct SensorDescription {
   // Ray sensors only.
   double min_range_m = 0, max_range_m = 0, field_of_view_rad = 0, resolution_rad = 0;
 
+  std::size_t scan_values() const;  // of a range scanner: rays from one end of the field of view to the other
   bool operator==(const SensorDescription&) const = default;
 };
 

@@ -35,7 +35,7 @@ SonarReading measure_sonar(const SensorDescription& sensor, SensorState& state, 
 RangeScanReading measure_range_scanner(const SensorDescription& sensor, SensorState& state, const MotionSample& now,
                                        const RayCaster& cast) {
   const Pose X_WS = compose(now.X_WB, sensor.X_BS);
-  const auto rays = static_cast<std::size_t>(std::lround(sensor.field_of_view_rad / sensor.resolution_rad)) + 1;
+  const std::size_t rays = sensor.scan_values();
   RangeScanReading reading;
   reading.range_m.reserve(rays);
   for (std::size_t i = 0; i < rays; ++i) {

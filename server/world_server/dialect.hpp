@@ -16,8 +16,9 @@ struct Formats {
   protocol::usarsim::NumberFormat sensor_time;   // every other SEN; RES, PONG
   protocol::usarsim::NumberFormat ground_truth;  // Location and Orientation
   protocol::usarsim::NumberFormat ins;
-  protocol::usarsim::NumberFormat scan;   // ranges of a RangeScanner
-  protocol::usarsim::NumberFormat value;  // everything else
+  protocol::usarsim::NumberFormat scan;        // ranges of a RangeScanner
+  protocol::usarsim::NumberFormat scan_angle;  // its resolution and field of view
+  protocol::usarsim::NumberFormat value;       // everything else
 };
 
 Formats formats_of(Dialect dialect);

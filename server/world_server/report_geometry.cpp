@@ -2,8 +2,10 @@
 // as by UT2004; UDK did not answer.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "server/world_server/joint_orders.hpp"
+#include "server/world_server/scan_angles.hpp"
 #include "server/world_server/verbs.hpp"
 #include "server/world_server/wire_frames.hpp"
 
@@ -85,7 +87,8 @@ void add_mount(MessageWriter& writer, Dialect dialect, std::string_view name, co
 }
 
 void add_configuration(MessageWriter& writer, const SensorDescription& sensor, double ticks_per_radian,
-                       std::string_view name, protocol::usarsim::NumberFormat format) {
+                       std::string_view name, const Formats& formats) {
+  const protocol::usarsim::NumberFormat format = formats.value;
   writer.text("Name", name).number("ScanInterval", sensor.period_s, format);
   switch (sensor.type) {
     case SensorType::encoder:
@@ -96,14 +99,16 @@ void add_configuration(MessageWriter& writer, const SensorDescription& sensor, d
           .number("MinRange", sensor.min_range_m, format)
           .number("BeamAngle", sensor.field_of_view_rad, format);
       break;
-    case SensorType::range_scanner:
+    case SensorType::range_scanner: {
+      const ScanAngles angles = scan_angles(sensor, formats.scan_angle);
       writer.number("MaxRange", sensor.max_range_m, format)
           .number("MinRange", sensor.min_range_m, format)
-          .number("Resolution", sensor.resolution_rad, format)
-          .number("Fov", sensor.field_of_view_rad, format)
+          .number("Resolution", angles.resolution_rad, angles.format)
+          .number("Fov", angles.field_of_view_rad, angles.format)
           .boolean("Panning", true)
           .boolean("Tilting", false);
       break;
+    }
     default:
       break;
   }
@@ -126,7 +131,7 @@ bool write_sensors(MessageWriter& writer, const Simulation& simulation, const Se
       if (request.geometry) {
         add_mount(writer, simulation.dialect, name, sensor.X_BS, robot, format);
       } else {
-        add_configuration(writer, sensor, robot.drive.encoder_counts_per_radian, name, format);
+        add_configuration(writer, sensor, robot.drive.encoder_counts_per_radian, name, session.formats);
       }
       if (!encoder) break;
     }
@@ -135,35 +140,57 @@ bool write_sensors(MessageWriter& writer, const Simulation& simulation, const Se
   return found;
 }
 
-// One line for each package, as clients of UT2004 read them.
-bool write_mission_packages(MessageWriter& writer, const Simulation& simulation, const Session& session,
-                            const Request& request) {
+// A link turns about the z axis of its frame, in USARSim's axes; its parent is the link before it. Link 1 pans about
+// the mount's z. Link 2 tilts, positive up, about the y axis of link 1, which a roll of -90 degrees makes its z. No
+// camera has more.
+physics::Pose link_in_parent(const physics::Pose& X_BM, std::size_t link, bool from_mount) {
+  if (link == 0) return from_mount ? physics::Pose{} : X_BM;
+  return link == 1 ? physics::Pose{Eigen::Vector3d::Zero(), physics::rotation_from({-std::numbers::pi / 2, 0, 0})}
+                   : physics::Pose{};
+}
+
+// `actuator`: in the form of UDK's actuators, which have a mount of their own and name the parent otherwise.
+void add_link_geometry(MessageWriter& writer, const physics::MissionPackageDescription& package, std::size_t link,
+                       bool actuator, protocol::usarsim::NumberFormat format) {
+  const physics::Pose X_PL = link_in_parent(package.X_BM, link, actuator);
+  const auto parent = static_cast<std::int64_t>(link);
+  if (actuator) writer.integer("Parent", parent);
+  if (!actuator) writer.integer("ParentLink", link == 0 ? -1 : parent);
+  writer.numbers("Location", wire_vector(X_PL.p), format).numbers("Orientation", wire_angles(X_PL.q), format);
+}
+
+// The sign of the angle differs from USARSim's, so minimum and maximum change places.
+void add_link_configuration(MessageWriter& writer, const physics::MissionPackageDescription::Link& link, bool actuator,
+                            protocol::usarsim::NumberFormat format) {
+  writer.text("JointType", "Revolute")
+      .number("MaxSpeed", link.max_speed_radps, format)
+      .number("MaxTorque", 0, format)
+      .number(actuator ? "MinValue" : "MinRange", protocol::frames::usarsim_link_from_rep103(link.max_rad), format)
+      .number(actuator ? "MaxValue" : "MaxRange", protocol::frames::usarsim_link_from_rep103(link.min_rad), format);
+}
+
+// {Type MisPkg} as of UT2004, {Type Actuator} as of UDK. One line for each package, as clients of UT2004 read them.
+bool write_mission_packages(MessageWriter& writer, const Session& session, const Request& request) {
   const physics::RobotDescription& robot = *session.robot->description;
   const protocol::usarsim::NumberFormat format = session.formats.value;
+  const bool actuator = is_any_of(request.type, {"Actuator"});
   bool found = false;
   for (const physics::MissionPackageDescription& package : robot.mission_packages) {
     if (!request.name.empty() && !protocol::usarsim::equal_ignoring_case(package.name, request.name)) continue;
     found = true;
     writer.begin(request.geometry ? "GEO" : "CONF").text("Type", request.type);
-    if (request.geometry) {
-      add_mount(writer, simulation.dialect, package.name, package.X_BM, robot, format);
+    if (request.geometry && actuator) {
+      add_mount(writer, Dialect::udk, package.name, package.X_BM, robot, format);
     } else {
       writer.text("Name", package.name);
     }
-    // One group for each link; its parent is the link before it, -1 for the first.
     for (std::size_t link = 0; link < package.links.size(); ++link) {
       writer.integer("Link", static_cast<std::int64_t>(link) + 1);
-      if (request.geometry) {
-        writer.integer("ParentLink", link == 0 ? -1 : static_cast<std::int64_t>(link));
-      } else {
-        writer.text("JointType", "Revolute")
-            .number("MaxSpeed", package.links[link].max_speed_radps, format)
-            .number("MaxTorque", 0, format)
-            // The sign of the angle differs from USARSim's, so minimum and maximum change places.
-            .number("MinValue", protocol::frames::usarsim_link_from_rep103(package.links[link].max_rad), format)
-            .number("MaxValue", protocol::frames::usarsim_link_from_rep103(package.links[link].min_rad), format);
-      }
+      if (request.geometry) add_link_geometry(writer, package, link, actuator, format);
+      if (!request.geometry) add_link_configuration(writer, package.links[link], actuator, format);
     }
+    // Of the last link: what is mounted sits in its origin.
+    if (request.geometry) writer.numbers("Tip", protocol::frames::Vector3{}, format);
     writer.end();
   }
   return found;
@@ -250,8 +277,7 @@ void reply(const Simulation& simulation, Session& session, const MessageView& me
       return write_robot_configuration(writer, robot, simulation.dialect, session.formats.value);
     }
     if (write_sensors(writer, simulation, session, request)) return;
-    if (is_any_of(request.type, {"MisPkg", "Actuator"}) &&
-        write_mission_packages(writer, simulation, session, request)) {
+    if (is_any_of(request.type, {"MisPkg", "Actuator"}) && write_mission_packages(writer, session, request)) {
       return;
     }
     if (is_any_of(request.type, {"Joint"}) && write_flippers(writer, session, request)) return;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "server/world_server/report.hpp"
+#include "server/world_server/scan_angles.hpp"
 #include "server/world_server/wire_frames.hpp"
 
 namespace kenaf::world_server {
@@ -100,10 +101,11 @@ void write(const Report& report, const physics::SonarReading& reading) {
 // From the right end to the left one; reversed in place.
 void write(const Report& report, physics::RangeScanReading& reading) {
   std::ranges::reverse(reading.range_m);
+  const ScanAngles angles = scan_angles(report.sensor, report.formats.scan_angle);
   report.begin(true, report.formats.scan_time)
       .text("Name", report.sensor.name)
-      .number("Resolution", report.sensor.resolution_rad, report.formats.value)
-      .number("FOV", report.sensor.field_of_view_rad, report.formats.value)
+      .number("Resolution", angles.resolution_rad, angles.format)
+      .number("FOV", angles.field_of_view_rad, angles.format)
       .numbers("Range", reading.range_m, report.formats.scan)
       .end();
 }
@@ -120,8 +122,9 @@ void write_degrees(const Report& report, const char* key, double degrees, char p
   report.writer.text(key, text);
 }
 
+// UT2004's had no time, as recorded.
 void write(const Report& report, const physics::GpsReading& reading) {
-  report.named(true);
+  report.named(report.dialect == Dialect::udk);
   if (reading.fix) {
     write_degrees(report, "Latitude", reading.latitude_deg, 'N', 'S');
     write_degrees(report, "Longitude", reading.longitude_deg, 'E', 'W');

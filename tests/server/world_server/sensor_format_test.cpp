@@ -14,7 +14,7 @@ SensorDescription sensor(SensorType type, const char* name) {
   description.type = type;
   description.name = name;
   description.resolution_rad = 0.01745329;
-  description.field_of_view_rad = 3.14159265;
+  description.field_of_view_rad = 2 * description.resolution_rad;
   return description;
 }
 
@@ -80,10 +80,10 @@ TEST_CASE("Sonars: all in one message of UT2004, a message for each of UDK") {
 TEST_CASE("A range scan goes from the right end to the left one") {
   const physics::RangeScanReading from_the_left{{1.11111, 2.22222, 3.33339}};
   CHECK(message(Dialect::ut2004, sensor(SensorType::range_scanner, "Scanner1"), from_the_left) ==
-        "SEN {Time 3104.57} {Type RangeScanner} {Name Scanner1} {Resolution 0.0175} {FOV 3.1416} "
+        "SEN {Time 3104.57} {Type RangeScanner} {Name Scanner1} {Resolution 0.0174} {FOV 0.0349} "
         "{Range 3.3334,2.2222,1.1111}");
   CHECK(message(Dialect::udk, sensor(SensorType::range_scanner, "Scanner1"), from_the_left) ==
-        "SEN {Time 3104.5749} {Type RangeScanner} {Name Scanner1} {Resolution 0.0174} {FOV 3.1415} "
+        "SEN {Time 3104.5749} {Type RangeScanner} {Name Scanner1} {Resolution 0.0174} {FOV 0.0349} "
         "{Range 3.33,2.22,1.11}");
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("GPS tells degrees and minutes, or that it has no fix") {
   // 39 degrees and 8.03 minutes north: 39 + 8.03 / 60 = 39.133833...
   CHECK(message(Dialect::ut2004, sensor(SensorType::gps, "GPS"),
                 physics::GpsReading{39 + 8.03 / 60, -(77 + 13.0 / 60), 11, true}, 1) ==
-        "SEN {Time 1.0000} {Type GPS} {Name GPS} {Latitude 39,8.0300,N} {Longitude 77,13.0000,W} {Fix 1} "
+        "SEN {Type GPS} {Name GPS} {Latitude 39,8.0300,N} {Longitude 77,13.0000,W} {Fix 1} "
         "{Satellites 11}");
   CHECK(message(Dialect::udk, sensor(SensorType::gps, "GPS"), physics::GpsReading{0, 0, 0, false}, 1) ==
         "SEN {Time 1.0000} {Type GPS} {Name GPS} {Fix 0} {Satellites 0}");

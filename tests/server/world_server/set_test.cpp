@@ -136,7 +136,7 @@ TEST_CASE("A camera mount that is told a speed goes to that end of its range") {
   Conversation talk = with_robot();
   // up to 45 degrees, down to 90: the same limits that GETCONF tells
   const std::string tilt = talk.answer_to("GETCONF {Type MisPkg} {Name CameraPanTilt}\r\n");
-  CHECK(tilt.ends_with("{MinValue -1.5708} {MaxValue 0.7854}"));
+  CHECK(tilt.ends_with("{MinRange -1.5708} {MaxRange 0.7854}"));
   talk.send("MISPKG {Name CameraPanTilt} {Link 2} {Value 1} {Order 1}\r\n");
   REQUIRE(talk.run(1));
   CHECK(talk.last("MISSTA").find("{Link 2} {Value 0.7854}") != std::string::npos);
