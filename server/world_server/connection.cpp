@@ -47,12 +47,26 @@ void Connection::read() {
   });
 }
 
+// Returns the number of bytes that the system took.
+std::size_t Connection::send(std::string_view text, error_code& error) {
+  const auto write = [&](std::string_view piece) {
+    return socket_.write_some(asio::buffer(piece.data(), piece.size()), error);
+  };
+  std::size_t sent = 0;
+  for (std::size_t lines = 0; !session_.extended && lines < kMostLinesApart; ++lines) {
+    const std::size_t end = text.find('\n', sent);
+    if (end == std::string_view::npos) break;
+    sent += write(text.substr(sent, end + 1 - sent));
+    if (sent != end + 1) return sent;
+  }
+  return sent == text.size() ? sent : sent + write(text.substr(sent));
+}
+
 void Connection::flush() {
   if (!open_ || session_.out.empty()) return;
   if (!waiting_) {
     error_code error;
-    const std::size_t sent = socket_.write_some(asio::buffer(session_.out), error);
-    session_.out.erase(0, sent);
+    session_.out.erase(0, send(session_.out, error));
     if (error && error != asio::error::would_block) return close();
   }
   if (session_.out.size() > kMostUnread_bytes) {

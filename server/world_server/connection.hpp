@@ -5,6 +5,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <functional>
 #include <memory>
+#include <string_view>
 
 #include "server/world_server/simulation.hpp"
 
@@ -19,12 +20,17 @@ class Connection : public std::enable_shared_from_this<Connection> {
              std::function<void(Connection&)> closed);
 
   void start();
-  // Hands the session's output to the system, as far as it accepts it now; the rest follows automatically.
+  // Hands the session's output to the system, as far as it accepts it now; the rest follows automatically. A client
+  // without a Session gets each line by a send of its own, as from the historic servers: some clients take what one
+  // recv() returns for whole lines. Beyond kMostLinesApart lines at once, the rest is one send.
   void flush();
   void close();
 
  private:
+  static constexpr std::size_t kMostLinesApart = 64;  // an output of a robot has half as many; each send takes time
+
   void read();
+  std::size_t send(std::string_view text, boost::system::error_code& error);
   void wait_until_writable();
 
   boost::asio::ip::tcp::socket socket_;
