@@ -175,7 +175,8 @@ endfunction()
 
 # kenaf_test(NAME SOURCES s... LIBRARIES l... LABELS l... [COST c] [ONE_AT_A_TIME]): one Catch2 program;
 # ctest sees each of its test cases (under a sanitizer each of its files, which end in _test.cpp, without the cases tagged
-# [long]), and starts those of the highest cost first.
+# [long]), and starts those of the highest cost first. The cases of files whose names begin with hostile also have the
+# label hostile.
 function(kenaf_test name)
   cmake_parse_arguments(TEST "ONE_AT_A_TIME" "COST" "SOURCES;LIBRARIES;LABELS" ${ARGN})
   if(NOT TEST_COST)
@@ -195,11 +196,39 @@ function(kenaf_test name)
     if(TEST_ONE_AT_A_TIME)
       set(lock RESOURCE_LOCK ${name})
     endif()
+    set(hostile "")  # the tags of such files, as Catch2 writes them: each or any of them
+    set(not_hostile "")
+    set(all_hostile TRUE)
+    foreach(source ${TEST_SOURCES})
+      get_filename_component(file ${source} NAME_WE)
+      if(file MATCHES "^hostile.*_test$")
+        list(APPEND hostile "[#${file}]")
+        string(APPEND not_hostile "~[#${file}]")
+      elseif(file MATCHES "_test$")
+        set(all_hostile FALSE)
+      endif()
+    endforeach()
+    list(JOIN hostile "," hostile)
+    # Catch2's functions take lists apart four times on the way to the test's properties
+    set(several "\\\\\\\\;")
+    list(JOIN TEST_LABELS "${several}" labels)
+    if(hostile)
+      catch_discover_tests(${name}
+        TEST_SPEC --filenames-as-tags "${hostile}"
+        EXTRA_ARGS --warn NoTests
+        TEST_PREFIX "${name}: "
+        PROPERTIES LABELS "${labels}${several}hostile" COST ${TEST_COST} ${lock})
+      set(not_hostile TEST_SPEC --filenames-as-tags "${not_hostile}")
+    endif()
+    if(hostile AND all_hostile)
+      return()
+    endif()
     # a name that ctest takes for another (it parts them at semicolons) would run nothing, and pass
     catch_discover_tests(${name}
+      ${not_hostile}
       EXTRA_ARGS --warn NoTests
       TEST_PREFIX "${name}: "
-      PROPERTIES LABELS "${TEST_LABELS}" COST ${TEST_COST} ${lock})
+      PROPERTIES LABELS "${labels}" COST ${TEST_COST} ${lock})
     return()
   endif()
   # a process takes a tenth of a second to start under a sanitizer: one for each file, not for each test case
@@ -207,7 +236,11 @@ function(kenaf_test name)
   foreach(source ${TEST_SOURCES})
     get_filename_component(file ${source} NAME_WE)
     add_test(NAME "${name}: ${file}" COMMAND ${name} --filenames-as-tags "[#${file}]~[long]")
-    set_tests_properties("${name}: ${file}" PROPERTIES LABELS "${TEST_LABELS}" COST ${TEST_COST})
+    set(labels ${TEST_LABELS})
+    if(file MATCHES "^hostile")
+      list(APPEND labels hostile)
+    endif()
+    set_tests_properties("${name}: ${file}" PROPERTIES LABELS "${labels}" COST ${TEST_COST})
   endforeach()
 endfunction()
 
