@@ -23,4 +23,17 @@ std::string_view foreign_protocol(std::string_view opening) {
   return has_method || has_version ? "HTTP" : std::string_view();
 }
 
+std::string_view Opening::take(std::string_view bytes) {
+  if (decided_) return {};
+  // Empty lines before a request are skipped, as HTTP servers and the readers of USARSim's lines do.
+  if (first_line_.empty()) bytes.remove_prefix(std::min(bytes.find_first_not_of("\r\n"), bytes.size()));
+  const std::size_t end = std::min(bytes.find_first_of("\r\n"), bytes.size());
+  first_line_.append(bytes.substr(0, std::min(end, kMost_bytes - first_line_.size())));
+
+  const std::string_view protocol = foreign_protocol(first_line_);
+  decided_ = !protocol.empty() || end < bytes.size() || first_line_.size() >= kMost_bytes;
+  if (decided_) first_line_ = {};
+  return protocol;
+}
+
 }  // namespace kenaf::protocol
