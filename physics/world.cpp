@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -20,10 +21,8 @@ void check_pose(const Pose& X, const char* what) {
                                 ": the pose is not finite, too far away, or its rotation is not one");
 }
 
-struct RobotEntry {
-  RobotDescription description;
-  std::string name;
-  Pose X_WB_first;
+// A robot in a scene, which it leaves when this ends.
+struct RobotInScene {
   std::unique_ptr<RobotModel> model;
   std::unique_ptr<SensorSet> sensors;
   struct MissionLink {
@@ -34,6 +33,22 @@ struct RobotEntry {
   RobotTruth last_whole{};  // the last one before the fault
   DriveCurrents currents;   // 0 after the fault
 };
+
+struct RobotEntry : RobotInScene {
+  RobotDescription description;
+  std::string name;
+  Pose X_WB_first;
+};
+
+using Extent = Eigen::AlignedBox3d;
+
+// Of a box, along W's axes. Boxes that only touch do not intersect: a micrometre less on each side.
+Extent extent_of(const Eigen::Vector3d& size_m, const Pose& X_WBox) {
+  constexpr double kTouching_m = 1e-6;
+  const Eigen::Vector3d half_m = X_WBox.q.toRotationMatrix().cwiseAbs() * size_m / 2;
+  const Eigen::Vector3d inner_m = (half_m.array() - kTouching_m).max(0);
+  return {X_WBox.p - inner_m, X_WBox.p + inner_m};
+}
 
 bool is_number(const Pose& X) {
   return X.p.allFinite() && X.q.coeffs().allFinite();
@@ -78,29 +93,29 @@ struct World::Implementation {
     return found->second;
   }
 
-  // Model, sensors and mission packages, as at the start; then placed, with a first sample for the sensors.
-  void build_robot(RobotId id, RobotEntry& entry, const Pose& X_WB) {
-    entry.model = std::make_unique<RobotModel>(entry.description, entry.name, seed, settings.time_step_s, id,
-                                               scene->dynamics(), scene->solver());
-    entry.sensors = std::make_unique<SensorSet>(entry.model->description, entry.name, seed, settings.time_step_s,
+  // A robot with sensors and mission packages, as at the start, placed in `where`, and a first sample for the sensors.
+  RobotInScene built(RobotId id, const RobotEntry& entry, const Pose& X_WB, Scene& where, double now_s) {
+    RobotInScene robot;
+    robot.model = std::make_unique<RobotModel>(entry.description, entry.name, seed, settings.time_step_s, id,
+                                               where.dynamics(), where.solver());
+    robot.sensors = std::make_unique<SensorSet>(robot.model->description, entry.name, seed, settings.time_step_s,
                                                 description.gravity_W_mps2);
-    entry.mission.clear();
     for (const MissionPackageDescription& package : entry.description.mission_packages) {
-      auto& links = entry.mission.emplace_back();
+      auto& links = robot.mission.emplace_back();
       for (const auto& link : package.links) {
         const double rest = std::clamp(0.0, link.min_rad, link.max_rad);
         links.push_back({rest, rest});
       }
     }
-    scene->place_free(*entry.model, X_WB, true);
-    entry.fault.clear();
+    where.place_free(*robot.model, X_WB, true);
     constexpr std::size_t kManyTouches = 256;  // so that a step need not allocate
     touches.reserve(kManyTouches);
-    record(id, entry);
+    record(id, robot, where, now_s);
+    return robot;
   }
 
   // Called before anything else can touch an invalid pose. The drives are dead: sensors read no speeds or currents.
-  static void stop_at_fault(RobotEntry& entry) {
+  static void stop_at_fault(RobotInScene& entry) {
     entry.model->leave_dynamics();
     RobotTruth& truth = entry.last_whole;
     truth.v_WB_mps.setZero();
@@ -110,12 +125,12 @@ struct World::Implementation {
   }
 
   // The robot's truth, faults and currents after a step, and its sample for the sensors.
-  void record(RobotId id, RobotEntry& entry) {
+  void record(RobotId id, RobotInScene& entry, const Scene& where, double now_s) {
     const RobotModel& model = *entry.model;
     const double dt = settings.time_step_s;
     if (entry.fault.empty()) {
       const RobotTruth truth = model.truth(dt);
-      entry.fault = fault_of(truth, time_s());
+      entry.fault = fault_of(truth, now_s);
       if (entry.fault.empty())
         entry.last_whole = truth;
       else
@@ -123,16 +138,16 @@ struct World::Implementation {
     }
     const RobotTruth& truth = entry.last_whole;
     entry.currents = {};
-    if (!entry.fault.empty()) return entry.sensors->record(truth, time_s(), {}, {}, {});
+    if (!entry.fault.empty()) return entry.sensors->record(truth, now_s, {}, {}, {});
     if (entry.sensors->has_touch()) {
       const Pose X_BW = inverse(truth.X_WB);
-      scene->touches(id, touches);
+      where.touches(id, touches);
       for (Eigen::Vector3d& p : touches) p = X_BW.p + X_BW.q * p;
     }
     entry.currents = {{model.track_current_a(robot::kLeft, dt), model.track_current_a(robot::kRight, dt)},
                       {model.flipper_current_a(robot::kFrontLeft, dt), model.flipper_current_a(robot::kFrontRight, dt),
                        model.flipper_current_a(robot::kRearLeft, dt), model.flipper_current_a(robot::kRearRight, dt)}};
-    entry.sensors->record(truth, time_s(), entry.currents.track_a, entry.currents.flipper_a, touches);
+    entry.sensors->record(truth, now_s, entry.currents.track_a, entry.currents.flipper_a, touches);
   }
 
   // Puts loose boxes whose poses a faulty robot has made invalid back to their initial poses.
@@ -141,14 +156,11 @@ struct World::Implementation {
       if (!is_number(scene->box_pose(id))) scene->move_box(id, box.X_WBox);
   }
 
+  // Time 0. The old scene stays until the new one is whole: if that fails, nothing has changed.
   void build() {
-    // Robots leave the old scene before it is destroyed.
-    for (auto& [id, entry] : robots) {
-      entry.sensors.reset();
-      entry.model.reset();
-    }
-    scene = std::make_unique<Scene>(description, settings);
-    steps = 0;
+    auto fresh = std::make_unique<Scene>(description, settings);
+    std::vector<RobotInScene> fresh_robots;  // after the scene, so that they leave it before it ends
+    fresh_robots.reserve(robots.size());
 
     // Boxes and robots in the order in which they were added, so that Bullet's order is the same again.
     auto box = boxes.begin();
@@ -158,13 +170,19 @@ struct World::Implementation {
           robot == robots.end() ||
           (box != boxes.end() && static_cast<std::uint32_t>(box->first) < static_cast<std::uint32_t>(robot->first));
       if (box_first) {
-        scene->add_box(box->first, box->second);
+        fresh->add_box(box->first, box->second);
         ++box;
       } else {
-        build_robot(robot->first, robot->second, robot->second.X_WB_first);
+        fresh_robots.push_back(built(robot->first, robot->second, robot->second.X_WB_first, *fresh, 0));
         ++robot;
       }
     }
+
+    // From here on nothing fails. Robots leave the old scene before it ends.
+    auto next = fresh_robots.begin();
+    for (auto& [id, entry] : robots) static_cast<RobotInScene&>(entry) = std::move(*next++);
+    scene = std::move(fresh);
+    steps = 0;
   }
 
   void step() {
@@ -184,7 +202,7 @@ struct World::Implementation {
           link.angle_rad += std::clamp(link.target_rad - link.angle_rad, -most, most);
         }
       }
-      record(id, entry);
+      record(id, entry, *scene, time_s());
       any_fault = any_fault || (was_whole && !entry.fault.empty());
     }
     if (any_fault) put_back_boxes();
@@ -224,12 +242,15 @@ std::uint64_t World::step_count() const {
 
 RobotId World::add_robot(const RobotDescription& description, const std::string& name, const Pose& X_WB) {
   check_pose(X_WB, "add_robot");
-  const RobotId id{impl_->next_id++};
-  RobotEntry& entry = impl_->robots[id];
+  const RobotId id{impl_->next_id};
+  std::map<RobotId, RobotEntry> added;  // joins the others when it is whole, which cannot fail
+  RobotEntry& entry = added[id];
   entry.description = description;
   entry.name = name;
   entry.X_WB_first = {X_WB.p, X_WB.q.normalized()};
-  impl_->build_robot(id, entry, entry.X_WB_first);
+  static_cast<RobotInScene&>(entry) = impl_->built(id, entry, entry.X_WB_first, *impl_->scene, impl_->time_s());
+  impl_->robots.merge(added);
+  ++impl_->next_id;
   return id;
 }
 
@@ -272,10 +293,13 @@ void World::teleport(RobotId id, const Pose& X_WB) {
   RobotEntry& entry = impl_->robot(id);
   const Pose X_WB_unit{X_WB.p, X_WB.q.normalized()};
   // After a fault none of the robot's state can be trusted to be finite.
-  if (!entry.fault.empty()) return impl_->build_robot(id, entry, X_WB_unit);
+  if (!entry.fault.empty()) {
+    static_cast<RobotInScene&>(entry) = impl_->built(id, entry, X_WB_unit, *impl_->scene, impl_->time_s());
+    return;
+  }
   impl_->scene->place_free(*entry.model, X_WB_unit, false);
   entry.sensors->forget_motion();
-  impl_->record(id, entry);
+  impl_->record(id, entry, *impl_->scene, impl_->time_s());
 }
 
 void World::set_in_motion(RobotId id, const RobotMotion& motion, const robot::Command& command) {
@@ -289,7 +313,7 @@ void World::set_in_motion(RobotId id, const RobotMotion& motion, const robot::Co
   if (!entry.fault.empty()) return;
   entry.model->set_in_motion(motion, command);
   entry.sensors->forget_motion();  // the jump in speed is no acceleration
-  impl_->record(id, entry);
+  impl_->record(id, entry, *impl_->scene, impl_->time_s());
 }
 
 void World::prescribe(RobotId id, const PrescribedMotion& motion) {
@@ -308,6 +332,12 @@ void World::step() {
 }
 std::size_t World::contact_count() const {
   return impl_->scene->contact_count();
+}
+std::size_t World::pair_count() const {
+  return impl_->scene->pair_count();
+}
+std::uint64_t World::pairs_left_out() const {
+  return impl_->scene->pairs_left_out();
 }
 
 RobotTruth World::truth(RobotId id) const {
@@ -337,9 +367,11 @@ BoxId World::add_box(const Box& box) {
   if (!(box.size_m.minCoeff() > 0) || !box.size_m.allFinite() || !(box.mass_kg >= 0) || !std::isfinite(box.mass_kg) ||
       !(box.friction >= 0))
     throw std::invalid_argument("add_box: size must be above 0, mass and friction at least 0");
-  const BoxId id{impl_->next_id++};
-  impl_->boxes.emplace(id, box);
+  const BoxId id{impl_->next_id};
+  std::map<BoxId, Box> added{{id, box}};  // joins the others when it is in the scene, which cannot fail
   impl_->scene->add_box(id, box);
+  impl_->boxes.merge(added);
+  ++impl_->next_id;
   return id;
 }
 
@@ -367,6 +399,18 @@ const Box& World::box(BoxId id) const {
   const auto found = impl_->boxes.find(id);
   if (found == impl_->boxes.end()) throw std::out_of_range("no such box in this world");
   return found->second;
+}
+
+std::size_t World::overlapping_boxes(const Eigen::Vector3d& size_m, const Pose& X_WBox,
+                                     std::optional<BoxId> except) const {
+  const Extent own = extent_of(size_m, X_WBox);
+  const auto overlaps = [&](const auto& entry) {
+    const auto& [id, box] = entry;
+    if (id == except) return false;
+    return own.intersects(extent_of(box.size_m, impl_->scene->box_pose(id))) ||
+           own.intersects(extent_of(box.size_m, box.X_WBox));
+  };
+  return static_cast<std::size_t>(std::ranges::count_if(impl_->boxes, overlaps));
 }
 
 std::optional<RayHit> World::cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,

@@ -78,6 +78,10 @@ class World {
   // Advances everything by one time step.
   void step();
   std::size_t contact_count() const;  // contact points of the last step
+  // Pairs of bodies near each other: what a step's time grows with. Beyond kMostPairs, boxes meet nothing but the
+  // ground; pairs_left_out() counts how often that happened so far.
+  std::size_t pair_count() const;
+  std::uint64_t pairs_left_out() const;
 
   RobotTruth truth(RobotId id) const;
   DriveCurrents drive_currents(RobotId id) const;
@@ -99,6 +103,11 @@ class World {
   // The description's boxes in its order, then the others in the order in which they were added.
   std::vector<BoxId> boxes() const;
   const Box& box(BoxId id) const;  // as described or added, with its initial pose
+
+  // How many boxes, without `except`, would overlap a box of this size and place: those whose extents along W's axes
+  // overlap its own, at their present pose or at their initial one, to which reset() returns them.
+  std::size_t overlapping_boxes(const Eigen::Vector3d& size_m, const Pose& X_WBox,
+                                std::optional<BoxId> except = std::nullopt) const;
 
   // The first surface along a ray; `ignore` is a robot that the ray passes through.
   std::optional<RayHit> cast_ray(const Eigen::Vector3d& from_W, const Eigen::Vector3d& direction_W, double max_m,

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "physics/pose.hpp"
@@ -22,6 +23,10 @@ struct PhysicsSettings {
 
   bool operator==(const PhysicsSettings&) const = default;
 };
+
+// Pairs of bodies near each other, beyond which boxes meet only the ground: neither each other nor robots. Chosen: more
+// than twice the pairs of a pile of a thousand boxes, or of a robot among them.
+inline constexpr std::size_t kMostPairs = 4096;
 
 // Never used twice in one World.
 enum class RobotId : std::uint32_t {};

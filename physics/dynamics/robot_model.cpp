@@ -73,15 +73,21 @@ RobotModel::~RobotModel() {
 
 void RobotModel::enter_dynamics() {
   if (in_dynamics_) return;
-  for (Belt& belt : belts_) solver_.add_belt(&belt, hull_.get());
-  for (btRigidBody* body : body_list_) world_.addRigidBody(body);
-  // The solver works in this order.
-  for (const robot::Flipper which : {robot::kRearLeft, robot::kRearRight, robot::kFrontLeft, robot::kFrontRight})
-    if (const auto& joint = flippers_[which].joint)
-      world_.addConstraint(joint.get(), true);  // true: it does not collide with the hull
   in_dynamics_ = true;
+  try {
+    for (Belt& belt : belts_) solver_.add_belt(&belt, hull_.get());
+    for (btRigidBody* body : body_list_) world_.addRigidBody(body);
+    // The solver works in this order.
+    for (const robot::Flipper which : {robot::kRearLeft, robot::kRearRight, robot::kFrontLeft, robot::kFrontRight})
+      if (const auto& joint = flippers_[which].joint)
+        world_.addConstraint(joint.get(), true);  // true: it does not collide with the hull
+  } catch (...) {                                 // Bullet would keep pointers to what is in it already
+    leave_dynamics();
+    throw;
+  }
 }
 
+// Also of a robot that is only partly in the dynamics.
 void RobotModel::leave_dynamics() {
   if (!in_dynamics_) return;
   for (FlipperBody& flipper : flippers_)

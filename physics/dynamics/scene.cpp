@@ -40,18 +40,30 @@ Scene::Scene(const WorldDescription& description, const PhysicsSettings& setting
   info.m_leastSquaresResidualThreshold = solved_mps * solved_mps;
   world_.setForceUpdateAllAabbs(false);
   world_.setGravity(to_bullet(description.gravity_W_mps2));
-  for (const GroundPlane& plane : description.planes) {
-    Fixture& fixture = planes_.emplace_back();
-    fixture.shape = std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
-    add_fixture(fixture, 0, plane.friction, plane.X_WP);
+  try {
+    for (const GroundPlane& plane : description.planes) {
+      Fixture& fixture = planes_.emplace_back();
+      fixture.shape = std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0);
+      add_fixture(fixture, 0, plane.friction, plane.X_WP, 0);
+    }
+    for (const TriangleMesh& mesh : description.meshes) add_mesh(mesh);
+  } catch (...) {  // the bodies end before Bullet's world
+    clear();
+    throw;
   }
-  for (const TriangleMesh& mesh : description.meshes) add_mesh(mesh);
 }
 
 Scene::~Scene() {
-  for (auto& [id, box] : boxes_) world_.removeRigidBody(box.body.get());
-  for (MeshFixture& mesh : meshes_) world_.removeRigidBody(mesh.fixture.body.get());
-  for (Fixture& plane : planes_) world_.removeRigidBody(plane.body.get());
+  clear();
+}
+
+void Scene::clear() {
+  const auto remove = [this](const Fixture& fixture) {
+    if (fixture.body) world_.removeRigidBody(fixture.body.get());
+  };
+  for (const auto& [id, box] : boxes_) remove(box);
+  for (const MeshFixture& mesh : meshes_) remove(mesh.fixture);
+  for (const Fixture& plane : planes_) remove(plane);
 }
 
 void Scene::add_mesh(const TriangleMesh& mesh) {
@@ -78,10 +90,10 @@ void Scene::add_mesh(const TriangleMesh& mesh) {
   added.edges = std::make_unique<MeshEdges>(vertices, mesh.triangles);
   added.tag.mesh = added.edges.get();
   added.fixture.shape->setUserPointer(&added.tag);
-  add_fixture(added.fixture, 0, mesh.friction, {});
+  add_fixture(added.fixture, 0, mesh.friction, {}, 0);
 }
 
-void Scene::add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W) {
+void Scene::add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W, int kind) {
   fixture.collider = std::make_unique<Collider>();
   fixture.collider->surfaces = {{.friction_along = friction, .friction_across = friction}};
   const btVector3 inertia = mass_kg > 0 ? box_inertia(mass_kg, fixture.half) : btVector3(0, 0, 0);
@@ -92,7 +104,16 @@ void Scene::add_fixture(Fixture& fixture, double mass_kg, double friction, const
   fixture.body->setWorldTransform(to_bullet(X_W));
   fixture.body->setInterpolationWorldTransform(to_bullet(X_W));
   fixture.body->updateInertiaTensor();
-  world_.addRigidBody(fixture.body.get());
+  // Fixed bodies do not meet each other.
+  constexpr int kFixed = btBroadphaseProxy::StaticFilter, kMoves = btBroadphaseProxy::DefaultFilter;
+  constexpr int kAll = btBroadphaseProxy::AllFilter;
+  const bool moves = mass_kg > 0;
+  try {
+    world_.addRigidBody(fixture.body.get(), (moves ? kMoves : kFixed) | kind, moves ? kAll : kAll & ~(kFixed | kBoxes));
+  } catch (...) {  // Bullet may know half of it already
+    world_.removeRigidBody(fixture.body.get());
+    throw;
+  }
 }
 
 void Scene::step(double time_step_s) {
@@ -100,7 +121,8 @@ void Scene::step(double time_step_s) {
 }
 
 void Scene::add_box(BoxId id, const Box& box) {
-  Fixture& fixture = boxes_[id];
+  std::map<BoxId, Fixture> added;  // joins the others when it is whole, which cannot fail
+  Fixture& fixture = added[id];
   if (box.mass_kg > 0) {
     // A hull, not a box, so that it meets planes as robots do.
     const Eigen::Vector2d half(box.size_m.x() / 2, box.size_m.z() / 2);
@@ -111,7 +133,8 @@ void Scene::add_box(BoxId id, const Box& box) {
   } else {
     fixture.shape = make_box(box.size_m);
   }
-  add_fixture(fixture, box.mass_kg, box.friction, box.X_WBox);
+  add_fixture(fixture, box.mass_kg, box.friction, box.X_WBox, kBoxes);
+  boxes_.merge(added);
 }
 
 void Scene::remove_box(BoxId id) {
@@ -161,12 +184,17 @@ double Scene::lift_needed(RobotModel& robot, double search_step_m) {
   // While probing, belts meet the ground as hulls do, which finds deep penetrations too.
   deepest.own = &robot.bodies();
   deepest.search_step_m = search_step_m;
-  belt_ground_.set_probing(true);
+  const struct Probing {
+    BeltGround& belts;
+    explicit Probing(BeltGround& ground) : belts(ground) { belts.set_probing(true); }
+    ~Probing() { belts.set_probing(false); }
+    Probing(const Probing&) = delete;
+    Probing& operator=(const Probing&) = delete;
+  } probing(belt_ground_);
   for (btRigidBody* body : robot.bodies()) {
     deepest.self = body;
     world_.contactTest(body, deepest);
   }
-  belt_ground_.set_probing(false);
   return deepest.lift_m;
 }
 

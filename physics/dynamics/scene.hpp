@@ -1,6 +1,7 @@
 // The Bullet side of a world: solver, ground and boxes, ray casts, and lifting a robot until it is free.
 #pragma once
 
+#include <cstdint>
 #include <list>
 #include <map>
 #include <memory>
@@ -42,6 +43,8 @@ class Scene {
   // The points where a robot is pressed upon, in W.
   void touches(RobotId robot, std::vector<Eigen::Vector3d>& out) const;
   std::size_t contact_count() const { return solver_.contacts().size(); }
+  std::size_t pair_count() const { return static_cast<std::size_t>(pairs_.getNumOverlappingPairs()); }
+  std::uint64_t pairs_left_out() const { return pairs_.left_out(); }  // so far
 
   btDiscreteDynamicsWorld& dynamics() { return world_; }
   ContactSolver& solver() { return solver_; }
@@ -62,9 +65,10 @@ class Scene {
     ShapeTag tag;
     Fixture fixture;
   };
+  void clear();  // of all bodies but robots'
   void add_mesh(const TriangleMesh& mesh);
-  // A body without mass is fixed; otherwise it is a loose box.
-  void add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W);
+  // A body without mass is fixed; otherwise it is a loose box. `kind`: 0, or kBoxes.
+  void add_fixture(Fixture& fixture, double mass_kg, double friction, const Pose& X_W, int kind);
   // How far up the robot must go to be free, 0 if it is. Returns `search_step_m` if up is not the way out of a contact.
   double lift_needed(RobotModel& robot, double search_step_m);
   // Depth of a point below the surface of a mesh's solid, 0 outside of it.
