@@ -33,6 +33,11 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"ut2004", "udk"}));
   app.add_option("--seed", options.seed, "Seed of the sensors' noise")->capture_default_str();
   app.add_option("--time-step", options.time_step_s, "Physics time step in seconds")->capture_default_str();
+  app.add_option("--peer-timeout", options.peer_silence_s,
+                 "Seconds of wall-clock time without an answer of a client's machine after which its robot stops, "
+                 "whatever it commands; 0: never")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--port-file", port_file, "Write the port into this file once the server listens");
   app.add_option("--view", view, "Address of the live view, ADDRESS:PORT, or off")->capture_default_str();
   app.add_option("--view-token", token, "Token that a browser must give; off loopback the default is a random one");

@@ -3,8 +3,11 @@
 #include <spdlog/spdlog.h>
 
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/post.hpp>
 #include <chrono>
 #include <exception>
+
+#include "server/world_server/peer_life.hpp"
 
 namespace kenaf::world_server {
 
@@ -26,24 +29,17 @@ void Connection::start() {
   error_code ignored;  // a client that is gone already shows at the first read
   socket_.non_blocking(true, ignored);
   socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
+  end_with_peer(socket_.native_handle());
   flush();
-  read();
+  if (open_) read();
 }
 
 void Connection::read() {
-  if (!open_) return;
   socket_.async_read_some(asio::buffer(received_), [self = shared_from_this()](error_code error, std::size_t count) {
     if (!self->open_) return;
     if (error) return self->close();
-    try {
-      self->simulation_.receive(self->session_, {self->received_.data(), count}, steady_seconds());
-    } catch (const std::exception& failure) {  // one client's input must not end the world of the others
-      spdlog::error("{}: closed: it sent data that cannot be handled: {}", self->session_.peer, failure.what());
-      return self->close();
-    }
-    self->flush();
-    if (self->open_ && self->session_.close) self->close();
-    self->read();
+    self->heard_s_ = steady_seconds();
+    self->take({self->received_.data(), count});
   });
 }
 
@@ -62,8 +58,23 @@ std::size_t Connection::send(std::string_view text, error_code& error) {
   return sent == text.size() ? sent : sent + write(text.substr(sent));
 }
 
+void Connection::take(std::string_view bytes) {
+  if (!open_) return;
+  try {
+    const bool more = simulation_.receive(session_, bytes, steady_seconds());
+    flush();
+    if (!open_) return;
+    if (!more) return read();
+    asio::post(socket_.get_executor(), [self = shared_from_this()] { self->take({}); });
+  } catch (const std::exception& failure) {  // one client's input must not end the world of the others
+    spdlog::error("{}: closed: it sent data that cannot be handled: {}", session_.peer, failure.what());
+    close();
+  }
+}
+
 void Connection::flush() {
-  if (!open_ || session_.out.empty()) return;
+  if (!open_) return;
+  if (session_.out.empty()) return session_.close ? close() : void();
   if (!waiting_) {
     error_code error;
     session_.out.erase(0, send(session_.out, error));
@@ -73,17 +84,22 @@ void Connection::flush() {
     if (!session_.close) spdlog::warn("{}: closed: it does not read its messages", session_.peer);
     return close();
   }
+  if (session_.close) return close();
   if (!session_.out.empty() && !waiting_) wait_until_writable();
 }
 
+void Connection::watch_peer() {
+  if (open_) simulation_.note_peer(session_, unheard_of_s(socket_.native_handle()));
+}
+
 void Connection::wait_until_writable() {
-  waiting_ = true;
   socket_.async_wait(asio::ip::tcp::socket::wait_write, [self = shared_from_this()](error_code error) {
     self->waiting_ = false;
     if (!self->open_) return;
     if (error) return self->close();
     self->flush();
   });
+  waiting_ = true;  // not earlier: the wait may throw
 }
 
 void Connection::close() {

@@ -22,15 +22,23 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void start();
   // Hands the session's output to the system, as far as it accepts it now; the rest follows automatically. A client
   // without a Session gets each line by a send of its own, as from the historic servers: some clients take what one
-  // recv() returns for whole lines. Beyond kMostLinesApart lines at once, the rest is one send.
+  // recv() returns for whole lines. Beyond kMostLinesApart lines at once, the rest is one send. Closes a session that
+  // is to be closed.
   void flush();
   void close();
+  // Tells the simulation whether the client's machine lives.
+  void watch_peer();
+  bool has_robot() const { return session_.robot.has_value(); }
+  const std::string& peer() const { return session_.peer; }
+  double heard_s() const { return heard_s_; }  // steady_seconds() of its last words
 
  private:
   static constexpr std::size_t kMostLinesApart = 64;  // an output of a robot has half as many; each send takes time
 
   void read();
   std::size_t send(std::string_view text, boost::system::error_code& error);
+  // Passes the bytes on, and goes on with what they began once it is this client's turn again; then reads.
+  void take(std::string_view bytes);
   void wait_until_writable();
 
   boost::asio::ip::tcp::socket socket_;
@@ -39,6 +47,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::function<void(Connection&)> closed_;
   bool open_ = true;
   bool waiting_ = false;  // until the socket accepts more
+  double heard_s_ = steady_seconds();
   std::array<char, 16384> received_;
 };
 

@@ -74,8 +74,13 @@ std::string_view place_robot_by_hand(Simulation& simulation, OperatorId who, std
   if (description == nullptr) return "there is no description of USARBot.Kenaf";
   Session& session = simulation.connect("an operator");
   session.placed_by_operator = true;
-  place_robot(simulation, session, *description, fmt::format("Manual{}", session.id),
-              free_start_pose(simulation.world).X_WB);
+  try {
+    place_robot(simulation, session, *description, fmt::format("Manual{}", session.id),
+                free_start_pose(simulation.world).X_WB);
+  } catch (...) {
+    simulation.disconnect(session);
+    throw;
+  }
   id = session.id;
   return take_robot(simulation, id, who);
 }

@@ -15,6 +15,11 @@ struct ServerOptions {
   std::uint64_t seed = 1;  // of the sensors' noise
   double time_step_s = 0.001;
   double lockstep_wait_s = 2;  // wall-clock time that lock step waits for an answer
+  // Wall-clock time without an acknowledgement of the client's machine after which its robot is stopped; 0: never. A
+  // machine that lives acknowledges every second.
+  double peer_silence_s = 2;
+  // Wall-clock time without a word after which a connection without a robot gives way when all are taken.
+  double idle_s = 10;
 };
 
 }  // namespace kenaf::world_server

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "formats/protocol/foreign_opening.hpp"
 #include "formats/protocol/log_limiter.hpp"
 #include "formats/protocol/usarsim_message.hpp"
 #include "physics/world.hpp"
@@ -18,9 +19,9 @@ namespace kenaf::world_server {
 
 // The robot of a connection.
 struct SessionRobot {
-  physics::RobotId id;
+  physics::RobotId id{};
   std::string name;
-  const physics::RobotDescription* description;
+  const physics::RobotDescription* description = nullptr;
   robot::Command command;   // the client's; in force unless an operator holds the robot
   bool normalized = false;  // the client's speeds are percentages of the maximum; sticky
   bool light = false;
@@ -68,10 +69,11 @@ struct ManualHold {
 struct Session {
   std::uint32_t id = 0;  // never reused within one server
   std::string peer;      // for log lines
+  protocol::Opening opening;
   protocol::usarsim::LineSplitter lines;
-  std::string out;      // not yet handed to the socket
-  bool close = false;   // the connection must be closed
-  bool opened = false;  // its first line has come: it speaks no other protocol
+  std::string next_line;  // was taken from `lines`, and is for the next turn; empty: none
+  std::string out;        // not yet handed to the socket
+  bool close = false;     // the connection must be closed
 
   Formats formats{};
   bool extended = false;  // sent CONTROL {Type Session}
@@ -86,6 +88,8 @@ struct Session {
   std::uint64_t last_command_step = 0;
   bool silent = false;
   SilenceStop stop;
+  bool peer_silent = false;  // nothing is heard of the client's machine: its robot is stopped
+  std::string owner;         // key of the client; a newer connection with the same one replaces this one. Empty: none
 
   std::uint64_t bad_lines = 0;
   protocol::LogLimiter bad_line_log{1, 5};

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "formats/protocol/foreign_opening.hpp"
 #include "physics/terrain_effects.hpp"
 #include "server/world_server/manual_drive.hpp"
 #include "server/world_server/report.hpp"
@@ -44,9 +44,9 @@ std::vector<physics::BoxId> find_loose_boxes(const physics::World& world) {
   return boxes;
 }
 
-// Closes a session whose first bytes are those of another protocol; `opening` is its first line or a part of it.
-void refuse_foreign(Simulation& simulation, Session& session, std::string_view opening) {
-  const std::string_view protocol = protocol::foreign_protocol(opening);
+// Closes a session whose first bytes are those of another protocol.
+void refuse_foreign(Simulation& simulation, Session& session, std::string_view bytes) {
+  const std::string_view protocol = session.opening.take(bytes);
   if (protocol.empty()) return;
   session.close = true;
   if (simulation.connection_log.allow(simulation.wall_s)) {
@@ -76,68 +76,88 @@ Simulation::Simulation(const ServerOptions& server_options)
 }
 
 Session& Simulation::connect(std::string peer) {
-  Session& session = *sessions.emplace_back(std::make_unique<Session>());
-  session.id = ++last_session_;
-  session.peer = std::move(peer);
-  session.formats = formats_of(dialect);
-  session.schedule.start(0, steps_for(default_period_s(dialect)), false);
-  protocol::usarsim::MessageWriter(session.out)
+  auto session = std::make_unique<Session>();  // joins the others when it is whole
+  session->id = last_session_ + 1;
+  session->peer = std::move(peer);
+  session->formats = formats_of(dialect);
+  session->schedule.start(0, steps_for(default_period_s(dialect)), false);
+  protocol::usarsim::MessageWriter(session->out)
       .begin("NFO")
       .text("Gametype", "BotDeathMatch")
       .text("Level", world.description().name)
       .integer("TimeLimit", 20)
       .end();
-  return session;
+  sessions.push_back(std::move(session));
+  ++last_session_;
+  return *sessions.back();
 }
 
-void Simulation::disconnect(const Session& session) {
-  if (session.robot) {
-    world.remove_robot(session.robot->id);
-    if (connection_log.allow(wall_s)) spdlog::info("{}: robot {} left", session.peer, session.robot->name);
-  }
+void Simulation::end(Session& session) {
+  session.close = true;
+  if (!session.robot) return;
+  world.remove_robot(session.robot->id);
+  if (connection_log.allow(wall_s)) spdlog::info("{}: robot {} left", session.peer, session.robot->name);
+  session.hold.reset();
+  session.robot.reset();
+}
+
+void Simulation::disconnect(Session& session) {
+  end(session);
   std::erase_if(sessions, [&](const auto& other) { return other.get() == &session; });
 }
 
-void Simulation::receive(Session& session, std::string_view bytes, double now_wall_s) {
+void Simulation::note_peer(Session& session, double unheard_s) {
+  const bool was_silent = session.peer_silent;
+  session.peer_silent = options.peer_silence_s > 0 && unheard_s > options.peer_silence_s;
+  if (!session.peer_silent || was_silent || !session.robot) return;
+  spdlog::warn("{}: its machine has not answered for {:.1f} s: robot {} is stopped", session.peer, unheard_s,
+               session.robot->name);
+}
+
+bool Simulation::receive(Session& session, std::string_view bytes, double now_wall_s) {
   wall_s = now_wall_s;
-  if (session.close) return;
-  // TLS need not have a line end; its first byte tells.
-  if (!session.opened) refuse_foreign(*this, session, bytes.substr(0, 1));
-  if (session.close) return;
+  session.peer_silent = false;
+  if (session.close) return false;
+  refuse_foreign(*this, session, bytes);
+  if (session.close) return false;
   if (!session.lines.push(bytes)) {
     ++session.bad_lines;
     complain(*this, session, "a line is longer than 64 KiB", "");
   }
-  while (const auto line = session.lines.next()) {
-    if (!session.opened) refuse_foreign(*this, session, *line);
-    session.opened = true;
-    if (session.close) return;
-    handle_line(session, *line);
+  int cost = 0;  // of this turn so far
+  const std::string kept = std::exchange(session.next_line, {});
+  for (std::optional<std::string_view> line = kept.empty() ? session.lines.next() : kept; line;
+       line = session.lines.next()) {
+    if (!handle_line(session, *line, cost)) {
+      session.next_line = *line;
+      return true;
+    }
     if (session.bad_lines > kMostBadLines) {
       spdlog::warn("{}: closed after {} lines that are not USARSim messages", session.peer, session.bad_lines);
       session.close = true;
-      return;
     }
     // Checked per line: a packet may hold hundreds of requests with long answers, and executing them all would stall
     // the world.
     if (session.out.size() > kMostUnread_bytes) {
       spdlog::warn("{}: closed: more than {} MiB of messages to it are waiting", session.peer, kMostUnread_bytes >> 20);
       session.close = true;
-      return;
     }
+    if (session.close) return false;
   }
+  return false;
 }
 
-void Simulation::handle_line(Session& session, std::string_view line) {
+// Returns false, without executing the line, if it would cost more than what is left of this turn.
+bool Simulation::handle_line(Session& session, std::string_view line, int& cost) {
   // Garbage is counted: receive() closes a connection that sends too much of it.
   MessageView message;
   const protocol::usarsim::ParseError error = protocol::usarsim::parse_message(line, message);
-  if (error == protocol::usarsim::ParseError::empty) return;
+  if (error == protocol::usarsim::ParseError::empty) return true;
   const bool readable = protocol::usarsim::is_readable(error);
   if (!readable || !is_word(message.type)) {
     ++session.bad_lines;
     complain(*this, session, readable ? "not a USARSim message" : protocol::usarsim::describe(error), line);
-    return;
+    return true;
   }
   // What an odd line has all the same is obeyed.
   if (error != protocol::usarsim::ParseError::none) {
@@ -146,23 +166,30 @@ void Simulation::handle_line(Session& session, std::string_view line) {
   const VerbEntry* entry = find_verb(message);
   if (entry == nullptr) {
     complain(*this, session, "an unknown verb is ignored", line);
-    return;
+    return true;
   }
+  if (cost > 0 && cost + cost_of(message) > kMostCost) return false;
+  cost += cost_of(message);
 
   // An answer to a numbered frame: in time, it is kept until the next frame begins; late, it takes effect at once; a
   // frame that was not sent yet cannot be answered.
   const auto frame = number_of(message, "Frame");
   if (entry->takes_frame && frame && session.schedule.numbered()) {
-    if (!(*frame >= 0 && *frame < 1e15)) return complain(*this, session, "no such frame", line);
+    if (!(*frame >= 0 && *frame < 1e15)) {
+      complain(*this, session, "no such frame", line);
+      return true;
+    }
     switch (session.schedule.take_answer(static_cast<std::uint64_t>(*frame), message.is("DRIVE"))) {
       case FrameSchedule::Answer::in_time:
         if (session.deferred.size() + line.size() > kMostDeferredBytes) {
-          return complain(*this, session, "too many commands for one frame", line);
+          complain(*this, session, "too many commands for one frame", line);
+          return true;
         }
         session.deferred.append(line).push_back('\n');
-        return;
+        return true;
       case FrameSchedule::Answer::ahead:
-        return complain(*this, session, "answers a frame that was not sent yet", line);
+        complain(*this, session, "answers a frame that was not sent yet", line);
+        return true;
       case FrameSchedule::Answer::late:
         break;
     }
@@ -170,6 +197,7 @@ void Simulation::handle_line(Session& session, std::string_view line) {
 
   // All others take effect at once.
   entry->verb(*this, session, message);
+  return true;
 }
 
 void Simulation::send_due(Session& session) {
@@ -197,9 +225,34 @@ void Simulation::send_due(Session& session) {
   write_status(*this, session);
 }
 
+template <typename Work>
+void Simulation::attempt(Session& session, Work work) {
+  try {
+    work(session);
+  } catch (const std::exception& failure) {
+    spdlog::error("{}: closed: its robot cannot be served: {}", session.peer, failure.what());
+    end(session);
+    std::string().swap(session.out);  // gives its memory back
+    std::string().swap(session.deferred);
+  }
+}
+
+void Simulation::end_newest_robot(const std::exception& failure) {
+  const auto newest =
+      std::ranges::find_if(sessions.rbegin(), sessions.rend(), [](const auto& s) { return s->robot.has_value(); });
+  if (newest == sessions.rend()) {
+    spdlog::error("the world cannot be stepped: {}", failure.what());
+    step_requests_.clear();
+    return;
+  }
+  spdlog::error("{}: closed: the world cannot be stepped with its robot: {}", (*newest)->peer, failure.what());
+  end(**newest);
+}
+
 void Simulation::watch_silence(Session& session) {
-  if (session.command_timeout_steps == 0) return;
-  if (world.step_count() < session.last_command_step + session.command_timeout_steps) return;
+  const bool timed_out = session.command_timeout_steps != 0 &&
+                         world.step_count() >= session.last_command_step + session.command_timeout_steps;
+  if (!timed_out && !session.peer_silent) return;
   session.silent = true;
   if (!session.stop.due(world.step_count())) return;
   SessionRobot& robot = *session.robot;
@@ -225,7 +278,7 @@ bool Simulation::held_by_lockstep(std::optional<double>& until_wall_s) {
         spdlog::warn("{}: frame {} was not answered; time runs on without it", session->peer,
                      session->schedule.frame());
       }
-      send_due(*session);
+      attempt(*session, [this](Session& late) { send_due(late); });
       continue;
     }
     held = true;
@@ -237,7 +290,10 @@ bool Simulation::held_by_lockstep(std::optional<double>& until_wall_s) {
 
 Simulation::Progress Simulation::advance(double now_wall_s) {
   wall_s = now_wall_s;
-  for (const auto& session : sessions) send_due(*session);
+  const auto send_to_all = [this] {
+    for (const auto& session : sessions) attempt(*session, [this](Session& one) { send_due(one); });
+  };
+  send_to_all();
 
   const bool stepping = !step_requests_.empty();
   if (!stepping && (clock.paused() || robot_count() == 0)) {
@@ -259,12 +315,18 @@ Simulation::Progress Simulation::advance(double now_wall_s) {
     dropped_s_ = 0;
   }
 
-  world.step();
+  try {
+    world.step();
+  } catch (const std::exception& failure) {
+    end_newest_robot(failure);
+    return {true, std::nullopt};
+  }
   if (!stepping) clock.stepped();
   if (world.step_count() >= next_call_step_) call_due(world.step_count());
-  tell_faults();
+  for (const auto& session : sessions) attempt(*session, [this](Session& one) { tell_fault(one); });
   answer_steps();
-  for (const auto& session : sessions) send_due(*session);
+  send_to_all();
+  tell_of_crowd();
   return {true, std::nullopt};
 }
 
@@ -279,26 +341,35 @@ bool Simulation::begin_steps(std::uint32_t session, std::uint64_t steps) {
 
 void Simulation::answer_steps() {
   while (!step_requests_.empty() && world.step_count() >= step_requests_.front().until_step) {
-    if (Session* session = find_session(step_requests_.front().session)) answer(*this, *session, "Control", "Step");
+    const std::uint32_t asked_by = step_requests_.front().session;
     step_requests_.erase(step_requests_.begin());
+    if (Session* session = find_session(asked_by)) {
+      attempt(*session, [this](Session& one) { answer(*this, one, "Control", "Step"); });
+    }
   }
 }
 
-void Simulation::tell_faults() {
-  for (const auto& session : sessions) {
-    if (!session->robot) continue;
-    SessionRobot& robot = *session->robot;
-    const std::string& fault = world.fault(robot.id);
-    const bool is_new = !fault.empty() && !robot.fault_reported;
-    robot.fault_reported = !fault.empty();
-    if (!is_new) continue;
-    if (fault_log_.allow(wall_s))
-      spdlog::error(
-          "{}: the simulation of robot {} failed: {}; the robot does not move until it is placed anew or the world is "
-          "reset",
-          session->peer, robot.name, fault);
-    write_answer(*this, *session, "Robot", robot.name, fault, session->extended);
-  }
+void Simulation::tell_fault(Session& session) {
+  if (!session.robot) return;
+  SessionRobot& robot = *session.robot;
+  const std::string& fault = world.fault(robot.id);
+  const bool is_new = !fault.empty() && !robot.fault_reported;
+  robot.fault_reported = !fault.empty();
+  if (!is_new) return;
+  if (fault_log_.allow(wall_s))
+    spdlog::error(
+        "{}: the simulation of robot {} failed: {}; the robot does not move until it is placed anew or the world is "
+        "reset",
+        session.peer, robot.name, fault);
+  write_answer(*this, session, "Robot", robot.name, fault, session.extended);
+}
+
+void Simulation::tell_of_crowd() {
+  const bool more = world.pairs_left_out() > pairs_left_out_;
+  pairs_left_out_ = world.pairs_left_out();
+  if (!more || !crowd_log_.allow(wall_s)) return;
+  spdlog::warn("{} pairs of bodies are near each other, the most there may be: some boxes meet nothing but the ground",
+               world.pair_count());
 }
 
 void Simulation::set_paused(bool paused) {

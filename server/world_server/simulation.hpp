@@ -4,6 +4,7 @@
 // clock.
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <limits>
 #include <map>
@@ -40,16 +41,24 @@ struct Simulation {
   // A client has connected; it is greeted. The session lives until disconnect().
   Session& connect(std::string peer);
   // A client has left, and its robot with it.
-  void disconnect(const Session& session);
+  void disconnect(Session& session);
   // Bytes from a client: whole lines are executed at once, or kept for the frame they are meant for. Ignored if the
-  // session is to be closed.
-  void receive(Session& session, std::string_view bytes, double wall_s);
+  // session is to be closed. Returns true if the turn of this client is over before its lines are: call again, without
+  // bytes, after others had theirs.
+  bool receive(Session& session, std::string_view bytes, double wall_s);
+  // Nothing has been heard of the client's machine for `unheard_s`, in wall-clock time. From options.peer_silence_s on
+  // its robot is stopped, until the next command.
+  void note_peer(Session& session, double unheard_s);
+  // A robot leaves with its session: at once, although the connection is closed only later.
+  void end(Session& session);
 
   struct Progress {
     bool stepped = false;          // call again at once
     std::optional<double> wake_s;  // otherwise: call at this wall-clock time, or when something is received
   };
-  // Sends the outputs due, and runs one step of the world if allowed.
+  // Sends the outputs due, and runs one step of the world if allowed. Whatever fails, memory above all, ends a session,
+  // and neither throws nor concerns the others: the session for which it was done, or, if the step itself failed, that
+  // of the robot placed last.
   Progress advance(double wall_s);
 
   // Returns the description for a class name; nullptr if there is none (logged).
@@ -104,11 +113,16 @@ struct Simulation {
   };
 
   void call_due(std::uint64_t step);
-  void handle_line(Session& session, std::string_view line);
+  bool handle_line(Session& session, std::string_view line, int& cost);
   void send_due(Session& session);
+  // Carries out what concerns this session; ends it if that throws.
+  template <typename Work>
+  void attempt(Session& session, Work work);
+  void end_newest_robot(const std::exception& failure);
   void watch_silence(Session& session);
   void answer_steps();
-  void tell_faults();
+  void tell_fault(Session& session);
+  void tell_of_crowd();
   bool held_by_lockstep(std::optional<double>& until_wall_s);
 
   std::map<std::string, physics::RobotDescription, std::less<>> descriptions_;  // by shipped name or file
@@ -119,8 +133,10 @@ struct Simulation {
   std::string deferred_lines_;  // scratch of send_due()
   protocol::LogLimiter behind_log_{1, 10};
   protocol::LogLimiter fault_log_{kMostRobots, 5};
-  double dropped_s_ = 0;  // robot time by which this machine lags
-  bool idle_ = true;      // time was stopped at the last call
+  protocol::LogLimiter crowd_log_{1, 10};
+  std::uint64_t pairs_left_out_ = 0;  // as last seen
+  double dropped_s_ = 0;              // robot time by which this machine lags
+  bool idle_ = true;                  // time was stopped at the last call
 };
 
 }  // namespace kenaf::world_server

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "formats/protocol/usarsim_message.hpp"
 #include "server/world_server/report.hpp"
@@ -68,15 +69,21 @@ const physics::StartPose& free_start_pose(const physics::World& world, double cl
 
 void place_robot(Simulation& simulation, Session& session, const physics::RobotDescription& description,
                  const std::string& name, const physics::Pose& X_WB) {
-  const physics::RobotId id = simulation.world.add_robot(description, name, X_WB);
-  SessionRobot& robot = session.robot.emplace();
-  robot.id = id;
+  SessionRobot robot;
   robot.name = name;
   robot.description = &description;
   robot.command = Simulation::resting_command(description);
   robot.camera_field_of_view_rad = Simulation::unzoomed(description);
+  robot.id = simulation.world.add_robot(description, name, X_WB);
+  session.robot = std::move(robot);
   simulation.apply_command(session);
-  warn_of_namesakes(simulation, session);
+  try {
+    warn_of_namesakes(simulation, session);
+  } catch (...) {
+    simulation.world.remove_robot(session.robot->id);
+    session.robot.reset();
+    throw;
+  }
 }
 
 }  // namespace kenaf::world_server

@@ -19,7 +19,8 @@ std::optional<physics::Pose> find_start_pose(const physics::WorldDescription& wo
 const physics::StartPose& free_start_pose(const physics::World& world, double clear_m = 1.0);
 
 // Places the session's robot, at rest. If another robot has its name, the log and both clients that have a Session are
-// told: CONTROL and the image server know robots by their names.
+// told: CONTROL and the image server know robots by their names. If it throws, neither the world nor the session has a
+// new robot.
 void place_robot(Simulation& simulation, Session& session, const physics::RobotDescription& description,
                  const std::string& name, const physics::Pose& X_WB);
 

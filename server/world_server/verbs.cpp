@@ -31,6 +31,17 @@ const VerbEntry* find_verb(const MessageView& message) {
   return found == kVerbs.end() ? nullptr : &*found;
 }
 
+int cost_of(const MessageView& message) {
+  if (message.is("INIT")) return kMostCost;
+  if (!message.is("CONTROL")) return 0;
+  const std::string_view type = text_of(message, "Type");
+  // All is built anew, or every object is looked at.
+  if (is_any_of(type, {"Reset", "KillAll"})) return kMostCost;
+  // A robot is lifted until it is free.
+  if (is_any_of(type, {"AbsMove", "RelMove"})) return kMostCost / 4;
+  return is_any_of(type, {"Create", "Kill", "GetSTA"}) ? 1 : 0;
+}
+
 std::string_view text_of(const MessageView& message, std::string_view key) {
   return message.find(key).value_or(std::string_view());
 }

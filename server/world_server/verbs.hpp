@@ -22,6 +22,11 @@ struct VerbEntry {
 // nullptr if there is no such verb.
 const VerbEntry* find_verb(const MessageView& message);
 
+// Requests that may take milliseconds share a turn of their connection: those beyond kMostCost wait for its next turn,
+// so that the world and other connections go on in between.
+inline constexpr int kMostCost = 32;
+int cost_of(const MessageView& message);  // 0 to kMostCost
+
 // verbs_session.cpp
 void init(Simulation&, Session&, const MessageView&);
 void get_start_poses(Simulation&, Session&, const MessageView&);

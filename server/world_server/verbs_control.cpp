@@ -13,6 +13,7 @@ constexpr double kLongestStep_s = 3600;
 constexpr double kLongestPeriod_s = 10;
 constexpr double kLongestCommandTimeout_s = 3600;
 constexpr double kMostDecimals = 15;
+constexpr std::size_t kLongestOwner = 64;
 
 Reason step(Simulation& simulation, Session& session, const MessageView& message) {
   const double most_steps = std::floor(kLongestStep_s / simulation.world.settings().time_step_s);
@@ -36,6 +37,16 @@ Reason set_speed(Simulation& simulation, const Session& session, const MessageVi
   return kDone;
 }
 
+// A client that lost its connection and comes back takes the place of its old one, whose end the server may not have
+// seen yet.
+void replace_others_of(Simulation& simulation, const Session& session) {
+  for (const auto& other : simulation.sessions) {
+    if (other.get() == &session || other->close || other->owner != session.owner) continue;
+    spdlog::info("{}: closed: {} replaces it", other->peer, session.peer);
+    simulation.end(*other);
+  }
+}
+
 // A key that is present must be valid; nothing is changed unless all are.
 template <typename Value>
 bool reads(const MessageView& message, std::string_view key, std::optional<Value> value, double least, double most) {
@@ -55,6 +66,8 @@ Reason set_session(Simulation& simulation, Session& session, const MessageView& 
     return "CommandTimeout is not from 0 to 3600 s";
   }
   if (!reads(message, "Precision", precision, 0, kMostDecimals)) return "Precision is not from 0 to 15 digits";
+  const std::string_view owner = text_of(message, "Owner");
+  if (message.find("Owner") && (owner.empty() || owner.size() > kLongestOwner)) return "Owner is not 1 to 64 bytes";
 
   // From here on the client uses the extensions. A period starts numbered frames and drops deferred commands; the
   // command time-out counts from now.
@@ -69,6 +82,10 @@ Reason set_session(Simulation& simulation, Session& session, const MessageView& 
   if (period_s) {
     session.schedule.start(now, simulation.steps_for(*period_s), true);
     session.deferred.clear();
+  }
+  if (!owner.empty()) {
+    session.owner = owner;
+    replace_others_of(simulation, session);
   }
   return kDone;
 }

@@ -10,7 +10,9 @@ namespace kenaf::world_server {
 namespace {
 
 constexpr std::size_t kMostObjects = 1000;
-constexpr double kDensity_kgpm3 = 100;  // of movable boxes: light enough for a robot to push
+constexpr std::size_t kMostOverlapping = 32;  // objects that another one overlaps where it is placed
+constexpr double kLargestMovable_m = 20;      // it meets every triangle of the ground within its extent, in each step
+constexpr double kDensity_kgpm3 = 100;        // of movable boxes: light enough for a robot to push
 
 auto find_object(Simulation& simulation, std::string_view name) {
   return std::ranges::find_if(simulation.objects, [name](const WorldObject& object) {
@@ -28,6 +30,16 @@ bool is_box_class(std::string_view class_name) {
     }
   }
   return false;
+}
+
+// Bodies that overlap cost time in every step: so many that a step stays short.
+Reason why_crowded(const physics::World& world, const Eigen::Vector3d& size_m, const physics::Pose& X_WBox,
+                   std::optional<physics::BoxId> moved = std::nullopt) {
+  if (world.overlapping_boxes(size_m, X_WBox, moved) > kMostOverlapping) {
+    return "more than 32 objects are, or began, at that place";
+  }
+  if (world.pair_count() >= physics::kMostPairs) return "too many objects are close together in this world";
+  return kDone;
 }
 
 Reason create(Simulation& simulation, const MessageView& message) {
@@ -55,10 +67,16 @@ Reason create(Simulation& simulation, const MessageView& message) {
   box.X_WBox.p = *location;
   box.X_WBox.q = read_rotation(message, "Rotation").value_or(Eigen::Quaterniond::Identity());
   if (is_any_of(text_of(message, "Physics"), {"RigidBody", "Falling", "Ground"})) {
+    if (box.size_m.maxCoeff() > kLargestMovable_m) return "Scale is more than 20, for an object that may move";
     box.mass_kg = kDensity_kgpm3 * box.size_m.prod();
   }
-  simulation.objects.push_back({simulation.world.add_box(box), name, printable(class_name), box.size_m,
-                                bool_of(message, "Permanent").value_or(false)});
+  if (const Reason crowded = why_crowded(simulation.world, box.size_m, box.X_WBox); !crowded.empty()) return crowded;
+
+  // All that can fail comes before the box is in the world.
+  WorldObject object{{}, name, printable(class_name), box.size_m, bool_of(message, "Permanent").value_or(false)};
+  simulation.objects.reserve(simulation.objects.size() + 1);
+  object.box = simulation.world.add_box(box);
+  simulation.objects.push_back(std::move(object));
   return kDone;
 }
 
@@ -113,6 +131,9 @@ Reason move(Simulation& simulation, const MessageView& message, bool relative) {
   if (const auto object = find_object(simulation, name); object != simulation.objects.end()) {
     const physics::Pose X_WBox = moved(simulation.world.box_pose(object->box));
     if (is_too_far(X_WBox)) return "that is farther away than 100 km";
+    if (const Reason crowded = why_crowded(simulation.world, object->size_m, X_WBox, object->box); !crowded.empty()) {
+      return crowded;
+    }
     simulation.world.move_box(object->box, X_WBox);
     return kDone;
   }

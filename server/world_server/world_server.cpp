@@ -2,13 +2,18 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <exception>
+#include <limits>
+#include <new>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "formats/protocol/log_limiter.hpp"
@@ -28,6 +33,7 @@ constexpr std::size_t kMostConnections = 2 * kMostRobots;
 // Longest time for steps without serving the sockets, and for sockets without a step.
 constexpr double kSteppingSlice_s = 100e-6;
 constexpr double kServingSlice_s = 500e-6;
+constexpr std::chrono::milliseconds kWatchPeersEvery{250};
 
 std::chrono::steady_clock::time_point time_point(double seconds) {
   return std::chrono::steady_clock::time_point(
@@ -61,6 +67,10 @@ struct WorldServer::Implementation {
 
   void accept();
   void welcome(tcp::socket socket);
+  bool make_room();
+  void watch_peers();
+  void turn(double& served_s);
+  void note_failure(const std::exception& failure);
   void serve_sockets();
   void flush();
   void sleep_until(std::optional<double> wake_s);
@@ -71,26 +81,28 @@ struct WorldServer::Implementation {
   tcp::acceptor acceptor;
   asio::steady_timer accept_again{io};
   asio::steady_timer wake_timer{io};
+  asio::steady_timer next_watch{io};
   std::optional<double> armed_s;  // time for which wake_timer is set
   std::vector<std::shared_ptr<Connection>> connections;
   protocol::LogLimiter connection_log{20, 0.5};
+  protocol::LogLimiter failure_log{1, 1};
+  bool accepting = false;  // an accept, or the pause after one that failed, is under way
+  bool watching = false;   // next_watch is under way
   std::atomic<bool> stopping = false;
 };
 
 void WorldServer::Implementation::accept() {
   acceptor.async_accept([this](error_code error, tcp::socket socket) {
+    accepting = false;  // run() goes on with the next
     if (!acceptor.is_open()) return;
-    if (!error) {
-      welcome(std::move(socket));
-      return accept();
-    }
+    if (!error) return welcome(std::move(socket));
     // Mostly too many open files: retrying at once would only use processor time.
     if (connection_log.allow(steady_seconds())) spdlog::error("cannot accept a client: {}", error.message());
     accept_again.expires_after(std::chrono::milliseconds(100));
-    accept_again.async_wait([this](error_code cancelled) {
-      if (!cancelled) accept();
-    });
+    accept_again.async_wait([this](error_code) { accepting = false; });
+    accepting = true;
   });
+  accepting = true;
 }
 
 void WorldServer::Implementation::welcome(tcp::socket socket) {
@@ -99,7 +111,7 @@ void WorldServer::Implementation::welcome(tcp::socket socket) {
   if (error) return;  // gone already
   const std::string name = fmt::format("client {}:{}", peer.address().to_string(), peer.port());
   const bool log = connection_log.allow(steady_seconds()).has_value();
-  if (connections.size() >= kMostConnections) {
+  if (connections.size() >= kMostConnections && !make_room()) {
     if (log) spdlog::warn("{}: refused: {} clients are connected already", name, connections.size());
     return;
   }
@@ -107,9 +119,44 @@ void WorldServer::Implementation::welcome(tcp::socket socket) {
   const auto gone = [this](Connection& connection) {
     std::erase_if(connections, [&](const auto& other) { return other.get() == &connection; });
   };
+  connections.reserve(connections.size() + 1);  // so that whoever is in the simulation is in the list too
   connections.push_back(std::make_shared<Connection>(std::move(socket), simulation, name, gone));
   const auto connection = connections.back();  // start() may close it
-  connection->start();
+  try {
+    connection->start();
+  } catch (...) {
+    connection->close();
+    throw;
+  }
+}
+
+// Closes the connection without a robot that has been silent longest; false: none has been so for long enough.
+bool WorldServer::Implementation::make_room() {
+  const auto silent_since_s = [](const auto& connection) {
+    return connection->has_robot() ? std::numeric_limits<double>::infinity() : connection->heard_s();
+  };
+  const double now_s = steady_seconds();
+  const auto found = std::ranges::min_element(connections, {}, silent_since_s);
+  if (found == connections.end() || silent_since_s(*found) > now_s - simulation.options.idle_s) return false;
+  const std::shared_ptr idlest(*found);
+  if (connection_log.allow(now_s)) {
+    spdlog::warn("{}: closed: silent for {:.0f} s and without a robot, and another client needs its place",
+                 idlest->peer(), now_s - idlest->heard_s());
+  }
+  idlest->close();
+  return true;
+}
+
+void WorldServer::Implementation::watch_peers() {
+  for (const auto& connection : connections) connection->watch_peer();
+  next_watch.expires_after(kWatchPeersEvery);
+  next_watch.async_wait([this](error_code) { watching = false; });  // run() watches on while anybody is connected
+  watching = true;
+}
+
+// Of anything in run(): whom it concerns is gone already, and the others are served on.
+void WorldServer::Implementation::note_failure(const std::exception& failure) {
+  if (failure_log.allow(steady_seconds())) spdlog::error("the world server goes on after: {}", failure.what());
 }
 
 void WorldServer::Implementation::serve_sockets() {
@@ -141,6 +188,7 @@ void WorldServer::Implementation::close_all() {
   acceptor.close(ignored);
   wake_timer.cancel();
   accept_again.cancel();
+  next_watch.cancel();
   while (!connections.empty()) std::shared_ptr(connections.back())->close();
   io.poll();  // runs the handlers of closed connections
 }
@@ -160,28 +208,43 @@ double WorldServer::time_step_s() const {
   return impl_->simulation.options.time_step_s;
 }
 
+// Serves the sockets if it is time, lets the world advance, and sleeps if it need not.
+void WorldServer::Implementation::turn(double& served_s) {
+  if (!accepting) accept();
+  if (!watching && !connections.empty()) watch_peers();
+  if (const double now_s = steady_seconds(); now_s >= served_s + kSteppingSlice_s) {
+    serve_sockets();
+    served_s = steady_seconds();
+  }
+  const Simulation::Progress progress = simulation.advance(steady_seconds());
+  flush();
+  if (!progress.stepped && !stopping && accepting) {
+    sleep_until(progress.wake_s);
+    served_s = 0;
+  }
+}
+
 void WorldServer::run() {
-  Implementation& server = *impl_;
-  server.accept();
   double served_s = 0;
-  while (!server.stopping) {
-    if (const double now_s = steady_seconds(); now_s >= served_s + kSteppingSlice_s) {
-      server.serve_sockets();
-      served_s = steady_seconds();
-    }
-    const Simulation::Progress progress = server.simulation.advance(steady_seconds());
-    server.flush();
-    if (!progress.stepped && !server.stopping) {
-      server.sleep_until(progress.wake_s);
-      served_s = 0;
+  while (!impl_->stopping) {
+    try {
+      impl_->turn(served_s);
+    } catch (const std::exception& failure) {
+      impl_->note_failure(failure);
     }
   }
-  server.close_all();
+  impl_->close_all();
 }
 
 void WorldServer::stop() {
   impl_->stopping = true;
-  asio::post(impl_->io, [] {});  // wakes run()
+  for (;;) {
+    try {
+      return asio::post(impl_->io, [] {});  // wakes run()
+    } catch (const std::bad_alloc&) {       // the program must end also when memory is out
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
 }
 
 void WorldServer::ask(std::function<void(Simulation&)> request) {

@@ -32,7 +32,9 @@ struct Conversation {
       : simulation(options), session(&simulation.connect("test")) {}
 
   void send(std::string_view text) { send(*session, text); }
-  void send(Session& from, std::string_view text) { simulation.receive(from, text, wall_s); }
+  void send(Session& from, std::string_view text) {
+    for (bool more = simulation.receive(from, text, wall_s); more;) more = simulation.receive(from, {}, wall_s);
+  }
 
   // Lets robot time pass; false: it stood still before the end.
   bool run(double robot_time_s) {

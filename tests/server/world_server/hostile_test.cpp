@@ -5,6 +5,21 @@
 
 namespace kenaf::world_server {
 
+namespace {
+
+std::string box(int number, double x_m, const std::string& more = "") {
+  return "CONTROL {Type Create} {ClassName Box} {Name Box" + std::to_string(number) + "} {Location " +
+         std::to_string(x_m) + ",0,-1} " + more + "\r\n";
+}
+
+const std::string kLoose = "{Physics RigidBody}";
+
+bool succeeds(Conversation& talk, const std::string& request) {
+  return talk.answer_to(request).find("{Status OK}") != std::string::npos;
+}
+
+}  // namespace
+
 TEST_CASE("Lines that are no messages are survived, and a client of nothing but them is let go") {
   Conversation talk;
   talk.send("INIT {ClassName USARBot.P2DX}\r\n");
@@ -72,9 +87,7 @@ TEST_CASE("Commands for one frame are bounded") {
 
 TEST_CASE("One packet of many requests is answered until too much waits, then its client is let go") {
   Conversation talk;
-  for (int i = 0; i < 1000; ++i) {
-    talk.send("CONTROL {Type Create} {ClassName Box} {Name Box" + std::to_string(i) + "} {Location 0,0,0}\r\n");
-  }
+  for (int i = 0; i < 1000; ++i) talk.send(box(i, 2.0 * i));
   REQUIRE(talk.simulation.objects.size() == 1000);
   std::string packet;
   for (int i = 0; i < 780; ++i) packet += "CONTROL{Type GetSTA}\n";
@@ -87,6 +100,67 @@ TEST_CASE("One packet of many requests is answered until too much waits, then it
   CHECK(talk.session->out.size() < 9 << 20);
   talk.send(packet);  // what is still on its way is not obeyed
   CHECK(talk.session->out.size() < 9 << 20);
+}
+
+TEST_CASE("Of a thousand boxes for one place 33 are made, also if they come by a move, or would at a reset") {
+  for (const std::string& physics : {kLoose, std::string()}) {
+    Conversation talk;
+    int made = 0;
+    for (int i = 0; i < 1000; ++i) made += succeeds(talk, box(i, 0, physics)) ? 1 : 0;
+    CHECK(made == 33);  // the last of them overlaps 32 others
+    CHECK(talk.simulation.objects.size() == 33);
+    CHECK(talk.answer_to(box(1000, 0, physics)).find("32 objects") != std::string::npos);
+
+    // Made elsewhere and moved there.
+    REQUIRE(succeeds(talk, box(1001, 50, physics)));
+    CHECK_FALSE(succeeds(talk, "CONTROL {Type AbsMove} {Name Box1001} {Location 0,0,-1}\r\n"));
+    CHECK_FALSE(succeeds(talk, "CONTROL {Type RelMove} {Name Box1001} {Location -50,0,0}\r\n"));
+
+    // Made there and moved away: a reset brings them back.
+    for (int i = 0; i < 33; ++i) {
+      const std::string x = std::to_string(100 + 3 * i);
+      REQUIRE(
+          succeeds(talk, "CONTROL {Type AbsMove} {Name Box" + std::to_string(i) + "} {Location " + x + ",0,-1}\r\n"));
+    }
+    CHECK_FALSE(succeeds(talk, box(1002, 0, physics)));
+    CHECK(succeeds(talk, "CONTROL {Type Reset}\r\n"));
+    // 33 boxes at one place are 33 * 32 / 2 = 528 pairs; each of 34 may be near the ground.
+    CHECK(talk.simulation.world.pair_count() <= 528 + 34);
+  }
+}
+
+TEST_CASE("Boxes that only touch do not overlap, and a floor counts as one") {
+  Conversation talk;
+  REQUIRE(
+      succeeds(talk, "CONTROL {Type Create} {ClassName Box} {Name Floor} {Location 0,0,-0.1} {Scale 100,100,0.2}\r\n"));
+  for (int i = 0; i < 50; ++i) CHECK(succeeds(talk, box(i, i, kLoose)));  // a row of cubes of a metre, face to face
+}
+
+TEST_CASE("A box that may move has at most 20 m, a fixed one a kilometre") {
+  Conversation talk;
+  CHECK(succeeds(talk, box(1, 0, kLoose + " {Scale 20,1,1}")));
+  CHECK_FALSE(succeeds(talk, box(2, 0, kLoose + " {Scale 20.1,1,1}")));
+  CHECK(succeeds(talk, box(3, 0, "{Scale 1000,1,1}")));
+}
+
+TEST_CASE("Requests that cost much wait for their client's next turn, in their order, and others do not wait") {
+  Conversation talk;
+  Session& other = talk.simulation.connect("other");
+  std::string packet = "CONTROL {Type Pause}\r\n";
+  for (int i = 0; i < 700; ++i) packet += "CONTROL{Type Reset}\n";
+  packet += "PING {Id 7}\r\n";
+  REQUIRE(packet.size() <= 16384);  // what a connection reads at once
+
+  // A turn each, and between them the other client has its own.
+  int turns = 0;
+  for (bool more = talk.simulation.receive(*talk.session, packet, talk.wall_s); more; ++turns) {
+    CHECK_FALSE(talk.simulation.receive(other, "PING {Id 8}\r\n", talk.wall_s));
+    more = talk.simulation.receive(*talk.session, {}, talk.wall_s);
+  }
+  CHECK(turns == 699);
+  CHECK(Conversation::lines(other).size() == 1 + 699);  // NFO, and its answers
+  const std::vector<std::string> answers = talk.lines("RES");
+  CHECK(answers.size() == 701);
 }
 
 TEST_CASE("A name from outside cannot break an answer's grammar, nor fill it") {
