@@ -49,15 +49,16 @@ void write_stop(std::string& out) {
       .end();
 }
 
-void write_world_session(std::string& out, const WorldSession& session) {
-  protocol::usarsim::MessageWriter(out)
-      .begin("CONTROL")
+void write_world_session(std::string& out, const WorldSession& session, std::string_view owner) {
+  protocol::usarsim::MessageWriter writer(out);
+  writer.begin("CONTROL")
       .text("Type", "Session")
       .number("Period", session.period_s, protocol::usarsim::kExactNumber)
       .boolean("Lockstep", session.lockstep)
       .number("CommandTimeout", session.command_timeout_s, protocol::usarsim::kExactNumber)
-      .integer("Precision", 12)
-      .end();
+      .integer("Precision", 12);
+  if (!owner.empty()) writer.text("Owner", owner);
+  writer.end();
 }
 
 void write_ping(std::string& out, std::int64_t id) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "formats/protocol/relay_datagram.hpp"
 
@@ -25,7 +26,8 @@ void write_command(std::string& out, const protocol::relay::Command& command, do
 
 void write_stop(std::string& out);  // both tracks 0, at once
 
-void write_world_session(std::string& out, const WorldSession& session);
+// `owner`: see RobotPlacement; empty: not written.
+void write_world_session(std::string& out, const WorldSession& session, std::string_view owner = {});
 
 void write_ping(std::string& out, std::int64_t id);
 

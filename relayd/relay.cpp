@@ -5,12 +5,14 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <spdlog/spdlog.h>
+#include <sys/random.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <stdexcept>
 #include <thread>
 #include <type_traits>
 #include <variant>
@@ -31,12 +33,22 @@ constexpr auto kPlainWorldIsLost = 5s;   // plain: it may be paused without bein
 constexpr std::size_t kMostPending = 1 << 18;
 constexpr std::int64_t kOwnPing = -1;  // the id of the relay's own pings; a commander's are not negative
 
+// 128 random bits: no other client can take this relay's robot away.
+RobotPlacement with_own_key(RobotPlacement placement) {
+  std::array<unsigned char, 16> key;
+  if (::getrandom(key.data(), key.size(), 0) != static_cast<ssize_t>(key.size())) {
+    throw std::runtime_error("the system provides no random numbers for the relay's key");
+  }
+  for (const unsigned char byte : key) placement.owner += fmt::format("{:02x}", byte);
+  return placement;
+}
+
 }  // namespace
 
 Relay::Relay(const RelayOptions& options)
     : options_(options),
       udp_(open_udp(options.listen, address_)),
-      link_(options.world_server, options.placement, events_) {
+      link_(options.world_server, with_own_key(options.placement), events_) {
   out_.reserve(4096);
   if (!is_loopback(address_)) {
     spdlog::warn("listening on {}: any program that reaches this address can drive the robot", to_text(address_));

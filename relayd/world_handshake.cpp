@@ -78,7 +78,7 @@ void WorldHandshake::on_time(TimePoint now, std::string& out) {
 void WorldHandshake::place(TimePoint now, std::string& out) {
   greeted_ = true;
   deadline_ = now + kRobotWithin;
-  write_world_session(out, session_);
+  write_world_session(out, session_, placement_.owner);
   protocol::usarsim::MessageWriter writer(out);
   writer.begin("INIT").text("ClassName", placement_.class_name).text("Name", placement_.name);
   if (placement_.pose) {

@@ -26,6 +26,8 @@ struct RobotPlacement {
   std::string name = "Kenaf";
   std::string start;                          // name of a start pose
   std::optional<std::array<double, 6>> pose;  // x, y, z, roll, pitch, yaw in the world (REP 103); overrides `start`
+  // The relay's own key, with which a new connection takes the place of its old one; empty: none.
+  std::string owner;
 };
 
 // The answer to CONTROL {Type Session}.
