@@ -1,5 +1,7 @@
 #include "server/image_server/image_connection.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <array>
 #include <boost/asio/buffer.hpp>
@@ -8,8 +10,10 @@
 #include <chrono>
 #include <optional>
 
+#include "formats/protocol/foreign_opening.hpp"
 #include "server/image_server/image_request.hpp"
 #include "server/image_server/raw_picture.hpp"
+#include "server/world_server/peer_life.hpp"
 
 namespace kenaf::image_server {
 
@@ -41,6 +45,10 @@ class ImageConnection final : public ImageReader, public std::enable_shared_from
 
   void start();
   void look() override;
+  std::optional<Clock::time_point> idle_since() const override {
+    return request_ || sending_ ? std::nullopt : std::optional(busy_);
+  }
+  void give_way() override { close(); }
 
  private:
   void read();
@@ -56,7 +64,9 @@ class ImageConnection final : public ImageReader, public std::enable_shared_from
   tcp::socket socket_;
   asio::steady_timer look_again_, unread_;
   std::array<char, 4096> received_;
+  protocol::Opening opening_;
   ImageRequestParser parser_;
+  Clock::time_point busy_ = Clock::now();  // when it last asked or had been sent something
 
   std::optional<ImageRequest> request_;  // the newest without an answer; earlier ones are dropped
   Clock::time_point asked_, words_until_{};
@@ -77,7 +87,7 @@ void ImageConnection::start() {
   desk_.readers.push_back(this);
   error_code ignored;
   socket_.set_option(tcp::no_delay(true), ignored);
-  socket_.set_option(asio::socket_base::keep_alive(true), ignored);
+  world_server::end_with_peer(socket_.native_handle());
   socket_.set_option(asio::socket_base::send_buffer_size(desk_.limits.send_buffer_bytes), ignored);
   read();
 }
@@ -92,7 +102,12 @@ void ImageConnection::read() {
 }
 
 void ImageConnection::take(std::string_view bytes) {
+  if (const std::string_view protocol = opening_.take(bytes); !protocol.empty()) {
+    if (desk_.log.allow()) spdlog::warn("image server: closed a reader: it speaks {}, not USARSim", protocol);
+    return close();
+  }
   const bool waited = request_.has_value();
+  busy_ = Clock::now();
   while (auto request = parser_.take(bytes)) request_ = std::move(request);
   if (!request_) return;
   if (!waited) asked_ = Clock::now();
@@ -184,6 +199,7 @@ void ImageConnection::send(std::uint8_t type, std::size_t size) {
   };
   asio::async_write(socket_, out_, after_each_piece, [self = shared_from_this()](error_code error, std::size_t) {
     self->sending_ = false;
+    self->busy_ = Clock::now();
     self->unread_.cancel();
     self->made_.reset();
     self->frame_.reset();

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
+#include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "camera/jpeg.hpp"
+#include "formats/protocol/log_limiter.hpp"
 #include "server/image_server/feed.hpp"
 #include "server/image_server/image_server.hpp"
 
@@ -18,6 +21,11 @@ class ImageReader {
  public:
   // A new frame may be available.
   virtual void look() = 0;
+  // The time since which the reader has neither asked nor been sent anything; nullopt: a request is waiting, or its
+  // answer is on its way.
+  virtual std::optional<std::chrono::steady_clock::time_point> idle_since() const = 0;
+  // Disconnects it, to make room for another.
+  virtual void give_way() = 0;
 
  protected:
   ~ImageReader() = default;
@@ -29,6 +37,7 @@ struct ImageDesk {
   const ImageType type;
 
   std::vector<ImageReader*> readers{};
+  protocol::LogLimiter log{20, 0.5};
   camera::JpegEncoder encoder{};
 
   // Encoded data of a camera's newest frame, shared by all readers.

@@ -4,12 +4,14 @@
 #include <pthread.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <map>
 #include <stdexcept>
 #include <thread>
@@ -45,6 +47,8 @@ struct ImageServer::Implementation {
       : desk{feed, limits, type}, acceptor(listen_for_readers(io, address, port)) {}
 
   void accept();
+  void welcome(tcp::socket socket);
+  bool make_room();
   void serve();
 
   ImageDesk desk;
@@ -59,14 +63,32 @@ void ImageServer::Implementation::accept() {
   acceptor.async_accept([this](error_code error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
     if (!error) {
-      if (desk.readers.size() < desk.limits.connections) serve_images(desk, std::move(socket));
-      return accept();
+      accept();  // first: a reader that cannot be served ends by an exception, and must not end this
+      return welcome(std::move(socket));
     }
     accept_again.expires_after(std::chrono::milliseconds(100));  // most often too many open files
     accept_again.async_wait([this](error_code cancelled) {
       if (!cancelled) accept();
     });
   });
+}
+
+void ImageServer::Implementation::welcome(tcp::socket socket) {
+  if (desk.readers.size() >= desk.limits.connections && !make_room()) return;
+  serve_images(desk, std::move(socket));
+}
+
+// Closes the reader that has been idle longest; false: none has been so for long enough.
+bool ImageServer::Implementation::make_room() {
+  using Clock = std::chrono::steady_clock;
+  const auto idle_since = [](const ImageReader* reader) {
+    return reader->idle_since().value_or(Clock::time_point::max());
+  };
+  const auto idlest = std::ranges::min_element(desk.readers, {}, idle_since);
+  const auto idle = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(desk.limits.idle_s));
+  if (idlest == desk.readers.end() || idle_since(*idlest) > Clock::now() - idle) return false;
+  (*idlest)->give_way();
+  return true;
 }
 
 void ImageServer::Implementation::serve() {

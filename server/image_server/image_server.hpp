@@ -13,7 +13,8 @@
 namespace kenaf::image_server {
 
 struct ImageServerLimits {
-  std::size_t connections = 64;    // further ones are closed at once
+  std::size_t connections = 64;    // further ones are closed at once, unless a reader gives way
+  double idle_s = 10;              // a reader that has asked nothing for so long gives way when all are taken
   double repeat_s = 0.9;           // without a new frame the old one is sent again after this: within a second
   double first_s = 10;             // without any frame a text is sent after this
   double words_apart_s = 0.1;      // between two text answers
