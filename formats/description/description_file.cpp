@@ -3,14 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cerrno>
-#include <fstream>
-#include <sstream>
-#include <system_error>
 #include <vector>
 
 #include "formats/description/data_files.hpp"
 #include "formats/description/description_error.hpp"
+#include "formats/description/limited_file.hpp"
 
 namespace kenaf::description {
 namespace {
@@ -31,15 +28,11 @@ DescriptionFile read_description_file(std::string_view kind, const std::string& 
     throw DescriptionError(
         fmt::format("{0} \"{1}\": no such {0}; give the path of a file that ends in {2}, or one of {3}", kind,
                     name_or_path, extension, shipped_names(folder, extension)));
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  in.peek();
-  if (!in.is_open() || in.bad())
-    throw DescriptionError(
-        fmt::format("{}: cannot be read: {}", path.string(), std::generic_category().message(errno)));
-  std::ostringstream text;
-  if (in) text << in.rdbuf();  // false for an empty file
-  return {path.string(), text.str()};
+  try {
+    return {path.string(), read_limited_file(path, kMostDescriptionBytes)};
+  } catch (const DescriptionError& error) {
+    throw DescriptionError(fmt::format("{}: {}", path.string(), error.what()));
+  }
 }
 
 }  // namespace kenaf::description

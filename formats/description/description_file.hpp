@@ -1,10 +1,13 @@
 // Finds and reads the file of a robot's, world's or manoeuvre's description. Thread safety: as data_files.hpp.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 
 namespace kenaf::description {
+
+inline constexpr std::size_t kMostDescriptionBytes = std::size_t{16} << 20U;
 
 struct DescriptionFile {
   std::string path;  // for errors
@@ -12,7 +15,7 @@ struct DescriptionFile {
 };
 
 // `kind` is "robot", "world" or "manoeuvre": find_data_file() looks in the folder `kind` + "s". Throws DescriptionError
-// if there is no such file or it cannot be read.
+// if there is no such file, or it cannot be read, is no regular file, or has more than kMostDescriptionBytes.
 DescriptionFile read_description_file(std::string_view kind, const std::string& name_or_path,
                                       std::string_view extension);
 
