@@ -50,13 +50,20 @@ struct WorldDescription {
   std::vector<StartPose> start_poses;  // SDF frames attached to the world whose name begins with "start"; at least one
 };
 
-// Loads a shipped world ("flat") or an SDF file by its path. Throws DescriptionError ("file:line: what is wrong").
-// Unsupported SDF elements are listed in `unsupported`, one line each, rather than dropped in silence. Meshes and
-// height maps are looked up in the SDF file's own folder and below it, nowhere else; a world may have 2^21 triangles
-// and 64 MiB of files.
+// Loads a shipped world ("flat") or an SDF file by its path; docs/worlds.md says what of SDF is simulated, and the
+// limits. What is not is listed in `unsupported`, one line each ("file:line: what"), rather than dropped in silence.
+// Models, meshes and height maps are looked for in the SDF file's own folder and below it, then in those of
+// world_search_path(), nowhere else. Throws DescriptionError ("file:line: what is wrong").
 WorldDescription load_world(const std::string& name_or_path, std::vector<std::string>& unsupported);
-// `folder` holds the files that the text refers to; empty: it may not refer to any.
+
+// As load_world(), from text. `folder` is the world's own, `search` the search path; both empty: the text may not refer
+// to files.
 WorldDescription parse_world(std::string_view sdf_text, const std::string& name_for_errors,
-                             const std::filesystem::path& folder, std::vector<std::string>& unsupported);
+                             const std::filesystem::path& folder, std::vector<std::string>& unsupported,
+                             const std::vector<std::filesystem::path>& search = {});
+
+// The folders that the environment variable KENAF_WORLD_PATH names, separated by ':'. Any thread, as long as none
+// changes the environment.
+std::vector<std::filesystem::path> world_search_path();
 
 }  // namespace kenaf::physics

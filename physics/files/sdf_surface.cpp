@@ -14,9 +14,9 @@
 #include <sdf/Mesh.hh>
 #include <sdf/Sphere.hh>
 
+#include "formats/description/description_error.hpp"
 #include "physics/height_map.hpp"
 #include "physics/mesh_file.hpp"
-#include "physics/robot_description.hpp"
 #include "physics/surface_shapes.hpp"
 
 namespace kenaf::physics {
@@ -57,7 +57,27 @@ std::optional<MeshFormat> format_of(const std::string& uri) {
   return std::nullopt;
 }
 
-TriangleSurface read_mesh_element(const SdfPlaces& places, const sdf::Mesh& mesh, WorldFiles& files,
+// The errors of the file get its name.
+template <typename Read>
+auto named(const std::string& uri, const Read& read) {
+  try {
+    return read();
+  } catch (const description::DescriptionError& error) {
+    throw description::DescriptionError(fmt::format("\"{}\" {}", uri, error.what()));
+  }
+}
+
+const MeshContent& content_of(const sdf::Mesh& mesh, MeshFormat format, ShapeFiles& files, std::size_t most_triangles) {
+  const MeshPart part{mesh.Submesh(), mesh.CenterSubmesh()};
+  const std::filesystem::path file = files.files.find(mesh.Uri(), mesh.Element()->FilePath());
+  const std::tuple key(file, part.submesh, part.centred);
+  const auto known = files.meshes.find(key);
+  if (known != files.meshes.end()) return known->second;
+  const std::string bytes = files.files.read(file);
+  return files.meshes[key] = named(mesh.Uri(), [&] { return read_mesh(bytes, format, part, most_triangles); });
+}
+
+TriangleSurface read_mesh_element(SdfNotes& notes, const sdf::Mesh& mesh, ShapeFiles& files,
                                   std::size_t most_triangles) {
   const std::optional<MeshFormat> format = format_of(mesh.Uri());
   if (!format)
@@ -65,40 +85,34 @@ TriangleSurface read_mesh_element(const SdfPlaces& places, const sdf::Mesh& mesh
   const Eigen::Vector3d scale = from_sdf(mesh.Scale());
   if (!scale.allFinite() || !(scale.cwiseAbs().minCoeff() > 0))
     throw description::DescriptionError("<scale> must not be zero");
-
-  // Errors of the file get its name.
-  const std::string bytes = files.read(mesh.Uri());
-  MeshContent content;
-  try {
-    content = read_mesh(bytes, *format, {mesh.Submesh(), mesh.CenterSubmesh()}, most_triangles);
-  } catch (const description::DescriptionError& error) {
-    throw description::DescriptionError(fmt::format("\"{}\" {}", mesh.Uri(), error.what()));
-  }
+  const MeshContent& content = content_of(mesh, *format, files, most_triangles);
   if (content.other_faces > 0)
-    places.skip(mesh.Element(),
-                fmt::format("\"{}\": {} points and lines are not simulated", mesh.Uri(), content.other_faces));
+    notes.add(place_of(mesh.Element()),
+              fmt::format("\"{}\": {} points and lines are not simulated", mesh.Uri(), content.other_faces));
 
   // A scale that mirrors turns the triangles inside out.
-  for (Eigen::Vector3d& p : content.surface.vertices) p = p.cwiseProduct(scale);
+  TriangleSurface surface = content.surface;
+  for (Eigen::Vector3d& p : surface.vertices) p = p.cwiseProduct(scale);
   if (scale.prod() < 0)
-    for (auto& t : content.surface.triangles) std::swap(t[1], t[2]);
-  return std::move(content.surface);
+    for (auto& t : surface.triangles) std::swap(t[1], t[2]);
+  return surface;
 }
 
-TriangleSurface read_height_map_element(const sdf::Heightmap& map, WorldFiles& files) {
+TriangleSurface read_height_map_element(const sdf::Heightmap& map, ShapeFiles& files) {
   const Eigen::Vector3d size = from_sdf(map.Size()), position = from_sdf(map.Position());
   check_sizes(map.Element(), {size.x(), size.y(), size.z()});
   if (!position.allFinite()) throw description::DescriptionError("<pos> must be numbers");
-  const std::string bytes = files.read(map.Uri());
-  try {
-    return height_map_surface(read_grey_png(bytes), size, position);
-  } catch (const description::DescriptionError& error) {
-    throw description::DescriptionError(fmt::format("\"{}\" {}", map.Uri(), error.what()));
+  const std::filesystem::path file = files.files.find(map.Uri(), map.Element()->FilePath());
+  const auto [picture, is_new] = files.pictures.try_emplace(file);
+  if (is_new) {
+    const std::string bytes = files.files.read(file);
+    picture->second = named(map.Uri(), [&] { return read_grey_png(bytes); });
   }
+  return height_map_surface(picture->second, size, position);
 }
 
 // `element` becomes that of the shape, for errors.
-TriangleSurface read_shape(const SdfPlaces& places, const sdf::Geometry& geometry, WorldFiles& files,
+TriangleSurface read_shape(SdfNotes& notes, const sdf::Geometry& geometry, ShapeFiles& files,
                            std::size_t most_triangles, sdf::ElementPtr& element) {
   // One branch for each shape; sizes are checked first.
   if (const sdf::Cylinder* cylinder = geometry.CylinderShape()) {
@@ -124,7 +138,7 @@ TriangleSurface read_shape(const SdfPlaces& places, const sdf::Geometry& geometr
   }
   if (const sdf::Mesh* mesh = geometry.MeshShape()) {
     element = mesh->Element();
-    return read_mesh_element(places, *mesh, files, most_triangles);
+    return read_mesh_element(notes, *mesh, files, most_triangles);
   }
   if (const sdf::Heightmap* map = geometry.HeightmapShape()) {
     element = map->Element();
@@ -140,29 +154,31 @@ TriangleSurface read_shape(const SdfPlaces& places, const sdf::Geometry& geometr
 
 }  // namespace
 
-TriangleSurface read_surface(const SdfPlaces& places, const sdf::Geometry& geometry, WorldFiles& files,
+TriangleSurface read_surface(SdfNotes& notes, const sdf::Geometry& geometry, ShapeFiles& files,
                              std::size_t most_triangles) {
   sdf::ElementPtr element = geometry.Element();
   TriangleSurface surface;
   try {
-    surface = read_shape(places, geometry, files, most_triangles, element);
+    surface = read_shape(notes, geometry, files, most_triangles, element);
   } catch (const description::DescriptionError& error) {
-    places.fail(element, error.what());
+    fail_at(element, error.what());
   }
 
-  // Limits, then tidying; what is left out or doubtful is listed.
+  // Limits, then tidying; what is left out or doubtful is noted.
   if (surface.triangles.empty()) return surface;
   if (surface.triangles.size() > most_triangles)
-    places.fail(element, fmt::format("the world has too many triangles: only {} are left for this <{}>", most_triangles,
-                                     element->GetName()));
+    fail_at(element, fmt::format("the world has too many triangles: only {} are left for this <{}>", most_triangles,
+                                 element->GetName()));
   for (const Eigen::Vector3d& p : surface.vertices)
     if (!(p.norm() <= kMaxCoordinate_m))
-      places.fail(element, fmt::format("a vertex is further than {} m away", kMaxCoordinate_m));
+      fail_at(element, fmt::format("a vertex is further than {} m away", kMaxCoordinate_m));
   const TidySurface tidied = tidy(surface);
-  if (tidied.dropped > 0) places.skip(element, fmt::format("{} triangles without area are left out", tidied.dropped));
+  if (tidied.dropped > 0)
+    notes.add(place_of(element), fmt::format("{} triangles without area are left out", tidied.dropped));
   if (!tidied.windings_agree)
-    places.skip(element, "neighbouring triangles do not agree on which side of them is out; robots may fall through");
-  if (surface.triangles.empty()) places.fail(element, "no triangle has an area");
+    notes.add(place_of(element),
+              "neighbouring triangles do not agree on which side of them is out; robots may fall through");
+  if (surface.triangles.empty()) fail_at(element, "no triangle has an area");
   return surface;
 }
 
