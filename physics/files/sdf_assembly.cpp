@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 #include <system_error>
+#include <unordered_map>
 
 #include "formats/description/description_error.hpp"
 
@@ -13,13 +15,43 @@ namespace {
 namespace fs = std::filesystem;
 using description::DescriptionError;
 
-[[noreturn]] void fail_at(const SdfPart& part, const std::string& what) {
+[[noreturn]] void refuse(const SdfPart& part, const std::string& what) {
   throw DescriptionError(fmt::format("{}: {}", place_of(part.file, part.line), what));
 }
 
 void insert(const sdf::ElementPtr& child, const sdf::ElementPtr& parent) {
   child->SetParent(parent);
   parent->InsertElement(child);
+}
+
+std::string attribute_of(const sdf::ElementPtr& element, const char* name) {
+  const sdf::ParamPtr value = element ? element->GetAttribute(name) : nullptr;
+  return value ? value->GetAsString() : "";
+}
+
+// In whose frame an element of a world or model is placed, of those in the same one: "a" of "a::b".
+std::string placed_in(const sdf::ElementPtr& element) {
+  const std::string relative_to = attribute_of(element->FindElement("pose"), "relative_to");
+  const std::string in = relative_to.empty() ? attribute_of(element, "attached_to") : relative_to;
+  return in.substr(0, in.find("::"));
+}
+
+// Throws if poses are relative to one another in too long a chain or in a circle.
+void check_chains(const sdf::ElementPtr& world_or_model) {
+  std::unordered_map<std::string, std::string> placed;
+  for (sdf::ElementPtr each = world_or_model->GetFirstElement(); each; each = each->GetNextElement())
+    if (each->GetAttribute("name")) placed.emplace(attribute_of(each, "name"), placed_in(each));
+  for (const auto& [name, first] : placed) {
+    const std::string* next = &first;
+    for (int length = 0; !next->empty(); ++length) {
+      const auto found = placed.find(*next);
+      if (found == placed.end()) break;
+      if (length == SdfAssembly::kLongestChain)
+        fail_at(world_or_model, fmt::format("a pose is relative to a chain of more than {} others, or to itself",
+                                            SdfAssembly::kLongestChain));
+      next = &found->second;
+    }
+  }
 }
 
 // Puts what an <include> says in place of what the model says.
@@ -39,11 +71,11 @@ void override_with(const sdf::ElementPtr& said, const sdf::ElementPtr& model) {
 
 void SdfAssembly::count(const SdfPart& part) {
   const auto one_more = [&part](std::size_t& count, std::size_t most, const char* what) {
-    if (++count > most) fail_at(part, fmt::format("the world has more than {} {}", most, what));
+    if (++count > most) refuse(part, fmt::format("the world has more than {} {}", most, what));
   };
   if (part.kind == "model") one_more(models_, kMostModels, "models");
-  if (part.kind == "link" || part.kind == "collision")
-    one_more(links_and_shapes_, kMostLinksAndShapes, "links and shapes");
+  if (part.kind == "link") one_more(links_, kMostLinks, "links");
+  if (part.kind == "collision") one_more(shapes_, kMostShapes, "shapes");
   if (part.kind == "frame") one_more(frames_, kMostFrames, "frames");
 }
 
@@ -54,7 +86,7 @@ const std::optional<SdfPart>& SdfAssembly::outline_of(const fs::path& file) {
 }
 
 sdf::ElementPtr SdfAssembly::element_of(const SdfPart& part, int depth) {
-  if (depth > kMostNestedModels) fail_at(part, fmt::format("models are nested more than {} deep", kMostNestedModels));
+  if (depth > kMostNestedModels) refuse(part, fmt::format("models are nested more than {} deep", kMostNestedModels));
   count(part);
   const sdf::ElementPtr element = read_part(part);
   for (const SdfPart& inner : part.parts) {
@@ -63,6 +95,8 @@ sdf::ElementPtr SdfAssembly::element_of(const SdfPart& part, int depth) {
             inner.include_uri.empty() ? element_of(inner, inner_depth) : included(inner, inner_depth))
       insert(made, element);
   }
+
+  check_chains(element);
 
   // SDF allows no moving model without a link; it has no effect.
   if (element->GetName() == "model" && !element->HasElement("link") && !element->HasElement("model")) {
@@ -80,7 +114,7 @@ std::optional<fs::path> SdfAssembly::file_of(const SdfPart& include) {
   try {
     return files_.find_model(include.include_uri, include.file);
   } catch (const DescriptionError& error) {
-    fail_at(include, error.what());
+    refuse(include, error.what());
   }
 }
 
@@ -97,7 +131,7 @@ sdf::ElementPtr SdfAssembly::included(const SdfPart& include, int depth) {
   if (const auto first = std::ranges::find(chain_, *file); first != chain_.end()) {
     std::string chain;
     for (auto each = first; each != chain_.end(); ++each) chain += each->string() + " includes ";
-    fail_at(include, fmt::format("a file includes itself: {}{}", chain, file->string()));
+    refuse(include, fmt::format("a file includes itself: {}{}", chain, file->string()));
   }
 
   // Its model, with what the <include> says.
@@ -105,7 +139,7 @@ sdf::ElementPtr SdfAssembly::included(const SdfPart& include, int depth) {
   try {
     outline = &outline_of(*file);
   } catch (const DescriptionError& error) {
-    fail_at(include, fmt::format("<include>: {}", error.what()));
+    refuse(include, fmt::format("<include>: {}", error.what()));
   }
   if (!*outline) {
     notes_.add(place_of(include.file, include.line),

@@ -16,9 +16,10 @@ namespace kenaf::physics {
 
 class SdfAssembly {
  public:
-  // Chosen: a world at these limits takes less than 512 MiB and some seconds. libsdformat's time is quadratic in
-  // frames.
-  static constexpr std::size_t kMostModels = 5000, kMostLinksAndShapes = 20'000, kMostFrames = 2000;
+  // Chosen: a world at these limits takes less than 512 MiB and some seconds. libsdformat takes quadratic time for
+  // links and frames, and for each pose as long as its chain of poses is.
+  static constexpr std::size_t kMostModels = 5000, kMostLinks = 5000, kMostShapes = 20'000, kMostFrames = 2000;
+  static constexpr int kLongestChain = 100;  // of poses that are relative to the next, in one model or world
 
   SdfAssembly(WorldFiles& files, SdfNotes& notes) : files_(files), notes_(notes) {}
 
@@ -39,7 +40,7 @@ class SdfAssembly {
   SdfNotes& notes_;
   std::vector<std::filesystem::path> chain_;  // of files, the outermost first
   std::map<std::filesystem::path, std::optional<SdfPart>> outlines_;
-  std::size_t models_ = 0, links_and_shapes_ = 0, frames_ = 0;
+  std::size_t models_ = 0, links_ = 0, shapes_ = 0, frames_ = 0;
 };
 
 }  // namespace kenaf::physics

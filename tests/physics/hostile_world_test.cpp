@@ -194,13 +194,38 @@ TEST_CASE("Models that double at each include end at the limit of models") {
   CHECK_THAT(error_of(world_with(include("m1.sdf")), folder.path()), Contains("the world has more than 5000 models"));
 }
 
-TEST_CASE("Links, shapes and frames have a limit, however they are spread") {
+TEST_CASE("Links, shapes and frames have a limit") {
   std::string links, shapes, frames;
+  for (int i = 0; i < 5001; ++i) links += "<link name=\"l" + std::to_string(i) + "\"/>\n";
+  CHECK(error_of(world_with(model("m", links))) == "w.sdf:5002: the world has more than 5000 links");
   for (int i = 0; i < 20001; ++i) shapes += shape(kBox, i);
-  CHECK_THAT(error_of(world_with(model("m", link(shapes)))),
-             Contains("the world has more than 20000 links and shapes"));
+  CHECK(error_of(world_with(model("m", link(shapes)))) == "w.sdf:2: the world has more than 20000 shapes");
   for (int i = 0; i < 2001; ++i) frames += "<frame name=\"f" + std::to_string(i) + "\"/>\n";
   CHECK(error_of(world_with(frames)) == "w.sdf:2002: the world has more than 2000 frames");
+}
+
+// The first frame is relative to the world.
+TEST_CASE("Poses are relative to a chain of at most 100 others, and to no circle") {
+  const auto chain = [](const std::string& attribute, int length) {
+    std::string frames = "<frame name=\"f0\"><pose>1 0 0 0 0 0</pose></frame>";
+    for (int i = 1; i <= length; ++i) {
+      const std::string before = attribute + "=\"f" + std::to_string(i - 1) + "\"";
+      frames += "<frame name=\"f" + std::to_string(i) + "\"" +
+                (attribute == "attached_to" ? " " + before + "/>\n" : "><pose " + before + "/></frame>\n");
+    }
+    return error_of(world_with(frames));
+  };
+  for (const char* attribute : {"relative_to", "attached_to"}) {
+    CHECK(chain(attribute, 100) == "");
+    CHECK_THAT(chain(attribute, 101), Contains("a pose is relative to a chain of more than 100 others"));
+  }
+  const std::string circle =
+      "<frame name=\"a\"><pose relative_to=\"b\"/></frame><frame name=\"b\"><pose relative_to=\"a\"/></frame>";
+  CHECK_THAT(error_of(world_with(circle)), Catch::StartsWith("w.sdf:1: ") && Contains("or to itself"));
+  CHECK_THAT(error_of(world_with(model("m", "<link name=\"l\"><pose relative_to=\"l\"/></link>"))),
+             Catch::StartsWith("w.sdf:2: ") && Contains("or to itself"));
+  // A name that nothing has ends a chain, and is refused by libsdformat.
+  CHECK_THAT(error_of(world_with("<frame name=\"a\"><pose relative_to=\"nobody\"/></frame>")), Contains("nobody"));
 }
 
 TEST_CASE("Elements, attributes and points have a limit before they are read") {
