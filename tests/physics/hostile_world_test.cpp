@@ -289,6 +289,26 @@ TEST_CASE("Includes that say nothing or nonsense are refused or noted") {
     CHECK_NOTHROW(error_of(world_with(text), folder.path()));
 }
 
+// 128 x 256 squares, two triangles each: 2^16, so that 2^5 of them are 2^21.
+TEST_CASE("A world has at most 2^21 triangles", "[long]") {
+  const TemporaryFolder folder;
+  std::string grid, shapes;
+  for (int x = 0; x <= 128; ++x)
+    for (int y = 0; y <= 256; ++y) grid += "v " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
+  for (int x = 0; x < 128; ++x)
+    for (int y = 1; y <= 256; ++y) {
+      const auto at = [](int corner) { return " " + std::to_string(corner); };
+      const int near = 257 * x + y, far = near + 257;
+      grid += "f" + at(near) + at(far) + at(far + 1) + "\nf" + at(near) + at(far + 1) + at(near + 1) + "\n";
+    }
+  write_file(folder / "grid.obj", grid);
+  const std::string mesh = "<mesh><uri>grid.obj</uri></mesh>";
+  for (int i = 0; i < 32; ++i) shapes += shape(mesh, i);
+  CHECK(error_of(world_with(model("m", link(shapes))), folder.path()) == "");
+  CHECK_THAT(error_of(world_with(model("m", link(shapes + shape(mesh, 32)))), folder.path()),
+             Contains("the world has too many triangles: only 0 are left"));
+}
+
 // libsdformat alone takes 2.5 GB for these.
 TEST_CASE("A thousand boxes, written or included, take less than 512 MiB", "[long]") {
   const TemporaryFolder folder;

@@ -1,5 +1,6 @@
 // Models that a world includes from files: where they are found, and what the <include> says in place of the model. The
 // places are derived by hand from the specification, http://sdformat.org/tutorials?tut=composition.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <filesystem>
@@ -248,6 +249,25 @@ TEST_CASE("A merged model is one of its own, and said so") {
   CHECK(is_at(loaded.place(), 1, 0, 0));
   REQUIRE(loaded.notes.size() == 1);
   CHECK_THAT(loaded.notes[0], Contains("merge is not simulated"));
+}
+
+// 2 lanes of 3 pallets of 10 x 10 posts; post_3_4 stands out by 0.01 * ((3 * 3 + 5 * 4) % 7) m = 0.01 m, its centre
+// 0.05 m below its top; the lane is at (1, 0.6), the pallet at (0, -0.45) in it.
+TEST_CASE("The example of docs/worlds.md makes the world that it says") {
+  const std::string page = kenaf::test::read_file(KENAF_SOURCE_DIR "/docs/worlds.md");
+  const std::size_t from = page.find("mkdir -p arena/"), to = page.find("kenaf-gap simulate --world ./arena/arena.sdf");
+  REQUIRE(from < to);
+  REQUIRE(to != std::string::npos);
+  const TemporaryFolder folder;
+  write_file(folder / "make.sh", page.substr(from, to - from));
+  REQUIRE(std::system(("cd '" + folder.path().string() + "' && bash -e make.sh").c_str()) == 0);
+  std::vector<std::string> notes;
+  const WorldDescription world = load_world((folder / "arena/arena.sdf").string(), notes);
+  CHECK(notes.empty());
+  CHECK(world.boxes.size() == 600);
+  const auto post = std::ranges::find(world.boxes, "left/pallet_0/post_3_4", &Box::name);
+  REQUIRE(post != world.boxes.end());
+  CHECK(is_at(post->X_WBox.p, 1.3, 0.6 - 0.45 + 0.4, -0.04));
 }
 
 TEST_CASE("KENAF_WORLD_PATH names folders, separated by colons") {

@@ -144,6 +144,24 @@ TEST_CASE("Flippers are where the run says, whatever they carry") {
   }
 }
 
+// 1.62 (0.2 s)^2 / 2 = 32.4 mm; 9.8 would be on the ground after 0.1 s, 50 mm below.
+TEST_CASE("A body falls in every engine with the world's gravity") {
+  const physics::RobotDescription robot = physics::load_robot("kenaf");
+  const rollout::Manoeuvre manoeuvre = rollout::load_manoeuvre("drop");
+  std::vector<std::string> unsupported;
+  physics::WorldDescription moon = physics::load_world(manoeuvre.world, unsupported);
+  moon.gravity_W_mps2 = {0, 0, -1.62};
+  rollout::RollOutOptions exact;
+  exact.noise_scale = exact.mocap_noise_m = exact.mocap_noise_rad = 0;
+  const runs::Run run = rollout::roll_out(robot, moon, manoeuvre, exact).run;
+  for (const std::string& engine : engines::engine_names()) {
+    CAPTURE(engine);
+    const runs::Run in_engine = engines::with_body_of(engine, robot, moon, run, run);
+    const auto z_m = in_engine.column("z_m");
+    CHECK(z_m[0] - z_m[20] == Approx(1.62 * 0.2 * 0.2 / 2).margin(2e-3));
+  }
+}
+
 TEST_CASE("Ground has the friction of each of its pieces, or is refused where an engine has one for all") {
   const physics::RobotDescription robot = physics::load_robot("kenaf");
   const rollout::Manoeuvre manoeuvre = rollout::load_manoeuvre("straight");

@@ -83,6 +83,16 @@ TEST_CASE("A drop falls freely, then lies on the ground") {
   CHECK(out.succeeded);
 }
 
+// 1.62 (0.2 s)^2 / 2 = 32.4 mm; the step adds g h t / 2 = 0.2 mm.
+TEST_CASE("On the Moon a drop takes 2.5 times as long") {
+  physics::WorldDescription moon = flat();
+  moon.gravity_W_mps2 = {0, 0, -1.62};
+  const auto out = roll_out(physics::load_robot("kenaf"), moon, load_manoeuvre("drop"), exact());
+  const auto z = out.run.column("z_m");
+  CHECK(z[0] - z[20] == Approx(1.62 * 0.2 * 0.2 / 2).margin(3e-4));
+  CHECK(out.succeeded);
+}
+
 TEST_CASE("An operator who gives up stops the robot where it is") {
   Manoeuvre manoeuvre = straight(0.2, 2);
   const Phase drive = manoeuvre.phases[0];
