@@ -107,6 +107,19 @@ TEST_CASE("A client with a Session reads the fault in every STA, until the robot
   CHECK(island.errors_logged() == 2);
 }
 
+TEST_CASE("A reset starts a failed robot again") {
+  const Island island;
+  Conversation client(island.options());
+  client.send("CONTROL {Type Session} {Period 0.1}\r\n" + kInitBeside);
+  REQUIRE(client.run(kFall_s));
+  CHECK(client.last("STA").find("Fault") != std::string::npos);
+  client.send("CONTROL {Type Reset}\r\n");
+  client.simulation.advance(client.wall_s);
+  const std::string status = client.last("STA");
+  CHECK(status.find("Fault") == std::string::npos);
+  CHECK(number_in(status, "Time") == 0);
+}
+
 TEST_CASE("A robot whose simulation went wrong keeps no other from driving") {
   const Island island;
   Conversation client(island.options());
