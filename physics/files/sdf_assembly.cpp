@@ -88,7 +88,7 @@ const std::optional<SdfPart>& SdfAssembly::outline_of(const fs::path& file) {
 sdf::ElementPtr SdfAssembly::element_of(const SdfPart& part, int depth) {
   if (depth > kMostNestedModels) refuse(part, fmt::format("models are nested more than {} deep", kMostNestedModels));
   count(part);
-  const sdf::ElementPtr element = read_part(part);
+  sdf::ElementPtr element = read_part(part);
   for (const SdfPart& inner : part.parts) {
     const int inner_depth = depth + (inner.kind == "model" ? 1 : 0);
     if (const sdf::ElementPtr made =
@@ -147,7 +147,7 @@ sdf::ElementPtr SdfAssembly::included(const SdfPart& include, int depth) {
     return nullptr;
   }
   chain_.push_back(*file);
-  const sdf::ElementPtr model = element_of(**outline, depth);
+  sdf::ElementPtr model = element_of(**outline, depth);
   chain_.pop_back();
   override_with(read_part(include), model);
   return model;

@@ -142,7 +142,7 @@ fs::path WorldFiles::model_in(const fs::path& folder) {
     if (name.empty())
       throw DescriptionError(fmt::format("{} names no model: it needs an <sdf> in its <model>", config.string()));
   }
-  const fs::path file = fs::canonical(folder / name, error);
+  fs::path file = fs::canonical(folder / name, error);
   if (error) throw DescriptionError(fmt::format("{} holds no {}", folder.string(), name));
   if (!is_allowed(file))
     throw DescriptionError(fmt::format("{} is not in a folder of this world", (folder / name).string()));
@@ -150,7 +150,7 @@ fs::path WorldFiles::model_in(const fs::path& folder) {
 }
 
 std::optional<fs::path> WorldFiles::find_model(const std::string& uri, const std::string& named_in) {
-  const std::optional<fs::path> found = look_for(uri, named_in);
+  std::optional<fs::path> found = look_for(uri, named_in);
   std::error_code error;
   if (!found || !fs::is_directory(*found, error)) return found;
   fs::path& model = models_[*found];
