@@ -74,7 +74,7 @@ struct Source {
   const std::string& file;
   SdfNotes& notes;
   Version version{};
-  Names frames_named{};  // by relative_to and the like, without their scopes
+  Names frames_named{};  // by relative_to and the like, with their scopes and without
 
   std::string place(const XMLElement& element) const { return place_of(file, element.GetLineNum()); }
   [[noreturn]] void fail(const XMLElement& element, const std::string& what) const {
@@ -287,18 +287,18 @@ SdfPart outline_part(Source& source, const XMLElement& element, int depth) {
   return part;
 }
 
-// Returns what follows the last "::".
-std::string_view without_scopes(std::string_view name) {
-  const std::size_t scope = name.rfind("::");
-  return scope == std::string_view::npos ? name : name.substr(scope + 2);
+// With scopes, and without them.
+void add_frame_name(std::string_view name, Source& source) {
+  source.frames_named.insert(name);
+  if (const std::size_t scope = name.rfind("::"); scope != std::string_view::npos)
+    source.frames_named.insert(name.substr(scope + 2));
 }
 
 // The names in all elements that are kept, so that joints which nobody names need no frame.
 void collect_frames_named(const XMLElement& element, Source& source) {
   for (const char* attribute : {"relative_to", "frame", "attached_to", "placement_frame", "canonical_link"})
-    if (const char* name = element.Attribute(attribute)) source.frames_named.insert(without_scopes(name));
-  if (element.Value() == std::string_view("placement_frame"))
-    source.frames_named.insert(without_scopes(trimmed(text_of(&element))));
+    if (const char* name = element.Attribute(attribute)) add_frame_name(name, source);
+  if (element.Value() == std::string_view("placement_frame")) add_frame_name(trimmed(text_of(&element)), source);
   for (const XMLElement* child = element.FirstChildElement(); child; child = child->NextSiblingElement())
     if (known_elements().contains(child->Value()) || child->Value() == std::string_view("placement_frame") ||
         child->Value() == std::string_view("joint"))
