@@ -34,7 +34,7 @@ struct Reader {
 Pose resolved_pose(const sdf::SemanticPose& semantic, const sdf::ElementPtr& element, const std::string& relative_to) {
   ignition::math::Pose3d pose;
   const sdf::Errors errors = semantic.Resolve(pose, relative_to);
-  if (!errors.empty()) fail_at(element, errors.front().Message());
+  if (!errors.empty()) fail_at(element, message_of(errors.front()));
   if (!pose.IsFinite() || pose.Pos().Length() > kMaxCoordinate_m)
     fail_at(element, fmt::format("a pose is not a number or further than {} m away", kMaxCoordinate_m));
   return {{pose.Pos().X(), pose.Pos().Y(), pose.Pos().Z()},
@@ -186,7 +186,7 @@ WorldDescription parse_world(std::string_view sdf_text, const std::string& name_
   const sdf::Errors errors = root.Load(document);
   if (!errors.empty() || root.WorldCount() != 1)
     throw description::DescriptionError(
-        fmt::format("{}: {}", name_for_errors, errors.empty() ? "holds no world" : errors.front().Message()));
+        fmt::format("{}: {}", name_for_errors, errors.empty() ? "holds no world" : message_of(errors.front())));
   Reader reader{notes, {files}};
   WorldDescription world = read_world(reader, *root.WorldByIndex(0));
   notes.finish();

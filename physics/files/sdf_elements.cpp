@@ -67,7 +67,7 @@ sdf::ElementPtr read_part(const SdfPart& part) {
   const bool is_read = sdf::readString(part.document, sdf::ParserConfig(), document, errors);
   if (!errors.empty()) {
     const int line = part.line + errors.front().LineNumber().value_or(1) - 1;
-    throw description::DescriptionError(fmt::format("{}: {}", place_of(part.file, line), errors.front().Message()));
+    throw description::DescriptionError(fmt::format("{}: {}", place_of(part.file, line), message_of(errors.front())));
   }
   sdf::ElementPtr element = is_read ? document->GetFirstElement() : nullptr;
   if (element && part.kind != "world") element = element->GetFirstElement();

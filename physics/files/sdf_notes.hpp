@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <sdf/Element.hh>
+#include <sdf/Error.hh>
 #include <string>
 #include <unordered_set>
 #include <vector>
@@ -14,6 +15,9 @@ inline constexpr double kMaxCoordinate_m = 1e5;
 // "file:line", or the file alone if the line is not known (0).
 std::string place_of(const std::string& file, int line);
 std::string place_of(const sdf::ElementPtr& element);
+
+// What libsdformat says, without the line break that some of it ends in.
+std::string message_of(const sdf::Error& error);
 
 // Throws DescriptionError: "file:line: what".
 [[noreturn]] void fail_at(const sdf::ElementPtr& element, const std::string& what);
