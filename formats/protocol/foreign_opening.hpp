@@ -10,10 +10,10 @@
 
 namespace kenaf::protocol {
 
-// Returns "HTTP", "TLS" or "SSH"; empty: none of them. `opening`: the first line, or as much of it as has come. TLS is
-// known by its first byte (RFC 8446, 5.1), SSH by "SSH-" (RFC 4253, 4.2), HTTP by a browser's method and a blank, or
-// by a line that ends in its version (RFC 9112, 3).
-std::string_view foreign_protocol(std::string_view opening);
+// Returns "HTTP", "TLS" or "SSH"; empty: none of them. `opening`: the first line, or as much of it as has come;
+// `is_whole`: all of it. TLS is known by its first byte (RFC 8446, 5.1), SSH by "SSH-" (RFC 4253, 4.2), HTTP by a
+// browser's method and a blank, or by a whole line with its version (RFC 9112, 3) that is not a USARSim message.
+std::string_view foreign_protocol(std::string_view opening, bool is_whole);
 
 // The opening of one connection, however its bytes are cut. Every port whose clients send text or bytes of a protocol
 // other than HTTP passes all that it receives through one, before it obeys any of it.

@@ -1,3 +1,4 @@
 kenaf_fuzzer(image_message_fuzz SOURCE image_message_fuzz.cpp LIBRARIES kenaf_protocol)
+kenaf_fuzzer(opening_fuzz SOURCE opening_fuzz.cpp LIBRARIES kenaf_protocol)
 kenaf_fuzzer(relay_datagram_fuzz SOURCE relay_datagram_fuzz.cpp LIBRARIES kenaf_protocol)
 kenaf_fuzzer(usarsim_message_fuzz SOURCE usarsim_message_fuzz.cpp LIBRARIES kenaf_protocol)
