@@ -135,7 +135,7 @@ hrt::Connection RelayTransport::greet(const protocol::relay::Hello& hello) {
   }
   const bool no_world = refused->reason == protocol::relay::RefusedReason::no_world_server;
   throw Error(HRT_E_REFUSED, fmt::format("the relay at {} refused: {}{}", relay_, words(*refused),
-                                         no_world ? "; start kenaf-world" : ""));
+                                         no_world ? "; start kenaf-world, or start it again" : ""));
 }
 
 std::optional<robot::State> RelayTransport::wait_state() {
@@ -180,6 +180,7 @@ std::optional<robot::State> RelayTransport::take(const protocol::relay::Datagram
 
   // A paused world sends no new frames and must not count as lost.
   is_paused_ = state->world_paused;
+  not_at_start_ = state->not_at_start;
   if (is_paused_) state_at_ = life_at_ = now;
 
   // Only a newer frame begins a cycle: a repeated State, or one that was overtaken, is dropped.
@@ -259,6 +260,12 @@ void RelayTransport::ping(Clock::time_point now) {
   pinged_at_ = now;
   ping_at_ = now + kPingEvery;
   transmit(protocol::relay::Ping{.session = session_, .id = ping_id_});
+}
+
+std::string RelayTransport::warning() const {
+  if (!not_at_start_) return {};
+  return "the robot does not begin at the world's first start pose, which was not free, but at the next free one; "
+         "another robot stands there";
 }
 
 void RelayTransport::close() {

@@ -29,6 +29,7 @@ class RelayTransport final : public hrt::Transport {
   void keep_alive() override;
   void interrupt() override;
   void close() override;
+  std::string warning() const override;
   double round_trip_s() const override { return round_trip_s_; }
   bool is_paused() const override { return is_paused_; }
 
@@ -51,7 +52,8 @@ class RelayTransport final : public hrt::Transport {
   std::string relay_;
   double link_timeout_s_ = 0, connect_timeout_s_ = 0;
   int socket_ = -1, interrupt_ = -1;
-  bool port_closed_ = false;  // the last send or receive reported that nobody listens there
+  bool not_at_start_ = false;  // as of the newest State
+  bool port_closed_ = false;   // the last send or receive reported that nobody listens there
   std::array<std::byte, protocol::relay::kMaxDatagramBytes + 1> buffer_{};
 
   std::uint64_t session_ = 0;           // 0: none

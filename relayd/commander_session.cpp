@@ -52,7 +52,7 @@ void CommanderSession::take(const protocol::relay::Hello& hello, const Address& 
       return;
     }
     heard_ = now;
-    if (phase_ == Phase::opening) return;
+    if (phase_ == Phase::opening) return tell_of_slow_world(now);
     send_welcome();
     send_state(now);
     return;
@@ -80,6 +80,15 @@ void CommanderSession::take(const protocol::relay::Hello& hello, const Address& 
   port_.open_world(hello_);
 }
 
+// So that a commander that waits less long than the world server may take knows whom it waits for. The session still
+// begins once the world is ready.
+void CommanderSession::tell_of_slow_world(TimePoint now) {
+  if (now - opened_ < kWorldIsSlow || !answers_to_strangers_.allow(now)) return;
+  refuse(
+      hello_.session, commander_, protocol::relay::RefusedReason::no_world_server,
+      fmt::format("its world server has not answered for {:.1f} s; is it loading, or hung?", seconds(now - opened_)));
+}
+
 void CommanderSession::on_world_ready(const WorldReady& ready, TimePoint now) {
   if (phase_ != Phase::opening) return;
   phase_ = Phase::active;
@@ -103,6 +112,7 @@ void CommanderSession::on_frame(const WorldFrame& frame, TimePoint now) {
 
   state_.robot = frame.state;
   state_.world_paused = frame.paused;
+  state_.not_at_start = frame.not_at_start;
   state_.robot.frame = static_cast<std::uint32_t>(frame.number + frame_offset_);
   world_counts_late_ = frame.numbered;
   state_.robot.late_commands = late_counted_here_ + (frame.numbered ? frame.state.late_commands - late_before_ : 0);

@@ -50,6 +50,7 @@ class CommanderSession {
   // Wall-clock times.
   static constexpr Duration kSilenceEndsSession = std::chrono::seconds(1);
   static constexpr Duration kWorldMustOpenIn = std::chrono::seconds(5);
+  static constexpr Duration kWorldIsSlow = std::chrono::seconds(1);       // a commander that asks again is told
   static constexpr Duration kHeartbeat = std::chrono::milliseconds(100);  // a State at least that often
   static constexpr Duration kLostResend = std::chrono::milliseconds(50);
   static constexpr Duration kForgetEnded = std::chrono::seconds(1);  // a Hello of the session until then is late
@@ -88,6 +89,7 @@ class CommanderSession {
   void take(const protocol::relay::Command& command, const Address& from, TimePoint now);
   void take(const protocol::relay::Ping& ping, const Address& from, TimePoint now);
   void take(const protocol::relay::Bye& bye, const Address& from, TimePoint now);
+  void tell_of_slow_world(TimePoint now);
   void accept(const protocol::relay::Command& command);
   void refuse(std::uint64_t session, const Address& to, protocol::relay::RefusedReason reason, std::string_view text);
   void send_welcome();

@@ -153,6 +153,7 @@ bool SensorTransform::take_status(const MessageView& message) {
   state.late_commands = static_cast<std::uint32_t>(std::clamp(read(message, "Late").value_or(0), 0.0, 4e9));
   state.stopped_by_silence = is_true(message, "Silent");
   frame_.paused = is_true(message, "Paused");
+  frame_.not_at_start = message.find("Start").has_value();
 
   std::array<double, robot::kFlipperCount> joint_rad;
   bool all_flippers = true;

@@ -7,7 +7,7 @@
 //   flipper_rad         STA {FLFlipper} ...
 //   currents, battery   SEN Drives
 //   p_WB, orientation   SEN GroundTruth
-//   time, counts        STA {Time} {Frame} {Late} {Silent} {Paused}
+//   time, counts        STA {Time} {Frame} {Late} {Silent} {Paused} {Start}
 //
 // Between two messages a value is held, and State.fields says so. Thread safety: one object, one thread. No allocation.
 #pragma once
@@ -24,11 +24,12 @@ namespace kenaf::relayd {
 
 // All that the world reported up to and with one STA.
 struct WorldFrame {
-  robot::State state{};     // its frame is left 0
-  bool paused = false;      // robot time is stopped at somebody else's request
-  std::int64_t number = 0;  // STA {Frame n}; from a plain server the count of STAs
-  bool numbered = false;    // by the server
-  double interval_s = 0;    // robot time since the previous STA, 0 at the first
+  robot::State state{};       // its frame is left 0
+  bool paused = false;        // robot time is stopped at somebody else's request
+  std::int64_t number = 0;    // STA {Frame n}; from a plain server the count of STAs
+  bool numbered = false;      // by the server
+  double interval_s = 0;      // robot time since the previous STA, 0 at the first
+  bool not_at_start = false;  // the server placed it at another start pose than the first, which was not free
 };
 
 class SensorTransform {

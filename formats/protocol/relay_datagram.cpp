@@ -9,8 +9,9 @@ constexpr std::uint32_t kEveryField = (robot::kHasGroundTruth << 1) - 1;
 constexpr std::uint32_t kStateFieldBits = kEveryField | robot::held(kEveryField);
 
 // Events: bits on the wire.
-constexpr std::uint32_t kWorldServerLost = 1u << 0, kStoppedBySilence = 1u << 1, kWorldPaused = 1u << 2;
-constexpr std::uint32_t kStateEventBits = kWorldServerLost | kStoppedBySilence | kWorldPaused;
+constexpr std::uint32_t kWorldServerLost = 1u << 0, kStoppedBySilence = 1u << 1, kWorldPaused = 1u << 2,
+                        kNotAtStart = 1u << 3;
+constexpr std::uint32_t kStateEventBits = kWorldServerLost | kStoppedBySilence | kWorldPaused | kNotAtStart;
 
 // Each overload lists the fields of one kind in their order on the wire.
 void walk(auto& io, Hello& m) {
@@ -53,11 +54,13 @@ void walk(auto& io, State& m) {
   io.integer(m.robot.late_commands);
   io.bits(m.robot.fields, kStateFieldBits);
   std::uint32_t events = (m.world_server_lost ? kWorldServerLost : 0) |
-                         (m.robot.stopped_by_silence ? kStoppedBySilence : 0) | (m.world_paused ? kWorldPaused : 0);
+                         (m.robot.stopped_by_silence ? kStoppedBySilence : 0) | (m.world_paused ? kWorldPaused : 0) |
+                         (m.not_at_start ? kNotAtStart : 0);
   io.bits(events, kStateEventBits);
   m.world_server_lost = (events & kWorldServerLost) != 0;
   m.robot.stopped_by_silence = (events & kStoppedBySilence) != 0;
   m.world_paused = (events & kWorldPaused) != 0;
+  m.not_at_start = (events & kNotAtStart) != 0;
   io.number(m.robot.robot_time_s);
   io.numbers(m.robot.posture_rad);
   io.numbers(m.robot.gyro_radps);

@@ -70,6 +70,7 @@ struct State {
   std::uint32_t acknowledged;  // sequence of the newest Command handed to the world server, 0 = none
   bool world_server_lost;      // the connection to the world server broke; the session is over
   bool world_paused;           // another client has stopped robot time
+  bool not_at_start;           // the world's first start pose was not free: the robot was placed at another one
   robot::State robot;
 };
 

@@ -366,7 +366,8 @@ int hrt_wait_cycle(hrt_state* state);
 
 /* Describes what is missing on the robot, in one line of English such as "inclinometer (node 7) is silent: no posture,
  * and the heading is that of the tracks"; "" if nothing is missing. libkenaf_real also reports a track_gauge_mm more
- * than 5 % off the description's. Writes at most size - 1 bytes and a zero, even if the call fails for a reason other
+ * than 5 % off the description's; libkenaf_sim that the robot did not begin at the world's first start pose, because it
+ * was not free. Writes at most size - 1 bytes and a zero, even if the call fails for a reason other
  * than its arguments. HRT_E_NOT_INITIALISED; HRT_E_ARGUMENT: null or size 0; HRT_E_LINK: as of the last state. */
 int hrt_get_warning(char* text, size_t size);
 

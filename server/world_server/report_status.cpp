@@ -77,6 +77,7 @@ void write_status(const Simulation& simulation, Session& session) {
     writer.integer("Steps", static_cast<std::int64_t>(simulation.world.step_count()))
         .boolean("Paused", simulation.clock.paused());
     if (session.silent) writer.boolean("Silent", true);
+    if (!robot.start_instead.empty()) writer.text("Start", robot.start_instead);
     if (const std::string& fault = simulation.world.fault(robot.id); !fault.empty()) writer.text("Fault", fault);
   }
   writer.end();

@@ -25,6 +25,7 @@ struct SessionRobot {
   robot::Command command;   // the client's; in force unless an operator holds the robot
   bool normalized = false;  // the client's speeds are percentages of the maximum; sticky
   bool light = false;
+  std::string start_instead;    // the start pose that it got because the first was not free; empty: it was
   bool fault_reported = false;  // the failure of its simulation was reported
   struct {
     double speed = 0, front_rad = 0, rear_rad = 0;

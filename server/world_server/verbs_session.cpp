@@ -33,6 +33,13 @@ std::optional<physics::Pose> wanted_pose(const Simulation& simulation, Session& 
   return X_WB;
 }
 
+// The name of the start pose that the server chooses for a client which names no place; empty: it is the first.
+std::string start_if_not_first(const Simulation& simulation, const MessageView& message) {
+  if (message.find("Start") || read_location(message, "Location")) return {};
+  const physics::StartPose& chosen = free_start_pose(simulation.world);
+  return &chosen == &simulation.world.description().start_poses.front() ? std::string() : printable(chosen.name);
+}
+
 }  // namespace
 
 void init(Simulation& simulation, Session& session, const MessageView& message) {
@@ -56,7 +63,9 @@ void init(Simulation& simulation, Session& session, const MessageView& message) 
 
   std::string name = printable(text_of(message, "Name"));
   if (name.empty()) name = fmt::format("Robot{}", session.id);
+  const std::string start_instead = start_if_not_first(simulation, message);
   place_robot(simulation, session, *description, name, *X_WB);
+  session.robot->start_instead = start_instead;
   const std::uint64_t step = simulation.world.step_count();
   session.last_command_step = step;
   // Settings of a Session request before INIT are kept.

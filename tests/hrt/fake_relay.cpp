@@ -108,6 +108,7 @@ protocol::relay::State FakeRelay::state() const {
           .acknowledged = acknowledged_,
           .world_server_lost = false,
           .world_paused = false,
+          .not_at_start = behaviour_.not_at_start,
           .robot = plant_.state};
 }
 

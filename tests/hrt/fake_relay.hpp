@@ -30,6 +30,7 @@ class FakeRelay {
     std::uint32_t pause_at_frame = 0;       // says kWorldPaused `pause_states` times before it
     int pause_states = 0;
     bool first_state_lost = false;
+    bool not_at_start = false;
     bool no_state = false;  // welcomes and answers pings, and nothing more
   };
   explicit FakeRelay(const Behaviour& behaviour);

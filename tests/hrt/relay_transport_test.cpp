@@ -197,6 +197,23 @@ TEST_CASE("A relay that has no world server yet is asked again") {
   CHECK_THAT(hrt_last_error(), Catch::Contains("start kenaf-world"));
 }
 
+TEST_CASE("A robot that does not begin at the first start pose is reported with the first state") {
+  for (const bool displaced : {false, true}) {
+    FakeRelay::Behaviour behaviour;
+    behaviour.not_at_start = displaced;
+    FakeRelay relay(behaviour);
+    hrt_config config = config_for(relay.address());
+    REQUIRE(hrt_kenaf_init_with(&config) == HRT_OK);
+    char words[512];
+    REQUIRE(hrt_get_warning(words, sizeof words) == HRT_OK);
+    CHECK((std::string(words).find("first start pose") != std::string::npos) == displaced);
+    hrt_state state = hrt_state_init();
+    REQUIRE(hrt_get_state(&state) == HRT_OK);
+    CHECK(((state.activity & HRT_DEGRADED) != 0) == displaced);
+    CHECK(hrt_close() == HRT_OK);
+  }
+}
+
 TEST_CASE("A link that falls silent is an error within a second") {
   FakeRelay::Behaviour behaviour;
   behaviour.silent_from_frame = 20;

@@ -334,3 +334,19 @@ TEST_CASE_METHOD(Fixture, "A relay that ends tells its commander and stops the r
   CHECK(refused() == protocol::relay::RefusedReason::unknown_session);
   CHECK(port.closed == 1);
 }
+
+TEST_CASE("A Hello that is repeated while the world is slow is told so after a second, and may still begin") {
+  Fixture f;
+  f.hello(kFirst, 7);
+  f.now += 900ms;
+  f.hello(kFirst, 7);
+  CHECK(f.port.sent.empty());
+  f.now += 200ms;
+  f.hello(kFirst, 7);
+  REQUIRE(f.port.sent.size() == 1);
+  const auto& refused = std::get<protocol::relay::Refused>(f.port.sent[0].second);
+  CHECK(refused.reason == protocol::relay::RefusedReason::no_world_server);
+  CHECK(std::string(refused.text.data(), refused.text_length).find("1.1 s") != std::string::npos);
+  f.session.on_world_ready({1.0, 0.01, true}, f.now);
+  CHECK(std::holds_alternative<protocol::relay::Welcome>(f.port.sent.back().second));
+}

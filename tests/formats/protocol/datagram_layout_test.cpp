@@ -79,6 +79,7 @@ TEST_CASE("State is 284 bytes") {
   state.robot.fields =
       kenaf::robot::kHasPosture | kenaf::robot::kHasGroundTruth | kenaf::robot::held(kenaf::robot::kHasPosture);
   state.world_paused = true;
+  state.not_at_start = true;
   state.robot.robot_time_s = 1;
   state.robot.posture_rad = {2, 0, 0};
   state.robot.gyro_radps = {0, 2, 0};
@@ -92,7 +93,7 @@ TEST_CASE("State is 284 bytes") {
   state.robot.p_WB_m = {1, -1, 0.5};
   state.robot.orientation_rad = {0.5, 1, -1};
   check_bytes(state, "4b 4e 41 46 01 05 1c 01 " + kSession +
-                         "01 00 00 00 02 00 00 00 03 00 00 00 41 00 01 00 04 00 00 00 " + kOne + kTwo + kZero + kZero +
+                         "01 00 00 00 02 00 00 00 03 00 00 00 41 00 01 00 0c 00 00 00 " + kOne + kTwo + kZero + kZero +
                          kZero + kTwo + kZero + kZero + kZero + kTwo + kOne + kTwo + kTwo + kOne + kHalf + kOne + kOne +
                          kTwo + kMinusOne + kHalf + kHalf + kMinusOne + kTwo + kOne + kTwo + kOne + kMinusOne + kHalf +
                          kHalf + kOne + kMinusOne);

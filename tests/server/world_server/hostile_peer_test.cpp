@@ -139,6 +139,24 @@ TEST_CASE("A client that comes back takes the place of its old connection, robot
   }
 }
 
+TEST_CASE("A client that is not placed at the first start pose, because it is taken, is told which it got") {
+  Conversation talk;
+  talk.send("CONTROL {Type Session} {Period 0.01}\r\nINIT {ClassName USARBot.P2DX}\r\n");
+  REQUIRE(talk.run(0.01));
+  CHECK(talk.last("STA").find("{Start ") == std::string::npos);
+  const auto told = [&](const std::string& place) {
+    Session& other = talk.simulation.connect("other");
+    talk.send(other, "CONTROL {Type Session} {Period 0.01}\r\nINIT {ClassName USARBot.P2DX} " + place + "\r\n");
+    REQUIRE(talk.run(0.02));
+    const std::string all = other.out;
+    talk.simulation.disconnect(other);
+    return all.find("{Start start_01}") != std::string::npos;
+  };
+  CHECK(told(""));
+  CHECK_FALSE(told("{Location 0,5,0}"));  // who names a place gets it
+  CHECK_FALSE(told("{Start start_01}"));
+}
+
 TEST_CASE("An owner's key is 1 to 64 bytes") {
   Conversation talk;
   CHECK(talk.answer_to("CONTROL {Type Session} {Owner " + std::string(64, 'k') + "}\r\n").find("{Status OK}") !=
