@@ -60,8 +60,9 @@ void WebServer::Implementation::accept() {
   acceptor.async_accept([this](error_code error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
     if (!error) {
+      accept();  // first: a browser that cannot be served ends by an exception, and must not end this
       if (site.connections < site.limits.connections) serve_http(site, std::move(socket));
-      return accept();
+      return;
     }
     accept_again.expires_after(std::chrono::milliseconds(100));  // most often too many open files
     accept_again.async_wait([this](error_code cancelled) {

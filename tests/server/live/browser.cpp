@@ -34,25 +34,25 @@ std::string decode_base64(std::string_view text) {
 
 }  // namespace
 
-Browser::Browser(const std::filesystem::path& profile) {
+Browser::Browser(const std::filesystem::path& profile, const std::vector<std::string>& switches) {
   int there[2], back[2];
   if (::pipe2(there, O_CLOEXEC) != 0 || ::pipe2(back, O_CLOEXEC) != 0) throw std::runtime_error("no pipes");
   const std::string data = "--user-data-dir=" + profile.string();
   // A sandbox needs rights that a container lacks; the page is our own. Software draws: there is no GPU to rely on.
-  const char* argv[] = {KENAF_CHROMIUM,
-                        "--headless",
-                        "--no-sandbox",
-                        "--use-angle=swiftshader",
-                        "--enable-unsafe-swiftshader",
-                        "--disable-dev-shm-usage",
-                        "--hide-scrollbars",
-                        "--no-first-run",
-                        "--disable-background-networking",
-                        "--disable-component-update",
-                        "--remote-debugging-pipe",
-                        data.c_str(),
-                        "about:blank",
-                        nullptr};
+  std::vector<const char*> argv{KENAF_CHROMIUM,
+                                "--headless",
+                                "--no-sandbox",
+                                "--use-angle=swiftshader",
+                                "--enable-unsafe-swiftshader",
+                                "--disable-dev-shm-usage",
+                                "--hide-scrollbars",
+                                "--no-first-run",
+                                "--disable-background-networking",
+                                "--disable-component-update",
+                                "--remote-debugging-pipe",
+                                data.c_str()};
+  for (const std::string& each : switches) argv.push_back(each.c_str());
+  argv.insert(argv.end(), {"about:blank", nullptr});
   pid_ = ::fork();
   if (pid_ == 0) {
     ::setpgid(0, 0);  // its own processes go with it
@@ -62,7 +62,7 @@ Browser::Browser(const std::filesystem::path& profile) {
     ::dup2(out, 4);
     const int nowhere = ::open("/dev/null", O_RDWR);
     for (const int standard : {0, 1, 2}) ::dup2(nowhere, standard);
-    ::execv(KENAF_CHROMIUM, const_cast<char* const*>(argv));
+    ::execv(KENAF_CHROMIUM, const_cast<char* const*>(argv.data()));
     ::_exit(127);
   }
   ::close(there[0]);

@@ -22,8 +22,9 @@ struct PageLeft : std::runtime_error {
 
 class Browser {
  public:
-  // Opens an empty page. `profile`: an empty folder. Throws where there is no Chromium.
-  explicit Browser(const std::filesystem::path& profile);
+  // Opens an empty page. `profile`: an empty folder; `switches`: further ones of Chromium's. Throws where there is no
+  // Chromium.
+  explicit Browser(const std::filesystem::path& profile, const std::vector<std::string>& switches = {});
   ~Browser();
   Browser(const Browser&) = delete;
   Browser& operator=(const Browser&) = delete;
